@@ -1,4 +1,4 @@
-"""A server's parts, handed to whoever needs them."""
+"""The parts of a server, which are passed to its functions."""
 
 from __future__ import annotations
 
@@ -58,13 +58,13 @@ class Service:
         return Feed(self.database)
 
     def free_bytes(self) -> int:
-        """Room left where the store is: none on a disk that is read-only, as one becomes after faults."""
+        """Free space on the disk of the store; 0 if it is read-only, as disks become after faults."""
         store = self.settings.store
         return shutil.disk_usage(store).free if os.access(store, os.W_OK) else 0
 
 
 Place = OpenStore | Service
-"""What keeping results needs: where the store is, its database, and the time."""
+"""What storing results needs: the settings of the store, its database, and the time."""
 
 
 def open_service(settings: ServiceSettings) -> Service:

@@ -47,7 +47,7 @@ def check_name(name: str) -> str:
     """
     if NAME.fullmatch(name) is None:
         raise InputError(
-            "an asset cannot be called so",
+            "not a name for an asset",
             field="name",
             value=name[:80],
             allowed="1 to 64 letters, digits, _ and -, a letter or digit first",
@@ -120,7 +120,7 @@ def adopt(connection: Connection, name: str, version: int) -> None:
 
 
 def archive(connection: Connection, name: str, at: datetime | None) -> None:
-    """Have an asset take nothing more and stand in no list from now on; None brings it back."""
+    """Archive an asset, which then takes no data and is not listed; None brings it back."""
     found_version(connection, name)
     connection.execute(update(assets).where(assets.c.name == name).values(archived_utc=at))
 
@@ -131,7 +131,7 @@ def is_archived(connection: Connection, name: str) -> bool:
 
 
 def asset_names(connection: Connection, *, archived: bool = True) -> list[str]:
-    """Return the names of all assets, sorted, with those that are archived or without."""
+    """Return the names of all assets, sorted, with or without archived ones."""
     query = select(assets.c.name).order_by(assets.c.name)
     return list(connection.scalars(query if archived else query.where(assets.c.archived_utc.is_(None))))
 
@@ -149,7 +149,7 @@ class Summary:
 
 
 def summaries(connection: Connection, name: str | None = None, *, archived: bool = False) -> list[Summary]:
-    """Return every asset by name that is archived, or is not; or one, whichever it is."""
+    """Return the archived or the other assets, by name; or one asset, archived or not."""
     start = records.c.start_utc
     last = select(func.max(start, type_=start.type)).where(records.c.asset == assets.c.name)
     adopted = (versions.c.asset == assets.c.name) & (versions.c.version == assets.c.adopted_version)

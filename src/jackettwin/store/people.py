@@ -1,4 +1,4 @@
-"""Who may: users, sessions of browsers, tokens of machines, and the audit log."""
+"""Users, sessions of browsers, tokens of machines, and the audit log."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jackettwin.errors import InputError
 from jackettwin.store.tables import audit, tokens, users
 
 ROLES = ("viewer", "engineer", "admin")
-"""Each may what those before it may."""
+"""Each role includes those before it."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Grant:
 
 
 def secret_hash(secret: str) -> str:
-    """Return what is kept of a random secret of 256 bits: no salt is needed against guessing."""
+    """Return the stored hash of a random secret of 256 bits, which needs no salt against guessing."""
     return hashlib.sha256(secret.encode()).hexdigest()
 
 
@@ -106,7 +106,7 @@ def grant(
 
 
 def find_grant(connection: Connection, secret: str, now: datetime) -> Grant | None:
-    """Return whose session or token a secret is; None if it is nobody's, expired, or its user is disabled."""
+    """Return the grant of a secret; None if there is none, it has expired, or its user is disabled."""
     query = (
         select(tokens.c.user, users.c.role, tokens.c.kind, tokens.c.csrf, tokens.c.expires_utc)
         .join(users, users.c.name == tokens.c.user)
@@ -140,7 +140,7 @@ def list_tokens(connection: Connection) -> list[KnownToken]:
 
 
 def revoke_tokens(connection: Connection, user: str, label: str | None = None) -> int:
-    """End a user's tokens, all or those of a label, and all sessions with the former; return how many."""
+    """End the tokens of a user with a label, or all tokens and sessions; return how many."""
     mine = [tokens.c.user == user]
     if label is not None:
         mine += [tokens.c.label == label, tokens.c.kind == "token"]

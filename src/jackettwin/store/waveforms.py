@@ -1,4 +1,4 @@
-"""Raw samples as Parquet files by asset and day, int16 with a scale where that loses nothing."""
+"""Raw samples in Parquet files by asset and day, as int16 with a scale where that is exact."""
 
 from __future__ import annotations
 

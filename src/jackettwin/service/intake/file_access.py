@@ -1,4 +1,4 @@
-"""Files of strangers name other files: they may read those that came with them, and none of ours."""
+"""Restricts which files are opened while a twin is read, since its files name other files."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ _SOFTWARE = tuple(
     Path(place).resolve()
     for place in (sys.prefix, sys.base_prefix, str(Path(jackettwin.__file__).parent), *zoneinfo.TZPATH)
 )
-"""Where modules are loaded from, what is shipped with them, and time zones: nobody's secrets."""
+"""Folders of software, its data, and time zones, which anybody may read."""
 _KNOWN_OF_MODULES = (".dist-info", ".egg-info")
 
 
 @contextmanager
 def only_files_in(folder: Path) -> Iterator[None]:
-    """Refuse every file outside a folder that Python is asked to open in the block, whatever reader asks.
+    """Refuse to open any file outside a folder while the block runs, whichever reader asks.
 
     Raises
     ------
     InputError
-        In the block, whether there is such a file or not.
+        Inside the block, whether the file exists or not.
     """
     token = _folder.set(folder.resolve())
     try:

@@ -1,4 +1,4 @@
-"""Who may do what: passwords, sessions, tokens, roles, forged requests, guessing."""
+"""Authentication: passwords, sessions, tokens, roles, forged requests, guessing."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def nobodys_hash() -> str:
 
 @dataclass(frozen=True)
 class Who:
-    """Somebody who may do what a role may; ``kind`` is how we know."""
+    """Who sent a request, with which role; ``kind`` says how that is known."""
 
     name: str
     role: str
@@ -72,7 +72,7 @@ def hashed(password: str) -> str:
 
 
 def checked_login(connection: Connection, name: str, password: str) -> people.User | None:
-    """Return the user whose password this is, or None; it takes as long for unknown names."""
+    """Return the user if the password is right, or None; unknown names take as long."""
     user = people.find_user(connection, name)
     try:
         _hasher.verify(nobodys_hash() if user is None else user.password_hash, password)
@@ -84,18 +84,18 @@ def checked_login(connection: Connection, name: str, password: str) -> people.Us
 def opened_session(
     database: Engine, attempts: LoginAttempts, name: str, password: str, place: str, now: datetime
 ) -> tuple[people.User, str, str]:
-    """Return the user whose password this is, a session's secret and CSRF token; who tried is noted down.
+    """Return the user who logs in, the secret of a session and its CSRF token; every attempt is logged.
 
     Raises
     ------
     ApiError
-        401 if it is nobody's, 429 after too many tries.
+        401 if name or password is wrong, 429 after too many attempts.
     """
     key = f"{place}/{name}"
     wait = max(attempts.wait_s(place, ATTEMPTS_FROM), attempts.wait_s(key, ATTEMPTS))
     if wait > 0.0:
         raise ApiError(429, "too many failed logins; wait", headers={"Retry-After": str(ceil(wait))})
-    with reading(database) as connection:  # it takes its time, and guesses must not hold up those who write
+    with reading(database) as connection:  # hashing takes long: no lock is held meanwhile
         user = checked_login(connection, name, password)
     with writing(database) as connection:
         people.note_down(connection, name, "login", key, "ok" if user else "refused", now)
@@ -119,9 +119,9 @@ def new_grant(
 
 
 def who_asks(request: Request, database: Engine, settings: ServiceSettings, now: datetime) -> Who | None:
-    """Return who sent a request.
+    """Return who sent a request, by bearer token, session or trusted proxy; None if that is not known.
 
-    By bearer token, session, trusted proxy, or on an open loopback server anyone.
+    On a loopback server without users anybody on this machine is its administrator.
     """
     with reading(database) as connection:
         if not people.any_user(connection):
@@ -141,7 +141,7 @@ def who_asks(request: Request, database: Engine, settings: ServiceSettings, now:
 
 
 def unknown() -> ApiError:
-    """Return the answer to somebody of whom it is not known who it is."""
+    """Return the refusal of a request without valid login or token."""
     return ApiError(
         401,
         "log in, or send a token",
@@ -151,12 +151,12 @@ def unknown() -> ApiError:
 
 
 def too_little(who: Who, role: str) -> ApiError:
-    """Return the answer to somebody whose role does not do."""
+    """Return the refusal of a request that needs another role."""
     return ApiError(403, f"this needs the role {role}; {who.name} is {who.role}")
 
 
 def allowed(role: str) -> Callable[..., Awaitable[Who]]:
-    """Return the dependency of a route that asks for a role."""
+    """Return a dependency that refuses requests without a role."""
 
     async def check(request: Request) -> Who:
         who: Who | None = request.state.who
@@ -171,7 +171,7 @@ def allowed(role: str) -> Callable[..., Awaitable[Who]]:
 
 
 def refuse_forged(request: Request, who: Who | None) -> None:
-    """Refuse what another page had a browser send: no CSRF token, or another origin.
+    """Refuse a request that another page had a browser send: without CSRF token, or of another origin.
 
     Raises
     ------
@@ -190,10 +190,7 @@ def refuse_forged(request: Request, who: Who | None) -> None:
 
 
 def _from_here(request: Request) -> bool:
-    """Tell whether an open server was asked by its own name.
-
-    A page elsewhere may point its name at 127.0.0.1.
-    """
+    """Tell whether a request names this machine: the names of other pages may point to 127.0.0.1."""
     return is_loopback(request.url.hostname or "")
 
 

@@ -1,7 +1,4 @@
-"""What follows from a result, in the same transaction.
-
-Modes, findings, the state of the day and of those after.
-"""
+"""What follows from a result, in the same transaction: modes, findings, the day's state, events."""
 
 from __future__ import annotations
 
@@ -25,11 +22,11 @@ if TYPE_CHECKING:
 
 
 NEWEST = 24
-"""Observations that the page on a turbine shows one by one; what it says is of all."""
+"""Observations that the page on a turbine shows one by one; its statements rest on all."""
 
 
 def task_of(connection: Connection, service: Place, job: work.Job) -> Task:
-    """Return what a worker must know to do a piece of work; the twin's files are laid out for it."""
+    """Return what a worker needs to observe a record; the twin's files are unpacked for it."""
     record = records.find_record(connection, job.asset, job.record_id)
     if record is None or record.waveform is None:
         raise LookupError(f"record {job.record_id} of {job.asset} has no samples")
@@ -46,7 +43,7 @@ def task_of(connection: Connection, service: Place, job: work.Job) -> Task:
 
 
 def observing(connection: Connection, service: Service, job: work.Job) -> None:
-    """Say that a record is being observed, unless it has been by the adopted version."""
+    """Mark a record as being observed, unless the adopted version has observed it already."""
     record = records.find_record(connection, job.asset, job.record_id)
     if record is not None and record.status == "received":
         records.set_status(connection, job.asset, job.record_id, "observing")
@@ -54,9 +51,9 @@ def observing(connection: Connection, service: Service, job: work.Job) -> None:
 
 
 def question_of(connection: Connection, service: Place, job: work.Job, *, every_day: bool) -> Question:
-    """Return what a worker must know to say what a turbine's state says of its supports.
+    """Return what a worker needs to infer a turbine's supports from its state.
 
-    It is sent the days after those that it has the sums of, or every day if it asked for them.
+    It is sent the days that its stored sums do not contain yet, or every day if it asked for them.
     """
     key = (job.asset, job.model_hash)
     identities = results.state_hashes(connection, *key)
@@ -78,7 +75,7 @@ def question_of(connection: Connection, service: Place, job: work.Job, *, every_
 
 
 def keep_known(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
-    """Keep what a turbine's days say of the supports, and of a change."""
+    """Keep what was inferred of a turbine's supports, and whether the structure changed."""
     now = service.now()
     if not work.finish(connection, job, service.server_id, "done", now):
         return
@@ -89,7 +86,7 @@ def keep_known(connection: Connection, service: Service, job: work.Job, outcome:
         ask_known(connection, service, assets.found_version(connection, job.asset, job.version))
     adopted = assets.found_version(connection, job.asset)
     if job.version != adopted.version and job.model_hash == adopted.model_hash:
-        return  # what watching says of these days is the adopted version's to say
+        return  # the adopted version alone reports changes
     key = {"asset": job.asset, "model_hash": job.model_hash, "record_id": ""}
     rows = [
         _finding_row(f, key, datetime.fromisoformat(f["time_utc"]), f["day"], "watch")
@@ -102,9 +99,9 @@ def keep_known(connection: Connection, service: Service, job: work.Job, outcome:
 
 
 def ask_known(connection: Connection, service: Place, version: assets.Version) -> None:
-    """Queue the question what the state says now, behind everything that is observed.
+    """Queue the question what the state says of the supports, behind all records.
 
-    It is asked again after an answer that is on its way, if that one knows less.
+    If an answer is on its way that knows less, the question is asked again after it.
     """
     named = replace(version, settings_hash=f"version {version.version}")  # laws and priors are its settings
     number = work.enqueue(connection, named, "", service.now(), kind=work.KNOW, priority=-10)
@@ -114,7 +111,7 @@ def ask_known(connection: Connection, service: Place, version: assets.Version) -
 def keep(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
     """Keep the outcome of a piece of work and everything that follows from it.
 
-    Nothing, if it is not ours any more.
+    Nothing is kept if this server has lost the lease.
     """
     now, me = service.now(), service.server_id
     adopted = assets.found_version(connection, job.asset)
@@ -170,7 +167,7 @@ def keep(connection: Connection, service: Service, job: work.Job, outcome: Outco
 
 
 def failed(connection: Connection, service: Service, job: work.Job, reason: str) -> None:
-    """Put work back that its worker did not survive, or set its record aside after the last try."""
+    """Queue work again whose worker died, or set its record aside after the last try."""
     problem = {"detail": reason, **_TRY_AGAIN}
     state = work.put_back(connection, job, service.server_id, problem)
     if state == "set_aside" and job.kind != work.KNOW:
@@ -193,7 +190,7 @@ def cancel(connection: Connection, service: Place, job: work.Job, by: str) -> bo
 
 
 def set_aside(connection: Connection, service: Place, asset: str, record_id: str, why: str) -> None:
-    """Take back what a record gave rise to: another one holds its samples and more, or a person says so."""
+    """Undo what followed from a record: a later record contains it, or a person rejects it."""
     lock(connection, asset)
     for job in work.jobs_of(connection, asset, record_id):
         work.cancel(connection, job.id, service.now())
@@ -217,8 +214,8 @@ def fold(
 ) -> None:
     """Bring the state of a day up to date.
 
-    A day is a sum over its records that does not depend on their order. A record that is new to it is added;
-    one that was observed again, or taken out, makes the day be summed anew.
+    A day is a sum over its records, in any order. A new record is added to it; after one that was observed
+    again or removed (``anew``), the day is summed from its observations.
     """
     day, model_hash = f"{changed.start_utc:%Y-%m-%d}", changed.model_hash
     stored = None if anew else results.find_state(connection, asset, model_hash, day)
@@ -248,14 +245,14 @@ def fold(
 
 
 def lock(connection: Connection, asset: str) -> None:
-    """Hold an asset until the transaction ends: two servers fold one after the other."""
+    """Lock an asset until the transaction ends: two servers fold into its days one after the other."""
     connection.execute(select(tables.assets.c.name).where(tables.assets.c.name == asset).with_for_update())
 
 
 def _end_open(
     connection: Connection, job: work.Job, status: str, problem: Mapping[str, Any], now: datetime
 ) -> None:
-    """Say why a record that is not observed yet will not be."""
+    """Give a record that is not observed yet its final status, with the reason."""
     record = records.find_record(connection, job.asset, job.record_id)
     if record is not None and record.status in ("received", "observing"):
         _end(connection, job.asset, job.record_id, status, problem, now)

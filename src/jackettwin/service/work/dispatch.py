@@ -1,7 +1,4 @@
-"""The heart of a server.
-
-Leases work, has it done, keeps results with their consequences, takes over from the dead.
-"""
+"""The dispatcher: it leases work, has workers do it, keeps the results, and takes over from dead servers."""
 
 from __future__ import annotations
 
@@ -32,12 +29,12 @@ log = logging.getLogger(__name__)
 
 _BEAT_S = 2.0
 DEAD_AFTER_S = 15.0
-"""A server whose beat stood still for so long, by the stopwatch of another, is dead."""
+"""A server is dead if its beat has not changed for so long, by the stopwatch of another one."""
 _TURN_S = 0.25
 _RESTS = 3.0
-"""What a state says of the supports may take a quarter of one worker, however many turbines there are."""
+"""Pause after a question about supports, in multiples of its time: these take a quarter of one worker."""
 _AHEAD = 2
-"""Tasks a worker has before it, so that none waits for the next lease."""
+"""Tasks handed to each worker, so that it need not wait for the next lease."""
 
 
 @dataclass
@@ -48,9 +45,9 @@ class _Running:
 
 
 class Dispatcher(Thread):
-    """A thread that turns until it is told to stop.
+    """A thread that dispatches work until it is told to stop.
 
-    Whatever it was doing then is leased again by the next.
+    Work that is not finished then goes back to the queue, where another server leases it.
     """
 
     def __init__(self, service: Service) -> None:
@@ -64,7 +61,7 @@ class Dispatcher(Thread):
         self._rest_until = 0.0
 
     def run(self) -> None:
-        """Turn; a database that is away for a while is waited for."""
+        """Dispatch; while the database does not answer, wait and try again."""
         waited = 0.0
         while not self._stop_asked.is_set():
             try:
@@ -72,16 +69,16 @@ class Dispatcher(Thread):
                 waited = 0.0
             except (SQLAlchemyError, OSError) as error:
                 waited = min(waited + 1.0, 10.0)
-                log.warning("dispatcher waits %g s: %s", waited, str(error).splitlines()[0])
+                log.warning("the dispatcher waits %g s: %s", waited, str(error).splitlines()[0])
                 self._stop_asked.wait(waited)
             except Exception:
-                log.exception("dispatcher goes on after a fault of ours")
+                log.exception("the dispatcher goes on after an internal error")
                 self._stop_asked.wait(1.0)
             self.wake.wait(_TURN_S)
             self.wake.clear()
 
     def stop(self) -> None:
-        """Stop, and leave the list of servers so that others take over at once."""
+        """Stop, and sign off from the list of servers so that others take over at once."""
         self._stop_asked.set()
         self.wake.set()
         if self.is_alive():
@@ -90,18 +87,18 @@ class Dispatcher(Thread):
             with writing(self.service.database) as connection:
                 work.bury(connection, self.service.server_id)
         except SQLAlchemyError:
-            log.warning("could not leave the list of servers; others notice by the beat")
+            log.warning("could not sign off from the list of servers; others will miss the beat")
 
     def _turn(self) -> None:
         self._beat()
         self._collect()
         self._end_overrun()
         self._lease()
-        for chore in self.service.periodic:
-            chore()
+        for task in self.service.periodic:
+            task()
 
     def _beat(self) -> None:
-        """Count our beat up, bury who is dead, come back if we were buried ourselves."""
+        """Count our own beat up, or join again if we were taken for dead; take dead servers off the list."""
         if time.monotonic() - self._last_beat < _BEAT_S:
             return
         self._last_beat = time.monotonic()
@@ -118,7 +115,7 @@ class Dispatcher(Thread):
             work.take_back_orphans(connection, me, self._running)
 
     def _dead(self, server: str, count: int, about: Mapping[str, Any]) -> bool:
-        """Tell whether a server's process is gone from this machine, or its beat stands still."""
+        """Tell whether a server's process is gone from this machine, or its beat has stopped."""
         if _MACHINE and about.get("machine") == _MACHINE and not _runs(about["pid"]):
             return True
         known, since = self._seen.get(server, (None, 0.0))
@@ -143,9 +140,9 @@ class Dispatcher(Thread):
             self._start(job)
 
     def _start(self, job: work.Job, *, every_day: bool = False) -> None:
-        """Have a worker do a piece of work, unless what it needs is not there any more."""
+        """Hand a piece of work to a worker; it fails if its record or samples have been deleted."""
         try:
-            with reading(self.service.database) as connection:  # years of days: no writer waits
+            with reading(self.service.database) as connection:  # it takes time: writers need not wait
                 function, argument = self._task(connection, job, every_day)
         except LookupError as gone:
             with writing(self.service.database) as connection:
@@ -156,9 +153,9 @@ class Dispatcher(Thread):
         self._running[job.id] = _Running(job, future, time.monotonic())
 
     def _next_kind(self) -> str | None:
-        """Return what to lease: records first, those of archived assets last of all.
+        """Return the kind of work to lease: records first, those of archived assets last.
 
-        What a state says is asked only when it was rested for long enough.
+        Questions about supports come between, one at a time and with a pause after each.
         """
         with reading(self.service.database) as connection:
             if work.any_queued(connection, work.OBSERVE):
@@ -188,7 +185,7 @@ class Dispatcher(Thread):
                     self._rest_until = time.monotonic() + _RESTS * took
 
     def _keep(self, running: _Running) -> bool:
-        """Keep what came of a piece of work; False if its worker must have every day to do it."""
+        """Keep the outcome of a piece of work; return False if its worker needs the document of every day."""
         if running.future.status == "finished":
             outcome: Outcome | None = running.future.result()
             if outcome is None:
@@ -202,7 +199,7 @@ class Dispatcher(Thread):
         with writing(self.service.database) as connection:
             if tried:
                 consequences.failed(connection, self.service, running.job, reason)
-            else:  # it waited at a worker that died of another task
+            else:  # the worker died of another task before it began this one
                 work.release(connection, running.job, self.service.server_id)
         return True
 
@@ -228,7 +225,7 @@ def _runs(pid: int) -> bool:
 
 
 def _machine() -> str:
-    """Return what two servers share if the number of a process means the same to both; empty if unknown."""
+    """Return what identifies this machine and its process numbers, empty if unknown."""
     try:
         boot = Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii").strip()
         return f"{boot} {os.readlink('/proc/self/ns/pid')}"
@@ -240,7 +237,7 @@ _MACHINE = _machine()
 
 
 def _reason(future: Future) -> str:
-    """Return in a sentence why a task has no result."""
+    """Return why a task has no result, as a sentence."""
     try:
         error = future.exception(timeout=1)
     except Exception as lost:

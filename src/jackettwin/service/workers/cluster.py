@@ -1,7 +1,6 @@
-"""Workers.
+"""Workers: a Dask cluster of this machine, or one whose scheduler is given.
 
-A Dask cluster of this machine or somebody's scheduler; slow and dying tasks are told apart from wrong input.
-A task's time counts from when a worker begins with it: neither waiting for a worker nor its start count.
+A task's time counts from when a worker begins it: neither waiting for a worker nor the worker's start count.
 """
 
 from __future__ import annotations
@@ -28,14 +27,14 @@ from jackettwin.service.workers.memory import give_back
 log = logging.getLogger(__name__)
 
 _NICE = 5
-"""Of workers of our own: readers are answered first, records are observed with what is left of the cores.
+"""Added to the nice value of own workers: requests are answered first, records observed with what is left.
 
-Stated absolutely, since Dask runs it twice."""
+The resulting value is stated absolutely, since Dask runs the statement twice."""
 _START = (
     f"import os, {__package__}.engine, {__package__}.tasks\n"
     f"os.setpriority(os.PRIO_PROCESS, 0, {os.nice(0) + _NICE})"
 )
-"""What a worker of our own does before it takes a task: a record does not wait for libraries."""
+"""What an own worker runs before its first task, so that no record waits for libraries to load."""
 _DASK = {
     "distributed.worker.memory.target": False,
     "distributed.worker.memory.spill": False,
@@ -52,17 +51,16 @@ _DASK = {
     "distributed.worker.preload": [_START],
     "distributed.nanny.pre-spawn-environ.MALLOC_ARENA_MAX": 1,
 }
-"""A worker over its memory is ended, not paused.
+"""A worker that exceeds its memory is ended, not paused.
 
-A task that ended a worker comes back to us at once, and counts a try. A free worker takes what waits at a
-busy one: an upload does not wait for a posterior. The timeout of a lost worker is when Dask ends whoever took
-its place, if that one is just starting: after its own 15 s that happened. Dask's profiler and monitor
-keep what every thread did for an hour, and its logs the last thousand messages of every connection with all
-that was sent: off, and short.
+A task whose worker ended comes back at once and counts as a try. An idle worker steals tasks that wait at a
+busy one: an upload does not wait for a posterior. After the timeout of a lost worker Dask ends the one that
+replaced it; with the default of 15 s it did so while that one was still starting. Profiler, monitor and
+message logs would hold an hour of samples and all data sent: they are off, or short.
 """
 
-_REMEMBERED = 10_000
-"""Tasks of which it is known that they began: far more than there are at once."""
+_MOST_NOTED = 10_000
+"""Tasks whose beginning is remembered: far more than there are at once."""
 
 
 _SENT_S = 0.01
@@ -81,7 +79,7 @@ def run(topic: str, task: Callable[..., Any], *args: Any) -> Any:
 
 
 class Cluster:
-    """Where records are read and observed: never in the server's own process."""
+    """The workers that read and observe records, which the server's own process never does."""
 
     def __init__(self, settings: ServiceSettings) -> None:
         dask.config.set(_DASK)
@@ -91,7 +89,7 @@ class Cluster:
         self._cluster: LocalCluster | None = None
         if settings.scheduler is None:
             self._cluster = LocalCluster(
-                n_workers=0,  # they come while the server answers already
+                n_workers=0,  # they start while the server already answers
                 threads_per_worker=1,
                 processes=True,
                 memory_limit=settings.worker_memory_bytes,
@@ -120,17 +118,17 @@ class Cluster:
 
     @property
     def restarts(self) -> int:
-        """How many workers were replaced: our own, whatever they ended of; of others', those we ended."""
+        """How many workers were replaced: of own ones all that ended, of others those that we ended."""
         return self._ended if self._cluster is None else max(len(self._ever) - self._wanted, 0)
 
     def _addresses(self) -> set[str]:
-        """Where workers are; one that is started anew is elsewhere."""
+        """Addresses of the workers; a restarted worker has a new one."""
         return set(self.client.scheduler_info(n_workers=-1).get("workers", {}))
 
     def mend(self) -> None:
-        """Start workers of our own that are gone for good.
+        """Replace own workers that are gone for good.
 
-        Dask starts a worker that died anew, but gives one up that dies, or takes long, while it starts.
+        Dask restarts a worker that died, but gives up one that dies, or takes long, while it starts.
         """
         if self._cluster is not None:
             self._ever |= self._addresses()
@@ -143,9 +141,9 @@ class Cluster:
         cluster.scale(self._wanted)
 
     def submit(self, task: Callable[..., Any], *args: Any, priority: int = 0) -> Future:
-        """Start a task; urgent ones overtake.
+        """Start a task; those of higher priority go first.
 
-        Its key begins with its name, by which Dask knows how long such tasks take and where to put the next.
+        Its key begins with its name: by it Dask learns how long such tasks take, to place the next ones.
         """
         name = getattr(task, "func", task).__name__
         key = f"{name}-{secrets.token_hex(16)}"
@@ -153,21 +151,21 @@ class Cluster:
 
     def _note(self, event: tuple[float, str]) -> None:
         self._began[event[1]] = time.monotonic()
-        while len(self._began) > _REMEMBERED:
+        while len(self._began) > _MOST_NOTED:
             del self._began[next(iter(self._began))]
 
     def has_begun(self, future: Future, ago_s: float = 0.0) -> bool:
-        """Tell whether a worker began with a task, and so long ago."""
+        """Tell whether a worker began a task, and at least so long ago."""
         began = self._began.get(future.key)
         return began is not None and time.monotonic() - began >= ago_s
 
     def result(self, future: Future, limit_s: float) -> Any:
-        """Return the result of a task that may take so long once it has begun, or end it.
+        """Return the result of a task, which is ended if it takes longer than the limit once begun.
 
         Raises
         ------
         NoWorker
-            If no worker came to it within the same time.
+            If no worker began it within the same time.
         TimeoutError
             If it takes longer.
         """
@@ -176,7 +174,7 @@ class Cluster:
             try:
                 return future.result(timeout=left)
             except TimeoutError:
-                if future.done():  # it is the task's own
+                if future.done():  # the task itself raised it
                     raise
                 began = self._began.get(future.key)
                 if began is None:
@@ -188,20 +186,20 @@ class Cluster:
                     raise
 
     def end(self, future: Future) -> None:
-        """Give a task up that takes too long: its worker is started anew, with whatever it holds."""
+        """Give up a task that takes too long: its worker is restarted, and other tasks there with it."""
         with self._lock, suppress(Exception):
             busy = [address for address, keys in self.client.processing().items() if future.key in keys]
             future.cancel()
             self._ended += len(busy)
             if self._cluster is None:
                 self.client.restart_workers(busy, timeout=30, raise_for_error=False)
-            else:  # a nanny starts a worker anew that died, sooner than one that it must end itself
+            else:  # a nanny restarts a dead worker sooner than one that it must end itself
                 for nanny in self._cluster.workers.values():
                     if nanny.worker_address in busy:
                         os.kill(nanny.pid, signal.SIGKILL)
 
     def close(self) -> None:
-        """Stop; what runs is dropped and will be leased again."""
+        """Stop; running tasks are dropped, and their work is leased again later."""
         with suppress(Exception):
             self.client.close(timeout=5)
         if self._cluster is not None:

@@ -15,8 +15,10 @@ from jackettwin.service.web.dependencies import (
     Route,
     Told,
     Writes,
+    engineer,
     known_asset,
     known_version,
+    viewer,
 )
 from jackettwin.service.web.problems import ApiError, answers
 from jackettwin.service.web.schemas import (
@@ -39,7 +41,7 @@ AnyVersion = Annotated[int | None, Query(ge=1, le=1_000_000, description="Defaul
 When = Annotated[datetime | None, Query(description="The state as it was then; default: now.")]
 
 
-@router.get("/assets/{asset}/modes", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+@router.get("/assets/{asset}/modes", **viewer(404, 422))
 def modes(
     asset: AssetName,
     connection: Told,
@@ -55,7 +57,7 @@ def modes(
     return said.modes(connection, version, label, *window, cursor, limit)
 
 
-@router.get("/assets/{asset}/twin", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+@router.get("/assets/{asset}/twin", **viewer(404, 422))
 def twin(
     asset: AssetName, parts: Parts, connection: Told, at: When = None, version: AnyVersion = None
 ) -> TwinOut:
@@ -64,7 +66,7 @@ def twin(
     return said.twin(connection, parts, asked, signals.with_zone(at, "at"))
 
 
-@router.get("/assets/{asset}/comparison", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+@router.get("/assets/{asset}/comparison", **viewer(404, 422))
 def comparison(
     asset: AssetName,
     version: Annotated[int, Query(ge=1, le=1_000_000)],
@@ -76,7 +78,7 @@ def comparison(
     return said.compared(connection, parts, adopted, other)
 
 
-@router.get("/assets/{asset}/damping-budget", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+@router.get("/assets/{asset}/damping-budget", **viewer(404, 422))
 def damping_budget(
     asset: AssetName, parts: Parts, connection: Told, at: When = None, version: AnyVersion = None
 ) -> Page[BudgetOut]:
@@ -86,14 +88,14 @@ def damping_budget(
     return Page(items=found.parameters.get("budget", []))
 
 
-@router.get("/assets/{asset}/life", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+@router.get("/assets/{asset}/life", **viewer(404, 422))
 def life(asset: AssetName, connection: Told) -> Page[dict[str, object]]:
     """Return the life at every joint; empty until the twin computes fatigue."""
     known_asset(connection, asset)
     return Page(items=[])
 
 
-@router.get("/assets/{asset}/findings", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+@router.get("/assets/{asset}/findings", **viewer(404, 422))
 def findings(
     asset: AssetName,
     connection: Told,
@@ -105,15 +107,13 @@ def findings(
     return said.findings(connection, known_asset(connection, asset), severity, cursor, limit)
 
 
-@router.get("/assets/{asset}/alarms", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+@router.get("/assets/{asset}/alarms", **viewer(404, 422))
 def alarms(asset: AssetName, connection: Told, cursor: Cursor = None, limit: Limit = 100) -> Page[AlarmOut]:
     """List the findings that ask for a person, newest first, and who took note."""
     return said.alarms(connection, known_asset(connection, asset), cursor, limit)
 
 
-@router.post(
-    "/alarms/{alarm_id}/acknowledge", dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 404, 422)
-)
+@router.post("/alarms/{alarm_id}/acknowledge", **engineer(400, 404, 422))
 def acknowledge(
     alarm_id: Annotated[int, said.RowNumber],
     body: Acknowledgement,
