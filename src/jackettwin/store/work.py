@@ -19,7 +19,7 @@ from jackettwin.store.database import insert_new
 from jackettwin.store.tables import servers, work
 from jackettwin.version import __version__
 
-OBSERVE, KNOW = "observe", "know"
+OBSERVE, INFER = "observe", "know"
 """Kinds of work: observe a record; infer the supports from a state."""
 GONE = -20
 """Priority of the records of an archived asset: after all others, and not counted as waiting."""

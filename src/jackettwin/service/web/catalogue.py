@@ -14,7 +14,7 @@ from jackettwin.errors import InputError
 from jackettwin.service import workers
 from jackettwin.service.intake.file_access import only_files_in
 from jackettwin.service.web.schemas import AssetOut, VersionOut
-from jackettwin.service.work.consequences import ask_known
+from jackettwin.service.work.consequences import queue_inference
 from jackettwin.store import assets, journal, people, records, results, work
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def add_version(
     for record in records.all_with_samples(connection, name):
         work.enqueue(connection, version, record.record_id, service.now())
     if results.state_hashes(connection, name, model_hash):
-        ask_known(connection, service, version)  # the same model under another law
+        queue_inference(connection, service, version)  # the same model under another law
     people.note_down(connection, by, "asset version", f"{name}/{version.version}", "ok", service.now())
     journal.tell(connection, "asset", name, {"version": version.version}, service.now())
     return version
@@ -92,7 +92,7 @@ def adopt(connection: Connection, service: Place, name: str, version: int, by: s
         If there is no such version.
     """
     assets.adopt(connection, name, version)
-    ask_known(connection, service, assets.found_version(connection, name, version))
+    queue_inference(connection, service, assets.found_version(connection, name, version))
     people.note_down(connection, by, "adopt", f"{name}/{version}", "ok", service.now())
     journal.tell(connection, "asset", name, {"version": version, "adopted": True}, service.now())
 

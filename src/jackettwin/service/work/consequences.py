@@ -74,7 +74,7 @@ def question_of(connection: Connection, service: Place, job: work.Job, *, every_
     )
 
 
-def keep_known(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
+def keep_inference(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
     """Keep what was inferred of a turbine's supports, and whether the structure changed."""
     now = service.now()
     if not work.finish(connection, job, service.server_id, "done", now):
@@ -83,7 +83,7 @@ def keep_known(connection: Connection, service: Service, job: work.Job, outcome:
     results.put_knowledge(connection, job.asset, job.version, document, outcome.page, now)
     journal.tell(connection, "state", job.asset, {"known": document["known"]["status"]}, now)
     if outcome.of != results.identity_of(results.state_hashes(connection, job.asset, job.model_hash)):
-        ask_known(connection, service, assets.found_version(connection, job.asset, job.version))
+        queue_inference(connection, service, assets.found_version(connection, job.asset, job.version))
     adopted = assets.found_version(connection, job.asset)
     if job.version != adopted.version and job.model_hash == adopted.model_hash:
         return  # the adopted version alone reports changes
@@ -98,13 +98,13 @@ def keep_known(connection: Connection, service: Service, job: work.Job, outcome:
             journal.tell(connection, "finding", job.asset, said, now)
 
 
-def ask_known(connection: Connection, service: Place, version: assets.Version) -> None:
+def queue_inference(connection: Connection, service: Place, version: assets.Version) -> None:
     """Queue the question what the state says of the supports, behind all records.
 
     If an answer is on its way that knows less, the question is asked again after it.
     """
     named = replace(version, settings_hash=f"version {version.version}")  # laws and priors are its settings
-    number = work.enqueue(connection, named, "", service.now(), kind=work.KNOW, priority=-10)
+    number = work.enqueue(connection, named, "", service.now(), kind=work.INFER, priority=-10)
     work.try_again(connection, number, service.now())
 
 
@@ -162,7 +162,7 @@ def keep(connection: Connection, service: Service, job: work.Job, outcome: Outco
         journal.tell(connection, "finding", job.asset, {**finding, "record_id": job.record_id}, now)
     for version in living(connection, job.asset, adopted):
         if version.model_hash == job.model_hash:
-            ask_known(connection, service, version)
+            queue_inference(connection, service, version)
     journal.tell(connection, "state", job.asset, {"day": day, "version": job.version}, now)
 
 
@@ -170,7 +170,7 @@ def failed(connection: Connection, service: Service, job: work.Job, reason: str)
     """Queue work again whose worker died, or set its record aside after the last try."""
     problem = {"detail": reason, **_TRY_AGAIN}
     state = work.put_back(connection, job, service.server_id, problem)
-    if state == "set_aside" and job.kind != work.KNOW:
+    if state == "set_aside" and job.kind != work.INFER:
         _end(connection, job.asset, job.record_id, state, problem, service.now())
 
 
@@ -199,7 +199,7 @@ def set_aside(connection: Connection, service: Place, asset: str, record_id: str
         if gone is not None:
             results.drop_observation(connection, asset, version.model_hash, record_id)
             fold(connection, service, asset, version.version, gone, anew=True)
-            ask_known(connection, service, version)
+            queue_inference(connection, service, version)
     _end(connection, asset, record_id, "set_aside", {"detail": why, **_TRY_AGAIN}, service.now())
 
 

@@ -16,7 +16,7 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from jackettwin.service.work import consequences
 from jackettwin.service.workers.failures import LOST_WORKER
-from jackettwin.service.workers.tasks import Outcome, Question, Task, know, observe_stored
+from jackettwin.service.workers.tasks import Outcome, Question, Task, infer, observe_stored
 from jackettwin.store import reading, work, writing
 from jackettwin.version import __version__
 
@@ -160,17 +160,17 @@ class Dispatcher(Thread):
         with reading(self.service.database) as connection:
             if work.any_queued(connection, work.OBSERVE):
                 return work.OBSERVE
-            asking = any(running.job.kind == work.KNOW for running in self._running.values())
+            asking = any(running.job.kind == work.INFER for running in self._running.values())
             rests = asking or time.monotonic() < self._rest_until
-            if not rests and work.any_queued(connection, work.KNOW):
-                return work.KNOW
+            if not rests and work.any_queued(connection, work.INFER):
+                return work.INFER
             return work.OBSERVE if work.any_queued(connection, work.OBSERVE, gone=True) else None
 
     def _task(
         self, connection: Connection, job: work.Job, every_day: bool
     ) -> tuple[Callable[..., Outcome | None], Task | Question]:
-        if job.kind == work.KNOW:
-            return know, consequences.question_of(connection, self.service, job, every_day=every_day)
+        if job.kind == work.INFER:
+            return infer, consequences.question_of(connection, self.service, job, every_day=every_day)
         return observe_stored, consequences.task_of(connection, self.service, job)
 
     def _collect(self) -> None:
@@ -180,7 +180,7 @@ class Dispatcher(Thread):
                 del self._running[number]
                 if not enough:
                     self._start(running.job, every_day=True)
-                elif running.job.kind == work.KNOW:
+                elif running.job.kind == work.INFER:
                     took = time.monotonic() - running.since
                     self._rest_until = time.monotonic() + _RESTS * took
 
@@ -191,8 +191,8 @@ class Dispatcher(Thread):
             if outcome is None:
                 return False
             with writing(self.service.database) as connection:
-                asked = running.job.kind == work.KNOW
-                keep = consequences.keep_known if asked else consequences.keep
+                asked = running.job.kind == work.INFER
+                keep = consequences.keep_inference if asked else consequences.keep
                 keep(connection, self.service, running.job, outcome)
             return True
         reason, tried = _reason(running.future), self.service.cluster.has_begun(running.future)

@@ -204,7 +204,7 @@ class Question:
     of: str = ""
 
 
-def know(question: Question) -> Outcome | None:
+def infer(question: Question) -> Outcome | None:
     """Answer what a turbine's records say of its supports and of a change, and write the page on it.
 
     None if it needs days that were not sent: after a change, and when a baseline is complete.

@@ -12,7 +12,7 @@ from jackettwin.service.web.dependencies import (
     AssetName,
     Parts,
     Route,
-    Told,
+    Versioned,
     Writes,
     admin,
     engineer,
@@ -38,7 +38,7 @@ router = APIRouter(tags=["assets"], route_class=Route)
 
 
 @router.get("/assets", **viewer(422))
-def list_assets(connection: Told, archived: bool = False) -> Page[AssetOut]:
+def list_assets(connection: Versioned, archived: bool = False) -> Page[AssetOut]:
     """List the assets, or the archived ones, with their status, last data and findings."""
     return Page(items=catalogue.overview(connection, archived=archived))
 
@@ -53,7 +53,7 @@ def add_asset(body: NewAsset, who: Asker, parts: Parts, connection: Writes) -> A
 
 
 @router.get("/assets/{asset}", **viewer(404, 422))
-def get_asset(asset: AssetName, connection: Told) -> AssetOut:
+def get_asset(asset: AssetName, connection: Versioned) -> AssetOut:
     """Return one asset."""
     known_asset(connection, asset)
     return catalogue.one(connection, asset)
@@ -94,7 +94,7 @@ def put_asset(asset: AssetName, body: NewVersion, who: Asker, parts: Parts, conn
 
 
 @router.get("/assets/{asset}/versions", **viewer(404, 422))
-def versions(asset: AssetName, connection: Told) -> Page[VersionOut]:
+def versions(asset: AssetName, connection: Versioned) -> Page[VersionOut]:
     """List the versions of an asset's twin, oldest first."""
     known_asset(connection, asset)
     return Page(items=catalogue.versions_out(connection, asset))

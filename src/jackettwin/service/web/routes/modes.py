@@ -13,7 +13,7 @@ from jackettwin.service.web.dependencies import (
     AssetName,
     Parts,
     Route,
-    Told,
+    Versioned,
     Writes,
     engineer,
     known_asset,
@@ -44,7 +44,7 @@ When = Annotated[datetime | None, Query(description="The state as it was then; d
 @router.get("/assets/{asset}/modes", **viewer(404, 422))
 def modes(
     asset: AssetName,
-    connection: Told,
+    connection: Versioned,
     label: Annotated[str | None, Query(max_length=64)] = None,
     since: Annotated[datetime | None, Query(alias="from")] = None,
     until: Annotated[datetime | None, Query(alias="to")] = None,
@@ -59,7 +59,7 @@ def modes(
 
 @router.get("/assets/{asset}/twin", **viewer(404, 422))
 def twin(
-    asset: AssetName, parts: Parts, connection: Told, at: When = None, version: AnyVersion = None
+    asset: AssetName, parts: Parts, connection: Versioned, at: When = None, version: AnyVersion = None
 ) -> TwinOut:
     """Return what the twin knows at a time: mean modes and parameters with their intervals."""
     asked = known_version(connection, asset, version)
@@ -71,7 +71,7 @@ def comparison(
     asset: AssetName,
     version: Annotated[int, Query(ge=1, le=1_000_000)],
     parts: Parts,
-    connection: Told,
+    connection: Versioned,
 ) -> ComparisonOut:
     """Return what another version of the twin knows of the same records beside the adopted one."""
     adopted, other = known_asset(connection, asset), known_version(connection, asset, version)
@@ -80,7 +80,7 @@ def comparison(
 
 @router.get("/assets/{asset}/damping-budget", **viewer(404, 422))
 def damping_budget(
-    asset: AssetName, parts: Parts, connection: Told, at: When = None, version: AnyVersion = None
+    asset: AssetName, parts: Parts, connection: Versioned, at: When = None, version: AnyVersion = None
 ) -> Page[BudgetOut]:
     """Return whose damping it is, mode by mode; empty for a time in the past, which nobody updated to."""
     asked = known_version(connection, asset, version)
@@ -89,7 +89,7 @@ def damping_budget(
 
 
 @router.get("/assets/{asset}/life", **viewer(404, 422))
-def life(asset: AssetName, connection: Told) -> Page[dict[str, object]]:
+def life(asset: AssetName, connection: Versioned) -> Page[dict[str, object]]:
     """Return the life at every joint; empty until the twin computes fatigue."""
     known_asset(connection, asset)
     return Page(items=[])
@@ -98,7 +98,7 @@ def life(asset: AssetName, connection: Told) -> Page[dict[str, object]]:
 @router.get("/assets/{asset}/findings", **viewer(404, 422))
 def findings(
     asset: AssetName,
-    connection: Told,
+    connection: Versioned,
     severity: Literal["info", "warning", "alarm"] | None = None,
     cursor: Cursor = None,
     limit: Limit = 100,
@@ -108,7 +108,9 @@ def findings(
 
 
 @router.get("/assets/{asset}/alarms", **viewer(404, 422))
-def alarms(asset: AssetName, connection: Told, cursor: Cursor = None, limit: Limit = 100) -> Page[AlarmOut]:
+def alarms(
+    asset: AssetName, connection: Versioned, cursor: Cursor = None, limit: Limit = 100
+) -> Page[AlarmOut]:
     """List the findings that ask for a person, newest first, and who took note."""
     return said.alarms(connection, known_asset(connection, asset), cursor, limit)
 
@@ -140,6 +142,6 @@ def acknowledge(
     response_class=Response,
     responses={200: {"content": {"application/vnd.apache.parquet": {}}}, **answers(401, 422)},
 )
-def export(connection: Told, table: Literal["modes", "findings", "records"] = "modes") -> Response:
+def export(connection: Versioned, table: Literal["modes", "findings", "records"] = "modes") -> Response:
     """Return a whole table as Parquet."""
     return Response(said.as_parquet(connection, table), media_type="application/vnd.apache.parquet")

@@ -15,7 +15,7 @@ from jackettwin.service.web.dependencies import (
     Parts,
     RecordId,
     Route,
-    Told,
+    Versioned,
     Writes,
     engineer,
     known_asset,
@@ -70,7 +70,7 @@ def add_record(
 @router.get("/assets/{asset}/records", **viewer(404, 422))
 def list_records(
     asset: AssetName,
-    connection: Told,
+    connection: Versioned,
     since: Annotated[datetime | None, Query(alias="from")] = None,
     until: Annotated[datetime | None, Query(alias="to")] = None,
     status: Status | None = None,
@@ -92,7 +92,7 @@ def list_records(
 
 
 @router.get("/records/{record_id}", **viewer(404, 422))
-def get_record(record_id: RecordId, connection: Told) -> RecordOut:
+def get_record(record_id: RecordId, connection: Versioned) -> RecordOut:
     """Return a record and how far it got."""
     return signals.record_out(known_record(connection, record_id))
 
