@@ -9,16 +9,19 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from sqlalchemy import Engine
 
-from jackettwin.service import workers
 from jackettwin.service.answer_cache import AnswerCache
 from jackettwin.service.day_cache import DayCache
 from jackettwin.service.event_feed import Feed
 from jackettwin.service.login_attempts import LoginAttempts
 from jackettwin.service.settings import ServiceSettings
 from jackettwin.store import open_database
+
+if TYPE_CHECKING:
+    from jackettwin.service.workers.cluster import WorkerCluster
 
 
 def _now() -> datetime:
@@ -40,7 +43,7 @@ class Service:
 
     settings: ServiceSettings
     database: Engine
-    cluster: workers.cluster.Cluster
+    cluster: WorkerCluster
     server_id: str
     now: Callable[[], datetime] = _now
     login_attempts: LoginAttempts = field(default_factory=LoginAttempts)
@@ -75,9 +78,9 @@ def open_service(settings: ServiceSettings) -> Service:
     InputError
         If the database cannot be opened.
     """
+    from jackettwin.service.workers.cluster import WorkerCluster
+
     for folder in (settings.store, settings.spool, settings.models):
         folder.mkdir(parents=True, exist_ok=True)
     database = open_database(settings.database_url)
-    return Service(
-        settings, database, workers.cluster.Cluster(settings), f"{os.getpid()}-{secrets.token_hex(4)}"
-    )
+    return Service(settings, database, WorkerCluster(settings), f"{os.getpid()}-{secrets.token_hex(4)}")

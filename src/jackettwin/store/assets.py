@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
-from typing import Any
 
 from sqlalchemy import Connection, func, insert, select, update
 
@@ -35,6 +34,9 @@ class Version:
     created_by: str
     bundle_hash: str
     comment: str
+
+
+_VERSION = select(*(versions.c[name] for name in Version.__dataclass_fields__))
 
 
 def check_name(name: str) -> str:
@@ -99,18 +101,10 @@ def add_version(
     number = 1 if last is None else last + 1
     if last is None:
         connection.execute(insert(assets).values(name=name, created_utc=now, adopted_version=1))
-    row: dict[str, Any] = {
-        "asset": name,
-        "version": number,
-        "model_hash": model_hash,
-        "settings_hash": settings_hash,
-        "created_utc": now,
-        "created_by": by,
-        "bundle_hash": hashlib.sha256(bundle).hexdigest(),
-        "comment": comment,
-    }
-    connection.execute(insert(versions).values(**row, bundle=bundle))
-    return Version(**row)
+    digest = hashlib.sha256(bundle).hexdigest()
+    version = Version(name, number, model_hash, settings_hash, now, by, digest, comment)
+    connection.execute(insert(versions).values(**vars(version), bundle=bundle))
+    return version
 
 
 def adopt(connection: Connection, name: str, version: int) -> None:
@@ -174,8 +168,7 @@ def found_version(connection: Connection, name: str, version: int | None = None)
     InputError
         If there is no such asset or version.
     """
-    columns = [column for column in versions.c if column.name != "bundle"]
-    query = select(*columns).join(assets, assets.c.name == versions.c.asset).where(versions.c.asset == name)
+    query = _VERSION.join(assets, assets.c.name == versions.c.asset).where(versions.c.asset == name)
     wanted = assets.c.adopted_version if version is None else version
     row = connection.execute(query.where(versions.c.version == wanted)).one_or_none()
     if row is None:
@@ -201,8 +194,7 @@ def found_version(connection: Connection, name: str, version: int | None = None)
 
 def all_versions(connection: Connection, name: str) -> list[Version]:
     """Return every version of an asset, oldest first."""
-    columns = [column for column in versions.c if column.name != "bundle"]
-    rows = connection.execute(select(*columns).where(versions.c.asset == name).order_by(versions.c.version))
+    rows = connection.execute(_VERSION.where(versions.c.asset == name).order_by(versions.c.version))
     return [Version(**row._mapping) for row in rows]
 
 

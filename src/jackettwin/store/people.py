@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+import secrets
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import datetime, timedelta
 
 from sqlalchemy import Connection, delete, func, insert, select
 
@@ -79,30 +80,15 @@ def list_users(connection: Connection) -> list[User]:
     return [User(**row._mapping) for row in connection.execute(select(users).order_by(users.c.name))]
 
 
-def grant(
-    connection: Connection,
-    secret: str,
-    *,
-    kind: str,
-    user: str,
-    label: str,
-    csrf: str,
-    now: datetime,
-    expires: datetime,
-) -> None:
-    """Keep a session or token, as a hash."""
+def new_grant(
+    connection: Connection, user: str, kind: str, label: str, now: datetime, lasts: timedelta
+) -> tuple[str, str]:
+    """Make a session or token, of which a hash is stored; return its secret and its CSRF token."""
+    secret, csrf = secrets.token_urlsafe(32), secrets.token_urlsafe(32)
     connection.execute(delete(tokens).where(tokens.c.expires_utc < now))
-    connection.execute(
-        insert(tokens).values(
-            hash=secret_hash(secret),
-            kind=kind,
-            user=user,
-            label=label,
-            csrf=csrf,
-            created_utc=now,
-            expires_utc=expires,
-        )
-    )
+    row = {"hash": secret_hash(secret), "kind": kind, "user": user, "label": label, "csrf": csrf}
+    connection.execute(insert(tokens).values(**row, created_utc=now, expires_utc=now + lasts))
+    return secret, csrf
 
 
 def find_grant(connection: Connection, secret: str, now: datetime) -> Grant | None:
@@ -157,11 +143,5 @@ def note_down(
     connection: Connection, who: str, action: str, subject: str, outcome: str, now: datetime
 ) -> None:
     """Write a line into the audit log."""
-    row = {
-        "time_utc": now,
-        "who": who[:64],
-        "action": action[:64],
-        "subject": subject[:255],
-        "outcome": outcome[:64],
-    }
-    connection.execute(insert(audit).values(**row))
+    row = {"who": who[:64], "action": action[:64], "subject": subject[:255], "outcome": outcome[:64]}
+    connection.execute(insert(audit).values(**row, time_utc=now))

@@ -59,15 +59,8 @@ def add_packets(connection: Connection, new: Iterable[Packet], now: datetime) ->
         if not (clock or packet.t0_utc) - KEPT <= packet.t0_utc <= max(now, clock or now) + KEPT:
             left_out.append(packet)
             continue
-        row = {
-            "asset": packet.asset,
-            "channel": packet.channel,
-            "t0_utc": packet.t0_utc,
-            "window_utc": window_start(packet.t0_utc),
-            "rate_hz": packet.rate_hz,
-            "samples": packet.samples.astype("<f8").tobytes(),
-        }
-        if insert_new(connection, packets, row):
+        row = {"window_utc": window_start(packet.t0_utc), "samples": packet.samples.astype("<f8").tobytes()}
+        if insert_new(connection, packets, {**vars(packet), **row}):
             for window_utc in _reached(packet):
                 _count(connection, packet.asset, window_utc)
     return left_out

@@ -109,20 +109,16 @@ def accept(
 ) -> Accepted:
     """Store a record and queue it; the same content a second time changes nothing."""
     adopted = assets.found_version(connection, asset)
-    about = parsed.about
+    about = {**parsed.about, "start_utc": datetime.fromisoformat(parsed.about["start_utc"])}
     record = records.StoredRecord(
         asset=asset,
         record_id=parsed.record_id,
         status="received",
-        start_utc=datetime.fromisoformat(about["start_utc"]),
-        duration_s=about["duration_s"],
-        sample_rate_hz=about["sample_rate_hz"],
-        channels=about["channels"],
-        conditions=about["conditions"],
         source_name=source_name,
         received_utc=service_now,
         waveform=parsed.waveform,
         size_bytes=parsed.size_bytes,
+        **about,
     )
     new = records.add_record(connection, record)
     number = None

@@ -55,15 +55,9 @@ def modes(
     limit: int,
 ) -> Page[ModeOut]:
     """Return a page of modes through time."""
+    key, after = (version.asset, version.model_hash), _row(cursor)
     rows = results.list_modes(
-        connection,
-        version.asset,
-        version.model_hash,
-        label=label,
-        since=since,
-        until=until,
-        after=_row(cursor),
-        limit=limit + 1,
+        connection, *key, label=label, since=since, until=until, after=after, limit=limit + 1
     )
     return _page(rows, limit, _mode_out)
 
@@ -118,15 +112,8 @@ def twin(
     known = workers.engine.knowledge(model, told.sums)
     if at is None:
         known["parameters"] = results.find_supports(connection, version.asset, version.version)
-    return TwinOut(
-        asset=version.asset,
-        version=version.version,
-        model_hash=version.model_hash,
-        code_version=__version__,
-        state_hash=told.state_hash,
-        days=told.days,
-        **known,
-    )
+    days: dict[str, Any] = {"state_hash": told.state_hash, "days": told.days}
+    return TwinOut(**vars(version), **days, code_version=__version__, **known)
 
 
 def compared(

@@ -99,23 +99,13 @@ def opened_session(
         user = checked_login(connection, name, password)
     with writing(database) as connection:
         people.note_down(connection, name, "login", key, "ok" if user else "refused", now)
-        grant = ("", "") if user is None else new_grant(connection, name, "session", "browser", now, SESSION)
+        session = (connection, name, "session", "browser", now, SESSION)
+        grant = ("", "") if user is None else people.new_grant(*session)
     if user is None:
         raise ApiError(401, "name or password is wrong")
     attempts.succeeded(place)
     attempts.succeeded(key)
     return user, *grant
-
-
-def new_grant(
-    connection: Connection, user: str, kind: str, label: str, now: datetime, lasts: timedelta
-) -> tuple[str, str]:
-    """Return the secret of a new session or token, and its CSRF token."""
-    secret, csrf = secrets.token_urlsafe(32), secrets.token_urlsafe(32)
-    people.grant(
-        connection, secret, kind=kind, user=user, label=label, csrf=csrf, now=now, expires=now + lasts
-    )
-    return secret, csrf
 
 
 def who_asks(request: Request, database: Engine, settings: ServiceSettings, now: datetime) -> Who | None:

@@ -127,37 +127,16 @@ def keep(connection: Connection, service: Service, job: work.Job, outcome: Outco
         return
     key = {"asset": job.asset, "model_hash": job.model_hash, "record_id": job.record_id}
     again = results.find_observation(connection, job.asset, job.record_id, job.model_hash) is not None
-    observation = StoredObservation(
-        settings_hash=job.settings_hash,
-        start_utc=record.start_utc,
-        code_version=job.code_version,
-        document=outcome.document,
-        **key,
-    )
-    day = f"{record.start_utc:%Y-%m-%d}"
-    results.put_observation(
-        connection,
-        observation,
-        [
-            {**mode, **key, "model_version": job.version, "time_utc": record.start_utc}
-            for mode in outcome.modes
-        ],
-        [_finding_row(f, key, record.start_utc, day, "observe") for f in outcome.findings],
-    )
+    start, day = record.start_utc, f"{record.start_utc:%Y-%m-%d}"
+    made_by = {"settings_hash": job.settings_hash, "code_version": job.code_version}
+    observation = StoredObservation(start_utc=start, document=outcome.document, **made_by, **key)
+    modes = [{**mode, **key, "model_version": job.version, "time_utc": start} for mode in outcome.modes]
+    findings = [_finding_row(f, key, start, day, "observe") for f in outcome.findings]
+    results.put_observation(connection, observation, modes, findings)
     records.set_status(connection, job.asset, job.record_id, "observed")
     fold(connection, service, job.asset, job.version, observation, anew=again)
-    journal.tell(
-        connection,
-        "observation",
-        job.asset,
-        {
-            "record_id": job.record_id,
-            "version": job.version,
-            "modes": len(outcome.modes),
-            "adopted": adopted.version,
-        },
-        now,
-    )
+    told = {"record_id": job.record_id, "version": job.version, "modes": len(outcome.modes)}
+    journal.tell(connection, "observation", job.asset, {**told, "adopted": adopted.version}, now)
     for finding in [f for f in outcome.findings if f["severity"] != "info"]:
         journal.tell(connection, "finding", job.asset, {**finding, "record_id": job.record_id}, now)
     for version in living(connection, job.asset, adopted):

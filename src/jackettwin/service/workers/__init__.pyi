@@ -1,1 +1,1 @@
-from . import cluster as cluster, engine as engine
+from . import engine as engine

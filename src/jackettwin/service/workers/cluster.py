@@ -78,7 +78,7 @@ def run(topic: str, task: Callable[..., Any], *args: Any) -> Any:
         give_back()
 
 
-class Cluster:
+class WorkerCluster:
     """The workers that read and observe records, which the server's own process never does."""
 
     def __init__(self, settings: ServiceSettings) -> None:

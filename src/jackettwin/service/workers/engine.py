@@ -86,21 +86,13 @@ def observed(
     record = read_waveform(waveform)
     record = replace(record, conditions={**conditions, **record.conditions})
     seen = observe(record, model)
+    names = ("frequency_hz", "frequency_std_hz", "damping_ratio", "damping_ratio_std")
     rows = []
     for mode, known in zip(seen.identification.modes, seen.recognised, strict=True):
         low, high = mode.damping_ratio_interval_95 or (None, None)
-        rows.append(
-            {
-                "label": "" if known is None else known.label,
-                "frequency_hz": mode.frequency_hz,
-                "frequency_std_hz": mode.frequency_std_hz,
-                "damping_ratio": mode.damping_ratio,
-                "damping_ratio_std": mode.damping_ratio_std,
-                "damping_ratio_low_95": low,
-                "damping_ratio_high_95": high,
-                "status": str(mode.status)[:255],
-            }
-        )
+        row = {name: getattr(mode, name) for name in names}
+        row |= {"damping_ratio_low_95": low, "damping_ratio_high_95": high, "status": str(mode.status)[:255]}
+        rows.append({"label": "" if known is None else known.label, **row})
     document = json.dumps(OBSERVATION.dump(seen), ensure_ascii=False, separators=(",", ":"))
     return document, tuple(rows), tuple(finding_row(f) for f in seen.findings)
 
@@ -228,10 +220,5 @@ def stabilisation(folder: str, waveform: str) -> dict[str, Any]:
 
     record = read_waveform(Path(waveform))
     poles = examined(record, load_twin(Path(folder)).model).identification.stabilisation
-    return {
-        "order": poles.order.tolist(),
-        "frequency_hz": poles.frequency_hz.tolist(),
-        "damping_ratio": poles.damping_ratio.tolist(),
-        "stable": poles.stable.tolist(),
-        "mode": poles.cluster.tolist(),
-    }
+    names = ("order", "frequency_hz", "damping_ratio", "stable")
+    return {name: getattr(poles, name).tolist() for name in names} | {"mode": poles.cluster.tolist()}

@@ -63,6 +63,6 @@ def add_token(body: NewToken, who: Asker, parts: Parts, connection: Writes) -> T
     if who.kind == "open":
         raise ApiError(409, "this server is open to its own machine; define a user first")
     lasts = timedelta(days=body.days)
-    secret, _ = auth.new_grant(connection, who.name, "token", body.label, parts.now(), lasts)
+    secret, _ = people.new_grant(connection, who.name, "token", body.label, parts.now(), lasts)
     people.note_down(connection, who.name, "token add", body.label, "ok", parts.now())
     return Token(token=secret, expires_utc=parts.now() + lasts)
