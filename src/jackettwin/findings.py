@@ -35,18 +35,18 @@ CATALOGUE: dict[str, Kind] = {
     "gaps": Kind("info", "{share:.2%} of the samples are missing, at most {longest_s:.3g} s in a row"),
     "gain_jump": Kind(
         "warning",
-        "{channels}: {factor:.3g} times as sensitive {at} {time_s:.0f} s as in the rest, against the others; "
-        "scaled, {from_s:.0f} to {to_s:.0f} s declared missing",
+        "{channels}: {factor:.3g} times as sensitive {at} {time_s:.0f} s as in the rest of the record, "
+        "judged by the other channels; scaled, {from_s:.0f} to {to_s:.0f} s declared missing",
     ),
     "gain_grows": Kind(
         "warning",
-        "{channels}: {factor:.3g} times as sensitive at the end as at the beginning, against the others; "
-        "scaled",
+        "{channels}: {factor:.3g} times as sensitive at the end as at the beginning, judged by the other "
+        "channels; scaled",
     ),
     "sign_turns": Kind(
         "warning",
-        "{channels}: moves against its own sense after {from_s:.0f} to {to_s:.0f} s; turned back, declared "
-        "missing between",
+        "{channels}: the sign turns between {from_s:.0f} and {to_s:.0f} s; turned back, declared missing "
+        "between",
     ),
     "time_lost": Kind(
         "warning",
@@ -55,37 +55,36 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "samples_repeated": Kind(
         "alarm",
-        "every value of every channel stands {times} times: only one of them is used. If they were written "
-        "twice at one instant, all frequencies are {times} times what is said here",
+        "every sample of every channel is written {times} times: only one of them is used. If the repeats "
+        "are copies of one instant, all frequencies are {times} times what is said here",
     ),
     "another_time": Kind(
         "alarm",
-        "{channels}: shows the peaks of the other channels and has nothing in common with them at any delay: "
-        "not of the same minutes; left out if they are fewer than the others",
+        "{channels}: the spectrum has the peaks of the other channels, but the samples match theirs at no "
+        "delay: not of the same minutes; left out if they are fewer than the others",
     ),
     "stored_backwards": Kind(
-        "alarm",
-        "{channels}: moves with the other channels only if read from the end to the beginning; turned",
+        "alarm", "{channels}: matches the other channels only if read from the end to the beginning; turned"
     ),
     "coarse_quantiser": Kind(
         "warning",
-        "read in steps of {steps:.2g} times its rms: what rounding adds is neither small nor white; distrust "
-        "modes and damping",
+        "read in steps of {steps:.2g} times its rms: the rounding error is neither small nor white; "
+        "distrust modes and damping",
     ),
     "clock_late": Kind(
         "warning",
-        "{channels}: read {delay_s:.3g} ± {std_s:.2g} s {late} than the others, in all bands alike: "
-        "another clock; shifted",
+        "{channels}: read {delay_s:.3g} ± {std_s:.2g} s {late} than the others, the same at all "
+        "frequencies: another clock; shifted",
     ),
     "clock_drift": Kind(
         "warning",
-        "{channels}: the clock runs {drift_ppm:.0f} ± {std_ppm:.2g} ppm too {slow} against the others', "
-        "off by {delay_s:.3g} s in the middle; resampled",
+        "{channels}: the clock runs {drift_ppm:.0f} ± {std_ppm:.2g} ppm too {slow} against the others', off"
+        " by {delay_s:.3g} s in the middle of the record; resampled",
     ),
     "clock_late_or_complex": Kind(
         "info",
-        "{channels}: read {delay_s:.3g} s {late} than the others, or the modes are complex: too little to "
-        "tell; kept",
+        "{channels}: read {delay_s:.3g} s {late} than the others, or the modes are complex: the record "
+        "cannot tell which; kept",
     ),
     "clock_jump": Kind(
         "warning",
@@ -93,7 +92,7 @@ CATALOGUE: dict[str, Kind] = {
         "{to_s:.0f} s",
     ),
     "clock_cut": Kind(
-        "warning", "only {from_s:.0f} to {to_s:.0f} s are used, the longest stretch without a jump of a clock"
+        "warning", "only {from_s:.0f} to {to_s:.0f} s are used, the longest stretch in which no clock jumps"
     ),
     "clocks_wander": Kind(
         "alarm",
@@ -110,23 +109,30 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "stuck": Kind("info", "reading is frozen for {share:.2%} of the time; declared missing"),
     "held": Kind(
-        "info", "every value is repeated {times} times: the sensor is read at a lower rate and lags"
+        "info",
+        "every value is repeated {times} times: the sensor is read at a lower rate, and its signal is late",
     ),
     "drift": Kind("info", "drifts over {ratio:.1f} times the rms of its vibration; slow part removed"),
     "unsteady": Kind(
         "warning",
-        "is {ratio:.3g} times stronger in one tenth of the record than usual: not stationary",
+        "is {ratio:.3g} times stronger in one tenth of the record than usual: the record is not stationary",
     ),
     "sign_turned": Kind("warning", "moves against all parallel channels; sign turned"),
     "sign_unclear": Kind(
         "warning", "moves against a parallel channel, and nothing says which of them is wrong; kept"
     ),
-    "unit": Kind("warning", "{which} is {size} beside its like: {units}? kept, correct the unit"),
-    "weak": Kind("warning", "rms is {ratio:.2g} times that of its like: sensor or unit wrong?"),
-    "strong": Kind("warning", "rms is {ratio:.2g} times that of its like: sensor or unit wrong?"),
+    "unit": Kind(
+        "warning", "{which} is {size} compared with similar channels: {units}? kept, correct the unit"
+    ),
+    "weak": Kind(
+        "warning", "its rms is {ratio:.2g} times that of similar channels: is the sensor or its unit wrong?"
+    ),
+    "strong": Kind(
+        "warning", "its rms is {ratio:.2g} times that of similar channels: is the sensor or its unit wrong?"
+    ),
     "unreadable": Kind("warning", "{samples} samples are infinite or beyond {limit:g}; declared missing"),
     "changed": Kind("warning", "{what}; declared missing there"),
-    "changed_unclear": Kind("warning", "{what}, or a channel like it changes; kept"),
+    "changed_unclear": Kind("warning", "{what}, or a similar channel changes; kept"),
     "stamps_jitter": Kind(
         "warning", "time stamps jitter by {share:.0%} of a step (rms); interpolated to a regular grid"
     ),
@@ -148,23 +154,21 @@ CATALOGUE: dict[str, Kind] = {
     "free_decay": Kind(
         "info",
         "a free decay from {from_s:.4g} to {to_s:.4g} s, over {fall:.1f} e-folds; its modes explain "
-        "{explained:.1%} of it, and nothing else of the record is used",
+        "{explained:.1%} of it, and the rest of the record is not used",
     ),
     "beside_knock": Kind(
         "info",
-        "one knock rings out over {fall:.1f} e-folds; modes are those of the {used_s:.4g} s beside it",
+        "one impact rings out over {fall:.1f} e-folds; the modes are those of the {used_s:.4g} s beside it",
     ),
     "transient": Kind(
         "warning",
-        "the record falls by {fall:.1f} e-folds from one high point while forces go on: no free decay, not "
-        "stationary",
+        "the record falls by {fall:.1f} e-folds from one maximum while forces go on: neither a free decay "
+        "nor stationary",
     ),
-    "decay_forced": Kind("warning", "forces leave {left:.0%} of the decay unexplained"),
-    "decay_weak": Kind(
-        "warning", "only {ratio:.0f} times the power of the noise in this part of the spectrum"
-    ),
-    "decay_short": Kind("warning", "watched for {folds:.1f} e-folds only"),
-    "decay_damping_unknown": Kind("warning", "damping uncertain by {spread:.0%}"),
+    "decay_forced": Kind("warning", "forces that go on leave {left:.0%} of the decay unexplained"),
+    "decay_weak": Kind("warning", "only {ratio:.0f} times as strong as the noise near its frequency"),
+    "decay_short": Kind("warning", "observed over {folds:.1f} e-folds only"),
+    "decay_damping_unknown": Kind("warning", "the damping is uncertain by {spread:.0%}"),
     "decay_damping_changes": Kind(
         "warning",
         "the damping changes with the amplitude: {early:.2%} of critical at first, {late:.2%} at the end",
@@ -174,25 +178,29 @@ CATALOGUE: dict[str, Kind] = {
         "the record does not tell the damping: its logarithm has a standard deviation of {log_std:.2g}",
     ),
     "narrow_as_a_line": Kind(
-        "warning", "hardly broader than a line of the spectrum: too short a record for it"
+        "warning", "its peak is hardly broader than a line of the spectrum: the record is too short for it"
     ),
     "follows_the_sea": Kind(
         "warning",
-        "a peak of waves: {damping_percent:.2g} % broad where the sea of {period_s:.3g} s has its own",
+        "a peak of waves: with {damping_percent:.2g} % it is as broad as that of the sea of {period_s:.3g} "
+        "s, and at its frequency",
     ),
     "broad_as_waves": Kind(
         "warning",
-        "with {damping_percent:.2g} % as broad as the forces of waves; state their period (tp_s)",
+        "with {damping_percent:.2g} % it is as broad as the forces of waves; state their period (tp_s)",
     ),
-    "broad": Kind("warning", "with {damping_percent:.2g} % so broad that it may be a slope of the forces"),
+    "broad": Kind(
+        "warning",
+        "with {damping_percent:.2g} % it is so broad that it may be a slope of the forces' spectrum",
+    ),
     "complex_shape": Kind(
         "warning",
         "the sensors do not move in phase (modal phase collinearity {mpc:.2f}) and no close mode explains it",
     ),
     "one_part": Kind(
         "warning",
-        "{share:.0%} of its power lie in one fifth of the record, those of the other modes do not: a tone "
-        "that ended, or a blow",
+        "{share:.0%} of its power lie in one fifth of the record, unlike that of the other modes: a tone "
+        "that ended, or an impact",
     ),
     "one_sensor": Kind("warning", "{share:.0%} of its motion is that of one sensor"),
     "sensor_beside": Kind(
@@ -203,7 +211,7 @@ CATALOGUE: dict[str, Kind] = {
     "shape_of_neighbours": Kind(
         "warning",
         "its shape is a combination of those of the modes below and above: a peak of the forces, or of "
-        "something that is not measured, seen through these",
+        "something that is not measured, which these modes show",
     ),
     "unlike_model": Kind(
         "warning",
@@ -211,8 +219,8 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "below_model": Kind(
         "warning",
-        "below the lowest mode of the model, and in its shape (MAC {mac:.2f}): forces that the structure "
-        "follows, as those of waves",
+        "it lies below the lowest mode of the model and has its shape (MAC {mac:.2f}): the structure "
+        "follows slow forces, as those of waves",
     ),
     "sea_forced": Kind(
         "warning",
@@ -220,37 +228,38 @@ CATALOGUE: dict[str, Kind] = {
         "at that frequency: a peak of the waves",
     ),
     "shape_twice": Kind(
-        "warning", "another mode so near has the same shape: one peak told twice, or one that is not a mode's"
+        "warning",
+        "another mode at nearly the same frequency has the same shape: one peak is identified twice, or one"
+        " of them is no mode",
     ),
     "too_short": Kind(
         "alarm",
-        "{share:.0%} of what moves here is slower than {cycles} cycles of the {duration_s:.3g} s: too short "
-        "a record for any statement",
+        "{share:.0%} of the motion is slower than {cycles} cycles in {duration_s:.3g} s: the record is too "
+        "short for any statement",
     ),
-    "few_cycles": Kind("warning", "the record holds {cycles:.0f} cycles of it only"),
+    "few_cycles": Kind("warning", "the record holds only {cycles:.0f} of its cycles"),
     "zero_steps": Kind(
-        "warning",
-        "the zero steps by {size:.3g} times the rms of the vibration at {time_s:.1f} s; taken back",
+        "warning", "its zero steps by {size:.3g} times the rms of the vibration at {time_s:.1f} s; taken back"
     ),
     "zero_steps_together": Kind(
         "alarm",
         "the zeros of most channels step at {time_s:.1f} s: something happened to the logger or the "
         "structure",
     ),
-    "one_method": Kind(
-        "warning", "with a shorter lag window it is found in {share:.0%} of the model orders only"
-    ),
+    "one_method": Kind("warning", "with a shorter lag window only {share:.0%} of the model orders find it"),
     "no_peak": Kind(
         "warning",
-        "in the direction of its shape the spectrum has no clear peak: {ratio:.2g} times the level beside, a "
-        "mode alone 17 times",
+        "in the direction of its shape the spectrum has no clear peak: {ratio:.2g} times the level beside "
+        "it, where a single mode has 17 times",
     ),
     "second_peak": Kind(
         "warning",
-        "a clear peak beside it, at {frequency_hz:.4g} Hz, is of no mode: this may be two told as one",
+        "a clear peak beside it, at {frequency_hz:.4g} Hz, belongs to no mode: two modes may be identified "
+        "as one",
     ),
     "steady_envelope": Kind(
-        "warning", "its amplitude wanders less than that of a mode so light should: it may be a tone"
+        "warning",
+        "its amplitude varies less than that of a mode of so little damping should: it may be a tone",
     ),
     "rotor_order_passes": Kind("warning", "{order}P of the rotor passes here: distrust the damping"),
     # updating
@@ -266,17 +275,17 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "unpaired_taken": Kind(
         "info",
-        "like {label} of the model at {model_frequency_hz:.4g} Hz ({difference:+.1%}, MAC {mac:.2f}), "
-        "which another measured mode is more like",
+        "resembles {label} of the model at {model_frequency_hz:.4g} Hz ({difference:+.1%}, MAC {mac:.2f}), "
+        "but another measured mode resembles that more",
     ),
     # twin: a record on its way to an observation
     "yaw_unknown": Kind(
-        "warning", "the yaw is not known: sensors on the nacelle are taken to stand as the fixed ones do"
+        "warning", "the yaw is not known: sensors on the nacelle are taken to be aligned with the fixed ones"
     ),
     "not_in_rotor_axes": Kind(
         "warning", "not turned to the rotor's axes: no two horizontal channels sit at one place"
     ),
-    "channels_without_partner": Kind("warning", "left out, no second horizontal channel at the same place"),
+    "channels_without_partner": Kind("warning", "left out: no second horizontal channel at the same place"),
     "rotor_order_removed": Kind(
         "warning",
         "{low_hz:.3g} to {high_hz:.3g} Hz by the measured rotor speed: taken out, {share:.1%} of a "
@@ -293,27 +302,27 @@ CATALOGUE: dict[str, Kind] = {
         "units are not looked for",
     ),
     "sensors_absent": Kind("warning", "the record has no such channels; identified without them"),
-    "channels_unclear": Kind("info", "left out, neither name and unit nor the JSON say what they measure"),
+    "channels_unclear": Kind("info", "left out: neither name and unit nor the JSON say what they measure"),
     "deformation_set_aside": Kind(
-        "info", "left out beside accelerations, identify them in a file of their own"
+        "info", "left out beside accelerations; identify them from a file of their own"
     ),
     "sensor_against_model": Kind(
         "warning",
-        "points the other way than the twin says: turned, the shapes it moves in would be {after:.0%} like "
-        "the model's instead of {before:.0%}. Kept; turn its direction.",
+        "points the other way than the twin says: if it were turned, the shapes it moves in would agree "
+        "with the model's by {after:.0%} instead of {before:.0%}. Kept; turn its direction.",
     ),
     "sensor_uncalibrated": Kind(
-        "warning", "has a history of calibrations, but none that holds then: taken as it was logged"
+        "warning", "has a history of calibrations, but none that holds at that time: taken as it was logged"
     ),
     "operation_unknown": Kind(
         "warning",
-        "the state of operation is unknown, since {missing} is: send these conditions, and the record is "
-        "observed again",
+        "the state of operation is unknown, since {missing} is missing: send these conditions, and the "
+        "record is observed again",
     ),
     "identification": Kind("warning", "{text}"),
     "no_mode_of_the_model": Kind("warning", "none of its {modes} identified modes is one of the model"),
     # twin: an observation on its way into the state
-    "record_doubled": Kind("warning", "these samples are known already; they count once"),
+    "record_doubled": Kind("warning", "these samples are known already and count once"),
     "record_overlaps": Kind(
         "warning",
         "other samples of the same minutes are known; if they are of the same sensors, they count twice",
@@ -337,9 +346,10 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "sensor_changed": Kind(
         "warning",
-        "not as before since {began} ({began_low} to {began_high}); most likely {cause} ({probability:.0%})",
+        "behaves otherwise since {began} ({began_low} to {began_high}); most likely {cause} "
+        "({probability:.0%})",
     ),
-    "record_late": Kind("info", "older than {days} days that are known; these are reckoned anew"),
+    "record_late": Kind("info", "older than {days} days that are known; these days are computed again"),
 }
 """Every code there is, by the package that finds it."""
 

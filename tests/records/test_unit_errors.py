@@ -23,10 +23,10 @@ def times(record: Record, i: int, factor: float) -> Record:
 @pytest.mark.parametrize(
     ("factor", "words"),
     [
-        (G0, "9.81 times too large beside its like: m/s^2 taken for g"),
-        (1.0 / G0, "9.81 times too small beside its like: g taken for m/s^2"),
-        (1e3 / G0, "102 times too large beside its like: mg or cm/s^2 taken for m/s^2"),
-        (1e-3, "1e+03 times too small beside its like: g taken for mg"),
+        (G0, "9.81 times too large compared with similar channels: m/s^2 taken for g"),
+        (1.0 / G0, "9.81 times too small compared with similar channels: g taken for m/s^2"),
+        (1e3 / G0, "102 times too large compared with similar channels: mg or cm/s^2 taken for m/s^2"),
+        (1e-3, "1e+03 times too small compared with similar channels: g taken for mg"),
     ],
 )
 @pytest.mark.parametrize("i", [0, 1, 3])

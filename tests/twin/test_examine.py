@@ -119,7 +119,7 @@ def test_channels_of_which_nobody_knows_what_they_measure_are_named() -> None:
     assert _unclear(record) == ()
     strange = (replace(record.channels[0], quantity="other", unit="mm"), *record.channels[1:])
     (note,) = _unclear(replace(record, channels=strange))
-    assert str(note).startswith("acc_top_x (mm): left out, neither name and unit nor the JSON say")
+    assert str(note).startswith("acc_top_x (mm): left out: neither name and unit nor the JSON say")
 
 
 def test_a_dead_channel_is_left_out_and_said(tmp_path: Path) -> None:
