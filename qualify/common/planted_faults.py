@@ -160,7 +160,7 @@ FAULTS = (
         ("a dead server's work counts as tried", "_UNTRIED = {\"state\": \"queued\", \"owner\": None, \"tries\": work.c.tries - 1}", "_UNTRIED = {\"state\": \"queued\", \"owner\": None, \"tries\": work.c.tries}"),
         ("events are told without their lock", "if connection.dialect.name == \"postgresql\":\n        connection.execute(text(\"select pg_advisory_xact_lock(740114)\"))", "if False:\n        pass"),
     )),
-    *_of("service", "tests/service/test_packets.py", "tests/service/test_consequences.py", "tests/service/test_watching.py", rows=(
+    *_of("service", "tests/service/test_packets.py", "tests/service/test_consequences.py", "tests/service/test_watched.py", rows=(
         ("a packet's samples land one late", "at = np.round(times).astype(int)", "at = np.round(times).astype(int) + 1"),
         ("two servers fold an asset's days at once", ".where(tables.assets.c.name == asset).with_for_update())", ".where(tables.assets.c.name == asset))"),
         ("a gap of one sample is bridged", "np.diff(times) > 1.5", "np.diff(times) > 2.5"),

@@ -1,4 +1,4 @@
-"""A Python client of the living twin: send records, ask for answers.
+"""A Python client of the living twin: records in, answers out, as data frames where wanted.
 
 >>> from jackettwin.client import Client
 >>> with Client("http://127.0.0.1:8470", token="…") as twin:  # doctest: +SKIP
@@ -29,7 +29,7 @@ class Client:
     url : str
         Of the server, such as ``http://127.0.0.1:8470``.
     token : str, optional
-        Made by ``jackettwin token add``; an open server on this machine needs none.
+        Of ``jackettwin token add``; an open server on this machine needs none.
     timeout_s : float
         For one request.
     """
@@ -59,7 +59,7 @@ class Client:
     def send(
         self, asset: str, record: Path | str, description: Mapping[str, Any] | None = None
     ) -> dict[str, Any]:
-        """Send a record file and its description, by default the JSON beside it; return its numbers.
+        """Send a record file, and what lies beside it; return ``record_id`` and ``job_id``.
 
         Raises
         ------
@@ -104,19 +104,19 @@ class Client:
         return self._asked("GET", f"/assets/{asset}/comparison", params={"version": version})
 
     def damping_budget(self, asset: str) -> list[dict[str, Any]]:
-        """Return the damping of each mode by source."""
+        """Return whose damping each mode's is, by source."""
         return list(self._pages(f"/assets/{asset}/damping-budget"))
 
     def findings(self, asset: str, **query: Any) -> Iterator[dict[str, Any]]:
-        """Yield the findings, newest first."""
+        """Yield what was worth saying, newest first."""
         return self._pages(f"/assets/{asset}/findings", **query)
 
     def alarms(self, asset: str) -> Iterator[dict[str, Any]]:
-        """Yield the alarms, newest first."""
+        """Yield what asks for a person, newest first."""
         return self._pages(f"/assets/{asset}/alarms")
 
     def acknowledge(self, alarm_id: int, comment: str) -> dict[str, Any]:
-        """Acknowledge an alarm."""
+        """Note that you took note of an alarm."""
         return self._asked("POST", f"/alarms/{alarm_id}/acknowledge", json={"comment": comment})
 
     def job(self, job_id: int) -> dict[str, Any]:

@@ -42,6 +42,22 @@ def plugins(group: str) -> dict[str, object]:
     return {name: _loaded(point) for name, point in points.items()}
 
 
+@cache
+def load_all() -> None:
+    """Load all that installed packages add, before anything is opened that a stranger may have named.
+
+    Raises
+    ------
+    InputError
+        As :func:`plugins` does.
+    """
+    from importlib.metadata import entry_points
+
+    for group in entry_points().groups:
+        if group.startswith("jackettwin."):
+            plugins(group)
+
+
 def plugins_of_type(group: str, kind: type[Kind]) -> dict[str, Kind]:
     """Load what installed packages enter in a group, whose entries are all of one type.
 

@@ -78,7 +78,7 @@ def test_answers_are_declared_and_never_our_fault(
             if answered.total() % 2:
                 case.path_parameters.update({n: v for n, v in there.items() if n in case.path_parameters})
             with writing(service.database) as connection:  # anew each time: one of them is to log out
-                secret, _ = people.new_grant(connection, "root", "token", "", service.now(), auth.TOKEN)
+                secret, _ = auth.new_grant(connection, "root", "token", "", service.now(), auth.TOKEN)
             arguments = case.as_transport_kwargs(base_url="http://127.0.0.1:8470")
             sent = Request(**{k: v for k, v in arguments.items() if k != "cookies"}).prepare()
             body = sent.body.encode() if isinstance(sent.body, str) else sent.body or b""

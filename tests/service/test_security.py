@@ -19,7 +19,7 @@ from jackettwin.errors import InputError
 from jackettwin.service import ServiceSettings
 from jackettwin.service.context import Service
 from jackettwin.service.settings import refuse_exposed
-from jackettwin.service.web import pages
+from jackettwin.service.web import auth, pages
 from jackettwin.service.web.app import API, ROUTERS, create_app
 from jackettwin.service.workers.tasks import File, read_file
 from jackettwin.store import people, results, writing
@@ -39,7 +39,7 @@ OPEN = {
 def token(service: Service, user: str, **lasts: float) -> dict[str, str]:
     with writing(service.database) as connection:
         lasting = timedelta(**(lasts or {"days": 1}))
-        secret, _ = people.new_grant(connection, user, "token", "test", service.now(), lasting)
+        secret, _ = auth.new_grant(connection, user, "token", "test", service.now(), lasting)
     return {"Authorization": f"Bearer {secret}"}
 
 

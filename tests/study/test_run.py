@@ -27,7 +27,7 @@ from jackettwin.study.truth import true_modes
 from jackettwin.twin import TwinState, read_twin
 from jackettwin.twin.assembly import assembled
 from jackettwin.twin.config import ModelError, TwinConfig, UpdateSettings
-from jackettwin.twin.exact_sums import ModeSums, of_day, of_estimate
+from jackettwin.twin.exact_sums import of_day, of_estimate, plus
 from jackettwin.updating import Target, numbered_modes
 from jackettwin.updating.data.pairing import Counterpart
 
@@ -153,7 +153,7 @@ def sighting(
 
 
 def fuse(mode: int, modes: Sequence[ModalEstimate]) -> Target:
-    return mean_target(mode, of_day(reduce(ModeSums.plus, (of_estimate(m, 600.0) for m in modes))))
+    return mean_target(mode, of_day(reduce(plus, (of_estimate(m, 600.0) for m in modes))))
 
 
 def numbers(target: Target) -> tuple[float | None, ...]:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from jackettwin.identification import ModalEstimate
-from jackettwin.identification.many_records.mode_series import Sightings, log_covariance
+from jackettwin.identification.many_records.sightings import Sightings, log_covariance
 
 
 def sightings(modes: Sequence[ModalEstimate], duration_s: Sequence[float]) -> Sightings:

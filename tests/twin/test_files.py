@@ -47,7 +47,7 @@ def test_scientific_notation_without_sign_is_a_number(tmp_path: Path) -> None:
             "tie: per-leg, shared: [k], scatter: {k: 0.3}",
             r"support\.scatter.*shared or scatters, not both",
         ),
-        ("tie: all", "law: zenner", r"unknown law.*did you mean 'zener'"),
+        ("tie: all", "law: zenner", r"no such law.*did you mean 'zener'"),
         ("support: {tie: all}\n", "support: {tie: all}\nsupport: {tie: all}\n", r"'support' is given twice"),
         ("targets:", "records: [a.parquet]\ntargets:", r"give records or targets"),
         ("{mode: 4", "[mode: 4", r"line 6"),

@@ -235,7 +235,7 @@ def test_the_factor_of_birge_divides_by_the_degrees_of_freedom() -> None:
     # χ² = 2a²/s² on one degree of freedom, times s²/2
     assert average(one_day_of([low, high])).log_std[0] == pytest.approx(a, rel=1e-6)
     # thirty records each day: χ² of the days 60a²/s² on one degree of freedom, times s²/60
-    days = one_day_of([low] * 30).plus(one_day_of([high] * 30))
+    days = plus(one_day_of([low] * 30), one_day_of([high] * 30))
     assert average(days).log_std[0] == pytest.approx(a, rel=1e-6)
 
 

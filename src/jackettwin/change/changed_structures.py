@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from math import pi
+from typing import cast
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.change.ground import UNDESCRIBED, Loss
 from jackettwin.errors import require
+from jackettwin.plugins import plugins
 from jackettwin.structure import Material, Member, PointMass, Section, Structure
 
 _LEG = 0.9
@@ -69,9 +71,14 @@ class Happening:
     damps: float = 0.0
 
 
+PLUGINS = "jackettwin.causes"
+"""Group of entry points, each a function from a :class:`Standing` to what else may happen to it."""
+
+
 def happenings(standing: Standing) -> tuple[Happening, ...]:
-    """Return all that may happen to a structure."""
+    """Return all that may happen to a structure, what installed packages know of included."""
     structure = standing.structure
+    added = cast("Iterable[Callable[[Standing], Iterable[Happening]]]", plugins(PLUGINS).values())
     return (
         *_grounds(structure),
         *_braces(structure),
@@ -79,6 +86,7 @@ def happenings(standing: Standing) -> tuple[Happening, ...]:
         *_tops(structure),
         Happening("corrosion", "corrosion of the splash zone", _corroded, 0.002, 0.003, 0.8, "m"),
         Happening("connection", "grouted or bolted connection", _loosened, 0.3, 0.3, 0.8, "-", damps=0.5),
+        *(happening for happenings_of in added for happening in happenings_of(standing)),
     )
 
 

@@ -90,11 +90,19 @@ def _document(
         "frequency_hz": frequency_hz,
         "head_stiffness": K.real,
         "head_loss": K.imag,
-        "curves": None if curves is None else _curves(curves),
+        "curves": None if curves is None else {"kinds": _kinds(ground), **_curves(curves)},
         "capacity": None if curves is None or pushed is None else _capacity(curves, pushed),
         "pushover": None if pushed is None else _pushover(pushed, arm_m),
         "warnings": [*ground.notes, *([_LINEAR] if curves is None else [])],
     }
+
+
+def _kinds(ground: Foundation) -> list[dict[str, str]]:
+    """Return which kind of curve stands for each reaction of the soils that there are."""
+    layers = () if ground.profile is None else ground.profile.layers
+    soils = tuple(type(layer.soil).__name__.lower() for layer in layers)
+    kinds = (kind for kind in ground.options.kinds() if kind.reaction.startswith(soils))
+    return [{"reaction": kind.reaction, "name": kind.name, "words": kind.words} for kind in kinds]
 
 
 def _curves(curves: PileCurves) -> dict[str, Any]:

@@ -29,8 +29,9 @@ def token_command() -> None:
 def add_token(user: str, label: str, days: int, at: StorePlace) -> Reply:
     """Make a token with the role of USER; it is shown this once."""
     engine = at.open()
+    from jackettwin.service.web.auth import new_grant
     from jackettwin.store import writing
-    from jackettwin.store.people import known_user, new_grant, note_down
+    from jackettwin.store.people import known_user, note_down
 
     made = now()
     with writing(engine) as connection:

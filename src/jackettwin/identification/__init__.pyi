@@ -15,6 +15,6 @@ from .many_records.fusion import (
 )
 from .mode_shapes import mac as mac
 from .pole_methods import PoleMethod as PoleMethod
-from .preparation.prepare import Prepared as Prepared
+from .preparation.prepared import Prepared as Prepared
 from .settings import IdentificationSettings as IdentificationSettings
 from .subspace.ssi_cov import OrderPoles as OrderPoles, ssi_cov as ssi_cov

@@ -10,16 +10,16 @@ from jackettwin.findings import Finding
 from jackettwin.identification.decays.free_decay import transient
 from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
 from jackettwin.identification.frequency_domain.fdd import fdd
-from jackettwin.identification.hidden_modes import candidates_of, search_poles, with_hidden_modes
 from jackettwin.identification.methods import EFDD, method_names
 from jackettwin.identification.picks import Pick, of_record
 from jackettwin.identification.pole_methods import relaxations, uncertain
 from jackettwin.identification.preparation.components import at_all_channels, components
-from jackettwin.identification.preparation.prepare import prepare
+from jackettwin.identification.preparation.prepared import prepare
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.preparation.whitening import as_measured
+from jackettwin.identification.quiet_bands import candidates_of, searched, with_quiet_bands
 from jackettwin.identification.selection.choice import chosen_modes, cleared, screened_choice
-from jackettwin.identification.selection.pole_picks import left_out, picked_clusters, with_verdicts
+from jackettwin.identification.selection.picked import left_out, picked_clusters, with_verdicts
 from jackettwin.identification.selection.screening import evidence
 from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.identification.status import ModeStatus
@@ -100,9 +100,9 @@ def identify(
     ready, basis = components(whole, settings)
     y, scale, resolved = ready.y, ready.scale, ready.settings
     say("poles")
-    search = search_poles(ready, settings)
+    search = searched(ready, settings)
     if uncertain(settings):
-        search = with_hidden_modes(search, ready, settings)
+        search = with_quiet_bands(search, ready, settings)
     poles, judged, tones = search.poles, search.judged, search.tones
     say("selection")
     missing: tuple[str, ...] = ()

@@ -151,13 +151,6 @@ class Stabilisation:
     log_covariance: FloatArray | None = None
     mode_shape_std: FloatArray | None = None
 
-    @classmethod
-    def empty(cls, n_channels: int) -> Stabilisation:
-        """Return that of a method without poles of many orders."""
-        none, no = np.empty(0), np.empty(0, dtype=np.bool_)
-        whole, shapes = np.empty(0, dtype=np.int64), np.empty((0, n_channels), dtype=np.complex128)
-        return cls(whole, none, none, shapes, no, no, no, whole)
-
     @property
     def frequency_std_hz(self) -> FloatArray | None:
         """Standard deviation of every frequency [Hz], (n_poles,)."""
@@ -243,6 +236,9 @@ class Identification:
     @property
     def without_figures(self) -> Identification:
         """The same without poles and spectrum, which figures alone need: a few kilobytes."""
-        n_channels = len(self.channels)
-        spectrum = Spectrum(np.empty(0), np.empty((n_channels, 0)), np.empty((n_channels, 0)))
-        return replace(self, stabilisation=Stabilisation.empty(n_channels), spectrum=spectrum)
+        none, no = np.empty(0), np.empty(0, dtype=np.bool_)
+        whole, n_channels = np.empty(0, dtype=np.int64), len(self.channels)
+        shapes = np.empty((0, n_channels), dtype=np.complex128)
+        poles = Stabilisation(whole, none, none, shapes, no, no, no, whole)
+        spectrum = Spectrum(none, np.empty((n_channels, 0)), np.empty((n_channels, 0)))
+        return replace(self, stabilisation=poles, spectrum=spectrum)

@@ -27,7 +27,7 @@ from jackettwin.plugins import plugins
 
 if TYPE_CHECKING:
     from jackettwin.identification.estimate import RealPole, Stabilisation
-    from jackettwin.identification.preparation.prepare import Prepared
+    from jackettwin.identification.preparation.prepared import Prepared
     from jackettwin.identification.settings import IdentificationSettings
 
 FEWEST_BLOCKS = 5

@@ -7,4 +7,6 @@ from .quality.record_quality import assess as assess
 from .quality.repair import repair as repair
 from .readers import read_record as read_record, write_record as write_record
 from .readers.delimited import MISSING as MISSING, text_table as text_table
+from .readers.registry import Format as Format
+from .readers.table import ReadTable as ReadTable
 from .record import Channel as Channel, Record as Record

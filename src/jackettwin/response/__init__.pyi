@@ -47,7 +47,9 @@ from .motion.time import (
 from .reduction import Reduced as Reduced, reduced as reduced
 from .sdof import poles as poles, sdof as sdof
 from .sensors import (
+    SENSOR_KINDS as SENSOR_KINDS,
     Sensor as Sensor,
+    SensorKind as SensorKind,
     observation_matrix as observation_matrix,
     sees as sees,
     sensor_kinds as sensor_kinds,

@@ -1,4 +1,4 @@
-"""The parts of a server, which are passed to its functions."""
+"""A server's parts, handed to whoever needs them."""
 
 from __future__ import annotations
 
@@ -9,19 +9,16 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from sqlalchemy import Engine
 
+from jackettwin.service import workers
 from jackettwin.service.answer_cache import AnswerCache
 from jackettwin.service.day_cache import DayCache
 from jackettwin.service.event_feed import Feed
 from jackettwin.service.login_attempts import LoginAttempts
 from jackettwin.service.settings import ServiceSettings
 from jackettwin.store import open_database
-
-if TYPE_CHECKING:
-    from jackettwin.service.workers.cluster import WorkerCluster
 
 
 def _now() -> datetime:
@@ -43,7 +40,7 @@ class Service:
 
     settings: ServiceSettings
     database: Engine
-    cluster: WorkerCluster
+    cluster: workers.cluster.Cluster
     server_id: str
     now: Callable[[], datetime] = _now
     login_attempts: LoginAttempts = field(default_factory=LoginAttempts)
@@ -61,13 +58,13 @@ class Service:
         return Feed(self.database)
 
     def free_bytes(self) -> int:
-        """Free space on the disk of the store; 0 if it is read-only, as disks become after faults."""
+        """Room left where the store is: none on a disk that is read-only, as one becomes after faults."""
         store = self.settings.store
         return shutil.disk_usage(store).free if os.access(store, os.W_OK) else 0
 
 
 Place = OpenStore | Service
-"""What storing results needs: the settings of the store, its database, and the time."""
+"""What keeping results needs: where the store is, its database, and the time."""
 
 
 def open_service(settings: ServiceSettings) -> Service:
@@ -78,9 +75,9 @@ def open_service(settings: ServiceSettings) -> Service:
     InputError
         If the database cannot be opened.
     """
-    from jackettwin.service.workers.cluster import WorkerCluster
-
     for folder in (settings.store, settings.spool, settings.models):
         folder.mkdir(parents=True, exist_ok=True)
     database = open_database(settings.database_url)
-    return Service(settings, database, WorkerCluster(settings), f"{os.getpid()}-{secrets.token_hex(4)}")
+    return Service(
+        settings, database, workers.cluster.Cluster(settings), f"{os.getpid()}-{secrets.token_hex(4)}"
+    )

@@ -22,8 +22,8 @@ Hashes = tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True)
-class DaySums:
-    """The sum over the days of a turbine, their number, and the identity of their states."""
+class DaysTold:
+    """What the days of a turbine say together, how many they are, and the identity of their states."""
 
     sums: workers.engine.Sums
     days: int
@@ -31,16 +31,16 @@ class DaySums:
 
 
 class DayCache:
-    """Sums over all days but the last, which still grows, of the turbines that were asked for last."""
+    """Sums of all days but the last one, which is still growing, of turbines that were asked for of late."""
 
     def __init__(self) -> None:
         self._past: OrderedDict[tuple[str, str], tuple[Hashes, workers.engine.Sums]] = OrderedDict()
         self._lock = Lock()
 
-    def up_to(
+    def told(
         self, connection: Connection, version: assets.Version, model: TwinModel, day: str | None = None
-    ) -> DaySums:
-        """Return the sum over all days, or up to one; only days that are new or have changed are read."""
+    ) -> DaysTold:
+        """Return what all days, or those up to one, say; only days that are new or changed are read."""
         key = (version.asset, version.model_hash)
         by_day = results.state_hashes(connection, *key, day)
         hashes = tuple(by_day.items())
@@ -56,7 +56,7 @@ class DayCache:
             self._keep(key, known, sums)
         for state in states[-1:]:
             sums = workers.engine.with_day(sums, state.day, state.document)
-        return DaySums(sums, len(hashes), results.identity_of(by_day))
+        return DaysTold(sums, len(hashes), results.identity_of(by_day))
 
     def _keep(self, key: tuple[str, str], known: Hashes, sums: workers.engine.Sums) -> None:
         with self._lock:

@@ -1,4 +1,7 @@
-"""A demonstration asset whose records arrive in fast motion, so that newcomers see a twin within a minute."""
+"""A demonstration asset whose records arrive in fast motion.
+
+So that a newcomer sees a twin live within a minute.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Events for many readers, read from the database once for all of them."""
+"""Events to many readers: one look at the database for all of them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _RECENT = 2000
 
 
 class Feed:
-    """The newest events, read every 0.3 s, and the readers that wait for them."""
+    """The newest events, looked for in turn, and whoever waits for them."""
 
     def __init__(self, database: Engine) -> None:
         self._database = database
@@ -28,7 +28,7 @@ class Feed:
         self._last = 0
 
     async def run(self) -> None:
-        """Read new events until cancelled."""
+        """Look for events until cancelled."""
         self._last = await asyncio.to_thread(self._newest)
         while True:
             try:
@@ -49,7 +49,7 @@ class Feed:
         return self._last
 
     async def follow(self, last: int, seconds: float) -> AsyncIterator[Event]:
-        """Yield the events after a number, for so many seconds."""
+        """Yield the events after a number, for so long."""
         at, end = last, time.monotonic() + seconds
         while True:
             if at < self._last:

@@ -35,7 +35,7 @@ from jackettwin.store import assets, people, reading
 log = logging.getLogger(__name__)
 
 REFUSED = ".refused.json"
-"""Added to the name of a file that could not be read, for the file with the reason."""
+"""What is added to the name of a file that could not be read, for the file that says why."""
 
 
 @contextmanager
@@ -72,14 +72,14 @@ def running(settings: ServiceSettings) -> Iterator[Service]:
 
 
 def serve(settings: ServiceSettings, ready: Callable[[Service], None] = lambda _: None) -> None:
-    """Serve until told to stop; open requests are answered, unfinished work goes back to the queue.
+    """Serve until told to stop; requests under way are answered, work under way is leased again later.
 
     SIGTERM, which managers of services send, ends it as Ctrl-C does.
 
     Raises
     ------
     InputError
-        If the database or the port cannot be opened, or others could reach an unprotected server.
+        If nothing can be opened, or listened at, where the settings say; or it would be reached unprotected.
     """
     signal.signal(signal.SIGTERM, _interrupt)
     _check_tls(settings)
@@ -113,7 +113,7 @@ def _interrupt(*_: object) -> None:
 
 
 def _listening(settings: ServiceSettings) -> socket.socket:
-    """Return the listening socket of a server; connections wait there until it is ready."""
+    """Return a socket at the address of a server, which connections wait at until it is ready."""
     try:
         family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
         return socket.create_server((settings.host, settings.port), family=family, backlog=2048)
@@ -159,9 +159,9 @@ def _watch_inbox(service: Service, stop: Callable[[], bool]) -> None:
 
 
 def take_from_inbox(service: Service, inbox: Path, path: Path) -> Accepted | None:
-    """Take a file from an asset's folder; one that cannot be read stays, with the reason beside it.
+    """Take a file that lies in an asset's folder; what could not be read stays, with the reason beside it.
 
-    Return None for a file of no asset: it is tried again, when there may be one.
+    Return None for a file of no asset, which is looked at again: there may be one by then.
     """
     asset, reason = path.relative_to(inbox).parts[0], path.with_name(path.name + REFUSED)
     with reading(service.database) as connection:

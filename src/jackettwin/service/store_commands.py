@@ -1,4 +1,4 @@
-"""Commands on a store, which work with or without a running server."""
+"""What the command line does with a store, beside a server or without one."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def add_twin(database: Engine, store: Path, name: str, twin: Path, comment: str 
 
 
 def adopt_version(database: Engine, store: Path, name: str, version: int) -> None:
-    """Adopt a version of an asset: its answers are those that are given.
+    """Make a version of an asset the one whose answers count.
 
     Raises
     ------

@@ -79,7 +79,15 @@ def simulate(scenario: Scenario) -> Simulation:
             **_axes(scenario.instruments),
             "levels": [asdict(level) for level in levels(motion, scenario)],
             "levels_beyond_comparison": beyond_comparison(scenario),
-            "true_modes": [asdict(mode) for mode in motion.modes],
+            "true_modes": [
+                {
+                    "label": m.label,
+                    "frequency_hz": m.frequency_hz,
+                    "damping_ratio": m.damping_ratio,
+                    "damping_by_source": m.damping_by_source,
+                }
+                for m in motion.modes
+            ],
         },
         name=scenario.name,
     )

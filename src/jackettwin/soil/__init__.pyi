@@ -2,7 +2,6 @@ from .files import parse_law as parse_law, read_support as read_support
 from .foundation import Foundation as Foundation, read_foundation as read_foundation
 from .ground.curves import Curve as Curve
 from .ground.profile import Clay as Clay, Layer as Layer, Point as Point, Sand as Sand, Scour as Scour
-from .laws.coefficients import law_stiffness as law_stiffness, static_rows as static_rows
 from .laws.families import (
     DEFAULT_LAWS as DEFAULT_LAWS,
     Family as Family,
@@ -12,17 +11,7 @@ from .laws.families import (
     parameter_words as parameter_words,
 )
 from .laws.parameter import Parameter as Parameter
-from .laws.viscoelastic import (
-    Law as Law,
-    Prony as Prony,
-    Springpot as Springpot,
-    kelvin_voigt as kelvin_voigt,
-    loss_factor as loss_factor,
-    maxwell as maxwell,
-    one_branch as one_branch,
-    prony_fit as prony_fit,
-    zener as zener,
-)
+from .laws.viscoelastic import Law as Law, Prony as Prony, Springpot as Springpot
 from .piles.piles import Pile as Pile
 from .piles.radiation import Radiation as Radiation
 from .piles.soil_curves import (

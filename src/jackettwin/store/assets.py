@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
+from typing import Any
 
 from sqlalchemy import Connection, func, insert, select, update
 
@@ -36,9 +37,6 @@ class Version:
     comment: str
 
 
-_VERSION = select(*(versions.c[name] for name in Version.__dataclass_fields__))
-
-
 def check_name(name: str) -> str:
     """Return a name that an asset may have.
 
@@ -49,7 +47,7 @@ def check_name(name: str) -> str:
     """
     if NAME.fullmatch(name) is None:
         raise InputError(
-            "not a name for an asset",
+            "an asset cannot be called so",
             field="name",
             value=name[:80],
             allowed="1 to 64 letters, digits, _ and -, a letter or digit first",
@@ -101,10 +99,18 @@ def add_version(
     number = 1 if last is None else last + 1
     if last is None:
         connection.execute(insert(assets).values(name=name, created_utc=now, adopted_version=1))
-    digest = hashlib.sha256(bundle).hexdigest()
-    version = Version(name, number, model_hash, settings_hash, now, by, digest, comment)
-    connection.execute(insert(versions).values(**vars(version), bundle=bundle))
-    return version
+    row: dict[str, Any] = {
+        "asset": name,
+        "version": number,
+        "model_hash": model_hash,
+        "settings_hash": settings_hash,
+        "created_utc": now,
+        "created_by": by,
+        "bundle_hash": hashlib.sha256(bundle).hexdigest(),
+        "comment": comment,
+    }
+    connection.execute(insert(versions).values(**row, bundle=bundle))
+    return Version(**row)
 
 
 def adopt(connection: Connection, name: str, version: int) -> None:
@@ -114,7 +120,7 @@ def adopt(connection: Connection, name: str, version: int) -> None:
 
 
 def archive(connection: Connection, name: str, at: datetime | None) -> None:
-    """Archive an asset, which then takes no data and is not listed; None brings it back."""
+    """Have an asset take nothing more and stand in no list from now on; None brings it back."""
     found_version(connection, name)
     connection.execute(update(assets).where(assets.c.name == name).values(archived_utc=at))
 
@@ -125,7 +131,7 @@ def is_archived(connection: Connection, name: str) -> bool:
 
 
 def asset_names(connection: Connection, *, archived: bool = True) -> list[str]:
-    """Return the names of all assets, sorted, with or without archived ones."""
+    """Return the names of all assets, sorted, with those that are archived or without."""
     query = select(assets.c.name).order_by(assets.c.name)
     return list(connection.scalars(query if archived else query.where(assets.c.archived_utc.is_(None))))
 
@@ -143,7 +149,7 @@ class Summary:
 
 
 def summaries(connection: Connection, name: str | None = None, *, archived: bool = False) -> list[Summary]:
-    """Return the archived or the other assets, by name; or one asset, archived or not."""
+    """Return every asset by name that is archived, or is not; or one, whichever it is."""
     start = records.c.start_utc
     last = select(func.max(start, type_=start.type)).where(records.c.asset == assets.c.name)
     adopted = (versions.c.asset == assets.c.name) & (versions.c.version == assets.c.adopted_version)
@@ -168,7 +174,8 @@ def found_version(connection: Connection, name: str, version: int | None = None)
     InputError
         If there is no such asset or version.
     """
-    query = _VERSION.join(assets, assets.c.name == versions.c.asset).where(versions.c.asset == name)
+    columns = [column for column in versions.c if column.name != "bundle"]
+    query = select(*columns).join(assets, assets.c.name == versions.c.asset).where(versions.c.asset == name)
     wanted = assets.c.adopted_version if version is None else version
     row = connection.execute(query.where(versions.c.version == wanted)).one_or_none()
     if row is None:
@@ -194,7 +201,8 @@ def found_version(connection: Connection, name: str, version: int | None = None)
 
 def all_versions(connection: Connection, name: str) -> list[Version]:
     """Return every version of an asset, oldest first."""
-    rows = connection.execute(_VERSION.where(versions.c.asset == name).order_by(versions.c.version))
+    columns = [column for column in versions.c if column.name != "bundle"]
+    rows = connection.execute(select(*columns).where(versions.c.asset == name).order_by(versions.c.version))
     return [Version(**row._mapping) for row in rows]
 
 

@@ -1,4 +1,4 @@
-"""Backup of a store in one file: every table as lines of JSON, every waveform, and a manifest.
+"""A whole store in one file, and back: every table as lines of JSON, every waveform, one manifest.
 
 The form is the same for SQLite and PostgreSQL, so that a backup of one restores into the other.
 """
@@ -23,7 +23,7 @@ from jackettwin.store.database import bring_to, check_schema, writing
 from jackettwin.store.tables import SCHEMA_VERSION
 
 _LEFT_OUT = ("servers",)
-"""Running servers are left out; their leases are taken back when a restored store is opened."""
+"""Who serves is not part of what is kept; leases are given back when a restored store is opened."""
 _ROWS = 500
 """Rows that are inserted at once."""
 
@@ -142,7 +142,7 @@ def _insert(connection: Connection, table: Table, archive: tarfile.TarFile) -> i
 
 
 def _extract(archive: tarfile.TarFile, member: tarfile.TarInfo, store: Path) -> None:
-    """Write one waveform; a name that leads out of the store is refused."""
+    """Write one waveform; a name that leads elsewhere is refused."""
     place = PurePosixPath(member.name)
     if not member.isfile() or place.is_absolute() or ".." in place.parts:
         raise ValueError(f"{member.name} does not belong into a backup")
@@ -153,7 +153,7 @@ def _extract(archive: tarfile.TarFile, member: tarfile.TarInfo, store: Path) -> 
 
 
 def _count_on(connection: Connection) -> None:
-    """Set the counters of PostgreSQL, so that row numbers continue after the restored ones."""
+    """Have row numbers go on after the restored ones, where the database keeps a counter of its own."""
     if connection.dialect.name != "postgresql":
         return
     for table in _tables():

@@ -13,7 +13,7 @@ from jackettwin.store.tables import events
 
 KINDS = ("record", "observation", "state", "finding", "job", "asset")
 KEPT = timedelta(days=2)
-"""How long a reader may be disconnected and still get every event."""
+"""How long a reader may be away and still get every event."""
 
 
 @dataclass(frozen=True)
@@ -28,10 +28,10 @@ class Event:
 
 
 def tell(connection: Connection, kind: str, asset: str, payload: Mapping[str, Any], now: datetime) -> None:
-    """Add an event in the transaction in which it happens.
+    """Add an event, with the transaction in which it happened.
 
-    PostgreSQL draws numbers before transactions end. A lock makes events visible in the order of their
-    numbers, so that a reader who continues from the last number misses none.
+    On PostgreSQL numbers are drawn before transactions end: a lock lets them become visible in order, so that
+    no reader who goes on from the last number misses one.
     """
     if connection.dialect.name == "postgresql":
         connection.execute(text("select pg_advisory_xact_lock(740114)"))
@@ -51,7 +51,7 @@ def last_event(connection: Connection, asset: str | None = None) -> int:
 
 
 def forget_events(connection: Connection, now: datetime) -> None:
-    """Delete events that no reader needs; the newest of each asset stays, as the version of its answers."""
+    """Delete what no reader can be waiting for; the newest of each asset stays: its answers' version."""
     newest = select(func.max(events.c.id)).group_by(events.c.asset)
     old = (events.c.time_utc < now - KEPT, events.c.id.not_in(newest))
     connection.execute(delete(events).where(*old))

@@ -1,11 +1,10 @@
-"""Users, sessions of browsers, tokens of machines, and the audit log."""
+"""Who may: users, sessions of browsers, tokens of machines, and the audit log."""
 
 from __future__ import annotations
 
 import hashlib
-import secrets
 from dataclasses import dataclass
-from datetime import datetime, timedelta
+from datetime import datetime
 
 from sqlalchemy import Connection, delete, func, insert, select
 
@@ -13,7 +12,7 @@ from jackettwin.errors import InputError
 from jackettwin.store.tables import audit, tokens, users
 
 ROLES = ("viewer", "engineer", "admin")
-"""Each role includes those before it."""
+"""Each may what those before it may."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +38,7 @@ class Grant:
 
 
 def secret_hash(secret: str) -> str:
-    """Return the stored hash of a random secret of 256 bits, which needs no salt against guessing."""
+    """Return what is kept of a random secret of 256 bits: no salt is needed against guessing."""
     return hashlib.sha256(secret.encode()).hexdigest()
 
 
@@ -80,19 +79,34 @@ def list_users(connection: Connection) -> list[User]:
     return [User(**row._mapping) for row in connection.execute(select(users).order_by(users.c.name))]
 
 
-def new_grant(
-    connection: Connection, user: str, kind: str, label: str, now: datetime, lasts: timedelta
-) -> tuple[str, str]:
-    """Make a session or token, of which a hash is stored; return its secret and its CSRF token."""
-    secret, csrf = secrets.token_urlsafe(32), secrets.token_urlsafe(32)
+def grant(
+    connection: Connection,
+    secret: str,
+    *,
+    kind: str,
+    user: str,
+    label: str,
+    csrf: str,
+    now: datetime,
+    expires: datetime,
+) -> None:
+    """Keep a session or token, as a hash."""
     connection.execute(delete(tokens).where(tokens.c.expires_utc < now))
-    row = {"hash": secret_hash(secret), "kind": kind, "user": user, "label": label, "csrf": csrf}
-    connection.execute(insert(tokens).values(**row, created_utc=now, expires_utc=now + lasts))
-    return secret, csrf
+    connection.execute(
+        insert(tokens).values(
+            hash=secret_hash(secret),
+            kind=kind,
+            user=user,
+            label=label,
+            csrf=csrf,
+            created_utc=now,
+            expires_utc=expires,
+        )
+    )
 
 
 def find_grant(connection: Connection, secret: str, now: datetime) -> Grant | None:
-    """Return the grant of a secret; None if there is none, it has expired, or its user is disabled."""
+    """Return whose session or token a secret is; None if it is nobody's, expired, or its user is disabled."""
     query = (
         select(tokens.c.user, users.c.role, tokens.c.kind, tokens.c.csrf, tokens.c.expires_utc)
         .join(users, users.c.name == tokens.c.user)
@@ -126,7 +140,7 @@ def list_tokens(connection: Connection) -> list[KnownToken]:
 
 
 def revoke_tokens(connection: Connection, user: str, label: str | None = None) -> int:
-    """End the tokens of a user with a label, or all tokens and sessions; return how many."""
+    """End a user's tokens, all or those of a label, and all sessions with the former; return how many."""
     mine = [tokens.c.user == user]
     if label is not None:
         mine += [tokens.c.label == label, tokens.c.kind == "token"]
@@ -143,5 +157,11 @@ def note_down(
     connection: Connection, who: str, action: str, subject: str, outcome: str, now: datetime
 ) -> None:
     """Write a line into the audit log."""
-    row = {"who": who[:64], "action": action[:64], "subject": subject[:255], "outcome": outcome[:64]}
-    connection.execute(insert(audit).values(**row, time_utc=now))
+    row = {
+        "time_utc": now,
+        "who": who[:64],
+        "action": action[:64],
+        "subject": subject[:255],
+        "outcome": outcome[:64],
+    }
+    connection.execute(insert(audit).values(**row))

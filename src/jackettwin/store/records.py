@@ -1,4 +1,4 @@
-"""Records by content: what arrived, when it was measured, and its status."""
+"""Records by content: what arrived, from when to when, and how far it got."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def records_with_id(connection: Connection, record_id: str) -> list[StoredRecord
 def set_status(
     connection: Connection, asset: str, record_id: str, status: str, problem: Mapping[str, Any] | None = None
 ) -> None:
-    """Set the status of a record, and the reason if it was refused or set aside."""
+    """Say how far a record got, and why no further."""
     if status not in STATUSES:
         raise ValueError(f"no record has the status {status!r}")
     connection.execute(_change(asset, record_id).values(status=status, problem=problem))
@@ -70,7 +70,7 @@ def _change(asset: str, record_id: str) -> Update:
 
 
 def set_picks(connection: Connection, asset: str, record_id: str, picks: Mapping[str, Any] | None) -> None:
-    """Store the poles that a person chose, with who and when."""
+    """Keep the poles that a person chose, who and when among them."""
     connection.execute(_change(asset, record_id).values(picks=picks))
 
 
@@ -102,7 +102,7 @@ def list_records(
 def all_with_samples(
     connection: Connection, asset: str, since: datetime | None = None, until: datetime | None = None
 ) -> list[StoredRecord]:
-    """Return the records of an asset that have samples and are not set aside, oldest first."""
+    """Return the records of an asset whose samples are kept and that count, oldest first."""
     query = between(select(records).filter_by(asset=asset), records.c.start_utc, since, until)
     query = query.where(records.c.waveform.is_not(None), records.c.status != "set_aside")
     rows = connection.execute(query.order_by(records.c.start_utc, records.c.record_id))
@@ -124,7 +124,7 @@ def with_samples_before(connection: Connection, time: datetime) -> list[StoredRe
 
 
 def forget_samples(connection: Connection, record: StoredRecord) -> None:
-    """Note that the samples of a record have been deleted."""
+    """Say that the samples of a record are not kept any more."""
     connection.execute(_change(record.asset, record.record_id).values(waveform=None))
 
 
@@ -141,17 +141,17 @@ def count_by_status(connection: Connection, asset: str | None = None) -> dict[st
 
 
 def write_cursor(*place: str | int) -> str:
-    """Return a position in a list as an opaque cursor."""
+    """Return a place in a list as an opaque word."""
     return base64.urlsafe_b64encode(json.dumps(place).encode()).decode()
 
 
 def read_cursor(cursor: str) -> list[str | int]:
-    """Return the position that a cursor stands for.
+    """Return the place that a cursor stands for.
 
     Raises
     ------
     InputError
-        If it is not a cursor of this server.
+        If it is not a cursor that we gave.
     """
     try:
         place = json.loads(base64.urlsafe_b64decode(cursor.encode()))

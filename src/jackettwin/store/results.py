@@ -1,4 +1,4 @@
-"""What the engine found: observations, modes, findings and the states of days."""
+"""What the engine said: observations, modes, findings and the states of days."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def put_observation(
     mode_rows: Iterable[Mapping[str, Any]],
     finding_rows: Iterable[Mapping[str, Any]],
 ) -> None:
-    """Store an observation, its modes and its findings in place of earlier ones of the same record."""
+    """Keep an observation, its modes and its findings in place of what the same record said before."""
     drop_observation(connection, observation.asset, observation.model_hash, observation.record_id)
     connection.execute(insert(observations).values(**vars(observation)))
     if mode_rows := list(mode_rows):
@@ -69,14 +69,14 @@ def put_observation(
 
 
 def drop_observation(connection: Connection, asset: str, model_hash: str, record_id: str) -> None:
-    """Delete the observation of a record by a model, with its modes and findings."""
+    """Forget what a record said under a model."""
     for table in (observations, modes):
         connection.execute(_deleted(table, asset, model_hash, record_id=record_id))
     connection.execute(_deleted(findings, asset, model_hash, record_id=record_id, origin="observe"))
 
 
 def _deleted(table: Table, asset: str, model_hash: str, **more: str) -> Delete:
-    """Return a deletion of the rows of an asset and model that have these values."""
+    """Return the deletion of what an asset has under a model, chosen further by values of columns."""
     same = {"asset": asset, "model_hash": model_hash, **more}
     return delete(table).where(*(table.c[name] == value for name, value in same.items()))
 
@@ -112,7 +112,7 @@ def observed_time(connection: Connection, asset: str, model_hash: str) -> tuple[
 def find_observation(
     connection: Connection, asset: str, record_id: str, model_hash: str
 ) -> StoredObservation | None:
-    """Return the observation of a record by a model, or None."""
+    """Return what a record said under a model, or None."""
     query = select(observations).filter_by(asset=asset, record_id=record_id, model_hash=model_hash)
     row = connection.execute(query).first()
     return None if row is None else StoredObservation(**row._mapping)
@@ -183,9 +183,9 @@ def put_findings(connection: Connection, rows: Sequence[Mapping[str, Any]]) -> N
 def put_watched(
     connection: Connection, asset: str, model_hash: str, rows: Sequence[Mapping[str, Any]]
 ) -> list[Mapping[str, Any]]:
-    """Store the findings of watching a turbine's days; return the rows that are new.
+    """Keep what watching a turbine's days says now; return the rows that are new.
 
-    Earlier findings that no longer hold, because a late record changed a day, are deleted.
+    What was said before and holds no more, since a late record changed a day, is taken away.
     """
     own = select(findings).filter_by(asset=asset, model_hash=model_hash, origin="watch")
     before = {(alarm_key(row), row["text"]): row["id"] for row in _rows(connection, own)}
@@ -240,12 +240,12 @@ def _rows(connection: Connection, query: Select[Any]) -> list[Mapping[str, Any]]
 
 
 def alarm_key(row: Mapping[str, Any]) -> str:
-    """Return the key of an alarm, by which its acknowledgement is found after the day is summed again."""
+    """Return what an alarm is known by: it keeps its acknowledgement when its day is advanced anew."""
     return f"{row['asset']}/{row['day']}/{row['code']}/{row['subject'] or ''}"
 
 
 def acknowledge(connection: Connection, row: Mapping[str, Any], by: str, comment: str, now: datetime) -> None:
-    """Record that somebody acknowledged an alarm; a second time replaces the first."""
+    """Note that somebody took note of an alarm; a second time replaces the first."""
     key = alarm_key(row)
     connection.execute(delete(acknowledgements).where(acknowledgements.c.alarm_key == key))
     note = {"asset": row["asset"], "alarm_key": key, "by": by, "time_utc": now, "comment": comment}
@@ -253,7 +253,7 @@ def acknowledge(connection: Connection, row: Mapping[str, Any], by: str, comment
 
 
 def acknowledgements_of(connection: Connection, asset: str) -> dict[str, Mapping[str, Any]]:
-    """Return who acknowledged which alarm, {alarm key: note}."""
+    """Return who took note of which alarm, {alarm key: note}."""
     notes = _rows(connection, select(acknowledgements).filter_by(asset=asset))
     return {note["alarm_key"]: note for note in notes}
 
@@ -266,7 +266,7 @@ def put_knowledge(
     report: bytes | None,
     now: datetime,
 ) -> None:
-    """Store what a state says of the supports under a version, and the page on it, in place of the last."""
+    """Keep what a state says of the supports under a version, and the page on it, in place of others."""
     connection.execute(delete(knowledge).where(*_of_version(asset, version)))
     key = {"asset": asset, "version": version, "computed_utc": now}
     connection.execute(insert(knowledge).values(**key, document=dict(document), report=report))

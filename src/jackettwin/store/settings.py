@@ -1,4 +1,4 @@
-"""Settings of a whole store, which hold for every server of it."""
+"""What holds for a whole store, whoever serves it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from sqlalchemy import Connection, delete, insert, select
 from jackettwin.store.tables import settings
 
 RAW_DAYS = "raw_days"
-"""Days for which raw samples of observed records are kept; without it, for ever."""
+"""How many days raw samples of observed records are kept; without it, for ever."""
 
 
 def get(connection: Connection, name: str) -> Any:

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from jackettwin.arrays import FloatArray
 
 WINDOW = timedelta(minutes=10)
-"""Streams become records of ten minutes on UTC boundaries, as usual in the field."""
+"""Streams become records of ten minutes on UTC boundaries, the field's habit."""
 KEPT = timedelta(days=2)
 """How late a packet may come and still be put into its record."""
 INTERVAL = timedelta(minutes=10)
-"""Time for which a row of conditions holds, unless the next begins sooner: usual in SCADA statistics."""
+"""What a row of conditions holds for, unless the next one comes sooner: the field's statistics."""
 LONGEST = timedelta(hours=1)
 """The longest packet that is taken."""
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
@@ -44,11 +44,11 @@ class Packet:
 
 
 def add_packets(connection: Connection, new: Iterable[Packet], now: datetime) -> list[Packet]:
-    """Store packets that are new by asset, channel and start; return those that are left out.
+    """Keep packets that are not known yet, by asset, channel and start; return those that are left out.
 
-    A packet is left out if it begins more than :data:`KEPT` before the newest of its asset, since the other
-    packets of its window are deleted; or if it is as far ahead of both the stream and our clock: a logger's
-    clock that jumped into the future must not make all later packets too late.
+    One that begins :data:`KEPT` before the newest of its asset is left out: its window's other packets are
+    gone. So is one that is as far ahead of its asset's stream and of our clock: a logger's clock that jumped
+    into the future must not make everything after it come too late.
     """
     left_out = []
     newest: dict[str, datetime | None] = {}
@@ -59,8 +59,15 @@ def add_packets(connection: Connection, new: Iterable[Packet], now: datetime) ->
         if not (clock or packet.t0_utc) - KEPT <= packet.t0_utc <= max(now, clock or now) + KEPT:
             left_out.append(packet)
             continue
-        row = {"window_utc": window_start(packet.t0_utc), "samples": packet.samples.astype("<f8").tobytes()}
-        if insert_new(connection, packets, {**vars(packet), **row}):
+        row = {
+            "asset": packet.asset,
+            "channel": packet.channel,
+            "t0_utc": packet.t0_utc,
+            "window_utc": window_start(packet.t0_utc),
+            "rate_hz": packet.rate_hz,
+            "samples": packet.samples.astype("<f8").tobytes(),
+        }
+        if insert_new(connection, packets, row):
             for window_utc in _reached(packet):
                 _count(connection, packet.asset, window_utc)
     return left_out
@@ -82,7 +89,7 @@ def window_start(time: datetime) -> datetime:
 
 
 def open_windows(connection: Connection) -> list[OpenWindow]:
-    """Return the windows with packets that no record contains yet, oldest first."""
+    """Return the windows that have packets no record contains yet, oldest first."""
     columns = (windows.c.asset, windows.c.window_utc, windows.c.n_known, windows.c.record_id)
     query = select(*columns).where(windows.c.n_known != windows.c.n_packets)
     return [OpenWindow(*row) for row in connection.execute(query.order_by(windows.c.window_utc))]
@@ -114,7 +121,7 @@ def packets_of(connection: Connection, asset: str, window_utc: datetime) -> list
 
 
 def close_window(connection: Connection, window: OpenWindow, record_id: str | None) -> None:
-    """Note which record was made of a window, and of how many packets."""
+    """Say of which record, made of how many packets, a window's samples are."""
     same = (windows.c.asset == window.asset, windows.c.window_utc == window.window_utc)
     made = {"n_packets": window.n_known, "record_id": record_id}
     connection.execute(update(windows).where(*same).values(**made))
@@ -129,7 +136,7 @@ def forget_packets(connection: Connection, asset: str, before: datetime) -> None
 def put_conditions(
     connection: Connection, asset: str, name: str, values: Mapping[datetime, float | str | None]
 ) -> set[datetime]:
-    """Store a condition of the site through time; return the times at which it is new or has changed."""
+    """Keep a condition of the site through time; return the times at which it is new or another."""
     if not values:
         return set()
     same = (conditions.c.asset == asset, conditions.c.name == name)
@@ -158,10 +165,11 @@ def _text(value: float | str | None) -> str | None:
 def conditions_between(
     connection: Connection, asset: str, start: datetime, end: datetime
 ) -> dict[str, float | str]:
-    """Return the conditions during a record: the mean of numbers, or a text that does not change.
+    """Return each condition over a record: the mean of numbers, the one that a text keeps throughout.
 
-    A row holds until the next one, ten minutes at most. It counts if the record covers at least half of that
-    interval, or the interval half of the record. Unknown conditions and texts that change are left out.
+    A row holds for the interval to the next one, ten minutes at most; it counts if the record has at least
+    half of it, or it has half of the record. A condition that is not known, or a text that changes, is left
+    out.
     """
     import numpy as np
 
@@ -199,7 +207,7 @@ def _reached(packet: Packet) -> Iterator[datetime]:
 
 
 def _count(connection: Connection, asset: str, window_utc: datetime) -> None:
-    """Count one more packet of a window; a record made of fewer packets will be replaced."""
+    """Count one more packet of a window: a record made of fewer is made anew."""
     insert_new(connection, windows, {"asset": asset, "window_utc": window_utc, "n_packets": 0, "n_known": 0})
     same = (windows.c.asset == asset, windows.c.window_utc == window_utc)
     connection.execute(update(windows).where(*same).values(n_known=windows.c.n_known + 1))

@@ -202,8 +202,8 @@ knowledge = Table(
     Column("document", JSON, nullable=False),
     Column("report", LargeBinary),
 )
-"""What the newest state says under a version, computed when no record waits. In the document, ``known`` is
-about the supports and ``judged`` is what watching the days has learnt; ``report`` is the page, compressed."""
+"""What the newest state says under a version, found when there is time since it is costly: ``known`` of the
+supports; ``judged`` is what is kept of watching the days; ``report`` is the page on it, compressed."""
 
 findings = Table(
     "findings",
@@ -273,7 +273,7 @@ windows = Table(
     Column("n_known", Integer, nullable=False),
     Column("record_id", String(64)),
 )
-"""How many packets of a window are known, which record was made of it, and of how many packets."""
+"""How many packets of a window are known, and the record that was made of how many."""
 
 users = Table(
     "users",

@@ -1,4 +1,4 @@
-"""Raw samples in Parquet files by asset and day, as int16 with a scale where that is exact."""
+"""Raw samples as Parquet files by asset and day, int16 with a scale where that loses nothing."""
 
 from __future__ import annotations
 

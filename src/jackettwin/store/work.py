@@ -1,8 +1,8 @@
-"""The queue of work: one row for each (record, model, settings, code), leased to one server and done once.
+"""The queue of work: a row for each (record, model, settings, code), leased, done once.
 
-A lease has no expiry time. Every server counts up its beat; a server that sees another's beat stand still,
-by its own stopwatch, takes the leases of the dead one back. A result is accepted only from the server that
-holds the lease.
+A lease has no time in it. Servers count up a beat; whoever sees a beat stand still for long by an own
+stopwatch takes the dead server's leases back. A result is accepted only from the server that still holds
+the lease.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from jackettwin.store.database import insert_new
 from jackettwin.store.tables import servers, work
 from jackettwin.version import __version__
 
-OBSERVE, INFER = "observe", "know"
-"""Kinds of work: observe a record; infer the supports from a state."""
+OBSERVE, KNOW = "observe", "know"
+"""Kinds of work: observe a record; say what a state says of the supports."""
 GONE = -20
-"""Priority of the records of an archived asset: after all others, and not counted as waiting."""
+"""Priority of the records of an archived asset: after all others, and in nobody's alarm."""
 MOST_TRIES = 3
-"""A record is set aside after it killed a worker, or took too long, so many times."""
+"""A record that three workers died of, or could not finish in time, is set aside."""
 
 
 @dataclass(frozen=True)
@@ -58,9 +58,9 @@ def enqueue(
     kind: str = OBSERVE,
     priority: int = 0,
 ) -> int:
-    """Queue a record to be observed by a version of a twin, or other work; return the number of the job.
+    """Ask for a record to be observed by a version of a twin, or for other work of it; return its number.
 
-    A job that is queued already keeps its number.
+    What is asked for already keeps its own.
     """
     key = {
         "kind": kind,
@@ -113,7 +113,7 @@ def finish(
     now: datetime,
     reason: dict[str, Any] | None = None,
 ) -> bool:
-    """End a piece of work; return False if this server lost the lease: its result must not be kept."""
+    """End a piece of work; return False if it is no longer this server's, and then keep nothing of it."""
     ended = {"state": state, "ended_utc": now, "reason": reason, "owner": None}
     return connection.execute(_mine(job, owner).values(**ended)).rowcount == 1
 
@@ -131,16 +131,16 @@ def release(connection: Connection, job: Job, owner: str) -> None:
 
 
 def _mine(job: Job, owner: str) -> Update:
-    """Return an update of a piece of work that changes nothing if the server does not hold its lease."""
+    """Return the change of a piece of work that a server still holds."""
     return update(work).where(work.c.id == job.id, work.c.state == "leased", work.c.owner == owner)
 
 
 _UNTRIED = {"state": "queued", "owner": None, "tries": work.c.tries - 1}
-"""Values of work that goes back to the queue: the death of a server is no try of the record."""
+"""Of work that was leased, and goes back: that a server died says nothing against the record."""
 
 
 def try_again(connection: Connection, job_id: int, now: datetime) -> bool:
-    """Queue work again that has ended: done, set aside, failed or cancelled."""
+    """Queue work anew that is done, was set aside, failed or was cancelled: it is asked for now."""
     ended = work.c.state.in_(("set_aside", "failed", "cancelled", "done"))
     return (
         connection.execute(update(work).where(work.c.id == job_id, ended).values(**_anew(now))).rowcount == 1
@@ -148,7 +148,7 @@ def try_again(connection: Connection, job_id: int, now: datetime) -> bool:
 
 
 def renew(connection: Connection, job_id: int, now: datetime) -> bool:
-    """Queue work again because its input changed; a result that is on its way will be refused."""
+    """Queue work anew since what it is of has changed: a result that is on its way is not accepted."""
     mine = (work.c.id == job_id, work.c.state.not_in(("queued", "cancelled")))
     return connection.execute(update(work).where(*mine).values(**_anew(now))).rowcount == 1
 
@@ -199,7 +199,7 @@ def jobs_of(connection: Connection, asset: str, record_id: str) -> list[Job]:
 
 
 def any_queued(connection: Connection, kind: str, *, gone: bool = False) -> bool:
-    """Tell whether work of a kind waits, or with ``gone`` that of archived assets; one look at the index."""
+    """Tell whether work of a kind waits, or only of archived assets; it costs the same whatever is done."""
     urgency = work.c.priority == GONE if gone else work.c.priority > GONE
     query = select(work.c.id).where(work.c.state == "queued", urgency, work.c.kind == kind).limit(1)
     return connection.scalar(query) is not None
@@ -212,7 +212,7 @@ def queue_sizes(connection: Connection) -> dict[str, int]:
 
 
 def oldest_queued(connection: Connection) -> datetime | None:
-    """Return when the record that has waited longest was queued, leaving out archived assets."""
+    """Return since when the oldest record to be observed has been waiting, those of archived assets apart."""
     waiting = (work.c.state == "queued", work.c.kind == OBSERVE, work.c.priority > GONE)
     found: datetime | None = connection.scalar(
         select(func.min(work.c.created_utc, type_=work.c.created_utc.type)).where(*waiting)
@@ -221,24 +221,24 @@ def oldest_queued(connection: Connection) -> datetime | None:
 
 
 def join(connection: Connection, server: str, about: dict[str, Any], now: datetime) -> None:
-    """Add a server to the list of those that may hold leases."""
+    """Enter a server into the list of those who may hold leases."""
     connection.execute(insert(servers).values(id=server, beat=0, started_utc=now, about=about))
 
 
 def beat(connection: Connection, server: str) -> bool:
-    """Count a server's beat up; return False if it was taken for dead meanwhile."""
+    """Count a server's beat up; False if it was declared dead meanwhile."""
     counted = update(servers).where(servers.c.id == server).values(beat=servers.c.beat + 1)
     return connection.execute(counted).rowcount == 1
 
 
 def beats(connection: Connection) -> dict[str, tuple[int, dict[str, Any]]]:
-    """Return the beat and the description of every server."""
+    """Return the beat of every server, and what it says of itself."""
     rows = connection.execute(select(servers.c.id, servers.c.beat, servers.c.about))
     return {server: (count, about) for server, count, about in rows}
 
 
 def bury(connection: Connection, server: str, at_beat: int | None = None) -> Sequence[int]:
-    """Remove a dead server and queue its work again, unless it has beaten since; return the jobs."""
+    """Take a dead server off the list and its leases back; nothing happens if it beat again meanwhile."""
     where = [servers.c.id == server]
     if at_beat is not None:
         where.append(servers.c.beat == at_beat)
@@ -250,10 +250,10 @@ def bury(connection: Connection, server: str, at_beat: int | None = None) -> Seq
 
 
 def take_back_orphans(connection: Connection, me: str, mine: Collection[int]) -> int:
-    """Queue leased work again on which no server works; return how many jobs.
+    """Queue leases that nobody is at.
 
-    Its server is not on the list, as after the restore of a backup; or it is this server, which does not know
-    of the lease, as after the database went away while it was taken.
+    Those whose server is not on the list, as after the restore of a backup, and our own that we do not know
+    of, as after the database went away when we had them.
     """
     alive = select(servers.c.id)
     forgotten = (work.c.owner == me) & work.c.id.not_in(mine)

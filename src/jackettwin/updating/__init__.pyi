@@ -24,6 +24,7 @@ from .law_choice import (
 from .model import SupportModel as SupportModel
 from .nuisance_parameters import (
     DASHPOTS as DASHPOTS,
+    NuisanceParameter as NuisanceParameter,
     NuisanceParameters as NuisanceParameters,
     matrix_of as matrix_of,
 )

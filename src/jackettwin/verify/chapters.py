@@ -10,7 +10,8 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.decks import read_structure
 from jackettwin.response import build_system, poles, sdof, undamped_modes
-from jackettwin.soil import clamped, kelvin_voigt, loss_factor, maxwell, read_foundation, zener
+from jackettwin.soil import clamped, read_foundation
+from jackettwin.soil.laws.viscoelastic import kelvin_voigt, loss_factor, maxwell, zener
 from jackettwin.structure import (
     STEEL,
     Assembly,

@@ -123,11 +123,11 @@ def test_one_of_two_copies_is_used(tower, rng):
 def test_a_pair_half_left_out_is_hinted_at(tower, rng):
     from jackettwin.identification.selection.candidates import Candidate
     from jackettwin.identification.selection.choice import _hidden, _sorted
-    from jackettwin.identification.selection.clustering import PoleCluster
+    from jackettwin.identification.selection.clustering import Cluster
 
     settings = IdentificationSettings(refine=False)
     result = identify(simulate(tower, rng, sample_rate_hz=5.0), settings)
-    cluster = PoleCluster(np.arange(3), np.arange(3), 0, 0.4, 1.3)
+    cluster = Cluster(np.arange(3), np.arange(3), 0, 0.4, 1.3)
     judged = [Candidate(cluster, mode, "in 40% of the model orders", None) for mode in result.modes]
     whole = _sorted(judged, dict(enumerate(result.modes)), (), result.settings, settings, ())
     assert _hidden(judged, whole) == []

@@ -166,7 +166,7 @@ def transient(record: Record, settings: IdentificationSettings, *, knocks: bool 
             for mode in modes
             if mode not in inside
         ),
-        stabilisation=Stabilisation.empty(len(usable.channels)),
+        stabilisation=_no_poles(len(usable.channels)),
         spectrum=as_measured(welch(level.data, rate), times),
         settings=ResolvedSettings(
             low or 0.5 * float(f.min()), min(high, 0.4 * rate), rate, 0, (), (part.last - part.first) / rate
@@ -316,3 +316,10 @@ def _halves(decay: _Decay, y: FloatArray, rate: float) -> tuple[DampedCosines, D
         for a, b in ((part.first, middle), (middle, part.first + length))
     )
     return (early, late) if min(early.explained, late.explained) > EXPLAINED_HALVES else None
+
+
+def _no_poles(n_channels: int) -> Stabilisation:
+    none, no = np.empty(0), np.empty(0, dtype=bool)
+    whole = np.empty(0, dtype=np.int64)
+    shapes = np.empty((0, n_channels), dtype=complex)
+    return Stabilisation(whole, none, none, shapes, no, no, no, whole)

@@ -17,7 +17,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
 from jackettwin.identification.mode_shapes import aligned, mac, mpc, mpd_rad, normalised
-from jackettwin.identification.preparation.prepare import prepare
+from jackettwin.identification.preparation.prepared import prepare
 from jackettwin.identification.preparation.spectra import CLEAR_PEAK, running_median, welch
 from jackettwin.identification.preparation.whitening import as_measured
 from jackettwin.identification.settings import IdentificationSettings
@@ -60,7 +60,7 @@ def fdd(record: Record, settings: IdentificationSettings | None = None) -> Ident
         channels=ready.channels,
         modes=tuple(mode for mode in modes if mode is not None),
         rejected=(),
-        stabilisation=Stabilisation.empty(len(scale)),
+        stabilisation=_no_poles(len(scale)),
         spectrum=as_measured(welch(y * scale[:, None], rate), ready.differentiated),
         settings=resolved,
         duration_s=record.duration_s,
@@ -113,3 +113,10 @@ def _mode(
         order_share=1.0,
         method="efdd",
     )
+
+
+def _no_poles(n_channels: int) -> Stabilisation:
+    none, no = np.empty(0), np.empty(0, dtype=bool)
+    whole = np.empty(0, dtype=np.int64)
+    shapes = np.empty((0, n_channels), dtype=complex)
+    return Stabilisation(whole, none, none, shapes, no, no, no, whole)

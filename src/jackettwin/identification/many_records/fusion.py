@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable, Sequence
 
     from jackettwin.identification.estimate import Identification
-    from jackettwin.identification.many_records.mode_series import Sightings
+    from jackettwin.identification.many_records.sightings import Sightings
     from jackettwin.records import Channel
 
 

@@ -17,8 +17,8 @@ import scipy  # scipy.optimize is loaded where it is used
 
 from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 from jackettwin.errors import InputError
-from jackettwin.identification.many_records.mode_series import Sightings, log_covariance
 from jackettwin.identification.many_records.setups import ShapeSum, joined_channels, tied
+from jackettwin.identification.many_records.sightings import Sightings, log_covariance
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable, Sequence

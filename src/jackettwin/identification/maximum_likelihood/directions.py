@@ -19,7 +19,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from jackettwin.identification.maximum_likelihood.estimates import BandEstimates
+    from jackettwin.identification.maximum_likelihood.refined import Refined
 
 
 BESIDE_THE_MODES = 3
@@ -65,7 +65,7 @@ def projected(y: FloatArray, basis: FloatArray) -> FloatArray:
     return np.asarray(np.where(whole, basis.T @ np.where(whole, y, 0.0), np.nan))
 
 
-def at_channels(fit: BandEstimates, basis: FloatArray) -> BandEstimates:
+def at_channels(fit: Refined, basis: FloatArray) -> Refined:
     """Return a fit along directions with the shapes of all channels.
 
     What the shape does outside the span is as uncertain as its best known direction.

@@ -17,9 +17,9 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.errors import NumericalError
 from jackettwin.findings import Finding
-from jackettwin.identification.maximum_likelihood.estimates import BandEstimates
 from jackettwin.identification.maximum_likelihood.local_refinement import DITHER_SHARES, groups, refine_group
 from jackettwin.identification.maximum_likelihood.mode_drift import strayed
+from jackettwin.identification.maximum_likelihood.refined import Refined
 from jackettwin.identification.maximum_likelihood.refinement import refine
 
 if TYPE_CHECKING:
@@ -82,19 +82,19 @@ class AcceptedFit:
     Attributes
     ----------
     candidates : (n_candidates,) bool
-    modes : BandEstimates
+    modes : Refined
         Only those that are still the modes they started from.
     """
 
     candidates: BoolArray
-    modes: BandEstimates
+    modes: Refined
 
 
 @dataclass(frozen=True)
 class _Tried:
     """A fit, None if it is not to be used and why; which candidates strayed in it, (n_candidates,)."""
 
-    fit: BandEstimates | None
+    fit: Refined | None
     strayed: BoolArray
     obstacle: str = ""
     converged: bool = False
@@ -170,7 +170,7 @@ def _given(start: FitStart) -> dict[str, Any]:
     return {key: getattr(start, key) for key in GIVEN}
 
 
-def _tried(fit: Callable[[], BandEstimates], most: float, start: FitStart, duration_s: float) -> _Tried:
+def _tried(fit: Callable[[], Refined], most: float, start: FitStart, duration_s: float) -> _Tried:
     none = np.zeros(len(start.sure), dtype=bool)
     try:
         # what overflows is found by its result
@@ -204,7 +204,7 @@ def _tried(fit: Callable[[], BandEstimates], most: float, start: FitStart, durat
     return _Tried(refined, none, converged=True)
 
 
-def _finite(refined: BandEstimates) -> bool:
+def _finite(refined: Refined) -> bool:
     """Tell whether a fit is of numbers, variances above zero among them."""
     numbers = (getattr(refined, name) for name in OF_EACH_MODE)
     variances = np.diagonal(refined.covariance, axis1=1, axis2=2)

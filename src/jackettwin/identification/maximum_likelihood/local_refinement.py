@@ -16,7 +16,7 @@ import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.identification.maximum_likelihood.directions import at_channels, directions, projected
-from jackettwin.identification.maximum_likelihood.estimates import BandEstimates
+from jackettwin.identification.maximum_likelihood.refined import Refined
 from jackettwin.identification.maximum_likelihood.refinement import Narrow, refine
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def refine_group(
     avoid_hz: Sequence[tuple[float, float]] = (),
     dither_share: float = DITHER_SHARES[0],
     most_lack_of_fit: float = np.inf,
-) -> BandEstimates:
+) -> Refined:
     """Fit one group; parameters as of ``refine``, candidates counted as there.
 
     Of many channels only the directions that move in the band are fitted (``directions.py``). What the lack

@@ -15,7 +15,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray
 
 if TYPE_CHECKING:
-    from jackettwin.identification.maximum_likelihood.estimates import BandEstimates
+    from jackettwin.identification.maximum_likelihood.refined import Refined
 
 
 HALF_BANDWIDTHS = 3.0
@@ -48,7 +48,7 @@ def has_left(
 
 
 def strayed(
-    refined: BandEstimates,
+    refined: Refined,
     *,
     frequency_hz: FloatArray,
     damping_ratio: FloatArray,

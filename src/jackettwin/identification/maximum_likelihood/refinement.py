@@ -24,8 +24,8 @@ from jackettwin.identification.maximum_likelihood.admission import (
     thinned,
 )
 from jackettwin.identification.maximum_likelihood.background import with_background
-from jackettwin.identification.maximum_likelihood.estimates import BandEstimates
 from jackettwin.identification.maximum_likelihood.periodogram import periodogram
+from jackettwin.identification.maximum_likelihood.refined import Refined
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -90,7 +90,7 @@ def refine(
     background: bool = False,
     narrow: Narrow | None = None,
     most_lack_of_fit: float = np.inf,
-) -> BandEstimates:
+) -> Refined:
     """Fit the sure candidates together, admit the doubtful ones that are needed.
 
     Parameters
@@ -190,7 +190,7 @@ def _result(
     chosen: Int64Array,
     gain: FloatArray,
     known: accuracy.Accuracy,
-) -> BandEstimates:
+) -> Refined:
     p = climb.parameters
     n, n_channels = p.shapes.shape
     covariance = known.covariance
@@ -206,7 +206,7 @@ def _result(
         most = MOST_BIAS * np.sqrt(np.diagonal(log_covariance, axis1=1, axis2=2))
         bias = np.clip(accuracy.curvature_bias(data, p, known)[both], -most, most)
     wider = np.stack([np.ones(len(mode)), np.sqrt(1.0 + excess)], axis=1)
-    return BandEstimates(
+    return Refined(
         candidate=chosen[mode - p.held],
         frequency_hz=np.exp(p.log_f[mode] - bias[:, 0]),
         damping_ratio=np.exp(p.log_zeta[mode] - bias[:, 1]) / (1.0 + 0.5 * excess),
@@ -220,9 +220,9 @@ def _result(
     )
 
 
-def _given_up(gain: FloatArray, n_channels: int, lack_of_fit: float) -> BandEstimates:
+def _given_up(gain: FloatArray, n_channels: int, lack_of_fit: float) -> Refined:
     """Return a fit of no mode."""
-    return BandEstimates(
+    return Refined(
         candidate=np.zeros(0, dtype=np.int64),
         frequency_hz=np.zeros(0),
         damping_ratio=np.zeros(0),

@@ -24,7 +24,7 @@ from jackettwin.records import Channel
 
 if TYPE_CHECKING:
     from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
-    from jackettwin.identification.preparation.prepare import Prepared
+    from jackettwin.identification.preparation.prepared import Prepared
     from jackettwin.identification.settings import IdentificationSettings
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from jackettwin.identification.estimate import Stabilisation
-    from jackettwin.identification.selection.clustering import PoleCluster
+    from jackettwin.identification.selection.clustering import Cluster
     from jackettwin.identification.settings import IdentificationSettings
     from jackettwin.identification.tones.phase_track import PhaseTrack
 
@@ -76,7 +76,7 @@ class Candidate:
         Why it may not be one, unless the spectrum needs it.
     """
 
-    cluster: PoleCluster
+    cluster: Cluster
     mode: ModalEstimate
     objection: str | None
     doubt: str | None
@@ -96,7 +96,7 @@ class Candidate:
 
 def candidates(
     poles: Stabilisation,
-    found: list[PoleCluster],
+    found: list[Cluster],
     tones: Iterable[int],
     settings: IdentificationSettings,
     *,
@@ -124,7 +124,7 @@ def candidates(
 
 def find_tones(
     poles: Stabilisation,
-    found: list[PoleCluster],
+    found: list[Cluster],
     y: FloatArray,
     scale: FloatArray,
     sample_rate_hz: float,
@@ -217,7 +217,7 @@ def with_covariance(mode: ModalEstimate, covariance: FloatArray) -> ModalEstimat
     )
 
 
-def _mode(poles: Stabilisation, cluster: PoleCluster, duration_s: float) -> ModalEstimate:
+def _mode(poles: Stabilisation, cluster: Cluster, duration_s: float) -> ModalEstimate:
     """Return the representative pole; its uncertainty and the scatter over the model orders together.
 
     Never below the long-data limits: blocks shorter than the memory of a mode underestimate its scatter.
@@ -245,7 +245,7 @@ def _mode(poles: Stabilisation, cluster: PoleCluster, duration_s: float) -> Moda
 
 
 def _objection(
-    cluster: PoleCluster, mode: ModalEstimate, settings: IdentificationSettings, fewest: int
+    cluster: Cluster, mode: ModalEstimate, settings: IdentificationSettings, fewest: int
 ) -> str | None:
     """Return why a cluster is not a mode, or None."""
     if len(cluster.poles) < fewest:
@@ -262,7 +262,7 @@ def _objection(
     return None
 
 
-def _doubt(cluster: PoleCluster, mode: ModalEstimate, settings: IdentificationSettings) -> str | None:
+def _doubt(cluster: Cluster, mode: ModalEstimate, settings: IdentificationSettings) -> str | None:
     """Return why a cluster is doubtful: its damping is hardly known, or far worse than the record allows."""
     if cluster.damping_cov > settings.max_damping_cov:
         return (

@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from jackettwin.identification.estimate import ModalEstimate, ResolvedSettings
-    from jackettwin.identification.maximum_likelihood.estimates import BandEstimates
-    from jackettwin.identification.preparation.prepare import Prepared
+    from jackettwin.identification.maximum_likelihood.refined import Refined
+    from jackettwin.identification.preparation.prepared import Prepared
     from jackettwin.identification.selection.candidates import Candidate, Tones
     from jackettwin.identification.selection.screening import Evidence
     from jackettwin.identification.settings import IdentificationSettings
@@ -212,11 +212,7 @@ def _taken_hz(tone_hz: float, duration_s: float) -> tuple[float, float]:
 
 
 def _numbers(
-    judged: Sequence[Candidate],
-    open_to: list[int],
-    refined: BandEstimates,
-    scale: FloatArray,
-    duration_s: float,
+    judged: Sequence[Candidate], open_to: list[int], refined: Refined, scale: FloatArray, duration_s: float
 ) -> dict[int, ModalEstimate]:
     """Return the refined modes by candidate."""
     out = {}

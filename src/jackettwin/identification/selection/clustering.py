@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class PoleCluster:
+class Cluster:
     """Poles of one mode, at most one from each model order."""
 
     poles: Int64Array
@@ -35,7 +35,7 @@ class PoleCluster:
 
 def clusters(
     poles: Stabilisation, *, distance: float, orders: Sequence[int], scale: FloatArray
-) -> list[PoleCluster]:
+) -> list[Cluster]:
     r"""Group poles by average-linkage clustering, frequency ascending.
 
     .. math:: d_{ij} = \frac{|\lambda_i-\lambda_j|}{\max(|\lambda_i|,|\lambda_j|)} + 1 - \mathrm{MAC}_{ij}
@@ -67,7 +67,7 @@ def _distances(poles: Stabilisation, scale: FloatArray) -> FloatArray:
     return np.asarray(np.abs(lam[:, None] - lam) / size + 1.0 - mac(shapes, shapes))
 
 
-def _cluster(poles: Stabilisation, members: Int64Array, orders: Sequence[int]) -> PoleCluster:
+def _cluster(poles: Stabilisation, members: Int64Array, orders: Sequence[int]) -> Cluster:
     kept = _one_an_order(poles, members)
     core = kept
     own = np.zeros(len(poles.order))
@@ -76,7 +76,7 @@ def _cluster(poles: Stabilisation, members: Int64Array, orders: Sequence[int]) -
         core = kept[np.argsort(own[kept], kind="stable")[: (len(kept) + 1) // 2]]
     representative = int(core[np.argmin(_away(poles, core))])
     scatter = float(np.var(np.log(poles.damping_ratio[core])))
-    return PoleCluster(
+    return Cluster(
         poles=kept,
         representative=representative,
         core=core,

@@ -30,12 +30,7 @@ from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.selection.neighbours import apart, of_neighbours, told_twice
 from jackettwin.identification.selection.one_sensor import FEWEST_PEERS, of_one_sensor
 from jackettwin.identification.selection.peaks import clear_peaks_hz, contrast, share_of_one_part
-from jackettwin.identification.selection.shorter_window import (
-    SAME_SHAPE,
-    ShorterWindowPoles,
-    seen_again,
-    shorter_window_poles,
-)
+from jackettwin.identification.selection.second_look import SAME_SHAPE, SecondLook, second_look, seen_again
 from jackettwin.identification.status import ModeStatus
 from jackettwin.records.clocks.another_time import may_be_compared
 
@@ -43,8 +38,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from jackettwin.identification.estimate import ModalEstimate
-    from jackettwin.identification.preparation.prepare import Prepared
-    from jackettwin.identification.selection.shorter_window import HigherBand
+    from jackettwin.identification.preparation.prepared import Prepared
+    from jackettwin.identification.selection.second_look import QuietBand
 
 Verdict = tuple[ModeStatus, Finding]
 
@@ -116,7 +111,7 @@ class Evidence:
 
     Attributes
     ----------
-    looks : tuple of ShorterWindowPoles
+    looks : tuple of SecondLook
         At all frequencies, and at those of each further band.
     lines : (n_channels, n_lines)
     scale : (n_channels,)
@@ -134,7 +129,7 @@ class Evidence:
         Whether channels are sensors: a mode may well move one component of many alone.
     """
 
-    looks: tuple[ShorterWindowPoles, ...]
+    looks: tuple[SecondLook, ...]
     lines: ComplexArray
     scale: FloatArray
     duration_s: float
@@ -160,7 +155,7 @@ def evidence(
     ready: Prepared,
     conditions: Mapping[str, Any],
     *,
-    bands: Sequence[HigherBand] = (),
+    bands: Sequence[QuietBand] = (),
     sensors: bool = True,
 ) -> Evidence:
     """Gather what modes are judged by.
@@ -171,7 +166,7 @@ def evidence(
         Without tones, divided by the channels' scale; NaN marks a missing sample.
     conditions : mapping
         Of the record; ``wave_period_s`` or another of ``PERIODS`` is the peak period of the sea [s].
-    bands : sequence of HigherBand
+    bands : sequence of QuietBand
         Where modes were sought once more.
     sensors : bool
         Whether the channels are sensors, not what dozens of them say together.
@@ -179,8 +174,8 @@ def evidence(
     periods = [conditions[key] for key in PERIODS if isinstance(conditions.get(key), int | float)]
     return Evidence(
         looks=(
-            shorter_window_poles(y, ready),
-            *(shorter_window_poles(band.ready.y, band.ready, band.taken_hz) for band in bands),
+            second_look(y, ready),
+            *(second_look(band.ready.y, band.ready, band.taken_hz) for band in bands),
         ),
         lines=np.asarray(np.fft.rfft(np.nan_to_num(y), axis=1)),
         scale=ready.scale,

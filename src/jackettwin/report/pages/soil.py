@@ -126,6 +126,12 @@ def _curves(curves: Mapping[str, Any]) -> tuple[Block, ...]:
         for one in stations
     )
     return (
+        Table(
+            "Which curves are they?",
+            ("reaction", "kind", "what it is"),
+            tuple((one["reaction"].replace("_", ", "), one["name"], one["words"]) for one in curves["kinds"]),
+            text_columns=3,
+        ),
         Plot(
             "py",
             "What does the ground bear sideways? p-y curves at some depths.",

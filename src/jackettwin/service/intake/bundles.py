@@ -1,4 +1,4 @@
-"""A twin file and the files that it names, packed into one bundle and unpacked for workers."""
+"""A twin file and every file it names, gathered into one bundle, and laid out again."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _LARGEST = 50 * 2**20
 """Bytes of one file; structures, soil profiles and rotors are text of kilobytes."""
 _WORD = re.compile(r"""["']([^"'\n]{1,200})["']|([A-Za-z0-9_./\\-]{1,200}\.[A-Za-z0-9]{1,8})""")
-"""Text that may be the name of a file: quoted, or with an ending."""
+"""What may be a file's name inside another text file: quoted, or with an ending."""
 
 
 def bundle(twin: Path) -> dict[str, bytes]:
@@ -60,7 +60,7 @@ def bundle(twin: Path) -> dict[str, bytes]:
 
 
 def twin_folder(connection: Connection, service: Place, asset: str, version: int | None = None) -> Path:
-    """Return the folder with the files of a version, by default the adopted one; unpack them if needed."""
+    """Return the folder in which the files of a version stand, by default of the adopted one."""
     found = assets.found_version(connection, asset, version)
     place = service.settings.models / found.bundle_hash
     if not place.is_dir():
@@ -69,7 +69,7 @@ def twin_folder(connection: Connection, service: Place, asset: str, version: int
 
 
 def adopted_twin(connection: Connection, service: Place, asset: str) -> workers.engine.Twin:
-    """Return the twin of the adopted version."""
+    """Return the twin whose answers count."""
     return workers.engine.load_twin(twin_folder(connection, service, asset))
 
 

@@ -1,4 +1,4 @@
-"""Restricts which files are opened while a twin is read, since its files name other files."""
+"""Files of strangers name other files: they may read those that came with them, and none of ours."""
 
 from __future__ import annotations
 
@@ -13,25 +13,27 @@ from typing import Any
 
 import jackettwin
 from jackettwin.errors import InputError
+from jackettwin.plugins import load_all
 
 _folder: ContextVar[Path | None] = ContextVar("folder", default=None)
 _SOFTWARE = tuple(
     Path(place).resolve()
     for place in (sys.prefix, sys.base_prefix, str(Path(jackettwin.__file__).parent), *zoneinfo.TZPATH)
 )
-"""Folders of software, its data, and time zones, which anybody may read."""
+"""Where modules are loaded from, what is shipped with them, and time zones: nobody's secrets."""
 _KNOWN_OF_MODULES = (".dist-info", ".egg-info")
 
 
 @contextmanager
 def only_files_in(folder: Path) -> Iterator[None]:
-    """Refuse to open any file outside a folder while the block runs, whichever reader asks.
+    """Refuse every file outside a folder that Python is asked to open in the block, whatever reader asks.
 
     Raises
     ------
     InputError
-        Inside the block, whether the file exists or not.
+        In the block, whether there is such a file or not.
     """
+    load_all()
     token = _folder.set(folder.resolve())
     try:
         yield

@@ -1,4 +1,4 @@
-"""Files to records: read by a worker, stored by content, queued for the adopted and later versions."""
+"""Files to records of the store: read by a worker, kept by content, queued for every version that lives."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ if TYPE_CHECKING:
 Reader = Callable[[File], tuple[Parsed, ...]]
 """What reads a file: a worker, or this process."""
 AHEAD = timedelta(days=7)
-"""How far ahead of our clock a record may begin: our clock may be wrong too, but not by years."""
+"""How far ahead of our clock a record may begin: ours may be wrong, too, but not by years."""
 LIVE = 10
-"""Priority of new records; records to be observed again wait behind them."""
+"""Priority of records as they arrive; what is observed anew waits behind them."""
 _SUFFIXES = 60
-"""Characters kept at the end of a client's file name, whose ending names the format."""
+"""Longest file name that is kept of a client's: enough for its ending, which names the format."""
 
 
 @dataclass(frozen=True)
 class Accepted:
-    """The record of a file, or the last of several, its job, and whether any of them was new."""
+    """What became of a file: its record, or the last of several, the work on it, and whether any was new."""
 
     record_id: str
     job_id: int | None
@@ -75,9 +75,9 @@ def discard(path: Path) -> None:
 def parse_here(service: Service) -> Reader:
     """Return the reader that uses the server's workers.
 
-    A file that takes too long is given up. If the worker dies, which may have another cause, the file is read
-    again, as often as a record is tried. If there is no worker or no disk space, ``NoWorker`` or ``OSError``
-    is raised, and the file can be sent again.
+    One that takes too long is ended. A worker that dies may have been killed: the file is read again, as
+    often as a record is tried. That there is no worker, or no room on the disk, is not the file's fault: that
+    is raised (``NoWorker``, ``OSError``), and the file can be sent again.
     """
 
     def parse(file: File) -> tuple[Parsed, ...]:
@@ -91,7 +91,7 @@ def parse_here(service: Service) -> Reader:
             except TimeoutError:
                 problem = {"detail": "the file could not be read in time", "field": "file"}
                 return (Parsed("", problem=problem),)
-            except Exception as error:  # whatever the reader raises is a problem of the file
+            except Exception as error:  # whatever a reader dies of is the file's fault, not the server's
                 if isinstance(error, OSError) and error.errno in DISK_FULL:
                     raise
                 name = type(error).__name__
@@ -107,18 +107,22 @@ def parse_here(service: Service) -> Reader:
 def accept(
     service_now: datetime, connection: Connection, asset: str, parsed: Parsed, source_name: str
 ) -> Accepted:
-    """Store a record and queue it; the same content a second time changes nothing."""
+    """Keep a record that was read, and queue it; the same content again changes nothing."""
     adopted = assets.found_version(connection, asset)
-    about = {**parsed.about, "start_utc": datetime.fromisoformat(parsed.about["start_utc"])}
+    about = parsed.about
     record = records.StoredRecord(
         asset=asset,
         record_id=parsed.record_id,
         status="received",
+        start_utc=datetime.fromisoformat(about["start_utc"]),
+        duration_s=about["duration_s"],
+        sample_rate_hz=about["sample_rate_hz"],
+        channels=about["channels"],
+        conditions=about["conditions"],
         source_name=source_name,
         received_utc=service_now,
         waveform=parsed.waveform,
         size_bytes=parsed.size_bytes,
-        **about,
     )
     new = records.add_record(connection, record)
     number = None
@@ -134,12 +138,15 @@ def accept(
 
 
 def living(connection: Connection, asset: str, adopted: assets.Version) -> list[assets.Version]:
-    """Return the versions that observe new records: the adopted one, and later ones not yet adopted."""
+    """Return the versions that observe new records.
+
+    The adopted one and those after it, which wait for a person.
+    """
     return [v for v in assets.all_versions(connection, asset) if v.version >= adopted.version]
 
 
 def take_file(place: Place, parse: Reader, asset: str, path: Path, source_name: str) -> Accepted:
-    """Read a file and store its record, or all records that a long file is cut into."""
+    """Read a file and keep its record, or those that a long one is cut into: all or none."""
     settings = place.settings
     with reading(place.database) as connection:
         unsaid = adopted_twin(connection, place, asset).config.unsaid

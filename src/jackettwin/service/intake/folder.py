@@ -1,4 +1,4 @@
-"""Watched folders: a file is taken once it is completely written."""
+"""Files that appear in folders: taken once they stand still, whatever else is written beside them."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from jackettwin.service.intake.files import Accepted
 log = logging.getLogger(__name__)
 
 STILL_S = 2.0
-"""A file is complete if its size has not changed for so long."""
+"""A file whose size did not change for so long is written."""
 _LATER_S = 10.0
-"""Time after which a file that could not be taken is tried again; there may be thousands."""
+"""After which a file is tried again that could not be taken now: it may be one of thousands."""
 _IGNORED = (".json", ".tmp", ".part", ".swp", ".crdownload")
-"""Descriptions are read with their record; the other files are not finished."""
+"""Descriptions come with their record; the others are not finished."""
 
 
 def record_files(paths: Iterable[Path]) -> list[Path]:
@@ -33,10 +33,10 @@ def record_files(paths: Iterable[Path]) -> list[Path]:
 def watch_folders(
     paths: Iterable[Path], take: Callable[[Path], Accepted | None], stop: Callable[[], bool] = lambda: False
 ) -> None:
-    """Take the files in folders and those that appear, until told to stop; retry those that give None.
+    """Take what stands in folders and what appears, until told to stop; what ``take`` returns None of, later.
 
-    ``watchfiles`` only says that something has changed. The folders are then listed, so that no file is
-    missed if one of its events is lost.
+    ``watchfiles`` says that something happened; what is there is looked at each time, so that no event is
+    needed twice and none can be lost.
     """
     folders = list(paths)
     seen: dict[Path, tuple[int, int]] = {}

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 SILENT_S = 120.0
-"""A stream is silent if nothing has come for so long, by our stopwatch."""
+"""A stream of which nothing came for so long, by our stopwatch, is silent."""
 _BATCH = 500
 _REMEMBERED = 1000
 
@@ -32,8 +32,8 @@ _REMEMBERED = 1000
 class MqttIntake:
     """A subscription that survives reconnects.
 
-    The broker keeps the session, and messages are acknowledged by hand after the commit: the broker sends
-    again what was on its way when this process died, and a packet that arrives twice is stored once.
+    The client keeps its session at the broker, and acknowledges by hand after the commit: what was on its way
+    when we died is sent again, and a packet that comes twice is one packet.
     """
 
     def __init__(self, service: Service, url: str) -> None:
@@ -78,7 +78,7 @@ class MqttIntake:
         self._client.loop_start()
 
     def stop(self) -> None:
-        """Disconnect; the broker keeps messages until we return."""
+        """Disconnect; the broker keeps what comes meanwhile."""
         self._client.disconnect()
         self._client.loop_stop()
 
@@ -106,7 +106,7 @@ class MqttIntake:
             client.subscribe(f"{TOPIC}/#", qos=1)
 
     def _packets(self, message: mqtt.MQTTMessage) -> list[Packet]:
-        """Return the packets of a message, none if it is not understood."""
+        """Return the packets of a message, none of one that is no message of ours."""
         try:
             return read_packets(message.topic, message.payload)
         except InputError as error:
@@ -115,15 +115,15 @@ class MqttIntake:
             return []
 
     def _leave_out(self, packets: list[Packet], why: str) -> None:
-        """Count packets that are left out, and log the reason once for each asset."""
+        """Count packets that are not kept; why is said once of each asset."""
         self.refused += len(packets)
         for said in {(packet.asset, why) for packet in packets} - self._said:
             log.warning("packets of %s are left out: %s", *said)
-            if len(self._said) < _REMEMBERED:  # strangers choose the names
+            if len(self._said) < _REMEMBERED:  # names are strangers' to choose
                 self._said.add(said)
 
     def silent(self, asset: str) -> bool:
-        """Tell whether nothing has come of an asset for so long that its stream has ended."""
+        """Tell whether nothing came of an asset for so long that its stream has ended."""
         return time.monotonic() - self._heard.setdefault(asset, time.monotonic()) > SILENT_S
 
 

@@ -1,4 +1,4 @@
-"""Answers of the API made of what the store knows."""
+"""What the store knows, in the words of the API."""
 
 from __future__ import annotations
 
@@ -55,22 +55,27 @@ def modes(
     limit: int,
 ) -> Page[ModeOut]:
     """Return a page of modes through time."""
-    key, after = (version.asset, version.model_hash), _row(cursor)
-    rows = results.list_modes(
-        connection, *key, label=label, since=since, until=until, after=after, limit=limit + 1
-    )
+    chosen: dict[str, Any] = {
+        "label": label,
+        "since": since,
+        "until": until,
+        "after": _row(cursor),
+        "limit": limit + 1,
+    }
+    rows = results.list_modes(connection, version.asset, version.model_hash, **chosen)
     return _page(rows, limit, _mode_out)
 
 
 def _page(rows: list[Mapping[str, Any]], limit: int, made: Callable[[Mapping[str, Any]], T]) -> Page[T]:
-    """Return a page of rows; a row beyond the limit shows that there is a next page."""
+    """Return a page of rows, one of which, if there are more, is of the next page."""
     more = write_cursor(rows[limit - 1]["id"]) if len(rows) > limit else None
     return Page(items=[made(row) for row in rows[:limit]], next_cursor=more)
 
 
 def _mode_out(row: Mapping[str, Any]) -> ModeOut:
     low, high = row["damping_ratio_low_95"], row["damping_ratio_high_95"]
-    return ModeOut(**row, damping_ratio_interval_95=None if low is None or high is None else (low, high))
+    known = {name: row[name] for name in ModeOut.model_fields if name in row}
+    return ModeOut(**known, damping_ratio_interval_95=None if low is None or high is None else (low, high))
 
 
 def findings(
@@ -78,14 +83,14 @@ def findings(
 ) -> Page[FindingOut]:
     """Return a page of findings, newest first."""
     rows = _findings(connection, version, severity, cursor, limit)
-    return _page(rows, limit, lambda row: FindingOut(**row))
+    return _page(rows, limit, lambda row: FindingOut(**{k: row[k] for k in FindingOut.model_fields}))
 
 
 def _findings(
     connection: Connection, version: assets.Version, severity: str | None, cursor: str | None, limit: int
 ) -> list[Mapping[str, Any]]:
-    key, before = (version.asset, version.model_hash), _row(cursor)
-    return results.list_findings(connection, *key, severity=severity, before=before, limit=limit + 1)
+    chosen: dict[str, Any] = {"severity": severity, "before": _row(cursor), "limit": limit + 1}
+    return results.list_findings(connection, version.asset, version.model_hash, **chosen)
 
 
 def alarms(connection: Connection, version: assets.Version, cursor: str | None, limit: int) -> Page[AlarmOut]:
@@ -98,8 +103,13 @@ def alarms(connection: Connection, version: assets.Version, cursor: str | None, 
 def alarm_out(row: Mapping[str, Any], notes: Mapping[str, Mapping[str, Any]]) -> AlarmOut:
     """Return an alarm as the API speaks of it."""
     note = notes.get(results.alarm_key(row), {})
-    who, when, comment = (note.get(key) for key in ("by", "time_utc", "comment"))
-    return AlarmOut(**row, acknowledged_by=who, acknowledged_utc=when, comment=comment)
+    known = {name: row[name] for name in FindingOut.model_fields}
+    return AlarmOut(
+        **known,
+        acknowledged_by=note.get("by"),
+        acknowledged_utc=note.get("time_utc"),
+        comment=note.get("comment"),
+    )
 
 
 def twin(
@@ -108,18 +118,25 @@ def twin(
     """Return what the twin knows at a time, from the states of its days."""
     last = None if at is None else f"{at.astimezone(UTC):%Y-%m-%d}"
     model = workers.engine.load_twin(twin_folder(connection, service, version.asset, version.version)).model
-    told = service.days.up_to(connection, version, model, last)
+    told = service.days.told(connection, version, model, last)
     known = workers.engine.knowledge(model, told.sums)
     if at is None:
         known["parameters"] = results.find_supports(connection, version.asset, version.version)
-    days: dict[str, Any] = {"state_hash": told.state_hash, "days": told.days}
-    return TwinOut(**vars(version), **days, code_version=__version__, **known)
+    return TwinOut(
+        asset=version.asset,
+        version=version.version,
+        model_hash=version.model_hash,
+        code_version=__version__,
+        state_hash=told.state_hash,
+        days=told.days,
+        **known,
+    )
 
 
 def compared(
     connection: Connection, service: Service, adopted: assets.Version, other: assets.Version
 ) -> ComparisonOut:
-    """Return what the adopted version and another one know of the same records, and what differs."""
+    """Return what the adopted version knows beside another one, of the same records, and what differs."""
     mine, theirs = twin(connection, service, adopted), twin(connection, service, other)
     changes = []
     for name, std, unit in (
@@ -141,7 +158,7 @@ def compared(
 
 
 def _logarithms(parameters: Mapping[str, Any]) -> dict[str, tuple[float, float | None]]:
-    """Return the logarithm of every parameter's median, and its standard deviation by the 90 % interval."""
+    """Return the logarithm of every parameter's median with its standard deviation, of its 90 % interval."""
     from jackettwin.intervals import NORMAL_90
 
     found = {}
@@ -158,18 +175,18 @@ def _change(
     before: tuple[float, float | None] | None,
     after: tuple[float, float | None] | None,
 ) -> ChangeOut:
-    """Return a quantity of two versions and their difference in standard deviations of the adopted one."""
+    """Return a quantity of two versions, and how far they are apart in what the adopted one is sure of."""
     if before is None or after is None:
         return ChangeOut(quantity=quantity, unit=unit, adopted=before and before[0], other=after and after[0])
     difference = after[0] - before[0]
-    std = before[1] or after[1]
+    sure = before[1] or after[1]
     return ChangeOut(
         quantity=quantity,
         unit=unit,
         adopted=before[0],
         other=after[0],
         difference=difference,
-        in_standard_deviations=difference / std if std else None,
+        in_standard_deviations=difference / sure if sure else None,
     )
 
 

@@ -1,4 +1,4 @@
-"""The web application: routes under /api/v1, pages under /, and the checks of every request."""
+"""The web application: routes under /api/v1, pages under /, and what every request passes through."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from jackettwin.version import __version__
 
 API = "/api/v1"
 EXAMPLES: dict[str, Any] = json.loads(files("jackettwin.service").joinpath("examples.json").read_bytes())
-"""One example of every schema, by its name."""
+"""Of every schema one, by its name."""
 ROUTERS = (people.router, assets.router, records.router, modes.router, jobs.router, health.router)
 _HEADERS = {
     "X-Content-Type-Options": "nosniff",
@@ -34,13 +34,13 @@ _HEADERS = {
         "worker-src blob:; frame-ancestors 'none'"
     ),
 }
-"""Scripts come from our own files only; Plotly writes styles into the page."""
+"""Scripts come from files of ours alone; Plotly writes styles into the page."""
 _FIELDS_BYTES = 2**20
-"""Largest size of the other fields beside a file in a form."""
+"""Room for what comes beside a file in a form."""
 _TEXT_BYTES = 32 * 2**20
-"""Largest request that is no form: a twin with its files, years of conditions."""
+"""Of a request that is no form: twins with their files, years of conditions."""
 _FEW_BYTES = 2**16
-"""Largest request of somebody who may send no data: a name and a password."""
+"""Of a request of somebody who sends no files: a name and a password."""
 
 
 def create_app(service: Service) -> FastAPI:
@@ -95,7 +95,7 @@ def described(app: FastAPI) -> dict[str, Any]:
 
 
 class Guard:
-    """Identify who asks, refuse forged and oversized requests, and set the security headers of answers."""
+    """Know who asks; refuse what is forged or too large; say to browsers what they may do with answers."""
 
     def __init__(self, app: ASGIApp, service: Service) -> None:
         self._app, self._service = app, service
@@ -124,12 +124,12 @@ class Guard:
         await self._app(scope, bounded, with_headers)
 
     def _bounded(self, request: Request, receive: Receive) -> Receive:
-        """Return the stream of the request's body, limited by the role: it is read before the route checks.
+        """Return the request's body as far as who asks may send it: it is read before a route is asked.
 
         Raises
         ------
         ApiError
-            If the stated length is too large, the role may send no files, or there is no login.
+            If it says itself that it is larger, or who asks may send no files, or nothing without login.
         """
         who = request.state.who
         if who is None and request.method not in auth.SAFE_METHODS and request.url.path != f"{API}/login":
@@ -157,7 +157,7 @@ class Guard:
 
 
 async def _who(service: Service, request: Request) -> auth.Who | None:
-    """Return who asks; without a database only requests for the server's health are answered."""
+    """Return who asks; without a database only the questions about the server's health are answered."""
     try:
         return await asyncio.to_thread(
             auth.who_asks, request, service.database, service.settings, service.now()

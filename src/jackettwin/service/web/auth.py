@@ -1,4 +1,4 @@
-"""Authentication: passwords, sessions, tokens, roles, forged requests, guessing."""
+"""Who may do what: passwords, sessions, tokens, roles, forged requests, guessing."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def nobodys_hash() -> str:
 
 @dataclass(frozen=True)
 class Who:
-    """Who sent a request, with which role; ``kind`` says how that is known."""
+    """Somebody who may do what a role may; ``kind`` is how we know."""
 
     name: str
     role: str
@@ -72,7 +72,7 @@ def hashed(password: str) -> str:
 
 
 def checked_login(connection: Connection, name: str, password: str) -> people.User | None:
-    """Return the user if the password is right, or None; unknown names take as long."""
+    """Return the user whose password this is, or None; it takes as long for unknown names."""
     user = people.find_user(connection, name)
     try:
         _hasher.verify(nobodys_hash() if user is None else user.password_hash, password)
@@ -84,23 +84,22 @@ def checked_login(connection: Connection, name: str, password: str) -> people.Us
 def opened_session(
     database: Engine, attempts: LoginAttempts, name: str, password: str, place: str, now: datetime
 ) -> tuple[people.User, str, str]:
-    """Return the user who logs in, the secret of a session and its CSRF token; every attempt is logged.
+    """Return the user whose password this is, a session's secret and CSRF token; who tried is noted down.
 
     Raises
     ------
     ApiError
-        401 if name or password is wrong, 429 after too many attempts.
+        401 if it is nobody's, 429 after too many tries.
     """
     key = f"{place}/{name}"
     wait = max(attempts.wait_s(place, ATTEMPTS_FROM), attempts.wait_s(key, ATTEMPTS))
     if wait > 0.0:
         raise ApiError(429, "too many failed logins; wait", headers={"Retry-After": str(ceil(wait))})
-    with reading(database) as connection:  # hashing takes long: no lock is held meanwhile
+    with reading(database) as connection:  # it takes its time, and guesses must not hold up those who write
         user = checked_login(connection, name, password)
     with writing(database) as connection:
         people.note_down(connection, name, "login", key, "ok" if user else "refused", now)
-        session = (connection, name, "session", "browser", now, SESSION)
-        grant = ("", "") if user is None else people.new_grant(*session)
+        grant = ("", "") if user is None else new_grant(connection, name, "session", "browser", now, SESSION)
     if user is None:
         raise ApiError(401, "name or password is wrong")
     attempts.succeeded(place)
@@ -108,10 +107,21 @@ def opened_session(
     return user, *grant
 
 
-def who_asks(request: Request, database: Engine, settings: ServiceSettings, now: datetime) -> Who | None:
-    """Return who sent a request, by bearer token, session or trusted proxy; None if that is not known.
+def new_grant(
+    connection: Connection, user: str, kind: str, label: str, now: datetime, lasts: timedelta
+) -> tuple[str, str]:
+    """Return the secret of a new session or token, and its CSRF token."""
+    secret, csrf = secrets.token_urlsafe(32), secrets.token_urlsafe(32)
+    people.grant(
+        connection, secret, kind=kind, user=user, label=label, csrf=csrf, now=now, expires=now + lasts
+    )
+    return secret, csrf
 
-    On a loopback server without users anybody on this machine is its administrator.
+
+def who_asks(request: Request, database: Engine, settings: ServiceSettings, now: datetime) -> Who | None:
+    """Return who sent a request.
+
+    By bearer token, session, trusted proxy, or on an open loopback server anyone.
     """
     with reading(database) as connection:
         if not people.any_user(connection):
@@ -131,7 +141,7 @@ def who_asks(request: Request, database: Engine, settings: ServiceSettings, now:
 
 
 def unknown() -> ApiError:
-    """Return the refusal of a request without valid login or token."""
+    """Return the answer to somebody of whom it is not known who it is."""
     return ApiError(
         401,
         "log in, or send a token",
@@ -141,12 +151,12 @@ def unknown() -> ApiError:
 
 
 def too_little(who: Who, role: str) -> ApiError:
-    """Return the refusal of a request that needs another role."""
+    """Return the answer to somebody whose role does not do."""
     return ApiError(403, f"this needs the role {role}; {who.name} is {who.role}")
 
 
 def allowed(role: str) -> Callable[..., Awaitable[Who]]:
-    """Return a dependency that refuses requests without a role."""
+    """Return the dependency of a route that asks for a role."""
 
     async def check(request: Request) -> Who:
         who: Who | None = request.state.who
@@ -161,7 +171,7 @@ def allowed(role: str) -> Callable[..., Awaitable[Who]]:
 
 
 def refuse_forged(request: Request, who: Who | None) -> None:
-    """Refuse a request that another page had a browser send: without CSRF token, or of another origin.
+    """Refuse what another page had a browser send: no CSRF token, or another origin.
 
     Raises
     ------
@@ -180,7 +190,10 @@ def refuse_forged(request: Request, who: Who | None) -> None:
 
 
 def _from_here(request: Request) -> bool:
-    """Tell whether a request names this machine: the names of other pages may point to 127.0.0.1."""
+    """Tell whether an open server was asked by its own name.
+
+    A page elsewhere may point its name at 127.0.0.1.
+    """
     return is_loopback(request.url.hostname or "")
 
 

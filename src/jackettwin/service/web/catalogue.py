@@ -1,4 +1,4 @@
-"""Assets and versions, as the API and the command line show and change them."""
+"""Assets as the API and the command line speak of them."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from jackettwin.errors import InputError
 from jackettwin.service import workers
 from jackettwin.service.intake.file_access import only_files_in
 from jackettwin.service.web.schemas import AssetOut, VersionOut
-from jackettwin.service.work.consequences import queue_inference
+from jackettwin.service.work.consequences import ask_known
 from jackettwin.store import assets, journal, people, records, results, work
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Place
 
 _PART = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,99}")
-"""Parts of the path of a file: none that leads out of its folder."""
+"""What a part of a file's name may be: no client reaches our file system by it."""
 
 
 def add_text_version(
@@ -46,7 +46,7 @@ def add_version(
     by: str,
     comment: str = "",
 ) -> assets.Version:
-    """Check a twin and add it as a version; stored records are observed by it after newer ones.
+    """Check a twin and add it as a version; records that are there are observed by it when there is time.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def add_version(
     for path in contents:
         if not all(_PART.fullmatch(part) for part in path.split("/")):
             raise InputError(
-                "not a name for a file",
+                "a file cannot be called so",
                 field="files",
                 value=path[:100],
                 allowed="relative paths of letters, digits, ., _ and -",
@@ -77,14 +77,14 @@ def add_version(
     for record in records.all_with_samples(connection, name):
         work.enqueue(connection, version, record.record_id, service.now())
     if results.state_hashes(connection, name, model_hash):
-        queue_inference(connection, service, version)  # the same model under another law
+        ask_known(connection, service, version)  # the same model, asked under another law
     people.note_down(connection, by, "asset version", f"{name}/{version.version}", "ok", service.now())
     journal.tell(connection, "asset", name, {"version": version.version}, service.now())
     return version
 
 
 def adopt(connection: Connection, service: Place, name: str, version: int, by: str) -> None:
-    """Adopt a version, and queue the question what its days say of the supports.
+    """Make a version the one whose answers count, and ask what its days say of the supports.
 
     Raises
     ------
@@ -92,15 +92,15 @@ def adopt(connection: Connection, service: Place, name: str, version: int, by: s
         If there is no such version.
     """
     assets.adopt(connection, name, version)
-    queue_inference(connection, service, assets.found_version(connection, name, version))
+    ask_known(connection, service, assets.found_version(connection, name, version))
     people.note_down(connection, by, "adopt", f"{name}/{version}", "ok", service.now())
     journal.tell(connection, "asset", name, {"version": version, "adopted": True}, service.now())
 
 
 def archive(connection: Connection, service: Place, name: str, by: str, *, undo: bool = False) -> None:
-    """Archive an asset, or bring it back: it takes no more data, and its answers stay available.
+    """Archive an asset, or bring it back: it takes nothing more; what it knew stays, and can be asked for.
 
-    Records that it took before are still observed, when no other asset's record waits.
+    What was taken of it before is still observed, when no other asset's record waits.
 
     Raises
     ------
@@ -128,7 +128,7 @@ def _identity(contents: Mapping[str, bytes]) -> tuple[str, str]:
 
 
 def overview(connection: Connection, name: str | None = None, *, archived: bool = False) -> list[AssetOut]:
-    """Return the assets, the archived ones, or one, with status; the number of queries is fixed."""
+    """Return the assets, the archived ones, or one, with status, by the same few queries however many."""
     counts, said = records.count_by_status(connection, name), results.count_findings(connection, name)
     unseen = results.unacknowledged_alarms(connection, name)
     return [
@@ -147,7 +147,7 @@ def versions_out(connection: Connection, asset: str) -> list[VersionOut]:
     seen, adopted = results.count_observations(connection, asset), assets.found_version(connection, asset)
     return [
         VersionOut(
-            **vars(version),
+            **{name: getattr(version, name) for name in VersionOut.model_fields if hasattr(version, name)},
             adopted=version.version == adopted.version,
             observations=seen.get(version.model_hash, 0),
         )

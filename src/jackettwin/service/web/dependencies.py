@@ -7,7 +7,6 @@ whoever reads an answer can rely on what it says being committed.
 from __future__ import annotations
 
 from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
-from functools import partial
 from typing import Annotated, Any
 
 from anyio import CapacityLimiter
@@ -19,9 +18,8 @@ from sqlalchemy import Connection
 from jackettwin.errors import InputError
 from jackettwin.service.answer_cache import Answer, content_tag, has_tag
 from jackettwin.service.context import Service
-from jackettwin.service.web import auth
 from jackettwin.service.web.auth import Who
-from jackettwin.service.web.problems import ApiError, answers
+from jackettwin.service.web.problems import ApiError
 from jackettwin.store import assets, journal, reading, records, writing
 
 _JSON = "application/json"
@@ -57,17 +55,6 @@ def at_most(requests: int) -> Any:
 
 CONNECTED, WAITING = at_most(12), at_most(16)
 """Of requests that hold a connection, and of those that wait for a worker and hold none."""
-
-
-def _asked_by(role: Any, always: tuple[int, ...], *statuses: int, waits: bool = False) -> dict[str, Any]:
-    held = [role, WAITING] if waits else [role]
-    return {"dependencies": held, "responses": answers(*always, *statuses)}
-
-
-viewer = partial(_asked_by, auth.VIEWER, (401,))
-engineer = partial(_asked_by, auth.ENGINEER, (401, 403))
-admin = partial(_asked_by, auth.ADMIN, (401, 403))
-"""What a route declares: the role that may ask, the problems it may answer, whether it waits for a worker."""
 
 Parts = Annotated[Service, Depends(get_service)]
 Asker = Annotated[Who, Depends(asker)]
@@ -116,7 +103,7 @@ def read_version(request: Request, service: Parts, connection: Reads) -> Connect
     return connection
 
 
-Versioned = Annotated[Connection, Depends(read_version, scope="function")]
+Told = Annotated[Connection, Depends(read_version, scope="function")]
 
 
 class Route(APIRoute):

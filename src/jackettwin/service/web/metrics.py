@@ -1,4 +1,4 @@
-"""Metrics for Prometheus, on which an operator can set alarms, read from the store when asked for."""
+"""What an operator can alarm on, in Prometheus' text form, read from the store at the moment of asking."""
 
 from __future__ import annotations
 
@@ -54,13 +54,13 @@ def exposition(service: Service) -> bytes:
                 gauge("last_record_age_seconds", "Time since the latest record began", age, asset=asset.name)
     waited = 0.0 if oldest is None else max((now - oldest).total_seconds(), 0.0)
     gauge("queue_age_seconds", "Time since the oldest record that is not observed yet was asked for", waited)
-    gauge("workers", "Workers running now", service.cluster.workers)
+    gauge("workers", "Workers there are", service.cluster.workers)
     gauge(
         "worker_restarts_total",
-        "Workers that were replaced, for whatever reason",
+        "Workers that were replaced, whatever they ended of",
         service.cluster.restarts,
     )
-    gauge("disk_free_bytes", "Free space on the disk of the store", service.free_bytes())
+    gauge("disk_free_bytes", "Room left where the store is", service.free_bytes())
     broker = service.broker_connected()
     if broker is not None:
         gauge("broker_connected", "Whether the MQTT broker answers", float(broker))

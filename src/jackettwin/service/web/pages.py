@@ -1,4 +1,4 @@
-"""Plain pages: the list of assets, and the newest report on each."""
+"""The pages a browser sees without the application: the list of assets, and each one's newest report."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from jackettwin.service.web import catalogue
-from jackettwin.service.web.dependencies import AssetName, Reads, Route, known_asset, known_version, viewer
-from jackettwin.service.web.problems import ApiError
+from jackettwin.service.web import auth, catalogue
+from jackettwin.service.web.dependencies import AssetName, Reads, Route, known_asset, known_version
+from jackettwin.service.web.problems import ApiError, answers
 from jackettwin.store import results
 
 router = APIRouter(include_in_schema=False, route_class=Route)
@@ -46,19 +46,19 @@ def login() -> HTMLResponse:
     return HTMLResponse(_templates.get_template("login.html.j2").render())
 
 
-@router.get("/assets/{asset}", **viewer(404))
+@router.get("/assets/{asset}", dependencies=[auth.VIEWER], responses=answers(401, 404))
 def asset_page(asset: AssetName, connection: Reads) -> HTMLResponse:
-    """One turbine: its modes, changes and uncertainties."""
+    """One turbine: what it does, what changed, how sure."""
     known_asset(connection, asset)
     page = _templates.get_template("asset.html.j2")
     return HTMLResponse(page.render(asset=catalogue.one(connection, asset)))
 
 
-@router.get("/assets/{asset}/report", **viewer(404))
+@router.get("/assets/{asset}/report", dependencies=[auth.VIEWER], responses=answers(401, 404))
 def report(asset: AssetName, connection: Reads, version: int | None = None) -> Response:
     """The newest report on a turbine, as ``jackettwin run`` writes it, of all records in the store.
 
-    It contains its own scripts; a sandbox keeps them from our cookies and pages, whatever a twin file holds.
+    It brings its own scripts; in a sandbox they can reach nothing of ours, whatever a twin file is called.
     """
     known = known_version(connection, asset, version)
     page = results.find_report(connection, asset, known.version)
@@ -69,7 +69,7 @@ def report(asset: AssetName, connection: Reads, version: int | None = None) -> R
 
 @router.get("/static/{name}")
 def static(name: Literal["style.css", "home.js", "asset.js", "login.js"]) -> Response:
-    """Scripts and styles of the pages."""
+    """What our pages consist of besides their text."""
     content = (files("jackettwin.service") / "static" / name).read_bytes()
     kind = "text/css" if name.endswith(".css") else "text/javascript"
     return Response(content, media_type=kind, headers={"Cache-Control": "public, max-age=60"})

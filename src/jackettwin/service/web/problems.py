@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Awaitable, Callable
-from http import HTTPStatus
 from typing import Any
 
 from fastapi import FastAPI, Request
@@ -48,13 +47,21 @@ class ProblemDocument(BaseModel):
     remedy: str | None = None
 
 
-_RENAMED = {413: "Content Too Large", 422: "Unprocessable Content"}
-"""Titles of RFC 9110 that Python learnt after 3.11."""
-
-
-def title(status: int) -> str:
-    """Return the title of a status."""
-    return _RENAMED.get(status) or HTTPStatus(status).phrase
+TITLES = {
+    400: "Bad Request",
+    401: "Unauthorized",
+    403: "Forbidden",
+    404: "Not Found",
+    405: "Method Not Allowed",
+    409: "Conflict",
+    413: "Content Too Large",
+    415: "Unsupported Media Type",
+    422: "Unprocessable Content",
+    429: "Too Many Requests",
+    500: "Internal Server Error",
+    503: "Service Unavailable",
+    507: "Insufficient Storage",
+}
 
 
 class ApiError(Exception):
@@ -64,7 +71,7 @@ class ApiError(Exception):
         self, status: int, detail: str, *, headers: dict[str, str] | None = None, **members: Any
     ) -> None:
         super().__init__(detail)
-        self.problem = ProblemDocument(title=title(status), status=status, detail=detail, **members)
+        self.problem = ProblemDocument(title=TITLES[status], status=status, detail=detail, **members)
         self.headers = headers
 
 
@@ -86,7 +93,7 @@ def answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """Return the declaration of the problems a route may answer with."""
     return {
         status: {
-            "description": title(status),
+            "description": TITLES[status],
             "content": {MEDIA_TYPE: {"schema": ProblemDocument.model_json_schema()}},
         }
         for status in statuses
@@ -107,8 +114,8 @@ def register(app: FastAPI) -> None:
         UnicodeEncodeError: lambda _: answered(ApiError(422, not_kept)),
         NoWorker: lambda _: answered(ApiError(503, busy, headers={"Retry-After": "30"})),
         OSError: _disk_full,
-        # the log has the details
-        Exception: lambda _: answered(ApiError(500, "an internal error")),
+        # no more than that is said; the log has the rest
+        Exception: lambda _: answered(ApiError(500, "a fault of ours")),
     }
     for kind, answer in made.items():
         app.add_exception_handler(kind, _handler(answer))
@@ -127,7 +134,7 @@ def _answer(problem: ProblemDocument, headers: dict[str, str] | None = None) -> 
 
 
 def answered(error: ApiError) -> Response:
-    """Return an error as the answer to a request."""
+    """Return the answer that an error is."""
     return _answer(error.problem, error.headers)
 
 
@@ -138,13 +145,11 @@ def _disk_full(error: OSError) -> Response:
 
 
 def _http_error(error: StarletteHTTPException) -> Response:
+    title = TITLES.get(error.status_code, "Error")
     headers = dict(error.headers) if error.headers else None
     if error.status_code == 304:  # the reader has the answer
         return Response(status_code=304, headers=headers)
-    return _answer(
-        ProblemDocument(title=title(error.status_code), status=error.status_code, detail=str(error.detail)),
-        headers,
-    )
+    return _answer(ProblemDocument(title=title, status=error.status_code, detail=str(error.detail)), headers)
 
 
 def _invalid_request(error: RequestValidationError) -> Response:
@@ -153,7 +158,7 @@ def _invalid_request(error: RequestValidationError) -> Response:
     value = first.get("input")
     return _answer(
         ProblemDocument(
-            title=title(422),
+            title=TITLES[422],
             status=422,
             detail=first["msg"],
             field=place or None,

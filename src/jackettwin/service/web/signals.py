@@ -1,4 +1,4 @@
-"""Samples for plots: extremes of bins, spectra."""
+"""Samples for the eye: extremes of bins, spectra."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ _SEGMENT_S = 60.0
 
 
 def with_zone(time: datetime | None, field: str) -> datetime | None:
-    """Return a time in UTC; its zone must be given, none is assumed.
+    """Return a time that has a zone; UTC must be said, it is not assumed.
 
     Raises
     ------
     InputError
-        If it has no zone, or is out of range.
+        If it has none.
     """
     if time is not None and time.tzinfo is None:
         raise InputError(
@@ -42,7 +42,8 @@ def with_zone(time: datetime | None, field: str) -> datetime | None:
 
 def record_out(record: StoredRecord) -> RecordOut:
     """Return a record as the API speaks of it."""
-    return RecordOut(**vars(record), raw_kept=record.waveform is not None)
+    known = {name: getattr(record, name) for name in RecordOut.model_fields if hasattr(record, name)}
+    return RecordOut(**known, raw_kept=record.waveform is not None)
 
 
 def samples(service: Service, record_id: str) -> Record:

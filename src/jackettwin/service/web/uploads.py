@@ -1,4 +1,4 @@
-"""Uploads over HTTP, and work that users ask for."""
+"""Records that arrive over HTTP, and work that is asked for over it."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from jackettwin.service.context import Service
 
 _PIECE = 1 << 20
-_SPARE_BYTES = 256 * 2**20
-"""Free disk space below which no upload is taken: the database needs it to finish its transactions."""
+_ROOM_BYTES = 256 * 2**20
+"""Room that must be left on the disk after an upload: the database needs it to finish what it began."""
 
 
 def refuse_unfit(service: Service, asset: str) -> None:
@@ -35,10 +35,10 @@ def refuse_unfit(service: Service, asset: str) -> None:
 
 
 def take(service: Service, asset: str, name: str, stream: BinaryIO, description: str | None) -> Accepted:
-    """Read an upload and store its record; if that fails, nothing is left behind."""
+    """Read an upload and keep its record; nothing of it is left behind if that fails."""
     if description is not None:
         _check(description)
-    if service.free_bytes() < _SPARE_BYTES:
+    if service.free_bytes() < _ROOM_BYTES:
         raise disk_full()
     path = spooled(
         service.settings.spool,
@@ -58,7 +58,7 @@ def take(service: Service, asset: str, name: str, stream: BinaryIO, description:
 def pick(
     connection: Connection, service: Service, record: records.StoredRecord, body: PicksIn, who: str
 ) -> int:
-    """Store poles that were chosen by hand, and queue the record to be identified with them."""
+    """Keep poles that were chosen by hand, and queue the record to be identified with them."""
     chosen = {"poles": [p.model_dump() for p in body.picks], "by": who, "time_utc": service.now().isoformat()}
     records.set_picks(connection, record.asset, record.record_id, chosen if body.picks else None)
     people.note_down(connection, who, "picks", f"{record.asset}/{record.record_id}", "ok", service.now())
@@ -72,7 +72,7 @@ def pick(
 
 
 def take_conditions(service: Service, asset: str, stream: BinaryIO, zone: str, end_stamped: bool) -> Taken:
-    """Read a table of conditions in a worker and store it."""
+    """Read a table of conditions in a worker and keep it."""
     path = spooled(
         service.settings.spool, "table.csv", _limited(stream, service.settings.upload_limit_bytes), None
     )

@@ -1,4 +1,7 @@
-"""What follows from a result, in the same transaction: modes, findings, the day's state, events."""
+"""What follows from a result, in the same transaction.
+
+Modes, findings, the state of the day and of those after.
+"""
 
 from __future__ import annotations
 
@@ -22,11 +25,11 @@ if TYPE_CHECKING:
 
 
 NEWEST = 24
-"""Observations that the page on a turbine shows one by one; its statements rest on all."""
+"""Observations that the page on a turbine shows one by one; what it says is of all."""
 
 
 def task_of(connection: Connection, service: Place, job: work.Job) -> Task:
-    """Return what a worker needs to observe a record; the twin's files are unpacked for it."""
+    """Return what a worker must know to do a piece of work; the twin's files are laid out for it."""
     record = records.find_record(connection, job.asset, job.record_id)
     if record is None or record.waveform is None:
         raise LookupError(f"record {job.record_id} of {job.asset} has no samples")
@@ -43,7 +46,7 @@ def task_of(connection: Connection, service: Place, job: work.Job) -> Task:
 
 
 def observing(connection: Connection, service: Service, job: work.Job) -> None:
-    """Mark a record as being observed, unless the adopted version has observed it already."""
+    """Say that a record is being observed, unless it has been by the adopted version."""
     record = records.find_record(connection, job.asset, job.record_id)
     if record is not None and record.status == "received":
         records.set_status(connection, job.asset, job.record_id, "observing")
@@ -51,9 +54,9 @@ def observing(connection: Connection, service: Service, job: work.Job) -> None:
 
 
 def question_of(connection: Connection, service: Place, job: work.Job, *, every_day: bool) -> Question:
-    """Return what a worker needs to infer a turbine's supports from its state.
+    """Return what a worker must know to say what a turbine's state says of its supports.
 
-    It is sent the days that its stored sums do not contain yet, or every day if it asked for them.
+    It is sent the days after those that it has the sums of, or every day if it asked for them.
     """
     key = (job.asset, job.model_hash)
     identities = results.state_hashes(connection, *key)
@@ -74,8 +77,8 @@ def question_of(connection: Connection, service: Place, job: work.Job, *, every_
     )
 
 
-def keep_inference(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
-    """Keep what was inferred of a turbine's supports, and whether the structure changed."""
+def keep_known(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
+    """Keep what a turbine's days say of the supports, and of a change."""
     now = service.now()
     if not work.finish(connection, job, service.server_id, "done", now):
         return
@@ -83,10 +86,10 @@ def keep_inference(connection: Connection, service: Service, job: work.Job, outc
     results.put_knowledge(connection, job.asset, job.version, document, outcome.page, now)
     journal.tell(connection, "state", job.asset, {"known": document["known"]["status"]}, now)
     if outcome.of != results.identity_of(results.state_hashes(connection, job.asset, job.model_hash)):
-        queue_inference(connection, service, assets.found_version(connection, job.asset, job.version))
+        ask_known(connection, service, assets.found_version(connection, job.asset, job.version))
     adopted = assets.found_version(connection, job.asset)
     if job.version != adopted.version and job.model_hash == adopted.model_hash:
-        return  # the adopted version alone reports changes
+        return  # what watching says of these days is the adopted version's to say
     key = {"asset": job.asset, "model_hash": job.model_hash, "record_id": ""}
     rows = [
         _finding_row(f, key, datetime.fromisoformat(f["time_utc"]), f["day"], "watch")
@@ -98,20 +101,20 @@ def keep_inference(connection: Connection, service: Service, job: work.Job, outc
             journal.tell(connection, "finding", job.asset, said, now)
 
 
-def queue_inference(connection: Connection, service: Place, version: assets.Version) -> None:
-    """Queue the question what the state says of the supports, behind all records.
+def ask_known(connection: Connection, service: Place, version: assets.Version) -> None:
+    """Queue the question what the state says now, behind everything that is observed.
 
-    If an answer is on its way that knows less, the question is asked again after it.
+    It is asked again after an answer that is on its way, if that one knows less.
     """
     named = replace(version, settings_hash=f"version {version.version}")  # laws and priors are its settings
-    number = work.enqueue(connection, named, "", service.now(), kind=work.INFER, priority=-10)
+    number = work.enqueue(connection, named, "", service.now(), kind=work.KNOW, priority=-10)
     work.try_again(connection, number, service.now())
 
 
 def keep(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
     """Keep the outcome of a piece of work and everything that follows from it.
 
-    Nothing is kept if this server has lost the lease.
+    Nothing, if it is not ours any more.
     """
     now, me = service.now(), service.server_id
     adopted = assets.found_version(connection, job.asset)
@@ -127,29 +130,50 @@ def keep(connection: Connection, service: Service, job: work.Job, outcome: Outco
         return
     key = {"asset": job.asset, "model_hash": job.model_hash, "record_id": job.record_id}
     again = results.find_observation(connection, job.asset, job.record_id, job.model_hash) is not None
-    start, day = record.start_utc, f"{record.start_utc:%Y-%m-%d}"
-    made_by = {"settings_hash": job.settings_hash, "code_version": job.code_version}
-    observation = StoredObservation(start_utc=start, document=outcome.document, **made_by, **key)
-    modes = [{**mode, **key, "model_version": job.version, "time_utc": start} for mode in outcome.modes]
-    findings = [_finding_row(f, key, start, day, "observe") for f in outcome.findings]
-    results.put_observation(connection, observation, modes, findings)
+    observation = StoredObservation(
+        settings_hash=job.settings_hash,
+        start_utc=record.start_utc,
+        code_version=job.code_version,
+        document=outcome.document,
+        **key,
+    )
+    day = f"{record.start_utc:%Y-%m-%d}"
+    results.put_observation(
+        connection,
+        observation,
+        [
+            {**mode, **key, "model_version": job.version, "time_utc": record.start_utc}
+            for mode in outcome.modes
+        ],
+        [_finding_row(f, key, record.start_utc, day, "observe") for f in outcome.findings],
+    )
     records.set_status(connection, job.asset, job.record_id, "observed")
     fold(connection, service, job.asset, job.version, observation, anew=again)
-    told = {"record_id": job.record_id, "version": job.version, "modes": len(outcome.modes)}
-    journal.tell(connection, "observation", job.asset, {**told, "adopted": adopted.version}, now)
+    journal.tell(
+        connection,
+        "observation",
+        job.asset,
+        {
+            "record_id": job.record_id,
+            "version": job.version,
+            "modes": len(outcome.modes),
+            "adopted": adopted.version,
+        },
+        now,
+    )
     for finding in [f for f in outcome.findings if f["severity"] != "info"]:
         journal.tell(connection, "finding", job.asset, {**finding, "record_id": job.record_id}, now)
     for version in living(connection, job.asset, adopted):
         if version.model_hash == job.model_hash:
-            queue_inference(connection, service, version)
+            ask_known(connection, service, version)
     journal.tell(connection, "state", job.asset, {"day": day, "version": job.version}, now)
 
 
 def failed(connection: Connection, service: Service, job: work.Job, reason: str) -> None:
-    """Queue work again whose worker died, or set its record aside after the last try."""
+    """Put work back that its worker did not survive, or set its record aside after the last try."""
     problem = {"detail": reason, **_TRY_AGAIN}
     state = work.put_back(connection, job, service.server_id, problem)
-    if state == "set_aside" and job.kind != work.INFER:
+    if state == "set_aside" and job.kind != work.KNOW:
         _end(connection, job.asset, job.record_id, state, problem, service.now())
 
 
@@ -169,7 +193,7 @@ def cancel(connection: Connection, service: Place, job: work.Job, by: str) -> bo
 
 
 def set_aside(connection: Connection, service: Place, asset: str, record_id: str, why: str) -> None:
-    """Undo what followed from a record: a later record contains it, or a person rejects it."""
+    """Take back what a record gave rise to: another one holds its samples and more, or a person says so."""
     lock(connection, asset)
     for job in work.jobs_of(connection, asset, record_id):
         work.cancel(connection, job.id, service.now())
@@ -178,7 +202,7 @@ def set_aside(connection: Connection, service: Place, asset: str, record_id: str
         if gone is not None:
             results.drop_observation(connection, asset, version.model_hash, record_id)
             fold(connection, service, asset, version.version, gone, anew=True)
-            queue_inference(connection, service, version)
+            ask_known(connection, service, version)
     _end(connection, asset, record_id, "set_aside", {"detail": why, **_TRY_AGAIN}, service.now())
 
 
@@ -193,8 +217,8 @@ def fold(
 ) -> None:
     """Bring the state of a day up to date.
 
-    A day is a sum over its records, in any order. A new record is added to it; after one that was observed
-    again or removed (``anew``), the day is summed from its observations.
+    A day is a sum over its records that does not depend on their order. A record that is new to it is added;
+    one that was observed again, or taken out, makes the day be summed anew.
     """
     day, model_hash = f"{changed.start_utc:%Y-%m-%d}", changed.model_hash
     stored = None if anew else results.find_state(connection, asset, model_hash, day)
@@ -224,14 +248,14 @@ def fold(
 
 
 def lock(connection: Connection, asset: str) -> None:
-    """Lock an asset until the transaction ends: two servers fold into its days one after the other."""
+    """Hold an asset until the transaction ends: two servers fold one after the other."""
     connection.execute(select(tables.assets.c.name).where(tables.assets.c.name == asset).with_for_update())
 
 
 def _end_open(
     connection: Connection, job: work.Job, status: str, problem: Mapping[str, Any], now: datetime
 ) -> None:
-    """Give a record that is not observed yet its final status, with the reason."""
+    """Say why a record that is not observed yet will not be."""
     record = records.find_record(connection, job.asset, job.record_id)
     if record is not None and record.status in ("received", "observing"):
         _end(connection, job.asset, job.record_id, status, problem, now)

@@ -1,4 +1,7 @@
-"""The dispatcher: it leases work, has workers do it, keeps the results, and takes over from dead servers."""
+"""The heart of a server.
+
+Leases work, has it done, keeps results with their consequences, takes over from the dead.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,7 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from jackettwin.service.work import consequences
 from jackettwin.service.workers.failures import LOST_WORKER
-from jackettwin.service.workers.tasks import Outcome, Question, Task, infer, observe_stored
+from jackettwin.service.workers.tasks import Outcome, Question, Task, know, observe_stored
 from jackettwin.store import reading, work, writing
 from jackettwin.version import __version__
 
@@ -29,12 +32,12 @@ log = logging.getLogger(__name__)
 
 _BEAT_S = 2.0
 DEAD_AFTER_S = 15.0
-"""A server is dead if its beat has not changed for so long, by the stopwatch of another one."""
+"""A server whose beat stood still for so long, by the stopwatch of another, is dead."""
 _TURN_S = 0.25
 _RESTS = 3.0
-"""Pause after a question about supports, in multiples of its time: these take a quarter of one worker."""
+"""What a state says of the supports may take a quarter of one worker, however many turbines there are."""
 _AHEAD = 2
-"""Tasks handed to each worker, so that it need not wait for the next lease."""
+"""Tasks a worker has before it, so that none waits for the next lease."""
 
 
 @dataclass
@@ -45,9 +48,9 @@ class _Running:
 
 
 class Dispatcher(Thread):
-    """A thread that dispatches work until it is told to stop.
+    """A thread that turns until it is told to stop.
 
-    Work that is not finished then goes back to the queue, where another server leases it.
+    Whatever it was doing then is leased again by the next.
     """
 
     def __init__(self, service: Service) -> None:
@@ -61,7 +64,7 @@ class Dispatcher(Thread):
         self._rest_until = 0.0
 
     def run(self) -> None:
-        """Dispatch; while the database does not answer, wait and try again."""
+        """Turn; a database that is away for a while is waited for."""
         waited = 0.0
         while not self._stop_asked.is_set():
             try:
@@ -69,16 +72,16 @@ class Dispatcher(Thread):
                 waited = 0.0
             except (SQLAlchemyError, OSError) as error:
                 waited = min(waited + 1.0, 10.0)
-                log.warning("the dispatcher waits %g s: %s", waited, str(error).splitlines()[0])
+                log.warning("dispatcher waits %g s: %s", waited, str(error).splitlines()[0])
                 self._stop_asked.wait(waited)
             except Exception:
-                log.exception("the dispatcher goes on after an internal error")
+                log.exception("dispatcher goes on after a fault of ours")
                 self._stop_asked.wait(1.0)
             self.wake.wait(_TURN_S)
             self.wake.clear()
 
     def stop(self) -> None:
-        """Stop, and sign off from the list of servers so that others take over at once."""
+        """Stop, and leave the list of servers so that others take over at once."""
         self._stop_asked.set()
         self.wake.set()
         if self.is_alive():
@@ -87,18 +90,18 @@ class Dispatcher(Thread):
             with writing(self.service.database) as connection:
                 work.bury(connection, self.service.server_id)
         except SQLAlchemyError:
-            log.warning("could not sign off from the list of servers; others will miss the beat")
+            log.warning("could not leave the list of servers; others notice by the beat")
 
     def _turn(self) -> None:
         self._beat()
         self._collect()
         self._end_overrun()
         self._lease()
-        for task in self.service.periodic:
-            task()
+        for chore in self.service.periodic:
+            chore()
 
     def _beat(self) -> None:
-        """Count our own beat up, or join again if we were taken for dead; take dead servers off the list."""
+        """Count our beat up, bury who is dead, come back if we were buried ourselves."""
         if time.monotonic() - self._last_beat < _BEAT_S:
             return
         self._last_beat = time.monotonic()
@@ -115,7 +118,7 @@ class Dispatcher(Thread):
             work.take_back_orphans(connection, me, self._running)
 
     def _dead(self, server: str, count: int, about: Mapping[str, Any]) -> bool:
-        """Tell whether a server's process is gone from this machine, or its beat has stopped."""
+        """Tell whether a server's process is gone from this machine, or its beat stands still."""
         if _MACHINE and about.get("machine") == _MACHINE and not _runs(about["pid"]):
             return True
         known, since = self._seen.get(server, (None, 0.0))
@@ -140,9 +143,9 @@ class Dispatcher(Thread):
             self._start(job)
 
     def _start(self, job: work.Job, *, every_day: bool = False) -> None:
-        """Hand a piece of work to a worker; it fails if its record or samples have been deleted."""
+        """Have a worker do a piece of work, unless what it needs is not there any more."""
         try:
-            with reading(self.service.database) as connection:  # it takes time: writers need not wait
+            with reading(self.service.database) as connection:  # years of days: no writer waits
                 function, argument = self._task(connection, job, every_day)
         except LookupError as gone:
             with writing(self.service.database) as connection:
@@ -153,24 +156,24 @@ class Dispatcher(Thread):
         self._running[job.id] = _Running(job, future, time.monotonic())
 
     def _next_kind(self) -> str | None:
-        """Return the kind of work to lease: records first, those of archived assets last.
+        """Return what to lease: records first, those of archived assets last of all.
 
-        Questions about supports come between, one at a time and with a pause after each.
+        What a state says is asked only when it was rested for long enough.
         """
         with reading(self.service.database) as connection:
             if work.any_queued(connection, work.OBSERVE):
                 return work.OBSERVE
-            asking = any(running.job.kind == work.INFER for running in self._running.values())
+            asking = any(running.job.kind == work.KNOW for running in self._running.values())
             rests = asking or time.monotonic() < self._rest_until
-            if not rests and work.any_queued(connection, work.INFER):
-                return work.INFER
+            if not rests and work.any_queued(connection, work.KNOW):
+                return work.KNOW
             return work.OBSERVE if work.any_queued(connection, work.OBSERVE, gone=True) else None
 
     def _task(
         self, connection: Connection, job: work.Job, every_day: bool
     ) -> tuple[Callable[..., Outcome | None], Task | Question]:
-        if job.kind == work.INFER:
-            return infer, consequences.question_of(connection, self.service, job, every_day=every_day)
+        if job.kind == work.KNOW:
+            return know, consequences.question_of(connection, self.service, job, every_day=every_day)
         return observe_stored, consequences.task_of(connection, self.service, job)
 
     def _collect(self) -> None:
@@ -180,26 +183,26 @@ class Dispatcher(Thread):
                 del self._running[number]
                 if not enough:
                     self._start(running.job, every_day=True)
-                elif running.job.kind == work.INFER:
+                elif running.job.kind == work.KNOW:
                     took = time.monotonic() - running.since
                     self._rest_until = time.monotonic() + _RESTS * took
 
     def _keep(self, running: _Running) -> bool:
-        """Keep the outcome of a piece of work; return False if its worker needs the document of every day."""
+        """Keep what came of a piece of work; False if its worker must have every day to do it."""
         if running.future.status == "finished":
             outcome: Outcome | None = running.future.result()
             if outcome is None:
                 return False
             with writing(self.service.database) as connection:
-                asked = running.job.kind == work.INFER
-                keep = consequences.keep_inference if asked else consequences.keep
+                asked = running.job.kind == work.KNOW
+                keep = consequences.keep_known if asked else consequences.keep
                 keep(connection, self.service, running.job, outcome)
             return True
         reason, tried = _reason(running.future), self.service.cluster.has_begun(running.future)
         with writing(self.service.database) as connection:
             if tried:
                 consequences.failed(connection, self.service, running.job, reason)
-            else:  # the worker died of another task before it began this one
+            else:  # it waited at a worker that died of another task
                 work.release(connection, running.job, self.service.server_id)
         return True
 
@@ -225,7 +228,7 @@ def _runs(pid: int) -> bool:
 
 
 def _machine() -> str:
-    """Return what identifies this machine and its process numbers, empty if unknown."""
+    """Return what two servers share if the number of a process means the same to both; empty if unknown."""
     try:
         boot = Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii").strip()
         return f"{boot} {os.readlink('/proc/self/ns/pid')}"
@@ -237,7 +240,7 @@ _MACHINE = _machine()
 
 
 def _reason(future: Future) -> str:
-    """Return why a task has no result, as a sentence."""
+    """Return in a sentence why a task has no result."""
     try:
         error = future.exception(timeout=1)
     except Exception as lost:

@@ -1,4 +1,4 @@
-"""Housekeeping: delete old samples by policy, old events and abandoned uploads, return memory."""
+"""What is done now and then: old samples pruned by policy, old events, uploads and memory let go."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
 _EVERY_S = 600.0
 _STALE_S = 3600.0
-"""Age at which an upload in the spool has been abandoned by a server that died."""
+"""Age of an upload that was left behind by a server that died over it."""
 
 
 class Housekeeping:
-    """Keeps the store within its policy, every ten minutes."""
+    """Keeps the store within its policy."""
 
     def __init__(self, service: Service) -> None:
         self._service = service
@@ -29,7 +29,7 @@ class Housekeeping:
         self._next = 0.0
 
     def turn(self) -> None:
-        """Clean up if it is time to."""
+        """Tidy up if it is time to."""
         if time.monotonic() < self._next:
             return
         self._next = time.monotonic() + _EVERY_S

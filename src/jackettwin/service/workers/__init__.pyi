@@ -1,1 +1,1 @@
-from . import engine as engine
+from . import cluster as cluster, engine as engine

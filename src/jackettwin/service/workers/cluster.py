@@ -1,6 +1,7 @@
-"""Workers: a Dask cluster of this machine, or one whose scheduler is given.
+"""Workers.
 
-A task's time counts from when a worker begins it: neither waiting for a worker nor the worker's start count.
+A Dask cluster of this machine or somebody's scheduler; slow and dying tasks are told apart from wrong input.
+A task's time counts from when a worker begins with it: neither waiting for a worker nor its start count.
 """
 
 from __future__ import annotations
@@ -27,14 +28,14 @@ from jackettwin.service.workers.memory import give_back
 log = logging.getLogger(__name__)
 
 _NICE = 5
-"""Added to the nice value of own workers: requests are answered first, records observed with what is left.
+"""Of workers of our own: readers are answered first, records are observed with what is left of the cores.
 
-The resulting value is stated absolutely, since Dask runs the statement twice."""
+Stated absolutely, since Dask runs it twice."""
 _START = (
     f"import os, {__package__}.engine, {__package__}.tasks\n"
     f"os.setpriority(os.PRIO_PROCESS, 0, {os.nice(0) + _NICE})"
 )
-"""What an own worker runs before its first task, so that no record waits for libraries to load."""
+"""What a worker of our own does before it takes a task: a record does not wait for libraries."""
 _DASK = {
     "distributed.worker.memory.target": False,
     "distributed.worker.memory.spill": False,
@@ -51,16 +52,17 @@ _DASK = {
     "distributed.worker.preload": [_START],
     "distributed.nanny.pre-spawn-environ.MALLOC_ARENA_MAX": 1,
 }
-"""A worker that exceeds its memory is ended, not paused.
+"""A worker over its memory is ended, not paused.
 
-A task whose worker ended comes back at once and counts as a try. An idle worker steals tasks that wait at a
-busy one: an upload does not wait for a posterior. After the timeout of a lost worker Dask ends the one that
-replaced it; with the default of 15 s it did so while that one was still starting. Profiler, monitor and
-message logs would hold an hour of samples and all data sent: they are off, or short.
+A task that ended a worker comes back to us at once, and counts a try. A free worker takes what waits at a
+busy one: an upload does not wait for a posterior. The timeout of a lost worker is when Dask ends whoever took
+its place, if that one is just starting: after its own 15 s that happened. Dask's profiler and monitor
+keep what every thread did for an hour, and its logs the last thousand messages of every connection with all
+that was sent: off, and short.
 """
 
-_MOST_NOTED = 10_000
-"""Tasks whose beginning is remembered: far more than there are at once."""
+_REMEMBERED = 10_000
+"""Tasks of which it is known that they began: far more than there are at once."""
 
 
 _SENT_S = 0.01
@@ -78,8 +80,8 @@ def run(topic: str, task: Callable[..., Any], *args: Any) -> Any:
         give_back()
 
 
-class WorkerCluster:
-    """The workers that read and observe records, which the server's own process never does."""
+class Cluster:
+    """Where records are read and observed: never in the server's own process."""
 
     def __init__(self, settings: ServiceSettings) -> None:
         dask.config.set(_DASK)
@@ -89,7 +91,7 @@ class WorkerCluster:
         self._cluster: LocalCluster | None = None
         if settings.scheduler is None:
             self._cluster = LocalCluster(
-                n_workers=0,  # they start while the server already answers
+                n_workers=0,  # they come while the server answers already
                 threads_per_worker=1,
                 processes=True,
                 memory_limit=settings.worker_memory_bytes,
@@ -118,17 +120,17 @@ class WorkerCluster:
 
     @property
     def restarts(self) -> int:
-        """How many workers were replaced: of own ones all that ended, of others those that we ended."""
+        """How many workers were replaced: our own, whatever they ended of; of others', those we ended."""
         return self._ended if self._cluster is None else max(len(self._ever) - self._wanted, 0)
 
     def _addresses(self) -> set[str]:
-        """Addresses of the workers; a restarted worker has a new one."""
+        """Where workers are; one that is started anew is elsewhere."""
         return set(self.client.scheduler_info(n_workers=-1).get("workers", {}))
 
     def mend(self) -> None:
-        """Replace own workers that are gone for good.
+        """Start workers of our own that are gone for good.
 
-        Dask restarts a worker that died, but gives up one that dies, or takes long, while it starts.
+        Dask starts a worker that died anew, but gives one up that dies, or takes long, while it starts.
         """
         if self._cluster is not None:
             self._ever |= self._addresses()
@@ -141,9 +143,9 @@ class WorkerCluster:
         cluster.scale(self._wanted)
 
     def submit(self, task: Callable[..., Any], *args: Any, priority: int = 0) -> Future:
-        """Start a task; those of higher priority go first.
+        """Start a task; urgent ones overtake.
 
-        Its key begins with its name: by it Dask learns how long such tasks take, to place the next ones.
+        Its key begins with its name, by which Dask knows how long such tasks take and where to put the next.
         """
         name = getattr(task, "func", task).__name__
         key = f"{name}-{secrets.token_hex(16)}"
@@ -151,21 +153,21 @@ class WorkerCluster:
 
     def _note(self, event: tuple[float, str]) -> None:
         self._began[event[1]] = time.monotonic()
-        while len(self._began) > _MOST_NOTED:
+        while len(self._began) > _REMEMBERED:
             del self._began[next(iter(self._began))]
 
     def has_begun(self, future: Future, ago_s: float = 0.0) -> bool:
-        """Tell whether a worker began a task, and at least so long ago."""
+        """Tell whether a worker began with a task, and so long ago."""
         began = self._began.get(future.key)
         return began is not None and time.monotonic() - began >= ago_s
 
     def result(self, future: Future, limit_s: float) -> Any:
-        """Return the result of a task, which is ended if it takes longer than the limit once begun.
+        """Return the result of a task that may take so long once it has begun, or end it.
 
         Raises
         ------
         NoWorker
-            If no worker began it within the same time.
+            If no worker came to it within the same time.
         TimeoutError
             If it takes longer.
         """
@@ -174,7 +176,7 @@ class WorkerCluster:
             try:
                 return future.result(timeout=left)
             except TimeoutError:
-                if future.done():  # the task itself raised it
+                if future.done():  # it is the task's own
                     raise
                 began = self._began.get(future.key)
                 if began is None:
@@ -186,20 +188,20 @@ class WorkerCluster:
                     raise
 
     def end(self, future: Future) -> None:
-        """Give up a task that takes too long: its worker is restarted, and other tasks there with it."""
+        """Give a task up that takes too long: its worker is started anew, with whatever it holds."""
         with self._lock, suppress(Exception):
             busy = [address for address, keys in self.client.processing().items() if future.key in keys]
             future.cancel()
             self._ended += len(busy)
             if self._cluster is None:
                 self.client.restart_workers(busy, timeout=30, raise_for_error=False)
-            else:  # a nanny restarts a dead worker sooner than one that it must end itself
+            else:  # a nanny starts a worker anew that died, sooner than one that it must end itself
                 for nanny in self._cluster.workers.values():
                     if nanny.worker_address in busy:
                         os.kill(nanny.pid, signal.SIGKILL)
 
     def close(self) -> None:
-        """Stop; running tasks are dropped, and their work is leased again later."""
+        """Stop; what runs is dropped and will be leased again."""
         with suppress(Exception):
             self.client.close(timeout=5)
         if self._cluster is not None:

@@ -1,6 +1,6 @@
-"""The interface to the engine: documents in, documents out.
+"""The seam to the engine: documents in, documents out.
 
-Modules below it know nothing of a store, modules above it nothing of a model.
+Nothing below it knows of a store, nothing above it of a model.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ DAY = StoredSchema("twin_day", Day)
 
 @dataclass(frozen=True)
 class FoldedDay:
-    """The state of a day as a document, its number of records, and the findings of each new record."""
+    """The state of a day as a document, how many records it holds, and what each new one gave rise to."""
 
     document: str
     n_records: int
@@ -47,7 +47,7 @@ class FoldedDay:
 
 
 class Twin(NamedTuple):
-    """The configuration of a version of a twin, and its model."""
+    """What a version of a twin says, and the model that it builds."""
 
     config: TwinConfig
     model: TwinModel
@@ -55,7 +55,7 @@ class Twin(NamedTuple):
 
 @lru_cache(maxsize=256)
 def load_twin(folder: Path) -> Twin:
-    """Return the twin whose files are in a folder; it is cached, since a version never changes."""
+    """Return a twin whose files stand in a folder, kept: a version never changes."""
     config = read_twin(folder / TWIN_FILE, records_follow=True)
     return Twin(config, twin_model(config))
 
@@ -67,7 +67,7 @@ def identity(model: TwinModel) -> tuple[str, str]:
 
 
 def channels(config: TwinConfig) -> dict[str, Channel]:
-    """Return the channels that a twin describes, {name: channel}."""
+    """Return what a twin says of its channels, {name: channel}."""
     return {
         s.channel: Channel(s.channel, height_m=s.height_m, node=s.node, direction=s.direction)
         for s in config.sensors
@@ -86,19 +86,27 @@ def observed(
     record = read_waveform(waveform)
     record = replace(record, conditions={**conditions, **record.conditions})
     seen = observe(record, model)
-    names = ("frequency_hz", "frequency_std_hz", "damping_ratio", "damping_ratio_std")
     rows = []
     for mode, known in zip(seen.identification.modes, seen.recognised, strict=True):
         low, high = mode.damping_ratio_interval_95 or (None, None)
-        row = {name: getattr(mode, name) for name in names}
-        row |= {"damping_ratio_low_95": low, "damping_ratio_high_95": high, "status": str(mode.status)[:255]}
-        rows.append({"label": "" if known is None else known.label, **row})
+        rows.append(
+            {
+                "label": "" if known is None else known.label,
+                "frequency_hz": mode.frequency_hz,
+                "frequency_std_hz": mode.frequency_std_hz,
+                "damping_ratio": mode.damping_ratio,
+                "damping_ratio_std": mode.damping_ratio_std,
+                "damping_ratio_low_95": low,
+                "damping_ratio_high_95": high,
+                "status": str(mode.status)[:255],
+            }
+        )
     document = json.dumps(OBSERVATION.dump(seen), ensure_ascii=False, separators=(",", ":"))
     return document, tuple(rows), tuple(finding_row(f) for f in seen.findings)
 
 
 def advance_day(model: TwinModel, day: str, stored: str | None, observations: Sequence[str]) -> FoldedDay:
-    """Return the state of a day with some more observations added."""
+    """Return the state of a day that knows some more observations of it."""
     days = {} if stored is None else {day: DAY.load(json.loads(stored))}
     state = replace(empty_state(model), days=days)
     found = []
@@ -119,7 +127,7 @@ def finding_row(finding: Finding) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Sums:
-    """The sum over some days, without the days themselves: it does not grow with their number."""
+    """What some days say together, without the days themselves: it does not grow with their number."""
 
     state: TwinState
     records: int = 0
@@ -128,14 +136,14 @@ class Sums:
 
 
 def no_days(model: TwinModel) -> Sums:
-    """Return the sum over no days."""
+    """Return what no day says."""
     return Sums(empty_state(model))
 
 
 def with_day(
     sums: Sums, day: str, document: str, chosen: Callable[[str], bool] = lambda operation: True
 ) -> Sums:
-    """Return a sum with one more day: its records in the chosen states of operation."""
+    """Return what some days and one more say together, of its records in some states of operation."""
     new = DAY.load(json.loads(document)).of_operations(chosen)
     state = replace(sums.state.with_day(day, new), days={})
     times = [t for t in (sums.first_utc, sums.last_utc, new.first, new.last) if t is not None]
@@ -145,9 +153,9 @@ def with_day(
 
 @dataclass(frozen=True)
 class Past:
-    """The sum over all days but the last one, which still grows; it is stored between questions.
+    """What all days but the last one, which still grows, say together: kept from question to question.
 
-    ``through`` is the last of its days, ``of`` their identity.
+    ``through`` is the last of them, ``of`` their identity.
     """
 
     sums: Sums
@@ -160,7 +168,7 @@ PAST = StoredSchema("twin_past", Past)
 
 
 def days_unsummed(past: Mapping[str, Any] | None, identities: Mapping[str, str]) -> str | None:
-    """Return the last day in stored sums, None if a day has changed since and they are invalid."""
+    """Return the day after which days are not in sums that are kept; None if these do not hold any more."""
     if past is None or past["through"] >= max(identities, default=""):
         return None
     return past["through"] if past["of"] == _identity(identities, past["through"]) else None
@@ -173,9 +181,9 @@ def _identity(identities: Mapping[str, str], through: str) -> str:
 def summed(
     twin: Twin, past: Mapping[str, Any] | None, identities: Mapping[str, str], documents: Mapping[str, str]
 ) -> tuple[Sums, Mapping[str, Any] | None]:
-    """Return the sum over all records that may update the supports, and the past part of it to store.
+    """Return what the records of all days say that may update the supports, and what to keep of it.
 
-    ``documents`` holds the days that are not in ``past``, or all days if there is no past.
+    ``documents`` are those of the days that are not in ``past``, or of all days without it.
     """
     known = None if past is None else PAST.load(past)
     sums, through = (no_days(twin.model), "") if known is None else (known.sums, known.through)
@@ -188,7 +196,7 @@ def summed(
 
 
 def knowledge(model: TwinModel, sums: Sums) -> dict[str, Any]:
-    """Return the mean of every mode over some days with its standard deviations, and their time span."""
+    """Return what some days say: the mean of every mode with its standard deviations, from when to when."""
     total = sums.state.totals.get(ALL)
     modes = []
     for number, seen in sorted(total.modes.items()) if total is not None else ():
@@ -220,5 +228,10 @@ def stabilisation(folder: str, waveform: str) -> dict[str, Any]:
 
     record = read_waveform(Path(waveform))
     poles = examined(record, load_twin(Path(folder)).model).identification.stabilisation
-    names = ("order", "frequency_hz", "damping_ratio", "stable")
-    return {name: getattr(poles, name).tolist() for name in names} | {"mode": poles.cluster.tolist()}
+    return {
+        "order": poles.order.tolist(),
+        "frequency_hz": poles.frequency_hz.tolist(),
+        "damping_ratio": poles.damping_ratio.tolist(),
+        "stable": poles.stable.tolist(),
+        "mode": poles.cluster.tolist(),
+    }

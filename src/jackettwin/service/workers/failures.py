@@ -8,17 +8,17 @@ from typing import Any
 from jackettwin.errors import InputError
 
 LOST_WORKER = ("KilledWorker", "CancelledError", "FutureCancelledError")
-"""Errors which say that a worker ended during a task, for whatever reason."""
+"""Errors that say that a worker ended over a task, whatever of."""
 DISK_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
-"""Numbers of system errors where nothing can be written."""
+"""What the system says where nothing can be written."""
 
 
 class NoWorker(Exception):
-    """No worker began a task in time; the task itself may be fine."""
+    """No worker came to a task in time; nothing is wrong with it."""
 
 
 def problem_of(error: InputError) -> dict[str, Any]:
-    """Return the problem with a user's input, without its path on the server."""
+    """Return what is wrong with a user's input; where it lies on our disk is nobody's business."""
     return {
         "detail": error.problem,
         "field": error.field,

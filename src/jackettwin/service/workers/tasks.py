@@ -1,4 +1,4 @@
-"""What workers do: read files into the store, observe records, infer supports. Values in, values out."""
+"""What workers do: read a file into the store, observe a stored record. Plain values in, plain values out."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class Parsed:
 
 
 def about(record: Record) -> dict[str, Any]:
-    """Return the description of a record by which it is listed and searched."""
+    """Return what is searched of a record."""
     assert record.start_utc is not None
     return {
         "start_utc": record.start_utc.isoformat(),
@@ -129,7 +129,7 @@ _TOO_LARGE = {
 
 
 def _check(record: Record, file: File) -> None:
-    """Refuse a record with too many samples, or without a believable start."""
+    """Refuse a record that expands too far, or of which it is not known when it was."""
     if record.data.size > file.samples_limit:
         raise InputError(
             "the file expands to too many samples",
@@ -155,7 +155,7 @@ def _check(record: Record, file: File) -> None:
 
 
 def stored(record: Record, asset: str, store: Path) -> Parsed:
-    """Write the samples of a record into the store, under a name made of their content."""
+    """Keep the samples of a record in the store, by their content."""
     from jackettwin.records.record import record_id
     from jackettwin.store import waveform_path, write_waveform
 
@@ -167,7 +167,7 @@ def stored(record: Record, asset: str, store: Path) -> Parsed:
 
 
 def read_conditions(path: str, *, zone: str, end_stamped: bool) -> Any:
-    """Read a table of conditions; an input error is returned without the server's path."""
+    """Read a table of conditions; an error of its input comes back, without our path."""
     from jackettwin.service.workers.condition_tables import read_table
 
     try:
@@ -179,17 +179,17 @@ def read_conditions(path: str, *, zone: str, end_stamped: bool) -> Any:
 
 @dataclass(frozen=True)
 class Question:
-    """What a turbine's records showed; asked is what that says of the supports and of a change.
+    """What a turbine's records showed, of which it is asked what that says of the supports and of a change.
 
     Attributes
     ----------
     identities : {day: identity}
         Of all days.
     days : {day: document}
-        Of the days that ``kept`` does not contain, or of all.
+        Of those after what is kept, or of all.
     newest : documents of the newest observations, for the page
     in_all : how many records there are, and how long they are together [s]
-    kept : what an earlier answer stored: sums of past days and what watching learnt, by name
+    kept : what is kept of the sums of past days and of watching them, by name
     of : identity of the state
     """
 
@@ -204,14 +204,14 @@ class Question:
     of: str = ""
 
 
-def infer(question: Question) -> Outcome | None:
-    """Answer what a turbine's records say of its supports and of a change, and write the page on it.
+def know(question: Question) -> Outcome | None:
+    """Answer a question about what a turbine's records showed, and write the page on it.
 
-    None if it needs days that were not sent: after a change, and when a baseline is complete.
+    None if it takes days that were not sent: after a change, and once a baseline is whole.
     """
     from jackettwin.service.workers import engine, verdict
 
-    if not question.identities:  # all records were set aside
+    if not question.identities:  # all its records were taken back
         nothing = {"known": {"status": verdict.NO_MODE, "parameters": {}}}
         return Outcome(json.dumps(nothing), of=question.of)
     twin = engine.load_twin(Path(question.twin_folder))
@@ -234,7 +234,7 @@ def infer(question: Question) -> Outcome | None:
 
 
 def observe_stored(task: Task) -> Outcome:
-    """Observe a stored record; wrong input is returned as a problem, internal errors are raised."""
+    """Observe a stored record. Input that is wrong comes back as a problem, faults of ours are raised."""
     from jackettwin.service.workers.engine import load_twin, observed
 
     try:

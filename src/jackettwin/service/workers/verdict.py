@@ -1,6 +1,6 @@
-"""What all records of a turbine say of its supports, and of a change.
+"""What a turbine's records together say of its supports, and of a change.
 
-This is computed when no record waits: a posterior costs as much as ten records.
+It is asked when no record waits: a posterior costs as much as ten records.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from jackettwin.twin.state import ALL
 from jackettwin.version import __version__
 
 CANNOT_MEET = "the model cannot meet what was measured on any ground: no interval; see the report"
-"""Status of parameters that come nearest to the data without explaining them."""
+"""What is said of parameters that come nearest to the data and do not explain them."""
 NO_MODE = "no mode of the model has been seen"
 NOT_TO_UPDATE = "no record is in a state of operation that may update the supports (operation.updates)"
 
@@ -50,18 +50,18 @@ def known(
     shown = tuple(OBSERVATION.load(json.loads(document)) for document in newest)
     measured = Measured(shown, sums.state, in_all=in_all)
     laws = twin.config.update.laws[:1]
-    config = replace(twin.config, operation=OperationRule())  # each day was filtered by it
+    config = replace(twin.config, operation=OperationRule())  # who may update was asked of each day
     result = updated_twin(config, twin.model, measured, laws=laws, posteriors="likely")
     answers = answer(result)
     sections = report_sections(result, answers)
     if not result.updates:
         return {"status": "no law can explain what was measured", "parameters": {}}, sections
     (u,) = result.updates
-    spread = u.uncertainty
-    median = u.best.theta if spread is None else spread.median
+    sure = u.uncertainty
+    median = u.best.theta if sure is None else sure.median
     meets = answers.fit is None or answers.fit.fits
-    spans = spread.interval_90.tolist() if spread is not None and meets else [None] * len(median)
-    status = "without standard deviations, no interval" if spread is None else spread.status
+    spans = sure.interval_90.tolist() if sure is not None and meets else [None] * len(median)
+    status = "without standard deviations, no interval" if sure is None else sure.status
     return {
         "law": u.law,
         "status": status if meets else CANNOT_MEET,
@@ -76,7 +76,7 @@ def known(
 
 
 def _budget(mode: ModeAnswer) -> dict[str, Any]:
-    """Return the damping ratio of a mode by source, with 90 % intervals."""
+    """Return whose damping a mode's is: damping ratios by source, with 90 % intervals."""
     measured = mode.measured_damping
     return {
         "label": mode.label,
@@ -97,7 +97,7 @@ def watched(
     documents: Mapping[str, str],
     kept: Mapping[str, Any] | None,
 ) -> tuple[dict[str, Any], tuple[dict[str, Any], ...]]:
-    """Return what watching has learnt of a turbine's days, to be stored, and all findings that hold now.
+    """Return what is kept of watching a turbine's days, and every finding of them that holds now, as rows.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def watched(
     documents : {day: document}
         Of those days that may be asked for.
     kept : mapping or None
-        What an earlier call returned: it saves time and changes nothing.
+        What an earlier call returned; it only saves time.
 
     Raises
     ------

@@ -58,8 +58,11 @@ class CurveOptions:
             value=self.layering,
             allowed=", ".join(LAYERING),
         )
+        own = {(kind.reaction, kind.name) for kind in SOIL_CURVES}
         for reaction in REACTIONS:
-            look_up(soil_curves(reaction), getattr(self, reaction), "soil curve", field=reaction)
+            name = getattr(self, reaction)
+            if (reaction, name) not in own:  # options stand in defaults: importing them loads no plugin
+                look_up(soil_curves(reaction), name, "soil curve", field=reaction)
         require(
             not (self.cyclic and self.clay_py == "cube-root"),
             "Matlock's parabola is for static loads",
@@ -67,6 +70,10 @@ class CurveOptions:
             value=self.clay_py,
             allowed="table, if cyclic",
         )
+
+    def kinds(self) -> tuple[SoilCurve, ...]:
+        """Return the kind of curve that stands for each reaction."""
+        return tuple(soil_curves(reaction)[getattr(self, reaction)] for reaction in REACTIONS)
 
     def curve(self, of: Literal["py", "tz", "qz"], point: Point, pile: Pile) -> Curve:
         """Return the lateral, shaft or tip reaction of the ground at one depth of a pile."""

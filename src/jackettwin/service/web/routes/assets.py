@@ -6,22 +6,20 @@ from typing import Annotated
 
 from fastapi import APIRouter, File, Form, Path, Query, UploadFile
 
-from jackettwin.service.web import catalogue, uploads
+from jackettwin.service.web import auth, catalogue, uploads
 from jackettwin.service.web.dependencies import (
+    WAITING,
     Asker,
     AssetName,
     Parts,
     Route,
-    Versioned,
+    Told,
     Writes,
-    admin,
-    engineer,
     known_asset,
     known_version,
     living_asset,
-    viewer,
 )
-from jackettwin.service.web.problems import ApiError
+from jackettwin.service.web.problems import ApiError, answers
 from jackettwin.service.web.schemas import (
     AssetOut,
     ConditionsIn,
@@ -37,13 +35,15 @@ from jackettwin.store import assets
 router = APIRouter(tags=["assets"], route_class=Route)
 
 
-@router.get("/assets", **viewer(422))
-def list_assets(connection: Versioned, archived: bool = False) -> Page[AssetOut]:
+@router.get("/assets", dependencies=[auth.VIEWER], responses=answers(401, 422))
+def list_assets(connection: Told, archived: bool = False) -> Page[AssetOut]:
     """List the assets, or the archived ones, with their status, last data and findings."""
     return Page(items=catalogue.overview(connection, archived=archived))
 
 
-@router.post("/assets", status_code=201, **engineer(400, 409, 422))
+@router.post(
+    "/assets", status_code=201, dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 409, 422)
+)
 def add_asset(body: NewAsset, who: Asker, parts: Parts, connection: Writes) -> AssetOut:
     """Add an asset with its twin file and the files that this one names."""
     if body.name in assets.asset_names(connection):
@@ -52,14 +52,14 @@ def add_asset(body: NewAsset, who: Asker, parts: Parts, connection: Writes) -> A
     return catalogue.one(connection, body.name)
 
 
-@router.get("/assets/{asset}", **viewer(404, 422))
-def get_asset(asset: AssetName, connection: Versioned) -> AssetOut:
+@router.get("/assets/{asset}", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def get_asset(asset: AssetName, connection: Told) -> AssetOut:
     """Return one asset."""
     known_asset(connection, asset)
     return catalogue.one(connection, asset)
 
 
-@router.delete("/assets/{asset}", **admin(404, 422))
+@router.delete("/assets/{asset}", dependencies=[auth.ADMIN], responses=answers(401, 403, 404, 422))
 def archive_asset(
     asset: AssetName,
     confirm: Annotated[str, Query(description="The asset's name once more.", examples=["demo"])],
@@ -75,7 +75,7 @@ def archive_asset(
     return catalogue.one(connection, asset)
 
 
-@router.post("/assets/{asset}/unarchive", **admin(404, 422))
+@router.post("/assets/{asset}/unarchive", dependencies=[auth.ADMIN], responses=answers(401, 403, 404, 422))
 def unarchive_asset(asset: AssetName, who: Asker, parts: Parts, connection: Writes) -> AssetOut:
     """Bring an archived asset back."""
     known_asset(connection, asset)
@@ -83,7 +83,7 @@ def unarchive_asset(asset: AssetName, who: Asker, parts: Parts, connection: Writ
     return catalogue.one(connection, asset)
 
 
-@router.put("/assets/{asset}", **engineer(400, 404, 409, 422))
+@router.put("/assets/{asset}", dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 404, 409, 422))
 def put_asset(asset: AssetName, body: NewVersion, who: Asker, parts: Parts, connection: Writes) -> VersionOut:
     """Add a version; records are observed by it too, and it counts once it is adopted."""
     living_asset(connection, asset)
@@ -93,14 +93,18 @@ def put_asset(asset: AssetName, body: NewVersion, who: Asker, parts: Parts, conn
     return catalogue.version_out(connection, version)
 
 
-@router.get("/assets/{asset}/versions", **viewer(404, 422))
-def versions(asset: AssetName, connection: Versioned) -> Page[VersionOut]:
+@router.get("/assets/{asset}/versions", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def versions(asset: AssetName, connection: Told) -> Page[VersionOut]:
     """List the versions of an asset's twin, oldest first."""
     known_asset(connection, asset)
     return Page(items=catalogue.versions_out(connection, asset))
 
 
-@router.post("/assets/{asset}/versions/{version}/adopt", **engineer(404, 422))
+@router.post(
+    "/assets/{asset}/versions/{version}/adopt",
+    dependencies=[auth.ENGINEER],
+    responses=answers(401, 403, 404, 422),
+)
 def adopt(
     asset: AssetName,
     version: Annotated[int, Path(ge=1, le=1_000_000)],
@@ -114,7 +118,11 @@ def adopt(
     return catalogue.version_out(connection, found)
 
 
-@router.post("/assets/{asset}/conditions", **engineer(400, 404, 409, 422))
+@router.post(
+    "/assets/{asset}/conditions",
+    dependencies=[auth.ENGINEER],
+    responses=answers(400, 401, 403, 404, 409, 422),
+)
 def add_conditions(asset: AssetName, body: ConditionsIn, parts: Parts, connection: Writes) -> Taken:
     """Add conditions of the site through time; records that they belong to are observed again with them."""
     living_asset(connection, asset)
@@ -126,7 +134,11 @@ def add_conditions(asset: AssetName, body: ConditionsIn, parts: Parts, connectio
     return Taken(count=count, observed_again=again)
 
 
-@router.post("/assets/{asset}/conditions.csv", **engineer(400, 404, 409, 413, 422, 503, waits=True))
+@router.post(
+    "/assets/{asset}/conditions.csv",
+    dependencies=[auth.ENGINEER, WAITING],
+    responses=answers(400, 401, 403, 404, 409, 413, 422, 503),
+)
 def add_table(
     asset: AssetName,
     parts: Parts,

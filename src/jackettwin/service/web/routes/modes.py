@@ -13,12 +13,10 @@ from jackettwin.service.web.dependencies import (
     AssetName,
     Parts,
     Route,
-    Versioned,
+    Told,
     Writes,
-    engineer,
     known_asset,
     known_version,
-    viewer,
 )
 from jackettwin.service.web.problems import ApiError, answers
 from jackettwin.service.web.schemas import (
@@ -41,10 +39,10 @@ AnyVersion = Annotated[int | None, Query(ge=1, le=1_000_000, description="Defaul
 When = Annotated[datetime | None, Query(description="The state as it was then; default: now.")]
 
 
-@router.get("/assets/{asset}/modes", **viewer(404, 422))
+@router.get("/assets/{asset}/modes", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def modes(
     asset: AssetName,
-    connection: Versioned,
+    connection: Told,
     label: Annotated[str | None, Query(max_length=64)] = None,
     since: Annotated[datetime | None, Query(alias="from")] = None,
     until: Annotated[datetime | None, Query(alias="to")] = None,
@@ -57,30 +55,30 @@ def modes(
     return said.modes(connection, version, label, *window, cursor, limit)
 
 
-@router.get("/assets/{asset}/twin", **viewer(404, 422))
+@router.get("/assets/{asset}/twin", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def twin(
-    asset: AssetName, parts: Parts, connection: Versioned, at: When = None, version: AnyVersion = None
+    asset: AssetName, parts: Parts, connection: Told, at: When = None, version: AnyVersion = None
 ) -> TwinOut:
     """Return what the twin knows at a time: mean modes and parameters with their intervals."""
     asked = known_version(connection, asset, version)
     return said.twin(connection, parts, asked, signals.with_zone(at, "at"))
 
 
-@router.get("/assets/{asset}/comparison", **viewer(404, 422))
+@router.get("/assets/{asset}/comparison", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def comparison(
     asset: AssetName,
     version: Annotated[int, Query(ge=1, le=1_000_000)],
     parts: Parts,
-    connection: Versioned,
+    connection: Told,
 ) -> ComparisonOut:
     """Return what another version of the twin knows of the same records beside the adopted one."""
     adopted, other = known_asset(connection, asset), known_version(connection, asset, version)
     return said.compared(connection, parts, adopted, other)
 
 
-@router.get("/assets/{asset}/damping-budget", **viewer(404, 422))
+@router.get("/assets/{asset}/damping-budget", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def damping_budget(
-    asset: AssetName, parts: Parts, connection: Versioned, at: When = None, version: AnyVersion = None
+    asset: AssetName, parts: Parts, connection: Told, at: When = None, version: AnyVersion = None
 ) -> Page[BudgetOut]:
     """Return whose damping it is, mode by mode; empty for a time in the past, which nobody updated to."""
     asked = known_version(connection, asset, version)
@@ -88,17 +86,17 @@ def damping_budget(
     return Page(items=found.parameters.get("budget", []))
 
 
-@router.get("/assets/{asset}/life", **viewer(404, 422))
-def life(asset: AssetName, connection: Versioned) -> Page[dict[str, object]]:
+@router.get("/assets/{asset}/life", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def life(asset: AssetName, connection: Told) -> Page[dict[str, object]]:
     """Return the life at every joint; empty until the twin computes fatigue."""
     known_asset(connection, asset)
     return Page(items=[])
 
 
-@router.get("/assets/{asset}/findings", **viewer(404, 422))
+@router.get("/assets/{asset}/findings", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def findings(
     asset: AssetName,
-    connection: Versioned,
+    connection: Told,
     severity: Literal["info", "warning", "alarm"] | None = None,
     cursor: Cursor = None,
     limit: Limit = 100,
@@ -107,15 +105,15 @@ def findings(
     return said.findings(connection, known_asset(connection, asset), severity, cursor, limit)
 
 
-@router.get("/assets/{asset}/alarms", **viewer(404, 422))
-def alarms(
-    asset: AssetName, connection: Versioned, cursor: Cursor = None, limit: Limit = 100
-) -> Page[AlarmOut]:
+@router.get("/assets/{asset}/alarms", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def alarms(asset: AssetName, connection: Told, cursor: Cursor = None, limit: Limit = 100) -> Page[AlarmOut]:
     """List the findings that ask for a person, newest first, and who took note."""
     return said.alarms(connection, known_asset(connection, asset), cursor, limit)
 
 
-@router.post("/alarms/{alarm_id}/acknowledge", **engineer(400, 404, 422))
+@router.post(
+    "/alarms/{alarm_id}/acknowledge", dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 404, 422)
+)
 def acknowledge(
     alarm_id: Annotated[int, said.RowNumber],
     body: Acknowledgement,
@@ -142,6 +140,6 @@ def acknowledge(
     response_class=Response,
     responses={200: {"content": {"application/vnd.apache.parquet": {}}}, **answers(401, 422)},
 )
-def export(connection: Versioned, table: Literal["modes", "findings", "records"] = "modes") -> Response:
+def export(connection: Told, table: Literal["modes", "findings", "records"] = "modes") -> Response:
     """Return a whole table as Parquet."""
     return Response(said.as_parquet(connection, table), media_type="application/vnd.apache.parquet")

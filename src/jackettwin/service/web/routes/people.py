@@ -7,7 +7,7 @@ from datetime import timedelta
 from fastapi import APIRouter, Request, Response
 
 from jackettwin.service.web import auth
-from jackettwin.service.web.dependencies import CONNECTED, Asker, Parts, Reads, Route, Writes, admin, viewer
+from jackettwin.service.web.dependencies import CONNECTED, Asker, Parts, Reads, Route, Writes
 from jackettwin.service.web.problems import ApiError, answers
 from jackettwin.service.web.schemas import Login, Me, NewToken, NewUser, Page, Token, UserOut
 from jackettwin.store import people
@@ -27,7 +27,7 @@ def login(body: Login, request: Request, response: Response, parts: Parts) -> Me
     return Me(name=user.name, role=user.role, csrf_token=csrf)  # type: ignore[arg-type]
 
 
-@router.post("/logout", status_code=204, **viewer(403))
+@router.post("/logout", status_code=204, dependencies=[auth.VIEWER], responses=answers(401, 403))
 def logout(request: Request, response: Response, connection: Writes) -> None:
     """End the session or token that asks."""
     secret = request.cookies.get(auth.COOKIE) or request.headers.get("authorization", "").partition(" ")[2]
@@ -35,20 +35,20 @@ def logout(request: Request, response: Response, connection: Writes) -> None:
     response.delete_cookie(auth.COOKIE)
 
 
-@router.get("/me", **viewer())
+@router.get("/me", dependencies=[auth.VIEWER], responses=answers(401))
 def me(who: Asker) -> Me:
     """Tell who asks."""
     return Me(name=who.name, role=who.role, csrf_token=who.csrf or None)  # type: ignore[arg-type]
 
 
-@router.get("/users", **admin())
+@router.get("/users", dependencies=[auth.ADMIN], responses=answers(401, 403))
 def users(connection: Reads) -> Page[UserOut]:
     """List the users."""
     items = [UserOut.model_validate(user, from_attributes=True) for user in people.list_users(connection)]
     return Page(items=items)
 
 
-@router.post("/users", status_code=201, **admin(400, 422))
+@router.post("/users", status_code=201, dependencies=[auth.ADMIN], responses=answers(400, 401, 403, 422))
 def add_user(body: NewUser, who: Asker, parts: Parts, connection: Writes) -> UserOut:
     """Add a user, or give one another role and password."""
     user = people.User(body.name, body.role, auth.hashed(body.password), parts.now())
@@ -57,12 +57,14 @@ def add_user(body: NewUser, who: Asker, parts: Parts, connection: Writes) -> Use
     return UserOut.model_validate(user, from_attributes=True)
 
 
-@router.post("/tokens", status_code=201, **viewer(400, 403, 409, 422))
+@router.post(
+    "/tokens", status_code=201, dependencies=[auth.VIEWER], responses=answers(400, 401, 403, 409, 422)
+)
 def add_token(body: NewToken, who: Asker, parts: Parts, connection: Writes) -> Token:
     """Make a token with one's own role, for a machine."""
     if who.kind == "open":
         raise ApiError(409, "this server is open to its own machine; define a user first")
     lasts = timedelta(days=body.days)
-    secret, _ = people.new_grant(connection, who.name, "token", body.label, parts.now(), lasts)
+    secret, _ = auth.new_grant(connection, who.name, "token", body.label, parts.now(), lasts)
     people.note_down(connection, who.name, "token add", body.label, "ok", parts.now())
     return Token(token=secret, expires_utc=parts.now() + lasts)

@@ -15,12 +15,10 @@ from jackettwin.service.web.dependencies import (
     Parts,
     RecordId,
     Route,
-    Versioned,
+    Told,
     Writes,
-    engineer,
     known_asset,
     known_record,
-    viewer,
 )
 from jackettwin.service.web.problems import ApiError, answers
 from jackettwin.service.web.schemas import (
@@ -67,10 +65,10 @@ def add_record(
     return RecordAccepted(record_id=taken.record_id, job_id=taken.job_id, records=taken.records)
 
 
-@router.get("/assets/{asset}/records", **viewer(404, 422))
+@router.get("/assets/{asset}/records", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def list_records(
     asset: AssetName,
-    connection: Versioned,
+    connection: Told,
     since: Annotated[datetime | None, Query(alias="from")] = None,
     until: Annotated[datetime | None, Query(alias="to")] = None,
     status: Status | None = None,
@@ -91,8 +89,8 @@ def list_records(
     return Page(items=[signals.record_out(r) for r in found], next_cursor=more)
 
 
-@router.get("/records/{record_id}", **viewer(404, 422))
-def get_record(record_id: RecordId, connection: Versioned) -> RecordOut:
+@router.get("/records/{record_id}", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def get_record(record_id: RecordId, connection: Told) -> RecordOut:
     """Return a record and how far it got."""
     return signals.record_out(known_record(connection, record_id))
 
@@ -122,19 +120,30 @@ def signal(
     return found
 
 
-@router.get("/records/{record_id}/spectrum", **viewer(404, 422, waits=True))
+@router.get(
+    "/records/{record_id}/spectrum", dependencies=[auth.VIEWER, WAITING], responses=answers(401, 404, 422)
+)
 def spectrum(record_id: RecordId, parts: Parts) -> Spectra:
     """Return the power spectral densities of a record's channels."""
     return signals.spectra(signals.samples(parts, record_id))
 
 
-@router.get("/records/{record_id}/stabilisation", **viewer(404, 422, 503, waits=True))
+@router.get(
+    "/records/{record_id}/stabilisation",
+    dependencies=[auth.VIEWER, WAITING],
+    responses=answers(401, 404, 422, 503),
+)
 def stabilisation(record_id: RecordId, parts: Parts) -> StabilisationOut:
     """Return the poles of every model order, computed anew by a worker."""
     return uploads.stabilisation(parts, record_id)
 
 
-@router.put("/records/{record_id}/picks", status_code=202, **engineer(400, 404, 422))
+@router.put(
+    "/records/{record_id}/picks",
+    status_code=202,
+    dependencies=[auth.ENGINEER],
+    responses=answers(400, 401, 403, 404, 422),
+)
 def picks(record_id: RecordId, body: PicksIn, who: Asker, parts: Parts, connection: Writes) -> RecordAccepted:
     """Choose the poles of a record by hand; it is identified again, and who chose when is kept."""
     record = known_record(connection, record_id)
@@ -144,7 +153,11 @@ def picks(record_id: RecordId, body: PicksIn, who: Asker, parts: Parts, connecti
     return RecordAccepted(record_id=record_id, job_id=job_id)
 
 
-@router.post("/records/{record_id}/set-aside", **engineer(400, 404, 422))
+@router.post(
+    "/records/{record_id}/set-aside",
+    dependencies=[auth.ENGINEER],
+    responses=answers(400, 401, 403, 404, 422),
+)
 def set_aside(
     record_id: RecordId, body: Acknowledgement, who: Asker, parts: Parts, connection: Writes
 ) -> RecordOut:

@@ -1,4 +1,4 @@
-"""The clusters of poles that picks mean, in the place of those that the criteria choose."""
+"""Picks take the place of the criteria on clusters of poles."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jackettwin.errors import InputError, require
+from jackettwin.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -15,33 +15,31 @@ if TYPE_CHECKING:
     from jackettwin.identification.estimate import Stabilisation
     from jackettwin.identification.picks import Pick
     from jackettwin.identification.selection.candidates import Candidate
-    from jackettwin.identification.selection.clustering import PoleCluster
+    from jackettwin.identification.selection.clustering import Cluster
 
 REACH = 0.02
 """Largest relative distance of a picked frequency from a pole."""
 
 
-def picked_clusters(
-    poles: Stabilisation, found: Sequence[PoleCluster], picks: Sequence[Pick]
-) -> list[PoleCluster]:
-    """Return the cluster of every picked pole; that pole becomes the representative of the cluster.
+def picked_clusters(poles: Stabilisation, found: Sequence[Cluster], picks: Sequence[Pick]) -> list[Cluster]:
+    """Return for every pick the cluster of its pole, which then speaks for the cluster.
 
     Raises
     ------
     InputError
         If there is no pole near a pick, two picks mean one pole, or the pole belongs to no mode.
     """
-    out: dict[int, PoleCluster] = {}
+    out: dict[int, Cluster] = {}
     for pick in picks:
         k = _pole(poles, found, pick)
-        require(
-            k not in out,
-            "two picks mean one pole",
-            field="picks",
-            value=pick.frequency_hz,
-            allowed=f"a pole once, here that at {poles.frequency_hz[k]:.6g} Hz",
-            remedy="remove one of them",
-        )
+        if k in out:
+            raise InputError(
+                "two picks mean one pole",
+                field="picks",
+                value=pick.frequency_hz,
+                allowed=f"a pole once, here that at {poles.frequency_hz[k]:.6g} Hz",
+                remedy="remove one of them",
+            )
         cluster = next((c for c in found if k in c.poles), None)
         if cluster is None:
             raise InputError(
@@ -56,27 +54,27 @@ def picked_clusters(
 
 
 def with_verdicts(picks: Sequence[Pick], judged: Sequence[Candidate]) -> list[Candidate]:
-    """Return the candidates without objections, and in doubt only where the pick says so."""
+    """Return the candidates as the picks want them: no objection, and doubt only where it is said."""
     return [
         replace(c, objection=None, doubt=(c.doubt or "doubtful by the picks") if pick.doubtful else None)
         for pick, c in zip(picks, judged, strict=True)
     ]
 
 
-def left_out(judged: Sequence[Candidate], picked: Sequence[PoleCluster]) -> tuple[str, ...]:
-    """Name the modes that would be taken without picks but are not picked: a fit of the band lacks them."""
+def left_out(judged: Sequence[Candidate], picked: Sequence[Cluster]) -> tuple[str, ...]:
+    """Say which modes would have been taken without picks and no pick means: a fit of the band lacks them."""
     taken = {int(k) for cluster in picked for k in cluster.poles}
     free = [c for c in judged if c.objection is None and c.doubt is None]
     f = [c.mode.frequency_hz for c in free if not taken & {int(k) for k in c.cluster.poles}]
     if not f:
         return ()
     return (
-        f"the picks leave out modes at {', '.join(f'{x:.4g}' for x in sorted(f))} Hz: the spectral model is "
-        f"fitted without them; pick them too, or narrow the band",
+        f"the picks leave out modes at {', '.join(f'{x:.4g}' for x in sorted(f))} Hz: what is fitted to the "
+        f"spectrum lacks them; pick them too, or narrow the band",
     )
 
 
-def _pole(poles: Stabilisation, found: Sequence[PoleCluster], pick: Pick) -> int:
+def _pole(poles: Stabilisation, found: Sequence[Cluster], pick: Pick) -> int:
     """Return the position of the pole meant by a pick."""
     if pick.order is None:
         among = np.array([c.representative for c in found], dtype=np.int64)

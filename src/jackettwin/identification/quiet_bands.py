@@ -1,9 +1,9 @@
-"""Modes that stronger, slower modes hide from the covariances.
+"""Modes that the loudest ones hide: poles once more above them, wherever a peak is left without a mode.
 
-The first modes of a tower move it a thousand times as strongly as its fifth. The sampling errors of their
-covariances then exceed what the fifth mode contributes, although its peak is clear in the spectrum of a
-channel. For each clear peak that no candidate explains, the samples are therefore high-passed below the peak,
-and poles are sought in the octave that begins there.
+The first modes of a tower move it a thousand times as strongly as its fifth. The errors of their covariances
+then exceed what the fifth leaves in them, while its peak stands clear in the spectrum of a channel. So for
+each clear peak that no candidate explains the samples are freed of all that is slower, and poles are sought
+in the octave that begins there.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.selection.candidates import Tones, candidates, find_tones
 from jackettwin.identification.selection.clustering import clusters
 from jackettwin.identification.selection.peaks import clear_peaks_hz
-from jackettwin.identification.selection.shorter_window import HigherBand
+from jackettwin.identification.selection.second_look import QuietBand
 from jackettwin.identification.tones.steady_tones import without_tones
 from jackettwin.records.processing.filters import lowpass_taps, resample
 from jackettwin.records.processing.tones import less_phase
@@ -30,36 +30,36 @@ from jackettwin.records.processing.tones import less_phase
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from jackettwin.identification.preparation.prepare import Prepared
+    from jackettwin.identification.preparation.prepared import Prepared
     from jackettwin.identification.selection.candidates import Candidate
-    from jackettwin.identification.selection.clustering import PoleCluster
+    from jackettwin.identification.selection.clustering import Cluster
     from jackettwin.identification.settings import IdentificationSettings
 
 EXPLAINS = 3.0
-"""Half bandwidths of a mode, or lines of the spectrum, within which a peak is explained by the mode."""
+"""Half bandwidths of a mode, or lines of the spectrum, within which a peak is its own."""
 TRANSITION = 0.8
 """Stop edge of the filter as a share of its pass edge, the lower edge of the band."""
 WINDOW_CYCLES = 2.5
-"""Length of the lag window in cycles of the lower edge: a weak mode is found only from its full decay."""
+"""Block rows in cycles of the lower edge: what is sought is quiet, and needs its full decay."""
 OCTAVE = 2.0
-"""Upper end of the range in which modes are taken from a band, over the peak that the band was made for."""
+"""Modes are taken from a band up to so many times the peak it was made for."""
 MOST_BANDS = 2
 SAME_SHAPE = 0.8
-"""Least MAC of two candidates of about one frequency that are one mode."""
+"""MAC from which two candidates of one frequency are one."""
 
 
 @dataclass(frozen=True)
 class PoleSearch:
-    """Poles of one or several bands, the candidates for modes among them, and the tones."""
+    """Poles of one or several bands, the candidates among them, and the tones."""
 
     poles: Stabilisation
     judged: list[Candidate]
     tones: Tones
-    bands: tuple[HigherBand, ...] = ()
+    bands: tuple[QuietBand, ...] = ()
 
 
-def search_poles(ready: Prepared, settings: IdentificationSettings) -> PoleSearch:
-    """Find poles in prepared samples, and judge the candidates for modes among them."""
+def searched(ready: Prepared, settings: IdentificationSettings) -> PoleSearch:
+    """Return poles and judged candidates of the prepared samples."""
     poles = poles_of(ready, settings)
     resolved = ready.settings
     found = clusters(poles, distance=settings.cluster_distance, orders=resolved.orders, scale=ready.scale)
@@ -70,7 +70,7 @@ def search_poles(ready: Prepared, settings: IdentificationSettings) -> PoleSearc
 
 def candidates_of(
     poles: Stabilisation,
-    found: Sequence[PoleCluster],
+    found: Sequence[Cluster],
     tones: Tones,
     ready: Prepared,
     settings: IdentificationSettings,
@@ -86,13 +86,13 @@ def candidates_of(
     )
 
 
-def with_hidden_modes(first: PoleSearch, ready: Prepared, settings: IdentificationSettings) -> PoleSearch:
-    """Add to a search the modes that it misses although they have clear peaks."""
+def with_quiet_bands(first: PoleSearch, ready: Prepared, settings: IdentificationSettings) -> PoleSearch:
+    """Return the search with what further bands add to it."""
     spectrum = welch(first.tones.clean, ready.settings.sample_rate_hz)
     out, above = first, 0.0
     for _ in range(MOST_BANDS):
         peaks = [f for f in clear_peaks_hz(spectrum.frequencies_hz, spectrum.density) if f > above]
-        left = [f for f in peaks if not _is_explained(f, float(spectrum.frequencies_hz[1]), out, ready)]
+        left = [f for f in peaks if not _explained(f, float(spectrum.frequencies_hz[1]), out, ready)]
         if not left:
             break
         above = OCTAVE * left[0]
@@ -101,8 +101,8 @@ def with_hidden_modes(first: PoleSearch, ready: Prepared, settings: Identificati
     return out
 
 
-def _is_explained(peak_hz: float, line_hz: float, search: PoleSearch, ready: Prepared) -> bool:
-    """Tell whether a peak lies outside the band, or belongs to a mode or a tone that is known."""
+def _explained(peak_hz: float, line_hz: float, search: PoleSearch, ready: Prepared) -> bool:
+    """Tell whether a peak lies outside the band, or is that of a mode or of a tone."""
     resolved, tones = ready.settings, search.tones
     if not resolved.lowest_frequency_hz < peak_hz < resolved.highest_frequency_hz:
         return True
@@ -116,7 +116,7 @@ def _is_explained(peak_hz: float, line_hz: float, search: PoleSearch, ready: Pre
 
 
 def _above(ready: Prepared, low_hz: float) -> Prepared:
-    """Return the samples high-passed at the lower edge of a band, and scaled to unit variance again."""
+    """Return the samples freed of all that is slower than a band's lower edge, of unit variance again."""
     rate = ready.settings.sample_rate_hz
     fast = ready.y - resample(ready.y, lowpass_taps(TRANSITION * low_hz / rate, low_hz / rate))
     scale = np.sqrt(np.nanmean(fast**2, axis=1))
@@ -133,8 +133,8 @@ def _above(ready: Prepared, low_hz: float) -> Prepared:
 
 
 def _joined(out: PoleSearch, ready: Prepared, high_hz: float, settings: IdentificationSettings) -> PoleSearch:
-    """Add the candidates of one band to a search; where two mean one mode, the less doubtful one stays."""
-    more, offset = search_poles(ready, settings), len(out.poles.order)
+    """Return the search with the candidates of one band more; of two for one mode the less doubtful one."""
+    more, offset = searched(ready, settings), len(out.poles.order)
     if not len(more.poles.order):
         return out
     low_hz = ready.settings.lowest_frequency_hz
@@ -151,12 +151,12 @@ def _joined(out: PoleSearch, ready: Prepared, high_hz: float, settings: Identifi
         _together(out.poles, more.poles),
         sorted(kept, key=lambda c: c.mode.frequency_hz),
         _tones(out.tones, more.tones, ready, offset),
-        (*out.bands, HigherBand(ready, (low_hz, high_hz))),
+        (*out.bands, QuietBand(ready, (low_hz, high_hz))),
     )
 
 
 def _tones(known: Tones, more: Tones, ready: Prepared, offset: int) -> Tones:
-    """Join the tones of both searches, and subtract the new ones from the samples."""
+    """Return the tones of both, all samples freed of those that are new."""
     clean, new = known.clean, [t for t in more.drifting if not any(t is k for k in known.drifting)]
     for tone in new:
         clean = less_phase(clean, tone.phase(clean.shape[1]))
@@ -177,7 +177,7 @@ def _same(one: Candidate, other: Candidate, scale: FloatArray) -> bool:
     return abs(a.frequency_hz / b.frequency_hz - 1.0) < reach and alike
 
 
-def _moved(cluster: PoleCluster, offset: int) -> PoleCluster:
+def _moved(cluster: Cluster, offset: int) -> Cluster:
     return replace(
         cluster,
         poles=cluster.poles + offset,
@@ -187,7 +187,7 @@ def _moved(cluster: PoleCluster, offset: int) -> PoleCluster:
 
 
 def _together(one: Stabilisation, other: Stabilisation) -> Stabilisation:
-    """Return the poles of both in one table; different bands may use the same model orders."""
+    """Return the poles of both; orders of different bands may be alike."""
     if not len(one.order):
         return other
     both: dict[str, Any] = {

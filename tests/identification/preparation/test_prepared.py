@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from jackettwin.identification.preparation import prepare as prepared
-from jackettwin.identification.preparation.prepare import prepare
+from jackettwin.identification.preparation import prepared
+from jackettwin.identification.preparation.prepared import prepare
 from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.identification.synthetic import simulate
 

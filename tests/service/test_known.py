@@ -12,7 +12,7 @@ from tests.service.conftest import NOON
 from tests.support.observations import estimate, observation
 
 from jackettwin.service.workers import engine, verdict
-from jackettwin.service.workers.tasks import Question, infer
+from jackettwin.service.workers.tasks import Question, know
 from jackettwin.twin import OBSERVATION
 
 TWIN = """structure: jacket15
@@ -37,7 +37,7 @@ def asked_of(folder: Path, modes: dict) -> tuple[dict, str]:
         "wtg", 1, str(folder), {"2025-03-01": "a"}, {"2025-03-01": folded.document}, tuple(documents[:2]),
         (3, 1800.0), of="it",
     )  # fmt: skip
-    outcome = infer(asked)
+    outcome = know(asked)
     assert outcome.page is not None and outcome.of == "it"
     return json.loads(outcome.document)["known"], gzip.decompress(outcome.page).decode()
 
@@ -81,6 +81,6 @@ def test_the_page_is_of_all_records(answered: tuple[dict, str]) -> None:
 
 def test_without_a_day_nothing_is_known(tmp_path: Path) -> None:
     """All its records were superseded before it was asked."""
-    outcome = infer(Question("wtg", 1, str(tmp_path), {}, {}, of="it"))
+    outcome = know(Question("wtg", 1, str(tmp_path), {}, {}, of="it"))
     assert outcome is not None and outcome.of == "it"
     assert json.loads(outcome.document)["known"]["status"] == verdict.NO_MODE

@@ -17,7 +17,7 @@ from jackettwin.service import adopt_version, rebuild
 from jackettwin.service.answer_cache import Answer, AnswerCache, has_tag
 from jackettwin.service.context import Service
 from jackettwin.service.web.app import create_app
-from jackettwin.service.web.dependencies import Versioned
+from jackettwin.service.web.dependencies import Told
 from jackettwin.service.web.routes import assets, modes, records
 from jackettwin.service.work.housekeeping import Housekeeping, prune
 from jackettwin.store import journal, results, writing
@@ -43,15 +43,15 @@ AGAIN = 2
 """Of an answer that is known: who asks, and which version."""
 
 
-def versioned() -> list[str]:
+def told() -> list[str]:
     """Return the paths of all routes whose answers change with an event only."""
     routes = [route for module in (assets, modes, records) for route in module.router.routes]
     hints = [(r.path, get_type_hints(inspect.unwrap(r.endpoint), include_extras=True)) for r in routes]
-    return [path for path, found in hints if Versioned in found.values()]
+    return [path for path, found in hints if Told in found.values()]
 
 
 def test_every_answer_about_assets_has_a_version() -> None:
-    assert set(versioned()) == set(QUERIES)
+    assert set(told()) == set(QUERIES)
 
 
 def filled(path: str, client: TestClient) -> str:
