@@ -1,1 +1,1 @@
-"""Free decays: found in a record, and identified as what they are."""
+"""Free decays: where they are in a record, and their modes."""

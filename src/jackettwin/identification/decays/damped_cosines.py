@@ -33,18 +33,18 @@ from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.signals import next_fast_len
 
 REWEIGHTED = 2
-"""Times the noise of each channel is estimated anew."""
+"""Number of times that the noise of each channel is estimated again."""
 MOST_DAMPING = 0.5
 CONVERGED = 1e-3
 """Slope that ends a fit, by parameters in units of their standard deviations."""
 MOST_STEPS = 40
-"""Of a fit; one that takes more leans against its bounds."""
+"""Most iterations of a fit; one that needs more rests against its bounds."""
 FARTHEST = 0.2
-"""Largest change of ln ω from where a mode started: farther is another mode."""
+"""Largest change of ln ω from the start of a fit: what lies farther away is another mode."""
 LEAST_AFTER = 0.125
 """Length of the noise after a decay, over the decay's, from which it tells more than what a fit leaves."""
 LEAST_NOISE = 1e-6
-"""Of a channel's rms: noise below it is not believed."""
+"""Least noise of a channel, as a share of its rms."""
 FEWEST_FREEDOM = 2.0
 """Degrees of freedom of a variance that rests on one line of noise."""
 

@@ -17,21 +17,21 @@ from jackettwin.arrays import FloatArray
 from jackettwin.signals import hann, next_fast_len
 
 CYCLES = 2.0
-"""Over which the power is smoothed."""
+"""Cycles of the strongest frequency over which the power is averaged."""
 LEAST_FALL = 1.0
-"""E-folds of the amplitude from its highest point to where it ends."""
+"""Least fall of the amplitude from its highest point to the end of the decay, in e-folds."""
 AGAIN = 1.0
-"""E-folds below the highest point, above which it never rises again after the fall."""
+"""After the decay the amplitude stays this many e-folds below its highest point."""
 FLOOR_SHARE = 1.5
-"""The decay ends where its amplitude is this multiple of what is there after it."""
+"""The decay ends where its amplitude is this multiple of the amplitude after it."""
 FEWEST_SAMPLES = 64
 """Shorter records cannot be identified at all; whoever looks for their band says so."""
 FEWEST_CYCLES = 8.0
-"""Of the strongest frequency in a decay."""
+"""Least number of cycles of the strongest frequency in a decay."""
 LATEST = 0.9
-"""Share of the record before which it begins."""
+"""Share of the record in which a decay must begin."""
 FLOOR_QUANTILE = 0.1
-"""Of the power after the highest point: what is there when nothing decays any more."""
+"""Quantile of the power after the highest point that is taken as the level without a decay."""
 
 
 @dataclass(frozen=True)

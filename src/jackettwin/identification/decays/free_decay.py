@@ -1,4 +1,4 @@
-"""A record of a structure that was let go: its modes from the decay, not from a spectrum of all of it."""
+"""The modes of a structure that was released, from its free decay."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ if TYPE_CHECKING:
 
 
 SAMPLES_A_CYCLE = 40.0
-"""Of the strongest frequency, at least: modes up to sixteen times as high are seen."""
+"""Least samples in a cycle of the strongest frequency: modes up to sixteen times as high are seen."""
 MOST_MISSING = 0.02
-"""Share of a channel's samples that are bridged; one with more is left out of a decay."""
+"""Largest share of a channel's samples that is interpolated; a channel that misses more is left out."""
 DEEP = 1.5
-"""E-folds of a decay from which ambient fading is hardly ever mistaken for one …"""
+"""Fall in e-folds from which fading ambient vibration is hardly ever mistaken for a free decay …"""
 MOSTLY = 0.88
 """… if damped cosines explain this share of it; responses to random forces leave more …"""
 NEARLY_ALL = 0.97
@@ -49,20 +49,20 @@ NEARLY_ALL = 0.97
 BRIEF = 0.1
 """Share of the record below which a decay may be a knock …"""
 A_KNOCK = 3.0
-"""… if it falls by fewer e-folds: of a structure that was let go the rest of the record tells less."""
+"""… if it falls by fewer e-folds: then the rest of the record tells more of the modes."""
 STILL_FORCED = 1.5
-"""Power that the fit leaves of the first quarter, over that of the rest: forces still act."""
+"""Residual power in the first quarter of a fit over that in the rest, from which forces still act."""
 LATER_STARTS = 8
-"""Times the start is put off by two cycles."""
+"""Number of times that the start is put off by two cycles."""
 HOPELESS = 0.8
 """Share of a decay that damped cosines explain, below which no later start makes it a free one: of those that
 end as one the first explains 0.95, of a shaking table that fades 0.3, wherever it begins."""
 CLEAR = 25.0
-"""Power of a mode over that of noise in its cosines, from which it is no doubt there."""
+"""Power of a mode over the noise power in its cosines, from which the mode is certain."""
 UNFORCED = 0.92
-"""Share of a decay that its modes explain, from which what forces do to it is in the intervals."""
+"""Share of a decay that its modes must explain for their intervals to cover the effect of forces."""
 LEAST_FOLDS = 1.0
-"""E-folds of its own that a mode falls by while it is watched."""
+"""Least number of e-folds by which a mode falls within the decay."""
 MOST_SPREAD = 0.5
 """Standard deviation of ln ζ from which the damping is unknown."""
 EXPLAINED_HALVES = 0.95
@@ -70,7 +70,7 @@ EXPLAINED_HALVES = 0.95
 CHANGES = 3.5
 """… and standard deviations between their ln ζ from which it is not one damping."""
 LEAST_CHANGE = 0.1
-"""Of ln ζ: less is no matter."""
+"""Least change of ln ζ that is reported."""
 MOST_SPREAD_OF_HALVES = 0.3
 """Standard deviation of ln ζ of either half up to which the two are compared."""
 

@@ -1,4 +1,4 @@
-"""Which damped cosines a decay holds: poles of a subspace fit, while they explain what noise does not."""
+"""The damped cosines of a decay: poles of a subspace fit, as long as they explain more than noise does."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from jackettwin.identification.subspace.ssi_cov import frequency_and_damping, or
 ORDERS = tuple(range(2, 26, 2))
 """Model orders whose poles are tried."""
 ROWS_CYCLES = 1.5
-"""Block rows in cycles of the strongest frequency …"""
+"""Number of block rows, in cycles of the strongest frequency …"""
 MOST_ROWS = 60
 """… and at most so many."""
 MOST_MODES = 6
 MOST_REFUSED = 3
-"""Poles that may turn out to be no modes until the search ends."""
+"""The search ends when so many poles have turned out to be no modes."""
 APART = 0.02
 """Two modes of a decay are farther apart than this share of their frequency."""
 NEAR = 0.25
@@ -33,9 +33,9 @@ was let go it is 0.7 and more, of random forces that fade 0.2 to 0.9."""
 SAME_COSINES = 1e-9
 """Of the largest eigenvalue of the cosines' products: smaller ones are differences of poles of one mode."""
 LEAST_RATIO = 12.0
-"""Power of a mode in the decay over what noise gives the same cosines, from which it is taken."""
+"""Least power of a mode over the power that noise has in the same cosines."""
 LIGHTEST, HEAVIEST = 2e-4, 0.12
-"""Damping ratios of the poles that are tried, and of the modes that are believed."""
+"""Range of the damping ratios of poles that are tried, and of modes that are accepted."""
 
 
 @dataclass(frozen=True)

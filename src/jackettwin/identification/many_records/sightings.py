@@ -1,4 +1,4 @@
-"""One mode in every record that holds it, as columns: all that a mean over records needs of it."""
+"""One mode through many records, as columns: what a mean over the records needs of it."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Tones of machines: found, taken out, and told from modes."""
+"""Tones of machines: how they are found, subtracted and told from modes."""

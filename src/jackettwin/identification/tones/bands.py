@@ -16,7 +16,7 @@ from jackettwin.identification.tones.envelopes import independent_values, least_
 from jackettwin.identification.tones.sinusoid import lines_around, regular
 
 TOGETHER = 2**18
-"""Elements of the signals that are held in memory together."""
+"""Most elements of the signals in memory at a time."""
 
 
 @dataclass(frozen=True)

@@ -28,23 +28,23 @@ if TYPE_CHECKING:
 DRIFTS = (0.02, 0.07, 0.15)
 """Half widths of the bands that hold the drift, as a share of their middle …"""
 FEWEST_LINES = 4.0
-"""… and at least so many lines of the record."""
+"""… and at least so many Fourier lines."""
 STEP = 0.7
-"""From one band to the next, in half widths."""
+"""Distance of neighbouring bands, in half widths."""
 WORTH_FOLLOWING = 0.5
 """Relative variance of the squared envelope below which a band is looked at closer."""
 WORTH_A_LOOK = 0.7
-"""The same at a pole, where less is asked: a tone of two thirds of the power leaves 0.55, a mode near 1."""
+"""The same at a pole, where less suffices: a tone of two thirds of the power leaves 0.55, a mode nearly 1."""
 STEADY_SHARE = 0.4
-"""Of the D asked of a tone at a pole, where its envelope in the band is steadier than that of a mode is."""
+"""Share of the usual D that suffices at a pole whose envelope is steadier than that of a mode."""
 FOLLOWED = 8
-"""Bands looked at closer, the steadiest first, until one holds a tone."""
+"""Most bands that are examined, the steadiest first, until one contains a tone."""
 LOWEST_LINE = 20.0
-"""Tones below this line of the record are not looked for."""
+"""Lowest Fourier line at which tones are sought."""
 HIGHEST = 0.4
-"""Of the sample rate: the highest band."""
+"""Highest band, as a share of the sample rate."""
 MOST = 9
-"""Tones taken out at most."""
+"""Most tones that are subtracted."""
 
 
 def drifting_tones(

@@ -23,15 +23,15 @@ FEWEST_LINES = 4.0
 STEADY = 0.25
 """Largest relative variance of the squared envelope of a steady tone; 1 for a Gaussian process."""
 SPREAD = 6.0
-"""Of v_n."""
+"""The 6 in the exponent of v_n."""
 MANY_VALUES = 12.0
 """2πζfT of a mode above which it is broader than a tone that drifts a little."""
 BANDWIDTHS = 3.0
 """Half width, in half bandwidths, of the band in which the envelope of a light mode is looked at."""
 SUSPICIOUS = 0.3
-"""Relative variance there of its square, below which it may be a tone."""
+"""Relative variance of the squared envelope there, below which the mode may be a tone."""
 LEAST_HALF_BANDWIDTH = 0.9
-"""In lines: a pole of a lesser one is not told from a tone, and counts as if it had this."""
+"""Least half bandwidth of a pole, in lines: narrower poles count as if they had it."""
 
 
 def envelope_variance(

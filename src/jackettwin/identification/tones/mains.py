@@ -1,12 +1,12 @@
-"""Lines of the mains: at 50 or 60 Hz, or where a slower sampling folds these to."""
+"""Tones of the mains: 50 or 60 Hz, or the frequencies to which slower sampling folds these."""
 
 from __future__ import annotations
 
 MAINS_HZ = (50.0, 60.0)
 WANDERS = 1e-3
-"""Share by which the frequency of the mains is off: ±0.05 Hz in a healthy grid of 50 Hz."""
+"""Largest relative deviation of the frequency of the mains: ±0.05 Hz in a healthy grid of 50 Hz."""
 LINES = 1.0
-"""Of a record, within which the frequency of a tone is known."""
+"""Uncertainty of the frequency of a tone, in Fourier lines."""
 
 
 def is_mains(frequency_hz: float, sample_rate_hz: float, duration_s: float) -> bool:

@@ -31,16 +31,16 @@ if TYPE_CHECKING:
     from scipy.interpolate import BSpline
 
 INTERVALS = (1, 4, 8, 16, 32)
-"""Of the spline: the fewest of these that leave little more than the most."""
+"""Numbers of intervals of the spline; the smallest is taken that fits nearly as well as the largest."""
 HOPELESS = 0.1
 """Share of the least ratio below which no simpler phase is tried; bands of modes have 0.02 to 0.07."""
 LITTLE_MORE = 3.0
-"""In powers."""
+"""Largest loss of D for a simpler phase, as a factor."""
 ROUNDS = 4
-"""Times the phase is corrected."""
+"""Number of corrections of the phase."""
 DEGREE = 3
 END = 0.02
-"""Share of the record."""
+"""Share of the record at either end where the frequency is not read off."""
 LEAST_RATIO = 120.0
 """D of a tone whose phase is a straight line …"""
 RATIO_A_COEFFICIENT = 12.0

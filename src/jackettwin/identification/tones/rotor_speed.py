@@ -33,28 +33,28 @@ PAIRS = ((3, 1, 3), (2, 3, 6))
 ORDERS = (1, 3, 6)
 """Multiples of the speed at which three blades excite a tower …"""
 HIGHER = range(9, 31, 3)
-"""… and where they excite it if a tone is there: higher ones pass most modes, and most are not seen."""
+"""… and multiples that count only where a tone is found: most of them cannot be seen."""
 SEEN = 8.0
 """D (``sinusoid.py``) along the phase that the speed gives a higher order. Of an offshore turbine at rated
 speed the orders 9 to 24 have 9 to 60, other multiples up to 5; modes where an order would be up to 3."""
 WIDTHS = (0.015, 0.05)
 """Half widths of the bands, as a share of their middle …"""
 FEWEST_LINES = 5.0
-"""… and at least so many lines of the record."""
+"""… and at least so many Fourier lines."""
 STEP = 0.5
-"""From one band to the next, in half widths."""
+"""Distance of neighbouring bands, in half widths."""
 HIGHEST = 0.45
-"""Of the sample rate: the highest band."""
+"""Highest band, as a share of the sample rate."""
 LEAST_SPEED_HZ, MOST_SPEED_HZ = 0.04, 0.6
-"""2.4 to 36 revolutions a minute."""
+"""Range of the rotor's speed: 2.4 to 36 revolutions a minute."""
 SHIFTS = 16
-"""Of one signal against the other, at most so many parts of the record."""
+"""Number of shifts of one signal against the other, which show what coherence chance gives."""
 LEAST_COHERENCE = 0.6
-"""C of two orders, whose bands hold modes and noise as well …"""
+"""Least C of two orders, whose bands contain modes and noise as well …"""
 MARGIN = 0.3
-"""… and by how much it exceeds that of every shift."""
+"""… and the least excess over the C of every shift."""
 CERTAIN = 0.93
-"""C of two orders that is believed without: tones that hardly drift are coherent however they are shifted."""
+"""C of two orders that needs no such excess: tones that hardly drift are coherent at any shift."""
 PASSING = (2.0, 98.0)
 """Percentiles of the speed between which an order passes."""
 SMOOTHED = 0.03

@@ -23,21 +23,21 @@ from numpy import fft
 from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 
 LINES = 4
-"""Lines on either side that a mode fills as well …"""
+"""Lines on either side that a mode would fill as well …"""
 FEWEST_LINES = 12
-"""… and that make the covariance of the background, at least, …"""
+"""… and the least number that gives the covariance of the background, …"""
 LINES_A_CHANNEL = 1.5
-"""… and for each channel."""
+"""… or so many for each channel, if that is more."""
 REACH = 2
 """Lines on either side on which a tone leaks most: no background where none is subtracted."""
 LIFT = 1e-3
 """Share of each channel's power added to the covariance of the background, which may be singular."""
 FARTHEST = 0.7
-"""Lines between which the frequency is sought: a line nearer would be the larger."""
+"""Largest distance of the frequency from the strongest line, in lines."""
 OFFSETS = 21
-"""Frequencies tried there, and again between the neighbours of the best."""
+"""Number of frequencies that are tried, and again between the neighbours of the best."""
 ROUNDS = 3
-"""Times a sinusoid is fitted, each with the background of the one before."""
+"""Number of fits, each with the background that the previous one leaves."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Find steady tones in a record and take them out, so that what is left is what random forces did.
+"""Find steady tones in a record and subtract them, so that the response to random forces is left.
 
 Where a line stands out of those around it, a sinusoid is fitted (``sinusoid.py``). With several channels a
 tone need not outweigh a mode to be seen beside it, or within its peak: it moves them otherwise. One that
@@ -32,15 +32,15 @@ if TYPE_CHECKING:
 
 
 NEAREST_LINE = 8
-"""Tones below this line of the record are not looked for."""
+"""Lowest Fourier line at which tones are sought."""
 WORTH_A_LOOK = 4.0
 """Power of a line over that of the background, whitened, from which a sinusoid is fitted to it."""
 ELEMENTS = 2**18
-"""Of the covariances of lines that are held in memory together."""
+"""Most elements of the covariances of lines in memory at a time."""
 MOST = 30
-"""Tones taken out at most."""
+"""Most tones that are subtracted."""
 MUCH_MORE = 4.0
-"""Of the D of a straight phase: the D of a bent one that is believed."""
+"""Least D of a curved phase, over that of a straight one."""
 
 
 def steady_tones(
