@@ -59,10 +59,7 @@ def _resultants(scenario: Scenario) -> dict[str, FloatArray]:
         parts["wind"] = _of_wind(scenario, scenario.air, assembly)
     if not parts:
         raise InputError(
-            "nothing loads the asset",
-            file=scenario.path,
-            field="waves",
-            remedy="add waves, current or wind",
+            "nothing loads the asset", file=scenario.path, field="waves", remedy="add waves, current or wind"
         )
     return parts
 

@@ -49,11 +49,7 @@ class Budget:
 
 
 def damping_budget(
-    model: SupportModel,
-    theta: FloatArray,
-    modes: tuple[int, ...],
-    *,
-    draws: FloatArray | None = None,
+    model: SupportModel, theta: FloatArray, modes: tuple[int, ...], *, draws: FloatArray | None = None
 ) -> Budget:
     """Return the damping budget at a parameter vector.
 

@@ -89,13 +89,7 @@ class SupportModel:
             return self
         pinned_hz = numbered_modes(self.assembly, mode).frequency_hz
         condensed = condensed_for(
-            self.assembly,
-            self.tie_groups,
-            self.rayleigh,
-            self.nuisance,
-            pinned_hz,
-            mode,
-            self.fastest_rate,
+            self.assembly, self.tie_groups, self.rayleigh, self.nuisance, pinned_hz, mode, self.fastest_rate
         )
         return replace(self, condensed=condensed, highest_mode=mode)
 

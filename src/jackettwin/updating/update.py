@@ -193,12 +193,7 @@ def update(
         If no start of the search ends in a minimum.
     """
     found = search(
-        problem,
-        method=method,
-        starts=starts,
-        seed=seed,
-        most_evaluations=most_evaluations,
-        progress=progress,
+        problem, method=method, starts=starts, seed=seed, most_evaluations=most_evaluations, progress=progress
     )
     shown = problem.states[0].residuals.modes if modes is None else modes
     model = problem.model.reaching(max(shown))

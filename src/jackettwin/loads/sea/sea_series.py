@@ -34,12 +34,7 @@ class SeaSeries(NamedTuple):
 
 
 def sea_series(
-    sea: AirySea,
-    points: FloatArray,
-    *,
-    period: float,
-    n_times: int,
-    scattered: ComplexArray | None = None,
+    sea: AirySea, points: FloatArray, *, period: float, n_times: int, scattered: ComplexArray | None = None
 ) -> SeaSeries:
     """Return what ``sea`` does at points (n, 3) at ``n_times`` even times of one ``period`` [s].
 

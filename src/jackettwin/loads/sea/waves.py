@@ -111,10 +111,7 @@ class AirySea:
         require_between("depth", self.depth, 0.1, 12e3)
         if self.stretching not in STRETCHING:
             raise InputError(
-                "unknown stretching",
-                field="stretching",
-                value=self.stretching,
-                allowed=", ".join(STRETCHING),
+                "unknown stretching", field="stretching", value=self.stretching, allowed=", ".join(STRETCHING)
             )
 
     @cached_property

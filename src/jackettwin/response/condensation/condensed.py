@@ -159,10 +159,7 @@ def condense(system: System, *, below_hz: float, spread: tuple[Matrix, ...] = ()
     terms, mid = inside.terms(scale, n_retained, radius)
     T = np.zeros((full.n, b.size + n_retained))
     T[b, np.arange(b.size)] = scale
-    T[inside.i, : b.size], T[inside.i, b.size :] = (
-        inside.constraint * scale,
-        inside.phi[:, :n_retained],
-    )
+    T[inside.i, : b.size], T[inside.i, b.size :] = (inside.constraint * scale, inside.phi[:, :n_retained])
     pencil = Pencil(
         _symmetric(T.T @ (full.M @ T)),
         _symmetric(T.T @ (full.K @ T)),

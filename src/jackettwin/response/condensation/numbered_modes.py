@@ -75,10 +75,7 @@ class Points:
         """Return the same structures without any damping: the static stiffness of every law."""
         rows = static_rows(self.rows)
         return Points(
-            rows,
-            np.zeros_like(self.rayleigh),
-            np.zeros((*rows.shape, 0)),
-            np.zeros((len(rows), 2, 0)),
+            rows, np.zeros_like(self.rayleigh), np.zeros((*rows.shape, 0)), np.zeros((len(rows), 2, 0))
         )
 
 
@@ -115,15 +112,13 @@ class NumberedModes:
 
     def some(self, which: npt.NDArray[Any]) -> NumberedModes:
         """Return some of the sets, or the same ones in another order."""
-        return self._with({name: getattr(self, name)[which] for name in self._filled()})
+        return replace(self, **{name: getattr(self, name)[which] for name in self._filled()})
 
     def joined(self, other: NumberedModes) -> NumberedModes:
         """Return these sets and then those of another result for the same modes."""
-        names = self._filled()
-        return self._with({n: np.concatenate([getattr(self, n), getattr(other, n)]) for n in names})
-
-    def _with(self, arrays: dict[str, Any]) -> NumberedModes:
-        return replace(self, **arrays)
+        both = {name: (getattr(self, name), getattr(other, name)) for name in self._filled()}
+        joined: dict[str, Any] = {name: np.concatenate(pair) for name, pair in both.items()}
+        return replace(self, **joined)
 
     def start(self, modes: tuple[int, ...], n_sets: int) -> Start:
         """Return where the continuation of modes by number starts; a mode that is not among these is NaN."""

@@ -63,11 +63,7 @@ def seen_from(heading_rad: float, motion: npt.NDArray[Any]) -> npt.NDArray[Any]:
 
 
 def aligned(
-    assembly: Assembly,
-    values: npt.NDArray[Any],
-    shapes: npt.NDArray[Any],
-    *,
-    heading_rad: float = 0.0,
+    assembly: Assembly, values: npt.NDArray[Any], shapes: npt.NDArray[Any], *, heading_rad: float = 0.0
 ) -> npt.NDArray[Any]:
     """Return the shapes with those of inseparable values turned to the axes: first what moves most along x.
 

@@ -83,11 +83,7 @@ class TrueMode:
 
 def build_model(scenario: Scenario) -> Model:
     """Return the asset of a scenario in still air, its tower tuned if that is asked."""
-    return asset_model(
-        scenario.asset,
-        sea=scenario.sea,
-        yaw=scenario.heading_rad,
-    )
+    return asset_model(scenario.asset, sea=scenario.sea, yaw=scenario.heading_rad)
 
 
 def asset_model(asset: Asset, *, sea: Sea | None = None, yaw: float = 0.0) -> Model:

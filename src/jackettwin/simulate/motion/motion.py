@@ -97,11 +97,7 @@ def _motion(scenario: Scenario) -> Motion:
         states,
         force,
         clock.load_step_s,
-        true_modes(
-            loads.model,
-            below_hz=BAND_HZ,
-            heading_rad=scenario.heading_rad,
-        ),
+        true_modes(loads.model, below_hz=BAND_HZ, heading_rad=scenario.heading_rad),
         loads.signals,
         0.0 if loads.rotor is None else float(loads.rotor.angle[1]) / clock.load_step_s,
     )

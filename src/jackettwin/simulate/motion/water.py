@@ -113,11 +113,7 @@ def water_points(assembly: Assembly, sea: Sea, *, spacing: float | None = None) 
     if spacing is None:
         spacing = REGULAR_SPACING_M if sea.regular else SPACING_M
     return morison_points(
-        assembly,
-        highest_z=sea.crest_m,
-        lowest_z=-sea.depth_m,
-        coefficients=sea.coefficients,
-        spacing=spacing,
+        assembly, highest_z=sea.crest_m, lowest_z=-sea.depth_m, coefficients=sea.coefficients, spacing=spacing
     )
 
 

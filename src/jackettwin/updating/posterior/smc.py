@@ -127,12 +127,7 @@ class _Swarm:
 
 
 def sample_posterior(
-    problem: Problem,
-    *,
-    particles: int = 300,
-    islands: int = 4,
-    seed: int = 0,
-    progress: Progress = SILENT,
+    problem: Problem, *, particles: int = 300, islands: int = 4, seed: int = 0, progress: Progress = SILENT
 ) -> Posterior:
     """Return the posterior of a problem's parameters.
 
