@@ -52,6 +52,18 @@ def test_a_help_text_loads_no_numerics() -> None:
     assert not {"numpy", "scipy", "numba", "pydantic", "plotly", "pyarrow"} & set(loaded)
 
 
+def test_no_help_of_a_command_waits_for_the_numerics() -> None:
+    """The help of ``run`` took 1.7 CPU-seconds. Some options take their choices from light NumPy modules."""
+    code = (
+        "import sys, click; from jackettwin.cli import main\n"
+        "for name in sys.argv[1:]: main.get_command(click.Context(main), name)\n"
+        "print(*sys.modules)"
+    )
+    names = [name for name in COMMANDS if name != "superelement"]
+    done = subprocess.run([sys.executable, "-c", code, *names], capture_output=True, text=True, check=True)
+    assert not {"scipy", "numba", "pydantic", "plotly", "pyarrow"} & set(done.stdout.split())
+
+
 def test_a_command_says_what_it_does_before_it_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
     """However slow the disk: the line waits for no library."""
     said = Event()

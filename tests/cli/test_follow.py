@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
-from jackettwin.cli import follow, main
+from jackettwin import study
+from jackettwin.cli import main
 from jackettwin.study.follow_result import Followed, Known
 from jackettwin.twin import TwinState
 from jackettwin.updating.drift import Drift
@@ -48,7 +49,7 @@ def found(n_days: int = 3) -> Followed:
 @pytest.fixture
 def run(monkeypatch: pytest.MonkeyPatch):  # type: ignore[no-untyped-def]
     def invoke(result: Followed, *options: str) -> Result:
-        monkeypatch.setattr(follow, "follow", lambda *_, **__: result)
+        monkeypatch.setattr(study, "follow", lambda *_, **__: result)
         return CliRunner().invoke(main, ["follow", "openfast_pile", *options])
 
     return invoke

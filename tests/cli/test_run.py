@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from jackettwin.cli import main, run as run_module
+from jackettwin import report
+from jackettwin.cli import main
 
 
 @pytest.fixture(scope="module")
@@ -67,7 +68,7 @@ def test_an_interruption_exits_130_and_leaves_nothing(
         (folder / "report.html").write_text("half a rep")
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(run_module, "build_report", interrupted)
+    monkeypatch.setattr(report, "build_report", interrupted)
     result = CliRunner().invoke(main, ["run", "thesis_table_6_1", "--out", str(tmp_path / "out")])
     assert result.exit_code == 130
     assert list(tmp_path.iterdir()) == []

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from jackettwin.cli import main, verify as verify_module
+from jackettwin.cli import main
 from jackettwin.verify import Row
 
 KEYS = {"id", "source", "quantity", "published", "computed", "relative_error", "tolerance", "ok"}
@@ -28,7 +28,7 @@ def test_every_checked_row_holds() -> None:
 
 @pytest.fixture
 def two_rows(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(verify_module, "published_rows", lambda step: ROWS)
+    monkeypatch.setattr("jackettwin.verify.published_rows", lambda step: ROWS)
 
 
 @pytest.mark.usefixtures("two_rows")
@@ -42,7 +42,7 @@ def test_nothing_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
 
 def test_a_failed_row_exits_1(monkeypatch: pytest.MonkeyPatch) -> None:
     wrong = replace(ROWS[0], computed=1.01)
-    monkeypatch.setattr(verify_module, "published_rows", lambda step: (wrong,))
+    monkeypatch.setattr("jackettwin.verify.published_rows", lambda step: (wrong,))
     result = CliRunner().invoke(main, ["verify"])
     assert result.exit_code == 1
     assert "FAILED" in result.stdout

@@ -90,7 +90,7 @@ def test_a_model_that_cannot_meet_the_data_is_said_before_all_it_says() -> None:
     assert not any(" known:" in line or "gives" in line for line in said.headline)
     answers = {q.title: " ".join(q.short) for q in said.questions}
     assert (
-        "χ² 436 at 4 degrees of freedom; of a true model less than once in a million"
+        "χ² 436 at 4 degrees of freedom; for a true model less than once in a million"
         in answers["Is the model right?"]
     )
     assert "of a model that does not fit" in answers["How stiff and how damped is the ground?"]

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from jackettwin.answers import Answers
 from jackettwin.cli.console import output, say
-from jackettwin.files.codec import encode
-from jackettwin.report.tables.sentences import sentences
+
+if TYPE_CHECKING:
+    from jackettwin.answers import Answers
 
 
 def print_answers(answers: Answers) -> None:
     """Print the headline, then every question with its short answer."""
+    from jackettwin.report.tables.sentences import sentences
+
     said = sentences(answers)
     output.print()
     for line in said.headline:
@@ -24,6 +26,9 @@ def print_answers(answers: Answers) -> None:
 
 def answers_document(answers: Answers) -> dict[str, Any]:
     """Return the answers as plain JSON data, in numbers and in words."""
+    from jackettwin.files.codec import encode
+    from jackettwin.report.tables.sentences import sentences
+
     said = sentences(answers)
     return {
         "answers": encode(answers),

@@ -3,37 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
 
-from jackettwin.arrays import FloatArray
-from jackettwin.checks import (
-    ALL_CHECKS,
-    EDITIONS,
-    KINDS,
-    BraceUse,
-    DesignBasis,
-    FrameUse,
-    MemberUse,
-    frame_use,
-)
+from jackettwin.checks import EDITIONS
 from jackettwin.cli.console import FiniteFloat, Reply, answers, numbers_of, say, say_all, show_table
 from jackettwin.cli.modes import support_option
-from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.loads import (
-    Coefficients,
-    Water,
-    morison_points,
-    outside_pressure,
-    still_water as still_water_loads,
-)
 from jackettwin.report import Table, TableColumn
-from jackettwin.response import build_system, nodal_load, self_weight, static_displacement
-from jackettwin.simulate import read_scenario, scenario_uses, water_notes
-from jackettwin.structure import Assembly, assemble, element_weight, few
+
+if TYPE_CHECKING:
+    from jackettwin.arrays import FloatArray
+    from jackettwin.checks import BraceUse, FrameUse, MemberUse
+    from jackettwin.loads import Water
+    from jackettwin.structure import Assembly
+
 
 _SHOWN = 15
 """Members in the terminal."""
@@ -91,6 +77,13 @@ def check_command(
 
     STRUCTURE is at rest under its weight and the forces given.
     """
+    from jackettwin.checks import DesignBasis, frame_use
+    from jackettwin.decks import read_structure
+    from jackettwin.loads import Water
+    from jackettwin.response import build_system, nodal_load, self_weight, static_displacement
+    from jackettwin.simulate import read_scenario, scenario_uses, water_notes
+    from jackettwin.structure import assemble, element_weight
+
     basis = DesignBasis(yield_strength, edition, conservative_joints=joints == "conservative")
     if (structure is None) == (scenario is None):
         raise InputError(
@@ -122,6 +115,13 @@ def _in_water(
     assembly: Assembly, water: Water, load: FloatArray, along: FloatArray | None
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return loads with buoyancy, and the pressure on the elements' ends; the bed is at the lowest foot."""
+    from jackettwin.loads import (
+        Coefficients,
+        morison_points,
+        outside_pressure,
+        still_water as still_water_loads,
+    )
+
     structure = assembly.structure
     depth = structure.sea_level_z_m - min(structure.nodes[name][2] for name in structure.reaction_nodes)
     if not depth > 0.0:
@@ -163,6 +163,8 @@ def nodal_force(text: str) -> tuple[str, tuple[float, ...]]:
 
 
 def _row(use: MemberUse) -> dict[str, Any]:
+    from jackettwin.checks import ALL_CHECKS
+
     worst = use.worst
     return {
         "member": use.member,
@@ -186,6 +188,8 @@ def _forces(six: FloatArray) -> dict[str, float]:
 
 
 def _joint_row(use: BraceUse) -> dict[str, Any]:
+    from jackettwin.checks import KINDS
+
     joint = use.joint
     return {
         "node": use.node,
@@ -209,6 +213,8 @@ def _joint_row(use: BraceUse) -> dict[str, Any]:
 
 
 def _warnings(use: FrameUse) -> list[str]:
+    from jackettwin.structure import few
+
     thin = [one.member for one in use.members if not one.covered]
     over = [one.member for one in use.members if one.utilisation > 1.0]
     joints = [f"{one.brace} at {one.node}" for one in use.joints if one.utilisation > 1.0]

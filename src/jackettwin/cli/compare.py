@@ -5,14 +5,16 @@ from __future__ import annotations
 import json
 from math import expm1
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from jackettwin.answers.compare import ChangedNumber, compare
 from jackettwin.cli.console import Reply, answers, say, show_table
 from jackettwin.errors import InputError
 from jackettwin.report import Table, TableColumn
+
+if TYPE_CHECKING:
+    from jackettwin.answers.compare import ChangedNumber
 
 
 @click.command("compare")
@@ -24,6 +26,8 @@ def compare_command(a: Path, b: Path) -> Reply:
 
     A and B are folders that `jackettwin run` wrote, or their result.json.
     """
+    from jackettwin.answers.compare import compare
+
     before, after = _result(a), _result(b)
     changes = compare(before, after)
     document = {

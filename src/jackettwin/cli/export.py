@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from jackettwin.cli.console import Reply, answers, messages, say
 from jackettwin.cli.modes import support_option
-from jackettwin.decks import read_structure, write_subdyn
 from jackettwin.errors import InputError
-from jackettwin.response import dissipates
-from jackettwin.soil import Support, with_static_reactions
-from jackettwin.structure import Structure, assemble, at_interface
+
+if TYPE_CHECKING:
+    from jackettwin.soil import Support
+    from jackettwin.structure import Structure
 
 
 @click.command("export")
@@ -32,6 +33,10 @@ def export_command(structure: str, support: str | None, out: Path | None) -> Rep
 
     The foundation is what stands below the interface.
     """
+    from jackettwin.decks import read_structure, write_subdyn
+    from jackettwin.soil import with_static_reactions
+    from jackettwin.structure import assemble, at_interface
+
     if out is not None and out.suffix.lower() != ".dat":
         raise InputError("unknown format of a deck", field="--out", value=out.name, allowed=".dat")
     whole = read_structure(structure)
@@ -49,6 +54,8 @@ def export_command(structure: str, support: str | None, out: Path | None) -> Rep
 
 
 def _warnings(whole: Structure, held: Support) -> list[str]:
+    from jackettwin.response import dissipates
+
     found = []
     if any(dissipates(spring.law) for spring in held.springs):
         found.append("a deck knows no damping in the ground: the superelement does")

@@ -4,21 +4,17 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import Reply, answers, progress, say, say_all, show_table
-from jackettwin.files import atomic_folder, check_room, write_json
 from jackettwin.report import Table
-from jackettwin.report.pages.follow import build_follow_page
-from jackettwin.soil import family
-from jackettwin.study import follow
-from jackettwin.study.follow import Each
-from jackettwin.study.follow_document import follow_document, read_followed
-from jackettwin.study.follow_result import Followed
-from jackettwin.study.modes_in_time import MODES_IN_TIME, rows_of_days, write_modes_in_time
-from jackettwin.twin import read_twin, twin_model
+
+if TYPE_CHECKING:
+    from jackettwin.study.follow import Each
+    from jackettwin.study.follow_result import Followed
 
 
 @click.command("follow")
@@ -57,6 +53,14 @@ def follow_command(
     What is known after one day is where the next one starts. Tomorrow, name the new records in TWIN and go on
     with --prior.
     """
+    from jackettwin.files import atomic_folder, check_room, write_json
+    from jackettwin.report.pages.follow import build_follow_page
+    from jackettwin.soil import family
+    from jackettwin.study import follow
+    from jackettwin.study.follow_document import follow_document, read_followed
+    from jackettwin.study.modes_in_time import MODES_IN_TIME, rows_of_days, write_modes_in_time
+    from jackettwin.twin import read_twin, twin_model
+
     config = read_twin(twin)
     if law is not None:
         family(law, field="--law")

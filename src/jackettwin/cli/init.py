@@ -7,21 +7,18 @@ import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from jackettwin.cli.console import FiniteFloat, Reply, answers, messages, progress, say, say_all
-from jackettwin.decks import read_structure
 from jackettwin.errors import InputError, located
-from jackettwin.files import atomic_path, check_room
-from jackettwin.records import Record, read_record
-from jackettwin.records.readers import record_files
-from jackettwin.records.readers.channels import Unsaid
-from jackettwin.records.readers.stamps import UNSAID, read_zone
-from jackettwin.structure import assemble
-from jackettwin.study.draft import Draft, draft_twin
-from jackettwin.twin import read_twin
-from jackettwin.twin.examine import moving_channels
+
+if TYPE_CHECKING:
+    from jackettwin.records import Record
+    from jackettwin.records.readers.channels import Unsaid
+    from jackettwin.study.draft import Draft
+
 
 _MOST_READ = 20
 """Records that are read to be described; of more the rest is only listed."""
@@ -68,6 +65,15 @@ def init_command(
     It is checked, and what is missing is said.     Sensors are placed by the names of the channels. What
     the files do not say of unit, clock and rate is taken from the options, else asked once.
     """
+    from jackettwin.decks import read_structure
+    from jackettwin.files import atomic_path, check_room
+    from jackettwin.records.readers import record_files
+    from jackettwin.records.readers.channels import Unsaid
+    from jackettwin.records.readers.stamps import read_zone
+    from jackettwin.structure import assemble
+    from jackettwin.study.draft import draft_twin
+    from jackettwin.twin import read_twin
+
     if out.exists() and not force:
         raise InputError("is there already", file=out, remedy="choose another --out, or --force")
     check_room(out, least_bytes=10_000)
@@ -104,6 +110,10 @@ def init_command(
 
 def _read(file: Path, unsaid: Unsaid) -> tuple[Record, Unsaid]:
     """Return a record, and what had to be asked for to read it."""
+    from jackettwin.records import read_record
+    from jackettwin.records.readers.stamps import UNSAID, read_zone
+    from jackettwin.twin.examine import moving_channels
+
     while True:
         try:
             record = read_record(file, unsaid)

@@ -8,7 +8,6 @@ import click
 
 from jackettwin.cli.console import Reply, answers, say, say_all, show_table, working
 from jackettwin.report import Table, TableColumn
-from jackettwin.simulate import loads_document, read_scenario
 
 
 @click.command("loads")
@@ -19,6 +18,8 @@ def loads_command(scenario: str) -> Reply:
 
     They are given about still water and about the bed.
     """
+    from jackettwin.simulate import loads_document, read_scenario
+
     chosen = read_scenario(scenario)
     with working(f"loads of {chosen.name}"):
         document = loads_document(chosen)

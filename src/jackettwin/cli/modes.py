@@ -4,30 +4,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import pi, radians
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
 
 from jackettwin.cli.console import Reply, answers, numbers_of, say, say_all, show_table
-from jackettwin.decks import read_flexible_rotor, read_structure
 from jackettwin.errors import located
 from jackettwin.report import Table, TableColumn
-from jackettwin.response import (
-    DampedModes,
-    System,
-    build_system,
-    damped_modes,
-    mode_kinds,
-    mode_labels,
-    own_damping,
-    track_modes,
-    undamped_modes,
-)
-from jackettwin.soil import Support, read_support
-from jackettwin.soil.support import described
-from jackettwin.structure import Assembly, Rayleigh, Structure, assemble, check, with_rotor, without_rotor
-from jackettwin.updating import numbered_modes
+
+if TYPE_CHECKING:
+    from jackettwin.response import DampedModes, System
+    from jackettwin.soil import Support
+    from jackettwin.structure import Assembly, Rayleigh, Structure
+
 
 _OVERDAMPED = 0.3
 """A pole this damped that resembles no mode of the pinned structure is a motion of the supports."""
@@ -71,6 +61,11 @@ def modes_command(
 
     STRUCTURE is a shipped name, a YAML file, or a SubDyn .dat file.
     """
+    from jackettwin.decks import read_structure
+    from jackettwin.response import build_system, own_damping
+    from jackettwin.soil.support import described
+    from jackettwin.structure import assemble
+
     chosen = blades_option(blades, read_structure(structure))
     assembly = assemble(
         chosen, beam_theory=beam, rotary_inertia=rotary_inertia, subdivide=subdivide, gravity=gravity
@@ -92,6 +87,9 @@ def blades_option(text: str | None, structure: Structure) -> Structure:
     InputError
         If there is no such rotor, or its blades are not within the mass on the top.
     """
+    from jackettwin.decks import read_flexible_rotor
+    from jackettwin.structure import with_rotor, without_rotor
+
     if text is None:
         return structure
     source, _, pitch = text.partition(",")
@@ -109,6 +107,9 @@ def support_option(text: str | None, assembly: Assembly) -> Support:
     InputError
         If the text names no support of this structure.
     """
+    from jackettwin.soil import read_support
+    from jackettwin.updating import numbered_modes
+
     return read_support(
         text,
         assembly.structure,
@@ -124,6 +125,8 @@ def rayleigh_option(text: str | None) -> Rayleigh:
     InputError
         If the text is not two numbers in range.
     """
+    from jackettwin.structure import Rayleigh
+
     if text is None:
         return Rayleigh()
     numbers = numbers_of(text, "--rayleigh", "ZETA,F_HZ", (2,))
@@ -132,6 +135,9 @@ def rayleigh_option(text: str | None) -> Rayleigh:
 
 
 def _document(assembly: Assembly, system: System, number: int) -> dict[str, Any]:
+    from jackettwin.response import damped_modes, mode_kinds, mode_labels, track_modes, undamped_modes
+    from jackettwin.structure import check
+
     structure, M = assembly.structure, assembly.mass
     undamped = undamped_modes(system, number + 12)
     free = undamped.n_at_rest
@@ -172,6 +178,8 @@ def _document(assembly: Assembly, system: System, number: int) -> dict[str, Any]
 
 def _enough(system: System, damped: DampedModes, number: int) -> DampedModes:
     """Return at least ``number`` modes: strong dampers lift frequencies above the undamped ones."""
+    from jackettwin.response import damped_modes
+
     below = 1.5 * max([*damped.frequency_hz[-1:], 0.01])
     for _ in range(8):
         if np.count_nonzero(damped.damping_ratio <= _OVERDAMPED) >= min(number, system.pencil.n):
@@ -183,6 +191,9 @@ def _enough(system: System, damped: DampedModes, number: int) -> DampedModes:
 
 def _numbers(assembly: Assembly, damped: DampedModes, number: int) -> dict[int, int]:
     """Return {index of a damped mode: its number on pinned supports}."""
+    from jackettwin.response import track_modes
+    from jackettwin.updating import numbered_modes
+
     if not assembly.structure.reactions:
         return {}
     reference = numbered_modes(assembly, number + 6)

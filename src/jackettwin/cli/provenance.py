@@ -10,8 +10,11 @@ from collections.abc import Iterable
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from jackettwin.twin import TwinConfig
+if TYPE_CHECKING:
+    from jackettwin.twin import TwinConfig
+
 
 _LIBRARIES = ("numpy", "scipy")
 _BLOCK = 1 << 20

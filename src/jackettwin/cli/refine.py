@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 import yaml
@@ -12,8 +12,9 @@ import yaml
 from jackettwin.cli.console import Reply, answers, output, say, show_table
 from jackettwin.errors import located
 from jackettwin.report import Table, TableColumn
-from jackettwin.study.refinement import read_refinement, refinement_document
-from jackettwin.updating import RefinementStage, refine
+
+if TYPE_CHECKING:
+    from jackettwin.updating import RefinementStage
 
 
 @click.command("refine")
@@ -25,6 +26,9 @@ def refine_command(file: Path) -> Reply:
     Nothing is written. FILE lists stages: parts on pinned feet, their frequencies, what may change. The
     factors are printed as the steel: block of a twin file.
     """
+    from jackettwin.study.refinement import read_refinement, refinement_document
+    from jackettwin.updating import refine
+
     config = read_refinement(file)
     with located(file=file):
         document = refinement_document(refine(config.structure, config.stages))

@@ -8,19 +8,11 @@ from pathlib import Path
 
 import click
 
-from jackettwin.answers import answer as answer_run
 from jackettwin.cli.answers import answers_document, print_answers
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import Reply, answers, progress, say
 from jackettwin.cli.provenance import provenance
 from jackettwin.cli.update import DEFAULT_TWIN, print_updates
-from jackettwin.files import atomic_folder, check_room, write_json
-from jackettwin.report import build_report
-from jackettwin.simulate import pending_cases, read_set, record_path, run_set
-from jackettwin.study import count_steps, run_document, run_twin
-from jackettwin.study.modes_in_time import MODES_IN_TIME, rows_of_records, write_modes_in_time
-from jackettwin.study.truth import true_parameters
-from jackettwin.twin import read_twin
 
 SIMULATED_TWIN = "simulated"
 
@@ -55,6 +47,14 @@ def run_command(
     a known asset; the report compares with its truth. The law to recommend gets a posterior (the twin's
     first, unless another is ten times as probable), the others are fitted; --all-laws gives each one.
     """
+    from jackettwin.answers import answer as answer_run
+    from jackettwin.files import atomic_folder, check_room, write_json
+    from jackettwin.report import build_report
+    from jackettwin.study import count_steps, run_document, run_twin
+    from jackettwin.study.modes_in_time import MODES_IN_TIME, rows_of_records, write_modes_in_time
+    from jackettwin.study.truth import true_parameters
+    from jackettwin.twin import read_twin
+
     config = read_twin(twin or (SIMULATED_TWIN if simulate else DEFAULT_TWIN), records_follow=simulate)
     folder = out or Path("out") / config.name
     check_room(folder)
@@ -95,6 +95,8 @@ _COVERED = {None: "no interval", True: "inside its 90 % interval", False: "outsi
 
 def _simulated(set_file: str, folder: Path) -> tuple[Path, ...]:
     """Simulate what is pending of a set; return its records."""
+    from jackettwin.simulate import pending_cases, read_set, record_path, run_set
+
     chosen = read_set(set_file)
     with progress(len(pending_cases(chosen, folder)), f"simulate {chosen.name}") as step:
         run_set(chosen, folder, step=step)

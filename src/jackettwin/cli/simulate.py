@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from jackettwin.arrays import FloatArray
 from jackettwin.cli.console import Reply, answers, say, say_all, show_table, working
 from jackettwin.errors import InputError
-from jackettwin.records import write_record
 from jackettwin.report import Table, TableColumn, cell
-from jackettwin.simulate import Simulation, read_scenario, rotor_notes, simulate
-from jackettwin.structure import assemble, check
-from jackettwin.updating import beyond_literature
+
+if TYPE_CHECKING:
+    from jackettwin.arrays import FloatArray
+    from jackettwin.simulate import Simulation
+
 
 DEFAULT_SCENARIO = "parked"
 
@@ -32,6 +33,10 @@ def simulate_command(scenario: str, out: str | None) -> Reply:
 
     SCENARIO is a shipped name or a YAML file.
     """
+    from jackettwin.records import write_record
+    from jackettwin.simulate import read_scenario, rotor_notes, simulate
+    from jackettwin.structure import assemble, check
+
     chosen = read_scenario(scenario)
     path = _record_path(out or f"out/{chosen.name}")
     with working(f"simulate {chosen.name}"):
@@ -58,6 +63,8 @@ def _unusual_shares(done: Simulation, *, loops: bool) -> list[str]:
 
     The damping of a ground with ``loops`` grows with the motion: the linear modes know nothing of it.
     """
+    from jackettwin.updating import beyond_literature
+
     return [
         note
         for mode in done.record.metadata["true_modes"]

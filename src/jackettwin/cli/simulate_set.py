@@ -7,7 +7,6 @@ from pathlib import Path
 import click
 
 from jackettwin.cli.console import Reply, answers, progress, say
-from jackettwin.simulate import pending_cases, read_set, run_set
 
 
 @click.command("simulate-set")
@@ -23,6 +22,8 @@ def simulate_set_command(set_file: str, out: Path, workers: int | None) -> Reply
     SET is a shipped name (dlc64) or a YAML file; cases that are finished already are kept. Writes a
     record a case, and manifest.json with conditions and true modes.
     """
+    from jackettwin.simulate import pending_cases, read_set, run_set
+
     chosen = read_set(set_file)
     pending = pending_cases(chosen, out)
     with progress(len(pending), f"{len(pending)} of {len(chosen.cases)} cases") as step:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import pi
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
@@ -21,10 +21,12 @@ from jackettwin.cli.console import (
     working,
 )
 from jackettwin.report import Table
-from jackettwin.soil import Curve, Foundation, read_foundation
-from jackettwin.soil.piles.capacity import FAILED_AT, Pushover, axial_capacity, pushover
-from jackettwin.soil.piles.impedance import head_impedance
-from jackettwin.soil.piles.reaction_curves import PileCurves
+
+if TYPE_CHECKING:
+    from jackettwin.soil import Curve, Foundation
+    from jackettwin.soil.piles.capacity import Pushover
+    from jackettwin.soil.piles.reaction_curves import PileCurves
+
 
 _POINTS = 31
 """Of a curve in the tables."""
@@ -58,6 +60,9 @@ def soil_command(foundation: str, frequency_hz: float, arm_m: float, steps: int,
 
     They are the reaction curves, the head's stiffness, capacity and a pushover; a page shows them.
     """
+    from jackettwin.soil import read_foundation
+    from jackettwin.soil.piles.capacity import pushover
+
     ground = read_foundation(foundation)
     pushed = None
     with working(f"piles of {Path(foundation).stem}"):
@@ -77,6 +82,8 @@ def soil_command(foundation: str, frequency_hz: float, arm_m: float, steps: int,
 def _document(
     name: str, ground: Foundation, pushed: Pushover | None, frequency_hz: float, arm_m: float
 ) -> dict[str, Any]:
+    from jackettwin.soil.piles.impedance import head_impedance
+
     pile, curves = ground.pile, ground.curves
     s = 2j * pi * frequency_hz
     K = head_impedance(pile, ground.springs, s, law=ground.law, dashpots=ground.dashpots)[0]
@@ -132,6 +139,8 @@ def _curve(curve: Curve, reach: float) -> dict[str, Any]:
 
 
 def _capacity(curves: PileCurves, pushed: Pushover) -> dict[str, Any]:
+    from jackettwin.soil.piles.capacity import FAILED_AT, axial_capacity
+
     axial = axial_capacity(curves)
     return {
         "shaft_n": axial.shaft_n,

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from jackettwin.cli.console import Reply, answers, say, show_table
-from jackettwin.decks import read_structure
 from jackettwin.report import Table, TableColumn
-from jackettwin.updating import Stage, stages
-from jackettwin.verify import published
+
+if TYPE_CHECKING:
+    from jackettwin.updating import Stage
+
 
 Reference = dict[str, tuple[float, ...]]
 
@@ -32,6 +33,10 @@ def stages_command(structure: str, against: str | None, number: int, gravity: bo
 
     It stands on pinned feet; the jacket comes first, then the transition piece, then the tower.
     """
+    from jackettwin.decks import read_structure
+    from jackettwin.updating import stages
+    from jackettwin.verify import published
+
     own = stages(read_structure(structure), number, gravity=gravity)
     reference: Reference = {}
     if against is not None:

@@ -3,40 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
 
-from jackettwin.arrays import FloatArray
 from jackettwin.cli.console import FiniteFloat, Reply, answers, messages, numbers_of, say, show_table
 from jackettwin.cli.modes import rayleigh_option, support_option
-from jackettwin.decks import DeckDamping, read_deck_damping, read_structure
 from jackettwin.errors import InputError
 from jackettwin.report import Table, TableColumn
-from jackettwin.response import (
-    DEFAULT,
-    INTERFACE,
-    LAYOUTS,
-    RUNGE_KUTTA,
-    Layout,
-    ReducedModes,
-    Superelement,
-    build_system,
-    damping_ratio,
-    default_band_hz,
-    fixed_interface_frequencies,
-    hertz,
-    is_superelement,
-    read_superelement,
-    reduced_modes,
-    require_format,
-    slowed,
-    with_deck_damping,
-    write_superelement,
-)
-from jackettwin.response.superelement.craig_bampton import superelement
-from jackettwin.structure import Assembly, Structure, Vector, assemble, at_interface
+from jackettwin.response import DEFAULT, LAYOUTS
+
+if TYPE_CHECKING:
+    from jackettwin.arrays import FloatArray
+    from jackettwin.decks import DeckDamping
+    from jackettwin.response import Layout, ReducedModes, Superelement
+    from jackettwin.structure import Assembly, Structure, Vector
 
 
 @click.command("superelement")
@@ -115,6 +97,21 @@ def superelement_command(
     The foundation is what stands below the interface; the error of the reduction is printed. STRUCTURE
     may be a superelement already (.npz, ExtPtfm's .dat): it is read, shown and written again.
     """
+    from jackettwin.decks import read_structure
+    from jackettwin.response import (
+        build_system,
+        default_band_hz,
+        fixed_interface_frequencies,
+        is_superelement,
+        reduced_modes,
+        require_format,
+        slowed,
+        with_deck_damping,
+        write_superelement,
+    )
+    from jackettwin.response.superelement.craig_bampton import superelement
+    from jackettwin.structure import assemble, at_interface
+
     out = out or Path("out") / f"{Path(structure).stem}.npz"
     require_format(out)
     if is_superelement(Path(structure)):
@@ -152,6 +149,8 @@ def superelement_command(
 
 
 def _deck_damping(structure: str) -> DeckDamping:
+    from jackettwin.decks import read_deck_damping
+
     if Path(structure).suffix.lower() != ".dat":
         raise InputError(
             "only a SubDyn deck states its own damping",
@@ -163,6 +162,8 @@ def _deck_damping(structure: str) -> DeckDamping:
 
 
 def _rewritten(source: Path, out: Path, layout: Layout) -> dict[str, Any]:
+    from jackettwin.response import read_superelement, write_superelement
+
     element = read_superelement(source)
     files = [str(path) for path in write_superelement(element, out, layout=layout)]
     return _matrices(element, element.held_frequency_hz) | {
@@ -187,6 +188,8 @@ def _point(text: str | None) -> Vector | None:
 
 
 def _matrices(element: Superelement, fixed_hz: FloatArray) -> dict[str, Any]:
+    from jackettwin.response import INTERFACE, RUNGE_KUTTA
+
     fastest = element.fastest_pole_rad_s
     return {
         "reference_m": element.reference_m,
@@ -209,6 +212,8 @@ def _document(
     plain: ReducedModes,
     band_hz: float,
 ) -> dict[str, Any]:
+    from jackettwin.response import damping_ratio, hertz
+
     columns = zip(error.full, error.reduced, plain.reduced, strict=True)
     matrices = _matrices(element, fixed_hz)
     return matrices | {
@@ -231,6 +236,8 @@ def _document(
 
 
 def _warnings(error: ReducedModes, step_s: float | None) -> list[str]:
+    from jackettwin.response import damping_ratio
+
     found = []
     if error.missing:
         found.append(f"{error.missing} modes of the band have no coordinates: keep more of them")

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
 import numpy as np
 
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import Reply, answers, output, progress, say, say_all, show_table
 from jackettwin.report import Table, cell
-from jackettwin.soil import family
-from jackettwin.study import DampingExcess, TwinResult, count_steps, run_twin, update_document
-from jackettwin.study.result import MeasuredMode
-from jackettwin.twin import read_twin
-from jackettwin.updating import Update, leg_scatter
+
+if TYPE_CHECKING:
+    from jackettwin.study import DampingExcess, TwinResult
+    from jackettwin.study.result import MeasuredMode
+    from jackettwin.updating import Update
+
 
 DEFAULT_TWIN = "openfast_pile"
 
@@ -24,6 +27,10 @@ DEFAULT_TWIN = "openfast_pile"
 @answers
 def update_command(twin: str, law: str | None, fresh: bool) -> Reply:
     """Update the supports of TWIN under one law; writes nothing."""
+    from jackettwin.soil import family
+    from jackettwin.study import count_steps, run_twin, update_document
+    from jackettwin.twin import read_twin
+
     config = read_twin(twin)
     if law is not None:
         family(law, field="--law")
@@ -101,6 +108,8 @@ def _relaxations(result: TwinResult, u: Update) -> list[str]:
 
 def _leg_scatter(u: Update) -> list[str]:
     """Return by how much legs scatter about their mean, a line a parameter."""
+    from jackettwin.updating import leg_scatter
+
     found = () if u.uncertainty is None else leg_scatter(u.problem.prior, u.uncertainty.log_theta)
     lines = []
     for s in found:

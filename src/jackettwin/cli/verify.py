@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
 
 from jackettwin.cli.console import OUR_FAULT, Reply, answers, progress, say, show_table
 from jackettwin.report import Table, TableColumn, cell
-from jackettwin.verify import STEPS, Row, published_rows
+
+if TYPE_CHECKING:
+    from jackettwin.verify import Row
+
 
 _COLUMNS = (
     TableColumn("source", lambda row: row.source),
@@ -28,6 +33,8 @@ def verify_command() -> Reply:
 
     The exit code is 1 if one fails.
     """
+    from jackettwin.verify import STEPS, published_rows
+
     with progress(STEPS, "verify") as step:
         rows = published_rows(step)
     failed = frozenset(i for i, row in enumerate(rows) if row.ok is False)

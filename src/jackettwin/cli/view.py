@@ -4,45 +4,25 @@ from __future__ import annotations
 
 from math import radians
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 import numpy as np
 import numpy.typing as npt
 
 from jackettwin.axes import DOFS_PER_NODE
-from jackettwin.checks import frame_use
 from jackettwin.cli.check import nodal_force
 from jackettwin.cli.console import PageFile, Reply, answers, numbers_of, say_all
 from jackettwin.cli.modes import rayleigh_option, support_option
-from jackettwin.decks import is_sacs, read_structure, sacs_remarks
 from jackettwin.errors import InputError, located
-from jackettwin.loads import Coefficients, GrowthBand
-from jackettwin.records import read_record
-from jackettwin.report.view.motions import (
-    DrawnMotion,
-    damped_motion,
-    record_motion,
-    undamped_motion,
-    wave_motion,
-)
-from jackettwin.report.view.page import ColouredQuantity, View, thickness_quantities, write_view
-from jackettwin.response import (
-    Sensor,
-    System,
-    UndampedModes,
-    build_system,
-    damped_modes,
-    mode_kinds,
-    mode_labels,
-    nodal_load,
-    playback,
-    record_sensors,
-    self_weight,
-    static_displacement,
-    undamped_modes,
-    wave_passage,
-)
-from jackettwin.structure import Assembly, assemble, check, element_weight, section_forces, von_mises_stress
+
+if TYPE_CHECKING:
+    from jackettwin.loads import GrowthBand
+    from jackettwin.report.view.motions import DrawnMotion
+    from jackettwin.report.view.page import ColouredQuantity
+    from jackettwin.response import Sensor, System
+    from jackettwin.structure import Assembly
+
 
 _OVERDAMPED = 0.3
 """More damped poles are motions of the supports: nothing to look at."""
@@ -103,6 +83,14 @@ def view_command(
 
     The page is one self-contained file that shows members, modes, waves and a record.
     """
+    from jackettwin.decks import read_structure
+    from jackettwin.loads import Coefficients
+    from jackettwin.records import read_record
+    from jackettwin.report.view.motions import record_motion, wave_motion
+    from jackettwin.report.view.page import View, thickness_quantities, write_view
+    from jackettwin.response import build_system, playback, record_sensors, undamped_modes, wave_passage
+    from jackettwin.structure import assemble, check
+
     chosen = read_structure(structure)
     assembly = assemble(chosen, subdivide=subdivide)
     held = support_option(support, assembly)
@@ -153,6 +141,8 @@ def view_command(
 
 def _remarks(structure: str) -> tuple[str, ...]:
     """Return what of a deck was not understood."""
+    from jackettwin.decks import is_sacs, sacs_remarks
+
     path = Path(structure)
     return sacs_remarks(path) if is_sacs(path) and path.is_file() else ()
 
@@ -189,6 +179,8 @@ def _footprint(points: npt.NDArray[np.float64]) -> str:
 
 
 def _band(text: str) -> GrowthBand:
+    from jackettwin.loads import GrowthBand
+
     numbers = numbers_of(text, "--growth", "TOP,BOTTOM,THICKNESS", (3,))
     with located(field="--growth"):
         return GrowthBand(*numbers)
@@ -203,6 +195,9 @@ def _require_parts(assembly: Assembly, names: tuple[str, ...]) -> None:
 
 def _modes(assembly: Assembly, system: System, number: int) -> list[DrawnMotion]:
     """Return undamped modes, and damped ones if anything dissipates; what floats freely is no mode."""
+    from jackettwin.report.view.motions import damped_motion, undamped_motion
+    from jackettwin.response import UndampedModes, damped_modes, mode_kinds, mode_labels, undamped_modes
+
     if number == 0:
         return []
     still = undamped_modes(system, number + DOFS_PER_NODE)
@@ -231,6 +226,11 @@ def _uses(
     assembly: Assembly, system: System, forces: dict[str, tuple[float, ...]]
 ) -> tuple[ColouredQuantity, ...]:
     """Return utilisation and stress at rest under the weight and the forces given."""
+    from jackettwin.checks import frame_use
+    from jackettwin.report.view.page import ColouredQuantity
+    from jackettwin.response import nodal_load, self_weight, static_displacement
+    from jackettwin.structure import element_weight, section_forces, von_mises_stress
+
     u = static_displacement(system, self_weight(assembly) + nodal_load(assembly, forces))
     along = element_weight(assembly)
     members = frame_use(assembly, u, along=along).members

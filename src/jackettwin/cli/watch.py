@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from datetime import UTC
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from jackettwin.change.modal_table import ModalTable, read_modal_table
-from jackettwin.change.table_watch import watch_table
-from jackettwin.change.watch_document import next_sentence, statement, watched_document
 from jackettwin.cli.console import FiniteFloat, Reply, answers, progress, say, say_all, show_table
-from jackettwin.decks import read_structure
 from jackettwin.errors import InputError, located
-from jackettwin.files import atomic_folder, write_json
-from jackettwin.records.readers.stamps import parse_time
 from jackettwin.report import Table, TableColumn
-from jackettwin.report.pages.watch import build_watch_page
+
+if TYPE_CHECKING:
+    from jackettwin.change.modal_table import ModalTable
+
 
 _SHOWN = 4
 """Causes printed at most."""
@@ -64,6 +62,13 @@ def watch_command(
     damping_ratio_std), or one column a mode with --columns. Further columns are conditions. The first
     days are taken as healthy.
     """
+    from jackettwin.change.modal_table import read_modal_table
+    from jackettwin.change.table_watch import watch_table
+    from jackettwin.change.watch_document import next_sentence, statement, watched_document
+    from jackettwin.decks import read_structure
+    from jackettwin.files import atomic_folder, write_json
+    from jackettwin.report.pages.watch import build_watch_page
+
     read = read_modal_table(table, columns=_names(columns) or (), conditions=_chosen(conditions))
     from_day = _day(read, relearn)
     structure = None if structure_name is None else read_structure(structure_name)
@@ -110,6 +115,8 @@ def _chosen(conditions: str | None) -> tuple[str, ...] | None:
 
 
 def _day(table: ModalTable, relearn: str | None) -> float:
+    from jackettwin.records.readers.stamps import parse_time
+
     if relearn is None:
         return 0.0
     with located(field="--relearn"):

@@ -7,6 +7,7 @@ and give back every bit: see :func:`differences`.
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -35,15 +36,16 @@ _MAGNITUDE = np.int32(0x7FFFFFFF)
 def read(path: Path) -> ReadTable:
     """Read every column; nulls are missing samples."""
     with pq.ParquetFile(path) as file:
-        return _table(_restored(file.read()))
+        return _table(file.read())
 
 
 def pieces(path: Path) -> Iterator[ReadTable]:
     """Yield the columns in tables of ``ROWS`` rows."""
     with pq.ParquetFile(path, pre_buffer=False, buffer_size=BUFFER_BYTES) as file:
         if ENCODING in (file.schema_arrow.metadata or {}):  # a difference needs all that is before it
-            for batch in _restored(file.read()).to_batches(ROWS):
-                yield _table(pa.Table.from_batches([batch]))
+            whole = _table(file.read())
+            for start in range(0, whole.data.shape[1], ROWS):
+                yield replace(whole, data=whole.data[:, start : start + ROWS])
             return
         for batch in file.iter_batches(batch_size=ROWS):
             yield _table(pa.Table.from_batches([batch]))
@@ -82,19 +84,17 @@ def restored(stored: npt.NDArray[np.int32]) -> npt.NDArray[np.float32]:
     return np.where(ordered < 0, ordered ^ _MAGNITUDE, ordered).view(np.float32)
 
 
-def _restored(stored: Any) -> Any:
-    if ENCODING not in (stored.schema.metadata or {}):
-        return stored
-    columns = (restored(column.combine_chunks().to_numpy()) for column in stored.columns)
-    return pa.table(dict(zip(stored.column_names, columns, strict=True)))
-
-
 def _table(stored: Any) -> ReadTable:
     # pandas calls an index without a name like this
     names = ["" if re.fullmatch(r"__index_level_\d+__", name) else name for name in stored.column_names]
     zoned = any(pa.types.is_timestamp(field.type) and field.type.tz is not None for field in stored.schema)
     known: dict[str, Any] = {"zone_said": True} if zoned else {}
-    return table_from_columns(names, [_values(stored.column(i)) for i in range(len(names))], **known)
+    packed = ENCODING in (stored.schema.metadata or {})
+    columns = (stored.column(i) for i in range(len(names)))
+    values = [
+        restored(_array(c.combine_chunks())).astype(np.float64) if packed else _values(c) for c in columns
+    ]
+    return table_from_columns(names, values, **known)
 
 
 def _values(column: Any) -> npt.NDArray[Any]:
@@ -106,5 +106,9 @@ def _values(column: Any) -> npt.NDArray[Any]:
     if not column.null_count:
         return np.from_dlpack(column.combine_chunks()).astype(np.float64)
     numbers = column.cast(pa.float64(), safe=False).combine_chunks()  # loads pyarrow.compute
+    return _array(numbers.fill_null(np.nan) if numbers.null_count else numbers)
+
+
+def _array(numbers: Any) -> npt.NDArray[Any]:
     # ``to_numpy``, like ``read_table`` and a scalar to fill with, loads pandas: 0.2 s in every process
-    return np.from_dlpack(numbers.fill_null(np.nan))
+    return np.from_dlpack(numbers)

@@ -49,7 +49,7 @@ def _modes(fused: FusedIdentification) -> list[Block]:
     named = [(f"mode_{i}", mode) for i, mode in enumerate(fused.modes, start=1)]
     followed = (
         "Every mode in every record with 95 % intervals; shaded: all records together. What scatters by more "
-        "than its intervals changes between records: wind, tide, temperature, state."
+        "than its intervals changes between records: by wind, tide, temperature or state."
     )
     if len(fused.records) > MOST_POINTS:
         followed += " Dots are medians of neighbouring records, bars the range of nine in ten."

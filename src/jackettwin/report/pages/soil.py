@@ -67,7 +67,7 @@ def _head(document: Mapping[str, Any]) -> tuple[Block, ...]:
     )
     caption = (
         f"What does the head of the pile feel at {document['frequency_hz']:g} Hz? Its impedance, entry by "
-        "entry; the matrix is symmetric, and what is not listed is zero."
+        "entry; the matrix is symmetric, and entries that are not listed are zero."
     )
     columns = ("entry", "unit", "stiffness (real part)", "loss (imaginary part)")
     return (Table(caption, columns, rows, text_columns=2),)
@@ -85,7 +85,7 @@ def _capacity(document: Mapping[str, Any]) -> tuple[Block, ...]:
     caption = f"How far does the head go? A lateral load {pushed['arm_m']:g} m above it, step by step."
     return (
         Table(
-            "What does the pile bear? Ultimate loads.",
+            "Which loads can the pile bear? Ultimate capacity.",
             ("", "[MN]"),
             tuple((name, f"{1e-6 * v:.2f}") for name, v in rows),
         ),

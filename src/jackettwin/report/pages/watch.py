@@ -53,13 +53,14 @@ def build_watch_page(watched: Watched, path: Path) -> Path:
     ]
     if watched.looks:
         figure = unexplained_through_time(watched, frequencies(watched))
-        caption = "The same of every frequency, and of the direction of every pair that shows one."
+        caption = "The same for every frequency, and for the direction of every pair of modes that has one."
         sections.append(
             PageSection("Every mode", (Plot("unexplained_through_time", caption, figure, fits=True),))
         )
         caption = (
-            f"Evidence of all changes that are looked for, summed over when they began. While nothing "
-            f"changes the mean time to the dashed line is at least {watched.watch.arl_years:g} years."
+            "Evidence for all changes that are looked for, summed over when they may have begun. "
+            "While nothing changes, the mean time to the dashed line is at least "
+            f"{watched.watch.arl_years:g} years."
         )
         sections.append(
             PageSection(
@@ -67,7 +68,7 @@ def build_watch_page(watched: Watched, path: Path) -> Path:
                 (Plot("evidence_through_time", caption, evidence_through_time(watched), fits=True),),
             )
         )
-    caption = "What explains how much of the variance of each quantity over the baseline."
+    caption = "How much of the variance of each quantity over the baseline is explained, and by what."
     sections.append(
         PageSection(
             "What moves the modes", (Plot("explained_shares", caption, explained_shares(watched), fits=True),)
@@ -91,7 +92,7 @@ def _alarm(watched: Watched, alarm: Alarm, number: int) -> list[Block]:
     if others:
         rest = 1.0 - sum(cause["probability"] for cause in shown)
         rows.append((count(others, "other cause"), f"{100.0 * rest:.0f}", "–", "–"))
-    caption = "Causes, after the data of the change."
+    caption = "Probable causes, given the data of the change."
     blocks: list[Block] = [
         Table(caption, ("cause", "probability [%]", "size", "90 %"), tuple(rows)),
         Plot(f"change_pattern_{number}", _PATTERN, change_pattern(watched, alarm), fits=True),

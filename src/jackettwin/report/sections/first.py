@@ -43,9 +43,7 @@ def ground_drawing(a: Answers) -> list[Drawing]:
     drawn = ground_intervals(a.ground, a.law, fits=a.fits)
     if drawn is None:
         return []
-    caption = (
-        "What did the data add? Each parameter of a foot before and after them, 90 %, on a logarithmic axis."
-    )
+    caption = "What did the data add? Each parameter of a foot before and after, 90 %, on a logarithmic axis."
     return [Drawing("ground", caption, (drawn,))]
 
 

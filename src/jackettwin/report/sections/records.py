@@ -23,7 +23,7 @@ def the_records(result: TwinResult) -> list[Block]:
     modes = list(zip(result.names[0], found.modes, strict=True))
     caption = (
         f"{result.record.name}: what is a mode, what is noise? Power spectral density of each channel "
-        "(Welch), and singular values of all. Orange: what the identified modes alone would give."
+        "(Welch), and singular values of all. Orange: the spectrum of the identified modes alone."
     )
     fit = modal_fit(result.record, found)
     return [
@@ -50,7 +50,7 @@ def further_records(result: TwinResult) -> list[Block]:
         blocks.append(tables.rejected_table(first))
     caption = (
         f"{result.record.name}: what do the channels look like? Blue along x, vermillion along y; the "
-        "extremes of each bin."
+        "extremes of each bin are drawn."
     )
     series = Plot("time_series", caption, figures_record.time_series(result.record), big=True)
     return [*blocks, *diagrams(first, names), *_history(result), series]
@@ -62,20 +62,20 @@ def diagrams(found: Identification, names: tuple[str, ...]) -> list[Block]:
     modes = list(zip(names, found.modes, strict=True))
     caption = (
         f"{found.records[0]}: which poles stay? Stabilisation in frequency: poles of every model order, "
-        f"{s.orders[0]} to {s.orders[-1]}; lines are the modes kept, shaded bands their 95 % intervals "
+        f"{s.orders[0]} to {s.orders[-1]}; lines are the accepted modes, shaded bands their 95 % intervals "
         "where known."
     )
     blocks: list[Block] = [
         Plot("stabilisation_frequency", caption, figures_identification.stabilisation(found, names)),
         Plot(
             "stabilisation_damping",
-            "Is their damping as stable? The same poles against their damping ratio; above them the modes "
-            "kept with their 95 % intervals.",
+            "Is their damping as stable? The same poles against their damping ratio; above them the "
+            "accepted modes with their 95 % intervals.",
             figures_identification.stabilisation_damping(found, names),
         ),
         Plot(
             "damping_frequency",
-            "Do poles gather? Damping against frequency of all, the modes kept on top.",
+            "Do poles form clusters? Damping against frequency of all poles, with the accepted modes on top.",
             figures_identification.damping_against_frequency(found, names),
         ),
     ]

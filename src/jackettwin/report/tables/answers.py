@@ -42,7 +42,7 @@ def modes_table(a: Answers, result: TwinResult) -> Table:
         "MAC\n[-]",
     )
     caption = (
-        f"Does the model meet what was measured? Beneath each value its 90 % interval; updated: "
+        f"Does the model agree with the measurements? Beneath each value its 90 % interval; updated: "
         f"{a.law or 'no law'}. MAC: how alike measured and modelled shapes are."
     )
     return Table(caption, columns, tuple(rows), 2)
@@ -68,8 +68,8 @@ def ground_table(a: Answers) -> Table:
     median = "median" if any(g.verdict for g in a.ground) else "best fit"
     columns = ("parameter", "verdict", "why", "before the data", f"now, {median}", "factor [-]")
     caption = (
-        f"What is known of the ground ({a.law})? Of a foot. In brackets 90 %; factor: its upper over its "
-        f"lower end. Known: {a.usable:g} or less, by the data alone."
+        f"What is known of the ground ({a.law})? Values are for one foot, with 90 % intervals in brackets; "
+        f"factor: upper over lower end. Known means {a.usable:g} or less, by the data alone."
     )
     return Table(caption, columns, rows, 3)
 
@@ -119,7 +119,8 @@ def budget_table(a: Answers) -> Table:
     )
     columns = ("mode", "measured\nζ [%]", "model\nζ [%]", *(f"{names.get(s, s)}\nζ [%]" for s in sources))
     caption = (
-        "Who damps which mode by how much? Beneath each value its 90 % interval; sources at the best fit."
+        "How much damping does each source give each mode? Beneath each value its 90 % interval; sources at "
+        "the best fit."
     )
     return Table(caption, columns, rows, 1)
 
@@ -131,7 +132,7 @@ def next_table(a: Answers) -> Table:
     rows = [("as it is", *(_number(now[name]) for name in names))]
     rows += [(step_words(a, s), *(_number(s.factors.get(name)) for name in names)) for s in a.next_steps]
     caption = (
-        "What would make the ground known? Factor between the ends of each 90 % interval, as expected; "
+        "What would make the ground known? Expected factor between the ends of each 90 % interval; "
         f"{a.usable:g} or less counts as known."
     )
     return Table(

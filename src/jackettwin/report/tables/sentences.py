@@ -16,13 +16,13 @@ MARGIN = 0.10
 """Least distance from the rotor's speeds that designs keep, as a share of them (DNV-ST-0126 speaks of the
 excitation range with a margin; ten per cent is its usual size)."""
 WIDE = 10.0
-"""Upper over lower end of an interval from which it is no rough knowledge: not even the order is known."""
+"""Ratio of the ends of an interval above which not even the order of magnitude is known."""
 _NOTHING = 0.005
-"""Change of a logarithm that is not worth saying."""
+"""Changes of a logarithm below this are not reported."""
 SMALL = 0.10
-"""A source that gives less of a mode's damping is not named first."""
+"""Sources that give a smaller share of a mode's damping are not named."""
 _MOST = 4
-"""Parameters of the ground on the first page; what there is of single legs follows."""
+"""Parameters of the ground on the first page; those of single legs follow later."""
 _SOURCES = {"structure": "the steel", "soil": "the ground", "rotor": "the rotor", "water": "the water"}
 _UNEXPLAINED = "unexplained"
 _ROUGHLY = "known roughly"
@@ -32,8 +32,8 @@ _STEPS = {
     "decays": "stop the rotor in a calm and record a few free decays: the rotor then damps next to nothing",
     "torsion": "measure torsion as well: two accelerometers at one height on opposite sides of the tower",
     "second_bending": "measure the second bending modes as well: accelerometers half-way up the tower",
-    "model": "make the model surer (weigh the nacelle, check the drawings) and say so under "
-    "update.model_error; one without any error would do this",
+    "model": "make the model more certain (weigh the nacelle, check the drawings) and state it under "
+    "update.model_error; a model without error would do this",
 }
 _GERUNDS = {
     "feet": "motion measured at the feet, in step with the tower's",
@@ -76,7 +76,7 @@ def sentences(a: Answers) -> Said:
 
 
 def _headline(a: Answers) -> list[str]:
-    """Return the headline; what stands in the way of an answer (misfit, nothing known) comes first."""
+    """Return the headline; what prevents an answer (misfit, unknown ground) comes first."""
     if misfit := misfit_headline(a):
         return [misfit[0], *_stiff_enough(a), *misfit[1:]]
     lead = [*_stiff_enough(a), *(ground := _ground_headline(a))]
@@ -193,7 +193,7 @@ def _ground_headline(a: Answers) -> list[str]:
     known = [g for g in a.ground if g.verdict == "identified"]
     weak = [g for g in a.ground if g.verdict == "weak"]
     if not known and not weak:
-        return [f"Nothing of the ground is known from {data_words(a)}: its values are what was said before."]
+        return [f"Nothing of the ground is known from {data_words(a)}: they are the stated priors."]
     said = []
     for kind in ("stiffness", "damping"):
         of_kind = [g for g in a.ground if g.kind == kind]
@@ -237,7 +237,7 @@ def _shares(m: ModeAnswer) -> dict[str, float]:
 
 
 def _owner_headline(a: Answers) -> str:
-    """Return who gives more than half of the damping of each mode of the first pair."""
+    """Return which source gives more than half of the damping of each first bending mode."""
     by_owner: dict[str, list[str]] = {}
     for m in _firsts(a):
         shares = _shares(m) if m.measured_damping is not None else {}
@@ -331,7 +331,7 @@ def _ground(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     first, more = _firsts(a), []
     if first and all(_softening(m) > 0.0 for m in first):
         lower = listed([f"{words(m.label)} by {_moved(m)}" for m in first])
-        more.append(f"The ground lowers {lower} below rigid feet: that much is there to be seen of it.")
+        more.append(f"The ground lowers {lower} below rigid feet: the data can show no more of it than that.")
     return tuple(said[:_MOST]), (*said[_MOST:], *more)
 
 
@@ -467,8 +467,8 @@ def _next(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     if a.records_for:
         needs = [f"{words(label)} {n}" for label, n in a.records_for.items()]
         short.append(
-            f"For damping ratios to ±{100 * a.precision:.0f} %, so many records like these: {listed(needs)} "
-            f"(now {a.records})."
+            f"For damping ratios to ±{100 * a.precision:.0f} %, this many records like these are "
+            f"needed: {listed(needs)} (now {a.records})."
         )
     rest = [step for step in a.next_steps if step not in first.values() and _gains(a, step)]
     return tuple(short), tuple(_step(a, step) for step in rest)
@@ -482,9 +482,9 @@ def _step(a: Answers, step: NextStep) -> str:
 
 
 def _gains(a: Answers, step: NextStep) -> list[str]:
-    """Return what becomes surer by a step: of stiffness and of damping the surest, if one sees it at all."""
+    """Return which stiffness and which damping a step makes most certain, if the change can be seen."""
     kinds = {g.name: g.kind for g in a.ground}
-    gains: dict[str, tuple[str, float]] = {}  # of stiffness and of damping, the one that becomes surest
+    gains: dict[str, tuple[str, float]] = {}  # the most certain parameter of each kind
     for name, left in sorted(step.factors.items(), key=lambda item: item[1]):
         gains.setdefault(kinds.get(name, ""), (name, left))
     return [
@@ -514,4 +514,4 @@ def _records(a: Answers, step: NextStep) -> str:
     length = count(round(days), "day") if days >= 2.0 else count(max(round(24 * days), 1), "hour")
     if _enough(a, step):
         return f"record {length} of the same ({round(times * a.records)} records instead of {a.records})"
-    return f"more records alone do not make it known, not even {length} of them"
+    return f"more records alone do not make it known, not even {length} of records"

@@ -21,23 +21,23 @@ def fit_sentence(fit: FitAnswer) -> str:
     if fit.fits:
         return f"Updated, it meets the data as well as chance lets a true model ({size})."
     odds = "less than once in a million" if fit.probability < _RARE else f"once in {1 / fit.probability:.2g}"
-    return f"No: updated, {_off(fit)} ({size}; of a true model {odds})."
+    return f"No: updated, {_off(fit)} ({size}; for a true model {odds})."
 
 
 def misfit_headline(a: Answers) -> list[str]:
-    """Return what comes before all else of a model that cannot meet the data; nothing of one that does."""
+    """Return what the headline begins with if the model cannot meet the data; nothing if it can."""
     if a.fit is None or a.fit.fits:
         return []
     best = [f"{parameter_words(g.name)} {value_words(g.value, g.unit)}" for g in a.ground[:_BEST]]
     return [
         f"The model cannot meet what was measured on any ground: {_off(a.fit)}.",
-        f"What comes nearest is {listed(best)}; how far that may be off is not known.",
+        f"The nearest fit has {listed(best)}; how far that is off is not known.",
         f"{mend(a.fit)}.",
     ]
 
 
 def value_words(span: Span, unit: str) -> str:
-    """Return the value with the digits it has beside its interval: one number is one number everywhere."""
+    """Return the value with as many digits as its interval has, so that it reads the same everywhere."""
     digits = 2 if span.low is None or span.high is None else digits_of(span.low, span.high)
     return quantity(span.value, unit, digits=digits)
 
@@ -51,8 +51,8 @@ def mend(fit: FitAnswer) -> str:
 
 
 def _off(fit: FitAnswer) -> str:
-    """Return the frequencies that are missed most; of a fit that meets them, the damping."""
+    """Return the frequencies with the largest error; if the fit meets them all, the damping."""
     if not fit.fits and fit.cover is None:
-        return "it is the damping that it misses"
+        return "the damping does not fit"
     worst = list(fit.off.items())[:_NAMED]
     return listed([f"{words(m)} is {100 * abs(d):.1f} % {'high' if d > 0 else 'low'}" for m, d in worst])

@@ -51,9 +51,7 @@ def truth_table(result: TwinResult, a: Answers, stated: tuple[StatedMode, ...]) 
         row += [percent(true.damping_ratio), percent(m.damping_ratio, m.damping_ratio_std)]
         row += [UNKNOWN if model.model_damping is None else percent(model.model_damping.value)]
         rows.append(tuple(row))
-    caption = (
-        "Is it true? What these records state of their asset, the mean over them, beside what was found."
-    )
+    caption = "Are the modes true? The means that these records state of their asset, beside what was found."
     return Table(caption, tuple(columns), tuple(rows), text_columns=1)
 
 
