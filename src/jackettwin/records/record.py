@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError, did_you_mean
+from jackettwin.errors import InputError, look_up
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -121,17 +121,8 @@ class Record:
         InputError
             If a name is not in the record.
         """
-        rows = []
-        for name in names:
-            if name not in self.channel_names:
-                raise InputError(
-                    "no such channel",
-                    field="channels",
-                    value=name,
-                    allowed=", ".join(self.channel_names),
-                    remedy=did_you_mean(name, self.channel_names),
-                )
-            rows.append(self.channel_names.index(name))
+        places = {name: i for i, name in enumerate(self.channel_names)}
+        rows = [look_up(places, name, "channel", field="channels") for name in names]
         return replace(self, data=self.data[rows], channels=tuple(self.channels[i] for i in rows))
 
     def of_quantity(self, quantity: str) -> Record:

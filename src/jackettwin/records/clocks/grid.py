@@ -110,7 +110,7 @@ def between_ticks(times_s: FloatArray) -> FloatArray | None:
     if np.ptp(steps) > PLACED_JITTER * steps.mean():
         return None
     n = first[-1] - first[1]
-    rate = _short(n / (ticks[-1] - ticks[1]), 1.0 / n)
+    rate = shortest_decimal(n / (ticks[-1] - ticks[1]), 1.0 / n)
     return np.asarray(ticks[1] + (np.arange(len(times_s)) - first[1]) / rate)
 
 
@@ -179,7 +179,7 @@ def _agreed_rate(fitted: float, stated: float | None, jitter_s: float, index: In
     if stated is None:
         # Stamps are rounded: take the shortest decimal within their own uncertainty.
         spread = float(np.std(index)) * np.sqrt(len(index))
-        return _short(fitted, max(4.0 * jitter_s / spread * fitted, 1e-9))
+        return shortest_decimal(fitted, max(4.0 * jitter_s / spread * fitted, 1e-9))
     if abs(fitted / stated - 1.0) > RATE_TOLERANCE:
         raise InputError(
             "stated sample rate contradicts the time stamps",
@@ -191,8 +191,12 @@ def _agreed_rate(fitted: float, stated: float | None, jitter_s: float, index: In
     return stated
 
 
-def _short(rate: float, tolerance: float) -> float:
-    """Return the shortest decimal within a relative tolerance of a rate."""
+def shortest_decimal(rate: float, tolerance: float) -> float:
+    """Return the shortest decimal within a relative tolerance of a rate.
+
+    >>> shortest_decimal(49.9998, 1e-5)
+    50.0
+    """
     short = (float(f"{rate:.{digits}g}") for digits in range(1, 10))
     return next((r for r in short if abs(r / rate - 1.0) <= tolerance), rate)
 

@@ -16,11 +16,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.readers.description import Description
 from jackettwin.records.readers.registry import described_by, reading, tables_of
-from jackettwin.records.readers.table import ReadTable, stated_rate, to_record
+from jackettwin.records.readers.table import ReadTable, known_rate, stated_rate, to_record
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -114,7 +113,8 @@ def _timed(tables: Iterable[ReadTable], said: Description, unsaid: Unsaid) -> It
         data = _columns_of(first, table)
         n = data.shape[1]
         if first.times_s is None or table.times_s is None:
-            t = (count + np.arange(n)) / _rate(stated_rate(first, said) or unsaid.sample_rate_hz)
+            rate = stated_rate(first, said) or unsaid.sample_rate_hz
+            t = (count + np.arange(n)) / known_rate(first, rate, "the JSON")
         else:
             since = 0.0
             if first.start_utc is not None and table.start_utc is not None:
@@ -133,17 +133,6 @@ def _columns_of(first: ReadTable, table: ReadTable) -> FloatArray:
     rows = dict(zip(table.names, table.data, strict=True))
     missing = np.full(table.data.shape[1], np.nan)
     return np.vstack([rows.get(name, missing) for name in first.names])
-
-
-def _rate(rate: float | None) -> float:
-    if rate is None:
-        raise InputError(
-            "sample rate is missing",
-            field="sample_rate_hz",
-            allowed="> 0 Hz",
-            remedy='write "sample_rate_hz" into the JSON beside the file (identify, init: or --sample-rate)',
-        )
-    return rate
 
 
 def _first_boundary(origin: datetime | None, seconds: float) -> float:

@@ -262,16 +262,7 @@ def to_record(
             metadata["remarks"] = [*metadata.get("remarks", ()), f"{COARSE} {stated:g} Hz"]
         metadata["clock"] = asdict(clock)
     stated = stated or unsaid.sample_rate_hz
-    if stated is None and table.ambiguous is not None:
-        refuse_ambiguous(table.ambiguous[1], table.ambiguous[0])
-    if stated is None:
-        raise InputError(
-            "sample rate is missing",
-            field="sample_rate_hz",
-            allowed="> 0 Hz",
-            remedy=f'write "sample_rate_hz" into {path.with_suffix(".json").name} beside the file '
-            "(identify, init: or --sample-rate)",
-        )
+    stated = known_rate(table, stated, path.with_suffix(".json").name)
     start_utc, unzoned = _start(table, said, unsaid)
     metadata["remarks"] = [*metadata.get("remarks", ()), *unzoned]
     described = _described(names, table, said, unsaid)
@@ -348,6 +339,26 @@ def _row_of(name: str, table: ReadTable) -> int:
             remedy=did_you_mean(name, table.names) or "remove it from the description",
         )
     return table.names.index(name)
+
+
+def known_rate(table: ReadTable, rate: float | None, beside: str) -> float:
+    """Return the sample rate if it is known.
+
+    Raises
+    ------
+    InputError
+        If it is not: because the dates of the file are ambiguous, or because nothing says it.
+    """
+    if rate is None and table.ambiguous is not None:
+        refuse_ambiguous(table.ambiguous[1], table.ambiguous[0])
+    if rate is None:
+        raise InputError(
+            "sample rate is missing",
+            field="sample_rate_hz",
+            allowed="> 0 Hz",
+            remedy=f'write "sample_rate_hz" into {beside} beside the file (identify, init: or --sample-rate)',
+        )
+    return rate
 
 
 def stated_rate(table: ReadTable, said: Description) -> float | None:

@@ -15,6 +15,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
+from jackettwin.records.clocks import shortest_decimal
 from jackettwin.records.readers.description import ChannelEntry, describe
 from jackettwin.records.readers.stamps import parse_time
 from jackettwin.records.readers.table import ReadTable
@@ -179,7 +180,7 @@ def _parse(lines: list[str], body: bytes, id_line: str) -> _Set | None:
     return _Set(
         name=name if name and name.upper() != "NONE" else f"channel_{number}",
         entry=entry,
-        sample_rate_hz=_round_rate(1.0 / step),
+        sample_rate_hz=shortest_decimal(1.0 / step, 1e-5),  # the step has five decimals
         start=lines[2].strip() if lines[2].strip()[:2] == "20" else "",
         values=_values(body, id_line, kind, n_values),
     )
@@ -206,12 +207,6 @@ def _values(body: bytes, id_line: str, kind: int, n_values: int) -> FloatArray:
             remedy="the file is cut off",
         )
     return values[:n_values]
-
-
-def _round_rate(rate: float) -> float:
-    """Undo the five decimals of the step: the nearest rate of at most six digits within 1e-5."""
-    short = (float(f"{rate:.{digits}g}") for digits in range(1, 7))
-    return next((r for r in short if abs(r / rate - 1.0) < 1e-5), rate)
 
 
 def _integer(text: str) -> int:
