@@ -79,7 +79,8 @@ def help_of(command, name):
     for one in command.list_commands(context) if isinstance(command, click.Group) else ():
         yield from help_of(command.get_command(context, one), f"{name} {one}")
 python = {name: getattr(jackettwin, name) for name in jackettwin.__all__} | vars(Client)
-python = {name: str(inspect.signature(one)) for name, one in python.items() if name[0] != "_"}
+python = {name: [f"{p.kind.name} {p.name} {p.default!r}" for p in inspect.signature(one).parameters.values()]
+          for name, one in python.items() if name[0] != "_"}
 print(json.dumps({"python": python, "help": dict(help_of(main, "jackettwin"))}))
 """
 
@@ -226,23 +227,22 @@ def close(before: Any, after: Any, rtol: float) -> bool:
 
 
 @main.command()
-@click.argument("before", type=click.Path(path_type=Path, exists=True))
-@click.argument("after", type=click.Path(path_type=Path, exists=True))
+@click.argument("folders", metavar="BEFORE AFTER", nargs=2, type=click.Path(path_type=Path, exists=True))
 @click.option("--rtol", default=1e-9, help="Of numbers, to call them the same.")
-def compare(before: Path, after: Path, rtol: float) -> None:
+def compare(folders: tuple[Path, Path], rtol: float) -> None:
     """Print how two recorded folders differ, 20 lines an answer; exit with 1 if it is by more than notes."""
     failed = 0
-    for name in sorted({file.name for folder in (before, after) for file in folder.glob("*.json")}):
-        files = [before / name, after / name]
+    for name in sorted({file.name for folder in folders for file in folder.glob("*.json")}):
+        files = [folder / name for folder in folders]
         answers = (json.loads(file.read_text("utf-8")) if file.exists() else NOTHING for file in files)
-        found = differences(*answers, name.removesuffix(".json"), rtol)
+        found = sorted(differences(*answers, name[:-5], rtol), key=lambda one: bool(NOTED.search(one[0])))
         failed += sum(NOTED.search(path) is None for path, *_ in found)
         for path, *pair in found[:20]:
             texts = [json.dumps(value, ensure_ascii=False) for value in pair]
             shown = slice(start := max(len(os.path.commonprefix(texts)) - 50, 0), start + 100)
             print(f"{'note: ' * bool(NOTED.search(path))}{path}: {' -> '.join(one[shown] for one in texts)}")
         if len(found) > 20:
-            print(f"{name}: and {len(found) - 20} more")
+            print(f"{name[:-5]}: and {len(found) - 20} more")
     sys.exit(failed and f"differences: {failed}")
 
 
