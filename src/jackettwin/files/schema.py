@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields, is_dataclass
+from functools import cache
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args, get_type_hints
 
@@ -253,11 +254,14 @@ def _models_at(schema: type[BaseModel], location: tuple[Any, ...]) -> list[type[
     return current
 
 
+_hints: Callable[..., dict[str, Any]] = cache(get_type_hints)
+
+
 def _own(model: type[Any]) -> dict[str, Any]:
     """Return the fields of a model or a dataclass by name, each with annotation, metadata and alias."""
     if issubclass(model, BaseModel):
         return dict(model.model_fields)
-    hints = get_type_hints(model, include_extras=True)
+    hints = _hints(model, include_extras=True)
     return {f.name: _field(hints[f.name]) for f in fields(model)}
 
 

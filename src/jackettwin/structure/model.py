@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import isnan, nan
+from math import dist, isnan, nan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -183,8 +183,8 @@ class Structure:
 
     def __post_init__(self) -> None:
         for name, point in self.nodes.items():
-            for value in point:
-                with located(field=f"nodes.{name}"):
+            with located(field=f"nodes.{name}"):
+                for value in point:
                     require_between("coordinate", value, -1e6, 1e6)
         self._check_members()
         for kind, names in (
@@ -202,28 +202,26 @@ class Structure:
     def _check_members(self) -> None:
         names: set[str] = set()
         for member in self.members:
-            place = f"members.{member.name}"
-            told = {"field": place, "value": member.name, "remedy": "rename one of them"}
-            require(member.name not in names, "two members have this name", **told)
-            names.add(member.name)
-            self._require(member.start, place)
-            self._require(member.end, place)
-            length = float(np.linalg.norm(np.subtract(self.nodes[member.end], self.nodes[member.start])))
-            require(
-                length <= _LONGEST_M,
-                "member is too long",
-                field=place,
-                value=length,
-                allowed=f"up to {_LONGEST_M:g} m",
-                remedy=f"check nodes {member.start} and {member.end}: coordinates are in metres",
-            )
-            require(
-                length > 1e-6,
-                "member has zero length",
-                field=place,
-                value=[member.start, member.end],
-                remedy="join it to two nodes that lie apart, or make it a rigid link",
-            )
+            name, ends = member.name, (member.start, member.end)
+            place = f"members.{name}"
+            if name in names:
+                remedy = "rename one of them"
+                raise InputError("two members have this name", field=place, value=name, remedy=remedy)
+            names.add(name)
+            for end in ends:
+                self._require(end, place)
+            length = dist(self.nodes[member.start], self.nodes[member.end])
+            if length > _LONGEST_M:
+                raise InputError(
+                    "member is too long",
+                    field=place,
+                    value=length,
+                    allowed=f"up to {_LONGEST_M:g} m",
+                    remedy=f"check nodes {' and '.join(ends)}: coordinates are in metres",
+                )
+            if length <= 1e-6:
+                remedy = "join it to two nodes that lie apart, or make it a rigid link"
+                raise InputError("member has zero length", field=place, value=list(ends), remedy=remedy)
 
     def _check_links(self) -> None:
         followers = [link.follower for link in self.rigid_links]
