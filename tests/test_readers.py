@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
-from mutations import mutated
+from mutated_text import mutated
 
 from jackettwin.change.modal_table import read_modal_table
 from jackettwin.decks import read_structure

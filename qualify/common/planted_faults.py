@@ -95,7 +95,7 @@ FAULTS = (
         ("the periodogram is twice as large", "/ sample_rate_hz / np.sqrt(duration)", "/ sample_rate_hz / np.sqrt(0.5 * duration)"),
         ("MPC without square", "np.asarray(((s_xx - s_yy) ** 2 + 4.0 * s_xy**2) / (s_xx + s_yy) ** 2)", "np.asarray(((s_xx - s_yy) ** 2 + 2.0 * s_xy**2) / (s_xx + s_yy) ** 2)"),
         ("a decay's damping has the wrong sign", "omega * (-zeta + 1j * np.sqrt(1.0 - zeta**2))", "omega * (zeta + 1j * np.sqrt(1.0 - zeta**2))"),
-        ("Student's factor is inverted", "wider = special.stdtrit(freedom, 0.975) / special.ndtri(0.975)", "wider = special.ndtri(0.975) / special.stdtrit(freedom, 0.975)"),
+        ("Student's factor is inverted", "wider = scipy.special.stdtrit(freedom, 0.975) / scipy.special.ndtri(0.975)", "wider = scipy.special.ndtri(0.975) / scipy.special.stdtrit(freedom, 0.975)"),
         ("covariances of one lag more", "length = (n_samples - n_lags) // n_blocks", "length = (n_samples - n_lags - 1) // (2 * n_blocks)"),
         ("real poles have the wrong rate", "a = -np.log(p.eigenvalues.real) * rate", "a = -np.log(p.eigenvalues.real) / rate"),
         ("bias of low damping is added", "np.exp(p.log_zeta[mode] - bias[:, 1])", "np.exp(p.log_zeta[mode] + bias[:, 1])"),
@@ -136,7 +136,7 @@ FAULTS = (
         ("the model's error of damping replaces the data's", "hypot(own_zeta, error.damping * zeta)", "error.damping * zeta"),
     )),
     *_of("change", rows=(
-        ("scour stiffens the feet", "np.exp(-_SCOUR_HORIZONTAL * chosen)", "np.exp(_SCOUR_HORIZONTAL * chosen)"),
+        ("scour stiffens the feet", "(np.exp(-loss * chosen) for loss", "(np.exp(loss * chosen) for loss"),
         ("a weakened brace keeps its stiffness", "_scaled(members, 0.7)", "_scaled(members, 1.0)"),
     )),
     *_of("answers", rows=(
