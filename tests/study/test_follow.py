@@ -21,8 +21,7 @@ from jackettwin.report.pages.follow import build_follow_page
 from jackettwin.response.sensors import Sensor
 from jackettwin.soil import family
 from jackettwin.study.follow import follow, follow_observations
-from jackettwin.study.follow_document import follow_document, read_followed
-from jackettwin.study.follow_result import Followed, Known
+from jackettwin.study.follow_result import Followed, Known, follow_document, read_followed
 from jackettwin.twin import Observation, TwinConfig, TwinModel, observe_files, read_twin, twin_model
 from jackettwin.updating import Problem, SupportModel, support_model, update
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import asdict
 from datetime import datetime
 from typing import Any
 
@@ -70,15 +71,8 @@ def alarm_document(watch: Watch, time: Callable[[float], datetime], alarm: Alarm
         "causes": [_cause(v) for v in alarm.diagnosis.verdicts if v.probability > _LIKELY],
         "inseparable": [list(group) for group in alarm.diagnosis.inseparable],
         "next_measurements": [
-            {
-                "what": m.what,
-                "gain_nats": m.gain_nats,
-                "share_of_doubt": min(m.gain_nats / _doubt(alarm), 1.0),
-                "mode": m.mode or None,
-                "quantity": m.quantity or None,
-                "state": m.state or None,
-                "sensor": m.sensor or None,
-            }
+            {key: value or None for key, value in asdict(m).items()}
+            | {"gain_nats": m.gain_nats, "share_of_doubt": min(m.gain_nats / _doubt(alarm), 1.0)}
             for m in alarm.next_measurements
         ],
         "ln_evidence": change.log_r,
@@ -118,13 +112,8 @@ def _sized_words(document: dict[str, Any]) -> str:
 
 
 def _cause(verdict: CauseVerdict) -> dict[str, Any]:
-    return {
-        "cause": verdict.cause,
-        "probability": verdict.probability,
-        "size": verdict.size,
-        "interval_90": None if np.isnan(verdict.size) else list(verdict.interval_90),
-        "unit": verdict.unit,
-    }
+    sized = not np.isnan(verdict.size)
+    return asdict(verdict) | {"interval_90": list(verdict.interval_90) if sized else None}
 
 
 def quantity_name(watch: Watch, key: tuple[str, int]) -> str:

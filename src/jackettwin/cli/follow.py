@@ -57,7 +57,7 @@ def follow_command(
     from jackettwin.report.pages.follow import build_follow_page
     from jackettwin.soil import family
     from jackettwin.study import follow
-    from jackettwin.study.follow_document import follow_document, read_followed
+    from jackettwin.study.follow_result import follow_document, read_followed
     from jackettwin.study.modes_in_time import MODES_IN_TIME, rows_of_days, write_modes_in_time
     from jackettwin.twin import read_twin, twin_model
 

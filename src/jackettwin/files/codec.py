@@ -48,6 +48,17 @@ def encode(value: Any) -> Any:
     return _encoded_scalar(value)
 
 
+def named(value: object, *names: str) -> dict[str, Any]:
+    """Return some attributes of a value as JSON data, by their names.
+
+    Examples
+    --------
+    >>> named(1.0 + 2.0j, "real", "imag")
+    {'real': 1.0, 'imag': 2.0}
+    """
+    return {name: encode(getattr(value, name)) for name in names}
+
+
 def decode(kind: type[T], plain: Any, *, field: str = "") -> T:
     """Return the value of a type from what :func:`encode` made of it.
 

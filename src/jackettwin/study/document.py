@@ -5,15 +5,18 @@ from __future__ import annotations
 from typing import Any
 
 from jackettwin.arrays import FloatArray
+from jackettwin.files.codec import named
 from jackettwin.identification.comparison import Comparison
 from jackettwin.identification.document import identification_document, mode_document, shape_document
 from jackettwin.intervals import interval_90
-from jackettwin.study.mode_matches import held_document
-from jackettwin.study.result import MeasuredMode, MeasuredRelaxation, TwinResult
+from jackettwin.study.result import MeasuredMode, MeasuredRelaxation, TwinResult, held_document
 from jackettwin.study.truth import truth_document
 from jackettwin.twin import Observation
 from jackettwin.updating import SOURCES, Uncertainty, Update, beyond_literature, law_probability, leg_scatter
 from jackettwin.version import __version__
+
+MODAL = "frequency_hz", "frequency_std_hz", "damping_ratio", "damping_ratio_std"
+"""What measured and fused modes have."""
 
 
 def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
@@ -63,24 +66,18 @@ def update_document(result: TwinResult, index: int) -> dict[str, Any]:
         "solutions": [
             {
                 "parameters": dict(zip(names, map(float, s.theta), strict=True)),
-                "cost": s.cost,
-                "locked_damper": s.locked_damper,
+                **named(s, "cost", "locked_damper", "at_bound", "frequency_hz", "damping_ratio"),
                 "locks_within_extent": s.locks_within,
                 "modes": list(u.problem.states[0].residuals.modes),
-                "frequency_hz": s.frequency_hz,
                 "undamped_frequency_hz": s.undamped_hz,
-                "damping_ratio": s.damping_ratio,
                 "real_pole_rate_rad_s": s.rates,
-                "at_bound": list(s.at_bound),
                 "starts_that_ended_here": s.found,
                 "extent": dict(zip(names, s.extent.tolist(), strict=True)),
             }
             for s in u.solutions
         ],
         "completeness": {
-            "statement": u.search.statement,
-            "starts": u.search.starts,
-            "missed_share_95": u.search.missed_share_95,
+            **named(u.search, "statement", "starts", "missed_share_95"),
             "settled": u.search.spent is None,
         },
         "identifiability": dict.fromkeys(names)
@@ -93,13 +90,11 @@ def update_document(result: TwinResult, index: int) -> dict[str, Any]:
         "reference_frequency_hz": u.model.reference_hz,
         "unexplained_damping": [
             {
-                "label": e.label,
+                **named(e, "label", "excess", "explained"),
                 "measured_damping_ratio": e.measured,
                 "measured_damping_ratio_std": e.measured_std,
                 "support_damping_ratio": e.support,
                 "rotor_damping_ratio": e.rotor,
-                "excess": e.excess,
-                "explained": e.explained,
                 "carried_by": "rotor" if e.carried else None,
             }
             for e in result.excess[index]
@@ -108,27 +103,14 @@ def update_document(result: TwinResult, index: int) -> dict[str, Any]:
 
 
 def _measured(m: MeasuredMode) -> dict[str, Any]:
-    return {
-        "mode": m.mode,
-        "label": m.label,
-        "frequency_hz": m.frequency_hz,
-        "frequency_std_hz": m.frequency_std_hz,
-        "damping_ratio": m.damping_ratio,
-        "damping_ratio_std": m.damping_ratio_std,
-        "frequency_damping_correlation": m.correlation,
-        "mac": m.mac,
-        "fits_frequency": m.fits_frequency,
-        "fits_damping": m.fits_damping,
-    }
+    values = named(m, "mode", "label", *MODAL, "mac", "fits_frequency", "fits_damping")
+    return {**values, "frequency_damping_correlation": m.correlation}
 
 
 def _relaxation(r: MeasuredRelaxation) -> dict[str, Any]:
     return {
-        "name": r.name,
-        "rate_rad_s": r.rate_rad_s,
-        "rate_std_rad_s": r.rate_std_rad_s,
+        **named(r, "name", "rate_rad_s", "rate_std_rad_s", "records"),
         "time_constant_s": 1.0 / r.rate_rad_s,
-        "records": r.records,
         "mode_shape": shape_document(r.shape, list(r.channels)) or None,
     }
 
@@ -189,13 +171,10 @@ def _uncertainty(u: Update, known: Uncertainty) -> dict[str, Any]:
         },
         "identifiability_detail": {
             v.name: {
-                "verdict": v.verdict,
-                "decided_by": v.decided_by,
-                "interval_factor": v.interval_factor,
+                **named(v, "verdict", "decided_by", "interval_factor", "reason"),
                 "posterior_over_prior_std": v.ratio,
                 "before": v.verdict_before,
                 "expected_posterior_over_prior_std": v.ratio_before,
-                "reason": v.reason,
             }
             for v in known.verdicts
         },
@@ -213,9 +192,7 @@ def _uncertainty(u: Update, known: Uncertainty) -> dict[str, Any]:
             s.name: {**_quantiles(s.draws), "prior_interval_90": list(s.before)}
             for s in leg_scatter(u.problem.prior, known.log_theta)
         },
-        "profile_likelihood": {
-            p.name: {"values": p.values.tolist(), "cost": p.cost.tolist()} for p in known.profiles
-        },
+        "profile_likelihood": {p.name: named(p, "values", "cost") for p in known.profiles},
     }
 
 

@@ -7,8 +7,7 @@ from math import hypot
 from typing import Any
 
 from jackettwin.study.measure import Measured
-from jackettwin.study.mode_matches import unpaired_finding
-from jackettwin.study.result import MeasuredMode, MeasuredRelaxation
+from jackettwin.study.result import MeasuredMode, MeasuredRelaxation, unpaired_finding
 from jackettwin.twin import TwinConfig
 from jackettwin.updating import Update
 

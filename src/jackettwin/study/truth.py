@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
@@ -90,26 +90,8 @@ def truth_document(result: TwinResult) -> dict[str, Any] | None:
     if not modes:
         return None
     return {
-        "modes": [
-            {
-                "label": m.label,
-                "frequency_hz": m.frequency_hz,
-                "damping_ratio": m.damping_ratio,
-                "damping_by_source": m.damping_by_source or None,
-            }
-            for m in modes
-        ],
-        "parameters": [
-            {
-                "law": p.law,
-                "name": p.name,
-                "true": p.true,
-                "value": p.value,
-                "interval_90": p.interval_90,
-                "covered": p.covered,
-            }
-            for p in true_parameters(result)
-        ],
+        "modes": [asdict(m) | {"damping_by_source": m.damping_by_source or None} for m in modes],
+        "parameters": [asdict(p) | {"covered": p.covered} for p in true_parameters(result)],
     }
 
 

@@ -22,7 +22,7 @@ from jackettwin.report.tables.numbers import (
     words,
 )
 from jackettwin.study import TwinResult
-from jackettwin.study.mode_matches import unpaired_finding
+from jackettwin.study.result import unpaired_finding
 from jackettwin.twin import Examination
 
 

@@ -7,10 +7,12 @@ from dataclasses import asdict
 from typing import Any
 
 from jackettwin.files import Streamed
+from jackettwin.files.codec import named
 from jackettwin.identification import FusedIdentification, FusedMode
 from jackettwin.identification.document import identification_document
 from jackettwin.identification.many_records.convergence import convergence
 from jackettwin.identification.picks import plain_picks
+from jackettwin.study.document import MODAL
 from jackettwin.study.many_records.groups import RecordGroup
 from jackettwin.study.many_records.identify import Batch
 from jackettwin.study.many_records.summary import Together
@@ -58,24 +60,14 @@ def _records(batch: Batch) -> Iterator[dict[str, Any]]:
 def _rejected(batch: Batch) -> Iterator[dict[str, Any]]:
     for one in batch:
         for r in one.identification.rejected:
-            yield {
-                "record": one.identification.records[0],
-                "frequency_hz": r.frequency_hz,
-                "damping_ratio": r.damping_ratio,
-                "reason": r.reason,
-                "status": r.status.value,
-            }
+            rejected = named(r, "frequency_hz", "damping_ratio", "reason", "status")
+            yield {"record": one.identification.records[0], **rejected}
 
 
 def fused_mode_document(mode: FusedMode, channels: Sequence[str]) -> dict[str, Any]:
     """Return one fused mode; the scatter is that between records beyond their own uncertainty."""
     return {
-        "frequency_hz": mode.frequency_hz,
-        "frequency_std_hz": mode.frequency_std_hz,
-        "damping_ratio": mode.damping_ratio,
-        "damping_ratio_std": mode.damping_ratio_std,
-        "frequency_interval_95": mode.frequency_interval_95,
-        "damping_ratio_interval_95": mode.damping_ratio_interval_95,
+        **named(mode, *MODAL, "frequency_interval_95", "damping_ratio_interval_95"),
         "relative_scatter_frequency": mode.scatter_frequency,
         "relative_scatter_damping_ratio": mode.scatter_damping_ratio,
         "records_with_mode": len(mode.sightings),
