@@ -15,7 +15,8 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.records import read_record
 from jackettwin.records.readers import parquet
-from jackettwin.records.readers.parquet import ENCODING, differences
+from jackettwin.records.readers.parquet import ENCODING
+from pack_records import differences
 
 STAMPS = [datetime(2025, 1, 1, 13, tzinfo=UTC) + timedelta(milliseconds=50 * k) for k in range(40)]
 

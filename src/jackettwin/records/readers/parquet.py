@@ -1,7 +1,7 @@
 """Parquet: one column a channel, described by the JSON beside it.
 
 The records that are shipped hold second differences of single-precision numbers, which take a fifth less room
-and give back every bit: see :func:`differences`.
+and give back every bit: see :func:`restored`.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ ROWS = 32_768
 BUFFER_BYTES = 1 << 20
 """Read ahead of each column [bytes]."""
 ENCODING = b"jackettwin.second_differences"
-"""Key of a schema whose columns are :func:`differences`."""
-_MAGNITUDE = np.int32(0x7FFFFFFF)
+"""Key of a schema whose columns are second differences (*scripts/pack_records*)."""
+MAGNITUDE = np.int32(0x7FFFFFFF)
 """All bits of a number but its sign."""
 
 
@@ -57,31 +57,15 @@ def write(record: Record, path: Path) -> None:
     pq.write_table(pa.table(columns), path)
 
 
-def differences(values: npt.NDArray[np.float32]) -> npt.NDArray[np.int32]:
-    """Return second differences of single-precision numbers as whole numbers, from which each bit comes back.
-
-    The bits of a positive float are a whole number that grows with it; those of a negative one are mirrored.
-    Differences are taken modulo 2³², and written with their sign in the lowest bit, so that their high bytes
-    are zeros, which compress well.
-
-    Examples
-    --------
-    >>> x = np.array([0.5, 0.25, -0.125, 0.0, np.nan], np.float32)
-    >>> bool((restored(differences(x)).view(np.int32) == x.view(np.int32)).all())
-    True
-    """
-    bits = values.view(np.int32)
-    ordered = np.where(bits < 0, bits ^ _MAGNITUDE, bits).view(np.uint32)
-    second = np.diff(ordered, n=2, prepend=np.zeros(2, np.uint32)).view(np.int32)
-    return (second << 1) ^ (second >> 31)
-
-
 def restored(stored: npt.NDArray[np.int32]) -> npt.NDArray[np.float32]:
-    """Return the numbers of which :func:`differences` were taken."""
+    """Return single-precision numbers from their second differences, every bit of them.
+
+    *scripts/pack_records* takes the differences of the bits, modulo 2³², with their sign in the lowest bit.
+    """
     code = stored.view(np.uint32)
     second = (code >> np.uint32(1)) ^ (np.uint32(0) - (code & np.uint32(1)))
     ordered = np.cumsum(np.cumsum(second, dtype=np.uint32), dtype=np.uint32).view(np.int32)
-    return np.where(ordered < 0, ordered ^ _MAGNITUDE, ordered).view(np.float32)
+    return np.where(ordered < 0, ordered ^ MAGNITUDE, ordered).view(np.float32)
 
 
 def _table(stored: Any) -> ReadTable:
