@@ -35,7 +35,8 @@ from jackettwin.watching.block import Block, begin, no_begins, watched as column
 from jackettwin.watching.design import Design, design_of, fresh, regressors
 from jackettwin.watching.directions import SHARES, Directions, directions_of
 from jackettwin.watching.learning import OCTAVES, learn
-from jackettwin.watching.watch import KINDS as KINDS_OF_QUANTITIES, Begins
+from jackettwin.watching.state import Begins
+from jackettwin.watching.watch import KINDS as KINDS_OF_QUANTITIES
 
 LABELS = ("bending_1", "bending_2", "bending_3", "bending_4")
 BASELINE, YEARS = 365.0, 3

@@ -9,18 +9,18 @@ import pytest
 from distributed.scheduler import KilledWorker
 
 from jackettwin.service import ServiceSettings
-from jackettwin.service.workers.cluster import Cluster
+from jackettwin.service.workers.cluster import WorkerCluster
 from jackettwin.service.workers.failures import NoWorker
 
 
 @pytest.fixture(scope="module")
-def compute(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
-    made = Cluster(ServiceSettings(store=tmp_path_factory.mktemp("store"), workers=1))
+def compute(tmp_path_factory: pytest.TempPathFactory) -> Iterator[WorkerCluster]:
+    made = WorkerCluster(ServiceSettings(store=tmp_path_factory.mktemp("store"), workers=1))
     yield made
     made.close()
 
 
-def test_a_worker_that_was_given_up_is_replaced(compute: Cluster) -> None:
+def test_a_worker_that_was_given_up_is_replaced(compute: WorkerCluster) -> None:
     """As after a kill while it was starting, which Dask does not mend."""
     before = compute.submit(os.getpid).result(timeout=60)
     (nanny,) = compute._cluster.workers.values()  # type: ignore[union-attr]
@@ -33,12 +33,12 @@ def test_a_worker_that_was_given_up_is_replaced(compute: Cluster) -> None:
     assert compute.workers == 1
 
 
-def test_a_worker_has_loaded_what_it_needs_before_its_first_task(compute: Cluster) -> None:
+def test_a_worker_has_loaded_what_it_needs_before_its_first_task(compute: WorkerCluster) -> None:
     loaded = "'jackettwin.service.workers.engine' in __import__('sys').modules"
     assert compute.submit(eval, loaded).result(timeout=60)
 
 
-def test_waiting_for_a_worker_is_not_the_tasks_time(compute: Cluster) -> None:
+def test_waiting_for_a_worker_is_not_the_tasks_time(compute: WorkerCluster) -> None:
     """Half a second before it begins and half a second of its own: less than its 0.8 s."""
     compute.submit(time.sleep, 0.5)
     begin = time.monotonic()
@@ -50,7 +50,7 @@ def test_waiting_for_a_worker_is_not_the_tasks_time(compute: Cluster) -> None:
 
 
 def test_a_task_that_takes_too_long_ends_its_worker_and_what_waited_there_was_not_tried(
-    compute: Cluster,
+    compute: WorkerCluster,
 ) -> None:
     before = compute.submit(os.getpid).result(timeout=60)
     compute.mend()
@@ -66,7 +66,7 @@ def test_a_task_that_takes_too_long_ends_its_worker_and_what_waited_there_was_no
     assert after != before and compute.restarts == restarts + 1
 
 
-def test_a_task_that_its_worker_dies_of_was_tried(compute: Cluster) -> None:
+def test_a_task_that_its_worker_dies_of_was_tried(compute: WorkerCluster) -> None:
     fatal = compute.submit(os.abort)
     with pytest.raises(KilledWorker):
         fatal.result(timeout=60)
@@ -75,7 +75,7 @@ def test_a_task_that_its_worker_dies_of_was_tried(compute: Cluster) -> None:
 
 
 def test_a_file_does_not_wait_at_a_busy_worker_while_another_is_free(tmp_path: Path) -> None:
-    two = Cluster(ServiceSettings(store=tmp_path, workers=2))
+    two = WorkerCluster(ServiceSettings(store=tmp_path, workers=2))
     try:
         while two.workers < 2:
             time.sleep(0.1)

@@ -13,7 +13,7 @@ from jackettwin.errors import InputError
 from jackettwin.service import ServiceSettings, serve
 from jackettwin.service.context import Service
 from jackettwin.service.intake.mqtt import MqttIntake
-from jackettwin.service.workers.cluster import Cluster
+from jackettwin.service.workers.cluster import WorkerCluster
 
 
 @pytest.fixture(autouse=True)
@@ -50,7 +50,7 @@ def test_a_certificate_that_is_none_is_said(settings: ServiceSettings, tmp_path:
 
 def test_a_scheduler_that_is_none_is_said(settings: ServiceSettings) -> None:
     with pytest.raises(InputError) as error:
-        Cluster(settings.model_copy(update={"scheduler": "nonsense"}))
+        WorkerCluster(settings.model_copy(update={"scheduler": "nonsense"}))
     assert (error.value.field, error.value.value) == ("scheduler", "nonsense")
 
 

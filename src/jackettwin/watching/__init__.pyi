@@ -14,4 +14,5 @@ from .diagnosis import (
 )
 from .directions import Pattern as Pattern
 from .history import History as History
-from .watch import Look as Look, Watch as Watch, start as start, step as step
+from .state import Watch as Watch
+from .watch import Look as Look, start as start, step as step

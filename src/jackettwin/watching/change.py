@@ -3,21 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray
-from jackettwin.watching.block import (
-    BROAD,
-    Block,
-)
+from jackettwin.watching.block import BROAD, Block
 from jackettwin.watching.directions import log_ramps
 from jackettwin.watching.scatter import STRONGER
-
-if TYPE_CHECKING:
-    from jackettwin.watching.watch import Watch
-
+from jackettwin.watching.state import Watch
 
 _LOOSE = 1.0
 """Precision of what other quantities do while some are judged: they may change by anything."""

@@ -20,7 +20,6 @@ import numpy as np
 from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.watching.block import (
-    Block,
     Spoken,
     adopted,
     begin,
@@ -34,12 +33,12 @@ from jackettwin.watching.block import (
     watched,
 )
 from jackettwin.watching.change import Change, change_of
-from jackettwin.watching.design import WHOLE_YEAR_DAYS, Design, Lagged, Slope, design_of, fresh, regressors
+from jackettwin.watching.design import WHOLE_YEAR_DAYS, Slope, design_of, fresh, regressors
 from jackettwin.watching.directions import SHARES, Pattern, directions_of
 from jackettwin.watching.history import History, Kind, typical
 from jackettwin.watching.scatter import STRONGER
+from jackettwin.watching.state import Begins, Watch
 
-YEAR_DAYS = 365.25
 MOST_BEGINS = 26
 """Begins that are kept; the day's cost grows with them."""
 _RECENT = 8
@@ -57,65 +56,6 @@ GUARDED = 0.8
 what weather does, which has a longer tail than any normal process. The mean of no Bayes factor rises by that
 (Jensen), so that the promise is kept. After a shorter baseline models are unsure enough by themselves."""
 KINDS: tuple[Kind, ...] = ("frequency", "damping", "angle")
-
-
-@dataclass(frozen=True)
-class Begins:
-    """When a change may have begun.
-
-    Attributes
-    ----------
-    days : (n,) first day with records after the change
-    since : (n,) last day with records before it
-    log_stake : (n,) ln of what is staked on each
-    log_scatter : (n, m_all, n_factors) ln of the likelihood ratios of louder noise since then
-    """
-
-    days: FloatArray
-    since: FloatArray
-    log_stake: FloatArray
-    log_scatter: FloatArray
-
-
-@dataclass(frozen=True)
-class Watch:
-    """All that has to be kept from one day to the next; it does not grow.
-
-    Attributes
-    ----------
-    labels : of the modes
-    design, lagged : regressors and what late ones remember
-    blocks : of frequencies, and of damping if there is any
-    begins : of changes that are bet on
-    last_day : of the last records
-    accounted : day up to which begins are staked
-    considered : day on which the models' weights were reconsidered
-    arl_years : mean time between false alarms that is promised, at least
-    patience_days : for how long a change has to last
-    power : to which evidence counts
-    """
-
-    labels: tuple[str, ...]
-    design: Design
-    lagged: Lagged
-    blocks: tuple[Block, ...]
-    begins: Begins
-    last_day: float
-    accounted: float
-    considered: float
-    arl_years: float
-    patience_days: float = 0.0
-    power: float = 1.0
-
-    @property
-    def log_threshold(self) -> float:
-        """Ln of A, the days between false alarms."""
-        return float(np.log(self.arl_years * YEAR_DAYS))
-
-    @property
-    def quantities(self) -> tuple[tuple[Kind, int], ...]:
-        """Kind and mode of each watched quantity."""
-        return tuple((block.kind, int(q)) for block in self.blocks for q in block.kept)
 
 
 @dataclass(frozen=True)

@@ -80,7 +80,7 @@ def run(topic: str, task: Callable[..., Any], *args: Any) -> Any:
         give_back()
 
 
-class Cluster:
+class WorkerCluster:
     """Where records are read and observed: never in the server's own process."""
 
     def __init__(self, settings: ServiceSettings) -> None:
