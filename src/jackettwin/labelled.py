@@ -119,8 +119,8 @@ def _modes(seen: Observation) -> list[dict[str, Any]]:
 
 
 def _days(state: TwinState) -> list[dict[str, Any]]:
-    from jackettwin.twin.exact_sums import average
-    from jackettwin.twin.state import ALL, day_totals
+    from jackettwin.twin import ALL, average
+    from jackettwin.twin.state import day_totals
 
     rows = []
     for day in state.days.values():

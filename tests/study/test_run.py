@@ -25,8 +25,7 @@ from jackettwin.study.result import MeasuredMode
 from jackettwin.study.rotor import RotorDamping
 from jackettwin.study.truth import true_modes
 from jackettwin.twin import TwinState, read_twin
-from jackettwin.twin.assembly import assembled
-from jackettwin.twin.config import ModelError, TwinConfig, UpdateSettings
+from jackettwin.twin.config import ModelError, TwinConfig, UpdateSettings, assembled
 from jackettwin.twin.exact_sums import of_day, of_estimate, plus
 from jackettwin.updating import Target, numbered_modes
 from jackettwin.updating.data.pairing import Counterpart

@@ -16,7 +16,7 @@ from jackettwin.study.fit_data import residuals, target_modes
 from jackettwin.study.problem import UpdateEvidence, law_problem
 from jackettwin.study.rotor import RotorDamping
 from jackettwin.twin import TwinState, advance_all, read_twin
-from jackettwin.twin.assembly import assembled
+from jackettwin.twin.config import assembled
 from jackettwin.twin.state import ALL
 from jackettwin.twin.water import WaterConfig, in_the_records_sea, water_effects
 from jackettwin.updating import support_model

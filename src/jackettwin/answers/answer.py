@@ -20,8 +20,7 @@ from jackettwin.answers.result import (
 from jackettwin.arrays import FloatArray
 from jackettwin.intervals import NORMAL_90, interval_90
 from jackettwin.soil import Parameter, families, law_parameter
-from jackettwin.study import TwinResult
-from jackettwin.study.result import MeasuredMode
+from jackettwin.study import MeasuredMode, TwinResult
 from jackettwin.updating import SOURCES, USABLE, Update, approximate_probability, law_probability, recommended
 
 PRECISION = 0.2

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from jackettwin.answers.result import FitAnswer, ModeAnswer
-from jackettwin.study.result import MeasuredMode
+from jackettwin.study import MeasuredMode
 from jackettwin.updating import Residuals, Target, Update, misfit
 
 _LARGEST = 1.0

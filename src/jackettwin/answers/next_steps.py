@@ -15,7 +15,7 @@ import numpy as np
 from jackettwin.answers.result import NextStep
 from jackettwin.arrays import FloatArray
 from jackettwin.intervals import NORMAL_90
-from jackettwin.study.result import MeasuredMode
+from jackettwin.study import MeasuredMode
 from jackettwin.updating import DASHPOTS, USABLE, Problem, Residuals, State, Target, Update, information
 
 _POINTS = 6

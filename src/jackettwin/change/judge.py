@@ -22,11 +22,10 @@ from jackettwin.change.table_watch import begun, explained_alarm, structure_caus
 from jackettwin.change.watch_document import alarm_document
 from jackettwin.errors import InputError
 from jackettwin.findings import Finding
-from jackettwin.twin import TwinModel, TwinState
-from jackettwin.twin.codec import StoredSchema, digest
+from jackettwin.twin import UNDATED, UNIT, Day, StoredSchema, TwinModel, TwinState, digest
 from jackettwin.twin.config import WatchSettings
-from jackettwin.twin.exact_sums import UNIT, ModeSums
-from jackettwin.twin.state import UNDATED, Day, Operation
+from jackettwin.twin.exact_sums import ModeSums
+from jackettwin.twin.state import Operation
 from jackettwin.watching import History, Watch, step
 from jackettwin.watching.watch import FEWEST_DAYS
 

@@ -18,8 +18,7 @@ from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.change.table_times import table_times
 from jackettwin.errors import InputError, did_you_mean, located, require
 from jackettwin.records import text_table
-from jackettwin.watching import History
-from jackettwin.watching.history import typical
+from jackettwin.watching import History, typical
 
 Columns = dict[str, npt.NDArray[Any]]
 

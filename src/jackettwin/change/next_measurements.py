@@ -16,9 +16,16 @@ from jackettwin.arrays import FloatArray
 from jackettwin.change.causes import MODES, SeenCauses
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.response import LOCAL
-from jackettwin.watching import Cause, CauseVerdict, Diagnosis, History, Watch, expected_information
-from jackettwin.watching.history import typical
-from jackettwin.watching.variance_shares import unexplained_std
+from jackettwin.watching import (
+    Cause,
+    CauseVerdict,
+    Diagnosis,
+    History,
+    Watch,
+    expected_information,
+    typical,
+    unexplained_std,
+)
 
 _RECORDS, _RECORD_S, _SHOWN = 144, 600.0, 5
 """Ten-minute records of a further measurement, spread over a month, and how many measurements are named."""

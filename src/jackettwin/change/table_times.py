@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, located
-from jackettwin.records.readers.stamps import parse_time
+from jackettwin.records import parse_time
 
 Stamps = npt.NDArray[np.datetime64]
 Stored = dict[str, npt.NDArray[Any]]

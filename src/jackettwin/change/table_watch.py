@@ -25,10 +25,12 @@ from jackettwin.watching import (
     general_causes,
     start,
     step,
+    typical,
+    unexplained_std,
 )
 from jackettwin.watching.design import WHOLE_YEAR_DAYS, fresh, regressors
-from jackettwin.watching.history import deviations, typical
-from jackettwin.watching.variance_shares import shares, slopes, unexplained_std
+from jackettwin.watching.history import deviations
+from jackettwin.watching.variance_shares import shares, slopes
 from jackettwin.watching.watch import columns_to_watch
 
 _PATTERNS, _UNLIKELY = 3, 0.001

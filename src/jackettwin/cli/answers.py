@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 def print_answers(answers: Answers) -> None:
     """Print the headline, then every question with its short answer."""
-    from jackettwin.report.tables.sentences import sentences
+    from jackettwin.report import sentences
 
     said = sentences(answers)
     output.print()
@@ -26,8 +26,8 @@ def print_answers(answers: Answers) -> None:
 
 def answers_document(answers: Answers) -> dict[str, Any]:
     """Return the answers as plain JSON data, in numbers and in words."""
-    from jackettwin.files.codec import encode
-    from jackettwin.report.tables.sentences import sentences
+    from jackettwin.files import encode
+    from jackettwin.report import sentences
 
     said = sentences(answers)
     return {

@@ -13,8 +13,8 @@ from jackettwin.cli.console import Reply, answers, progress, say, say_all, show_
 from jackettwin.report import Table
 
 if TYPE_CHECKING:
+    from jackettwin.study import Followed
     from jackettwin.study.follow import Each
-    from jackettwin.study.follow_result import Followed
 
 
 @click.command("follow")
@@ -56,9 +56,9 @@ def follow_command(
     from jackettwin.files import atomic_folder, check_room, write_json
     from jackettwin.report.pages.follow import build_follow_page
     from jackettwin.soil import family
-    from jackettwin.study import follow
+    from jackettwin.study import MODES_IN_TIME, follow, write_modes_in_time
     from jackettwin.study.follow_result import follow_document, read_followed
-    from jackettwin.study.modes_in_time import MODES_IN_TIME, rows_of_days, write_modes_in_time
+    from jackettwin.study.modes_in_time import rows_of_days
     from jackettwin.twin import read_twin, twin_model
 
     config = read_twin(twin)

@@ -27,10 +27,9 @@ from jackettwin.errors import InputError, located
 from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
-    from jackettwin.identification import IdentificationSettings
-    from jackettwin.identification.picks import Pick
-    from jackettwin.records.readers.channels import Unsaid
-    from jackettwin.twin.cache import KeptInFolder
+    from jackettwin.identification import IdentificationSettings, Pick
+    from jackettwin.records import Unsaid
+    from jackettwin.twin import KeptInFolder
 
 _SHOWN = 5
 """Lines of a kind printed at most; the rest is in the JSON."""
@@ -44,13 +43,14 @@ class _Method(click.types.StringParamType):
 
     def get_metavar(self, param: click.Parameter, ctx: click.Context | None = None) -> str:
         """Return the names that may be chosen, for the help."""
-        from jackettwin.identification.methods import method_names
+        from jackettwin.identification import method_names
 
         return f"[{'|'.join(method_names())}]"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
         """Return the name; refuse one that no method has."""
-        from jackettwin.identification.methods import is_method, method_names
+        from jackettwin.identification import method_names
+        from jackettwin.identification.methods import is_method
 
         if not is_method(value):
             self.fail(f"{value!r} is not one of {', '.join(map(repr, method_names()))}.", param, ctx)
@@ -127,7 +127,7 @@ def identify_command(
         _deliver(known, out, as_json, _print_many if "groups" in known else _print_one)
         return
     from jackettwin.files import check_room
-    from jackettwin.records.readers import record_files
+    from jackettwin.records import record_files
 
     settings = _settings(settings_file, method, real_poles)
     _refuse_format(out)
@@ -178,7 +178,8 @@ def _keep(out: Path | None, n_records: int, *, fresh: bool) -> KeptInFolder | No
 
 def _without_long(files: tuple[Path, ...], folder: Path, unsaid: Unsaid) -> tuple[Path, ...]:
     """Return the files, with ten-minute pieces in the place of records longer than an hour."""
-    from jackettwin.study.many_records.long_records import LONG, PIECE_S, without_long
+    from jackettwin.study import LONG, PIECE_S
+    from jackettwin.study.many_records.long_records import without_long
 
     with progress(len(files), "read") as step:
         cut = without_long(files, folder, unsaid, step)
@@ -206,7 +207,7 @@ def _deliver(
 
 def _export(document: Mapping[str, Any], out: Path) -> None:
     from jackettwin.files import write_json
-    from jackettwin.study.many_records.export import WRITERS, export_modes
+    from jackettwin.study import WRITERS, export_modes
 
     for path in [out / f"modes{ending}" for ending in WRITERS] if _folder(out) else [out]:
         export_modes(document, path)
@@ -222,7 +223,7 @@ def _one(
     compare: bool,
     report: Path | None,
 ) -> dict[str, Any]:
-    from jackettwin.identification.document import identification_document
+    from jackettwin.identification import identification_document
     from jackettwin.twin import examine_file
 
     with progress(1 + (report is not None), "identify") as step:
@@ -286,8 +287,7 @@ def _settings(path: str | None, method: str | None, real_poles: bool) -> Identif
 
 def _unsaid(sample_rate: float | None, unit: str | None, gain: float | None, zone: str | None) -> Unsaid:
     from jackettwin.quantities import plain_unit, vibration_of
-    from jackettwin.records.readers.channels import Unsaid
-    from jackettwin.records.readers.stamps import read_zone
+    from jackettwin.records import Unsaid, read_zone
 
     if unit is not None:
         vibration_of(plain_unit(unit), field="--unit")
@@ -300,7 +300,7 @@ def _picks(path: str | None, files: Sequence[Path]) -> tuple[Pick, ...]:
     if path is None:
         return ()
     from jackettwin.files import read_mapping
-    from jackettwin.identification.picks import parse_picks, refuse_strangers
+    from jackettwin.identification import parse_picks, refuse_strangers
 
     with located(file=path):
         picks = parse_picks(read_mapping(path, what="file of picks"))
@@ -314,7 +314,7 @@ def _folder(out: Path) -> bool:
 
 def _refuse_format(out: Path | None) -> None:
     """Refuse an extension we do not write before the work, not after it."""
-    from jackettwin.study.many_records.export import WRITERS, export_modes
+    from jackettwin.study import WRITERS, export_modes
 
     if out is not None and not _folder(out) and out.suffix.lower() not in WRITERS:
         export_modes({}, out)

@@ -15,8 +15,7 @@ from jackettwin.cli.console import FiniteFloat, Reply, answers, messages, progre
 from jackettwin.errors import InputError, located
 
 if TYPE_CHECKING:
-    from jackettwin.records import Record
-    from jackettwin.records.readers.channels import Unsaid
+    from jackettwin.records import Record, Unsaid
     from jackettwin.study.draft import Draft
 
 
@@ -67,9 +66,7 @@ def init_command(
     """
     from jackettwin.decks import read_structure
     from jackettwin.files import atomic_path, check_room
-    from jackettwin.records.readers import record_files
-    from jackettwin.records.readers.channels import Unsaid
-    from jackettwin.records.readers.stamps import read_zone
+    from jackettwin.records import Unsaid, read_zone, record_files
     from jackettwin.structure import assemble
     from jackettwin.study.draft import draft_twin
     from jackettwin.twin import read_twin
@@ -110,9 +107,9 @@ def init_command(
 
 def _read(file: Path, unsaid: Unsaid) -> tuple[Record, Unsaid]:
     """Return a record, and what had to be asked for to read it."""
-    from jackettwin.records import read_record
-    from jackettwin.records.readers.stamps import UNSAID, read_zone
-    from jackettwin.twin.examine import moving_channels
+    from jackettwin.records import read_record, read_zone
+    from jackettwin.records.readers.stamps import UNSAID
+    from jackettwin.twin import moving_channels
 
     while True:
         try:

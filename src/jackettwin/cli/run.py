@@ -50,9 +50,15 @@ def run_command(
     from jackettwin.answers import answer as answer_run
     from jackettwin.files import atomic_folder, check_room, write_json
     from jackettwin.report import build_report
-    from jackettwin.study import count_steps, run_document, run_twin
-    from jackettwin.study.modes_in_time import MODES_IN_TIME, rows_of_records, write_modes_in_time
-    from jackettwin.study.truth import true_parameters
+    from jackettwin.study import (
+        MODES_IN_TIME,
+        count_steps,
+        run_document,
+        run_twin,
+        true_parameters,
+        write_modes_in_time,
+    )
+    from jackettwin.study.modes_in_time import rows_of_records
     from jackettwin.twin import read_twin
 
     config = read_twin(twin or (SIMULATED_TWIN if simulate else DEFAULT_TWIN), records_follow=simulate)

@@ -30,8 +30,8 @@ def add_token(user: str, label: str, days: int, at: StorePlace) -> Reply:
     """Make a token with the role of USER; it is shown this once."""
     engine = at.open()
     from jackettwin.service.web.auth import new_grant
-    from jackettwin.store import writing
-    from jackettwin.store.people import known_user, note_down
+    from jackettwin.store import note_down, writing
+    from jackettwin.store.people import known_user
 
     made = now()
     with writing(engine) as connection:

@@ -12,8 +12,7 @@ from jackettwin.cli.console import Reply, answers, output, progress, say, say_al
 from jackettwin.report import Table, cell
 
 if TYPE_CHECKING:
-    from jackettwin.study import DampingExcess, TwinResult
-    from jackettwin.study.result import MeasuredMode
+    from jackettwin.study import DampingExcess, MeasuredMode, TwinResult
     from jackettwin.updating import Update
 
 

@@ -36,8 +36,8 @@ def add_user(name: str, role: str, password_stdin: bool, at: StorePlace) -> Repl
     )
     engine = at.open(make=True)
     from jackettwin.service.web.auth import hashed
-    from jackettwin.store import writing
-    from jackettwin.store.people import User, add_user as keep, note_down
+    from jackettwin.store import note_down, writing
+    from jackettwin.store.people import User, add_user as keep
 
     password = (
         sys.stdin.readline().rstrip("\n")

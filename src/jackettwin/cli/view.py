@@ -18,8 +18,8 @@ from jackettwin.errors import InputError, located
 
 if TYPE_CHECKING:
     from jackettwin.loads import GrowthBand
+    from jackettwin.report import ColouredQuantity
     from jackettwin.report.view.motions import DrawnMotion
-    from jackettwin.report.view.page import ColouredQuantity
     from jackettwin.response import Sensor, System
     from jackettwin.structure import Assembly
 
@@ -227,7 +227,7 @@ def _uses(
 ) -> tuple[ColouredQuantity, ...]:
     """Return utilisation and stress at rest under the weight and the forces given."""
     from jackettwin.checks import frame_use
-    from jackettwin.report.view.page import ColouredQuantity
+    from jackettwin.report import ColouredQuantity
     from jackettwin.response import nodal_load, self_weight, static_displacement
     from jackettwin.structure import element_weight, section_forces, von_mises_stress
 

@@ -62,9 +62,10 @@ def watch_command(
     damping_ratio_std), or one column a mode with --columns. Further columns are conditions. The first
     days are taken as healthy.
     """
+    from jackettwin.change import next_sentence, statement
     from jackettwin.change.modal_table import read_modal_table
     from jackettwin.change.table_watch import watch_table
-    from jackettwin.change.watch_document import next_sentence, statement, watched_document
+    from jackettwin.change.watch_document import watched_document
     from jackettwin.decks import read_structure
     from jackettwin.files import atomic_folder, write_json
     from jackettwin.report.pages.watch import build_watch_page
@@ -115,7 +116,7 @@ def _chosen(conditions: str | None) -> tuple[str, ...] | None:
 
 
 def _day(table: ModalTable, relearn: str | None) -> float:
-    from jackettwin.records.readers.stamps import parse_time
+    from jackettwin.records import parse_time
 
     if relearn is None:
         return 0.0

@@ -11,8 +11,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.decks.openfast import Deck, read_deck, to_float
 from jackettwin.errors import located, require
-from jackettwin.files import find_file, read_yaml
-from jackettwin.files.windio import Part, WindIO, windio
+from jackettwin.files import Part, WindIO, find_file, read_yaml, windio
 from jackettwin.structure import FlexibleRotor
 from jackettwin.structure.blades import BladeStructure
 

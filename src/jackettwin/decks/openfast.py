@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from jackettwin.errors import InputError, require
-from jackettwin.files.yaml import read_text
+from jackettwin.files import read_text
 
 _TEXT = ("ssifile",)
 """Optional columns that hold no number."""

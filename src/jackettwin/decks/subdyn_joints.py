@@ -8,9 +8,8 @@ import numpy as np
 
 from jackettwin.decks.openfast import Deck, DeckRow
 from jackettwin.errors import require
-from jackettwin.structure import RigidLink, TwoNodeElement, Vector, two_node_element
+from jackettwin.structure import RigidLink, TwoNodeElement, Vector, spring_matrix, two_node_element
 from jackettwin.structure.model import reached_by
-from jackettwin.structure.two_node import spring_matrix
 
 if TYPE_CHECKING:
     from collections.abc import Collection

@@ -22,10 +22,11 @@ from jackettwin.structure import (
     Section,
     TwoNodeElement,
     Vector,
+    spring_matrix,
     two_node_element,
 )
 from jackettwin.structure.sections import rectangular_section
-from jackettwin.structure.two_node import BeamSection, bar_mass, beam_matrices, cable_matrices, spring_matrix
+from jackettwin.structure.two_node import BeamSection, bar_mass, beam_matrices, cable_matrices
 
 _TUBE, _RECTANGLE, _CABLE, _RIGID, _ARBITRARY, _SPRING = ("1", "1c"), "1r", "2", "3", "4", "5"
 _BEAMS = (*_TUBE, _RECTANGLE, _ARBITRARY)

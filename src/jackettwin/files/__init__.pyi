@@ -1,6 +1,16 @@
 from .atomic import atomic_folder as atomic_folder, atomic_path as atomic_path
+from .codec import encode as encode, named as named
 from .disk_space import check_room as check_room
 from .json import Streamed as Streamed, json_pieces as json_pieces, write_json as write_json
+from .limits import (
+    Angle as Angle,
+    ForceCoefficient as ForceCoefficient,
+    Frequency as Frequency,
+    Height as Height,
+    Seed as Seed,
+)
+from .plausible import refuse_tiny as refuse_tiny
 from .schema import Placed as Placed, Schema as Schema, one_of as one_of, validate as validate
 from .shipped import find_file as find_file, shipped as shipped
-from .yaml import read_mapping as read_mapping, read_yaml as read_yaml
+from .windio import Part as Part, WindIO as WindIO, windio as windio
+from .yaml import read_mapping as read_mapping, read_text as read_text, read_yaml as read_yaml

@@ -1,4 +1,6 @@
 from .automatic import identify as identify
+from .comparison import Comparison as Comparison
+from .document import identification_document as identification_document
 from .estimate import (
     Identification as Identification,
     ModalEstimate as ModalEstimate,
@@ -8,12 +10,17 @@ from .estimate import (
     Stabilisation as Stabilisation,
 )
 from .frequency_domain.fdd import fdd as fdd
+from .many_records.convergence import convergence as convergence
 from .many_records.fusion import (
     FusedIdentification as FusedIdentification,
     FusedMode as FusedMode,
     fuse as fuse,
+    fused_records as fused_records,
 )
+from .maximum_likelihood.spectral_fit import modal_fit as modal_fit
+from .methods import method_names as method_names
 from .mode_shapes import mac as mac
+from .picks import Pick as Pick, parse_picks as parse_picks, refuse_strangers as refuse_strangers
 from .pole_methods import PoleMethod as PoleMethod
 from .preparation.prepared import Prepared as Prepared
 from .settings import IdentificationSettings as IdentificationSettings

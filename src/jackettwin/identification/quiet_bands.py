@@ -24,8 +24,8 @@ from jackettwin.identification.selection.clustering import clusters
 from jackettwin.identification.selection.peaks import clear_peaks_hz
 from jackettwin.identification.selection.second_look import QuietBand
 from jackettwin.identification.tones.steady_tones import without_tones
+from jackettwin.records import less_phase
 from jackettwin.records.processing.filters import lowpass_taps, resample
-from jackettwin.records.processing.tones import less_phase
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

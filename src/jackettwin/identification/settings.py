@@ -8,8 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from jackettwin.errors import InputError
-from jackettwin.files import Schema, validate
-from jackettwin.files.schema import one_of
+from jackettwin.files import Schema, one_of, validate
 from jackettwin.identification.methods import method_names
 
 Frequency = Annotated[float, Field(gt=0.0)]

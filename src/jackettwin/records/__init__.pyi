@@ -1,12 +1,25 @@
+from .conditions import with_conditions as with_conditions
 from .processing.filters import remove_line as remove_line
 from .processing.merge import merge as merge, shared_channels as shared_channels
 from .processing.prepare import bandpass as bandpass, decimate as decimate, detrend as detrend
 from .processing.spectra import spectral_matrix as spectral_matrix, welch_densities as welch_densities
-from .processing.yaw import to_global_axes as to_global_axes, to_rotor_axes as to_rotor_axes
+from .processing.tones import less_phase as less_phase
+from .processing.yaw import (
+    knows_yaw as knows_yaw,
+    to_global_axes as to_global_axes,
+    to_rotor_axes as to_rotor_axes,
+)
 from .quality.record_quality import assess as assess
 from .quality.repair import repair as repair
-from .readers import read_record as read_record, write_record as write_record
+from .readers import (
+    read_record as read_record,
+    read_record_pieces as read_record_pieces,
+    record_files as record_files,
+    write_record as write_record,
+)
+from .readers.channels import Unsaid as Unsaid
 from .readers.delimited import MISSING as MISSING, text_table as text_table
 from .readers.registry import Format as Format
+from .readers.stamps import parse_time as parse_time, read_zone as read_zone
 from .readers.table import ReadTable as ReadTable
-from .record import Channel as Channel, Record as Record
+from .record import Channel as Channel, Record as Record, record_id as record_id

@@ -17,8 +17,8 @@ from jackettwin.report.tables import answers as tables
 from jackettwin.report.tables.numbers import fixed
 from jackettwin.report.tables.sentences import Said, sentences
 from jackettwin.report.tables.updating import true_parameters_table, truth_table
-from jackettwin.study import TwinResult
-from jackettwin.study.truth import true_modes, true_parameters
+from jackettwin.study import TwinResult, true_parameters
+from jackettwin.study.truth import true_modes
 from jackettwin.twin import Observation
 from jackettwin.version import __version__
 

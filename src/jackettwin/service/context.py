@@ -40,7 +40,7 @@ class Service:
 
     settings: ServiceSettings
     database: Engine
-    cluster: workers.cluster.WorkerCluster
+    cluster: workers.WorkerCluster
     server_id: str
     now: Callable[[], datetime] = _now
     login_attempts: LoginAttempts = field(default_factory=LoginAttempts)
@@ -79,5 +79,5 @@ def open_service(settings: ServiceSettings) -> Service:
         folder.mkdir(parents=True, exist_ok=True)
     database = open_database(settings.database_url)
     return Service(
-        settings, database, workers.cluster.WorkerCluster(settings), f"{os.getpid()}-{secrets.token_hex(4)}"
+        settings, database, workers.WorkerCluster(settings), f"{os.getpid()}-{secrets.token_hex(4)}"
     )

@@ -19,8 +19,7 @@ from jackettwin.service.work import consequences
 from jackettwin.service.work.conditions import add_conditions as keep_conditions
 from jackettwin.service.workers.condition_tables import read_table
 from jackettwin.service.workers.tasks import read_file
-from jackettwin.store import assets, journal, reading, records, work, writing
-from jackettwin.store.results import StoredObservation
+from jackettwin.store import StoredObservation, assets, journal, reading, records, work, writing
 from jackettwin.store.tables import observations
 
 

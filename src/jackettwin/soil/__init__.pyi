@@ -2,6 +2,16 @@ from .files import parse_law as parse_law, read_support as read_support
 from .foundation import Foundation as Foundation, read_foundation as read_foundation
 from .ground.curves import Curve as Curve
 from .ground.profile import Clay as Clay, Layer as Layer, Point as Point, Sand as Sand, Scour as Scour
+from .laws.coefficients import (
+    BRANCHES as BRANCHES,
+    K0 as K0,
+    K_ALPHA as K_ALPHA,
+    MASS as MASS,
+    OMEGA0 as OMEGA0,
+    C as C,
+    law_stiffness as law_stiffness,
+    static_rows as static_rows,
+)
 from .laws.families import (
     DEFAULT_LAWS as DEFAULT_LAWS,
     Family as Family,
@@ -11,7 +21,13 @@ from .laws.families import (
     parameter_words as parameter_words,
 )
 from .laws.parameter import Parameter as Parameter
-from .laws.viscoelastic import Law as Law, Prony as Prony, Springpot as Springpot
+from .laws.viscoelastic import (
+    Law as Law,
+    Prony as Prony,
+    Springpot as Springpot,
+    one_branch as one_branch,
+    prony_fit as prony_fit,
+)
 from .piles.piles import Pile as Pile
 from .piles.radiation import Radiation as Radiation
 from .piles.soil_curves import (

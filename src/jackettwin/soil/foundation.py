@@ -11,8 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from jackettwin.errors import InputError, located, require
-from jackettwin.files import Placed, Schema, find_file, read_yaml, shipped, validate
-from jackettwin.files.limits import Frequency
+from jackettwin.files import Frequency, Placed, Schema, find_file, read_yaml, shipped, validate
 from jackettwin.soil.ground.profile import Layer, Scour, SoilProfile
 from jackettwin.soil.laws.files import LawSchema
 from jackettwin.soil.laws.viscoelastic import Law

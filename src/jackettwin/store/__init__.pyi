@@ -4,6 +4,9 @@ from .database import (
     sqlite_url as sqlite_url,
     writing as writing,
 )
+from .people import note_down as note_down
+from .results import StoredObservation as StoredObservation
+from .streams import Packet as Packet
 from .waveforms import (
     is_waveform as is_waveform,
     read_waveform as read_waveform,

@@ -38,4 +38,8 @@ from .rotor_modes import (
     with_rotor as with_rotor,
     without_rotor as without_rotor,
 )
-from .two_node import TwoNodeElement as TwoNodeElement, two_node_element as two_node_element
+from .two_node import (
+    TwoNodeElement as TwoNodeElement,
+    spring_matrix as spring_matrix,
+    two_node_element as two_node_element,
+)

@@ -11,8 +11,7 @@ from pydantic import Field
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
-from jackettwin.files import Schema
-from jackettwin.files.limits import Frequency
+from jackettwin.files import Frequency, Schema
 
 
 @dataclass(frozen=True)

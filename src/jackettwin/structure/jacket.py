@@ -13,8 +13,7 @@ import numpy as np
 from pydantic import AfterValidator, Field
 
 from jackettwin.errors import require, require_between
-from jackettwin.files import Placed
-from jackettwin.files.plausible import refuse_tiny
+from jackettwin.files import Placed, refuse_tiny
 from jackettwin.structure.model import (
     STEEL,
     Material,

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from jackettwin.arrays import FloatArray
-from jackettwin.files.codec import named
-from jackettwin.identification.comparison import Comparison
-from jackettwin.identification.document import identification_document, mode_document, shape_document
+from jackettwin.files import named
+from jackettwin.identification import Comparison, identification_document
+from jackettwin.identification.document import mode_document, shape_document
 from jackettwin.intervals import interval_90
 from jackettwin.study.result import MeasuredMode, MeasuredRelaxation, TwinResult, held_document
 from jackettwin.study.truth import truth_document

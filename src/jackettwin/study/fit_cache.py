@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import fields, replace
 
 from jackettwin.progress import SILENT, Progress
-from jackettwin.twin.cache import NOT_KEPT, Keep, kept
-from jackettwin.twin.codec import StoredSchema, digest
+from jackettwin.twin import NOT_KEPT, Keep, StoredSchema, digest
+from jackettwin.twin.cache import kept
 from jackettwin.twin.config import UpdateSettings
 from jackettwin.updating import Fit, Problem, Update, update, with_posterior
 from jackettwin.version import __version__

@@ -10,10 +10,9 @@ from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.identification import ModalEstimate
 from jackettwin.study.measure import mean_target
 from jackettwin.study.result import MeasuredMode, MeasuredRelaxation
-from jackettwin.twin import TwinConfig, TwinState
+from jackettwin.twin import ALL, TwinConfig, TwinState
 from jackettwin.twin.config import ModelError
-from jackettwin.twin.mode_assignment import LEAST_SHARE, MOST_SHARE
-from jackettwin.twin.state import ALL
+from jackettwin.twin.targets_table import LEAST_SHARE, MOST_SHARE
 from jackettwin.updating import Residuals, Target
 
 _FAR_ABOVE = 3.0

@@ -23,11 +23,24 @@ from jackettwin.study.follow_result import FEWEST_DAYS, STIFFNESS, Followed, Kno
 from jackettwin.study.problem import UpdateEvidence, law_model, model_problem, tied_problem
 from jackettwin.study.relaxations import measured_relaxations, relaxing
 from jackettwin.study.rotor import RotorDamping, States, mean_wind, operating_states, rotor_damping
-from jackettwin.twin import Observation, TwinConfig, TwinModel, TwinState, advance, empty_state, twin_model
-from jackettwin.twin.cache import NOT_KEPT, Keep
-from jackettwin.twin.codec import digest
-from jackettwin.twin.observe_files import observe_files, sorted_out, undated
-from jackettwin.twin.state import ALL, UNDATED, ConditionSums
+from jackettwin.twin import (
+    ALL,
+    NOT_KEPT,
+    UNDATED,
+    Keep,
+    Observation,
+    TwinConfig,
+    TwinModel,
+    TwinState,
+    advance,
+    digest,
+    empty_state,
+    observe_files,
+    sorted_out,
+    twin_model,
+)
+from jackettwin.twin.observe_files import undated
+from jackettwin.twin.state import ConditionSums
 from jackettwin.updating import (
     Drift,
     Growth,

@@ -14,8 +14,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, located
 from jackettwin.soil import parameter_words
-from jackettwin.twin import TwinState
-from jackettwin.twin.codec import StoredSchema
+from jackettwin.twin import StoredSchema, TwinState
 from jackettwin.updating import Drift
 from jackettwin.version import __version__
 

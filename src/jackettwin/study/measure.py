@@ -11,18 +11,24 @@ from jackettwin.progress import SILENT, Progress
 from jackettwin.records import read_record
 from jackettwin.response import Sensor
 from jackettwin.twin import (
+    NOT_KEPT,
     Examination,
+    Failed,
+    Keep,
     Observation,
     TwinConfig,
     TwinModel,
     TwinState,
     advance_all,
+    average,
     empty_state,
+    examined,
+    observe_files,
+    sorted_out,
 )
-from jackettwin.twin.cache import NOT_KEPT, Keep
-from jackettwin.twin.exact_sums import ModeTotal, average
-from jackettwin.twin.observe import examined, observed
-from jackettwin.twin.observe_files import Failed, Seen, observe_files, sorted_out
+from jackettwin.twin.exact_sums import ModeTotal
+from jackettwin.twin.observe import observed
+from jackettwin.twin.observe_files import Seen
 from jackettwin.updating import Target
 
 

@@ -16,9 +16,8 @@ from jackettwin.change import Days
 from jackettwin.change.judge import Columns, history_of
 from jackettwin.change.modal_table import QUANTITIES
 from jackettwin.files import atomic_path
-from jackettwin.twin import Observation, TwinModel, TwinState
+from jackettwin.twin import UNDATED, Observation, TwinModel, TwinState
 from jackettwin.twin.pair_angles import pair_angles
-from jackettwin.twin.state import UNDATED
 
 MODES_IN_TIME = "modes_in_time.csv"
 """How commands call the file."""

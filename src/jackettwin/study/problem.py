@@ -13,8 +13,7 @@ from jackettwin.structure import Assembly
 from jackettwin.study.relaxations import placed, relaxation_targets
 from jackettwin.study.result import MeasuredRelaxation
 from jackettwin.study.rotor import RotorDamping, States
-from jackettwin.twin import TwinConfig, TwinState
-from jackettwin.twin.state import ALL
+from jackettwin.twin import ALL, TwinConfig, TwinState
 from jackettwin.twin.water import in_the_records_sea, water_effects
 from jackettwin.updating import (
     Growth,

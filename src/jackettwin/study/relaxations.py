@@ -14,10 +14,10 @@ from jackettwin.identification.subspace.real_poles import JOINED
 from jackettwin.response import Sensor
 from jackettwin.soil import family
 from jackettwin.study.result import MeasuredRelaxation
-from jackettwin.twin import TwinConfig, TwinState
+from jackettwin.twin import ALL, UNIT, OperationTotal, TwinConfig, TwinState
 from jackettwin.twin.config import GivenRelaxation
-from jackettwin.twin.exact_sums import UNIT, plus
-from jackettwin.twin.state import ALL, ClearShape, OperationTotal, RateSums
+from jackettwin.twin.exact_sums import plus
+from jackettwin.twin.state import ClearShape, RateSums
 from jackettwin.updating import RelaxationTarget, SupportModel
 
 _LEAST_SHARE = 0.5

@@ -14,8 +14,7 @@ from jackettwin.response import UndampedModes
 from jackettwin.structure import Assembly
 from jackettwin.study.measure import mean_target
 from jackettwin.study.result import MeasuredMode
-from jackettwin.twin import TwinConfig, TwinState
-from jackettwin.twin.state import ALL, OperationTotal
+from jackettwin.twin import ALL, OperationTotal, TwinConfig, TwinState
 from jackettwin.updating import DASHPOTS, Residuals, Target
 
 _LOG_STD = {"c_fore_aft": 0.8, "c_side_side": 0.4}

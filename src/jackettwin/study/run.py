@@ -19,8 +19,7 @@ from jackettwin.study.problem import UpdateEvidence, law_problem
 from jackettwin.study.relaxations import measured_relaxations, relaxing
 from jackettwin.study.result import DampingExcess, MeasuredMode, TwinResult
 from jackettwin.study.rotor import mean_wind, operating_states, rotor_damping, rotor_speed_hz
-from jackettwin.twin import TwinConfig, TwinModel, TwinState, twin_model
-from jackettwin.twin.cache import NOT_KEPT, Keep
+from jackettwin.twin import NOT_KEPT, Keep, TwinConfig, TwinModel, TwinState, twin_model
 from jackettwin.updating import Update, likely
 
 Posteriors = Literal["all", "likely"]

@@ -12,11 +12,8 @@ from typing import Protocol, TypeVar
 
 from jackettwin.errors import InputError
 from jackettwin.findings import Finding
-from jackettwin.identification import Identification, IdentificationSettings, ModalEstimate
-from jackettwin.identification.comparison import Comparison
-from jackettwin.identification.picks import Pick
-from jackettwin.records import Record
-from jackettwin.records.record import record_id
+from jackettwin.identification import Comparison, Identification, IdentificationSettings, ModalEstimate, Pick
+from jackettwin.records import Record, record_id
 from jackettwin.twin.codec import StoredSchema, digest
 from jackettwin.version import __version__
 

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from jackettwin.errors import InputError, located
-from jackettwin.files import atomic_path
-from jackettwin.files.codec import decode, encode
+from jackettwin.files import atomic_path, encode
+from jackettwin.files.codec import decode
 from jackettwin.records.record import DIGITS
 
 T = TypeVar("T")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import date
 from math import hypot
 from pathlib import Path
@@ -13,15 +13,14 @@ from pydantic import Field
 
 from jackettwin.errors import require
 from jackettwin.files import Schema
-from jackettwin.identification import IdentificationSettings
-from jackettwin.identification.picks import Pick
-from jackettwin.records.readers.channels import Unsaid
+from jackettwin.identification import IdentificationSettings, Pick
+from jackettwin.records import Unsaid
 from jackettwin.response import Sensor
 from jackettwin.soil import DEFAULT_LAWS
-from jackettwin.structure import Rayleigh, Structure
+from jackettwin.structure import Assembly, Rayleigh, Structure, assemble
 from jackettwin.twin.calibration import Calibrations
 from jackettwin.twin.operation import OperationRule
-from jackettwin.twin.water import WaterConfig
+from jackettwin.twin.water import WaterConfig, moving_mass
 from jackettwin.updating import MOST_EVALUATIONS, Target
 
 Positive = Annotated[float, Field(gt=0.0)]
@@ -203,3 +202,17 @@ class TwinConfig:
     def __repr__(self) -> str:
         data = f"{len(self.targets)} targets" if self.targets else f"{len(self.records)} records"
         return f"TwinConfig({self.name!r}, {self.structure!r}, {data}, laws {', '.join(self.update.laws)})"
+
+
+def assembled(config: TwinConfig) -> Assembly:
+    """Return the assembled structure of a twin, with the water that moves with it."""
+    assembly = assemble(
+        config.structure,
+        beam_theory=config.beam,
+        rotary_inertia=config.rotary_inertia,
+        subdivide=config.subdivide,
+        gravity=config.gravity,
+    )
+    if config.water is None or not config.water.adds_mass:
+        return assembly
+    return replace(assembly, mass=assembly.mass + moving_mass(config.water, assembly).tocsc())

@@ -16,20 +16,27 @@ import numpy as np
 
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.findings import Finding
-from jackettwin.identification import Identification, IdentificationSettings, identify
-from jackettwin.identification.comparison import Comparison, compare_methods
+from jackettwin.identification import Comparison, Identification, IdentificationSettings, Pick, identify
+from jackettwin.identification.comparison import compare_methods
 from jackettwin.identification.many_records.pairs import along_axes
-from jackettwin.identification.picks import Pick
 from jackettwin.identification.selection.candidates import beside_orders
 from jackettwin.identification.tones.rotor_speed import higher_orders
 from jackettwin.quantities import known_units
-from jackettwin.records import Record, assess, detrend, read_record, repair, to_rotor_axes
-from jackettwin.records.conditions import with_conditions
+from jackettwin.records import (
+    Record,
+    Unsaid,
+    assess,
+    detrend,
+    knows_yaw,
+    read_record,
+    repair,
+    to_rotor_axes,
+    with_conditions,
+)
 from jackettwin.records.processing.tones import RotorOrder, rotor_speed, stated_orders, without_orders
-from jackettwin.records.processing.yaw import is_horizontal, knows_yaw, yaw_of
+from jackettwin.records.processing.yaw import is_horizontal, yaw_of
 from jackettwin.records.quality.record_quality import Quality
 from jackettwin.records.quality.repair import common_time
-from jackettwin.records.readers.channels import Unsaid
 from jackettwin.twin.cache import IDENTIFIED, NOT_KEPT, Identified, Keep, identified_key, kept
 from jackettwin.twin.record_checks import UNFIT, doubted, each_sample_once, too_short, zeros_in_line
 

@@ -12,24 +12,22 @@ import numpy as np
 
 from jackettwin.errors import did_you_mean, located, look_up, require
 from jackettwin.files import find_file, read_mapping, read_yaml, shipped, validate
-from jackettwin.identification import IdentificationSettings
-from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
+from jackettwin.identification import IdentificationSettings, Pick, parse_picks, refuse_strangers
 from jackettwin.loads import SeaState, WaterSchema, depth_of, water_members
 from jackettwin.records.readers import formats
 from jackettwin.response import mode_kinds, mode_labels, read_mode_label
 from jackettwin.soil import DEFAULT_LAWS, Parameter, family
 from jackettwin.structure import RayleighSchema, Structure
-from jackettwin.twin.assembly import assembled
 from jackettwin.twin.config import (
     PAIRED_MODES,
     USUAL_MODES,
     GivenRelaxation,
     TwinConfig,
     UpdateSettings,
+    assembled,
 )
-from jackettwin.twin.mode_assignment import assigned_modes
 from jackettwin.twin.schema import SupportSchema, TwinSchema
-from jackettwin.twin.targets_table import read_targets_table
+from jackettwin.twin.targets_table import assigned_modes, read_targets_table
 from jackettwin.twin.water import WaterConfig
 from jackettwin.updating import (
     DASHPOTS,

@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from jackettwin.findings import Finding
-from jackettwin.records import Record
-from jackettwin.records.record import record_id
+from jackettwin.records import Record, record_id
 from jackettwin.twin.cache import NOT_KEPT, Keep
 from jackettwin.twin.calibration import calibrated, sensors_at, uncalibrated
 from jackettwin.twin.examine import Examination, examine
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.observation import Observation, Recognised
 from jackettwin.twin.operation import UNKNOWN
-from jackettwin.twin.record_checks import unlike_model
-from jackettwin.twin.sea_forced import sea_share
+from jackettwin.twin.record_checks import sea_share, unlike_model
 from jackettwin.twin.sensor_polarity import sensor_polarity
 from jackettwin.updating import Counterpart, Feet, counterparts, pair
 from jackettwin.version import __version__

@@ -16,9 +16,7 @@ from pathlib import Path
 from jackettwin.errors import InputError, JackettwinError, NumericalError, located
 from jackettwin.processes import in_processes
 from jackettwin.progress import SILENT, Progress
-from jackettwin.records import Record, read_record
-from jackettwin.records.readers.channels import Unsaid
-from jackettwin.records.record import record_id
+from jackettwin.records import Record, Unsaid, read_record, record_id
 from jackettwin.twin.cache import NOT_KEPT, Keep, record_content
 from jackettwin.twin.codec import digest
 from jackettwin.twin.model import TwinModel

@@ -7,15 +7,18 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy.sparse as sp
 
-from jackettwin.arrays import FloatArray
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.findings import Finding
-from jackettwin.identification import Identification
+from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.identification.status import ModeStatus
 from jackettwin.records import Record
 from jackettwin.records.quality.length import CYCLES, SHARE, slow_share
 from jackettwin.records.quality.repeats import without_repeats
 from jackettwin.records.quality.zero_steps import without_step, zero_step
+from jackettwin.structure import Assembly
+from jackettwin.updating import Feet
 
 if TYPE_CHECKING:
     from jackettwin.updating import Counterpart
@@ -75,7 +78,7 @@ def unlike_model(
     Parameters
     ----------
     sea : (n_modes,)
-        Share of each shape that forces of the sea make, of :func:`jackettwin.twin.sea_forced.sea_share`.
+        Share of each shape that forces of the sea make, of :func:`jackettwin.twin.record_checks.sea_share`.
     """
     seen = [m.frequency_hz for m, one in zip(found.modes, held, strict=True) if one.verdict == "paired"]
     if not seen:
@@ -105,3 +108,58 @@ def doubted(found: Identification, reasons: Findings) -> Identification:
             mode = mode.flagged(ModeStatus.DOUBTFUL, reason)
         modes.append(mode)
     return replace(found, modes=tuple(modes))
+
+
+LOSS = 0.02
+"""Loss factor η of every mode: it only keeps a force at a mode's own frequency finite."""
+
+
+def sea_share(
+    modes: tuple[ModalEstimate, ...], assembly: Assembly, at: sp.csr_array, feet: Feet
+) -> FloatArray:
+    r"""Return the share of each measured shape that horizontal forces of the sea make, (n_modes,).
+
+    A force p at still water moves the sensors by
+
+    .. math:: y(\omega) = \sum_i \frac{\phi_i\,(\phi_i^T p)}{\omega_i^2 (1 + i\eta) - \omega^2}.
+
+    Waves of few directions press on all legs at once where their length fits the distance of the legs: the
+    force has peaks, and so has the motion, as narrow as those of modes. Their shape is y's, not that of any
+    mode. That of a bending blade is another: it pulls at the tower's top.
+
+    Parameters
+    ----------
+    at : (n_channels, n_dof) what the channels see of every motion
+    feet : Feet
+        With the modes that the response is made of.
+    """
+    force = _still_water(assembly)
+    known = np.isfinite(feet.frequency_hz)
+    if force is None or not known.any():
+        return np.zeros(len(modes))
+    shapes, omega2 = feet.shapes[:, known], (2.0 * np.pi * feet.frequency_hz[known]) ** 2
+    seen, pressed = at @ shapes, shapes.T @ force
+    return np.array([_share(m, seen, pressed, omega2) for m in modes])
+
+
+def _share(mode: ModalEstimate, seen: FloatArray, pressed: FloatArray, omega2: FloatArray) -> float:
+    gain = 1.0 / (omega2 * (1.0 + 1j * LOSS) - (2.0 * np.pi * mode.frequency_hz) ** 2)
+    basis: ComplexArray = np.linalg.qr(seen @ (gain[:, None] * pressed))[0]
+    shape = mode.mode_shape / np.linalg.norm(mode.mode_shape)
+    return float(np.sum(np.abs(basis.conj().T @ shape) ** 2))
+
+
+def _still_water(assembly: Assembly) -> FloatArray | None:
+    """Return unit forces along x and y on all that crosses still water, (n_dof, 2); None if nothing does."""
+    mesh = assembly.mesh
+    z = mesh.coordinates[:, 2] - assembly.structure.sea_level_z_m
+    crossing = np.flatnonzero((z[mesh.start] < 0.0) != (z[mesh.end] < 0.0))
+    if not len(crossing):
+        return None
+    a, b = mesh.start[crossing], mesh.end[crossing]
+    up = z[a] / (z[a] - z[b])
+    weights = np.zeros((6 * len(z), 2))
+    for axis in (0, 1):
+        np.add.at(weights[:, axis], 6 * a + axis, (1.0 - up) / len(a))
+        np.add.at(weights[:, axis], 6 * b + axis, up / len(a))
+    return np.asarray(assembly.expand.T @ weights)

@@ -15,8 +15,7 @@ from jackettwin.errors import InputError, located, require
 from jackettwin.files import Schema, one_of
 from jackettwin.loads import WaterSchema
 from jackettwin.quantities import plain_unit, vibration_of
-from jackettwin.records.readers.channels import Unsaid
-from jackettwin.records.readers.stamps import read_zone
+from jackettwin.records import Unsaid, read_zone
 from jackettwin.response import Sensor, sensor_kinds
 from jackettwin.structure import RayleighSchema, Structure
 from jackettwin.twin.calibration import Calibration, Calibrations

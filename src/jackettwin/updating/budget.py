@@ -19,7 +19,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.response import NumberedModes, Points
-from jackettwin.soil.laws.coefficients import law_stiffness
+from jackettwin.soil import law_stiffness
 from jackettwin.updating.model import SupportModel
 
 SOURCES = ("structure", "soil", "rotor", "water")

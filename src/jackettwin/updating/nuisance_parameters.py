@@ -17,8 +17,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.errors import look_up, require
 from jackettwin.plugins import plugins_of_type
 from jackettwin.response import Matrix
-from jackettwin.soil import Law, Parameter, Prony, Spring
-from jackettwin.soil.laws.coefficients import K0, MASS, OMEGA0, C
+from jackettwin.soil import K0, MASS, OMEGA0, C, Law, Parameter, Prony, Spring
 from jackettwin.structure import Assembly, Rayleigh
 
 DASHPOTS = {"c_fore_aft": 0, "c_side_side": 1}

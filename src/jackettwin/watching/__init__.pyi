@@ -13,6 +13,7 @@ from .diagnosis import (
     expected_information as expected_information,
 )
 from .directions import Pattern as Pattern
-from .history import History as History
+from .history import History as History, typical as typical
 from .state import Watch as Watch
+from .variance_shares import unexplained_std as unexplained_std
 from .watch import Look as Look, start as start, step as step

@@ -18,7 +18,7 @@ from jackettwin.identification.tones.envelopes import is_steady_tone
 from jackettwin.identification.tones.sinusoid import transform
 from jackettwin.identification.tones.steady_tones import without_tones
 from jackettwin.intervals import log_interval_95
-from jackettwin.records.processing.tones import less_phase
+from jackettwin.records import less_phase
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

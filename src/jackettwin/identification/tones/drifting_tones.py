@@ -17,7 +17,7 @@ from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.tones.bands import Band, bands_of, overlapping
 from jackettwin.identification.tones.phase_track import INTERVALS, baseband, first_phase, phase_track
 from jackettwin.identification.tones.sinusoid import lines_around, transform
-from jackettwin.records.processing.tones import less_phase
+from jackettwin.records import less_phase
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -22,7 +22,7 @@ from jackettwin.identification.tones.sinusoid import (
     sinusoid,
     transform,
 )
-from jackettwin.records.processing.tones import less_phase
+from jackettwin.records import less_phase
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -11,8 +11,7 @@ from scipy.interpolate import PchipInterpolator
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean, located
-from jackettwin.files import find_file, read_yaml
-from jackettwin.files.windio import Part, WindIO, windio
+from jackettwin.files import Part, WindIO, find_file, read_yaml, windio
 from jackettwin.loads.aerodynamics.bem import Control
 from jackettwin.loads.aerodynamics.blades import Blade, Polar, blend_polars, stall_delay
 from jackettwin.loads.aerodynamics.rotor import Rotor

@@ -27,7 +27,7 @@ import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import require
-from jackettwin.files.limits import ForceCoefficient
+from jackettwin.files import ForceCoefficient
 from jackettwin.loads.members.coefficients import Coefficients
 from jackettwin.loads.members.morison import distribution
 from jackettwin.loads.sea.current import Current

@@ -9,8 +9,7 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from jackettwin.errors import InputError, located, require
-from jackettwin.files import Placed, Schema
-from jackettwin.files.limits import ForceCoefficient, Height
+from jackettwin.files import ForceCoefficient, Height, Placed, Schema
 from jackettwin.loads.members.coefficients import (
     GROWTH_KG_M3,
     SEA_WATER_KG_M3,

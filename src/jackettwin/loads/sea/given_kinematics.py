@@ -13,7 +13,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, located
-from jackettwin.files.yaml import read_text
+from jackettwin.files import read_text
 from jackettwin.loads.sea.given_waves import FIELD, Elevation, require_physical
 
 _LONGEST = 5_000_000

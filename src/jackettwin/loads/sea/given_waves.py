@@ -9,7 +9,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, located, require
-from jackettwin.files.yaml import read_text
+from jackettwin.files import read_text
 from jackettwin.loads.sea.waves import AirySea
 
 _LONGEST = 2_000_000

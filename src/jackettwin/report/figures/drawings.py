@@ -7,8 +7,7 @@ from math import ceil, floor, log, log10
 
 from markupsafe import Markup
 
-from jackettwin.answers import Answers, Span
-from jackettwin.answers.result import GroundAnswer, ModeAnswer
+from jackettwin.answers import Answers, GroundAnswer, ModeAnswer, Span
 from jackettwin.report.figures import style
 from jackettwin.report.figures.svg import Canvas, spread
 from jackettwin.report.tables.numbers import digits_of, quantity, words

@@ -14,8 +14,7 @@ from jackettwin.report.figures.svg import Canvas
 from jackettwin.report.tables.numbers import fixed, words
 from jackettwin.response import Sensor, observation_matrix, sensor_positions
 from jackettwin.structure import Assembly
-from jackettwin.study import TwinResult
-from jackettwin.study.result import MeasuredMode
+from jackettwin.study import MeasuredMode, TwinResult
 from jackettwin.updating import Update
 
 Seen = tuple[tuple[Sensor, ...], ComplexArray]

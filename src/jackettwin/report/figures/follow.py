@@ -11,7 +11,7 @@ from plotly.subplots import make_subplots
 
 from jackettwin.report.figures import style
 from jackettwin.soil import parameter_words
-from jackettwin.study.follow_result import Followed
+from jackettwin.study import Followed
 
 _DAY_MS = 86_400_000
 """A day on a time axis [ms]."""

@@ -9,7 +9,7 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from jackettwin.change.table_watch import Alarm, Watched
+from jackettwin.change import Alarm, Watched
 from jackettwin.report.figures import style
 from jackettwin.report.tables.numbers import words
 from jackettwin.watching import CauseVerdict

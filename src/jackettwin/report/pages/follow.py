@@ -12,7 +12,7 @@ from jackettwin.report.table import Table
 from jackettwin.report.tables.answers import ranged
 from jackettwin.report.tables.numbers import count
 from jackettwin.soil import parameter_words
-from jackettwin.study.follow_result import Followed
+from jackettwin.study import Followed
 from jackettwin.version import __version__
 
 

@@ -7,9 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from jackettwin.identification import Identification
-from jackettwin.identification.maximum_likelihood.spectral_fit import modal_fit
-from jackettwin.records.processing.yaw import knows_yaw
+from jackettwin.identification import Identification, modal_fit
+from jackettwin.records import knows_yaw
 from jackettwin.report.figures import measured_shapes as figures_measured, record as figures_record
 from jackettwin.report.figures.components import shape_components
 from jackettwin.report.pages.page import Block, PageSection, Plot, Text, write_page

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from jackettwin.identification import FusedIdentification, FusedMode
-from jackettwin.identification.many_records.convergence import convergence
+from jackettwin.identification import FusedIdentification, FusedMode, convergence
 from jackettwin.report.figures.subspace_mac import interval_history
 from jackettwin.report.figures.tracks import MOST_POINTS, tracks
 from jackettwin.report.pages.page import Block, PageSection, Plot, Text, write_page
@@ -13,7 +12,7 @@ from jackettwin.report.table import Table
 from jackettwin.report.tables.numbers import UNKNOWN, count, fixed, frequency, interval, percent, words
 from jackettwin.study.many_records.groups import RecordGroup
 from jackettwin.study.many_records.summary import Together
-from jackettwin.twin.observe_files import Failed
+from jackettwin.twin import Failed
 from jackettwin.version import __version__
 
 _SHOWN_FAILURES = 50

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from jackettwin.change.table_watch import Alarm, Watched
-from jackettwin.change.watch_document import alarm_document, next_sentence, statement
+from jackettwin.change import Alarm, Watched, next_sentence, statement
+from jackettwin.change.watch_document import alarm_document
 from jackettwin.report.figures.watch import (
     change_pattern,
     evidence_through_time,

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from jackettwin.identification import FusedMode, Identification, fuse
-from jackettwin.identification.many_records.convergence import convergence
-from jackettwin.identification.maximum_likelihood.spectral_fit import modal_fit
+from jackettwin.identification import FusedMode, Identification, convergence, fuse, modal_fit
 from jackettwin.report.figures import (
     identification as figures_identification,
     record as figures_record,

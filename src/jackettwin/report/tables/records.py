@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from jackettwin.identification import Identification, ModalEstimate
-from jackettwin.identification.comparison import Comparison
+from jackettwin.identification import Comparison, Identification, ModalEstimate
 from jackettwin.report.figures.identification import damping_interval, frequency_interval
 from jackettwin.report.figures.record import plain
 from jackettwin.report.table import Table

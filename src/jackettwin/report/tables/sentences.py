@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import expm1, log
 
-from jackettwin.answers import Answers, Span
-from jackettwin.answers.result import Clearance, GroundAnswer, ModeAnswer, NextStep
+from jackettwin.answers import Answers, GroundAnswer, ModeAnswer, Span
+from jackettwin.answers.result import Clearance, NextStep
 from jackettwin.report.tables.numbers import UNKNOWN, between, count, factor, listed, words
 from jackettwin.report.tables.sentences_fit import fit_sentence, mend, misfit_headline, value_words
 from jackettwin.soil import family, parameter_words

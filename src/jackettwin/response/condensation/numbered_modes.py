@@ -25,7 +25,7 @@ from jackettwin.response.condensation.condensed import Condensed, check_rayleigh
 from jackettwin.response.condensation.newton import kernels
 from jackettwin.response.condensation.pole_count import AllModes, all_modes
 from jackettwin.response.modes.tracking import track_modes
-from jackettwin.soil.laws.coefficients import static_rows
+from jackettwin.soil import static_rows
 from jackettwin.structure import Rayleigh
 
 _BYSTANDERS = 2

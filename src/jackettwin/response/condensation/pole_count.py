@@ -21,9 +21,8 @@ from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.response.condensation.condensed import Condensed
 from jackettwin.response.condensation.newton import kernels, refined
 from jackettwin.response.state import state_matrix
-from jackettwin.soil import Prony, Springpot
-from jackettwin.soil.laws.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, MASS, OMEGA0, C
-from jackettwin.soil.laws.viscoelastic import one_branch, prony_fit
+from jackettwin.soil import BRANCHES, K0, K_ALPHA, MASS, OMEGA0, C, Prony, Springpot, one_branch, prony_fit
+from jackettwin.soil.laws.coefficients import ALPHA
 from jackettwin.structure import Rayleigh
 
 _INNER = 0.9

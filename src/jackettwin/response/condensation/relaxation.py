@@ -27,7 +27,7 @@ from jackettwin.response.condensation.condensed import Condensed
 from jackettwin.response.condensation.newton import kernels, refined
 from jackettwin.response.condensation.numbered_modes import Points
 from jackettwin.response.condensation.pole_count import REAL
-from jackettwin.soil.laws.coefficients import BRANCHES, K0, K_ALPHA, MASS, C
+from jackettwin.soil import BRANCHES, K0, K_ALPHA, MASS, C
 
 _NEAR = 0.3
 """Refining may move ln a by so much: what it finds farther away is another pole."""

@@ -23,8 +23,7 @@ from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.errors import NumericalError
 from jackettwin.response.state import factorised, shifted_inverse
 from jackettwin.response.system import Matrix, Pencil
-from jackettwin.soil import Prony, Springpot
-from jackettwin.soil.laws.viscoelastic import one_branch, prony_fit
+from jackettwin.soil import Prony, Springpot, one_branch, prony_fit
 
 Pair = tuple[complex, ComplexArray]
 """A pole and its shape on the pencil's DOFs."""

@@ -33,8 +33,7 @@ from jackettwin.errors import InputError, NumericalError, require
 from jackettwin.response.motion.static import self_weight
 from jackettwin.response.state import Branch, factorised, maxwell_branches
 from jackettwin.response.system import Pencil, System
-from jackettwin.soil import Law, Prony, Springpot
-from jackettwin.soil.laws.viscoelastic import prony_fit
+from jackettwin.soil import Law, Prony, Springpot, prony_fit
 from jackettwin.structure import Assembly, Structure, Vector, lowest_modes, rigid_transfer
 
 INTERFACE = DOFS_PER_NODE

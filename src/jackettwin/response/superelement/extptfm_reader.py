@@ -14,7 +14,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, require
-from jackettwin.files.yaml import read_text
+from jackettwin.files import read_text
 from jackettwin.response.superelement.craig_bampton import INTERFACE, Superelement
 
 MATRICES = ("mass", "stiffness", "damping")

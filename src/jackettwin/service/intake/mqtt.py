@@ -15,8 +15,7 @@ from paho.mqtt.enums import CallbackAPIVersion, MQTTProtocolVersion
 
 from jackettwin.errors import InputError
 from jackettwin.service.intake.packets import TOPIC, read_packets
-from jackettwin.store import assets, streams, writing
-from jackettwin.store.streams import Packet
+from jackettwin.store import Packet, assets, streams, writing
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Service

@@ -11,8 +11,8 @@ import numpy as np
 
 from jackettwin.errors import InputError
 from jackettwin.service.workers.tasks import EARLIEST
-from jackettwin.store import assets
-from jackettwin.store.streams import LONGEST, Packet
+from jackettwin.store import Packet, assets
+from jackettwin.store.streams import LONGEST
 
 TOPIC = "jackettwin"
 

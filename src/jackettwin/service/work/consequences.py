@@ -17,8 +17,18 @@ from jackettwin.service import workers
 from jackettwin.service.intake.bundles import twin_folder
 from jackettwin.service.intake.files import living
 from jackettwin.service.workers.tasks import Outcome, Question, Task
-from jackettwin.store import assets, journal, people, records, results, streams, tables, work
-from jackettwin.store.results import StoredObservation, StoredState
+from jackettwin.store import (
+    StoredObservation,
+    assets,
+    journal,
+    people,
+    records,
+    results,
+    streams,
+    tables,
+    work,
+)
+from jackettwin.store.results import StoredState
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Place, Service

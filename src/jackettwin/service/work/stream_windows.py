@@ -20,8 +20,8 @@ from jackettwin.service.intake.bundles import adopted_twin
 from jackettwin.service.intake.files import accept
 from jackettwin.service.work import consequences
 from jackettwin.service.workers.tasks import stored
-from jackettwin.store import reading, streams, writing
-from jackettwin.store.streams import KEPT, WINDOW, Packet
+from jackettwin.store import Packet, reading, streams, writing
+from jackettwin.store.streams import KEPT, WINDOW
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Service

@@ -13,7 +13,8 @@ import pyarrow as pa
 from pyarrow import csv
 
 from jackettwin.errors import InputError
-from jackettwin.records.readers.stamps import in_utc, read_zone
+from jackettwin.records import read_zone
+from jackettwin.records.readers.stamps import in_utc
 
 Value = float | str | None
 _TIMES = ("time_utc", "time", "timestamp", "datetime", "date_time", "date", "zeit", "pctimestamp")

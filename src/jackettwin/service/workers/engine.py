@@ -14,23 +14,25 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from jackettwin.findings import Finding
-from jackettwin.identification.picks import Pick
+from jackettwin.identification import Pick
 from jackettwin.records import Channel
 from jackettwin.store import read_waveform
 from jackettwin.twin import (
+    ALL,
     OBSERVATION,
+    Day,
+    StoredSchema,
     TwinConfig,
     TwinModel,
     TwinState,
     advance,
+    average,
+    digest,
     empty_state,
     observe,
     read_twin,
     twin_model,
 )
-from jackettwin.twin.codec import StoredSchema, digest
-from jackettwin.twin.exact_sums import average
-from jackettwin.twin.state import ALL, Day
 
 TWIN_FILE = "twin.yaml"
 DAY = StoredSchema("twin_day", Day)
@@ -224,7 +226,7 @@ def knowledge(model: TwinModel, sums: Sums) -> dict[str, Any]:
 
 def stabilisation(folder: str, waveform: str) -> dict[str, Any]:
     """Return the poles of every model order of a stored record."""
-    from jackettwin.twin.observe import examined
+    from jackettwin.twin import examined
 
     record = read_waveform(Path(waveform))
     poles = examined(record, load_twin(Path(folder)).model).identification.stabilisation

@@ -13,8 +13,7 @@ from jackettwin.errors import InputError, JackettwinError
 from jackettwin.service.workers.failures import problem_of
 
 if TYPE_CHECKING:
-    from jackettwin.records import Record
-    from jackettwin.records.readers.channels import Unsaid
+    from jackettwin.records import Record, Unsaid
 
 
 @dataclass(frozen=True)
@@ -101,11 +100,10 @@ def read_file(file: File) -> tuple[Parsed, ...]:
     A file of more than an hour becomes records of ten minutes, as ``jackettwin identify`` reads it. What
     another store keeps of a record is a known format too.
     """
-    from jackettwin.records import read_record
-    from jackettwin.records.readers import read_record_pieces
+    from jackettwin.records import read_record, read_record_pieces
     from jackettwin.service.workers.memory import at_most
     from jackettwin.store import is_waveform, read_waveform
-    from jackettwin.study.many_records.long_records import LONG, PIECE_S
+    from jackettwin.study import LONG, PIECE_S
 
     source = Path(file.path)
     try:
@@ -156,7 +154,7 @@ def _check(record: Record, file: File) -> None:
 
 def stored(record: Record, asset: str, store: Path) -> Parsed:
     """Keep the samples of a record in the store, by their content."""
-    from jackettwin.records.record import record_id
+    from jackettwin.records import record_id
     from jackettwin.store import waveform_path, write_waveform
 
     assert record.start_utc is not None

@@ -11,8 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from typing import Any
 
-from jackettwin.answers import answer
-from jackettwin.answers.result import ModeAnswer
+from jackettwin.answers import ModeAnswer, answer
 from jackettwin.change import JUDGED, Days, Ground, finding_of, judge
 from jackettwin.report import PageSection
 from jackettwin.report.build import report_sections
@@ -20,9 +19,8 @@ from jackettwin.report.pages.page import page_text
 from jackettwin.service.workers import engine
 from jackettwin.study.measure import Measured
 from jackettwin.study.run import updated_twin
-from jackettwin.twin import OBSERVATION
+from jackettwin.twin import ALL, OBSERVATION
 from jackettwin.twin.operation import OperationRule
-from jackettwin.twin.state import ALL
 from jackettwin.version import __version__
 
 CANNOT_MEET = "the model cannot meet what was measured on any ground: no interval; see the report"

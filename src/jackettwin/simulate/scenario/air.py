@@ -12,8 +12,7 @@ from pydantic import Field
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, located, require
-from jackettwin.files import Schema
-from jackettwin.files.limits import Angle, ForceCoefficient, Seed
+from jackettwin.files import Angle, ForceCoefficient, Schema, Seed
 from jackettwin.loads import (
     PIECE_M,
     TOWER_DRAG,

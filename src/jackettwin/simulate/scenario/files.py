@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from jackettwin.errors import located, require
-from jackettwin.files import Placed, find_file, read_yaml, shipped, validate
-from jackettwin.files.limits import Seed
+from jackettwin.files import Placed, Seed, find_file, read_yaml, shipped, validate
 from jackettwin.loads import WaterSchema
 from jackettwin.response import observation_matrix
 from jackettwin.simulate.scenario.air import RotorSchema, WindSchema, build_air, build_turbine

@@ -11,8 +11,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from jackettwin.errors import InputError, require
-from jackettwin.files import one_of
-from jackettwin.files.limits import Height
+from jackettwin.files import Height, one_of
 from jackettwin.response import Sensor, sensor_kinds
 from jackettwin.simulate.scenario.air import Air, Turbine
 from jackettwin.simulate.scenario.asset import Asset

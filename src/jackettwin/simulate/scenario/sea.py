@@ -11,8 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from jackettwin.errors import located, require
-from jackettwin.files import Schema
-from jackettwin.files.limits import Angle, Seed
+from jackettwin.files import Angle, Schema, Seed
 from jackettwin.loads import (
     Coefficients,
     Current,

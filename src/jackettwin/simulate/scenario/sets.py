@@ -16,8 +16,7 @@ from typing import Annotated, Any
 from pydantic import AwareDatetime, Field
 
 from jackettwin.errors import InputError, located
-from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
-from jackettwin.files.limits import Angle
+from jackettwin.files import Angle, Schema, find_file, read_yaml, shipped, validate
 from jackettwin.simulate.scenario.air import WindSpeed
 from jackettwin.simulate.scenario.sea import Period, SignificantHeight
 from jackettwin.version import __version__

@@ -8,8 +8,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import require, require_between
-from jackettwin.files import Placed
-from jackettwin.files.plausible import refuse_tiny
+from jackettwin.files import Placed, refuse_tiny
 
 _SAND_AT_MOST = {"beta": 10.0, "limit_friction_pa": 1e7, "bearing_factor": 1e4, "limit_bearing_pa": 1e9}
 """Far beyond any sand: a larger value is a slip of the pen."""

@@ -6,11 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from jackettwin.files import Streamed
-from jackettwin.files.codec import named
-from jackettwin.identification import FusedIdentification, FusedMode
-from jackettwin.identification.document import identification_document
-from jackettwin.identification.many_records.convergence import convergence
+from jackettwin.files import Streamed, named
+from jackettwin.identification import FusedIdentification, FusedMode, convergence, identification_document
 from jackettwin.identification.picks import plain_picks
 from jackettwin.study.document import MODAL
 from jackettwin.study.many_records.groups import RecordGroup

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from math import floor
 from typing import Any
 
-from jackettwin.identification import FusedIdentification
-from jackettwin.identification.many_records.fusion import fused_records
+from jackettwin.identification import FusedIdentification, fused_records
 from jackettwin.identification.many_records.tracking import TrackedModes
 
 WIND_BIN_M_S = 2.0

@@ -13,10 +13,9 @@ from pathlib import Path
 
 from jackettwin.findings import Finding
 from jackettwin.progress import SILENT, Progress
-from jackettwin.records.readers.channels import Unsaid
-from jackettwin.twin import OBSERVATION, Observation, TwinModel
-from jackettwin.twin.cache import KeptInFolder
-from jackettwin.twin.observe_files import Failed, failure, observe_files
+from jackettwin.records import Unsaid
+from jackettwin.twin import OBSERVATION, Failed, KeptInFolder, Observation, TwinModel, observe_files
+from jackettwin.twin.observe_files import failure
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,7 @@ from itertools import chain, islice
 from pathlib import Path
 
 from jackettwin.errors import InputError
-from jackettwin.records import write_record
-from jackettwin.records.readers import read_record_pieces
-from jackettwin.records.readers.channels import Unsaid
+from jackettwin.records import Unsaid, read_record_pieces, write_record
 
 PIECE_S = 600.0
 """Length of a piece [s]: what conditions are steady over, and the records of every turbine's logger."""

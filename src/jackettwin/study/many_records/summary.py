@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from jackettwin.errors import InputError
-from jackettwin.identification import FusedIdentification
-from jackettwin.identification.many_records.fusion import fused_records
+from jackettwin.identification import FusedIdentification, fused_records
 from jackettwin.identification.many_records.tracking import follow
 from jackettwin.study.many_records.groups import RecordGroup, group_key, grouped
 from jackettwin.study.many_records.identify import Batch

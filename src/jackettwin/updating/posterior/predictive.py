@@ -10,7 +10,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.response import NumberedModes, numbered_poles
-from jackettwin.soil.laws.coefficients import law_stiffness, static_rows
+from jackettwin.soil import law_stiffness, static_rows
 from jackettwin.updating.data.relaxations import RelaxationTarget
 from jackettwin.updating.model import SupportModel
 
