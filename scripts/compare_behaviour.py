@@ -1,7 +1,4 @@
-"""Record what the commands, the service and the Python interface answer; compare two such records.
-
-For a change that should change nothing: ``record`` the code before and after, a folder each, and ``compare``.
-"""
+"""Record what the commands, the service and the Python interface answer; compare two such records."""
 
 import base64
 import gzip
@@ -54,7 +51,6 @@ RUNS = {
     "asset_add": "asset add wtg ../inputs/two_records.yaml --store ../store --json",
     "intake": f"intake {TWO} --asset wtg --store ../store --json",
     "serve": "serve ../store --workers 1 --port",
-    "rebuild": "rebuild --store ../store --json",
 }
 AS_TEXT = ("run", "modes", "stages", "soil", "check", "refine", "loads", "extptfm")  # without --json as well
 PAGES = ("/", "/login", "/assets/wtg", "/assets/wtg/report")  # beside every GET of the OpenAPI document
@@ -229,18 +225,21 @@ def close(before: Any, after: Any, rtol: float) -> bool:
 @main.command()
 @click.argument("folders", metavar="BEFORE AFTER", nargs=2, type=click.Path(path_type=Path, exists=True))
 @click.option("--rtol", default=1e-9, help="Of numbers, to call them the same.")
-def compare(folders: tuple[Path, Path], rtol: float) -> None:
+@click.option("--reworded", is_flag=True, help="Make a note of sentences that differ in no number.")
+def compare(folders: tuple[Path, Path], rtol: float, reworded: bool) -> None:
     """Print how two recorded folders differ, 20 lines an answer; exit with 1 if it is by more than notes."""
     failed = 0
+    said = re.compile(r"^\S*$|\d+").findall  # a value or a word that stands alone; the numbers of a sentence
     for name in sorted({file.name for folder in folders for file in folder.glob("*.json")}):
         files = [folder / name for folder in folders]
         answers = (json.loads(file.read_text("utf-8")) if file.exists() else NOTHING for file in files)
-        found = sorted(differences(*answers, name[:-5], rtol), key=lambda one: bool(NOTED.search(one[0])))
-        failed += sum(NOTED.search(path) is None for path, *_ in found)
-        for path, *pair in found[:20]:
+        found = differences(*answers, name[:-5], rtol)
+        notes = [NOTED.search(path) or reworded and said(str(a)) == said(str(b)) for path, a, b in found]
+        failed += sum(not note for note in notes)
+        for note, (path, *pair) in sorted(zip(notes, found, strict=True), key=lambda one: bool(one[0]))[:20]:
             texts = [json.dumps(value, ensure_ascii=False) for value in pair]
             shown = slice(start := max(len(os.path.commonprefix(texts)) - 50, 0), start + 100)
-            print(f"{'note: ' * bool(NOTED.search(path))}{path}: {' -> '.join(one[shown] for one in texts)}")
+            print(f"{'note: ' if note else ''}{path}: {' -> '.join(one[shown] for one in texts)}")
         if len(found) > 20:
             print(f"{name[:-5]}: and {len(found) - 20} more")
     sys.exit(failed and f"differences: {failed}")
