@@ -41,5 +41,5 @@ def test_it_runs(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
             assert result.exit_code == 0, (line, result.output)
 
 
-def test_there_are_four_tutorials_and_two_notebooks() -> None:
-    assert (len(TUTORIALS), len(NOTEBOOKS)) == (4, 2)
+def test_there_are_five_tutorials_and_two_notebooks() -> None:
+    assert (len(TUTORIALS), len(NOTEBOOKS)) == (5, 2)

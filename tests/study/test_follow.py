@@ -22,7 +22,7 @@ from jackettwin.response.sensors import Sensor
 from jackettwin.soil import family
 from jackettwin.study.follow import follow, follow_observations
 from jackettwin.study.follow_result import Followed, Known, follow_document, read_followed
-from jackettwin.twin import Observation, TwinConfig, TwinModel, observe_files, read_twin, twin_model
+from jackettwin.twin import Observation, TwinConfig, TwinModel, read_twin, twin_model
 from jackettwin.updating import Problem, SupportModel, support_model, update
 
 follow_module = import_module("jackettwin.study.follow")
@@ -208,7 +208,9 @@ def test_what_cannot_be_followed(
         pytest.MonkeyPatch.context() as patch,
         pytest.raises(InputError, match=r"clockless\.csv.*without a start"),
     ):
-        patch.setattr(observe_files, "observe", None)  # nothing is identified in it
+        patch.setattr(
+            import_module("jackettwin.twin.observe_files"), "observe", None
+        )  # nothing is identified in it
         follow(replace(config, records=(undated,), unsaid=Unsaid(sample_rate_hz=10.0)))
     relative = replace(config, update=config.update.model_copy(update={"weighting": "relative"}))
     with pytest.raises(InputError, match="needs a standard deviation"):

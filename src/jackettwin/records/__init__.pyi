@@ -1,5 +1,4 @@
 from .conditions import with_conditions as with_conditions
-from .processing.filters import remove_line as remove_line
 from .processing.merge import merge as merge, shared_channels as shared_channels
 from .processing.prepare import bandpass as bandpass, decimate as decimate, detrend as detrend
 from .processing.spectra import spectral_matrix as spectral_matrix, welch_densities as welch_densities

@@ -17,11 +17,10 @@ from jackettwin.records import Record
 from jackettwin.records.quality.length import CYCLES, SHARE, slow_share
 from jackettwin.records.quality.repeats import without_repeats
 from jackettwin.records.quality.zero_steps import without_step, zero_step
-from jackettwin.structure import Assembly
-from jackettwin.updating import Feet
 
 if TYPE_CHECKING:
-    from jackettwin.updating import Counterpart
+    from jackettwin.structure import Assembly
+    from jackettwin.updating import Counterpart, Feet
 
 Findings = tuple[Finding, ...]
 

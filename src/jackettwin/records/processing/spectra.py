@@ -46,16 +46,18 @@ def hann_lines(y: FloatArray) -> tuple[ComplexArray, int]:
 
 
 def welch_densities(
-    y: FloatArray, sample_rate_hz: float, segment_length: int
+    y: FloatArray, sample_rate_hz: float, segment_length: int, *, less_mean: bool = False
 ) -> tuple[FloatArray, FloatArray]:
     """Return frequencies [Hz] and one-sided power spectral densities, (n_channels, n_frequencies).
 
     Parameters
     ----------
     y : (n_channels, n_samples)
-        Zero-mean samples; NaN marks a missing one.
+        Zero-mean samples, unless ``less_mean``; NaN marks a missing one.
     segment_length : int
         Samples of a segment, at most those of the record.
+    less_mean : bool
+        Take from every segment the mean of its samples, as ``scipy.signal.welch`` does.
 
     Examples
     --------
@@ -64,7 +66,7 @@ def welch_densities(
     >>> round(float(density.sum() * f[1]), 6)
     0.5
     """
-    f, x, norm = _transforms(y, sample_rate_hz, segment_length)
+    f, x, norm = _transforms(y, sample_rate_hz, segment_length, less_mean=less_mean)
     density = np.mean(x.real**2 + x.imag**2, axis=1) * norm[:, None] ** 2
     return f, density * _one_sided(segment_length)
 
@@ -92,12 +94,16 @@ def spectral_matrix(
 
 
 def _transforms(
-    y: FloatArray, sample_rate_hz: float, segment_length: int
+    y: FloatArray, sample_rate_hz: float, segment_length: int, *, less_mean: bool = False
 ) -> tuple[FloatArray, ComplexArray, FloatArray]:
     """Return frequencies, transforms (n_channels, n_segments, n_frequencies), and √density over amplitude."""
     there = np.isfinite(y)
-    window = hann(segment_length)
-    x = np.fft.rfft(_segments(np.where(there, y, 0.0), segment_length) * window, axis=-1)
+    window, segments = hann(segment_length), _segments(np.where(there, y, 0.0), segment_length)
+    if less_mean:
+        known = _segments(there, segment_length)
+        mean = segments.sum(axis=-1, keepdims=True) / np.maximum(known.sum(axis=-1, keepdims=True), 1)
+        segments = segments - mean * known
+    x = np.fft.rfft(segments * window, axis=-1)
     if there.all():
         energy = np.full(len(y), np.sum(window**2))
     else:

@@ -101,10 +101,10 @@ def as_arrow(signal: Signal) -> bytes:
 
 def spectra(record: Record) -> Spectra:
     """Return the power spectral densities of a record by Welch's method, which allows for missing samples."""
-    from jackettwin.records import remove_line, welch_densities
+    from jackettwin.records import welch_densities
 
     n = min(int(_SEGMENT_S * record.sample_rate_hz), record.data.shape[1])
-    frequency, density = welch_densities(remove_line(record.data), record.sample_rate_hz, n)
+    frequency, density = welch_densities(record.data, record.sample_rate_hz, n, less_mean=True)
     return Spectra(
         frequency_hz=frequency.tolist(),
         channels={c.name: row.tolist() for c, row in zip(record.channels, density, strict=True)},
