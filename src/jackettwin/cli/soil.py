@@ -107,8 +107,7 @@ def _document(
 def _kinds(ground: Foundation) -> list[dict[str, str]]:
     """Return which kind of curve stands for each reaction of the soils that there are."""
     layers = () if ground.profile is None else ground.profile.layers
-    soils = tuple(type(layer.soil).__name__.lower() for layer in layers)
-    kinds = (kind for kind in ground.options.kinds() if kind.reaction.startswith(soils))
+    kinds = ground.options.kinds([layer.soil for layer in layers])
     return [{"reaction": kind.reaction, "name": kind.name, "words": kind.words} for kind in kinds]
 
 

@@ -20,7 +20,7 @@ _FEWEST_COLD = 0.02
 """Share of the baseline below freezing from which ice in soil or asphalt gets a slope of its own."""
 _FEWEST_OF_STATE = 50
 """Rows of an operating state from which it has slopes of its own, and an intercept at all."""
-_YEAR_DAYS, WHOLE_YEAR_DAYS = 365.25, 330.0
+YEAR_DAYS, WHOLE_YEAR_DAYS = 365.25, 330.0
 """A baseline this long has seen a season's round, which stands for a temperature that is not told."""
 _CURVED, _LINEAR, _LEVEL = 0.5, 1.0, 20.0
 """Prior standard deviations of coefficients, in standard deviations of the quantity over the baseline: a
@@ -155,7 +155,7 @@ def design_of(baseline: History) -> Design:
             Column(name, -1, 0.0, shape, 0.0, period, _CURVED)
             for name, period, seen in (
                 ("time of day", 1.0, _whole_days(baseline)),
-                ("time of year", _YEAR_DAYS, np.ptp(baseline.days) > WHOLE_YEAR_DAYS),
+                ("time of year", YEAR_DAYS, np.ptp(baseline.days) > WHOLE_YEAR_DAYS),
             )
             if seen
             for shape in ("sine", "cosine")

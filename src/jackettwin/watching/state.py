@@ -8,10 +8,8 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.watching.block import Block
-from jackettwin.watching.design import Design, Lagged
+from jackettwin.watching.design import YEAR_DAYS, Design, Lagged
 from jackettwin.watching.history import Kind
-
-YEAR_DAYS = 365.25
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ here, or by an installed package as an entry point. A foundation file chooses a 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from functools import cache
 from typing import Literal, NamedTuple, cast
@@ -71,14 +71,19 @@ class CurveOptions:
             allowed="table, if cyclic",
         )
 
-    def kinds(self) -> tuple[SoilCurve, ...]:
-        """Return the kind of curve that stands for each reaction."""
-        return tuple(soil_curves(reaction)[getattr(self, reaction)] for reaction in REACTIONS)
+    def kinds(self, soils: Collection[Sand | Clay]) -> tuple[SoilCurve, ...]:
+        """Return the kind of curve that stands for each reaction of some soils."""
+        there = {_reaction(soil, of) for soil in soils for of in ("py", "tz", "qz")}
+        return tuple(soil_curves(r)[getattr(self, r)] for r in REACTIONS if r in there)
 
     def curve(self, of: Literal["py", "tz", "qz"], point: Point, pile: Pile) -> Curve:
         """Return the lateral, shaft or tip reaction of the ground at one depth of a pile."""
-        reaction = f"{'sand' if isinstance(point.soil, Sand) else 'clay'}_{of}"
+        reaction = _reaction(point.soil, of)
         return soil_curves(reaction)[getattr(self, reaction)].build(point, pile, self)
+
+
+def _reaction(soil: Sand | Clay, of: str) -> str:
+    return f"{'sand' if isinstance(soil, Sand) else 'clay'}_{of}"
 
 
 class SoilCurve(NamedTuple):
