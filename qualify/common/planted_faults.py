@@ -142,7 +142,7 @@ FAULTS = (
     *_of("answers", rows=(
         ("a prior's interval is one of 68 %", "np.exp(NORMAL_90 * p.log_std)", "np.exp(p.log_std)"),
         ("two runs' deviations are not added", "hypot(s, t)", "max(s, t)"),
-        ("a parameter's deviation is that of half the interval", "log(interval[1] / interval[0]) / (2.0 * NORMAL_90)", "log(interval[1] / interval[0]) / NORMAL_90"),
+        ("a parameter's deviation is that of half the interval", "return log(self.high / self.low) / (2.0 * NORMAL_90)", "return log(self.high / self.low) / NORMAL_90"),
     )),
     *_of("intervals", "tests/test_quantities.py", "tests/identification/test_intervals.py", "tests/twin/test_pair.py", rows=(
         ("95 % intervals are of 90 %", "math.exp(min(NORMAL_95 * float(log_std), MOST))", "math.exp(min(NORMAL_90 * float(log_std), MOST))"),

@@ -92,6 +92,15 @@ def test_margins_are_positive_outside_and_negative_inside(answers: Answers, resu
     assert next(c for c in inside.clearances if c.order == "1P").margin < 0.0
 
 
+def test_a_prior_is_shown_by_its_interval_of_90_percent(answers: Answers) -> None:
+    """A log-normal prior of median m and deviation s holds 90 % between m e^{∓1.645 s}."""
+    (k,) = [g for g in answers.ground if g.name == "k"]
+    median, log_std = PRIOR["k"]
+    factor = np.exp(1.6449 * log_std)
+    assert k.before is not None
+    assert (k.before.low, k.before.high) == pytest.approx((median / factor, median * factor), rel=1e-4)
+
+
 def test_the_design_is_what_the_prior_allows(answers: Answers) -> None:
     """A stiffer prior gives a higher design; rigid feet are its limit."""
     for mode in answers.modes:

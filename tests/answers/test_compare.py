@@ -39,6 +39,12 @@ def test_a_change_is_measured_in_its_own_uncertainty() -> None:
     assert change("f", "Hz", (0.202, 0.001), (0.2, 0.001)).sigmas == pytest.approx(-(found.sigmas or 0.0))
 
 
+def test_the_deviations_of_two_runs_add_as_squares() -> None:
+    """Of 3 % and 4 % each, the difference has 5 %."""
+    found = change("f", "Hz", (1.0, 0.03), (1.05, 0.04))
+    assert found.sigmas == pytest.approx(log(1.05) / 0.05)
+
+
 def test_what_only_one_run_has_is_new_or_gone() -> None:
     assert change("f", "Hz", None, (0.2, 0.001)).verdict == "new"
     assert change("f", "Hz", (0.2, 0.001), None).verdict == "gone"
@@ -51,6 +57,8 @@ def test_the_median_of_the_recommended_law_is_compared() -> None:
     assert by["frequency of fore_aft_1"].verdict == "the same"
     k = by["k (maxwell-3)"]
     assert (k.before, k.after, k.verdict) == (1e9, 2e9, "changed")
+    # an interval of 90 % of a factor 1.2 either way is 1.645 deviations of the logarithm wide on each side
+    assert k.sigmas == pytest.approx(log(2.0) / (2**0.5 * log(1.2) / 1.6449), rel=1e-4)
 
 
 def test_the_command_names_what_changed_and_refuses_what_is_no_run(tmp_path: Path) -> None:

@@ -123,6 +123,18 @@ def test_bending_shows_at_the_top_and_torsion_off_the_axis(model: ModelCauses) -
     assert np.hypot(x, y) > 1.0 and z > 72.0  # above the sea
 
 
+def test_a_weakened_brace_keeps_seven_tenths_of_its_stiffness_and_all_of_its_mass() -> None:
+    structure = read_structure("jacket15")
+    typical = Standing(structure, np.full(4, 2.5e9), np.full(4, 2.5e9))
+    (weakened,) = [h for h in happenings(typical) if h.name == "brace_1_1_1 weakened"]
+    (line,) = [line for line in braces(structure) if line[0] == "brace_1_1_1"]
+    for before, after in zip(structure.members, weakened.apply(typical).structure.members, strict=True):
+        share = 0.7 if before.name in line else 1.0
+        assert after.material.youngs_modulus_pa == pytest.approx(share * before.material.youngs_modulus_pa)
+        assert after.material.shear_modulus_pa == pytest.approx(share * before.material.shear_modulus_pa)
+        assert after.material.density_kg_m3 == before.material.density_kg_m3
+
+
 def test_labels_that_no_mode_has_are_refused() -> None:
     with pytest.raises(InputError, match="no mode of the model"):
         model_causes(read_structure("jacket15"), ("f1",), np.array([0.2]), np.array([0.01]))

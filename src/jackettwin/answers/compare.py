@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import hypot, log
 from typing import Any
 
-from jackettwin.intervals import NORMAL_90
+from jackettwin.answers.result import Span
 
 CHANGED = 2.0
 """Standard deviations of the difference from which a change is called one: by chance once in twenty."""
@@ -110,6 +110,5 @@ def _parameters(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterable[ChangedN
 
 def _known(p: Mapping[str, Any]) -> _Value:
     """Return a parameter's median, else its best fit, and the standard deviation of its logarithm."""
-    interval = p.get("interval_90")
-    value = p.get("median") or p["value"]
-    return float(value), None if not interval else log(interval[1] / interval[0]) / (2.0 * NORMAL_90)
+    value = float(p.get("median") or p["value"])
+    return value, Span(value, *(p.get("interval_90") or ())).log_std
