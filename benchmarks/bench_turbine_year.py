@@ -15,13 +15,13 @@ from pathlib import Path
 
 import numpy as np
 
+from jackettwin.files import KeptInFolder
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import write_record
 from jackettwin.study.many_records.document import many_document
 from jackettwin.study.many_records.export import export_modes
 from jackettwin.study.many_records.identify import Batch, observe_many
 from jackettwin.study.many_records.summary import fuse_batch
-from jackettwin.twin.cache import KeptInFolder
 from jackettwin.twin.model import TwinModel
 
 YEAR, WORKERS = 52_560, 2

@@ -18,9 +18,8 @@ from common.page import write_page
 from common.planted import matched
 from screening import tower
 
-from jackettwin.identification import IdentificationSettings
+from jackettwin.identification import IdentificationSettings, examine
 from jackettwin.identification.synthetic import simulate
-from jackettwin.twin.examine import examine
 
 SEED = 5
 KINDS = list(product((0.005, 0.01, 0.02, 0.05), (0.2, 0.5, 1.0)))

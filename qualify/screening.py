@@ -21,10 +21,9 @@ from common.peers import PEERS
 from common.planted import RandomSystem, matched, random_system, recognised
 
 from jackettwin.errors import InputError
-from jackettwin.identification import IdentificationSettings
+from jackettwin.identification import IdentificationSettings, examine
 from jackettwin.identification.synthetic import simulate
 from jackettwin.records import Record
-from jackettwin.twin.examine import examine
 
 SEED = 4
 CLEAN = 7

@@ -20,9 +20,8 @@ import yaml
 from common.cases import Result, cases
 from common.page import write_page
 
-from jackettwin.identification import IdentificationSettings, ModalEstimate
+from jackettwin.identification import IdentificationSettings, ModalEstimate, examine
 from jackettwin.simulate import read_scenario, simulate
-from jackettwin.twin.examine import examine
 
 ROOT = Path(__file__).parents[1]
 SEED = 41

@@ -13,11 +13,10 @@ import pytest
 from jackettwin.cli import cache as module
 from jackettwin.cli.cache import cache_folder, keeping
 from jackettwin.files.codec import encode
-from jackettwin.identification import IdentificationSettings
+from jackettwin.identification import Examination, IdentificationSettings, examine
 from jackettwin.records import Channel, Record
-from jackettwin.twin.examine import Examination, examine
 
-examine_module = import_module("jackettwin.twin.examine")
+examine_module = import_module("jackettwin.identification.examination")
 SETTINGS = IdentificationSettings(refine=False)
 
 

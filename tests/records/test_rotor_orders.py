@@ -8,12 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from jackettwin.identification import IdentificationSettings
+from jackettwin.identification import IdentificationSettings, examine, examine_file
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Channel, Record, write_record
 from jackettwin.records.processing.tones import rotor_speed, without_orders
-from jackettwin.twin import examine_file
-from jackettwin.twin.examine import examine
 
 F = np.array([0.3, 0.7, 1.3])
 SHAPES = np.array([[1.0, 0.4, 0.2], [-0.4, 1.0, 0.6], [0.3, -0.7, 1.0]])

@@ -9,7 +9,13 @@ import pytest
 from figure_units import assert_units_of
 
 from jackettwin.decks import read_structure
-from jackettwin.identification import Identification, IdentificationSettings, ModalEstimate, identify
+from jackettwin.identification import (
+    Examination,
+    Identification,
+    IdentificationSettings,
+    ModalEstimate,
+    identify,
+)
 from jackettwin.identification.comparison import compare_methods
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Channel, Record, assess
@@ -19,7 +25,6 @@ from jackettwin.soil import family
 from jackettwin.structure import Rayleigh, assemble
 from jackettwin.study import TwinResult
 from jackettwin.study.result import DampingExcess, MeasuredMode
-from jackettwin.twin import Examination
 from jackettwin.twin.observation import Observation, Recognised
 from jackettwin.updating import Residuals, Target, numbered_modes, single, support_model, update
 

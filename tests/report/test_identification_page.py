@@ -11,7 +11,7 @@ import plotly.graph_objects as go
 import pytest
 from numpy.testing import assert_allclose
 
-from jackettwin.identification import ModalEstimate
+from jackettwin.identification import Examination, ModalEstimate
 from jackettwin.identification.comparison import Comparison
 from jackettwin.records import Channel
 from jackettwin.report.figures.components import shape_components
@@ -20,7 +20,6 @@ from jackettwin.report.pages.identification import _shapes, build_identification
 from jackettwin.report.pages.page import Plot
 from jackettwin.report.tables.numbers import UNKNOWN
 from jackettwin.report.tables.records import method_table
-from jackettwin.twin import Examination
 
 X, Y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
 CHANNELS = (

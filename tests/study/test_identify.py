@@ -13,7 +13,7 @@ import pytest
 from scipy.io import netcdf_file
 
 from jackettwin.errors import InputError
-from jackettwin.files import json_pieces
+from jackettwin.files import KeptInFolder, json_pieces
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.progress import Told
@@ -24,7 +24,6 @@ from jackettwin.study.many_records.export import export_modes
 from jackettwin.study.many_records.identify import Batch, observe_many
 from jackettwin.study.many_records.summary import fuse_batch
 from jackettwin.twin import TwinModel
-from jackettwin.twin.cache import KeptInFolder
 
 module = import_module("jackettwin.twin.observe_files")
 

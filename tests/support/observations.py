@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from jackettwin.files import digest
 from jackettwin.identification import Identification, ModalEstimate, RealPole, Spectrum, Stabilisation
 from jackettwin.identification.estimate import ResolvedSettings
 from jackettwin.records import Channel
 from jackettwin.response.sensors import Sensor
 from jackettwin.twin import Observation
-from jackettwin.twin.codec import digest
 from jackettwin.twin.observation import Recognised
 
 NONE, NO, WHOLE = np.empty(0), np.empty(0, dtype=bool), np.empty(0, dtype=np.int64)

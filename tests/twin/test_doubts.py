@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 from observations import estimate, observation
 
-from jackettwin.identification import IdentificationSettings
+from jackettwin.identification import IdentificationSettings, examine
 from jackettwin.identification.estimate import ModalEstimate
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Record
-from jackettwin.twin.examine import examine
-from jackettwin.twin.record_checks import unlike_model
+from jackettwin.twin.mode_doubts import unlike_model
 from jackettwin.updating.data.pairing import Counterpart
 
 PLAIN = IdentificationSettings(refine=False)

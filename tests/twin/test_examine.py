@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.identification import IdentificationSettings, mac
+from jackettwin.identification import Examination, IdentificationSettings, examine_file, mac, moving_channels
+from jackettwin.identification.record_steps import set_aside, unclear, unplaced
 from jackettwin.records import Channel, Record, read_record, write_record
 from jackettwin.response.sensors import Sensor
-from jackettwin.twin import Examination, examine_file
-from jackettwin.twin.examine import _set_aside, _unclear, _unplaced, moving_channels
 
 RECORDS = files("jackettwin") / "data" / "records"
 
@@ -106,9 +105,9 @@ def test_turning_and_fixed_sensors_without_a_yaw_are_said(tmp_path: Path) -> Non
 
 def test_sensors_without_a_place_are_named() -> None:
     record = turned("pile_U12_s301", np.array(0.0))
-    assert _unplaced(record) == ()
+    assert unplaced(record) == ()
     nowhere = replace(record, channels=tuple(replace(c, height_m=None) for c in record.channels))
-    (note,) = _unplaced(nowhere)
+    (note,) = unplaced(nowhere)
     assert str(note).startswith(
         "acc_top_x, acc_top_y, acc_g77_x, acc_g77_y, acc_g41_x …: the place is not known"
     )
@@ -116,9 +115,9 @@ def test_sensors_without_a_place_are_named() -> None:
 
 def test_channels_of_which_nobody_knows_what_they_measure_are_named() -> None:
     record = turned("pile_U12_s301", np.array(0.0))
-    assert _unclear(record) == ()
+    assert unclear(record) == ()
     strange = (replace(record.channels[0], quantity="other", unit="mm"), *record.channels[1:])
-    (note,) = _unclear(replace(record, channels=strange))
+    (note,) = unclear(replace(record, channels=strange))
     assert str(note).startswith("acc_top_x (mm): left out: neither name and unit nor the JSON say")
 
 
@@ -153,6 +152,6 @@ def test_strains_are_identified_where_nothing_measures_motion() -> None:
     strain = tuple(replace(c, quantity="strain", unit="-") for c in record.channels[:2])
     mixed = replace(record, channels=(*strain, *record.channels[2:]))
     assert moving_channels(mixed).channel_names == record.channel_names[2:]
-    (note,) = _set_aside(mixed, moving_channels(mixed))
+    (note,) = set_aside(mixed, moving_channels(mixed))
     assert note.subject == ", ".join(record.channel_names[:2])
     assert moving_channels(mixed.select(record.channel_names[:2])).channels == strain

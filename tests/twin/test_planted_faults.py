@@ -11,9 +11,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from jackettwin.identification import IdentificationSettings
+from jackettwin.identification import IdentificationSettings, examine
 from jackettwin.identification.synthetic import ModalSystem, simulate
-from jackettwin.twin.examine import examine
 
 RATE, DURATION_S = 10.0, 600.0
 HALF = [0, 1, 2]

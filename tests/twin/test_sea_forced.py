@@ -17,7 +17,7 @@ from jackettwin.response.system import build_system
 from jackettwin.soil.support import standing
 from jackettwin.structure import assemble
 from jackettwin.structure.assemble import Assembly
-from jackettwin.twin.record_checks import sea_share
+from jackettwin.twin.mode_doubts import sea_share
 from jackettwin.updating import numbered_modes
 from jackettwin.updating.data.foot_stiffness import Feet
 

@@ -10,10 +10,9 @@ from pathlib import Path
 import pytest
 import yaml
 
-from jackettwin.identification import IdentificationSettings
+from jackettwin.identification import IdentificationSettings, examine
 from jackettwin.records import Record
 from jackettwin.simulate import read_scenario, simulate
-from jackettwin.twin.examine import examine
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "three_leg_jacket.yaml"
 SEA = {"type": "jonswap", "spreading": 10}

@@ -21,8 +21,9 @@ from jackettwin.change.ground import UNDESCRIBED, Ground
 from jackettwin.change.table_watch import begun, explained_alarm, structure_causes
 from jackettwin.change.watch_document import alarm_document
 from jackettwin.errors import InputError
+from jackettwin.files import StoredSchema, digest
 from jackettwin.findings import Finding
-from jackettwin.twin import UNDATED, UNIT, Day, StoredSchema, TwinModel, TwinState, digest
+from jackettwin.twin import UNDATED, UNIT, Day, TwinModel, TwinState
 from jackettwin.twin.config import WatchSettings
 from jackettwin.twin.exact_sums import ModeSums
 from jackettwin.twin.state import Operation

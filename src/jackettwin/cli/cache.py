@@ -20,7 +20,7 @@ import jackettwin
 from jackettwin.files import write_json
 
 if TYPE_CHECKING:
-    from jackettwin.twin import Keep, KeptInFolder
+    from jackettwin.files import Keep, KeptInFolder
 
 MOST_BYTES = 500_000_000
 """Size of the cache: some thousand records."""
@@ -38,7 +38,7 @@ def cache_folder() -> Path:
 
 def keeping(*, fresh: bool = False) -> Keep:
     """Return what keeps observations and fits; with ``fresh`` those that are there are made again."""
-    from jackettwin.twin import NOT_KEPT
+    from jackettwin.files import NOT_KEPT
 
     folder = kept_folder()
     return NOT_KEPT if folder is None else kept_in(folder, fresh=fresh)
@@ -56,7 +56,7 @@ def kept_folder() -> Path | None:
 
 def kept_in(folder: Path, *, fresh: bool = False) -> KeptInFolder:
     """Return what keeps observations in a folder, as this code makes them."""
-    from jackettwin.twin import KeptInFolder
+    from jackettwin.files import KeptInFolder
 
     return KeptInFolder(folder, _code(), fresh)
 

@@ -27,9 +27,9 @@ from jackettwin.errors import InputError, located
 from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
+    from jackettwin.files import KeptInFolder
     from jackettwin.identification import IdentificationSettings, Pick
     from jackettwin.records import Unsaid
-    from jackettwin.twin import KeptInFolder
 
 _SHOWN = 5
 """Lines of a kind printed at most; the rest is in the JSON."""
@@ -223,8 +223,7 @@ def _one(
     compare: bool,
     report: Path | None,
 ) -> dict[str, Any]:
-    from jackettwin.identification import identification_document
-    from jackettwin.twin import examine_file
+    from jackettwin.identification import examine_file, identification_document
 
     with progress(1 + (report is not None), "identify") as step:
         step(f"identify {file.name}")

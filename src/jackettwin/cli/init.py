@@ -107,9 +107,9 @@ def init_command(
 
 def _read(file: Path, unsaid: Unsaid) -> tuple[Record, Unsaid]:
     """Return a record, and what had to be asked for to read it."""
+    from jackettwin.identification import moving_channels
     from jackettwin.records import read_record, read_zone
     from jackettwin.records.readers.stamps import UNSAID
-    from jackettwin.twin import moving_channels
 
     while True:
         try:

@@ -9,6 +9,7 @@ from .estimate import (
     Spectrum as Spectrum,
     Stabilisation as Stabilisation,
 )
+from .examination import Examination as Examination, examine as examine, examine_file as examine_file
 from .frequency_domain.fdd import fdd as fdd
 from .many_records.convergence import convergence as convergence
 from .many_records.fusion import (
@@ -23,5 +24,6 @@ from .mode_shapes import mac as mac
 from .picks import Pick as Pick, parse_picks as parse_picks, refuse_strangers as refuse_strangers
 from .pole_methods import PoleMethod as PoleMethod
 from .preparation.prepared import Prepared as Prepared
+from .record_steps import moving_channels as moving_channels
 from .settings import IdentificationSettings as IdentificationSettings
 from .subspace.ssi_cov import OrderPoles as OrderPoles, ssi_cov as ssi_cov

@@ -21,4 +21,9 @@ from .readers.delimited import MISSING as MISSING, text_table as text_table
 from .readers.registry import Format as Format
 from .readers.stamps import parse_time as parse_time, read_zone as read_zone
 from .readers.table import ReadTable as ReadTable
-from .record import Channel as Channel, Record as Record, record_id as record_id
+from .record import (
+    Channel as Channel,
+    Record as Record,
+    record_content as record_content,
+    record_id as record_id,
+)

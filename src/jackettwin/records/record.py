@@ -12,6 +12,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, look_up
+from jackettwin.files import DIGITS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -130,10 +131,6 @@ class Record:
         return self.select([c.name for c in self.channels if c.quantity == quantity])
 
 
-DIGITS = 24
-"""Hexadecimal digits of an identity: among 1e9 records two agree by chance with a probability of 1e-11."""
-
-
 def record_id(record: Record) -> str:
     """Return the identity of a record: a hash of its samples, rate, start and channels.
 
@@ -161,3 +158,9 @@ def record_id(record: Record) -> str:
     hashed = hashlib.sha256(json.dumps(head, ensure_ascii=False).encode())
     hashed.update(samples.tobytes())
     return hashed.hexdigest()[:DIGITS]
+
+
+def record_content(record: Record) -> tuple[str, str, str]:
+    """Return the identity of a record's samples, its name, and all else that it says."""
+    said = json.dumps([dict(record.conditions), dict(record.metadata)], sort_keys=True, default=str)
+    return record_id(record), record.name, said

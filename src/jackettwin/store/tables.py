@@ -1,7 +1,7 @@
 """The tables of the living twin, one definition for SQLite and PostgreSQL.
 
-What the engine produced is kept as the documents of :mod:`jackettwin.twin.codec`; columns beside them exist
-only to be searched. Every time is UTC.
+What the engine produced is kept as the documents of :mod:`jackettwin.files.stored_schema`; columns beside
+them exist only to be searched. Every time is UTC.
 """
 
 from __future__ import annotations

@@ -8,11 +8,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from jackettwin.errors import InputError
+from jackettwin.identification import moving_channels
 from jackettwin.records import Channel, Record, Unsaid, with_conditions
 from jackettwin.records.readers.channel_names import read_name
 from jackettwin.response import Sensor, observation_matrix
 from jackettwin.structure import Assembly, Structure
-from jackettwin.twin import moving_channels
 from jackettwin.updating import numbered_modes
 from jackettwin.version import __version__
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import fields, replace
 
+from jackettwin.files import NOT_KEPT, Keep, StoredSchema, digest, kept
 from jackettwin.progress import SILENT, Progress
-from jackettwin.twin import NOT_KEPT, Keep, StoredSchema, digest
-from jackettwin.twin.cache import kept
 from jackettwin.twin.config import UpdateSettings
 from jackettwin.updating import Fit, Problem, Update, update, with_posterior
 from jackettwin.version import __version__

@@ -17,6 +17,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
+from jackettwin.files import NOT_KEPT, Keep, digest
 from jackettwin.progress import SILENT, Progress
 from jackettwin.study.fit_data import recorded_modes, residuals, updating
 from jackettwin.study.follow_result import FEWEST_DAYS, STIFFNESS, Followed, Known, since_first
@@ -25,15 +26,12 @@ from jackettwin.study.relaxations import measured_relaxations, relaxing
 from jackettwin.study.rotor import RotorDamping, States, mean_wind, operating_states, rotor_damping
 from jackettwin.twin import (
     ALL,
-    NOT_KEPT,
     UNDATED,
-    Keep,
     Observation,
     TwinConfig,
     TwinModel,
     TwinState,
     advance,
-    digest,
     empty_state,
     observe_files,
     sorted_out,

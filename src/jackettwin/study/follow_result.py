@@ -13,8 +13,9 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, located
+from jackettwin.files import StoredSchema
 from jackettwin.soil import parameter_words
-from jackettwin.twin import StoredSchema, TwinState
+from jackettwin.twin import TwinState
 from jackettwin.updating import Drift
 from jackettwin.version import __version__
 

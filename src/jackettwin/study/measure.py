@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from jackettwin.errors import located
+from jackettwin.files import NOT_KEPT, Keep
 from jackettwin.findings import Finding
-from jackettwin.identification import ModalEstimate
+from jackettwin.identification import Examination, ModalEstimate
 from jackettwin.progress import SILENT, Progress
 from jackettwin.records import read_record
 from jackettwin.response import Sensor
 from jackettwin.twin import (
-    NOT_KEPT,
-    Examination,
     Failed,
-    Keep,
     Observation,
     TwinConfig,
     TwinModel,

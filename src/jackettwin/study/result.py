@@ -7,11 +7,11 @@ from typing import Any
 
 from jackettwin.arrays import ComplexArray
 from jackettwin.findings import Finding
-from jackettwin.identification import Identification, ModalEstimate
+from jackettwin.identification import Examination, Identification, ModalEstimate
 from jackettwin.records import Record
 from jackettwin.response import Sensor, UndampedModes
 from jackettwin.structure import Assembly
-from jackettwin.twin import Examination, Observation
+from jackettwin.twin import Observation
 from jackettwin.updating import LEAST_MAC, Counterpart, Update
 
 

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from jackettwin.errors import InputError
+from jackettwin.files import NOT_KEPT, Keep
 from jackettwin.progress import SILENT, Progress
 from jackettwin.study.fit_cache import fitted, with_kept_posterior
 from jackettwin.study.fit_data import recorded_modes, residuals, target_modes, updating
@@ -19,7 +20,7 @@ from jackettwin.study.problem import UpdateEvidence, law_problem
 from jackettwin.study.relaxations import measured_relaxations, relaxing
 from jackettwin.study.result import DampingExcess, MeasuredMode, TwinResult
 from jackettwin.study.rotor import mean_wind, operating_states, rotor_damping, rotor_speed_hz
-from jackettwin.twin import NOT_KEPT, Keep, TwinConfig, TwinModel, TwinState, twin_model
+from jackettwin.twin import TwinConfig, TwinModel, TwinState, twin_model
 from jackettwin.updating import Update, likely
 
 Posteriors = Literal["all", "likely"]

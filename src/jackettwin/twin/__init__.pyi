@@ -1,14 +1,6 @@
 from .advance import advance as advance, advance_all as advance_all
-from .cache import NOT_KEPT as NOT_KEPT, Keep as Keep, KeptInFolder as KeptInFolder
-from .codec import StoredSchema as StoredSchema, digest as digest
 from .config import TwinConfig as TwinConfig
 from .exact_sums import UNIT as UNIT, average as average
-from .examine import (
-    Examination as Examination,
-    examine as examine,
-    examine_file as examine_file,
-    moving_channels as moving_channels,
-)
 from .files import read_twin as read_twin, shipped_twins as shipped_twins
 from .model import TwinModel as TwinModel, twin_model as twin_model
 from .observation import OBSERVATION as OBSERVATION, Observation as Observation

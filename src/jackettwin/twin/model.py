@@ -8,14 +8,13 @@ from functools import cached_property
 import scipy.sparse as sp
 
 from jackettwin.errors import located
-from jackettwin.identification import IdentificationSettings, Pick
+from jackettwin.files import digest
+from jackettwin.identification import Examination, IdentificationSettings, Pick
 from jackettwin.records import Record
 from jackettwin.response import Sensor, UndampedModes, mode_kinds, mode_labels, observation_matrix, sees
 from jackettwin.structure import Assembly
 from jackettwin.twin.calibration import Calibrations, sensors_at
-from jackettwin.twin.codec import digest
 from jackettwin.twin.config import PAIRED_MODES, TwinConfig, assembled
-from jackettwin.twin.examine import Examination
 from jackettwin.twin.operation import OperationRule
 from jackettwin.updating import Feet, modes_by_foot_stiffness, numbered_modes, pairing_score
 

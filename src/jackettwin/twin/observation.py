@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any
 
+from jackettwin.files import StoredSchema
 from jackettwin.findings import Finding
 from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.response import Sensor
-from jackettwin.twin.codec import StoredSchema
 from jackettwin.updating import Counterpart
 
 

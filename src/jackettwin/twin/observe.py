@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from jackettwin.files import NOT_KEPT, Keep
 from jackettwin.findings import Finding
-from jackettwin.records import Record, record_id
-from jackettwin.twin.cache import NOT_KEPT, Keep
+from jackettwin.identification import Examination, examine
+from jackettwin.records import Channel, Record, record_id
 from jackettwin.twin.calibration import calibrated, sensors_at, uncalibrated
-from jackettwin.twin.examine import Examination, examine
+from jackettwin.twin.mode_doubts import sea_share, unlike_model
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.observation import Observation, Recognised
 from jackettwin.twin.operation import UNKNOWN
-from jackettwin.twin.record_checks import sea_share, unlike_model
 from jackettwin.twin.sensor_polarity import sensor_polarity
 from jackettwin.updating import Counterpart, Feet, counterparts, pair
 from jackettwin.version import __version__
@@ -42,10 +42,11 @@ def examined(
     InputError
         If a channel carries nothing, or the record cannot be identified.
     """
+    sensors = sensors_at(model.sensors, model.calibrations, record.start_utc)
     return examine(
         calibrated(record, model.calibrations),
         model.identification,
-        sensors=sensors_at(model.sensors, model.calibrations, record.start_utc),
+        places=[Channel(s.channel, node=s.node, height_m=s.height_m, direction=s.direction) for s in sensors],
         picks=model.picks,
         compare=compare,
         keep=keep,

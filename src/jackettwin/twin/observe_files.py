@@ -14,11 +14,10 @@ from functools import partial
 from pathlib import Path
 
 from jackettwin.errors import InputError, JackettwinError, NumericalError, located
+from jackettwin.files import NOT_KEPT, Keep, digest
 from jackettwin.processes import in_processes
 from jackettwin.progress import SILENT, Progress
-from jackettwin.records import Record, Unsaid, read_record, record_id
-from jackettwin.twin.cache import NOT_KEPT, Keep, record_content
-from jackettwin.twin.codec import digest
+from jackettwin.records import Record, Unsaid, read_record, record_content, record_id
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.observation import OBSERVATION, Observation
 from jackettwin.twin.observe import observe

@@ -14,8 +14,8 @@ from math import atan2, cos, sin, sqrt
 from typing import Any, NamedTuple
 
 from jackettwin.arrays import ComplexArray
+from jackettwin.files import StoredSchema, digest
 from jackettwin.response import Sensor
-from jackettwin.twin.codec import StoredSchema, digest
 from jackettwin.twin.exact_sums import UNIT, ModeSums, ModeTotal, Sums, negated, of_day, plus, whole
 from jackettwin.twin.model import TwinModel
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.findings import Finding
 from jackettwin.records.processing.filters import bridge
+from jackettwin.records.record import Record
 
 CYCLES = 30
 """Motion of fewer cycles a record is not told: its damping is uncertain by a factor of two at 2 %."""
@@ -13,8 +15,7 @@ FROM_CYCLES = 3
 """Slower than this is drift."""
 SHARE = 0.05
 """Of the power, of any channel, that is motion of so few cycles: then what is faster is not all there is.
-White
-noise of a rate for which thirty cycles are little has less."""
+White noise of a rate for which thirty cycles are little has less."""
 SHORT_S = 120.0
 """Longer records hold thirty cycles of whatever structure; what is slower is wind, waves and drift."""
 
@@ -43,3 +44,12 @@ def slow_share(y: FloatArray, duration_s: float) -> float:
     total = power[:, FROM_CYCLES:].sum(axis=1)
     share = power[:, FROM_CYCLES : CYCLES + 1].sum(axis=1) / np.where(total > 0.0, total, 1.0)
     return float(share.max(initial=0.0))
+
+
+def too_short(record: Record) -> tuple[Finding, ...]:
+    """Say that most of what moves in a short record is slower than it can tell."""
+    share = slow_share(record.data, record.duration_s)
+    if share <= SHARE:
+        return ()
+    params = {"share": share, "cycles": CYCLES, "duration_s": record.duration_s}
+    return (Finding("too_short", params=params),)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.findings import Finding
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records.quality import faults
 from jackettwin.records.record import Record
@@ -40,6 +41,12 @@ def without_repeats(record: Record) -> tuple[Record, int]:
     return replace(
         record, data=record.data[:, first::each], sample_rate_hz=record.sample_rate_hz / each
     ), each
+
+
+def each_sample_once(record: Record) -> tuple[Record, tuple[Finding, ...]]:
+    """Keep one of the samples that every channel repeats: those between make images of the modes."""
+    once, times = without_repeats(record)
+    return once, (Finding("samples_repeated", params={"times": times}),) if times > 1 else ()
 
 
 ROUNDING = 1e-6

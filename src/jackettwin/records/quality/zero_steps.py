@@ -7,13 +7,15 @@ explains most of what is slow, which neither a drift nor a few slow swings does.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.findings import Finding
 from jackettwin.records.processing.filters import bridge
 from jackettwin.records.processing.spectra import of_fast_length
+from jackettwin.records.record import Record
 
 SLOW = 20
 """Cycles a record below which motion is slow."""
@@ -78,3 +80,19 @@ def without_step(y: FloatArray, step: ZeroStep, sample_rate_hz: float) -> FloatA
     gap = max(round(GAP_S * sample_rate_hz), 3)
     out[max(step.at - gap, 0) : step.at + gap] = np.nan
     return out
+
+
+def zeros_in_line(record: Record) -> tuple[Record, tuple[Finding, ...]]:
+    """Take back the steps of zeros of accelerations and velocities; what most channels do at once is said."""
+    data, findings, at = record.data.copy(), [], []
+    rows = [i for i, c in enumerate(record.channels) if c.quantity in ("acceleration", "velocity")]
+    for i in rows:
+        step = zero_step(record.data[i])
+        if step is not None:
+            data[i] = without_step(record.data[i], step, record.sample_rate_hz)
+            params = {"size": step.over_rms, "time_s": step.at / record.sample_rate_hz}
+            findings.append(Finding("zero_steps", record.channels[i].name, params))
+            at.append(params["time_s"])
+    if len(at) > 0.5 * len(rows):
+        findings.insert(0, Finding("zero_steps_together", params={"time_s": float(np.median(at))}))
+    return replace(record, data=data) if findings else record, tuple(findings)

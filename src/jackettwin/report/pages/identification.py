@@ -7,14 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from jackettwin.identification import Identification, modal_fit
+from jackettwin.identification import Examination, Identification, modal_fit
 from jackettwin.records import knows_yaw
 from jackettwin.report.figures import measured_shapes as figures_measured, record as figures_record
 from jackettwin.report.figures.components import shape_components
 from jackettwin.report.pages.page import Block, PageSection, Plot, Text, write_page
 from jackettwin.report.sections import records as section_records
 from jackettwin.report.tables import records as tables
-from jackettwin.twin import Examination
 from jackettwin.version import __version__
 
 PURE = 0.7

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from jackettwin.identification import Comparison, Identification, ModalEstimate
+from jackettwin.identification import Comparison, Examination, Identification, ModalEstimate
 from jackettwin.report.figures.identification import damping_interval, frequency_interval
 from jackettwin.report.figures.record import plain
 from jackettwin.report.table import Table
@@ -22,7 +22,6 @@ from jackettwin.report.tables.numbers import (
 )
 from jackettwin.study import TwinResult
 from jackettwin.study.result import unpaired_finding
-from jackettwin.twin import Examination
 
 
 def quality_table(seen: Examination) -> Table:

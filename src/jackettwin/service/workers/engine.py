@@ -13,6 +13,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from jackettwin.files import StoredSchema, digest
 from jackettwin.findings import Finding
 from jackettwin.identification import Pick
 from jackettwin.records import Channel
@@ -21,13 +22,11 @@ from jackettwin.twin import (
     ALL,
     OBSERVATION,
     Day,
-    StoredSchema,
     TwinConfig,
     TwinModel,
     TwinState,
     advance,
     average,
-    digest,
     empty_state,
     observe,
     read_twin,

@@ -11,10 +11,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from jackettwin.files import KeptInFolder
 from jackettwin.findings import Finding
 from jackettwin.progress import SILENT, Progress
 from jackettwin.records import Unsaid
-from jackettwin.twin import OBSERVATION, Failed, KeptInFolder, Observation, TwinModel, observe_files
+from jackettwin.twin import OBSERVATION, Failed, Observation, TwinModel, observe_files
 from jackettwin.twin.observe_files import failure
 
 

@@ -1,4 +1,4 @@
-"""What makes every mode of a record doubtful, and what is mended before anything else looks at it."""
+"""Which identified modes the model speaks against: what resembles none of its modes, or follows the sea."""
 
 from __future__ import annotations
 
@@ -13,55 +13,16 @@ from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.findings import Finding
 from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.identification.status import ModeStatus
-from jackettwin.records import Record
-from jackettwin.records.quality.length import CYCLES, SHARE, slow_share
-from jackettwin.records.quality.repeats import without_repeats
-from jackettwin.records.quality.zero_steps import without_step, zero_step
 
 if TYPE_CHECKING:
     from jackettwin.structure import Assembly
     from jackettwin.updating import Counterpart, Feet
-
-Findings = tuple[Finding, ...]
 
 BELOW = 0.8
 """Share of the lowest recognised frequency, below which a record holds no other mode of that shape."""
 THE_SEAS = 0.95
 """Share of a shape from which it is the sea's. Peaks of waves on simulated jackets reach 0.967 to 1, modes of
 bending blades 0.91 at most."""
-UNFIT = ("another_time", "stored_backwards", "clocks_wander", "coarse_quantiser")
-"""What is found of a record that makes every mode of it doubtful, unless it was repaired."""
-
-
-def each_sample_once(record: Record) -> tuple[Record, Findings]:
-    """Keep one of the samples that every channel repeats: those between make images of the modes."""
-    once, times = without_repeats(record)
-    return once, (Finding("samples_repeated", params={"times": times}),) if times > 1 else ()
-
-
-def zeros_in_line(record: Record) -> tuple[Record, Findings]:
-    """Take back the steps of zeros of accelerations and velocities; what most channels do at once is said."""
-    data, findings, at = record.data.copy(), [], []
-    rows = [i for i, c in enumerate(record.channels) if c.quantity in ("acceleration", "velocity")]
-    for i in rows:
-        step = zero_step(record.data[i])
-        if step is not None:
-            data[i] = without_step(record.data[i], step, record.sample_rate_hz)
-            params = {"size": step.over_rms, "time_s": step.at / record.sample_rate_hz}
-            findings.append(Finding("zero_steps", record.channels[i].name, params))
-            at.append(params["time_s"])
-    if len(at) > 0.5 * len(rows):
-        findings.insert(0, Finding("zero_steps_together", params={"time_s": float(np.median(at))}))
-    return replace(record, data=data) if findings else record, tuple(findings)
-
-
-def too_short(record: Record) -> Findings:
-    """Say that most of what moves in a short record is slower than it can tell."""
-    share = slow_share(record.data, record.duration_s)
-    if share <= SHARE:
-        return ()
-    params = {"share": share, "cycles": CYCLES, "duration_s": record.duration_s}
-    return (Finding("too_short", params=params),)
 
 
 def unlike_model(
@@ -77,7 +38,7 @@ def unlike_model(
     Parameters
     ----------
     sea : (n_modes,)
-        Share of each shape that forces of the sea make, of :func:`jackettwin.twin.record_checks.sea_share`.
+        Share of each shape that forces of the sea make, of :func:`sea_share`.
     """
     seen = [m.frequency_hz for m, one in zip(found.modes, held, strict=True) if one.verdict == "paired"]
     if not seen:
@@ -90,21 +51,6 @@ def unlike_model(
             mode = mode.flagged(ModeStatus.DOUBTFUL, Finding("unlike_model", params={"mac": one.mac}))
         elif one.verdict in ("frequency", "taken") and mode.frequency_hz < BELOW * min(seen):
             mode = mode.flagged(ModeStatus.DOUBTFUL, Finding("below_model", params={"mac": one.mac}))
-        modes.append(mode)
-    return replace(found, modes=tuple(modes))
-
-
-def doubted(found: Identification, reasons: Findings) -> Identification:
-    """Doubt every mode of a record for reasons that concern all of it."""
-    modes = []
-    for mode in found.modes:
-        cycles, decays = mode.frequency_hz * found.duration_s, mode.method == "decay"
-        # a decay is told by its e-folds
-        own = [f for f in reasons if not (decays and f.code == "too_short")][:1]
-        if cycles < CYCLES and not decays:
-            own.append(Finding("few_cycles", params={"cycles": cycles}))
-        for reason in own:
-            mode = mode.flagged(ModeStatus.DOUBTFUL, reason)
         modes.append(mode)
     return replace(found, modes=tuple(modes))
 

@@ -1,4 +1,4 @@
-"""What is kept of a twin, in one form: a schema's name, its version, and how older versions become this one.
+"""What is kept, in one form: a schema's name, its version, and how older versions become this one.
 
 Files written by any earlier version are read for ever: a version that changes adds its migration to the
 schema's row, and a file in ``tests/twin/stored`` that the old version wrote.
@@ -14,13 +14,15 @@ from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from jackettwin.errors import InputError, located
-from jackettwin.files import atomic_path, encode
-from jackettwin.files.codec import decode
-from jackettwin.records.record import DIGITS
+from jackettwin.files.atomic import atomic_path
+from jackettwin.files.codec import decode, encode
 
 T = TypeVar("T")
 Plain = dict[str, Any]
 Migration = Callable[[Plain], Plain]
+
+DIGITS = 24
+"""Hexadecimal digits of an identity: two of a million things share one with a chance of 1e-17."""
 
 
 @dataclass(frozen=True)
