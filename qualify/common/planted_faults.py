@@ -144,7 +144,7 @@ FAULTS = (
         ("two runs' deviations are not added", "hypot(s, t)", "max(s, t)"),
         ("a parameter's deviation is that of half the interval", "return log(self.high / self.low) / (2.0 * NORMAL_90)", "return log(self.high / self.low) / NORMAL_90"),
     )),
-    *_of("intervals", "tests/test_quantities.py", "tests/identification/test_intervals.py", "tests/twin/test_pair.py", rows=(
+    *_of("intervals", "tests/test_intervals.py", rows=(
         ("95 % intervals are of 90 %", "math.exp(min(NORMAL_95 * float(log_std), MOST))", "math.exp(min(NORMAL_90 * float(log_std), MOST))"),
         ("90 % of draws are 80 %", "[0.05, 0.5, 0.95]", "[0.1, 0.5, 0.9]"),
     )),

@@ -13,7 +13,6 @@ from jackettwin.errors import InputError
 from jackettwin.identification import Examination, IdentificationSettings, examine_file, mac, moving_channels
 from jackettwin.identification.record_steps import set_aside, unclear, unplaced
 from jackettwin.records import Channel, Record, read_record, write_record
-from jackettwin.response.sensors import Sensor
 
 RECORDS = files("jackettwin") / "data" / "records"
 
@@ -28,9 +27,9 @@ def turned(name: str, yaw: np.ndarray) -> Record:
     return replace(record, data=data, conditions={})
 
 
-def seen(record: Record, path: Path, sensors: tuple[Sensor, ...] = ()) -> Examination:
+def seen(record: Record, path: Path, places: tuple[Channel, ...] = ()) -> Examination:
     write_record(record, path)
-    return examine_file(path, IdentificationSettings(), sensors=sensors)
+    return examine_file(path, IdentificationSettings(), places=places)
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +75,11 @@ def test_sensors_off_the_axes_are_turned_onto_them(straight: Examination, tmp_pa
     record = replace(record, channels=channels, conditions={"yaw_deg": 1e-6})
     half = np.sqrt(0.5)
     sensors = tuple(
-        Sensor(f"s{i}", (half, half, 0.0) if i % 2 == 0 else (-half, half, 0.0), height_m=10.0 * (i // 2))
+        Channel(
+            f"s{i}",
+            direction=(half, half, 0.0) if i % 2 == 0 else (-half, half, 0.0),
+            height_m=10.0 * (i // 2),
+        )
         for i in range(8)
     )
     found = seen(record, tmp_path / "r.parquet", sensors)
@@ -137,12 +140,12 @@ def test_a_dead_channel_is_left_out_and_said(tmp_path: Path) -> None:
 def test_a_record_that_lacks_a_sensor_is_identified_without_it(tmp_path: Path) -> None:
     """What is nearly the name of a channel without a sensor is a slip, and refused."""
     record = turned("pile_U12_s301", np.array(0.0))
-    sensors = tuple(Sensor(c.name, c.direction, None, c.height_m) for c in record.channels)
+    sensors = tuple(Channel(c.name, direction=c.direction, height_m=c.height_m) for c in record.channels)
     fewer = seen(record.select(record.channel_names[2:]), tmp_path / "a.parquet", sensors)
     assert fewer.record.channel_names == record.channel_names[2:]
     (absent,) = [f for f in fewer.findings if f.code == "sensors_absent"]
     assert set(str(absent.subject).split(", ")) == {*record.channel_names[:2]}
-    slip = (replace(sensors[0], channel=f"{sensors[0].channel}_"), *sensors[1:])
+    slip = (replace(sensors[0], name=f"{sensors[0].name}_"), *sensors[1:])
     with pytest.raises(InputError, match="no such channel.*did you mean"):
         seen(record, tmp_path / "b.parquet", slip)
 
