@@ -3,13 +3,15 @@
 import numpy as np
 import pytest
 
+from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.checks import frame_use
 from jackettwin.decks import read_structure
 from jackettwin.loads.sea.waves import wave_number
 from jackettwin.response.motion.static import nodal_load, self_weight, static_displacement
 from jackettwin.response.system import build_system
 from jackettwin.simulate import loads_document, read_scenario
-from jackettwin.simulate.members import scenario_uses
+from jackettwin.simulate.members import at_rest, scenario_uses
+from jackettwin.simulate.motion.motion import simulate_motion
 from jackettwin.soil import clamped, pinned
 from jackettwin.structure import assemble
 from jackettwin.structure.forces import element_weight
@@ -49,6 +51,23 @@ nodes: {foot: [0.0, 0.0, 0.0], top: [0.0, 0.0, 30.0]}
 members: [{nodes: [foot, top], section: pile, name: pile}]
 reaction_nodes: [foot]
 """
+
+
+def test_a_closed_monopile_stands_on_its_weight_less_that_of_the_water_it_displaces(
+    scenario_file, tmp_path
+) -> None:
+    """Its top sinks by (w L² − b h²)/(2EA): w of steel over L = 30 m, b of water over h = 20 m."""
+    file = tmp_path / "monopile.yaml"
+    file.write_text(MONOPILE, encoding="utf-8")
+    scenario = read_scenario(scenario_file(structure=str(file), support="clamped", water={"adds_mass": True}))
+    motion = simulate_motion(scenario)
+    top = at_rest(scenario, motion).displacement[2::6].min()
+    steel = read_structure(file).members[0].material
+    area = 0.25 * np.pi * (6.0**2 - 5.8**2)
+    w = steel.density_kg_m3 * area * GRAVITY_M_S2
+    b = scenario.sea.coefficients.density_kg_m3 * 0.25 * np.pi * 6.0**2 * GRAVITY_M_S2
+    wanted = -(w * 30.0**2 - b * 20.0**2) / (2.0 * steel.youngs_modulus_pa * area)
+    assert top == pytest.approx(wanted, rel=1e-6)
 
 
 def test_the_foot_of_a_monopile_feels_the_overturning_moment(scenario_file, tmp_path) -> None:
