@@ -71,6 +71,28 @@ def test_without_conditions_a_change_has_to_last(stepped: History) -> None:
     assert not watched(replace(bare, frequency=bare.frequency * back))[2]
 
 
+def false_alarms(arl_days: float, seeds: range) -> int:
+    """Return the alarms in sixty days of each of some histories in which nothing changes."""
+    found = 0
+    for seed in seeds:
+        history = made(seed=seed)
+        watch = start(history.between(0.0, 100.0), arl_years=arl_days / 365.25)
+        for day in history.between(100.0, np.inf).by_day():
+            watch, look = step(watch, day)
+            found += look.change is not None
+    return found
+
+
+def test_false_alarms_are_as_rare_as_promised_and_not_much_rarer() -> None:
+    """R has the mean of the days watched where nothing changes, so that it reaches A at most once in A days.
+
+    Of 180 days at one alarm in 73 days, at most 2.5 are expected; at one in 7.3 days at most 25, and watches
+    of this kind (Shiryaev and Roberts) need hardly more than A / 0.3 days for the first.
+    """
+    assert false_alarms(73.0, range(3)) <= 2
+    assert false_alarms(7.3, range(3)) >= 3
+
+
 def test_the_same_days_give_the_same_answer(stepped: History) -> None:
     first, second = watched(stepped), watched(stepped)
     assert [look.log_r for look in first[1]] == [look.log_r for look in second[1]]
