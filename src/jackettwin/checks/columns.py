@@ -28,7 +28,7 @@ def columns(structure: Structure) -> dict[str, StraightRun]:
     Two of them in line are one column unless something else at their common node leads to the ground: what
     hangs there (a platform, a nacelle) holds nothing. A column is a cantilever if only one of its ends leads
     to the ground without the column itself, as a tower's foot does and its top does not. Several interface
-    nodes count as held together by the transition piece.
+    nodes count as held together by the transition piece. Ground holds a pile at each of its nodes.
     """
     frame = _Frame(structure)
     run = {name: name for name in frame.ends}
@@ -61,7 +61,7 @@ class _Frame:
         self.ends = {m.name: (m.start, m.end) for m in structure.members}
         self.ends |= {e.name: (e.start, e.end) for e in structure.elements if e.kind == "beam"}
         self.height = {name: xyz[2] for name, xyz in structure.nodes.items()}
-        self.ground = set(structure.reaction_nodes)
+        self.ground = {*structure.reaction_nodes, *structure.buried_nodes}
         self.members_at: dict[str, list[str]] = defaultdict(list)
         self.neighbours: dict[str, list[tuple[str, str]]] = defaultdict(list)
         for name, (start, end) in self.ends.items():

@@ -18,7 +18,7 @@ from jackettwin.checks.iso19902_joints import (
     joint_use,
     load_path,
 )
-from jackettwin.structure import Assembly, Member, Section, SectionForces, Structure
+from jackettwin.structure import PILES, Assembly, Member, Section, SectionForces, Structure
 
 _STRAIGHT = float(np.cos(np.radians(10.0)))
 """Tubes within 10° of one line carry on as a chord: a leg may break its batter at a node."""
@@ -104,6 +104,8 @@ def _ends(assembly: Assembly) -> dict[str, list[MemberEnd]]:
     structure, mesh = assembly.structure, assembly.mesh
     of: dict[str, list[MemberEnd]] = defaultdict(list)
     for k, m in enumerate(structure.members):
+        if m.part == PILES:  # grouted to a leg or sleeve: no welded joint of tubes
+            continue
         mine = np.flatnonzero(mesh.member == k)
         along = _unit(structure, m)
         of[m.start].append(MemberEnd(m, m.section_start, along, int(mine[0]), 0))

@@ -10,7 +10,7 @@ import numpy as np
 
 from jackettwin.checks import EDITIONS
 from jackettwin.cli.console import FiniteFloat, Reply, answers, numbers_of, say, say_all, show_table
-from jackettwin.cli.modes import support_option
+from jackettwin.cli.modes import pile_model_option, supported_option
 from jackettwin.errors import InputError
 from jackettwin.report import Table, TableColumn
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from jackettwin.arrays import FloatArray
     from jackettwin.checks import BraceUse, FrameUse, MemberUse
     from jackettwin.loads import Water
+    from jackettwin.soil import PileModel
     from jackettwin.structure import Assembly
 
 
@@ -33,6 +34,7 @@ _HEADINGS = ("N", "Vy", "Vz", "T", "My", "Mz")
 @click.argument("structure", required=False)
 @click.option("--scenario", help="Check the worst instant of a simulated scenario instead.")
 @click.option("--support", help="As for `jackettwin modes`.")
+@pile_model_option
 @click.option(
     "--force",
     "forces",
@@ -64,6 +66,7 @@ def check_command(
     structure: str | None,
     scenario: str | None,
     support: str | None,
+    pile_model: PileModel | None,
     forces: tuple[str, ...],
     no_weight: bool,
     yield_strength: float,
@@ -99,7 +102,9 @@ def check_command(
         return _answer(chosen_scenario.name, use, water_notes(chosen_scenario))
     assert structure is not None
     assembly = assemble(read_structure(structure), subdivide=subdivide)
-    held = support_option(support, assembly)
+    stands, held = supported_option(support, assembly, pile_model)
+    if stands is not assembly.structure:
+        assembly = assemble(stands, subdivide=subdivide)
     load, along = nodal_load(assembly, dict(nodal_force(text) for text in forces)), None
     if not no_weight:
         load, along = load + self_weight(assembly), element_weight(assembly)

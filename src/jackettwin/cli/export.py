@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import click
 
 from jackettwin.cli.console import Reply, answers, messages, say
-from jackettwin.cli.modes import support_option
+from jackettwin.cli.modes import pile_model_option, supported_option
 from jackettwin.errors import InputError
 
 if TYPE_CHECKING:
-    from jackettwin.soil import Support
+    from jackettwin.soil import PileModel, Support
     from jackettwin.structure import Structure
 
 
@@ -22,25 +22,29 @@ if TYPE_CHECKING:
     "--support",
     help="pinned, clamped, LAW:arguments, a foundation or a YAML file; default: the structure's own.",
 )
+@pile_model_option
 @click.option(
     "--out",
     type=click.Path(dir_okay=False, path_type=Path),
     help="FILE.dat: a SubDyn input file; default out/NAME_SubDyn.dat.",
 )
 @answers
-def export_command(structure: str, support: str | None, out: Path | None) -> Reply:
+def export_command(
+    structure: str, support: str | None, pile_model: PileModel | None, out: Path | None
+) -> Reply:
     """Write the foundation of STRUCTURE as a SubDyn input file.
 
-    The foundation is what stands below the interface.
+    The foundation is what stands below the interface. The nodes of piles that are members become reaction
+    joints.
     """
     from jackettwin.decks import read_structure, write_subdyn
-    from jackettwin.soil import with_static_reactions
+    from jackettwin.soil import held_where_sprung, with_static_reactions
     from jackettwin.structure import assemble, at_interface
 
     if out is not None and out.suffix.lower() != ".dat":
         raise InputError("unknown format of a deck", field="--out", value=out.name, allowed=".dat")
-    whole = read_structure(structure)
-    held = support_option(support, assemble(whole))
+    whole, held = supported_option(support, assemble(read_structure(structure)), pile_model)
+    whole = held_where_sprung(whole, held)
     foundation, _ = at_interface(whole)
     path = out or Path("out") / f"{whole.name}_SubDyn.dat"
     files = [str(file) for file in write_subdyn(with_static_reactions(foundation, held), path)]

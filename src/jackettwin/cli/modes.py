@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from math import pi, radians
 from typing import TYPE_CHECKING, Any
@@ -9,16 +10,23 @@ from typing import TYPE_CHECKING, Any
 import click
 import numpy as np
 
+from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.cli.console import Reply, answers, numbers_of, say, say_all, show_table
 from jackettwin.errors import located
 from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
+    from jackettwin.arrays import IntArray
     from jackettwin.response import DampedModes, System
-    from jackettwin.soil import Support
+    from jackettwin.soil import PileModel, Support
     from jackettwin.structure import Assembly, Rayleigh, Structure
 
 
+pile_model_option = click.option(
+    "--pile-model",
+    type=click.Choice(["head", "members"]),
+    help="Piles of a foundation lumped at the feet, or members on springs; default: as its file says.",
+)
 _OVERDAMPED = 0.3
 """A pole this damped that resembles no mode of the pinned structure is a motion of the supports."""
 
@@ -28,6 +36,7 @@ _OVERDAMPED = 0.3
 @click.option(
     "--support", help="pinned, clamped, LAW:arguments, or a YAML file; default: the structure's own."
 )
+@pile_model_option
 @click.option("--number", default=10, show_default=True, type=click.IntRange(1, 200), help="How many modes.")
 @click.option("--gravity", is_flag=True, help="Add the geometric (P-Δ) stiffness of the self-weight.")
 @click.option(
@@ -49,6 +58,7 @@ _OVERDAMPED = 0.3
 def modes_command(
     structure: str,
     support: str | None,
+    pile_model: PileModel | None,
     number: int,
     gravity: bool,
     beam: str | None,
@@ -66,15 +76,19 @@ def modes_command(
     from jackettwin.soil.support import described
     from jackettwin.structure import assemble
 
-    chosen = blades_option(blades, read_structure(structure))
-    assembly = assemble(
-        chosen, beam_theory=beam, rotary_inertia=rotary_inertia, subdivide=subdivide, gravity=gravity
-    )
-    held = support_option(support, assembly)
+    options: dict[str, Any] = {
+        "beam_theory": beam,
+        "rotary_inertia": rotary_inertia,
+        "subdivide": subdivide,
+        "gravity": gravity,
+    }
+    bare = assemble(blades_option(blades, read_structure(structure)), **options)
+    standing, held = supported_option(support, bare, pile_model)
+    assembly = bare if standing is bare.structure else assemble(standing, **options)
     steel = rayleigh_option(rayleigh)
     system = build_system(assembly, held, rayleigh=steel, spread=own_damping(assembly, steel))
     own = f"the structure's own: {described(held)}"
-    document = {**_document(assembly, system, number), "support": own if support is None else support}
+    document = {**_document(system, number, bare), "support": own if support is None else support}
     document["warnings"] = [*document["warnings"], *held.notes]
     return Reply(document, lambda: _show(document))
 
@@ -108,13 +122,30 @@ def support_option(text: str | None, assembly: Assembly) -> Support:
         If the text names no support of this structure.
     """
     from jackettwin.soil import read_support
+
+    return read_support(text, assembly.structure, first_frequency_hz=_first_frequency_hz(assembly))
+
+
+def supported_option(
+    text: str | None, assembly: Assembly, pile_model: PileModel | None
+) -> tuple[Structure, Support]:
+    """Return the structure and what ``--support`` names, with piles as ``--pile-model`` has them.
+
+    Raises
+    ------
+    InputError
+        If the text names no support of this structure, or no piles where they are to be members.
+    """
+    from jackettwin.soil import read_supported
+
+    first = _first_frequency_hz(assembly)
+    return read_supported(text, assembly.structure, pile_model=pile_model, first_frequency_hz=first)
+
+
+def _first_frequency_hz(assembly: Assembly) -> Callable[[], float]:
     from jackettwin.updating import numbered_modes
 
-    return read_support(
-        text,
-        assembly.structure,
-        first_frequency_hz=lambda: float(numbered_modes(assembly, 1).frequency_hz[0]),
-    )
+    return lambda: float(numbered_modes(assembly, 1).frequency_hz[0])
 
 
 def rayleigh_option(text: str | None) -> Rayleigh:
@@ -134,10 +165,12 @@ def rayleigh_option(text: str | None) -> Rayleigh:
         return Rayleigh.minimum(*numbers)
 
 
-def _document(assembly: Assembly, system: System, number: int) -> dict[str, Any]:
+def _document(system: System, number: int, bare: Assembly) -> dict[str, Any]:
+    """Return what is known of a system; ``bare`` is its structure without piles, whose modes number them."""
     from jackettwin.response import damped_modes, mode_kinds, mode_labels, track_modes, undamped_modes
     from jackettwin.structure import check
 
+    assembly = system.assembly
     structure, M = assembly.structure, assembly.mass
     undamped = undamped_modes(system, number + 12)
     free = undamped.n_at_rest
@@ -147,7 +180,7 @@ def _document(assembly: Assembly, system: System, number: int) -> dict[str, Any]
     damped = _enough(system, damped, number)
     static = track_modes(M, undamped.omega, undamped.shapes, damped.shapes)
     of_damped = {int(column): row for row, column in enumerate(static) if column >= 0}
-    numbers = _numbers(assembly, damped, number)
+    numbers = _numbers(assembly, bare, damped, number)
     labels = mode_labels(mode_kinds(assembly, damped.shapes, damped.frequency_hz))
     rows: list[dict[str, Any]] = []
     others: list[dict[str, Any]] = []
@@ -189,16 +222,25 @@ def _enough(system: System, damped: DampedModes, number: int) -> DampedModes:
     return damped
 
 
-def _numbers(assembly: Assembly, damped: DampedModes, number: int) -> dict[int, int]:
-    """Return {index of a damped mode: its number on pinned supports}."""
+def _numbers(assembly: Assembly, bare: Assembly, damped: DampedModes, number: int) -> dict[int, int]:
+    """Return {index of a damped mode: its number on pinned supports, without piles below these}."""
     from jackettwin.response import track_modes
     from jackettwin.updating import numbered_modes
 
-    if not assembly.structure.reactions:
+    if not bare.structure.reactions:
         return {}
-    reference = numbered_modes(assembly, number + 6)
-    successor = track_modes(assembly.mass, reference.omega, reference.shapes, damped.shapes)
+    reference = numbered_modes(bare, number + 6)
+    above = np.asarray(assembly.expand @ damped.shapes)[_same_dofs(bare, assembly)]
+    successor = track_modes(bare.mass, reference.omega, reference.shapes, above)
     return {int(column): mode + 1 for mode, column in enumerate(successor) if column >= 0}
+
+
+def _same_dofs(bare: Assembly, assembly: Assembly) -> IntArray:
+    """Return where the DOFs of one assembly are on the mesh of another that has all its nodes."""
+    place = {name: k for k, name in enumerate(assembly.mesh.node_names)}
+    node, component = np.divmod(bare.independent, DOFS_PER_NODE)
+    at = np.array([place[bare.mesh.node_names[k]] for k in node], dtype=np.intp)
+    return np.asarray(DOFS_PER_NODE * at + component, dtype=np.intp)
 
 
 def _show(document: dict[str, Any]) -> None:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.cli.check import nodal_force
 from jackettwin.cli.console import PageFile, Reply, answers, numbers_of, say_all
-from jackettwin.cli.modes import rayleigh_option, support_option
+from jackettwin.cli.modes import pile_model_option, rayleigh_option, supported_option
 from jackettwin.errors import InputError, located
 
 if TYPE_CHECKING:
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from jackettwin.report import ColouredQuantity
     from jackettwin.report.view.motions import DrawnMotion
     from jackettwin.response import Sensor, System
+    from jackettwin.soil import PileModel
     from jackettwin.structure import Assembly
 
 
@@ -38,6 +39,7 @@ _MOST_PARTS = 8
 @click.argument("structure")
 @click.option("--out", type=PageFile(), help="The page, in a folder that exists; default out/NAME.html.")
 @click.option("--support", help="As for `jackettwin modes`.")
+@pile_model_option
 @click.option(
     "--modes", "number", default=8, show_default=True, type=click.IntRange(0, 40), help="How many modes."
 )
@@ -70,6 +72,7 @@ def view_command(
     structure: str,
     out: Path | None,
     support: str | None,
+    pile_model: PileModel | None,
     number: int,
     rayleigh: str | None,
     subdivide: int,
@@ -91,9 +94,10 @@ def view_command(
     from jackettwin.response import build_system, playback, record_sensors, undamped_modes, wave_passage
     from jackettwin.structure import assemble, check
 
-    chosen = read_structure(structure)
-    assembly = assemble(chosen, subdivide=subdivide)
-    held = support_option(support, assembly)
+    assembly = assemble(read_structure(structure), subdivide=subdivide)
+    chosen, held = supported_option(support, assembly, pile_model)
+    if chosen is not assembly.structure:
+        assembly = assemble(chosen, subdivide=subdivide)
     system = build_system(assembly, held, rayleigh=rayleigh_option(rayleigh))
     coefficients = Coefficients(growth=tuple(_band(text) for text in growth))
     _require_parts(assembly, flooded)

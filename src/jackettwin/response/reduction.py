@@ -4,6 +4,9 @@ The support DOFs stay unknowns of their own, so that any law acts on them exactl
 modes with these DOFs held are kept up to a frequency. Alone they miss the free system's modes near that
 frequency by several per cent (they are (f/f_max)⁴ off, and a small asset has few): what the undamped modes
 have beyond the basis is added until none is further off than a given error.
+
+Along piles that are members, ground acts on hundreds of DOFs. There the basis takes the ground's static
+stiffness, as a pile lumped at its head does, and the law acts on the basis: second order in D(s) − D(0).
 """
 
 from __future__ import annotations
@@ -65,27 +68,26 @@ def reduced(
     """
     require(0.0 < below_hz < np.inf, "must be positive", field="below_hz", value=below_hz, allowed="> 0")
     full = system.pencil
-    touched = [group.dofs for group in full.groups]
+    buried = [dof for node in system.assembly.structure.buried_nodes for dof in system.assembly.dofs(node)]
+    along = np.isin(system.free, np.array(buried, dtype=np.intp))
+    touched = [group.dofs[~along[group.dofs]] for group in full.groups]
     kept = np.searchsorted(system.free, np.intersect1d(system.free, np.array(keep, dtype=np.intp)))
     b = np.unique(np.concatenate([*touched, kept]).astype(np.intp))
     i = np.setdiff1d(np.arange(full.n), b)
-    K, M = sp.csc_array(full.K), sp.csc_array(full.M)
-    phi = _modes_below(sp.csc_array(K[i][:, i]), sp.csc_array(M[i][:, i]), 2.0 * pi * below_hz)
+    K, M, static = (sp.csc_array(matrix) for matrix in (full.K, full.M, full.static_stiffness()))
+    inner = sp.csc_array(static[i][:, i])
+    phi = _modes_below(inner, sp.csc_array(M[i][:, i]), 2.0 * pi * below_hz)
     T = np.zeros((full.n, b.size + phi.shape[1]))
     T[b, np.arange(b.size)] = 1.0
     if b.size and i.size:
-        T[i, : b.size] = -factorised(sp.csc_array(K[i][:, i])).solve(K[i][:, b].toarray())
+        T[i, : b.size] = -factorised(inner).solve(static[i][:, b].toarray())
     T[i, b.size :] = phi
-    T = np.hstack([T, _missing(sp.csc_array(full.static_stiffness()), M, T, 2.0 * pi * below_hz, error)])
+    T = np.hstack([T, _missing(static, M, T, 2.0 * pi * below_hz, error)])
     require(T.shape[1] != 0, "no mode below this frequency", field="below_hz", value=below_hz)
     # unit mass of every coordinate: metres, radians and modes side by side
     T /= np.sqrt(np.einsum("ij,ij->j", T, M @ T))
-    pencil = Pencil(
-        _symmetric(T.T @ (M @ T)),
-        _symmetric(T.T @ (K @ T)),
-        full.rayleigh,
-        tuple(replace(g, S=_symmetric(T.T @ (g.S @ T)), dofs=_on(b, g.dofs)) for g in full.groups),
-    )
+    groups = (replace(g, S=_symmetric(T.T @ (g.S @ T)), dofs=_on(b, g.dofs, T.shape[1])) for g in full.groups)
+    pencil = Pencil(_symmetric(T.T @ (M @ T)), _symmetric(T.T @ (K @ T)), full.rayleigh, tuple(groups))
     return Reduced(pencil, system.expand(T))
 
 
@@ -122,8 +124,9 @@ def _modes_below(K: sp.csc_array, M: sp.csc_array, limit: float, *, first: int =
     return np.zeros((0, 0))
 
 
-def _on(b: IntArray, dofs: IntArray) -> IntArray:
-    return np.searchsorted(b, dofs)
+def _on(b: IntArray, dofs: IntArray, size: int) -> IntArray:
+    """Return the coordinates that a group acts on: kept DOFs, or all where some of its DOFs lie inside."""
+    return np.searchsorted(b, dofs) if np.isin(dofs, b).all() else np.arange(size)
 
 
 def _symmetric(matrix: FloatArray) -> FloatArray:

@@ -1,5 +1,9 @@
-from .files import parse_law as parse_law, read_support as read_support
-from .foundation import Foundation as Foundation, read_foundation as read_foundation
+from .files import parse_law as parse_law, read_support as read_support, read_supported as read_supported
+from .foundation import (
+    Foundation as Foundation,
+    PileModel as PileModel,
+    read_foundation as read_foundation,
+)
 from .ground.curves import Curve as Curve
 from .ground.profile import Clay as Clay, Layer as Layer, Point as Point, Sand as Sand, Scour as Scour
 from .laws.coefficients import (
@@ -39,6 +43,7 @@ from .support import (
     Spring as Spring,
     Support as Support,
     clamped as clamped,
+    held_where_sprung as held_where_sprung,
     on_translations as on_translations,
     own_support as own_support,
     pinned as pinned,

@@ -12,7 +12,13 @@ from pydantic import Field
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean, located, require
 from jackettwin.files import Schema, read_yaml, validate
-from jackettwin.soil.foundation import build_foundation, read_foundation, shipped_foundations
+from jackettwin.soil.foundation import (
+    Foundation,
+    PileModel,
+    build_foundation,
+    read_foundation,
+    shipped_foundations,
+)
 from jackettwin.soil.laws.families import families
 from jackettwin.soil.laws.files import ElasticLaw, LawSchema
 from jackettwin.soil.laws.viscoelastic import Law, Prony, require_positive
@@ -54,7 +60,7 @@ def read_support(
     first_frequency_hz: Callable[[], float] = _unknown_frequency,
     folder: Path | None = None,
 ) -> Support:
-    """Return the support a user asked for.
+    """Return the support a user asked for; piles are lumped at their heads (:func:`read_supported`).
 
     Parameters
     ----------
@@ -89,8 +95,9 @@ def read_support(
     forms = short_forms()
     if colon and name in forms:
         return on_translations(structure, parse_law(name, arguments, first_frequency_hz))
-    if word in shipped_foundations():
-        return read_foundation(word).heads(structure)
+    foundation = _foundation(text, folder)
+    if foundation is not None:
+        return foundation.heads(structure)
     path = Path(word) if folder is None else folder / word
     if path.suffix.lower() in (".yaml", ".yml"):
         return _read_support_file(path, structure)
@@ -102,6 +109,54 @@ def read_support(
         allowed=", ".join(f"{k}:{forms[k]}" if k in forms else k for k in known) + ", or a .yaml file",
         remedy=did_you_mean(name, known) or "take one of these, or give the path of a file",
     )
+
+
+def read_supported(
+    text: str | Path | None,
+    structure: Structure,
+    *,
+    pile_model: PileModel | None = None,
+    first_frequency_hz: Callable[[], float] = _unknown_frequency,
+    folder: Path | None = None,
+) -> tuple[Structure, Support]:
+    """Return the structure and the support that a user asked for, with its piles as members if so asked.
+
+    Parameters
+    ----------
+    pile_model : {"head", "members"}, optional
+        How piles stand under the structure; by default as their foundation says. The other parameters are
+        those of :func:`read_support`.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_support`; and if members are asked for where no foundation of piles is.
+    """
+    foundation = _foundation(text, folder) if structure.reactions else None
+    if foundation is not None:
+        return foundation.under(structure, pile_model)
+    require(
+        pile_model != "members",
+        "only the piles of a foundation can be members",
+        field="pile_model",
+        value=pile_model,
+        allowed="members, with a foundation as the support",
+        remedy=f"give a foundation file or {', '.join(shipped_foundations())} as the support",
+    )
+    return structure, read_support(text, structure, first_frequency_hz=first_frequency_hz, folder=folder)
+
+
+def _foundation(text: str | Path | None, folder: Path | None) -> Foundation | None:
+    """Return the foundation that a support's text names; None if it names another kind of support."""
+    if text is None:
+        return None
+    if str(text) in shipped_foundations():
+        return read_foundation(str(text))
+    path = Path(text) if folder is None else folder / text
+    if path.suffix.lower() not in (".yaml", ".yml"):
+        return None
+    content = read_yaml(path, what="support file")
+    return build_foundation(content, path) if isinstance(content, dict) and "pile" in content else None
 
 
 def short_forms() -> Mapping[str, str]:
@@ -177,10 +232,7 @@ def _branches(text: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
 
 
 def _read_support_file(path: Path, structure: Structure) -> Support:
-    content = read_yaml(path, what="support file")
-    if isinstance(content, dict) and "pile" in content:
-        return build_foundation(content, path).heads(structure)
-    schema = validate(SpringsSchema, content, file=path)
+    schema = validate(SpringsSchema, read_yaml(path, what="support file"), file=path)
     springs: list[Spring] = []
     for index, entry in enumerate(schema.supports):
         with located(file=path, field=f"supports.{index}"):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from math import pi
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -28,6 +28,9 @@ SLENDER = 10.0
 """Diameters of length below which a pile is not slender: on monopiles, of 2 to 6, shear at the base and along
 the sides counts as well (Byrne et al. 2015, the PISA tests)."""
 
+PileModel = Literal["head", "members"]
+"""Piles lumped at their heads (fast; what an update scales), or beams on springs along their length."""
+
 Stiffness = Annotated[float, Field(ge=0.0, le=1e15)]
 """Of linear ground [N/m³, N/m² or N/m]: the upper end is rigid."""
 
@@ -48,6 +51,12 @@ class Foundation:
     """The layers that the curves are of; None for linear ground."""
     options: CurveOptions = CurveOptions()
     """Which curves they are."""
+    pile_model: PileModel = "head"
+    """Whether the piles are members of a structure that stands on them, or lumped at its feet."""
+
+    def under(self, structure: Structure, model: PileModel | None = None) -> tuple[Structure, Support]:
+        """Return the structure on its piles: by ``model``, or else as the foundation itself says."""
+        return self.piled(structure) if (model or self.pile_model) == "members" else self.lumped(structure)
 
     def scoured(self, depth_m: float) -> Foundation:
         """Return the foundation with a hole around the pile that is so much deeper.
@@ -141,6 +150,7 @@ class FoundationSchema(Schema):
     damping: FoundationDampingSchema | None = None
     law: LawSchema | None = None
     radiation: Placed[Radiation] | None = None
+    pile_model: PileModel = "head"
 
     def build(self) -> Foundation:
         """Return the foundation."""
@@ -157,7 +167,8 @@ class FoundationSchema(Schema):
             curves = pile_curves(self.pile, profile, self.curves)
         springs = self._linear() if curves is None else linearised(curves)
         notes = self._notes()
-        return Foundation(self.pile, springs, law, self.radiation, curves, notes, profile, self.curves)
+        about = (curves, notes, profile, self.curves, self.pile_model)
+        return Foundation(self.pile, springs, law, self.radiation, *about)
 
     def _notes(self) -> tuple[str, ...]:
         """Return a sentence on a pile that is longer than its layers, and on one that is not slender."""

@@ -105,6 +105,14 @@ def described(support: Support) -> str:
     return "; ".join(parts) or "nothing"
 
 
+def held_where_sprung(structure: Structure, support: Support) -> Structure:
+    """Return the structure with every node along piles that a spring holds as a reaction node, too."""
+    along = {*structure.buried_nodes} & {spring.node for spring in support.springs}
+    nothing = (False,) * 6
+    more = tuple(Reaction(node, nothing) for node in structure.nodes if node in along)
+    return replace(structure, reactions=(*structure.reactions, *more))
+
+
 def with_static_reactions(structure: Structure, support: Support) -> Structure:
     """Return the structure with a support as its own reactions: held DOFs, static stiffness and mass.
 

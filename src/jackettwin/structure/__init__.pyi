@@ -22,6 +22,7 @@ from .masses import (
     rigid_transfer as rigid_transfer,
 )
 from .model import (
+    PILES as PILES,
     STEEL as STEEL,
     Material as Material,
     Member as Member,

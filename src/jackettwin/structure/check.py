@@ -13,7 +13,7 @@ from jackettwin.errors import require
 from jackettwin.structure.assemble import Assembly, assemble
 from jackettwin.structure.eigen import lowest_modes
 from jackettwin.structure.masses import rigid_transfer
-from jackettwin.structure.model import Member, Structure, Vector
+from jackettwin.structure.model import PILES, Member, Structure, Vector
 
 SLENDER_WALLS = (10.0, 300.0)
 """Diameter over wall of offshore tubes, from thick-walled piles to thin towers."""
@@ -104,6 +104,8 @@ def _warnings(structure: Structure) -> Iterator[str]:
         return any(not low <= s.slenderness <= high for s in (m.section_start, m.section_end))
 
     def stubby(m: Member) -> bool:
+        if m.part == PILES:  # cut where the ground acts on it
+            return False
         length = np.linalg.norm(np.subtract(structure.nodes[m.end], structure.nodes[m.start]))
         return bool(length < 0.5 * max(m.section_start.outer_diameter_m, m.section_end.outer_diameter_m))
 

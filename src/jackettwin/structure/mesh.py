@@ -60,7 +60,7 @@ class Mesh:
 def discretise(structure: Structure, *, theory: str | None = None, subdivide: int | None = None) -> Mesh:
     """Return the elements of a structure, each member cut into ``subdivide`` equal tubes.
 
-    Tapered members take the mean diameter and wall of each piece.
+    A member may have its own number. Tapered ones take the mean diameter and wall of each piece.
 
     Raises
     ------
@@ -72,15 +72,16 @@ def discretise(structure: Structure, *, theory: str | None = None, subdivide: in
     require(theory in BEAMS, "unknown beam theory", field="beam", value=theory, allowed=", ".join(BEAMS))
     require(1 <= n <= 1000, "elements a member", field="subdivide", value=n, allowed="1 to 1000")
     members = structure.members
-    names, coordinates, ends = _nodes(structure, n)
-    at = (np.arange(n) + 0.5) / n
-    D = _along(members, "outer_diameter_m", at)
-    t = _along(members, "thickness_m", at)
+    counts = np.array([m.elements or n for m in members], dtype=np.intp)
+    names, coordinates, start, end = _nodes(structure, counts)
+    of = np.repeat(np.arange(len(members)), counts)
+    at = (np.arange(of.size) - np.repeat(np.cumsum(counts) - counts, counts) + 0.5) / counts[of]
+    D = _along(members, "outer_diameter_m", of, at)
+    t = _along(members, "thickness_m", of, at)
     E, G, rho = (
-        np.repeat([getattr(m.material, key) for m in members], n)
+        np.array([getattr(m.material, key) for m in members], dtype=np.float64)[of]
         for key in ("youngs_modulus_pa", "shear_modulus_pa", "density_kg_m3")
     )
-    start, end = ends[:, :-1].ravel(), ends[:, 1:].ravel()
     L = np.linalg.norm(coordinates[end] - coordinates[start], axis=1)
     tube = tube_properties(D, t, E / (2.0 * G) - 1.0)
     Phi = 12.0 * E * tube.I / (tube.kappa * G * tube.A * L**2) if theory == "timoshenko" else np.zeros_like(L)
@@ -89,32 +90,34 @@ def discretise(structure: Structure, *, theory: str | None = None, subdivide: in
         coordinates=coordinates,
         start=start,
         end=end,
-        member=np.repeat(np.arange(len(members)), n),
+        member=of,
         properties=beam.BeamProperties(E=E, G=G, rho=rho, A=tube.A, I=tube.I, J=tube.J, L=L, Phi=Phi),
         axes=beam.local_axes(coordinates[start], coordinates[end]),
     )
 
 
-def _along(members: tuple[Member, ...], attribute: str, at: FloatArray) -> FloatArray:
-    first = np.array([getattr(m.section_start, attribute) for m in members])
-    last = np.array([getattr(m.section_end, attribute) for m in members])
-    return np.asarray(first[:, None] + (last - first)[:, None] * at).ravel()
+def _along(members: tuple[Member, ...], attribute: str, of: IntArray, at: FloatArray) -> FloatArray:
+    """Return a measure of the tubes at shares ``at`` of the lengths of the members ``of``, (n_elements,)."""
+    first = np.array([getattr(m.section_start, attribute) for m in members], dtype=np.float64)
+    last = np.array([getattr(m.section_end, attribute) for m in members], dtype=np.float64)
+    return np.asarray(first[of] + (last - first)[of] * at)
 
 
-def _nodes(structure: Structure, n: int) -> tuple[tuple[str, ...], FloatArray, IntArray]:
-    """Return node names, coordinates, and (n_members, n+1) node numbers along each member."""
+def _nodes(structure: Structure, counts: IntArray) -> tuple[tuple[str, ...], FloatArray, IntArray, IntArray]:
+    """Return node names, coordinates, and the numbers of the nodes at the start and end of every element."""
     names = list(structure.nodes)
     number = {name: i for i, name in enumerate(names)}
     points = [np.array([structure.nodes[name] for name in names], dtype=np.float64).reshape(-1, 3)]
-    ends = np.empty((len(structure.members), n + 1), dtype=np.intp)
-    for i, member in enumerate(structure.members):
-        ends[i, 0], ends[i, -1] = number[member.start], number[member.end]
+    start, end = [], []
+    for member, n in zip(structure.members, map(int, counts), strict=True):
+        along = [number[member.start], *range(len(names), len(names) + n - 1), number[member.end]]
+        start += along[:-1]
+        end += along[1:]
         if n > 1:
-            ends[i, 1:-1] = len(names) + np.arange(n - 1)
             names += [f"{member.name}/{k}" for k in range(1, n)]
             a, b = np.array(structure.nodes[member.start]), np.array(structure.nodes[member.end])
             points.append(a + (b - a) * (np.arange(1, n) / n)[:, None])
-    return tuple(names), np.vstack(points), ends
+    return tuple(names), np.vstack(points), np.array(start, dtype=np.intp), np.array(end, dtype=np.intp)
 
 
 def sum_of_elements(mesh: Mesh, matrices: FloatArray) -> sp.csc_array:

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Container, Iterable, Mapping
 
 Vector = tuple[float, float, float]
+PILES = "piles"
+"""The part of members that stand in the ground, which holds them along their length; no water loads them."""
 _LONGEST_M = 5e3
 """Longer than any member of a structure; a length in millimetres exceeds it."""
 Inertia = tuple[float, float, float, float, float, float]
@@ -94,7 +96,9 @@ class Member:
     section_end: Section
     material: Material
     part: str = ""
-    """Which part of the structure it belongs to (``jacket``, ``transition_piece``, ``tower``)."""
+    """Which part of the structure it belongs to (``jacket``, ``transition_piece``, ``tower``, ``piles``)."""
+    elements: int | None = None
+    """How many elements it is cut into; None leaves that to the structure and the analysis."""
 
 
 @dataclass(frozen=True)
@@ -274,6 +278,13 @@ class Structure:
     def reaction_nodes(self) -> tuple[str, ...]:
         """Names of the nodes that stand on the ground."""
         return tuple(reaction.node for reaction in self.reactions)
+
+    @cached_property
+    def buried_nodes(self) -> tuple[str, ...]:
+        """Names of the nodes along piles, below their heads."""
+        above = {n for m in self.members if m.part != PILES for n in (m.start, m.end)}
+        piles = dict.fromkeys(n for m in self.members if m.part == PILES for n in (m.start, m.end))
+        return tuple(n for n in piles if n not in above and n not in self.reaction_nodes)
 
     @cached_property
     def top_node(self) -> str:

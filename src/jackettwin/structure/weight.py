@@ -19,7 +19,7 @@ from jackettwin.errors import InputError
 from jackettwin.structure import beam
 from jackettwin.structure.masses import lever_arm_stiffness
 from jackettwin.structure.mesh import Mesh, sum_of_blocks, sum_of_elements
-from jackettwin.structure.model import Structure
+from jackettwin.structure.model import PILES, Structure
 from jackettwin.structure.two_node import TwoNodeElement
 
 
@@ -68,6 +68,9 @@ def weight_forces(
     Tf = sp.csc_array(T[:, free])
     u = Tf @ spla.spsolve(sp.csc_array(Tf.T @ K @ Tf), Tf.T @ weight)
     N = beam.axial_force(mesh.properties, mesh.axes, u[mesh.element_dofs()])
+    # ground holds a pile along its length: what it would carry hanging from its foot says nothing
+    buried = np.array([member.part == PILES for member in structure.members], dtype=bool)
+    N = np.where(buried[mesh.member], 0.0, N)
     pulls = weight - K @ u
     return WeightForces(
         members={m.name: N[mesh.member == k] for k, m in enumerate(structure.members)},

@@ -32,7 +32,7 @@ from jackettwin.loads.members.coefficients import Coefficients
 from jackettwin.loads.members.morison import distribution
 from jackettwin.loads.sea.current import Current
 from jackettwin.loads.sea.waves import Waves
-from jackettwin.structure import Assembly, Structure
+from jackettwin.structure import PILES, Assembly, Structure
 
 _RING_M = 0.5
 """Length of a ring of a member that widens."""
@@ -88,7 +88,7 @@ def member_ends(
     *,
     highest_z: float,
     lowest_z: float,
-    exclude_parts: tuple[str, ...] = ("piles",),
+    exclude_parts: tuple[str, ...] = (PILES,),
 ) -> Ends:
     """Return the ends of members at joints between two heights [m] from still water; the lower is the bed."""
     structure = assembly.structure

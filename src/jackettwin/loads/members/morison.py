@@ -19,7 +19,7 @@ import scipy.sparse as sp
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.loads.members.coefficients import Coefficients
-from jackettwin.structure import Assembly, Structure, beam
+from jackettwin.structure import PILES, Assembly, Structure, beam
 from jackettwin.structure.mesh import Mesh
 
 
@@ -73,7 +73,7 @@ def morison_points(
     lowest_z: float = -np.inf,
     coefficients: Coefficients | None = None,
     spacing: float = 1.0,
-    exclude_parts: tuple[str, ...] = ("piles",),
+    exclude_parts: tuple[str, ...] = (PILES,),
 ) -> MorisonPoints:
     """Return the Gauss points of the members that reach below ``highest_z`` and above ``lowest_z``.
 

@@ -23,7 +23,7 @@ from jackettwin.loads.members.coefficients import (
 from jackettwin.loads.members.ends import EndCoefficients
 from jackettwin.loads.members.hydrodyn_deck import read_hydrodyn
 from jackettwin.loads.members.water import Water
-from jackettwin.structure import Structure
+from jackettwin.structure import PILES, Structure
 
 _GAP_M = 5.0
 """How far above the bed feet may end, as those of piles that stick out do."""
@@ -132,7 +132,7 @@ def _coefficients(w: WaterSchema, structure: Structure) -> Coefficients:
 
 def _flooded(w: WaterSchema, structure: Structure) -> tuple[str, ...]:
     if isinstance(w.flooded, bool):
-        below = {m.name for m in structure.members if m.part not in ("tower", "piles")}
+        below = {m.name for m in structure.members if m.part not in ("tower", PILES)}
         return tuple(sorted(below)) if w.flooded else ()
     require_members(w.flooded, [(m.name, m.part) for m in structure.members], "water.flooded")
     return tuple(w.flooded)

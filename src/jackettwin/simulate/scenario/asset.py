@@ -16,11 +16,12 @@ from jackettwin.soil import (
     CurveOptions,
     Foundation,
     Pile,
+    PileModel,
     Radiation,
     Scour,
     Support,
     read_foundation,
-    read_support,
+    read_supported,
     standing,
 )
 from jackettwin.soil.foundation import FoundationDampingSchema, FoundationSchema, SoilSchema
@@ -82,6 +83,7 @@ class AssetSchema(Schema):
     piles: Placed[Pile] | None = None
     foundation: str | None = None
     support: str | None = None
+    pile_model: PileModel | None = None
 
     def build(self, folder: Path) -> Asset:
         """Return the asset; relative paths are relative to ``folder``.
@@ -94,14 +96,17 @@ class AssetSchema(Schema):
         structure, foundation = _structure(self, folder), _foundation(self, folder)
         loops = self.soil is not None and self.soil.hysteresis
         if foundation is None:
-            support = read_support(
-                self.support, structure, first_frequency_hz=lambda: _first_frequency(structure), folder=folder
+            structure, support = read_supported(
+                self.support,
+                structure,
+                pile_model=self.pile_model,
+                first_frequency_hz=lambda: _first_frequency(structure),
+                folder=folder,
             )
         else:
-            structure, support = foundation.lumped(structure)
+            structure, support = foundation.under(structure, self.pile_model)
             if loops:
-                with located(field="soil"):
-                    foundation.cyclic()
+                _check_loops(foundation, self.pile_model)
         steel = self.damping.rayleigh
         return Asset(
             structure=structure,
@@ -115,6 +120,20 @@ class AssetSchema(Schema):
             coupled_damping=self.damping.coupled,
             foundation=foundation if loops else None,
         )
+
+
+def _check_loops(foundation: Foundation, model: PileModel | None) -> None:
+    """Refuse loops of ground that has none, or that is not stepped at the heads."""
+    with located(field="soil"):
+        foundation.cyclic()
+    require(
+        (model or foundation.pile_model) == "head",
+        "loops are stepped at the heads of piles",
+        field="pile_model",
+        value="members",
+        allowed="head",
+        remedy="take pile_model: head, or soil.hysteresis: false",
+    )
 
 
 def _structure(schema: AssetSchema, folder: Path) -> Structure:

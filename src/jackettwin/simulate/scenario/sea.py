@@ -28,7 +28,7 @@ from jackettwin.loads import (
     water_members,
     wave_number,
 )
-from jackettwin.structure import Structure
+from jackettwin.structure import PILES, Structure
 
 REGULAR = ("airy", "stokes5", "stream")
 """Types of waves that are one wave."""
@@ -264,7 +264,7 @@ def _widest(structure: Structure, coefficients: Coefficients, depth_m: float) ->
     """Return name and hydrodynamic diameter [m] of the widest member in the water, at its ends."""
     widest = ("", 0.0)
     for member in structure.members:
-        if member.part == "piles":
+        if member.part == PILES:
             continue
         ends = np.array([structure.nodes[node][2] for node in (member.start, member.end)])
         z = ends - structure.sea_level_z_m

@@ -19,7 +19,7 @@ from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import InputError, require
 from jackettwin.soil.laws.viscoelastic import Law, Prony, kelvin_voigt
 from jackettwin.soil.support import ELASTIC, Spring, Support
-from jackettwin.structure import Material, Member, Reaction, Section, Structure, Vector
+from jackettwin.structure import PILES, Material, Member, Reaction, Section, Structure, Vector
 from jackettwin.structure.model import require_wall
 
 _MOST_ELEMENTS = 2000
@@ -212,7 +212,7 @@ def pile_beams(
     }
     names = [head, *below]
     members = [
-        Member(f"{a}-{b}", a, b, pile.section, pile.section, pile.material, "piles")
+        Member(f"{a}-{b}", a, b, pile.section, pile.section, pile.material, PILES, elements=1)
         for a, b in zip(names[:-1], names[1:], strict=True)
     ]
     return below, members
