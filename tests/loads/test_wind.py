@@ -7,7 +7,7 @@ from tests.support.wind_spectrum import kaimal
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
 from jackettwin.loads.aerodynamics.rotor import AIR_KG_M3
-from jackettwin.loads.aerodynamics.wind import Wind, tower_drag, tower_drag_damping
+from jackettwin.loads.aerodynamics.wind import Wind, coherence, tower_drag, tower_drag_damping
 from jackettwin.loads.members.coefficients import Coefficients
 from jackettwin.loads.members.morison import morison_points, nodal_loads
 from jackettwin.structure import assemble
@@ -48,3 +48,11 @@ def test_tower_drag_and_its_damping() -> None:
     for direction, factor in ((0, 2.0), (1, 1.0)):
         shift = np.tile(np.eye(6)[direction], assembly.n_dof // 6)
         assert shift @ (C @ shift) == pytest.approx(factor * F / 30.0, rel=1e-6)
+
+
+def test_coherence_is_that_of_the_standard() -> None:
+    """IEC 61400-1 ed. 3 (B.16): exp(−12 √((f r/V)² + (0.12 r/L_c)²)) with L_c = 8.1 Λ_1 = 340.2 m."""
+    wind = Wind(10.0, 150.0, "B")
+    by_hand = np.exp(-12.0 * np.sqrt((0.05 * 30.0 / 10.0) ** 2 + (0.12 * 30.0 / 340.2) ** 2))
+    assert float(coherence(wind, 0.05, 30.0)) == pytest.approx(by_hand, rel=1e-12)
+    assert float(coherence(wind, 0.05, 0.0)) == 1.0
