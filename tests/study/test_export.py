@@ -17,6 +17,7 @@ from jackettwin.study.many_records.export import export_modes
 
 def mode(k: int, names: Sequence[str]) -> dict[str, Any]:
     return {
+        "status": "not a mode: electrical" if k == 1 else "ok",
         "frequency_hz": k + 0.5,
         "frequency_std_hz": None,
         "damping_ratio": 0.01,
@@ -45,6 +46,8 @@ def test_netcdf_holds_every_mode_of_every_set(names: list[str], tmp_path: Path) 
     assert np.isnan(v["frequency_std_hz"]).all()
     sets = [b"".join(text).decode().strip() for text in v["set"]]
     assert sets == ["fused", *(name for name in ("r", "rr", "rrr", "rrrr", "r") for _ in range(3))]
+    statuses = [b"".join(text).decode().strip() for text in v["status"]]
+    assert statuses == ["ok", *["ok", "not a mode: electrical", "ok"] * 5]
     assert [b"".join(text).decode().strip() for text in v["channel_name"]] == names
     assert np.isnan(v["mode_shape_real"][0, 1:]).all()
     assert v["mode_shape_real"][3].tolist() == [2.0 + i for i in range(len(names))]

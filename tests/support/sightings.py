@@ -18,4 +18,5 @@ def sightings(modes: Sequence[ModalEstimate], duration_s: Sequence[float]) -> Si
         damping_ratio=np.array([mode.damping_ratio for mode in modes]),
         duration_s=np.asarray(duration_s, dtype=float),
         log_covariance=np.array([log_covariance(mode) for mode in modes]).reshape(-1, 2, 2),
+        severity=np.array([mode.status.severity for mode in modes], dtype=np.int64),
     )

@@ -391,6 +391,7 @@ def _print_fused(title: str, modes: Sequence[Mapping[str, Any]], n_records: int)
         *_NUMBERS,
         TableColumn("scatter of ζ between records [%]", "relative_scatter_damping_ratio", ".0f", 100.0),
         TableColumn("in records", lambda m: f"{m['records_with_mode']} of {n_records}"),
+        TableColumn("status", lambda m: f"{m['status']} (ok in {m['records_ok']})"),
     )
     show_table(Table(title, columns, modes))
 

@@ -32,12 +32,18 @@ class ModeStatus(StrEnum):
     """Poles that fit what is left of the noise."""
 
     @property
+    def severity(self) -> int:
+        """Rank of the status: 0 of ``OK``, and more of what forbids more."""
+        return STATUSES.index(self)
+
+    @property
     def is_a_mode(self) -> bool:
         """Whether it may be a mode at all."""
-        return _SEVERITY[self] <= _SEVERITY[ModeStatus.DOUBTFUL]
+        return self.severity <= ModeStatus.DOUBTFUL.severity
 
 
-_SEVERITY = {status: rank for rank, status in enumerate(ModeStatus)}
+STATUSES = tuple(ModeStatus)
+"""All statuses by severity."""
 
 
 def worse(one: ModeStatus, other: ModeStatus) -> ModeStatus:
@@ -48,7 +54,7 @@ def worse(one: ModeStatus, other: ModeStatus) -> ModeStatus:
     >>> worse(ModeStatus.OK, ModeStatus.DOUBTFUL).value
     'doubtful'
     """
-    return max(one, other, key=_SEVERITY.__getitem__)
+    return max(one, other, key=lambda status: status.severity)
 
 
 def sentence(reasons: Iterable[Finding]) -> str | None:

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
+from jackettwin.findings import Finding
 from jackettwin.identification import fuse, identify, mac
 from jackettwin.identification.many_records.fusion import random_effects
+from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.synthetic import simulate
 
 
@@ -69,6 +71,44 @@ def test_modes_that_cross_keep_their_shapes(results):
         same = [mac(swapped[r].modes[m].mode_shape, mode.mode_shape) for r, m in members]
         assert np.median(same) > 0.9
         assert min(same) > 0.5
+
+
+def test_a_doubtful_estimate_says_nothing_where_the_mode_is_clear_elsewhere(results):
+    """Half of the records doubt the first mode 2 % higher: it is fused from the others, and stays ok."""
+    _, found = results
+    clear = [replace(one, modes=one.modes[:1]) for one in found]
+    doubt = Finding("decay_weak", params={"ratio": 1.0})
+
+    def doubted(one):
+        mode = one.modes[0].flagged(ModeStatus.DOUBTFUL, doubt)
+        return replace(one, modes=(replace(mode, frequency_hz=1.02 * mode.frequency_hz),))
+
+    (alone,) = fuse(clear[:10]).modes
+    (mode,) = fuse([*clear[:10], *map(doubted, clear[10:])]).modes
+    assert (mode.status, mode.records_ok, len(mode.sightings)) == (ModeStatus.OK, 10, 20)
+    assert mode.frequency_hz == pytest.approx(alone.frequency_hz, rel=1e-12)
+    assert mode.damping_ratio == pytest.approx(alone.damping_ratio, rel=1e-12)
+    (mostly,) = fuse([*clear[:8], *map(doubted, clear[8:])]).modes
+    assert mostly.status == ModeStatus.DOUBTFUL
+    assert mostly.frequency_hz == pytest.approx(fuse(clear[:8]).modes[0].frequency_hz, rel=1e-12)
+    (never,) = fuse(map(doubted, clear)).modes
+    assert never.status == ModeStatus.DOUBTFUL and never.records_ok == 0
+
+
+def test_a_record_that_does_not_tell_the_damping_tells_the_frequency(results):
+    _, found = results
+    unknown = Finding("decay_damping_unknown", params={"spread": 1.0})
+    clear = [replace(one, modes=one.modes[:1]) for one in found]
+    vague = [
+        replace(
+            one,
+            modes=(replace(one.modes[0].flagged(ModeStatus.DAMPING_UNKNOWN, unknown), damping_ratio=0.2),),
+        )
+        for one in clear[10:]
+    ]
+    (mode,) = fuse([*clear[:10], *vague]).modes
+    assert mode.damping_ratio == pytest.approx(fuse(clear[:10]).modes[0].damping_ratio, rel=1e-12)
+    assert mode.frequency_std_hz < 0.9 * fuse(clear[:10]).modes[0].frequency_std_hz
 
 
 def test_order_of_records_does_not_matter(results):

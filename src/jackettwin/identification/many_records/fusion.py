@@ -8,6 +8,9 @@ record and the scatter between records (random effects; DerSimonian & Laird 1986
 θ is ln f, and ζ itself: estimates of a record are unbiased in ζ, so their logarithms are not, and the mean
 of many records would inherit it. The variance s_r² is taken at the *fused* damping: an estimate that
 happens to be high also claims to be sharp, and weights of its own would pull the mean up.
+
+The mean of ζ rests on the records in which the mode is ``OK``, that of f on those in which it is at worst
+``DAMPING_UNKNOWN``; where there is none, on all that hold the mode. The status of a fused mode is the median.
 """
 
 from __future__ import annotations
@@ -20,6 +23,7 @@ import numpy as np
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.many_records.setups import WEAK_TIE, tie
 from jackettwin.identification.many_records.tracking import Track, TrackedModes, follow
+from jackettwin.identification.status import ModeStatus
 from jackettwin.intervals import log_interval_95
 
 if TYPE_CHECKING:
@@ -104,6 +108,16 @@ class FusedMode:
     scatter_damping_ratio: float
     sightings: Sightings
 
+    @property
+    def status(self) -> ModeStatus:
+        """The median status over the records that hold the mode."""
+        return self.sightings.status
+
+    @property
+    def records_ok(self) -> int:
+        """Number of records in which the mode is ``OK``."""
+        return int(np.sum(self.sightings.severity == ModeStatus.OK.severity))
+
 
 @dataclass(frozen=True)
 class FusedIdentification:
@@ -181,19 +195,20 @@ def average(seen: Sightings) -> Average:
 
     A record that does not know its variance takes the long-data limits.
     """
-    zeta = float(np.mean(seen.damping_ratio))
+    of_f, of_zeta = map(seen.no_worse_than, (ModeStatus.DAMPING_UNKNOWN, ModeStatus.OK))
+    zeta = float(np.mean(of_zeta.damping_ratio))
     for _ in range(3):
-        relative = random_effects(seen.damping_ratio / zeta, _variances(seen, 1, zeta))
+        relative = random_effects(of_zeta.damping_ratio / zeta, _variances(of_zeta, 1, zeta))
         zeta *= relative[0]
-    own_f, own = (_variances(seen, which, zeta) for which in (0, 1))
-    mean_f, variance_f, between_f = random_effects(np.log(seen.frequency_hz), own_f)
+    own_f, own = _variances(of_f, 0, zeta), _variances(of_zeta, 1, zeta)
+    mean_f, variance_f, between_f = random_effects(np.log(of_f.frequency_hz), own_f)
     within = 1.0 / np.sqrt(np.sum(1.0 / own_f) * np.sum(1.0 / own))
     return Average(
         frequency_hz=float(np.exp(mean_f)),
         damping_ratio=zeta,
         log_std=(float(np.sqrt(variance_f)), float(np.sqrt(relative[1]))),
         scatter=(float(np.sqrt(between_f)), float(np.sqrt(relative[2]))),
-        correlation=_correlation(seen) * float(within / np.sqrt(variance_f * relative[1])),
+        correlation=_correlation(of_zeta) * float(within / np.sqrt(variance_f * relative[1])),
     )
 
 

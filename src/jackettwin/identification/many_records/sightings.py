@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray, Int64Array
+from jackettwin.identification.status import STATUSES, ModeStatus
 
 if TYPE_CHECKING:
     from jackettwin.identification.estimate import ModalEstimate
@@ -29,6 +30,8 @@ class Sightings:
     frequency_hz, damping_ratio, duration_s : (n,)
     log_covariance : (n, 2, 2)
         Of (ln f, ln ζ); NaN where it is not known.
+    severity : (n,) int
+        Of the mode's status in each record.
     """
 
     record: Int64Array
@@ -37,9 +40,20 @@ class Sightings:
     damping_ratio: FloatArray
     duration_s: FloatArray
     log_covariance: FloatArray
+    severity: Int64Array
 
     def __len__(self) -> int:
         return len(self.record)
+
+    @property
+    def status(self) -> ModeStatus:
+        """The median status over the records; of two in the middle the milder one."""
+        return STATUSES[int(np.sort(self.severity)[(len(self) - 1) // 2])]
+
+    def no_worse_than(self, status: ModeStatus) -> Sightings:
+        """Return the sightings whose status is at most as severe; all of them if there is none."""
+        rows = self.severity <= status.severity
+        return self.at(rows) if rows.any() else self
 
     def at(self, rows: BoolArray | slice) -> Sightings:
         """Return some of the sightings."""

@@ -48,7 +48,7 @@ PART_CHANNELS = 3
 """Fewer channels say too little of a shape."""
 TOGETHER = 0.05
 """Two tracks seen together in more than this share of the shorter one's records are two modes."""
-_COLUMNS = 9
+_COLUMNS = 10
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Track:
     Attributes
     ----------
     rows : array of float
-        Nine numbers a record, see ``sightings``.
+        Ten numbers a record, see ``sightings``.
     recent : deque
         The mode in the last ``RECENT`` records that hold it.
     log_f : float
@@ -88,7 +88,13 @@ class Track:
     def add(self, number: int, m: int, found: Identification, glimpse: _Glimpse, key: Hashable) -> None:
         """Continue with mode ``m`` of record ``number``."""
         mode = found.modes[m]
-        numbers = (mode.frequency_hz, mode.damping_ratio, found.duration_s, *log_covariance(mode).flat)
+        numbers = (
+            mode.frequency_hz,
+            mode.damping_ratio,
+            found.duration_s,
+            *log_covariance(mode).flat,
+            mode.status.severity,
+        )
         self.rows.extend((number, m, *numbers))
         self.recent.append(glimpse)
         self.last = number
@@ -99,9 +105,9 @@ class Track:
     def sightings(self) -> Sightings:
         """Return the mode in all its records, in their order."""
         rows = np.array(self.rows).reshape(-1, _COLUMNS)
-        whole = rows[:, :2].astype(np.int64)
-        covariance = rows[:, 5:].reshape(-1, 2, 2)
-        return Sightings(whole[:, 0], whole[:, 1], rows[:, 2], rows[:, 3], rows[:, 4], covariance)
+        record, mode, severity = rows[:, (0, 1, 9)].astype(np.int64).T
+        covariance = rows[:, 5:9].reshape(-1, 2, 2)
+        return Sightings(record, mode, rows[:, 2], rows[:, 3], rows[:, 4], covariance, severity)
 
     def shape(self, keys: Iterable[Hashable], n_channels: int) -> ComplexArray:
         """Return the mean shape over the records of some keys; NaN where none of them has the channel."""

@@ -63,7 +63,13 @@ def _modes(fused: FusedIdentification) -> list[Block]:
 
 def _mode_table(named: list[tuple[str, FusedMode]], n_records: int) -> Table:
     rows = [
-        (words(label), *_numbers(mode), fixed(100.0 * len(mode.sightings) / n_records, 0), *_scatter(mode))
+        (
+            words(label),
+            *_numbers(mode),
+            fixed(100.0 * len(mode.sightings) / n_records, 0),
+            *_scatter(mode),
+            mode.status,
+        )
         for label, mode in named
     ]
     columns = (
@@ -75,10 +81,12 @@ def _mode_table(named: list[tuple[str, FusedMode]], n_records: int) -> Table:
         "found in\n[% of records]",
         "scatter of f\n[%]",
         "scatter of ζ\n[%]",
+        "status",
     )
     caption = (
         "Modes fused over all records. ± is one standard deviation of the mean; scatter is that between "
-        "records beyond their own uncertainty."
+        "records beyond their own uncertainty. The mean rests on the records in which the mode is ok, where "
+        "there are any; the status is the median over all that hold it."
     )
     return Table(caption, columns, tuple(rows))
 
@@ -87,7 +95,9 @@ def _groups(groups: tuple[RecordGroup, ...]) -> Table:
     rows = []
     for group in groups:
         where = (_range(group.wind_speed_m_s), _range(group.yaw_deg), group.state or UNKNOWN)
-        rows += [(*where, str(len(group.records)), *_numbers(mode)) for mode in group.fused.modes]
+        rows += [
+            (*where, str(len(group.records)), *_numbers(mode), mode.status) for mode in group.fused.modes
+        ]
     columns = (
         "wind [m/s]",
         "yaw [°]",
@@ -97,6 +107,7 @@ def _groups(groups: tuple[RecordGroup, ...]) -> Table:
         "95 % of f [Hz]",
         "ζ [%]",
         "95 % of ζ [%]",
+        "status",
     )
     return Table("The same by wind speed, yaw and state, where records say.", columns, tuple(rows), 3)
 

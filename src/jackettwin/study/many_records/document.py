@@ -67,7 +67,9 @@ def fused_mode_document(mode: FusedMode, channels: Sequence[str]) -> dict[str, A
         **named(mode, *MODAL, "frequency_interval_95", "damping_ratio_interval_95"),
         "relative_scatter_frequency": mode.scatter_frequency,
         "relative_scatter_damping_ratio": mode.scatter_damping_ratio,
+        "status": mode.status.value,
         "records_with_mode": len(mode.sightings),
+        "records_ok": mode.records_ok,
         "mode_shape": {
             name: [float(v.real), float(v.imag)]
             for name, v in zip(channels, mode.mode_shape, strict=True)

@@ -31,6 +31,8 @@ NUMBERS = {
 """Columns of numbers and their units; what is not known is empty in CSV, NaN in NetCDF."""
 
 SHAPES = ("mode_shape_real", "mode_shape_imag")
+STATUS_LENGTH = 24
+"""Characters of a status: the longest has 22, and rows of NetCDF-3 are padded to four bytes."""
 ROWS_AT = 4
 """Where a NetCDF-3 file says how many rows it holds."""
 
@@ -75,7 +77,7 @@ def _rows(name: str, modes: Sequence[Mapping[str, Any]]) -> Iterator[Row]:
     for number, mode in enumerate(modes, start=1):
         f_low, f_high = mode["frequency_interval_95"] or (None, None)
         low, high = mode["damping_ratio_interval_95"] or (None, None)
-        row: Row = {"set": name, "mode": number}
+        row: Row = {"set": name, "mode": number, "status": mode["status"]}
         row |= {key: mode.get(key) for key in NUMBERS}
         row |= {"frequency_low_95_hz": f_low, "frequency_high_95_hz": f_high}
         row |= {"damping_ratio_low_95": low, "damping_ratio_high_95": high}
@@ -102,11 +104,11 @@ def _write_csv(document: Mapping[str, Any], path: Path) -> None:
     with path.open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file)
         shapes = [f"shape_{part}_{name}" for name in channels for part in ("real", "imag")]
-        table.writerow(["set", "mode", *NUMBERS, *shapes])
+        table.writerow(["set", "mode", "status", *NUMBERS, *shapes])
         for row in mode_rows(document):
             parts = [value for name in channels for value in row["mode_shape"].get(name, ("", ""))]
             numbers = ["" if row[key] is None else row[key] for key in NUMBERS]
-            table.writerow([row["set"], row["mode"], *numbers, *parts])
+            table.writerow([row["set"], row["mode"], row["status"], *numbers, *parts])
 
 
 def _write_netcdf(document: Mapping[str, Any], path: Path) -> None:
@@ -122,8 +124,9 @@ def _write_netcdf(document: Mapping[str, Any], path: Path) -> None:
         file.createDimension("mode", None)
         file.createDimension("channel", len(channels))
         file.createDimension("set_length", width)
+        file.createDimension("status_length", STATUS_LENGTH)
         _texts(file, "channel_name", "channel", channels)
-        rows = [file.createVariable("set", "c", ("mode", "set_length"))]
+        rows = [file.createVariable(name, "c", ("mode", f"{name}_length")) for name in ("set", "status")]
         rows += [_column(file, name, ("mode",), unit) for name, unit in NUMBERS.items()]
         rows += [_column(file, part, ("mode", "channel"), "1") for part in SHAPES]
         for column in rows:  # a first row, for SciPy to find the sizes; it is written over
@@ -149,12 +152,14 @@ def _row_layout(width: int, n_channels: int) -> np.dtype[np.void]:
     """Return how a row lies in the file: in the order of the variables, each padded to four bytes."""
     numbers = [(name, ">f8") for name in NUMBERS]
     shapes = [(part, ">f8", (n_channels,)) for part in SHAPES]
-    return np.dtype([("set", f"S{width}"), ("padding", f"V{-width % 4}"), *numbers, *shapes])
+    texts = [("set", f"S{width}"), ("padding", f"V{-width % 4}"), ("status", f"S{STATUS_LENGTH}")]
+    return np.dtype([*texts, *numbers, *shapes])
 
 
 def _packed(row: Row, channels: Sequence[str], layout: np.dtype[np.void]) -> np.ndarray[Any, Any]:
     out = np.zeros((), dtype=layout)
-    out["set"] = row["set"].encode().ljust(layout["set"].itemsize)
+    for name in ("set", "status"):
+        out[name] = row[name].encode().ljust(layout[name].itemsize)
     for name in NUMBERS:
         out[name] = np.nan if row[name] is None else row[name]
     shape = np.array([row["mode_shape"].get(name, (np.nan, np.nan)) for name in channels]).reshape(-1, 2)
