@@ -12,6 +12,7 @@ from gallery import schematics
 from jackettwin.arrays import FloatArray
 from jackettwin.report.figures import style
 from jackettwin.soil.laws.viscoelastic import Law
+from jackettwin.updating import Locus
 
 
 def damping_regimes(ratios: Sequence[tuple[str, float]]) -> go.Figure:
@@ -123,6 +124,41 @@ def free_decay(
         height=420,
         xaxis={"title": {"text": style.title("time", "s")}},
         yaxis={"title": {"text": style.title("displacement", "m")}},
+    )
+
+
+def frequency_along(locus: Locus, branch: int, limits: tuple[float, float]) -> go.Figure:
+    """Draw a mode's frequency over a parameter between two known limits (thesis figure 8.1)."""
+    figure, p, values = go.Figure(), locus.parameter, locus.values
+    mode = locus.modes[branch]
+    figure.add_scatter(
+        x=values,
+        y=locus.frequency_hz[:, branch],
+        mode="lines",
+        name=f"f of mode {mode}",
+        line={"color": style.BLUE, "width": 2.4},
+        showlegend=False,
+        hovertemplate=f"{p.name} %{{x:.3g}} {p.unit}<br>%{{y:.4f}} Hz<extra></extra>",
+    )
+    for level, dash, name in zip(limits, ("dash", "dot"), ("→ 0", "→ ∞"), strict=True):
+        figure.add_scatter(
+            x=values[[0, -1]],
+            y=[level, level],
+            mode="lines",
+            name=f"reference, {p.name} {name}: {level:.4f} Hz",
+            line={"color": style.INK, "width": 1.4, "dash": dash},
+            hovertemplate="%{y:.6f} Hz<extra></extra>",
+        )
+    return style.finish(
+        figure,
+        height=440,
+        xaxis={
+            "title": {"text": style.title(p.name, p.unit)},
+            "type": "log",
+            "exponentformat": "power",
+            "dtick": 1,
+        },
+        yaxis={"title": {"text": style.title(f"natural frequency, mode {mode}", "Hz")}},
     )
 
 

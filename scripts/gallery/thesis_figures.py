@@ -9,15 +9,18 @@ from importlib.resources import as_file, files
 import numpy as np
 import plotly.graph_objects as go
 
-from gallery import explore, figures_landscape, figures_theory, schematics
+from gallery import figures_theory, schematics
 from gallery.figures_elevation import elevation
-from gallery.landscape import cost_surface
 from gallery.modes_3d import Shape, mode_shapes_3d
 from gallery.structure_3d import structure_3d
 from jackettwin.decks import read_structure
 from jackettwin.identification import Identification, identify, mac
 from jackettwin.records import Record, read_record
-from jackettwin.report.figures import identification as figures_identification, record as figures_record
+from jackettwin.report.figures import (
+    identification as figures_identification,
+    landscape,
+    record as figures_record,
+)
 from jackettwin.report.pages.page import PageSection, Plot
 from jackettwin.report.tables.numbers import frequency, scientific, words
 from jackettwin.response.modes.labels import mode_kinds, mode_labels
@@ -27,7 +30,15 @@ from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.soil import family
 from jackettwin.soil.laws.viscoelastic import Prony, kelvin_voigt, maxwell, zener
 from jackettwin.structure import Assembly, Rayleigh, assemble
-from jackettwin.updating import SupportModel, numbered_modes, single, support_model
+from jackettwin.updating import (
+    SupportModel,
+    cost_curve,
+    cost_surface,
+    numbered_modes,
+    root_locus,
+    single,
+    support_model,
+)
 from jackettwin.updating.steel import only_parts
 from jackettwin.verify import supports
 
@@ -269,64 +280,54 @@ def _chapter_8(jacket: _Jacket) -> list[Plot]:
 
 
 def _figure_8_1(jacket: _Jacket) -> Plot:
-    model = support_model(jacket.assembly, family=family("zener"), rayleigh=Rayleigh())
     k0, k1 = supports.FIGURE_8_1_K0, supports.FIGURE_8_1_K1
-    c = np.geomspace(1e4, 1e14, 121)
-    f1 = [abs(model.predict(np.array([k0, value, k1]), (1,)).poles[0]) / (2.0 * np.pi) for value in c]
+    model = support_model(jacket.assembly, family=family("zener"), rayleigh=Rayleigh())
+    path = root_locus(model, np.array([k0, 1e9, k1]), "c", (1,))
     limits = tuple(supports.elastic_f1(jacket.assembly, k) for k in (k0, k0 + k1))
-    figure = figures_landscape.frequency_against_parameter(
-        c, np.array(f1), (limits[0], limits[1]), parameter="c", unit="N·s/m"
-    )
     caption = f"Figure 8.1: f₁ of the Zener model against c; k₀ {scientific(k0)}, k₁ {scientific(k1)} N/m."
-    return Plot("figure_8_1", caption, figure)
+    return Plot("figure_8_1", caption, figures_theory.frequency_along(path, 0, (limits[0], limits[1])))
 
 
 def _surfaces(model: SupportModel) -> list[Plot]:
-    residuals = supports.table_6_1()
-    result = supports.fitted(model, residuals)
+    result = supports.fitted(model, supports.table_6_1())
     k, c = _KV_1
-    solutions = [
-        (
-            f"solution {i + 1}{', locked damper' if s.locked_damper else ''}",
-            float(s.theta[0]),
-            float(s.theta[1]),
-        )
-        for i, s in enumerate(result.solutions[:4])
+    points = [("thesis, point 1", k, c), ("thesis, point 2: damper nearly locked", *_KV_2)]
+    points += [
+        (f"solution {i}{', locked damper' if s.locked_damper else ''}", *map(float, s.theta))
+        for i, s in enumerate(result.solutions[:4], start=1)
     ]
-    points = [("thesis, point 1", k, c), ("thesis, point 2: damper nearly locked", *_KV_2), *solutions]
-    names, units = ("k", "c"), ("N/m", "N·s/m")
-    x, y, wide = explore.surface(result, n=48)
-    zoom_x, zoom_y = np.geomspace(0.5 * k, 2.0 * k, 36), np.geomspace(0.5 * c, 2.0 * c, 36)
-    close = cost_surface(result.problem, np.array(_KV_1), (0, 1), zoom_x, zoom_y)
+    theta, problem = np.array(_KV_1), result.problem
+    x, y = (np.geomspace(p.low, p.high, 48) for p in problem.parameters)
+    wide = cost_surface(problem, theta, (0, 1), x, y)
+    close = cost_surface(
+        problem, theta, (0, 1), np.geomspace(0.5 * k, 2.0 * k, 36), np.geomspace(0.5 * c, 2.0 * c, 36)
+    )
     near = [p for p in points if 0.5 * k < p[1] < 2.0 * k and 0.5 * c < p[2] < 2.0 * c]
     return [
         Plot(
             "figure_8_2",
             "Figure 8.2: cost of the Kelvin–Voigt model over its bounds, targets of Table 6.1.",
-            figures_landscape.cost_surface(x, y, wide, names=names, units=units, points=points),
+            landscape.cost_surface(wide, points),
         ),
-        Plot(
-            "figure_8_3",
-            "Figure 8.3: close-up of point 1.",
-            figures_landscape.cost_surface(zoom_x, zoom_y, close, names=names, units=units, points=near),
-        ),
+        Plot("figure_8_3", "Figure 8.3: close-up of point 1.", landscape.cost_surface(close, near)),
     ]
 
 
 def _locus(model: SupportModel, theta: tuple[float, ...], name: str, title: str) -> Plot:
-    path = explore.locus(model, np.array(theta), (1,), ("side_side_1",))
+    path = root_locus(model, np.array(theta), "c", (1,))
     values = ", ".join(f"{p.name} {scientific(v)}" for p, v in zip(model.parameters, theta, strict=True))
     caption = (
         f"{title}: root locus of mode 1 as c varies, {model.family.name}, {values}; the steel is undamped."
     )
-    return Plot(name, caption, figures_landscape.root_locus(path))
+    return Plot(name, caption, landscape.root_locus(path, ("side_side_1",)))
 
 
 def _sensitivity(model: SupportModel, theta: tuple[float, ...], number: str) -> Plot:
-    curves = explore.sensitivities(single(model, supports.table_6_1()), np.array(theta))
+    problem = single(model, supports.table_6_1())
+    curves = [cost_curve(problem, np.array(theta), j) for j in range(len(theta))]
     values = ", ".join(f"{p.name} {scientific(v)}" for p, v in zip(model.parameters, theta, strict=True))
     caption = f"Figure {number}: cost as one parameter moves by ±50 %, Zener at {values}."
-    return Plot(f"figure_{number.replace('.', '_')}", caption, figures_landscape.sensitivity(curves))
+    return Plot(f"figure_{number.replace('.', '_')}", caption, landscape.cost_curves(curves))
 
 
 def _chapter_11(record: Record, found: Identification, names: list[str]) -> list[Plot]:

@@ -5,12 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gallery.landscape import cost_surface, sensitivity_curve
 from jackettwin.errors import InputError
 from jackettwin.progress import Told
 from jackettwin.soil import family
 from jackettwin.structure import Assembly, Rayleigh
-from jackettwin.updating import Residuals, SupportModel, Target, single, support_model
+from jackettwin.updating import (
+    Residuals,
+    SupportModel,
+    Target,
+    cost_curve,
+    cost_surface,
+    single,
+    support_model,
+)
 from jackettwin.updating.search.clusters import gather
 from jackettwin.updating.search.descent import descend
 from jackettwin.updating.search.solutions import search
@@ -74,11 +81,11 @@ def test_a_solution_is_the_bottom_of_its_sensitivity_curves(
     model = models["kelvin-voigt"]
     best = search(single(model, table_6_1), starts=4).solutions[0]
     for j in range(2):
-        factors, values = sensitivity_curve(single(model, table_6_1), best.theta, j, n=11)
-        assert factors[np.argmin(values)] == pytest.approx(1.0)
-        assert values.min() == pytest.approx(best.cost, rel=1e-9)
+        curve = cost_curve(single(model, table_6_1), best.theta, j, n=11)
+        assert curve.factor[np.argmin(curve.cost)] == pytest.approx(1.0)
+        assert curve.cost.min() == pytest.approx(best.cost, rel=1e-9)
     surface = cost_surface(single(model, table_6_1), best.theta, (0, 1), best.theta[[0]], best.theta[[1]])
-    assert surface[0, 0] == pytest.approx(best.cost)
+    assert surface.cost[0, 0] == pytest.approx(best.cost)
 
 
 def test_the_same_seed_gives_the_same_list(models: dict[str, SupportModel], table_6_1: Residuals) -> None:
@@ -168,6 +175,23 @@ def test_ends_that_were_not_compared_are_listed_apart(
     assert not compared and [count for _, count in alone] == [1, 1]
 
 
+def test_starts_that_end_on_the_plateau_of_rigid_feet_are_said(
+    models: dict[str, SupportModel], table_6_1: Residuals
+) -> None:
+    """On feet as good as rigid the steel's 1 % is all the damping, and no parameter changes that.
+
+    The thesis's simplex ends there from many starts. A least-squares descent of Kelvin–Voigt never does.
+    """
+    problem = single(models["kelvin-voigt"], table_6_1)
+    simplex = search(problem, method="nelder-mead", starts=12)
+    assert len(simplex.solutions) == 1
+    # 5 of 12 here; a third to a half of the bounds is the plateau
+    assert 3 <= simplex.stalled <= 8
+    assert f"{simplex.stalled} of these searches stalled" in simplex.statement
+    gradient = search(problem, starts=4)
+    assert gradient.stalled == 0 and "stalled" not in gradient.statement
+
+
 def test_interrupting_a_search_ends_it(models: dict[str, SupportModel], frequencies_alone: Residuals) -> None:
     def interrupt(_: str) -> None:
         raise KeyboardInterrupt
@@ -185,9 +209,9 @@ def test_a_curve_ends_at_the_bounds(models: dict[str, SupportModel], table_6_1: 
     """Beyond them the law may not exist: three branches of fixed shape cannot lose more than they store."""
     problem = single(models["maxwell-3"], table_6_1)
     high = problem.parameters[1].high
-    factors, cost = sensitivity_curve(problem, np.array([3e9, high]), 1, n=5)
-    assert (factors[0], factors[-1]) == (0.5, 1.0)
-    assert np.isfinite(cost).all()
+    curve = cost_curve(problem, np.array([3e9, high]), 1, n=5)
+    assert (curve.factor[0], curve.factor[-1]) == (0.5, 1.0)
+    assert np.isfinite(curve.cost).all()
 
 
 def test_a_slow_descent_goes_on_to_its_minimum(jacket15: Assembly) -> None:

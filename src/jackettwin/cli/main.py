@@ -17,6 +17,7 @@ GROUPS = {
     "Measured": {
         "identify": "Identify the modes of RECORDS: files, or folders of files.",
         "update": "Update the supports of TWIN under one law; writes nothing.",
+        "explore": "Show what the parameters of TWIN's law do to modes and cost.",
         "follow": "Update the supports of TWIN day after day, and find drift.",
         "watch": "Say whether the modes in TABLE have changed, and why.",
     },

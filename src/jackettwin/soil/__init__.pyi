@@ -1,4 +1,9 @@
-from .files import parse_law as parse_law, read_support as read_support, read_supported as read_supported
+from .files import (
+    parse_law as parse_law,
+    read_family as read_family,
+    read_support as read_support,
+    read_supported as read_supported,
+)
 from .foundation import (
     Foundation as Foundation,
     PileModel as PileModel,

@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError, did_you_mean, located, require
+from jackettwin.errors import InputError, did_you_mean, located, look_up, require, require_between
 from jackettwin.files import Schema, read_yaml, validate
 from jackettwin.soil.foundation import (
     Foundation,
@@ -19,7 +19,7 @@ from jackettwin.soil.foundation import (
     read_foundation,
     shipped_foundations,
 )
-from jackettwin.soil.laws.families import families
+from jackettwin.soil.laws.families import Family, families
 from jackettwin.soil.laws.files import ElasticLaw, LawSchema
 from jackettwin.soil.laws.viscoelastic import Law, Prony, require_positive
 from jackettwin.soil.support import Spring, Support, clamped, on_translations, own_support, pinned
@@ -189,6 +189,24 @@ def parse_law(name: str, arguments: str, first_frequency_hz: Callable[[], float]
             f0 = number["f0"] if "f0" in number else first_frequency_hz()
             require_positive("f0", f0)
         return law.build(np.array([number[p] for p in law.names]), f0)
+
+
+def read_family(text: str) -> tuple[Family, FloatArray]:
+    """Return the law of a short form ``name:k=…`` that can be updated, and the values of its parameters.
+
+    Raises
+    ------
+    InputError
+        If there is no such law, or a value is missing, unknown or out of its bounds.
+    """
+    name, _, arguments = text.partition(":")
+    law = look_up(families(), name, "law", field="support")
+    with located(field=f"support.{name}"):
+        given = _arguments(short_forms()[name], arguments)
+        values = [_number(p.name, given[p.name]) for p in law.parameters]
+        for p, value in zip(law.parameters, values, strict=True):
+            require_between(p.name, value, p.low, p.high, "" if p.unit == "-" else p.unit)
+    return law, np.array(values)
 
 
 def _arguments(form: str, text: str) -> dict[str, str]:

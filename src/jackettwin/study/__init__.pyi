@@ -2,6 +2,14 @@ from .document import (
     run_document as run_document,
     update_document as update_document,
 )
+from .explore import (
+    CostLandscape as CostLandscape,
+    Exploration as Exploration,
+    ExploreSettings as ExploreSettings,
+    exploration_document as exploration_document,
+    explore as explore,
+    explore_model as explore_model,
+)
 from .follow import follow as follow
 from .follow_result import Followed as Followed
 from .many_records.export import WRITERS as WRITERS, export_modes as export_modes

@@ -23,7 +23,7 @@ from jackettwin.study.rotor import mean_wind, operating_states, rotor_damping, r
 from jackettwin.twin import TwinConfig, TwinModel, TwinState, twin_model
 from jackettwin.updating import Update, likely
 
-Posteriors = Literal["all", "likely"]
+Posteriors = Literal["all", "likely", "none"]
 log = logging.getLogger(__name__)
 _MOST_REASONS = 20
 """Lines that say why nothing that was identified is a mode of the model."""
@@ -47,7 +47,7 @@ def run_twin(
         Instead of the twin file's.
     compare : bool
         Identify the first record by every method, to set side by side.
-    posteriors : {"all", "likely"}
+    posteriors : {"all", "likely", "none"}
         Whether every law's posterior is sampled, or that of the law to recommend: the others are fitted.
     workers : int
         Processes that identify records.

@@ -15,6 +15,15 @@ from .data.relaxations import RelaxationTarget as RelaxationTarget
 from .data.shapes import ShapeTarget as ShapeTarget
 from .data.targets import Residuals as Residuals, Target as Target
 from .drift import Drift as Drift, find_drift as find_drift
+from .explore.cost import (
+    CostCurve as CostCurve,
+    CostSurface as CostSurface,
+    cost_curve as cost_curve,
+    cost_surface as cost_surface,
+)
+from .explore.locus import Locus as Locus, root_locus as root_locus
+from .explore.paths import SearchPath as SearchPath, search_paths as search_paths
+from .explore.sensitivity import Sensitivity as Sensitivity, sensitivity as sensitivity
 from .joint import Growth as Growth, joint as joint, single as single
 from .law_choice import (
     approximate_probability as approximate_probability,
@@ -33,7 +42,11 @@ from .posterior.laplace import laplace_draws as laplace_draws
 from .posterior.scatter import leg_scatter as leg_scatter
 from .posterior.smc import Posterior as Posterior
 from .problem import Problem as Problem, State as State
-from .search.solutions import MOST_EVALUATIONS as MOST_EVALUATIONS
+from .search.solutions import (
+    MOST_EVALUATIONS as MOST_EVALUATIONS,
+    SearchMethod as SearchMethod,
+    starting_points as starting_points,
+)
 from .steel import (
     Factor as Factor,
     Refinement as Refinement,

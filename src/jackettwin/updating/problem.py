@@ -184,6 +184,20 @@ class Problem:
             log_l[~known] = NEVER
         return log_l, found
 
+    def costs(self, z: FloatArray, near: Found | None) -> FloatArray:
+        """Return the cost (n,) of points (n, d): squares of all residuals, NaN where a mode does not exist.
+
+        Of one point it is the square of what ``evaluate`` returns: priors that are not flat count.
+        """
+        cost = np.zeros(len(z))
+        for state, modes in zip(self.states, self._modes(z, near, slopes=False), strict=True):
+            known, r = self._known_residuals(state, z, modes)
+            cost[known] += (r * r).sum(axis=1)
+            cost[~known] = np.nan
+        if not self.relative:
+            cost += [row @ row for row, _ in map(self.prior.rows, z)]
+        return cost
+
     def _modes(self, z: FloatArray, near: Found | None, *, slopes: bool) -> Found:
         """Return the modes of every state at points (n, d).
 

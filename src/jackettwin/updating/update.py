@@ -23,7 +23,7 @@ from jackettwin.updating.posterior.predictive import Predictive, predict_quantit
 from jackettwin.updating.posterior.smc import Posterior, sample_posterior
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.search.profile import Profile, profile
-from jackettwin.updating.search.solutions import MOST_EVALUATIONS, Method, Search, Solution, search
+from jackettwin.updating.search.solutions import MOST_EVALUATIONS, Search, SearchMethod, Solution, search
 
 Sampler = Literal["smc", "nested"]
 
@@ -160,7 +160,7 @@ def update(
     problem: Problem,
     *,
     modes: tuple[int, ...] | None = None,
-    method: Method = "least-squares",
+    method: SearchMethod = "least-squares",
     starts: int = 32,
     particles: int = 150,
     sampler: Sampler = "smc",

@@ -162,10 +162,8 @@ class Residuals:
         poles : (n_modes,) λ of ``modes``
         slopes : (n_modes, n_parameters) dλ/d ln θ
         """
-        size = np.abs(poles)[:, None]
-        zeta = -poles.real[:, None] / size
-        radial = (np.conj(poles)[:, None] * slopes).real / size  # d|λ|
-        pairs = np.stack([radial / (2.0 * pi), -slopes.real / size - zeta * radial / size], axis=1)
+        size, zeta, radial, turned = polar(poles, slopes)
+        pairs = np.stack([radial / (2.0 * pi), turned], axis=1)
         model = np.stack([size / (2.0 * pi), zeta], axis=1).reshape(-1)[self._places]
         scale = np.where(self._logarithmic, np.maximum(model, _LEAST), self._measured)
         rows = pairs.reshape(-1, slopes.shape[1])[self._places] / scale[:, None]
@@ -174,3 +172,17 @@ class Residuals:
     def shift_jacobian(self, rows: FloatArray) -> FloatArray:
         """Return the residuals' derivatives from those of the ``shift``, (count, n)."""
         return np.asarray(self._whitener @ rows)
+
+
+def polar(poles: ComplexArray, slopes: ComplexArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return |λ| and ζ = −Re λ/|λ| of poles, (n,) each, and the derivatives of both, (n, n_parameters) each.
+
+    Parameters
+    ----------
+    poles : (n,) λ
+    slopes : (n, n_parameters) dλ
+    """
+    size = np.abs(poles)
+    zeta, column = -poles.real / size, size[:, None]
+    radial = (np.conj(poles)[:, None] * slopes).real / column
+    return size, zeta, radial, -slopes.real / column - zeta[:, None] * radial / column

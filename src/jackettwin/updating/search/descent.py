@@ -40,11 +40,22 @@ class End:
     evaluations: int = 0
 
 
-class Path:
-    """Residuals and Jacobian along one search path: each prediction starts from the one before."""
+Trail = list[tuple[FloatArray, float]]
+"""Points ln θ (d,) that a search came by and the cost at each, in their order."""
 
-    def __init__(self, problem: Problem) -> None:
+
+class Path:
+    """Residuals and Jacobian along one search path: each prediction starts from the one before.
+
+    Attributes
+    ----------
+    trail : list, optional
+        Takes every point that is evaluated, and its cost.
+    """
+
+    def __init__(self, problem: Problem, trail: Trail | None = None) -> None:
         self.problem = problem
+        self.trail = trail
         self.last: Found | None = None
         self.at: FloatArray | None = None
         self.answer: tuple[FloatArray, FloatArray] = (np.zeros(0), np.zeros(0))
@@ -54,6 +65,8 @@ class Path:
         if self.at is None or not np.array_equal(z, self.at):
             r, J, self.last = self.problem.evaluate(z, self.last)
             self.answer, self.at = (r, J), z.copy()
+            if self.trail is not None:
+                self.trail.append((self.at, float(r @ r)))
         return self.answer
 
     def values(self, z: FloatArray) -> FloatArray:
@@ -70,14 +83,16 @@ class Path:
         return float(r @ r)
 
 
-def descend(problem: Problem, start: FloatArray, *, known: tuple[FloatArray, ...] = ()) -> End:
+def descend(
+    problem: Problem, start: FloatArray, *, known: tuple[FloatArray, ...] = (), trail: Trail | None = None
+) -> End:
     r"""Return the end of a least-squares descent.
 
     A weak pull towards the middle of the bounds leads off plateaus and gives a flat valley of the cost one
     lowest point. To keep away from known solutions, the residuals are first multiplied by
     :math:`\prod_i (1 + σ²/\|z - z_i\|²)` (deflation, Farrell et al. 2015); the last steps go without.
     """
-    taken, path = 0, Path(problem)
+    taken, path = 0, Path(problem, trail)
     if known:
         start, taken = _least_squares(path, start, *_deflated(path, known), tolerance=1e-3, evaluations=60)
     z = start
@@ -114,16 +129,16 @@ def settle(problem: Problem, end: End) -> End:
     return _judged(problem, z)
 
 
-def descend_simplex(problem: Problem, start: FloatArray) -> End:
-    """Return the end of the thesis's simplex search (section 8.2)."""
+def descend_simplex(problem: Problem, start: FloatArray, *, trail: Trail | None = None) -> End:
+    """Return the end of the thesis's simplex search (section 8.2): settled only where it is a minimum."""
     fit = minimize(
-        Path(problem).total,
+        Path(problem, trail).total,
         start,
         method="Nelder-Mead",
         bounds=list(zip(problem.prior.low, problem.prior.high, strict=True)),
         options={"xatol": 1e-5, "fatol": 1e-14, "maxfev": 600},
     )
-    return End(np.asarray(fit.x), float(fit.fun), bool(np.isfinite(fit.fun)), int(fit.nfev))
+    return replace(_judged(problem, np.asarray(fit.x)), evaluations=int(fit.nfev))
 
 
 def constrained(problem: Problem, z: FloatArray, parameter: int, value: float) -> tuple[FloatArray, float]:

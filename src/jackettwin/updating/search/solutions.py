@@ -15,7 +15,7 @@ from jackettwin.updating.problem import Problem
 from jackettwin.updating.search.clusters import extent, gather
 from jackettwin.updating.search.descent import End, descend, descend_simplex, settle
 
-Method = Literal["least-squares", "nelder-mead"]
+SearchMethod = Literal["least-squares", "nelder-mead"]
 METHODS = ("least-squares", "nelder-mead")
 
 LOCKED_DAMPER = 0.05
@@ -85,6 +85,9 @@ class Search:
     spent : int or None
         Evaluations after which the search stopped, although some solution had been found only once; None if
         it ended by itself.
+    stalled : int
+        Searches of both kinds that ended above every solution: on the way, on a shoulder, or on a plateau
+        where the model is far from the data.
     """
 
     solutions: tuple[Solution, ...]
@@ -92,6 +95,7 @@ class Search:
     deflated: int
     missed_share_95: float
     spent: int | None = None
+    stalled: int = 0
 
     @property
     def statement(self) -> str:
@@ -105,9 +109,14 @@ class Search:
         else:
             often = f", {once} of them found only once" if once else ", each found more than once"
         many, share = f"{n} distinct solution{'s' if n > 1 else ''}{often}", 100 * self.missed_share_95
+        stalled = (
+            f"; {self.stalled} of these searches stalled above, on the way or on a plateau"
+            if self.stalled
+            else ""
+        )
         return (
             f"{unsettled}{self.starts} starts and {self.deflated} searches away from known solutions ended "
-            f"in {many}. If one was missed, fewer than {share:.2g} % of random starts lead to it "
+            f"in {many}{stalled}. If one was missed, fewer than {share:.2g} % of random starts lead to it "
             "(95 % confidence)."
         )
 
@@ -115,7 +124,7 @@ class Search:
 def search(
     problem: Problem,
     *,
-    method: Method = "least-squares",
+    method: SearchMethod = "least-squares",
     starts: int = 32,
     seed: int = 0,
     most_evaluations: int = MOST_EVALUATIONS,
@@ -147,6 +156,7 @@ def search(
     run = descend if method == "least-squares" else descend_simplex
     points = _scatter(problem, starts * (_MOST if method == "least-squares" else 1), seed)
     clusters: list[tuple[End, int]] = []
+    ends: list[End] = []
     n, tried, spent = starts, 0, 0
     while True:
         new: list[tuple[End, int]] = []
@@ -154,6 +164,7 @@ def search(
             if tried >= starts and spent >= most_evaluations:
                 break
             end = run(problem, point)
+            ends.append(end)
             tried, spent = tried + 1, spent + end.evaluations
             new += [(end, 1)] if end.settled else []
             progress.within(f"{tried} of {n} starts, {len(clusters)} distinct solutions before them")
@@ -163,10 +174,11 @@ def search(
             break
         n *= 2
     if deflated:
-        clusters = _deflate(problem, clusters, points[:deflated], progress)
+        clusters = _deflate(problem, clusters, points[:deflated], ends, progress)
     if not clusters:
         raise _out_of_reach(problem)
     kept = [v for v in clusters if v[0].cost <= clusters[0][0].cost + problem.hopeless]
+    stalled = sum(not _ended_in(problem, end, kept) for end in ends)
     # two ends of one cluster may only be seen to be one from its middle
     clusters, _ = gather(problem, [(settle(problem, end), count) for end, count in kept])
     return Search(
@@ -175,7 +187,14 @@ def search(
         deflated,
         1.0 - (1.0 - _CONFIDENCE) ** (1.0 / tried),
         spent if not compared or (spent >= most_evaluations and not enough) else None,
+        stalled,
     )
+
+
+def _ended_in(problem: Problem, end: End, clusters: list[tuple[End, int]]) -> bool:
+    """Return whether an end is as low as some solution: many that are higher are counted among its starts."""
+    low = (cluster.cost for cluster, _ in clusters)
+    return end.settled and any(abs(end.cost - cost) <= problem.allowance(cost) for cost in low)
 
 
 def _out_of_reach(problem: Problem) -> InputError:
@@ -197,6 +216,11 @@ def _out_of_reach(problem: Problem) -> InputError:
     )
 
 
+def starting_points(problem: Problem, n: int, seed: int) -> FloatArray:
+    """Return the first points θ (n, d) that a search of this seed starts from."""
+    return np.asarray(np.exp(_scatter(problem, n, seed)))
+
+
 def _scatter(problem: Problem, n: int, seed: int) -> FloatArray:
     low, high = problem.prior.low, problem.prior.high
     sampler = scipy.stats.qmc.Sobol(low.size, scramble=True, rng=np.random.default_rng(seed))
@@ -205,12 +229,17 @@ def _scatter(problem: Problem, n: int, seed: int) -> FloatArray:
 
 
 def _deflate(
-    problem: Problem, clusters: list[tuple[End, int]], points: FloatArray, progress: Progress
+    problem: Problem,
+    clusters: list[tuple[End, int]],
+    points: FloatArray,
+    ends: list[End],
+    progress: Progress,
 ) -> list[tuple[End, int]]:
-    """Return the clusters and what further searches find that are kept away from them."""
+    """Return the clusters and what further searches find that are kept away from them; all join the ends."""
     for i, point in enumerate(points, start=1):
         progress.within(f"search {i} of {len(points)} away from {len(clusters)} known solutions")
         end = descend(problem, point, known=tuple(cluster.z for cluster, _ in clusters))
+        ends.append(end)
         if end.settled:
             clusters, _ = gather(problem, [(end, 1)], known=clusters)
     return clusters

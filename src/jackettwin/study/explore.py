@@ -1,0 +1,368 @@
+"""A twin's law explored: what its parameters do to modes and cost, and which way the search took."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.errors import did_you_mean, located, require, require_between
+from jackettwin.files import NOT_KEPT, Keep
+from jackettwin.progress import SILENT, Progress
+from jackettwin.response import mode_kinds, mode_labels
+from jackettwin.study.run import run_twin
+from jackettwin.twin import TwinConfig
+from jackettwin.updating import (
+    CostCurve,
+    CostSurface,
+    Locus,
+    Problem,
+    SearchMethod,
+    SearchPath,
+    Sensitivity,
+    SupportModel,
+    Update,
+    cost_curve,
+    cost_surface,
+    numbered_modes,
+    root_locus,
+    search_paths,
+    sensitivity,
+    starting_points,
+)
+
+
+@dataclass(frozen=True)
+class ExploreSettings:
+    """What is explored.
+
+    Attributes
+    ----------
+    modes : numbers; empty for the first five, and those measured
+    along : parameters of the root loci; empty for all of the law
+    over : the two parameters of the cost surface; empty for the first two
+    grid : points of the surface along each of them
+    starts : how many of the search's own starting points are followed
+    points : {parameter: value} of further starting points; a parameter left out has the solution's value
+    method : {"least-squares", "nelder-mead"} of the paths
+    at : {parameter: value} of the point to explore; a parameter left out has the solution's value
+    """
+
+    modes: tuple[int, ...] = ()
+    along: tuple[str, ...] = ()
+    over: tuple[str, ...] = ()
+    grid: int = 49
+    starts: int = 8
+    points: tuple[Mapping[str, float], ...] = ()
+    method: SearchMethod = "least-squares"
+    at: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class CostLandscape:
+    """What the cost looks like, and how searches went through it.
+
+    Attributes
+    ----------
+    update : Update
+        Every solution; nothing is sampled.
+    surface : CostSurface or None
+        None for a law with one parameter.
+    curves : one a parameter
+    paths : one a starting point
+    method : of the paths
+    """
+
+    update: Update
+    surface: CostSurface | None
+    curves: tuple[CostCurve, ...]
+    paths: tuple[SearchPath, ...]
+    method: SearchMethod
+
+
+@dataclass(frozen=True)
+class Exploration:
+    """What the parameters of one law do.
+
+    Attributes
+    ----------
+    name : of the twin or structure
+    model : SupportModel
+    theta : (n_parameters,) the model's parameters at the point explored
+    labels : of the modes of ``sensitivity``
+    sensitivity : Sensitivity
+    loci : one a parameter
+    landscape : CostLandscape or None
+        None where nothing was measured.
+    """
+
+    name: str
+    model: SupportModel
+    theta: FloatArray
+    labels: tuple[str, ...]
+    sensitivity: Sensitivity
+    loci: tuple[Locus, ...]
+    landscape: CostLandscape | None = None
+
+
+def explore(
+    config: TwinConfig,
+    settings: ExploreSettings = ExploreSettings(),
+    *,
+    law: str | None = None,
+    progress: Progress = SILENT,
+    keep: Keep = NOT_KEPT,
+) -> Exploration:
+    """Explore one law of a twin around its best solution, or around a given point.
+
+    Parameters
+    ----------
+    law : str, optional
+        Default: the first of the twin file.
+    progress : Progress
+        Told of the steps of ``run_twin`` for one law and of two more.
+
+    Raises
+    ------
+    InputError
+        If the twin cannot be run, or a mode, parameter or value is none of its own.
+    """
+    chosen = (law or config.update.laws[0],)
+    result = run_twin(config, laws=chosen, posteriors="none", progress=progress, keep=keep)
+    (update,) = result.updates
+    problem = update.problem
+    with located(field="at"):
+        at = _point(problem, settings.at, update.best.theta)
+    progress("cost and ways of the search")
+    landscape = _landscape(update, settings, at, seed=config.update.seed, progress=progress)
+    theta = problem.vectors(np.log(at)[None], problem.states[0])[0]
+    progress("modes along the parameters")
+    return _explored(config.name, update.model, theta, settings, update.shown, landscape)
+
+
+def explore_model(
+    name: str, model: SupportModel, theta: FloatArray, settings: ExploreSettings = ExploreSettings()
+) -> Exploration:
+    """Explore a structure on supports of which nothing was measured: modes, and no cost.
+
+    Parameters
+    ----------
+    theta : (n_parameters,) of the model
+
+    Raises
+    ------
+    InputError
+        If a mode or a parameter is none of the model's.
+    """
+    return _explored(name, model, theta, settings, (), None)
+
+
+def _explored(
+    name: str,
+    model: SupportModel,
+    theta: FloatArray,
+    settings: ExploreSettings,
+    measured: tuple[int, ...],
+    landscape: CostLandscape | None,
+) -> Exploration:
+    modes = settings.modes or tuple(sorted({*range(1, 6), *measured}))
+    with located(field="modes"):
+        model, modes = _with_modes(model, modes, said=bool(settings.modes))
+    numbered = numbered_modes(model.assembly, max(modes))
+    labels = mode_labels(mode_kinds(model.assembly, numbered.shapes, numbered.frequency_hz))
+    with located(field="along"):
+        loci = tuple(
+            root_locus(model, theta, parameter, modes) for parameter in settings.along or _all(model)
+        )
+    shown = tuple(labels[mode - 1] for mode in modes)
+    return Exploration(name, model, theta, shown, sensitivity(model, theta, modes), loci, landscape)
+
+
+def _with_modes(
+    model: SupportModel, modes: tuple[int, ...], *, said: bool
+) -> tuple[SupportModel, tuple[int, ...]]:
+    """Return the model reaching to the modes; those of them that it has, unless they were asked for."""
+    there = numbered_modes(model.assembly, max(modes)).omega.size
+    beyond = [mode for mode in modes if mode > there]
+    require(
+        not (beyond and said),
+        "the structure has fewer modes",
+        value=beyond,
+        allowed=f"1 to {there}",
+        remedy="leave them out, or divide the structure's members (subdivide)",
+    )
+    known = tuple(mode for mode in modes if mode <= there)
+    return model.reaching(max(known)), known
+
+
+def _all(model: SupportModel) -> tuple[str, ...]:
+    """Return the names to follow: the law's own where all tie groups have them, and what is free beside."""
+    grouped = len(model.tie_groups.suffixes) * len(model.family.names)
+    return (*model.family.names, *(p.name for p in model.parameters[grouped:]))
+
+
+def _landscape(
+    update: Update, settings: ExploreSettings, at: FloatArray, *, seed: int, progress: Progress
+) -> CostLandscape:
+    problem = update.problem
+    with located(field="start"):
+        own = [_point(problem, given, update.best.theta) for given in settings.points]
+    scattered = list(starting_points(problem, settings.starts, seed))
+    paths = search_paths(
+        problem,
+        np.reshape([*own, *scattered], (-1, at.size)),
+        update.solutions,
+        method=settings.method,
+        progress=progress,
+    )
+    with located(field="over"):
+        axes = _axes(problem, settings.over)
+    progress.within("cost surface")
+    surface = None
+    if axes:
+        x, y = (
+            np.geomspace(problem.parameters[a].low, problem.parameters[a].high, settings.grid) for a in axes
+        )
+        surface = cost_surface(problem, at, axes, x, y)
+    curves = tuple(cost_curve(problem, at, j) for j in range(at.size))
+    return CostLandscape(update, surface, curves, paths, settings.method)
+
+
+def _axes(problem: Problem, names: Sequence[str]) -> tuple[int, int] | None:
+    """Return the places of two parameters; the first two without names, None if there is one only."""
+    known = [p.name for p in problem.parameters]
+    if not names:
+        return (0, 1) if len(known) > 1 else None
+    for name in names:
+        _known(name, known)
+    require(len(set(names)) == 2, "a surface has two parameters", value=list(names), allowed="two names")
+    return known.index(names[0]), known.index(names[1])
+
+
+def _point(problem: Problem, given: Mapping[str, float], otherwise: FloatArray) -> FloatArray:
+    """Return θ (d,) with some values given.
+
+    Raises
+    ------
+    InputError
+        If a name is none of the parameters, or a value is outside its bounds.
+    """
+    known = [p.name for p in problem.parameters]
+    theta = otherwise.copy()
+    for name, value in given.items():
+        _known(name, known)
+        p = problem.parameters[known.index(name)]
+        require_between(name, value, p.low, p.high, p.unit if p.unit != "-" else "")
+        theta[known.index(name)] = value
+    return theta
+
+
+def _known(name: str, known: Sequence[str]) -> None:
+    remedy = did_you_mean(name, known)
+    require(name in known, "no such parameter", value=name, allowed=", ".join(known), remedy=remedy)
+
+
+def exploration_document(found: Exploration) -> dict[str, Any]:
+    """Return an exploration as JSON data, SI units."""
+    s = found.sensitivity
+    names = [p.name for p in s.parameters]
+    modes = [
+        {
+            "mode": mode,
+            "label": label,
+            "frequency_hz": float(s.frequency_hz[i]),
+            "damping_ratio": float(s.damping_ratio[i]),
+            "frequency_sensitivity": dict(zip(names, map(float, s.frequency[i]), strict=True)),
+            "damping_sensitivity": dict(zip(names, map(float, s.damping[i]), strict=True)),
+        }
+        for i, (mode, label) in enumerate(zip(s.modes, found.labels, strict=True))
+    ]
+    values = zip(found.model.parameters, found.theta, strict=True)
+    return {
+        "name": found.name,
+        "law": found.model.family.name,
+        "parameters": [
+            {"name": p.name, "unit": p.unit, "value": float(v), "low": p.low, "high": p.high}
+            for p, v in values
+        ],
+        "modes": modes,
+        "largest_difference_from_central_differences": s.difference,
+        "loci": [_locus(locus, found.labels) for locus in found.loci],
+        **(_no_landscape() if found.landscape is None else _landscape_document(found.landscape)),
+    }
+
+
+def _locus(locus: Locus, labels: tuple[str, ...]) -> dict[str, Any]:
+    branches = [
+        {
+            "mode": mode,
+            "label": label,
+            "pole_real_rad_s": locus.poles[:, i].real,
+            "pole_imag_rad_s": locus.poles[:, i].imag,
+            "frequency_hz": locus.frequency_hz[:, i],
+            "damping_ratio": locus.damping_ratio[:, i],
+            "most_damped_at": locus.most_damped(i)[0],
+            "most_damping_ratio": locus.most_damped(i)[1],
+        }
+        for i, (mode, label) in enumerate(zip(locus.modes, labels, strict=True))
+    ]
+    p = locus.parameter
+    return {
+        "parameter": p.name,
+        "unit": p.unit,
+        "values": locus.values,
+        "origin": locus.origin,
+        "branches": branches,
+    }
+
+
+def _no_landscape() -> dict[str, Any]:
+    return {"search": None, "solutions": [], "surface": None, "curves": [], "paths": []}
+
+
+def _landscape_document(seen: CostLandscape) -> dict[str, Any]:
+    names, surface = [p.name for p in seen.update.problem.parameters], seen.surface
+
+    def named(theta: FloatArray) -> dict[str, float]:
+        return dict(zip(names, map(float, theta), strict=True))
+
+    return {
+        "search": seen.update.search.statement,
+        "solutions": [
+            {
+                "parameters": named(s.theta),
+                "cost": s.cost,
+                "locked_damper": s.locked_damper,
+                "starts": s.found,
+            }
+            for s in seen.update.solutions
+        ],
+        "surface": surface
+        and {
+            "x": {"parameter": surface.parameters[0].name, "values": surface.x},
+            "y": {"parameter": surface.parameters[1].name, "values": surface.y},
+            "cost": surface.cost,
+        },
+        "curves": [
+            {"parameter": c.parameter.name, "value": c.value, "factor": c.factor, "cost": c.cost}
+            for c in seen.curves
+        ],
+        "method": seen.method,
+        "paths": [
+            {
+                "start": named(path.points[0]),
+                "end": named(path.end),
+                "start_cost": float(path.cost[0]),
+                "end_cost": path.end_cost,
+                "evaluations": len(path.cost),
+                "fate": path.fate,
+                "solution": path.solution,
+                "points": path.points,
+                "cost": path.cost,
+            }
+            for path in seen.paths
+        ],
+    }
