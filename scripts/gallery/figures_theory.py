@@ -1,8 +1,8 @@
-"""Textbook figures: regimes of damping, viscoelastic laws, free decay."""
+"""Textbook figures: viscoelastic laws beside their models, free decay, a frequency between its limits."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 import plotly.graph_objects as go
@@ -13,54 +13,6 @@ from jackettwin.arrays import FloatArray
 from jackettwin.report.figures import style
 from jackettwin.soil.laws.viscoelastic import Law
 from jackettwin.updating import Locus
-
-
-def damping_regimes(ratios: Sequence[tuple[str, float]]) -> go.Figure:
-    """Draw free vibration from rest at x₀ for several damping ratios (thesis figure 3.2)."""
-    cycles = np.linspace(0.0, 5.0, 600)
-    figure = go.Figure()
-    for (name, zeta), colour, dash in zip(
-        ratios, (style.BLUE, style.VERMILLION, style.GREEN), _DASHES, strict=False
-    ):
-        figure.add_scatter(
-            x=cycles,
-            y=free_vibration(zeta, 2.0 * np.pi, cycles),
-            mode="lines",
-            name=f"{name}, ζ = {zeta:g}",
-            line={"color": colour, "dash": dash, "width": 2.2},
-            hovertemplate="%{x:.2f} periods<br>x/x₀ %{y:.3f}<extra></extra>",
-        )
-    return style.finish(
-        figure,
-        height=400,
-        xaxis={"title": {"text": style.title("time over undamped period, t/T", "-")}},
-        yaxis={"title": {"text": style.title("displacement, x/x₀", "-")}},
-    )
-
-
-def stress_strain(elastic: Law, lossy: Law, frequency_hz: float) -> go.Figure:
-    """Draw one cycle of harmonic loading of two laws (thesis figure 4.1)."""
-    figure = make_subplots(
-        rows=1, cols=2, subplot_titles=("(a) elastic", "(b) viscoelastic"), horizontal_spacing=0.1
-    )
-    for col, law in ((1, elastic), (2, lossy)):
-        rotating = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 200))
-        strain, stress = rotating.real, (law.stiffness(2j * np.pi * frequency_hz) * rotating).real
-        figure.add_scatter(
-            x=strain,
-            y=stress,
-            mode="lines",
-            row=1,
-            col=col,
-            showlegend=False,
-            line={"color": style.BLUE, "width": 2.2},
-            fill="toself" if col == 2 else None,
-            fillcolor=style.rgba(style.BLUE, 0.12),
-            hovertemplate="ε/ε₀ %{x:.2f}<br>σ/(Eε₀) %{y:.2f}<extra></extra>",
-        )
-    figure.update_xaxes(title_text=style.title("strain, ε/ε₀", "-"))
-    figure.update_yaxes(title_text=style.title("stress, σ/(E ε₀)", "-"))
-    return style.finish(figure, height=400)
 
 
 def creep_and_relaxation(laws: Mapping[str, tuple[schematics.Drawing, Law]]) -> go.Figure:
@@ -160,22 +112,3 @@ def frequency_along(locus: Locus, branch: int, limits: tuple[float, float]) -> g
         },
         yaxis={"title": {"text": style.title(f"natural frequency, mode {mode}", "Hz")}},
     )
-
-
-_DASHES = ("solid", "dash", "dot")
-
-
-def free_vibration(
-    zeta: float, omega: float, t: FloatArray, *, x0: float = 1.0, v0: float = 0.0
-) -> FloatArray:
-    """Return x(t) of ẍ + 2ζω ẋ + ω² x = 0: under-, critically and overdamped, thesis (3.6)–(3.8)."""
-    decay = np.exp(-zeta * omega * t)
-    if zeta < 1.0:
-        wd = omega * np.sqrt(1.0 - zeta**2)
-        return np.asarray(decay * (x0 * np.cos(wd * t) + (v0 + zeta * omega * x0) / wd * np.sin(wd * t)))
-    if zeta == 1.0:
-        return np.asarray(decay * (x0 + (v0 + omega * x0) * t))
-    root = omega * np.sqrt(zeta**2 - 1.0)
-    slow, fast = -zeta * omega + root, -zeta * omega - root
-    a = (v0 - fast * x0) / (slow - fast)
-    return np.asarray(a * np.exp(slow * t) + (x0 - a) * np.exp(fast * t))

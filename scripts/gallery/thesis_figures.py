@@ -19,10 +19,12 @@ from jackettwin.records import Record, read_record
 from jackettwin.report.figures import (
     identification as figures_identification,
     landscape,
+    law,
     record as figures_record,
 )
 from jackettwin.report.pages.page import PageSection, Plot
 from jackettwin.report.tables.numbers import frequency, scientific, words
+from jackettwin.response import free_vibration
 from jackettwin.response.modes.labels import mode_kinds, mode_labels
 from jackettwin.response.modes.modal import UndampedModes
 from jackettwin.response.motion.time import free_decay
@@ -88,7 +90,12 @@ def thesis_figures(step: Callable[[str], None] = lambda _: None) -> list[PageSec
 
 
 def _chapter_3(jacket: _Jacket) -> list[Plot]:
-    regimes = (("underdamped", 0.1), ("critically damped", 1.0), ("overdamped", 2.0))
+    regimes = {
+        f"{name}, ζ = {zeta:g}": free_vibration(
+            1.0, kelvin_voigt(4.0 * np.pi**2, 4.0 * np.pi * zeta), duration_s=5.0
+        )
+        for name, zeta in (("underdamped", 0.1), ("critically damped", 1.0), ("overdamped", 2.0))
+    }
     return [
         Plot(
             "figure_3_1",
@@ -97,8 +104,8 @@ def _chapter_3(jacket: _Jacket) -> list[Plot]:
         ),
         Plot(
             "figure_3_2",
-            "Figure 3.2: free vibration in the three regimes of damping.",
-            figures_theory.damping_regimes(regimes),
+            "Figure 3.2: free vibration in the three regimes of damping; undamped, a period takes a second.",
+            law.let_go(regimes),
         ),
         Plot(
             "figure_3_3",
@@ -122,7 +129,7 @@ def _chapter_4() -> list[Plot]:
         Plot(
             "figure_4_1",
             "Figure 4.1: harmonic loading of an elastic spring and of a Zener element.",
-            figures_theory.stress_strain(Prony(k0=1.0), zener(0.5, 0.3, 1.0), 0.5),
+            law.cycle({"elastic": Prony(k0=1.0), "viscoelastic": zener(0.5, 0.3, 1.0)}, 0.5),
         ),
         Plot("figure_4_2", caption, figures_theory.creep_and_relaxation(laws)),
         Plot(

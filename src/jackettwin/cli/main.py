@@ -27,6 +27,7 @@ GROUPS = {
         "stages": "Compute frequencies of STRUCTURE as its parts are added.",
         "view": "Draw STRUCTURE on a page to turn, colour and animate.",
         "soil": "Compute curves, stiffness, capacity of a pile of FOUNDATION.",
+        "law": "Draw creep, relaxation, storage and loss of support laws.",
         "check": "Check members and joints of STRUCTURE, or of a scenario.",
     },
     "Simulated": {

@@ -45,7 +45,12 @@ from .motion.time import (
     state_space as state_space,
 )
 from .reduction import Reduced as Reduced, reduced as reduced
-from .sdof import poles as poles, sdof as sdof
+from .sdof import (
+    FreeVibration as FreeVibration,
+    free_vibration as free_vibration,
+    poles as poles,
+    sdof as sdof,
+)
 from .sensors import (
     SENSOR_KINDS as SENSOR_KINDS,
     Sensor as Sensor,

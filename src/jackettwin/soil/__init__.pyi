@@ -1,6 +1,7 @@
 from .files import (
     parse_law as parse_law,
     read_family as read_family,
+    read_law as read_law,
     read_support as read_support,
     read_supported as read_supported,
 )
@@ -21,6 +22,7 @@ from .laws.coefficients import (
     law_stiffness as law_stiffness,
     static_rows as static_rows,
 )
+from .laws.curves import LawCurves as LawCurves, law_curves as law_curves
 from .laws.families import (
     DEFAULT_LAWS as DEFAULT_LAWS,
     Family as Family,

@@ -191,6 +191,19 @@ def parse_law(name: str, arguments: str, first_frequency_hz: Callable[[], float]
         return law.build(np.array([number[p] for p in law.names]), f0)
 
 
+def read_law(text: str) -> Law:
+    """Return the law of a short form ``name:k=…``, of those that ``--support`` takes.
+
+    Raises
+    ------
+    InputError
+        If there is no such law, or an argument is missing, unknown, not a number or out of range.
+    """
+    name, _, arguments = text.partition(":")
+    look_up(short_forms(), name, "law", field="law")
+    return parse_law(name, arguments, _unknown_frequency)
+
+
 def read_family(text: str) -> tuple[Family, FloatArray]:
     """Return the law of a short form ``name:k=…`` that can be updated, and the values of its parameters.
 
