@@ -370,8 +370,10 @@ def test_members_with_a_division_of_their_own(tmp_path: Path) -> None:
         NMembers="1 1 2 1 1 1c 0 # no length; 2 2 3 1 1 1c 0 1.25",
         NPropSets="1 2.1e11 8.08e10 7860 1 0.025",
     )
-    assert [m.name for m in deck.members] == ["1", "2/1", "2/2", "2/3", "2/4"]
-    assert deck.nodes["2/1"] == pytest.approx((0.0, 0.0, 6.25))
+    assert [(m.name, m.elements) for m in deck.members] == [("1", None), ("2", 4)]
+    mesh = assemble(deck).mesh
+    assert mesh.start.size == 1 + 4
+    np.testing.assert_allclose(mesh.coordinates[mesh.node_names.index("2/1")], [0.0, 0.0, 6.25])
 
 
 @pytest.mark.parametrize(

@@ -9,3 +9,4 @@ from .member_check import (
     MemberUse as MemberUse,
     frame_use as frame_use,
 )
+from .scope import left_out as left_out

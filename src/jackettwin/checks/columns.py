@@ -59,7 +59,7 @@ class _Frame:
 
     def __init__(self, structure: Structure) -> None:
         self.ends = {m.name: (m.start, m.end) for m in structure.members}
-        self.ends |= {e.name: (e.start, e.end) for e in structure.elements if e.kind == "beam"}
+        self.ends |= {beam.name: (beam.start, beam.end) for beam in structure.beams}
         self.height = {name: xyz[2] for name, xyz in structure.nodes.items()}
         self.ground = {*structure.reaction_nodes, *structure.buried_nodes}
         self.members_at: dict[str, list[str]] = defaultdict(list)
@@ -68,7 +68,7 @@ class _Frame:
             self.members_at[start].append(name)
             self.members_at[end].append(name)
             self._join(name, start, end)
-        others = [(one.start, one.end) for one in structure.elements if one.name not in self.ends]
+        others = [(one.start, one.end) for one in structure.elements]
         others += [(link.leader, link.follower) for link in structure.rigid_links]
         tied = structure.interface_nodes
         for start, end in (*others, *zip(tied, tied[1:], strict=False)):

@@ -80,7 +80,7 @@ def check_command(
 
     STRUCTURE is at rest under its weight and the forces given.
     """
-    from jackettwin.checks import DesignBasis, frame_use
+    from jackettwin.checks import DesignBasis, frame_use, left_out
     from jackettwin.decks import read_structure
     from jackettwin.loads import Water
     from jackettwin.response import build_system, nodal_load, self_weight, static_displacement
@@ -99,7 +99,8 @@ def check_command(
             raise InputError("a scenario has its own water", field="--still-water", remedy="leave it out")
         chosen_scenario = read_scenario(scenario)
         use = scenario_uses(chosen_scenario, basis)
-        return _answer(chosen_scenario.name, use, water_notes(chosen_scenario))
+        stands = chosen_scenario.asset.structure
+        return _answer(chosen_scenario.name, use, water_notes(chosen_scenario), left_out(stands))
     assert structure is not None
     assembly = assemble(read_structure(structure), subdivide=subdivide)
     stands, held = supported_option(support, assembly, pile_model)
@@ -113,7 +114,7 @@ def check_command(
         load, along, pressure = _in_water(assembly, Water(flooded), load, along)
     u = static_displacement(build_system(assembly, held), load)
     use = frame_use(assembly, u, basis, along=along, pressure=pressure)
-    return _answer(assembly.structure.name, use, [])
+    return _answer(assembly.structure.name, use, [], left_out(assembly.structure))
 
 
 def _in_water(
@@ -144,13 +145,14 @@ def _in_water(
     return load + wet.load, wet.along if along is None else along + wet.along, pressure
 
 
-def _answer(name: str, use: FrameUse, notes: list[str]) -> Reply:
+def _answer(name: str, use: FrameUse, notes: list[str], missing: tuple[str, ...]) -> Reply:
     document = {
         "structure": name,
         "largest_von_mises_stress_pa": max(one.von_mises_pa for one in use.members),
         "members": [_row(one) for one in sorted(use.members, key=lambda one: -one.utilisation)],
         "joints": [_joint_row(one) for one in sorted(use.joints, key=lambda one: -one.utilisation)],
         "warnings": [*_warnings(use), *notes],
+        "left_out": list(missing),
     }
     return Reply(document, lambda: _show(document))
 
@@ -248,6 +250,7 @@ def _show(document: dict[str, Any]) -> None:
         _show_joints(document["joints"])
     say(f"largest von Mises stress {document['largest_von_mises_stress_pa'] / 1e6:.1f} MPa")
     say_all(document["warnings"], "warning")
+    say_all(document["left_out"], "left out")
 
 
 def _show_joints(rows: list[dict[str, Any]]) -> None:

@@ -10,16 +10,17 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from jackettwin.decks.blade_files import read_flexible_rotor
+from jackettwin.decks.sections_yaml import SHAPES, SectionInFile, TubeSchema, build_tube
 from jackettwin.errors import located, look_up, require
-from jackettwin.files import Placed, Schema, read_yaml, validate
+from jackettwin.files import Angle, Placed, Schema, read_yaml, validate
 from jackettwin.structure import (
     STEEL,
+    Beam,
     FlexibleRotor,
     Member,
     PointMass,
     Reaction,
     RigidLink,
-    Section,
     Structure,
     Vector,
     body_from_static_moments,
@@ -113,12 +114,13 @@ class MassSchema(BodySchema):
 
 
 class MemberSchema(Schema):
-    """A member: one section, or two if conical."""
+    """A member: one section, or two if conical; ``twist_deg`` turns a section that is no tube about it."""
 
     name: str | None = None
     nodes: tuple[str, str]
     section: str | None = None
     sections: tuple[str, str] | None = None
+    twist_deg: Angle | None = None
     material: str = "steel"
     part: str = ""
 
@@ -147,7 +149,7 @@ class StructureSchema(Schema):
     sea_level_z_m: float = 0.0
     jacket: JacketSchema | None = None
     materials: dict[str, MaterialInFile] = {}
-    sections: dict[str, Placed[Section]] = {}
+    sections: dict[str, SectionInFile] = {}
     nodes: dict[str, Vector] = {}
     members: list[MemberSchema] = []
     masses: list[MassSchema] = []
@@ -187,10 +189,12 @@ def build_structure(schema: StructureSchema, *, default_name: str, folder: Path 
         return _build_jacket(schema.jacket, schema, name=name, folder=folder)
     remedy = "add members:, or a parametric jacket:"
     require(schema.members, "required key is missing", field="members", remedy=remedy)
+    bars = [_build_bar(m, f"members.{i}", schema) for i, m in enumerate(schema.members)]
     structure = Structure(
         name=name,
         nodes=schema.nodes,
-        members=tuple(_build_member(m, f"members.{i}", schema) for i, m in enumerate(schema.members)),
+        members=tuple(bar for bar in bars if isinstance(bar, Member)),
+        beams=tuple(bar for bar in bars if isinstance(bar, Beam)),
         masses=tuple(m.build(m.node, field=f"masses.{i}") for i, m in enumerate(schema.masses)),
         rigid_links=tuple(RigidLink(link.leader, link.follower) for link in schema.rigid_links),
         reactions=tuple(Reaction(node) for node in schema.reaction_nodes),
@@ -203,16 +207,42 @@ def build_structure(schema: StructureSchema, *, default_name: str, folder: Path 
     return structure if schema.rna is None else schema.rna.stand_on(structure, folder=folder)
 
 
-def _build_member(m: MemberSchema, place: str, schema: StructureSchema) -> Member:
+def _build_bar(m: MemberSchema, place: str, schema: StructureSchema) -> Member | Beam:
+    """Return a tube, or a beam of another section."""
     one = (m.section is None) != (m.sections is None)
     require(one, "give section or sections", field=place, remedy="sections: [start, end] makes a cone")
+    names = m.sections or (m.section or "",) * 2
     start, end = (
         look_up(schema.sections, key, "section", field=f"{place}.section", remedy="define it under sections")
-        for key in m.sections or (m.section or "",) * 2
+        for key in names
     )
     materials, remedy = {"steel": STEEL} | schema.materials, "define it under materials"
     material = look_up(materials, m.material, "material", field=f"{place}.material", remedy=remedy)
-    return Member(m.name or f"{m.nodes[0]}-{m.nodes[1]}", *m.nodes, start, end, material, m.part)
+    name = m.name or f"{m.nodes[0]}-{m.nodes[1]}"
+    if isinstance(start, TubeSchema):
+        turned = "a tube is the same however it is turned"
+        require(
+            m.twist_deg is None,
+            turned,
+            field=f"{place}.twist_deg",
+            value=m.twist_deg,
+            remedy="take it out, or give the section a shape that is no tube",
+        )
+        remedy = "a cone has a tube at both ends"
+        first, last = (
+            build_tube(key, given, remedy=remedy) for key, given in zip(names, (start, end), strict=True)
+        )
+        return Member(name, *m.nodes, first, last, material, m.part)
+    require(
+        start is end,
+        "only tubes can change along a member",
+        field=f"{place}.sections",
+        value=list(names),
+        remedy="cut it into members of one section each",
+    )
+    with located(field=f"sections.{names[0]}"):
+        section = start.build(material.poisson_ratio)
+    return Beam(name, *m.nodes, section, material, radians(m.twist_deg or 0.0), m.part, SHAPES[start.shape])
 
 
 def _build_jacket(

@@ -37,7 +37,7 @@ def read_subdyn(path: Path) -> Structure:
         theory = deck.scalar("FEMMod", "1")
         require(theory in _THEORY, "unsupported beam model", field="FEMMod", value=theory, allowed="1, 3")
         divisions = max(1, to_integer(deck.scalar("NDiv", "1"), "NDiv"))
-        parts = read_parts(deck, divisions=divisions, shear=theory == "3")
+        parts = read_parts(deck, divisions=divisions)
         return Structure(
             name=path.stem,
             nodes=parts.nodes,
@@ -47,11 +47,12 @@ def read_subdyn(path: Path) -> Structure:
             reactions=_reactions(deck),
             interface_nodes=_interface(deck),
             sea_level_z_m=0.0,
-            subdivide=parts.subdivide,
+            subdivide=divisions,
             beam=_THEORY[theory],
             rotary_inertia=True,
             shear_in_mass=False,
             elements=tuple(parts.elements),
+            beams=tuple(parts.beams),
         )
 
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import ceil
-from typing import cast
 
 import numpy as np
 
@@ -16,6 +15,8 @@ from jackettwin.decks.openfast import Deck, DeckRow, to_float
 from jackettwin.decks.subdyn_joints import link_groups, member_ends, member_rows, read_joints, with_hinges
 from jackettwin.errors import InputError, located, look_up, require
 from jackettwin.structure import (
+    Beam,
+    BeamSection,
     Material,
     Member,
     RigidLink,
@@ -25,8 +26,9 @@ from jackettwin.structure import (
     spring_matrix,
     two_node_element,
 )
+from jackettwin.structure.mesh import beam_axes
 from jackettwin.structure.sections import rectangular_section
-from jackettwin.structure.two_node import BeamSection, bar_mass, beam_matrices, cable_matrices
+from jackettwin.structure.two_node import bar_mass, cable_matrices
 
 _TUBE, _RECTANGLE, _CABLE, _RIGID, _ARBITRARY, _SPRING = ("1", "1c"), "1r", "2", "3", "4", "5"
 _BEAMS = (*_TUBE, _RECTANGLE, _ARBITRARY)
@@ -45,16 +47,13 @@ class Parts:
 
     nodes: dict[str, Vector]
     members: list[Member] = field(default_factory=list)
+    beams: list[Beam] = field(default_factory=list)
     elements: list[TwoNodeElement] = field(default_factory=list)
     links: list[RigidLink] = field(default_factory=list)
-    subdivide: int = 1
 
 
-def read_parts(deck: Deck, *, divisions: int, shear: bool) -> Parts:
-    """Return nodes, tubes, other elements and links of a deck.
-
-    Members with a length of their own for their elements (MDivSize) are cut here; then nothing is left to
-    subdivide.
+def read_parts(deck: Deck, *, divisions: int) -> Parts:
+    """Return nodes, tubes, beams, other elements and links of a deck.
 
     Raises
     ------
@@ -66,17 +65,17 @@ def read_parts(deck: Deck, *, divisions: int, shear: bool) -> Parts:
     beams = [row["memberid"] for row in rows if _kind(row) in _BEAMS]
     nodes, ends, links, springs = with_hinges(deck, nodes, member_ends(deck, nodes), beams)
     pieces = {row["memberid"]: _pieces(row, nodes, ends, divisions) for row in rows}
-    alike = all(pieces[row["memberid"]] == divisions for row in rows if _kind(row) in _TUBE)
-    parts = Parts(nodes, elements=springs, links=links, subdivide=divisions if alike else 1)
+    parts = Parts(nodes, elements=springs, links=links)
     tables = _tables(deck)
     rigid = []
     for row in rows:
         kind, name = _kind(row), row["memberid"]
         start, end = ends[name]
+        own = None if pieces[name] == divisions else pieces[name]
         if kind in _TUBE:
-            _add_tube(parts, tables, row, (start, end), 1 if alike else pieces[name])
+            parts.members.append(_tube(tables, row, (start, end), own))
         elif kind in (_RECTANGLE, _ARBITRARY):
-            _add_beam(parts, tables, row, (start, end), pieces[name], shear=shear)
+            parts.beams.append(_beam(parts, tables, row, (start, end), own))
         elif kind == _CABLE:
             parts.elements.append(_cable(parts, tables, row, (start, end)))
         elif kind == _SPRING:
@@ -144,16 +143,7 @@ def _pieces(row: DeckRow, nodes: dict[str, Vector], ends: dict[str, tuple[str, s
     return divisions if longest == 0.0 else ceil(length / longest - 1e-9)
 
 
-def _along(parts: Parts, name: str, ends: tuple[str, str], pieces: int) -> list[str]:
-    """Return the nodes along a member cut in pieces; the inner ones are new."""
-    a, b = (np.array(parts.nodes[node]) for node in ends)
-    names = [f"{name}/{k}" for k in range(1, pieces)]
-    for k, node in enumerate(names, start=1):
-        parts.nodes[node] = cast("Vector", tuple(float(v) for v in a + (b - a) * k / pieces))
-    return [ends[0], *names, ends[1]]
-
-
-def _add_tube(parts: Parts, tables: Tables, row: DeckRow, ends: tuple[str, str], pieces: int) -> None:
+def _tube(tables: Tables, row: DeckRow, ends: tuple[str, str], elements: int | None) -> Member:
     name = row["memberid"]
     sections, materials = [], []
     for key in ("mpropsetid1", "mpropsetid2"):
@@ -168,41 +158,27 @@ def _add_tube(parts: Parts, tables: Tables, row: DeckRow, ends: tuple[str, str],
         field=f"MemberID {name}",
         value=[row["mpropsetid1"], row["mpropsetid2"]],
     )
-    first, last = sections
-    nodes = _along(parts, name, ends, pieces)
-    for k in range(pieces):
-        cuts = [_between(first, last, at / pieces) for at in (k, k + 1)]
-        piece = name if pieces == 1 else f"{name}/{k + 1}"
-        parts.members.append(Member(piece, nodes[k], nodes[k + 1], cuts[0], cuts[1], materials[0]))
+    return Member(name, *ends, sections[0], sections[1], materials[0], elements=elements)
 
 
-def _between(a: Section, b: Section, share: float) -> Section:
-    if a == b:
-        return a
-    return Section(
-        a.outer_diameter_m + share * (b.outer_diameter_m - a.outer_diameter_m),
-        a.thickness_m + share * (b.thickness_m - a.thickness_m),
-    )
-
-
-def _add_beam(
-    parts: Parts, tables: Tables, row: DeckRow, ends: tuple[str, str], pieces: int, *, shear: bool
-) -> None:
-    """Add a beam of any section as elements; both ends must name one property set."""
-    name = row["memberid"]
+def _beam(parts: Parts, tables: Tables, row: DeckRow, ends: tuple[str, str], elements: int | None) -> Beam:
+    """Return a beam of any section; both ends must name one property set."""
+    name, shape = row["memberid"], "rectangle" if _kind(row) == _RECTANGLE else "any section"
     sets = [row["mpropsetid1"], row["mpropsetid2"]]
     place = f"MemberID {name}"
     require(sets[0] == sets[1], "such a section cannot change along a member", field=place, value=sets)
-    (E, G, rho), section = _rectangle(tables, row) if _kind(row) == _RECTANGLE else _any_section(tables, row)
-    nodes = _along(parts, name, ends, pieces)
-    axes = _axes(parts, tables, row, ends)
-    for k, pair in enumerate(zip(nodes, nodes[1:], strict=False), start=1):
-        a, b = (np.array(parts.nodes[node]) for node in pair)
-        L = float(np.linalg.norm(b - a))
-        K, M = beam_matrices(axes, L, section, E=E, G=G, rho=rho, shear=shear)
-        piece = name if pieces == 1 else f"{name}/{k}"
-        radius = float(np.sqrt(section.I_p / section.A))
-        parts.elements.append(two_node_element(piece, "beam", pair, K, M, polar_radius_m=radius))
+    (E, G, rho), section = _rectangle(tables, row) if shape == "rectangle" else _any_section(tables, row)
+    with located(field=f"PropSetID {sets[0]}"):
+        material = Material(E, G, rho)
+    twist = _twist(parts, _axes(parts, tables, row, ends), ends)
+    return Beam(name, *ends, section, material, twist, shape=shape, elements=elements)
+
+
+def _twist(parts: Parts, axes: FloatArray, ends: tuple[str, str]) -> float:
+    """Return by how much a section is turned from our own axes about the beam [rad]."""
+    start, end = (np.array(parts.nodes[node]) for node in ends)
+    _, y, z = beam_axes(start, end, 0.0)
+    return float(np.arctan2(axes[1] @ z, axes[1] @ y))
 
 
 def _any_section(tables: Tables, row: DeckRow) -> tuple[list[float], BeamSection]:
@@ -228,11 +204,16 @@ def _axes(parts: Parts, tables: Tables, row: DeckRow, ends: tuple[str, str]) -> 
         keys = [f"cosm{i}{j}" for i in (3, 1, 2) for j in (1, 2, 3)]
         return np.array(tables["cosines"][chosen].numbers(*keys)).reshape(3, 3)
     a, b = (np.array(parts.nodes[node]) for node in ends)
+    return deck_axes(a, b, 0.0 if "cosmid" in row else to_float(spin, row.place("MSpin")))
+
+
+def deck_axes(a: FloatArray, b: FloatArray, spin_deg: float) -> FloatArray:
+    """Return SubDyn's axes of a member from a to b, (3, 3): along it, then its section's x and y, in rows."""
     z = (b - a) / np.linalg.norm(b - a)
     level = float(np.hypot(z[0], z[1]))
     x = np.array([z[1], -z[0], 0.0]) / level if level > 0.0 else np.array([1.0, 0.0, 0.0])
     y = np.cross(z, x)
-    angle = np.radians(0.0 if "cosmid" in row else to_float(spin, row.place("MSpin")))
+    angle = np.radians(spin_deg)
     return np.array([z, np.cos(angle) * x + np.sin(angle) * y, np.cos(angle) * y - np.sin(angle) * x])
 
 

@@ -1,20 +1,25 @@
 """Structures to OpenFAST SubDyn input files, in the format of OpenFAST 5.
 
-A deck holds what SubDyn knows: joints, circular beams, rigid links, concentrated masses, and reactions with
-the static stiffness and mass of what is below them. Names that are not whole numbers become numbers.
+A deck holds what SubDyn knows: joints, circular beams and beams of any section, rigid links, concentrated
+masses, and reactions with the static stiffness and mass of what is below them. Names that are not whole
+numbers become numbers.
 """
 
 from __future__ import annotations
 
 from itertools import groupby
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jackettwin.errors import InputError
+from jackettwin.decks.subdyn_members import deck_axes
+from jackettwin.errors import InputError, require
 from jackettwin.files import atomic_path
 from jackettwin.structure import (
+    Beam,
+    BeamSection,
     Material,
     PointMass,
     Reaction,
@@ -23,6 +28,7 @@ from jackettwin.structure import (
     body_from_static_moments,
     rigid_body_mass,
 )
+from jackettwin.structure.mesh import beam_axes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -50,7 +56,7 @@ def write_subdyn(structure: Structure, path: Path) -> tuple[Path, ...]:
             value=[],
             remedy="name the nodes under the tower",
         )
-    _require_tubes(structure)
+    _require_known(structure)
     grounds = {
         r.node: ssi_text(r) for r in structure.reactions if r.stiffness is not None or r.mass is not None
     }
@@ -65,15 +71,24 @@ def write_subdyn(structure: Structure, path: Path) -> tuple[Path, ...]:
     return tuple(files)
 
 
-def _require_tubes(structure: Structure) -> None:
+def _require_known(structure: Structure) -> None:
+    """Refuse what the tables written here do not hold."""
     turning = [link.follower for link in structure.rigid_links if link.release]
     others = [*(f"{e.kind} {e.name}" for e in structure.elements), *(f"hinge {name}" for name in turning)]
     if others:
         raise InputError(
-            "only tubes and rigid links can be written to a deck",
+            "only tubes, beams and rigid links can be written to a deck",
             field="members",
             value=others[0] if len(others) == 1 else others[:5],
             remedy="edit the deck itself",
+        )
+    for b in structure.beams:
+        require(
+            structure.beam == "euler-bernoulli" or max(b.section.A_x, b.section.A_y) < inf,
+            "SubDyn's Timoshenko beams need shear areas",
+            field=f"members.{b.name}",
+            value=b.shape,
+            remedy="give shear_area_x_m2 and shear_area_y_m2, or beam: euler-bernoulli",
         )
 
 
@@ -84,11 +99,14 @@ def subdyn_text(structure: Structure, ssi_files: dict[str, str]) -> str:
     ----------
     ssi_files : {reaction node: name of its SSI file}
     """
-    joints, members = _numbers(structure.nodes), _numbers(m.name for m in structure.members)
+    joints, members = _numbers(structure.nodes), _numbers(m.name for m in structure.bars)
     tubes: dict[Tube, int] = {}
     for m in structure.members:
         for section in (m.section_start, m.section_end):
             tubes.setdefault((m.material, section), len(tubes) + 1)
+    beams: dict[tuple[Material, BeamSection], int] = {}
+    for b in structure.beams:
+        beams.setdefault((b.material, b.section), len(beams) + 1)
     sections = [
         _control(structure),
         _joints(structure, joints),
@@ -96,7 +114,7 @@ def subdyn_text(structure: Structure, ssi_files: dict[str, str]) -> str:
         _table("INTERFACE JOINTS: 1/0 for Locked (to the TP)/Free DOF @each Interface Joint", "NInterf",
                "IJointID TPID ItfTDXss ItfTDYss ItfTDZss ItfRDXss ItfRDYss ItfRDZss",
                [f"{joints[node]} 1 1 1 1 1 1 1" for node in structure.interface_nodes]),
-        _members(structure, joints, members, tubes),
+        _members(structure, joints, members, tubes, beams),
         _table("CIRCULAR BEAM CROSS-SECTION PROPERTIES", "NPropSetsCyl",
                "PropSetID YoungE ShearG MatDens XsecD XsecT",
                [f"{k} {_n(m.youngs_modulus_pa)} {_n(m.shear_modulus_pa)} {_n(m.density_kg_m3)} "
@@ -104,7 +122,8 @@ def subdyn_text(structure: Structure, ssi_files: dict[str, str]) -> str:
         _table("RECTANGULAR BEAM CROSS-SECTION PROPERTIES", "NPropSetsRec",
                "PropSetID YoungE ShearG MatDens XsecSa XsecSb XsecT", []),
         _table("ARBITRARY BEAM CROSS-SECTION PROPERTIES", "NXPropSets",
-               "PropSetID YoungE ShearG MatDens XsecA XsecAsx XsecAsy XsecJxx XsecJyy XsecJ0 XsecJt", []),
+               "PropSetID YoungE ShearG MatDens XsecA XsecAsx XsecAsy XsecJxx XsecJyy XsecJ0 XsecJt",
+               [_beam_row(k, m, s) for (m, s), k in beams.items()]),
         _table("CABLE PROPERTIES", "NCablePropSets", "PropSetID EA MatDens T0 CtrlChannel", []),
         _table("RIGID LINK PROPERTIES", "NRigidPropSets", "PropSetID MatDens",
                ["1 0.0"] if structure.rigid_links else []),
@@ -199,12 +218,21 @@ def _reactions(structure: Structure, joints: dict[str, int], ssi_files: dict[str
 
 
 def _members(
-    structure: Structure, joints: dict[str, int], members: dict[str, int], tubes: dict[Tube, int]
+    structure: Structure,
+    joints: dict[str, int],
+    members: dict[str, int],
+    tubes: dict[Tube, int],
+    beams: dict[tuple[Material, BeamSection], int],
 ) -> list[str]:
     rows = [
         f"{members[m.name]} {joints[m.start]} {joints[m.end]} {tubes[m.material, m.section_start]} "
         f"{tubes[m.material, m.section_end]} 1c 0.0"
         for m in structure.members
+    ]
+    rows += [
+        f"{members[b.name]} {joints[b.start]} {joints[b.end]} {beams[b.material, b.section]} "
+        f"{beams[b.material, b.section]} 4 {_n(_spin_deg(structure, b))}"
+        for b in structure.beams
     ]
     first = max(members.values(), default=0) + 1
     rows += [
@@ -213,6 +241,30 @@ def _members(
     ]
     header = "MemberID MJointID1 MJointID2 MPropSetID1 MPropSetID2 MType MSpin/COSMID"
     return _table("MEMBERS", "NMembers", header, rows)
+
+
+def _beam_row(number: int, m: Material, s: BeamSection) -> str:
+    """Return a property set of a beam; SubDyn looks at its shear areas only where shear bends it."""
+    shear = (min(s.A_x, s.A), min(s.A_y, s.A))
+    numbers = (
+        m.youngs_modulus_pa,
+        m.shear_modulus_pa,
+        m.density_kg_m3,
+        s.A,
+        *shear,
+        s.I_x,
+        s.I_y,
+        s.I_p,
+        s.J,
+    )
+    return f"{number} {' '.join(map(_n, numbers))}"
+
+
+def _spin_deg(structure: Structure, b: Beam) -> float:
+    """Return by how much a section is turned from SubDyn's own axes about its member."""
+    start, end = (np.array(structure.nodes[node]) for node in (b.start, b.end))
+    x, (_, deck_x, deck_y) = beam_axes(start, end, b.twist_rad)[1], deck_axes(start, end, 0.0)
+    return float(np.degrees(np.arctan2(x @ deck_y, x @ deck_x)))
 
 
 def _masses(structure: Structure, joints: dict[str, int]) -> list[str]:

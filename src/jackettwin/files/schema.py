@@ -184,7 +184,9 @@ def _with_alternatives(error: InputError, others: list[InputError]) -> InputErro
 
 def _as_input_error(error: Any, schema: type[BaseModel]) -> InputError:
     location = error["loc"]
-    field = ".".join(str(part) for part in location)
+    field = ".".join(
+        str(part) for k, part in enumerate(location) if not _is_silent(schema, location[:k], part)
+    )
     kind, context = error["type"], error.get("ctx", {})
     if kind == _REFUSED:
         refusal: InputError = context["error"]
@@ -273,9 +275,21 @@ def _fields(models: list[type[Any]], key: Any) -> list[Any]:
     return [f for model in models for name, f in _own(model).items() if key in (name, f.alias)]
 
 
+_TAGGED_BY = ("type", "shape")
+"""Fields that tell the models of a union apart."""
+
+
 def _tags(model: type[Any]) -> tuple[Any, ...]:
-    info = _own(model).get("type")
-    return get_args(info.annotation) if info is not None else ()
+    fields = (info for name, info in _own(model).items() if name in _TAGGED_BY)
+    return tuple(tag for info in fields for tag in get_args(info.annotation))
+
+
+def _is_silent(schema: type[BaseModel], before: tuple[Any, ...], part: Any) -> bool:
+    """Return whether a part of a location is the tag of a model of a union that need not be written."""
+    models = _models_at(schema, before)
+    return not _fields(models, part) and any(
+        part == getattr(_own(model).get(name), "default", None) for model in models for name in _TAGGED_BY
+    )
 
 
 def _models_inside(annotation: Any) -> list[type[Any]]:

@@ -24,6 +24,7 @@ from .masses import (
 from .model import (
     PILES as PILES,
     STEEL as STEEL,
+    Beam as Beam,
     Material as Material,
     Member as Member,
     PointMass as PointMass,
@@ -40,6 +41,7 @@ from .rotor_modes import (
     without_rotor as without_rotor,
 )
 from .two_node import (
+    BeamSection as BeamSection,
     TwoNodeElement as TwoNodeElement,
     spring_matrix as spring_matrix,
     two_node_element as two_node_element,

@@ -112,13 +112,13 @@ def assemble(
     rotary = (
         structure.rotary_inertia if rotary_inertia is None else rotary_inertia
     ) or theory == "timoshenko"
-    mesh = discretise(structure, theory=theory, subdivide=subdivide)
+    mesh = discretise(structure, theory=theory, subdivide=subdivide, rotary_inertia=rotary)
     p, R = mesh.properties, mesh.axes
     K = sum_of_elements(mesh, beam.to_global(beam.stiffness(p), R))
     inertial = p if structure.shear_in_mass else replace(p, Phi=np.zeros_like(p.Phi))
     M = sum_of_elements(mesh, beam.to_global(beam.mass(inertial, rotary_inertia=rotary), R))
-    K = K + _elements(structure, mesh, "stiffness")
-    M = M + _elements(structure, mesh, "mass") + _point_masses(structure, mesh)
+    K = K + _elements(mesh, "stiffness")
+    M = M + _elements(mesh, "mass") + _point_masses(structure, mesh)
     T, independent = _rigid_links(structure, mesh)
     if gravity:
         weight = weight_forces(structure, mesh, K, M, T) if weight is None else weight
@@ -127,13 +127,13 @@ def assemble(
     return Assembly(structure, mesh, K, M, T, independent, weight if gravity else None)
 
 
-def _elements(structure: Structure, mesh: Mesh, matrix: Literal["stiffness", "mass"]) -> sp.csc_array:
+def _elements(mesh: Mesh, matrix: Literal["stiffness", "mass"]) -> sp.csc_array:
     """Return the matrices of the elements that are no tubes."""
     return sum_of_blocks(
         mesh,
         [
             (np.concatenate([mesh.node_dofs(e.start), mesh.node_dofs(e.end)]), np.array(getattr(e, matrix)))
-            for e in structure.elements
+            for e in mesh.others
         ],
     )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -109,7 +110,7 @@ def _warnings(structure: Structure) -> Iterator[str]:
         length = np.linalg.norm(np.subtract(structure.nodes[m.end], structure.nodes[m.start]))
         return bool(length < 0.5 * max(m.section_start.outer_diameter_m, m.section_end.outer_diameter_m))
 
-    oddities: tuple[tuple[str, Callable[[Member], bool]], ...] = (
+    oddities: tuple[tuple[str, Callable[[Any], bool]], ...] = (
         (f"diameter over wall thickness outside {low:g} to {high:g}", wall),
         ("shorter than half the diameter", stubby),
         ("Young's modulus below 1 GPa (is it in Pa?)", lambda m: m.material.youngs_modulus_pa < 1e9),
@@ -121,7 +122,8 @@ def _warnings(structure: Structure) -> Iterator[str]:
         ("Poisson's ratio outside 0 to 0.5", lambda m: not 0.0 <= m.material.poisson_ratio <= 0.5),
     )
     for what, is_odd in oddities:
-        names = [member.name for member in structure.members if is_odd(member)]
+        every = structure.members if is_odd in (wall, stubby) else structure.bars
+        names = [member.name for member in every if is_odd(member)]
         if names:
             yield f"{what}: {few(names)}"
 

@@ -41,8 +41,9 @@ def at_interface(structure: Structure) -> tuple[Structure, Structure | None]:
         remedy="name the nodes that stand on the ground",
     )
     foundation = inside | interface
-    below = [m.name for m in structure.members if {m.start, m.end} <= foundation]
-    above = [m.name for m in structure.members if not {m.start, m.end} <= foundation]
+    every = structure.bars
+    below = [m.name for m in every if {m.start, m.end} <= foundation]
+    above = [m.name for m in every if not {m.start, m.end} <= foundation]
     rest = set(structure.nodes) - foundation
     base = replace(_part(structure, foundation, below), interface_nodes=structure.interface_nodes)
     if not rest:
@@ -55,13 +56,13 @@ def _grounded(structure: Structure) -> set[str]:
     """Return the reaction nodes; of a structure without them, every node that is not the tower's."""
     if structure.reactions:
         return set(structure.reaction_nodes)
-    tower = {node for m in structure.members if m.part == "tower" for node in (m.start, m.end)}
+    tower = {node for m in structure.bars if m.part == "tower" for node in (m.start, m.end)}
     return set(structure.nodes) - tower
 
 
 def _part(structure: Structure, nodes: set[str], members: Iterable[str]) -> Structure:
     names = set(members)
-    used = {n for m in structure.members if m.name in names for n in (m.start, m.end)}
+    used = {n for m in structure.bars if m.name in names for n in (m.start, m.end)}
     links = tuple(link for link in structure.rigid_links if {link.leader, link.follower} <= nodes)
     elements = tuple(e for e in structure.elements if {e.start, e.end} <= nodes)
     used |= {n for link in links for n in (link.leader, link.follower)}
@@ -70,6 +71,7 @@ def _part(structure: Structure, nodes: set[str], members: Iterable[str]) -> Stru
         structure,
         nodes={name: xyz for name, xyz in structure.nodes.items() if name in used},
         members=tuple(m for m in structure.members if m.name in names),
+        beams=tuple(m for m in structure.beams if m.name in names),
         masses=tuple(m for m in structure.masses if m.node in used),
         rigid_links=links,
         elements=elements,

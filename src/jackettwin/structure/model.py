@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import dist, isnan, nan
-from typing import TYPE_CHECKING
+from math import dist, inf, isnan, nan
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean, located, look_up, require, require_between
-from jackettwin.structure.two_node import TwoNodeElement
+from jackettwin.structure.two_node import BeamSection, TwoNodeElement
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Container, Iterable, Mapping
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 Vector = tuple[float, float, float]
 PILES = "piles"
 """The part of members that stand in the ground, which holds them along their length; no water loads them."""
+T = TypeVar("T", "Member", "Beam")
 _LONGEST_M = 5e3
 """Longer than any member of a structure; a length in millimetres exceeds it."""
 Inertia = tuple[float, float, float, float, float, float]
@@ -102,6 +103,34 @@ class Member:
 
 
 @dataclass(frozen=True)
+class Beam:
+    """A straight uniform beam of any section between two nodes; tubes are members.
+
+    ``twist_rad`` turns the section about the beam, right-handed, from where its x is the local y: horizontal,
+    global x for vertical beams.
+    """
+
+    name: str
+    start: str
+    end: str
+    section: BeamSection
+    material: Material
+    twist_rad: float = 0.0
+    part: str = ""
+    shape: str = "any section"
+    """What its section is called."""
+    elements: int | None = None
+    """How many elements it is cut into; None leaves that to the structure and the analysis."""
+
+    def __post_init__(self) -> None:
+        require_between("twist_rad", self.twist_rad, -1e3, 1e3)
+        for key in ("A", "I_x", "I_y", "I_p", "J", "A_x", "A_y"):
+            value = getattr(self.section, key)
+            stiff = value > 0.0 and (value < inf or key in ("A_x", "A_y"))
+            require(stiff, "must be positive", field=f"{self.name}.{key}", value=value, allowed="> 0")
+
+
+@dataclass(frozen=True)
 class PointMass:
     """A rigid body on a node: thesis eq. (3.21).
 
@@ -177,7 +206,8 @@ class Structure:
     shear_in_mass: bool = True
     """Whether the mass of Timoshenko beams knows their shear; SubDyn's does not."""
     elements: tuple[TwoNodeElement, ...] = ()
-    """Cables, springs and beams that are no tubes, from SubDyn decks."""
+    """Cables, springs and whatever else is known by its matrices."""
+    beams: tuple[Beam, ...] = ()
 
     def __repr__(self) -> str:
         return (
@@ -205,7 +235,7 @@ class Structure:
 
     def _check_members(self) -> None:
         names: set[str] = set()
-        for member in self.members:
+        for member in self.bars:
             name, ends = member.name, (member.start, member.end)
             place = f"members.{name}"
             if name in names:
@@ -266,10 +296,15 @@ class Structure:
             raise InputError("no such node", field=place, value=node, remedy=remedy)
 
     @property
+    def bars(self) -> tuple[Member | Beam, ...]:
+        """Members, then beams of any section."""
+        return (*self.members, *self.beams)
+
+    @property
     def joined(self) -> tuple[tuple[str, str], ...]:
         """Pairs of nodes that a member, an element or a rigid link joins."""
         return (
-            *((m.start, m.end) for m in self.members),
+            *((m.start, m.end) for m in self.bars),
             *((e.start, e.end) for e in self.elements),
             *((link.leader, link.follower) for link in self.rigid_links),
         )
@@ -303,16 +338,17 @@ class Structure:
         InputError
             If no member belongs to the part.
         """
-        look_up({member.part: member for member in self.members}, part, "part", field="part")
+        look_up({m.part: m for m in self.bars}, part, "part", field="part")
 
-        def scaled(member: Member) -> Member:
-            if member.part != part:
-                return member
-            m = member.material
+        def scaled(m: Material) -> Material:
             stiffness = m.youngs_modulus_pa * youngs_modulus, m.shear_modulus_pa * youngs_modulus
-            return replace(member, material=Material(*stiffness, m.density_kg_m3 * density))
+            return Material(*stiffness, m.density_kg_m3 * density)
 
-        return replace(self, members=tuple(scaled(member) for member in self.members))
+        def changed(bar: T) -> T:
+            return replace(bar, material=scaled(bar.material)) if bar.part == part else bar
+
+        members, beams = tuple(map(changed, self.members)), tuple(map(changed, self.beams))
+        return replace(self, members=members, beams=beams)
 
 
 def reached_by(

@@ -1,7 +1,7 @@
 r"""Elements that are no tubes, as matrices between two nodes: cables, springs, beams of any section.
 
-A structure holds them as 12×12 matrices. They carry load and have weight, but waves do not load them and no
-code check covers them. Gravity adds the stiffness of their axial force to beams and cables (``weight.py``).
+They carry load and have weight, but waves do not load them and no code check covers them.
+Gravity adds the stiffness of their axial force to beams and cables (``weight.py``).
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ class TwoNodeElement:
 
 @dataclass(frozen=True)
 class BeamSection:
-    """Section of a beam of any shape about its principal axes x and y.
+    """Section of a beam of any shape about its principal axes x and y; its centroid is its shear centre.
 
-    ``A_x``, ``A_y`` are shear areas [m²], ``I_x``, ``I_y`` second moments of area, ``I_p`` the polar one and
-    ``J`` the torsion constant [m⁴].
+    ``A_x``, ``A_y`` are shear areas [m²], infinite where shear does not bend it; ``I_x``, ``I_y`` second
+    moments of area, ``I_p`` the polar one and ``J`` the torsion constant [m⁴].
     """
 
     A: float
@@ -124,15 +124,24 @@ def spring_matrix(k: FloatArray, axes: FloatArray) -> FloatArray:
 
 
 def beam_matrices(
-    axes: FloatArray, L: float, section: BeamSection, *, E: float, G: float, rho: float, shear: bool
+    axes: FloatArray,
+    L: float,
+    section: BeamSection,
+    *,
+    E: float,
+    G: float,
+    rho: float,
+    shear: bool,
+    rotary_inertia: bool = True,
+    shear_in_mass: bool = False,
 ) -> tuple[FloatArray, FloatArray]:
     """Return stiffness and mass of a uniform beam whose planes of bending differ, (12, 12) in global axes.
-
-    Rotary inertia is in the mass, shear is not: SubDyn's beams.
 
     Parameters
     ----------
     axes : (3, 3) rows: along the beam, then the section's x and y
+    rotary_inertia, shear_in_mass : bool
+        SubDyn's beams, the default, have the one in their mass and not the other.
     """
 
     def plane(I: float, A_shear: float, J: float, *, sheared: bool) -> beam.BeamProperties:  # noqa: E741
@@ -143,7 +152,13 @@ def beam_matrices(
     # bending in the plane of x is about y, and the other way round
     both = (section.I_y, section.A_x), (section.I_x, section.A_y)
     K = _merged(*(beam.stiffness(plane(*one, section.J, sheared=shear))[0] for one in both))
-    M = _merged(*(beam.mass(plane(*one, section.I_p, sheared=False), rotary_inertia=True)[0] for one in both))
+    sheared = shear and shear_in_mass
+    M = _merged(
+        *(
+            beam.mass(plane(*one, section.I_p, sheared=sheared), rotary_inertia=rotary_inertia)[0]
+            for one in both
+        )
+    )
     K_global, M_global = (beam.to_global(matrix[None], axes[None])[0] for matrix in (K, M))
     return K_global, M_global
 

@@ -74,7 +74,7 @@ def weight_forces(
     pulls = weight - K @ u
     return WeightForces(
         members={m.name: N[mesh.member == k] for k, m in enumerate(structure.members)},
-        elements={e.name: _axial_force(structure, mesh, e, u) for e in structure.elements},
+        elements={e.name: _axial_force(mesh, e, u) for e in mesh.others},
         links={link.follower: pulls[mesh.node_dofs(link.follower)[:3]] for link in structure.rigid_links},
     )
 
@@ -89,8 +89,8 @@ def geometric_stiffness(structure: Structure, mesh: Mesh, forces: WeightForces) 
     tubes = sum_of_elements(mesh, beam.to_global(beam.geometric_stiffness(N, mesh.properties), mesh.axes))
     blocks = [
         (_dofs(mesh, e), geometric)
-        for e in structure.elements
-        if (geometric := _of_element(structure, e, forces.elements[e.name])) is not None
+        for e in mesh.others
+        if (geometric := _of_element(mesh, e, forces.elements[e.name])) is not None
     ]
     return sp.csc_array(tubes + sum_of_blocks(mesh, blocks + _lever_arms(structure, mesh, forces)))
 
@@ -99,12 +99,12 @@ def _dofs(mesh: Mesh, element: TwoNodeElement) -> IntArray:
     return np.concatenate([mesh.node_dofs(element.start), mesh.node_dofs(element.end)])
 
 
-def _ends(structure: Structure, element: TwoNodeElement) -> FloatArray:
-    return np.array([structure.nodes[element.start], structure.nodes[element.end]])
+def _ends(mesh: Mesh, element: TwoNodeElement) -> FloatArray:
+    return mesh.coordinates[[mesh.node_names.index(node) for node in (element.start, element.end)]]
 
 
-def _axial_force(structure: Structure, mesh: Mesh, element: TwoNodeElement, u: FloatArray) -> float:
-    a, b = _ends(structure, element)
+def _axial_force(mesh: Mesh, element: TwoNodeElement, u: FloatArray) -> float:
+    a, b = _ends(mesh, element)
     L = float(np.linalg.norm(b - a))
     if L == 0.0:
         return 0.0
@@ -112,11 +112,11 @@ def _axial_force(structure: Structure, mesh: Mesh, element: TwoNodeElement, u: F
     return float(pull @ (b - a) / L)
 
 
-def _of_element(structure: Structure, element: TwoNodeElement, N: float) -> FloatArray | None:
+def _of_element(mesh: Mesh, element: TwoNodeElement, N: float) -> FloatArray | None:
     """Return an element's geometric stiffness in global axes, (12, 12); None if it has none."""
     if element.kind not in ("beam", "cable"):
         return None
-    ends = _ends(structure, element)
+    ends = _ends(mesh, element)
     axes, L = beam.local_axes(ends[:1], ends[1:]), np.linalg.norm(ends[1] - ends[0])
     if element.kind == "cable":
         across = N / L * (np.eye(3) - np.outer(axes[0, 0], axes[0, 0]))

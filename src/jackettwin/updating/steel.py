@@ -68,15 +68,17 @@ def only_parts(structure: Structure, parts: tuple[str, ...]) -> Structure:
     InputError
         If no member belongs to a part.
     """
-    known = sorted({member.part for member in structure.members})
+    known = sorted({member.part for member in structure.bars})
     for part in parts:
         require(part in known, "no such part", field="parts", value=part, allowed=", ".join(known))
     members = tuple(member for member in structure.members if member.part in parts)
-    used = {node for member in members for node in (member.start, member.end)}
+    beams = tuple(beam for beam in structure.beams if beam.part in parts)
+    used = {node for bar in structure.bars if bar.part in parts for node in (bar.start, bar.end)}
     return replace(
         structure,
         nodes={name: xyz for name, xyz in structure.nodes.items() if name in used},
         members=members,
+        beams=beams,
         masses=tuple(mass for mass in structure.masses if mass.node in used),
         rigid_links=tuple(link for link in structure.rigid_links if {link.leader, link.follower} <= used),
         elements=tuple(e for e in structure.elements if {e.start, e.end} <= used),
@@ -239,8 +241,7 @@ def stages(structure: Structure, number: int, *, gravity: bool = False) -> tuple
     InputError
         If the first part does not stand on its own: parts must be named from the ground upwards.
     """
-    # what stands on beams other than tubes alone has no parts, and is one stage
-    parts = tuple(dict.fromkeys(member.part for member in structure.members)) or ("",)
+    parts = tuple(dict.fromkeys(one.part for one in structure.bars)) or ("",)
     found = []
     for k in range(1, len(parts) + 1):
         # the whole keeps what no member holds, rigid links' ends among them

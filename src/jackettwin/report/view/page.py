@@ -165,7 +165,7 @@ def _growth(assembly: Assembly, points: FloatArray, coefficients: Coefficients |
 def _others(assembly: Assembly) -> list[dict[str, Any]]:
     """Return what is no tube but joins nodes: cables, springs, beams of any section, rigid links."""
     structure, place = assembly.structure, assembly.mesh.node_names.index
-    joins = [(e.kind, e.start, e.end) for e in structure.elements if e.kind in _LINES]
+    joins = [(e.kind, e.start, e.end) for e in assembly.mesh.others if e.kind in _LINES]
     joins += [("rigid link", link.leader, link.follower) for link in structure.rigid_links]
     return [{"kind": kind, "start": place(a), "end": place(b)} for kind, a, b in joins]
 
