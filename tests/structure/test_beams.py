@@ -119,7 +119,7 @@ def test_a_tube_by_its_numbers_is_the_tube(options: dict[str, object]) -> None:
 
 @pytest.mark.parametrize("twist_deg", [0.0, 30.0, -30.0, 90.0, 137.0])
 def test_a_turned_i_bends_aside(twist_deg: float) -> None:
-    """A load down bends a section turned by α about both axes: aside F L³/(3E)·(1/I_y − 1/I_x) sin α cos α."""
+    """A load down on a section turned by α: aside F L³/(3E)·(1/I_y − 1/I_x) sin α cos α."""
     F, L, alpha = -1e5, 6.0, radians(twist_deg)
     u = moved(cantilever(GIRDER, twist=alpha), (0.0, 0.0, F))
     soft, stiff = F * L**3 / (3.0 * E * GIRDER.I_y), F * L**3 / (3.0 * E * GIRDER.I_x)

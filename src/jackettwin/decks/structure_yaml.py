@@ -28,7 +28,8 @@ from jackettwin.structure import (
     with_rotor,
     without_rotor,
 )
-from jackettwin.structure.jacket import Appurtenance, Lattice, MaterialInFile, Tower, TransitionPiece
+from jackettwin.structure.appurtenances import Appurtenance
+from jackettwin.structure.jacket import Lattice, MaterialInFile, Tower, TransitionPiece
 from jackettwin.structure.model import Inertia
 
 Arm = Annotated[float, Field(ge=-1e3, le=1e3)]

@@ -1,4 +1,4 @@
-"""A parametric jacket: legs, X-braced bays, transition piece, tower, and what hangs on the legs.
+"""A parametric jacket: legs, braced bays, transition piece and tower.
 
 The classes are what a structure file gives under ``jacket``, key by key.
 """
@@ -10,10 +10,12 @@ from itertools import pairwise
 from typing import Annotated
 
 import numpy as np
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import require, require_between
 from jackettwin.files import Placed, refuse_tiny
+from jackettwin.structure.bracing import Face, Pattern, crossing, middle, rising, single
 from jackettwin.structure.model import (
     STEEL,
     Material,
@@ -25,9 +27,6 @@ from jackettwin.structure.model import (
     Vector,
     require_wall,
 )
-
-FURTHEST_M = 20.0
-"""How far beyond the legs' ends an appurtenance may lie [m]: a boat landing, not a slip of the pen."""
 
 
 def _of_solid(material: Material) -> Material:
@@ -44,8 +43,11 @@ class Lattice:
     """Legs and braces from the feet (``base_z_m``) to the leg tops, ``height_m`` above them.
 
     Bay heights form a geometric series with ratio (top_width/base_width)^(1/bays), so that all X-braces
-    are similar; the leg wall goes linearly from the bottom bay to the top bay. Braces have one section, or
-    one a bay from the bottom up; the mud braces have that of the lowest bay.
+    are similar, unless ``levels_z_m`` gives the levels between the bays; the leg wall goes linearly from the
+    bottom bay to the top bay. Braces have one section, or one a bay from the bottom up; the mud braces have
+    that of the lowest bay, ``horizontals`` (levels counted from 1, the top of the lowest bay) that of the bay
+    below them. ``bracing`` is one pattern or one a bay; a K bay brings the horizontal that its braces meet,
+    the topmost that of the transition piece's ring.
     """
 
     base_width_m: float
@@ -60,6 +62,9 @@ class Lattice:
     material: MaterialInFile = STEEL
     mud_braces: bool = True
     base_z_m: float = 0.0
+    bracing: Pattern | tuple[Pattern, ...] = "X"
+    levels_z_m: tuple[float, ...] = ()
+    horizontals: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         require_between("legs", self.legs, 3, 24)
@@ -71,6 +76,37 @@ class Lattice:
             require_wall(field, getattr(self, field), self.leg_diameter_m)
         n, one_each = len(self.braces), f"one section, or {self.bays}, one a bay"
         require(n == self.bays, "out of range", field="brace", value=n, allowed=one_each)
+        n, one_each = len(self.patterns), f"one pattern, or {self.bays}, one a bay"
+        require(n == self.bays, "out of range", field="bracing", value=n, allowed=one_each)
+        self._check_levels()
+
+    def _check_levels(self) -> None:
+        wanted = self.bays - 1
+        require(
+            not self.levels_z_m or len(self.levels_z_m) == wanted,
+            "levels do not fit the bays",
+            field="levels_z_m",
+            value=len(self.levels_z_m),
+            allowed=f"{wanted} levels between {self.bays} bays, or none",
+        )
+        levels = (self.base_z_m, *self.levels_z_m, self.top_z_m)
+        require(
+            all(below < above for below, above in pairwise(levels)),
+            "levels do not rise from the feet to the leg tops",
+            field="levels_z_m",
+            value=list(self.levels_z_m),
+            allowed=f"rising, between {self.base_z_m:g} and {self.top_z_m:g} m",
+            remedy="give z in the structure's own frame",
+        )
+        for level in self.horizontals:
+            require(
+                1 <= level < self.bays,
+                "no such level",
+                field="horizontals",
+                value=level,
+                allowed=f"1 to {wanted}" if wanted else "none, with one bay",
+                remedy="mud_braces are those of the feet, the ring that of the leg tops",
+            )
 
     @property
     def top_z_m(self) -> float:
@@ -81,6 +117,16 @@ class Lattice:
     def braces(self) -> tuple[Section, ...]:
         """Section of every bay's braces, from the bottom up."""
         return self.brace if isinstance(self.brace, tuple) else (self.brace,) * self.bays
+
+    @property
+    def patterns(self) -> tuple[Pattern, ...]:
+        """Bracing of every bay, from the bottom up."""
+        return self.bracing if isinstance(self.bracing, tuple) else (self.bracing,) * self.bays
+
+    @property
+    def met_in_the_middle(self) -> frozenset[int]:
+        """Levels whose horizontals carry the braces of a K at their middle."""
+        return frozenset(bay + 1 for bay, pattern in enumerate(self.patterns) if pattern == "K")
 
 
 @dataclass(frozen=True)
@@ -106,68 +152,6 @@ class Tower:
     def __post_init__(self) -> None:
         require_between("elements", self.elements, 1, 1000)
         require_between("height_m", self.height_m, 1e-3, 1e3, "m")
-
-
-@dataclass(frozen=True)
-class Appurtenance:
-    """A mass that carries nothing, even along the height between two levels: boat landing, anodes, growth.
-
-    ``legs`` on which it hangs count from 1; empty is all.
-    """
-
-    mass_kg: Annotated[float, Field(ge=0.0, le=1e9)]
-    bottom_z_m: float
-    top_z_m: float
-    legs: tuple[Annotated[int, Field(ge=1)], ...] = ()
-
-    def __post_init__(self) -> None:
-        low, high = self.bottom_z_m, f"up to top_z_m = {self.top_z_m:g}"
-        require(low <= self.top_z_m, "levels are reversed", field="bottom_z_m", value=low, allowed=high)
-
-    def on(self, structure: Structure, name: str) -> list[PointMass]:
-        """Return its masses on the leg nodes of a jacket.
-
-        Every leg's share goes to its nodes so that mass and centre of gravity are kept where the span lies
-        between the leg's ends: each slice is carried by the nodes above and below it, as by a lever.
-
-        Raises
-        ------
-        InputError
-            If the span is far from the legs, or there is no such leg.
-        """
-        every = _legs(structure)
-        unknown = next((leg for leg in self.legs if leg > len(every)), None)
-        require(unknown is None, "no such leg", field="legs", value=unknown, allowed=f"1 to {len(every)}")
-        chosen = [every[leg - 1] for leg in self.legs] or every
-        masses: list[PointMass] = []
-        for nodes in chosen:
-            z = np.array([structure.nodes[node][2] for node in nodes])
-            require(
-                self.bottom_z_m <= z[-1] + FURTHEST_M and self.top_z_m >= z[0] - FURTHEST_M,
-                "lies beyond the legs",
-                field="bottom_z_m",
-                value=(self.bottom_z_m, self.top_z_m),
-                allowed=f"levels from {z[0]:g} to {z[-1]:g} m",
-                remedy="give z in the structure's own frame",
-            )
-            slices = np.clip(np.linspace(self.bottom_z_m, self.top_z_m, 201), z[0], z[-1])
-            # a linear hat on each node: the lever rule
-            shares = np.array([np.interp(slices, z, row).mean() for row in np.eye(len(z))])
-            masses += [
-                PointMass(node, float(share) * self.mass_kg / len(chosen), part=name)
-                for node, share in zip(nodes, shares, strict=True)
-                if share > 0.0
-            ]
-        return masses
-
-
-def _legs(structure: Structure) -> list[list[str]]:
-    """Return the nodes of every leg from the foot up."""
-    feet = [node for node in structure.nodes if node.startswith("foot_")]
-    return [
-        [foot, *(node for node in structure.nodes if node.startswith(f"leg_{foot.removeprefix('foot_')}_"))]
-        for foot in feet
-    ]
 
 
 def jacket(
@@ -216,9 +200,17 @@ def _leg_node(leg: int, level: int) -> str:
 
 def _levels(lattice: Lattice) -> list[tuple[float, float]]:
     """Return (z, width) of every level."""
+    if lattice.levels_z_m:
+        z = np.array([lattice.base_z_m, *lattice.levels_z_m, lattice.top_z_m]) - lattice.base_z_m
+        return _with_widths(lattice, z)
     ratio = (lattice.top_width_m / lattice.base_width_m) ** (1.0 / lattice.bays)
     heights = ratio ** np.arange(lattice.bays)
     above = np.concatenate([[0.0], np.cumsum(heights / heights.sum())]) * lattice.height_m
+    return _with_widths(lattice, above)
+
+
+def _with_widths(lattice: Lattice, above: FloatArray) -> list[tuple[float, float]]:
+    """Return (z, width) at heights above the feet; legs are straight."""
     width = lattice.base_width_m + (lattice.top_width_m - lattice.base_width_m) * above / lattice.height_m
     return [(lattice.base_z_m + float(a), float(b)) for a, b in zip(above, width, strict=True)]
 
@@ -239,31 +231,41 @@ def _add_lattice(lattice: Lattice, nodes: dict[str, Vector], members: list[Membe
                 _member(f"leg_{leg + 1}_bay_{bay + 1}", ends, leg_section, lattice.material, "jacket")
             )
         for face in range(n):
-            _add_cross(lattice, face, bay, nodes, members)
+            _add_braces(lattice, face, bay, nodes, members)
     for leg in range(n if lattice.mud_braces else 0):
         ends = _leg_node(leg, 0), _leg_node((leg + 1) % n, 0)
         members.append(_member(f"mud_brace_{leg + 1}", ends, lattice.braces[0], lattice.material, "jacket"))
 
 
-def _add_cross(
+def _add_braces(
     lattice: Lattice, face: int, bay: int, nodes: dict[str, Vector], members: list[Member]
 ) -> None:
-    """Add one X-brace: four segments that meet where the diagonals of the trapezium cross."""
-    left, right = face, (face + 1) % lattice.legs
-    corners = [
-        _leg_node(left, bay),
-        _leg_node(right, bay + 1),
-        _leg_node(right, bay),
-        _leg_node(left, bay + 1),
-    ]
-    a, b, c, d = (np.array(nodes[corner]) for corner in corners)
-    at = np.linalg.norm(c - a) / (np.linalg.norm(c - a) + np.linalg.norm(b - d))
-    x, y, z = a + at * (b - a)
-    centre = f"cross_{face + 1}_{bay + 1}"
-    nodes[centre] = (float(x), float(y), float(z))
-    for k, corner in enumerate(corners, start=1):
-        name = f"brace_{face + 1}_{bay + 1}_{k}"
-        members.append(_member(name, (corner, centre), lattice.braces[bay], lattice.material, "jacket"))
+    """Add the braces of a bay's face, and the horizontal at its top where there is one below the leg tops."""
+    left, right, level = face, (face + 1) % lattice.legs, bay + 1
+    corners = Face(
+        _leg_node(left, bay), _leg_node(right, bay), _leg_node(left, level), _leg_node(right, level)
+    )
+    pattern = lattice.patterns[bay]
+    if pattern == "X":
+        braces = crossing(nodes, corners, f"cross_{face + 1}_{level}")
+    elif pattern == "K":
+        apex = middle(nodes, corners.top_left, corners.top_right, f"mid_{face + 1}_{level}")
+        braces = rising(corners, apex)
+    else:
+        braces = single(corners, bay)
+    names = [(f"brace_{face + 1}_{level}{brace.suffix}", (brace.start, brace.end)) for brace in braces]
+    meets = level in lattice.met_in_the_middle
+    if level < lattice.bays and (meets or level in lattice.horizontals):
+        names += _horizontal(f"horizontal_{face + 1}_{level}", corners, meets, f"mid_{face + 1}_{level}")
+    members += [_member(name, ends, lattice.braces[bay], lattice.material, "jacket") for name, ends in names]
+
+
+def _horizontal(name: str, face: Face, meets: bool, at: str) -> list[tuple[str, tuple[str, str]]]:
+    """Return a horizontal at the top of a face: name and ends, of its halves where braces meet its middle."""
+    left, right = face.top_left, face.top_right
+    if not meets:
+        return [(name, (left, right))]
+    return [(f"{name}_1", (left, at)), (f"{name}_2", (at, right))]
 
 
 def _add_transition_piece(
@@ -272,13 +274,15 @@ def _add_transition_piece(
     nodes["tp_bottom"] = (0.0, 0.0, lattice.top_z_m)
     nodes["tp_top"] = (0.0, 0.0, tp.top_z_m)
     tops = [_leg_node(leg, lattice.bays) for leg in range(lattice.legs)]
+    meets = lattice.bays in lattice.met_in_the_middle
     for leg, top in enumerate(tops):
-        for kind, ends in (
-            ("lower", (top, "tp_bottom")),
-            ("upper", (top, "tp_top")),
-            ("ring", (top, tops[(leg + 1) % lattice.legs])),
+        face = Face(top, top, top, tops[(leg + 1) % lattice.legs])
+        for name, ends in (
+            (f"tp_lower_{leg + 1}", (top, "tp_bottom")),
+            (f"tp_upper_{leg + 1}", (top, "tp_top")),
+            *_horizontal(f"tp_ring_{leg + 1}", face, meets, f"mid_{leg + 1}_{lattice.bays}"),
         ):
-            members.append(_member(f"tp_{kind}_{leg + 1}", ends, tp.tube, tp.material, "transition_piece"))
+            members.append(_member(name, ends, tp.tube, tp.material, "transition_piece"))
     members.append(_member("tp_column", ("tp_bottom", "tp_top"), tp.column, tp.material, "transition_piece"))
 
 
