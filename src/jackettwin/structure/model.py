@@ -106,8 +106,8 @@ class Member:
 class Beam:
     """A straight uniform beam of any section between two nodes; tubes are members.
 
-    ``twist_rad`` turns the section about the beam, right-handed, from where its x is the beam's local y, which is
-    level, and its y the local z, which points upwards; of vertical beams, the global −y and x.
+    ``twist_rad`` turns the section about the beam, right-handed, from where its x is the beam's local y,
+    which is level, and its y the local z, which points upwards; of vertical beams, the global −y and x.
     """
 
     name: str
