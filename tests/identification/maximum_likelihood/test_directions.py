@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from jackettwin.identification.maximum_likelihood.directions import directions, projected
+from jackettwin.identification.maximum_likelihood.directions import directions, project
 from jackettwin.identification.synthetic import simulate
 
 
@@ -38,7 +38,7 @@ def test_few_channels_stay_as_they_are(rng, n_channels):
 def test_a_gap_of_one_channel_is_one_of_all_directions():
     y = np.ones((3, 4))
     y[1, 2] = np.nan
-    z = projected(y, np.eye(3)[:, :2])
+    z = project(y, np.eye(3)[:, :2])
     assert np.isnan(z).all(axis=0).tolist() == [False, False, True, False]
 
 

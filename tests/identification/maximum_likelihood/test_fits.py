@@ -65,7 +65,7 @@ def test_a_fit_whose_steps_cost_too_much_takes_none(tower, rng, monkeypatch):
     monkeypatch.setattr(likelihood, "scoring", lambda *given: steps.append(0) or scoring(*given))
     assert {mode.method for mode in identify(record).modes} == {"maximum likelihood"} and steps
     steps.clear()
-    monkeypatch.setattr(refinement, "MOST_STEP_WORK", 1e3)
+    monkeypatch.setattr(refinement, "MAX_STEP_WORK", 1e3)
     found = identify(record)
     assert {mode.method for mode in found.modes} == {"ssi-cov"} and not steps
     assert any("too many modes" in text for text in found.warnings)

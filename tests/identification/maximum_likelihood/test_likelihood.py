@@ -9,12 +9,12 @@ import pytest
 from calibration import are_standard, is_calibrated
 
 from jackettwin.identification.maximum_likelihood import accuracy, likelihood
-from jackettwin.identification.maximum_likelihood.admission import gain_of, needed_gain
+from jackettwin.identification.maximum_likelihood.admission import likelihood_gain, required_gain
 from jackettwin.identification.maximum_likelihood.background import with_background
 from jackettwin.identification.maximum_likelihood.periodogram import periodogram
 from jackettwin.identification.maximum_likelihood.prior import prior_of
 from jackettwin.identification.maximum_likelihood.refinement import refine
-from jackettwin.identification.maximum_likelihood.spectral_model import expected, linear_bend
+from jackettwin.identification.maximum_likelihood.spectral_model import expected, linear_curvature
 from jackettwin.identification.synthetic import ModalSystem, simulate
 
 RATE, BAND = 5.0, (0.15, 2.0)
@@ -61,7 +61,7 @@ def fitted_narrow(tower, rng):
     beside = likelihood.start(data, f, zeta, shapes[[2, 0, 1]], 1)
     p = with_background(data, replace(beside, lag=np.zeros((2, 8))))
     step = 0.03 * rng.standard_normal(len(p.vector))
-    step[: p.held] = step[len(p.log_f) : len(p.log_f) + p.held] = 0.0
+    step[: p.n_fixed] = step[len(p.log_f) : len(p.log_f) + p.n_fixed] = 0.0
     return data, p.moved(step)
 
 
@@ -75,7 +75,7 @@ def central(function, p, k, step):
 def test_score_equals_finite_differences(kind, request):
     data, p = request.getfixturevalue(kind)
     prior = prior_of(data, p)
-    score, _ = likelihood.scoring(data, prior, likelihood.point(data, prior, p))
+    score, _ = likelihood.scoring(data, prior, likelihood.evaluate(data, prior, p))
     for k in range(0, len(score), 7):
         slope = central(lambda q: likelihood.objective(data, prior, q), p, k, 1e-6)
         # differences of a value near 1e4 lose 1e-5; the kernel's own differences 1e-7 of the score
@@ -87,11 +87,11 @@ def test_information_is_the_mean_curvature(fitted):
     data, p = fitted
     exact = replace(data, density=expected(data, p, 0.0).matrix)
     prior = prior_of(exact, p)
-    _, fisher = likelihood.scoring(exact, prior, likelihood.point(exact, prior, p))
+    _, fisher = likelihood.scoring(exact, prior, likelihood.evaluate(exact, prior, p))
     size = np.sqrt(np.diag(fisher))
     for k in range(0, len(size), 11):
         column = -central(
-            lambda q: likelihood.scoring(exact, prior, likelihood.point(exact, prior, q))[0], p, k, 1e-5
+            lambda q: likelihood.scoring(exact, prior, likelihood.evaluate(exact, prior, q))[0], p, k, 1e-5
         )
         # the prior's own curvature is its Fisher information only at its centre: 1 of 10³ or more
         np.testing.assert_allclose(fisher[:, k] / size / size[k], column / size / size[k], atol=5e-3)
@@ -127,13 +127,13 @@ def test_linear_bend_equals_second_differences(fitted, rng):
     n = 3 * len(p.log_f)
     middle = expected(data, p)
     root = rng.standard_normal((len(p.vector) - n, 5)) * 1e-3
-    bend = linear_bend(data, p, middle, root @ root.T)
-    plain = np.zeros_like(bend)
+    curvature = linear_curvature(data, p, middle, root @ root.T)
+    plain = np.zeros_like(curvature)
     for step in np.vstack([np.zeros((n, 5)), root]).T:
         plain += expected(data, p.moved(step)).matrix + expected(data, p.moved(-step)).matrix
         plain -= 2.0 * middle.matrix
     # rounding of E over the square of the step, and its fourth order in the noise
-    np.testing.assert_allclose(bend, plain, rtol=1e-3, atol=1e-5 * np.abs(bend).max())
+    np.testing.assert_allclose(curvature, plain, rtol=1e-3, atol=1e-5 * np.abs(curvature).max())
 
 
 def test_curvature_biases_as_foretold():
@@ -145,20 +145,20 @@ def test_curvature_biases_as_foretold():
     rng = np.random.default_rng(5)
     y, shapes = of(system, rng)
     data = rough(system, y)
-    p = likelihood.climbed(data, likelihood.start(data, *at(system), shapes)).parameters
+    p = likelihood.maximise(data, likelihood.start(data, *at(system), shapes)).parameters
     p = replace(p, log_zeta=np.log(system.damping_ratio))
     data = replace(data, dither=np.full_like(data.dither, 1e-3 * data.floor.min()))
     prior = replace(prior_of(data, p), centre=p.vector)
     matrix = expected(data, p, 0.0).matrix
     root = np.linalg.cholesky(matrix)
-    fisher = likelihood.scoring(data, prior, likelihood.point(data, prior, p))[1]
+    fisher = likelihood.scoring(data, prior, likelihood.evaluate(data, prior, p))[1]
     left = []
     for _ in range(300):
         drawn = replace(data, density=wishart(root, data.count, rng))
         linear = np.linalg.solve(
-            fisher, likelihood.scoring(drawn, prior, likelihood.point(drawn, prior, p))[0]
+            fisher, likelihood.scoring(drawn, prior, likelihood.evaluate(drawn, prior, p))[0]
         )
-        left.append((likelihood.climbed(drawn, p).parameters.vector - p.vector - linear)[:2])
+        left.append((likelihood.maximise(drawn, p).parameters.vector - p.vector - linear)[:2])
     foretold = accuracy.curvature_bias(data, p, accuracy.accuracy_of(data, p))[:2]
     error = np.std(left, axis=0) / np.sqrt(len(left))
     assert foretold[1] > 10.0 * error[1] / 3.0
@@ -194,15 +194,15 @@ def test_a_mode_the_spectrum_needs_is_admitted_and_a_repeated_one_is_not(tower, 
 
 def test_gain_of_a_mode_already_there_is_small(fitted, tower):
     data, p = fitted
-    p = likelihood.climbed(data, p).parameters
-    gain, _ = gain_of(data, p, float(np.exp(p.log_f[0])), float(np.exp(p.log_zeta[0])), p.shapes[0])
-    assert gain < 0.1 * needed_gain(data)
+    p = likelihood.maximise(data, p).parameters
+    gain, _ = likelihood_gain(data, p, float(np.exp(p.log_f[0])), float(np.exp(p.log_zeta[0])), p.shapes[0])
+    assert gain < 0.1 * required_gain(data)
 
 
 def test_exponent_of_coloured_forces_is_found(tower, rng):
     y, shapes = of(ModalSystem(**{**vars(tower), "force_slope": 2.0}), rng)
     data = rough(tower, y)
-    p = likelihood.climbed(
+    p = likelihood.maximise(
         data, likelihood.start(data, tower.frequency_hz, tower.damping_ratio, shapes)
     ).parameters
     # exponents of the two lower modes are seen over most of the band
@@ -210,7 +210,7 @@ def test_exponent_of_coloured_forces_is_found(tower, rng):
 
 
 def test_a_hump_in_the_force_spectrum_is_a_lack_of_fit(tower, rng):
-    """Narrow-band force at 0.75 Hz, as from a rotor of unsteady speed: not what the model says."""
+    """NarrowBand-band force at 0.75 Hz, as from a rotor of unsteady speed: not what the model says."""
     y, shapes = of(tower, rng)
     n = y.shape[1]
     f = np.fft.rfftfreq(n, 1.0 / RATE)

@@ -1,4 +1,4 @@
-"""Narrow bands: groups of neighbours, a background for the modes outside, an honest sharpness."""
+"""NarrowBand bands: groups of neighbours, a background for the modes outside, an honest sharpness."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_a_background_follows_its_force(tower, rng):
     p = with_background(data, likelihood.start(data, *modes, tower.mode_shapes[:2]))
     assert p.background == 2
     lam = poles(np.exp(p.log_f[:2]), np.exp(p.log_zeta[:2]))
-    # (FAR_BELOW)² and a leakage of the same order
+    # (RELATIVE_FREQUENCY)² and a leakage of the same order
     np.testing.assert_allclose(
         sum(kernel(data.omega, data.variance, data.duration_s, lam, lam)), 1.0, atol=5e-3
     )
@@ -59,7 +59,7 @@ def test_a_background_leaks_nothing(tower, rng):
     steep = replace(p, colour=np.array([3.0, -2.0, 1.0, 1.0]))
     of_background = expected(data, steep).coloured[:, [0, 1], [0, 1]].real
     power = np.exp(-np.array([3.0, -2.0]) * log_distance(data, steep)[:, :2])
-    # 1 to (FAR_BELOW)²; with its leak, 0.1 to 20 instead of 1
+    # 1 to (RELATIVE_FREQUENCY)²; with its leak, 0.1 to 20 instead of 1
     np.testing.assert_allclose(of_background / power, 1.0, atol=2e-3)
 
 
@@ -79,7 +79,7 @@ def test_forces_that_fall_with_frequency_leave_the_pair_where_it_is(tower, rng):
     exact = replace(data, density=matrix, floor=floor, dither=3.0 * floor)
     start = likelihood.start(exact, f, zeta, tower.mode_shapes[:2])
     assert start.exponent == 2.0
-    found = likelihood.climbed(exact, start).parameters
+    found = likelihood.maximise(exact, start).parameters
     # the prior of the noise keeps a little: 5e-5 and 2 % in one of two records
     np.testing.assert_allclose(np.exp(found.log_f), f, rtol=2e-4)
     np.testing.assert_allclose(np.exp(found.log_zeta), zeta, rtol=0.03)
@@ -121,13 +121,13 @@ def test_modes_beside_the_band_take_part_as_they_are():
         f, zeta = np.exp(true.log_f[modes]), np.exp(true.log_zeta[modes])
         first = likelihood.start(data, f, zeta, true.shapes[modes], len(beside))
         first = with_background(data, replace(first, lag=np.zeros((2, 8))))
-        climb = likelihood.climbed(data, first)
-        found, value[len(beside)] = climb.parameters, climb.value
+        optimum = likelihood.maximise(data, first)
+        found, value[len(beside)] = optimum.parameters, optimum.value
         error[len(beside)] = (
-            np.abs(found.log_f[found.held :] - true.log_f[4:]).max(),
-            np.abs(found.log_zeta[found.held :] - true.log_zeta[4:]).max(),
+            np.abs(found.log_f[found.n_fixed :] - true.log_f[4:]).max(),
+            np.abs(found.log_zeta[found.n_fixed :] - true.log_zeta[4:]).max(),
         )
-        np.testing.assert_allclose(np.exp(found.log_f[2 : found.held]), f[: len(beside)], rtol=1e-6)
+        np.testing.assert_allclose(np.exp(found.log_f[2 : found.n_fixed]), f[: len(beside)], rtol=1e-6)
     # what is left is of the first pair, and of the dither, whose share of E is not of the model
     assert error[2][0] < 1e-3
     assert error[2][1] < 0.02
@@ -150,8 +150,8 @@ def single_force(rng):
     record = simulate(system, rng, sample_rate_hz=RATE)
     lines = np.fft.rfft(record.data, axis=1)
     at = np.fft.rfftfreq(record.data.shape[1], 1.0 / RATE)
-    bend = 1.0 / np.sqrt((1.0 + (at / 0.6) ** 2) ** 2 + 1e-3)
-    return system, np.fft.irfft(lines * bend, record.data.shape[1], axis=1)
+    curvature = 1.0 / np.sqrt((1.0 + (at / 0.6) ** 2) ** 2 + 1e-3)
+    return system, np.fft.irfft(lines * curvature, record.data.shape[1], axis=1)
 
 
 def one_force_without_noise(seed):

@@ -9,7 +9,7 @@ import pytest
 
 from jackettwin.identification import IdentificationSettings, identify
 from jackettwin.identification.maximum_likelihood.fits import FitStart, accepted_fits
-from jackettwin.identification.maximum_likelihood.mode_drift import has_left, long_data_limits, strayed
+from jackettwin.identification.maximum_likelihood.mode_drift import drifted, frequency_left, long_data_limits
 from jackettwin.identification.maximum_likelihood.refined import Refined
 from jackettwin.identification.synthetic import ModalSystem, simulate
 
@@ -42,13 +42,13 @@ def refined(frequency_hz: float, damping_ratio: float, log_std: float) -> Refine
     ],
 )
 def test_what_a_refined_mode_may_not_do(frequency_hz, damping_ratio, log_std, expected):
-    verdict = strayed(
+    verdict = drifted(
         refined(frequency_hz, damping_ratio, log_std),
         frequency_hz=np.array([0.28]),
         damping_ratio=np.array([0.01]),
         log_damping_std=np.array([0.5]),
         duration_s=T,
-        most_damping=0.15,
+        max_damping_ratio=0.15,
     )
     assert verdict.tolist() == [expected]
 
@@ -58,14 +58,14 @@ def test_a_start_more_certain_than_a_record_allows_counts_as_the_limit():
     moved = 0.01 * np.exp(2.9 * limit)
     given = {"frequency_hz": np.array([0.28]), "damping_ratio": np.array([0.01]), "duration_s": T}
     fit = refined(0.28, moved, limit)
-    assert not strayed(fit, log_damping_std=np.array([1e-3]), most_damping=0.15, **given).any()
+    assert not drifted(fit, log_damping_std=np.array([1e-3]), max_damping_ratio=0.15, **given).any()
 
 
 def test_frequency_may_move_by_half_bandwidths_and_never_less_than_the_record_blurs():
-    assert has_left(np.array([0.309]), np.array([0.3]), np.array([0.01]), T).tolist() == [False]
-    assert has_left(np.array([0.310]), np.array([0.3]), np.array([0.01]), T).tolist() == [True]
+    assert frequency_left(np.array([0.309]), np.array([0.3]), np.array([0.01]), T).tolist() == [False]
+    assert frequency_left(np.array([0.310]), np.array([0.3]), np.array([0.01]), T).tolist() == [True]
     # ζ = 1e-5: the half bandwidth is far below one line, √(ζ/(2πfT)) = 9.4e-5 above it
-    assert has_left(np.array([0.30005]), np.array([0.3]), np.array([1e-5]), T).tolist() == [False]
+    assert frequency_left(np.array([0.30005]), np.array([0.3]), np.array([1e-5]), T).tolist() == [False]
 
 
 def pair_in_waves(seed: int):
@@ -106,7 +106,7 @@ def test_a_mode_whose_start_is_nowhere_near_is_left_unrefined(tower, rng):
         sure=np.ones(4, dtype=bool),
         derivatives=[0] * 8,
         avoid_hz=(),
-        most_damping=0.15,
+        max_damping_ratio=0.15,
     )
     fits, findings = accepted_fits(y / y.std(axis=1, keepdims=True), 5.0, (0.2, 1.6), start)
     assert [np.flatnonzero(fit.candidates).tolist() for fit in fits] == [[0, 1]]

@@ -1,14 +1,15 @@
-r"""Which doubtful modes join a fit, and which modes leave it.
+r"""Admission of doubtful modes to a fit, and removal of modes that the fit does not need.
 
-Modes that the subspace method is sure of are fitted together; a doubtful one joins when it explains
-enough of what the others leave, by the gain of log-likelihood
+Modes without doubt are fitted together. A doubtful mode is admitted if it explains enough of what the others
+leave unexplained, measured by the gain of log-likelihood
 
 .. math:: g(s) = \sum_k n_k\left[\frac{s h_k\,b_k}{1+s h_k a_k} - \ln(1+s h_k a_k)\right], \quad
           a = \phi^T E^{-1}\phi,\ b = \phi^T E^{-1}\hat S E^{-1}\phi
 
-of adding power s with its shape and kernel h held: one unit at least for each parameter of a mode (Akaike's
-criterion; poles that fit noise have 0 to 3, with eight channels 11 are asked). In a narrow band, where shapes
-may lag and the model is less exact, it must gain as much as it must to stay: Schwarz's criterion.
+of adding power s while its shape φ and kernel h are fixed. Over the whole band the gain must be at least one
+unit per parameter of the mode (Akaike's criterion: 11 with eight channels; poles that fit noise gain 0 to 3).
+In a narrow band, where shapes may have a phase lag and the model is less exact, Schwarz's criterion decides;
+it also decides whether a fitted mode stays.
 """
 
 from __future__ import annotations
@@ -29,77 +30,80 @@ if TYPE_CHECKING:
     from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
 
 
-SUSPECT = 2.5
-"""A fitted mode is put to the test when its damping is this many times as uncertain as the record allows."""
-APPROACH = 4
-"""Steps before the doubtful modes are judged."""
+SUSPECT_UNCERTAINTY = 2.5
+"""A fitted mode is tested for removal if its damping is this many times as uncertain as the long-data
+limit."""
+STEPS_BEFORE_ADMISSION = 4
+"""Scoring steps taken before doubtful modes are considered."""
 PARAMETERS_OF_A_MODE = 3
-"""f, ζ and colour; its shape has one for each channel."""
-MOST_STEPS = 20
-"""Steps of a fit with one mode less, from where that with it ended."""
-MOST_ADDED = 6
-"""Doubtful modes admitted at most."""
+"""f, ζ and the exponent of the force spectrum; the shape adds one parameter per channel."""
+MAX_REMOVAL_STEPS = 20
+"""Most scoring steps of the fit without a mode, started from the fit with it."""
+MAX_ADMITTED = 6
+"""Most doubtful modes admitted to one fit."""
 
 
-def joined(
+def admit_modes(
     data: Periodogram,
-    climb: likelihood.Climb,
+    optimum: likelihood.Optimum,
     chosen: Int64Array,
     frequency_hz: FloatArray,
     damping_ratio: FloatArray,
     unit: FloatArray,
     least: float,
-) -> tuple[likelihood.Climb, Int64Array, FloatArray]:
-    """Admit the doubtful candidate that explains most, again and again, while one gains enough."""
+) -> tuple[likelihood.Optimum, Int64Array, FloatArray]:
+    """Admit doubtful candidates one by one, the largest gain first, as long as the gain reaches ``least``."""
     gain = np.full(len(frequency_hz), np.inf)
-    for _ in range(MOST_ADDED):
+    for _ in range(MAX_ADMITTED):
         doubtful = np.setdiff1d(np.arange(len(frequency_hz)), chosen)
         if not len(doubtful):
             break
-        p = climb.parameters
-        tried = [gain_of(data, p, frequency_hz[i], damping_ratio[i], unit[i]) for i in doubtful]
+        p = optimum.parameters
+        tried = [likelihood_gain(data, p, frequency_hz[i], damping_ratio[i], unit[i]) for i in doubtful]
         gain[doubtful] = [g for g, _ in tried]
         best = int(np.argmax(gain[doubtful]))
         i = doubtful[best]
         if gain[i] < least:
             break
         shape = unit[i] * np.sqrt(tried[best][1])
-        more = p.joined(float(np.log(frequency_hz[i])), float(np.log(damping_ratio[i])), shape)
-        climb, chosen = likelihood.climbed(data, more, APPROACH), np.append(chosen, i)
-    return climb, chosen, gain
+        more = p.with_mode(float(np.log(frequency_hz[i])), float(np.log(damping_ratio[i])), shape)
+        optimum, chosen = likelihood.maximise(data, more, STEPS_BEFORE_ADMISSION), np.append(chosen, i)
+    return optimum, chosen, gain
 
 
-def thinned(
-    data: Periodogram, climb: likelihood.Climb, chosen: Int64Array, known: accuracy.Accuracy
-) -> tuple[likelihood.Climb, Int64Array, accuracy.Accuracy]:
-    """Drop modes whose damping stays hardly known and without which the spectrum is explained as well."""
+def drop_unneeded_modes(
+    data: Periodogram, optimum: likelihood.Optimum, chosen: Int64Array, known: accuracy.Accuracy
+) -> tuple[likelihood.Optimum, Int64Array, accuracy.Accuracy]:
+    """Remove modes of very uncertain damping if the spectrum is explained as well without them."""
     kept: set[int] = set()
     while len(chosen) > 1:
-        p = climb.parameters
-        mode = p.held + np.arange(len(chosen))
+        p = optimum.parameters
+        mode = p.n_fixed + np.arange(len(chosen))
         std = np.sqrt(np.diag(known.covariance))[len(p.log_f) + mode]
         limit = long_data_limits(np.exp(p.log_f[mode]), np.exp(p.log_zeta[mode]), data.duration_s)[1]
-        suspect = [int(k) for k in np.argsort(-std / limit) if std[k] > SUSPECT * limit[k]]
+        suspect = [int(k) for k in np.argsort(-std / limit) if std[k] > SUSPECT_UNCERTAINTY * limit[k]]
         suspect = [k for k in suspect if int(chosen[k]) not in kept]
         if not suspect:
             break
-        fewer = likelihood.climbed(data, p.without(p.held + suspect[0]), MOST_STEPS)
-        if climb.value - fewer.value < needed_gain(data):
-            climb, chosen = fewer, np.delete(chosen, suspect[0])
-            known = accuracy.accuracy_of(data, climb.parameters)
+        fewer = likelihood.maximise(data, p.without(p.n_fixed + suspect[0]), MAX_REMOVAL_STEPS)
+        if optimum.value - fewer.value < required_gain(data):
+            optimum, chosen = fewer, np.delete(chosen, suspect[0])
+            known = accuracy.accuracy_of(data, optimum.parameters)
         else:
             kept.add(int(chosen[suspect[0]]))
-    return climb, chosen, known
+    return optimum, chosen, known
 
 
-def needed_gain(data: Periodogram) -> float:
-    """Return what a fitted mode must add to the log-likelihood to stay: Schwarz's criterion."""
+def required_gain(data: Periodogram) -> float:
+    """Return the log-likelihood that a fitted mode must add in order to stay (Schwarz's criterion)."""
     n_parameters = PARAMETERS_OF_A_MODE + data.floor.shape[1]
     return float(0.5 * n_parameters * np.log(data.count.sum()))
 
 
-def gain_of(data: Periodogram, p: Parameters, f: float, zeta: float, phi: FloatArray) -> tuple[float, float]:
-    """Return the largest gain of log-likelihood by adding a mode, and the power at which it is reached."""
+def likelihood_gain(
+    data: Periodogram, p: Parameters, f: float, zeta: float, phi: FloatArray
+) -> tuple[float, float]:
+    """Return the largest gain of log-likelihood from adding a mode, and the power s that gives it."""
     model = expected(data, p)
     inverse = np.linalg.inv(model.matrix)
     left = inverse @ phi
@@ -113,14 +117,16 @@ def gain_of(data: Periodogram, p: Parameters, f: float, zeta: float, phi: FloatA
         return float(-np.sum(data.count * (s * b / (1.0 + s * a) - np.log1p(s * a))))
 
     middle = -np.log(np.max(h * a))
-    best = lowest(loss, middle - 15.0, middle + 15.0)
+    best = golden_section_minimum(loss, middle - 15.0, middle + 15.0)
     return max(-loss(best), 0.0), float(np.exp(best))
 
 
-def lowest(loss: Callable[[float], float], low: float, high: float, within: float = 1e-5) -> float:
-    """Return where a function with one valley is lowest, by golden sections.
+def golden_section_minimum(
+    loss: Callable[[float], float], low: float, high: float, within: float = 1e-5
+) -> float:
+    """Return the minimiser of a unimodal function on an interval by golden-section search.
 
-    >>> round(lowest(lambda x: (x - 0.3) ** 2, -1.0, 1.0), 4)
+    >>> round(golden_section_minimum(lambda x: (x - 0.3) ** 2, -1.0, 1.0), 4)
     0.3
     """
     golden = 0.5 * (np.sqrt(5.0) - 1.0)

@@ -1,9 +1,9 @@
-"""What the modes outside a narrow band add to it: a few shapes that follow their force.
+"""Background of a narrow band: the quasi-static response of the modes outside it.
 
-Far from its frequency a mode's response is its force times a power of frequency, in phase or in antiphase.
-All modes that one force drives act together there, so as many shapes as there are forces are enough: a
-background of real, free shapes, coherent with the modes as the data say. Modes beside the band are not far:
-they take part as they are (``Parameters.outside``).
+Far from its frequency, a mode responds with its force times a power of frequency, in phase or in antiphase.
+There all modes driven by one force act together, so that as many shapes suffice as there are forces. These
+background shapes are real and free; their coherence with the modes is fitted. Modes just outside the band are
+not part of the background but modelled as modes (``Parameters.outside``).
 """
 
 from __future__ import annotations
@@ -21,24 +21,25 @@ if TYPE_CHECKING:
     from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
 
 
-MOST = 2
-"""Forces in two directions."""
-FAR_BELOW = 0.03
-"""Frequency of a background over the lower edge of the band: its kernel is 1 to the square of this."""
+MAX_BACKGROUNDS = 2
+"""Most background shapes: forces act in two horizontal directions."""
+RELATIVE_FREQUENCY = 0.03
+"""Frequency of a background over the lower edge of the band;
+its kernel differs from 1 by the square of this."""
 DAMPING_RATIO = 0.02
-"""Without effect."""
-AWAY = 4.0
-"""Half bandwidths from every mode beyond which a line is taken to show the background."""
+"""Nominal damping ratio of a background; it has no effect."""
+FAR_HALF_BANDWIDTHS = 4.0
+"""Distance from all modes, in half bandwidths, beyond which a line is attributed to the background."""
 
 
 def with_background(data: Periodogram, p: Parameters) -> Parameters:
-    """Return the parameters with backgrounds first, along the main directions between the peaks."""
+    """Return the parameters with backgrounds added first, along the main directions between the peaks."""
     n_channels = p.shapes.shape[1]
-    count = min(MOST, n_channels // 2)
+    count = min(MAX_BACKGROUNDS, n_channels // 2)
     n = len(p.log_f) + count
     power, directions = np.linalg.eigh(_between_peaks(data, p))
     top = np.arange(n_channels - 1, n_channels - 1 - count, -1)
-    log_f = np.append(np.full(count, np.log(FAR_BELOW * data.omega[0] / (2.0 * np.pi))), p.log_f)
+    log_f = np.append(np.full(count, np.log(RELATIVE_FREQUENCY * data.omega[0] / (2.0 * np.pi))), p.log_f)
     gamma = np.eye(n, dtype=complex)
     gamma[count:, count:] = p.gamma
     pairs = coherent_pairs(log_f)
@@ -59,5 +60,5 @@ def _between_peaks(data: Periodogram, p: Parameters) -> FloatArray:
     f = np.exp(p.log_f)
     away = np.abs(data.omega[:, None] / (2.0 * np.pi) - f) / (f * np.exp(p.log_zeta))
     nearest = away.min(axis=1)
-    count = np.where(nearest >= min(AWAY, float(np.median(nearest))), data.count, 0.0)
+    count = np.where(nearest >= min(FAR_HALF_BANDWIDTHS, float(np.median(nearest))), data.count, 0.0)
     return np.asarray(np.einsum("k,kab->ab", count, data.density.real) / count.sum())

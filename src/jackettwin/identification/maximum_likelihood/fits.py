@@ -1,9 +1,10 @@
-"""The fits of the spectral model that are accepted: of the whole band if one will do, else of close modes.
+"""Fits of the spectral model: over the whole band if one is acceptable, otherwise group by group.
 
-What a fit must be: converged, near the spectrum (``lack_of_fit``), and of the modes it started from
-(``mode_drift.py``). First the modes alone are tried over the whole band; then with a background, which the
-quasi-static response to waves is, else a mode leaves its peak to stand for it; then the groups that still
-stray, or all of them, in their narrow bands. What no fit describes is left as the subspace method found it.
+A fit is acceptable if it has converged, is close to the spectrum (``lack_of_fit``) and still describes the
+modes it started from (``mode_drift.py``). First the modes alone are fitted over the whole band. Then a
+background is added for the quasi-static response to waves, which would otherwise pull a mode off its peak.
+Groups of modes that still drift, or all groups, are then fitted in narrow bands. Modes that no fit describes
+keep their subspace estimates.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.errors import NumericalError
 from jackettwin.findings import Finding
 from jackettwin.identification.maximum_likelihood.local_refinement import DITHER_SHARES, groups, refine_group
-from jackettwin.identification.maximum_likelihood.mode_drift import strayed
+from jackettwin.identification.maximum_likelihood.mode_drift import drifted
 from jackettwin.identification.maximum_likelihood.refined import Refined
 from jackettwin.identification.maximum_likelihood.refinement import refine
 
@@ -26,20 +27,20 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
-BREAKDOWNS = (ArithmeticError, ValueError, NumericalError, RuntimeWarning)
-"""What a fit that breaks down raises, ``LinAlgError`` among the value errors: a reason to keep what the
-subspace method found, never to lose the record."""
-MOST_LACK_OF_FIT = 1.4
-"""Mean square of the misfit over its expectation up to which a fit of the whole band is accepted;
-records that are what the model says have 0.8 to 1.1."""
-MOST_LOCAL_LACK_OF_FIT = 2.0
-"""The same in a narrow band, where the covariance is multiplied by what exceeds 1."""
-
-MANY_MODES = 4
-"""So many modes within one narrow band: what does not end at the first try costs seconds and ends seldom."""
-
-GIVEN = ("frequency_hz", "damping_ratio", "shapes", "sure", "derivatives", "avoid_hz")
-OF_EACH_MODE = (
+NUMERICAL_FAILURES = (ArithmeticError, ValueError, NumericalError, RuntimeWarning)
+"""Exceptions of a fit that fails numerically (``LinAlgError`` is a ``ValueError``).
+The subspace estimates are then kept; the record is never lost."""
+MAX_LACK_OF_FIT = 1.4
+"""Largest accepted lack of fit over the whole band (mean square of the misfit over its expectation).
+Records that the model describes have 0.8 to 1.1."""
+MAX_LOCAL_LACK_OF_FIT = 2.0
+"""Largest accepted lack of fit in a narrow band, where the covariance is multiplied by a lack of fit above
+1."""
+CROWDED_GROUP = 4
+"""From this number of modes in one narrow band on, one fit is tried only:
+others take seconds and rarely converge."""
+SHARED_ARGUMENTS = ("frequency_hz", "damping_ratio", "shapes", "sure", "derivatives", "avoid_hz")
+FIELDS_PER_MODE = (
     "candidate",
     "frequency_hz",
     "damping_ratio",
@@ -52,7 +53,7 @@ OF_EACH_MODE = (
 
 @dataclass(frozen=True)
 class FitStart:
-    """The candidates a fit starts from; arrays as of ``refine``.
+    """Candidates that a fit starts from; the arrays are those of ``refine``.
 
     Attributes
     ----------
@@ -61,8 +62,8 @@ class FitStart:
     sure : (n_candidates,) bool
     derivatives : list of int
     avoid_hz : tuple of (low, high)
-    most_damping : float
-        A damping ratio above it is of no mode.
+    max_damping_ratio : float
+        Largest damping ratio of a mode.
     """
 
     frequency_hz: FloatArray
@@ -72,18 +73,18 @@ class FitStart:
     sure: BoolArray
     derivatives: list[int]
     avoid_hz: tuple[tuple[float, float], ...]
-    most_damping: float
+    max_damping_ratio: float
 
 
 @dataclass(frozen=True)
 class AcceptedFit:
-    """A fit and the candidates it speaks for.
+    """A fit and the candidates whose estimates it replaces.
 
     Attributes
     ----------
     candidates : (n_candidates,) bool
     modes : Refined
-        Only those that are still the modes they started from.
+        Without those that drifted away from the mode they started from.
     """
 
     candidates: BoolArray
@@ -91,11 +92,11 @@ class AcceptedFit:
 
 
 @dataclass(frozen=True)
-class _Tried:
-    """A fit, None if it is not to be used and why; which candidates strayed in it, (n_candidates,)."""
+class _Attempt:
+    """A fit or the reason why it is refused, and which candidates drifted, (n_candidates,)."""
 
     fit: Refined | None
-    strayed: BoolArray
+    drifted: BoolArray
     obstacle: str = ""
     converged: bool = False
 
@@ -103,27 +104,27 @@ class _Tried:
 def accepted_fits(
     y: FloatArray, sample_rate_hz: float, band_hz: tuple[float, float], start: FitStart
 ) -> tuple[list[AcceptedFit], tuple[Finding, ...]]:
-    """Return the fits that are accepted, and a finding on each group of modes that none describes.
+    """Return the accepted fits, and a finding on each group of modes that none of them describes.
 
     Parameters
     ----------
     y : (n_channels, n_samples)
-        As of ``refine``.
+        As in ``refine``.
     """
     duration_s = y.shape[1] / sample_rate_hz
     whole = _whole_band(y, sample_rate_hz, band_hz, start)
     left = np.ones(len(start.sure), dtype=bool)
     fits, findings = [], []
     for group in groups(start.frequency_hz, start.sure, band_hz):
-        if whole.fit is not None and not np.any(group.members & start.sure & whole.strayed):
+        if whole.fit is not None and not np.any(group.members & start.sure & whole.drifted):
             continue
         left &= ~group.members
-        work = partial(refine_group, y, sample_rate_hz, group, **_given(start))
-        work = partial(work, most_lack_of_fit=MOST_LOCAL_LACK_OF_FIT)
-        many = np.sum(group.members & start.sure) >= MANY_MODES
+        work = partial(refine_group, y, sample_rate_hz, group, **_shared_arguments(start))
+        work = partial(work, max_lack_of_fit=MAX_LOCAL_LACK_OF_FIT)
+        many = np.sum(group.members & start.sure) >= CROWDED_GROUP
         for share in DITHER_SHARES[:1] if many else DITHER_SHARES:
-            local = _tried(partial(work, dither_share=share), MOST_LOCAL_LACK_OF_FIT, start, duration_s)
-            lost = local.strayed & start.sure
+            local = _attempt(partial(work, dither_share=share), MAX_LOCAL_LACK_OF_FIT, start, duration_s)
+            lost = local.drifted & start.sure
             if local.fit is not None and not lost.any():
                 fits.append(_accepted(local, group.members))
                 break
@@ -136,87 +137,87 @@ def accepted_fits(
 
 
 def not_refined(frequency_hz: FloatArray, obstacle: str) -> Finding:
-    """Return what is said of modes that are left as the subspace method found them, and why."""
+    """Return the finding on modes that keep their subspace estimates, with the reason."""
     return Finding("not_refined", params={"frequencies_hz": _listed(frequency_hz), "obstacle": obstacle})
 
 
 def _whole_band(
     y: FloatArray, sample_rate_hz: float, band_hz: tuple[float, float], start: FitStart
-) -> _Tried:
-    """Return the fit of the whole band in which fewest modes stray, that of the modes alone if none does.
+) -> _Attempt:
+    """Return the fit of the whole band in which the fewest modes drift, without a background if none does.
 
-    A background is tried beside modes that were fitted but strayed, or nearly: where they cannot be fitted
-    at all, it costs as much again and helps in no record that was seen.
+    A background is tried only if the fit without it converged: otherwise it doubles the cost,
+    and it helped in none of the records examined.
     """
-    best: _Tried | None = None
+    best: _Attempt | None = None
     for background in (False, True):
-        work = partial(refine, y, sample_rate_hz, band_hz, background=background, **_given(start))
-        work = partial(work, most_lack_of_fit=MOST_LACK_OF_FIT)
-        tried = _tried(work, MOST_LACK_OF_FIT, start, y.shape[1] / sample_rate_hz)
-        if best is None or _rank(tried, start) < _rank(best, start):
-            best = tried
-        if not tried.converged or (best.fit is not None and not np.any(best.strayed & start.sure)):
+        work = partial(refine, y, sample_rate_hz, band_hz, background=background, **_shared_arguments(start))
+        work = partial(work, max_lack_of_fit=MAX_LACK_OF_FIT)
+        attempt = _attempt(work, MAX_LACK_OF_FIT, start, y.shape[1] / sample_rate_hz)
+        if best is None or _rank(attempt, start) < _rank(best, start):
+            best = attempt
+        if not attempt.converged or (best.fit is not None and not np.any(best.drifted & start.sure)):
             break
     assert best is not None
     return best
 
 
-def _rank(tried: _Tried, start: FitStart) -> tuple[bool, int, int]:
-    return tried.fit is None, int(np.sum(tried.strayed & start.sure)), int(tried.strayed.sum())
+def _rank(attempt: _Attempt, start: FitStart) -> tuple[bool, int, int]:
+    return attempt.fit is None, int(np.sum(attempt.drifted & start.sure)), int(attempt.drifted.sum())
 
 
-def _given(start: FitStart) -> dict[str, Any]:
+def _shared_arguments(start: FitStart) -> dict[str, Any]:
     """Return the arguments that ``refine`` and ``refine_group`` share."""
-    return {key: getattr(start, key) for key in GIVEN}
+    return {key: getattr(start, key) for key in SHARED_ARGUMENTS}
 
 
-def _tried(fit: Callable[[], Refined], most: float, start: FitStart, duration_s: float) -> _Tried:
+def _attempt(fit: Callable[[], Refined], most: float, start: FitStart, duration_s: float) -> _Attempt:
     none = np.zeros(len(start.sure), dtype=bool)
     try:
-        # what overflows is found by its result
+        # an overflow shows in the result, which is checked below
         with np.errstate(all="ignore"):
             refined = fit()
-    except BREAKDOWNS as error:
-        return _Tried(None, none, f"the arithmetic of the fit broke down ({type(error).__name__})")
+    except NUMERICAL_FAILURES as error:
+        return _Attempt(None, none, f"the arithmetic of the fit broke down ({type(error).__name__})")
     if not _finite(refined):
-        return _Tried(None, none, "the arithmetic of the fit broke down (not a number)")
+        return _Attempt(None, none, "the arithmetic of the fit broke down (not a number)")
     if np.isinf(refined.lack_of_fit):
-        return _Tried(None, none, "too many modes lie close to one another to be fitted together")
+        return _Attempt(None, none, "too many modes lie close to one another to be fitted together")
     if not refined.converged:
-        return _Tried(None, none, "the fit of the spectral model did not converge")
+        return _Attempt(None, none, "the fit of the spectral model did not converge")
     if refined.lack_of_fit > most:
-        return _Tried(
+        return _Attempt(
             None,
             none,
             f"the spectrum is not that of these modes under smooth random forces "
             f"(lack of fit {refined.lack_of_fit:.1f}, at most {most:g})",
             converged=True,
         )
-    lost = strayed(
+    lost = drifted(
         refined,
         frequency_hz=start.frequency_hz,
         damping_ratio=start.damping_ratio,
         log_damping_std=start.log_damping_std,
         duration_s=duration_s,
-        most_damping=start.most_damping,
+        max_damping_ratio=start.max_damping_ratio,
     )
     none[refined.candidate[lost]] = True
-    return _Tried(refined, none, converged=True)
+    return _Attempt(refined, none, converged=True)
 
 
 def _finite(refined: Refined) -> bool:
-    """Tell whether a fit is of numbers, variances above zero among them."""
-    numbers = (getattr(refined, name) for name in OF_EACH_MODE)
+    """Tell whether all numbers of a fit are finite and its variances positive."""
+    numbers = (getattr(refined, name) for name in FIELDS_PER_MODE)
     variances = np.diagonal(refined.covariance, axis1=1, axis2=2)
     return all(np.isfinite(x).all() for x in numbers) and bool(np.all(variances > 0.0))
 
 
-def _accepted(tried: _Tried, candidates: BoolArray) -> AcceptedFit:
-    """Return what a fit says of some candidates; one that strayed stood for the forces."""
-    assert tried.fit is not None
-    kept = (candidates & ~tried.strayed)[tried.fit.candidate]
-    arrays = {name: getattr(tried.fit, name)[kept] for name in OF_EACH_MODE}
-    return AcceptedFit(candidates, replace(tried.fit, **arrays))
+def _accepted(attempt: _Attempt, candidates: BoolArray) -> AcceptedFit:
+    """Return a fit restricted to some candidates, without those that drifted."""
+    assert attempt.fit is not None
+    kept = (candidates & ~attempt.drifted)[attempt.fit.candidate]
+    arrays = {name: getattr(attempt.fit, name)[kept] for name in FIELDS_PER_MODE}
+    return AcceptedFit(candidates, replace(attempt.fit, **arrays))
 
 
 def _listed(frequency_hz: FloatArray) -> str:

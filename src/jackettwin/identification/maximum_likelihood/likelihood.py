@@ -4,8 +4,8 @@ The Whittle log-likelihood of the spectral matrices :math:`\hat S_k` of groups o
 
 .. math:: \ell = -\sum_k n_k\left[\ln\det E_k + \mathrm{tr}\,E_k^{-1}\hat S_k\right]
 
-is climbed by damped Fisher scoring. A known share of the local median spectrum is added to model **and**
-data, which keeps E regular where the record has less noise than the model can follow.
+is maximised by damped Fisher scoring. A known share of the local median spectrum is added to model **and**
+data. It keeps E regular where the record has less noise than the model can follow.
 
 Whittle 1953; Au 2011 and 2017 (Bayesian FFT, its uncertainty laws); Sykulski et al. 2019 (de-biased
 Whittle likelihood).
@@ -41,36 +41,38 @@ if TYPE_CHECKING:
     from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
 
 
-QUIET = 0.3
-"""Noise at the start, as a share of the lowest local median."""
-COLOURS = (0.0, 1.0, 2.0, 3.0, 4.0)
-"""Exponents tried at the start, of all force spectra together."""
+START_NOISE = 0.3
+"""Noise at the start, as a share of the smallest local median of the spectrum."""
+START_EXPONENTS = (0.0, 1.0, 2.0, 3.0, 4.0)
+"""Common exponents of the force spectra tried at the start."""
 MAX_ITERATIONS = 80
 TOLERANCE = 0.1
-"""Stop where the whole step, undamped, is below this share of the standard deviations of ln f and ln ζ of the
-modes that are sought: it would change what is said of them by nothing that matters …"""
+"""The iteration has converged if the undamped step is below this share of the standard deviations of ln f and
+ln ζ of the fitted modes, and the gain it predicts is below ``EXPECTED_GAIN``."""
 EXPECTED_GAIN = 1.0
-"""… and would gain less log-likelihood than this: forces and noise have settled as well …"""
-NO_LIFT = 1e-4
-"""Share of the information that is added to call a step undamped: some directions have next to none."""
-MOST_LIFT = 1e7
-"""The same, from which a step goes nowhere."""
-LEAST_GAIN = 0.001
-"""… or where a step gains less than this, if it was damped by no more than …"""
-FREE = 0.1
-"""… this share of the information: one held back is short. …"""
-LITTLE_GAIN = 0.03
-"""… Or where several steps running gain less than this and less than the above is expected, or …"""
-MOST_IDLE = 3
-"""… where so many running gain next to nothing, however damped."""
+"""Predicted gain of log-likelihood below which forces and noise have settled as well."""
+FULL_STEP_RIDGE = 1e-4
+"""Ridge of a step that counts as undamped, as a share of the information;
+some directions have next to none."""
+MAX_RIDGE = 1e7
+"""Ridge from which a step no longer moves."""
+MIN_GAIN = 0.001
+"""A step of smaller gain ends the iteration if its ridge was at most ``SHORT_STEP_RIDGE``."""
+SHORT_STEP_RIDGE = 0.1
+"""Largest ridge of a step whose small gain means convergence; a more damped step may just be short."""
+SMALL_GAIN = 0.03
+"""Gain below which a step is idle if the predicted gain is below ``EXPECTED_GAIN``;
+otherwise it is ``MIN_GAIN``."""
+MAX_IDLE_STEPS = 3
+"""Consecutive idle steps that end the iteration, however damped they were."""
 ZETA_RANGE = (1e-5, 0.5)
-ROUNDED_OFF = np.complex64(1e-4 + 1e-4j)
-"""Derivatives below 1e-11 are taken for zero."""
+ROUNDING_OFFSET = np.complex64(1e-4 + 1e-4j)
+"""Adding and subtracting this rounds derivatives below 1e-11 to zero."""
 
 
 @dataclass(frozen=True)
 class Evaluation:
-    """The log-posterior at one set of parameters, up to a constant, and what it was made of.
+    """The log-posterior at one set of parameters, up to a constant, and its intermediate results.
 
     Attributes
     ----------
@@ -85,73 +87,73 @@ class Evaluation:
 
 
 @dataclass(frozen=True)
-class Climb:
-    """Where a climb ended."""
+class Optimum:
+    """The parameters at which an optimisation ended, and whether it converged."""
 
     parameters: Parameters
     value: float
     converged: bool
 
 
-def climbed(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Climb:
-    """Climb to the maximum of the posterior by damped Fisher scoring, in at most so many steps."""
+def maximise(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Optimum:
+    """Maximise the posterior by damped Fisher scoring in at most ``most`` steps."""
     prior = prior_of(data, p)
-    at, lift, idle = point(data, prior, p), 1e-3, 0
+    at, ridge, idle = evaluate(data, prior, p), 1e-3, 0
     if at is None:
-        return Climb(p, -np.inf, False)
+        return Optimum(p, -np.inf, False)
     for _ in range(most):
         score, fisher = scoring(data, prior, at)
-        left, expected_gain = _left(at.parameters, score, fisher)
+        left, expected_gain = _remaining(at.parameters, score, fisher)
         if left < TOLERANCE and expected_gain < EXPECTED_GAIN:
-            return Climb(at.parameters, at.value, True)
-        trial, used = _ascended(data, prior, at, score, fisher, lift)
+            return Optimum(at.parameters, at.value, True)
+        trial, used = _ascend(data, prior, at, score, fisher, ridge)
         if trial is None:
-            return Climb(at.parameters, at.value, False)
+            return Optimum(at.parameters, at.value, False)
         gain = trial.value - at.value
-        idle = idle + 1 if gain < (LITTLE_GAIN if expected_gain < EXPECTED_GAIN else LEAST_GAIN) else 0
-        at, lift = trial, max(used / 10.0, 1e-6)
-        if idle == MOST_IDLE or (used <= FREE and gain < LEAST_GAIN):
-            return Climb(at.parameters, at.value, True)
-    return Climb(at.parameters, at.value, False)
+        idle = idle + 1 if gain < (SMALL_GAIN if expected_gain < EXPECTED_GAIN else MIN_GAIN) else 0
+        at, ridge = trial, max(used / 10.0, 1e-6)
+        if idle == MAX_IDLE_STEPS or (used <= SHORT_STEP_RIDGE and gain < MIN_GAIN):
+            return Optimum(at.parameters, at.value, True)
+    return Optimum(at.parameters, at.value, False)
 
 
-def _ascended(
+def _ascend(
     data: Periodogram,
     prior: ParameterPrior,
     at: Evaluation,
     score: FloatArray,
     fisher: FloatArray,
-    lift: float,
+    ridge: float,
 ) -> tuple[Evaluation | None, float]:
-    """Return the first point no lower that a step, damped more and more, reaches, and how much it was."""
-    while lift < MOST_LIFT:
-        step = _solved(fisher, score, lift)
-        if _far(at.parameters, step) <= 1.0:
-            trial = point(data, prior, at.parameters.moved(step))
+    """Raise the ridge until a step does not lower the posterior; return the new point and the ridge."""
+    while ridge < MAX_RIDGE:
+        step = _solve(fisher, score, ridge)
+        if _relative_step(at.parameters, step) <= 1.0:
+            trial = evaluate(data, prior, at.parameters.moved(step))
             if trial is not None and trial.value >= at.value:
-                return trial, lift
-        lift *= 6.0
-    return None, lift
+                return trial, ridge
+        ridge *= 6.0
+    return None, ridge
 
 
-def _left(p: Parameters, score: FloatArray, fisher: FloatArray) -> tuple[float, float]:
-    """Return how far the maximum of a parabola is, and how much higher.
+def _remaining(p: Parameters, score: FloatArray, fisher: FloatArray) -> tuple[float, float]:
+    """Return the distance to the maximum of the local parabola, and the gain there.
 
-    The distance is the largest in standard deviations of ln f and ln ζ of the modes that are sought.
+    The distance is the largest of the steps of ln f and ln ζ of the fitted modes, in standard deviations.
     """
-    step = _solved(fisher, score, NO_LIFT)
+    step = _solve(fisher, score, FULL_STEP_RIDGE)
     size = np.abs(step) * np.sqrt(np.diag(fisher))
     n = len(p.log_f)
-    sought = np.append(size[p.held : n], size[n + p.held : 2 * n])
+    sought = np.append(size[p.n_fixed : n], size[n + p.n_fixed : 2 * n])
     return float(sought.max(initial=0.0)), float(0.5 * score @ step)
 
 
 def start(
     data: Periodogram, f: FloatArray, zeta: FloatArray, shapes: FloatArray, outside: int = 0
 ) -> Parameters:
-    """Return first parameters: shapes scaled to the power of their peaks, incoherent forces, one exponent.
+    """Return the starting point: shapes scaled to their peaks, incoherent forces, one common exponent.
 
-    So many of the first modes are beside the band: scaled to the power of the line that is nearest.
+    The first ``outside`` modes lie beside the band; they are scaled to the power of the nearest line.
     """
     zeta = np.clip(zeta, 1e-3, 0.3)
     scaled = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
@@ -164,7 +166,7 @@ def start(
     n = len(f)
     pairs = coherent_pairs(np.log(f))
     none = np.zeros(len(pairs), dtype=complex)
-    noise = np.stack([noise_level(data, QUIET), np.zeros(data.floor.shape[1])])
+    noise = np.stack([noise_level(data, START_NOISE), np.zeros(data.floor.shape[1])])
     first = [
         Parameters(
             np.log(f),
@@ -177,19 +179,19 @@ def start(
             outside=outside,
             exponent=colour,
         )
-        for colour in COLOURS
+        for colour in START_EXPONENTS
     ]
     return max(first, key=lambda p: objective(data, prior_of(data, p), p))
 
 
 def objective(data: Periodogram, prior: ParameterPrior, p: Parameters) -> float:
     """Return the log-posterior up to a constant; −∞ outside the admissible region."""
-    at = point(data, prior, p)
+    at = evaluate(data, prior, p)
     return -np.inf if at is None else at.value
 
 
-def point(data: Periodogram, prior: ParameterPrior, p: Parameters) -> Evaluation | None:
-    """Return the log-posterior and what it is made of; None outside the admissible region."""
+def evaluate(data: Periodogram, prior: ParameterPrior, p: Parameters) -> Evaluation | None:
+    """Return the log-posterior and its intermediate results, or None outside the admissible region."""
     low, high = np.log(ZETA_RANGE)
     if np.any(p.log_zeta > high) or np.any(p.log_zeta < low):
         return None
@@ -210,7 +212,7 @@ def point(data: Periodogram, prior: ParameterPrior, p: Parameters) -> Evaluation
 
 
 def scoring(data: Periodogram, prior: ParameterPrior, at: Evaluation) -> tuple[FloatArray, FloatArray]:
-    """Return the score and the Fisher information, prior included."""
+    """Return the score and the Fisher information, including the prior."""
     p = at.parameters
     score, fisher = products(data, p, at.model, at.white, misfit_of(data, at.white))
     score -= prior.precision * (p.vector - prior.centre)
@@ -224,16 +226,16 @@ def products(
 ) -> tuple[FloatArray, FloatArray]:
     """Return Σ_k n_k ⟨G_p, misfit⟩ and Σ_k n_k ⟨G_p, G_q⟩ of the whitened derivatives of E.
 
-    In single precision, half the work: 1e-6 of a step is far below what ends a climb. Far from its peak a
-    mode's derivatives have products below the least normal number, which cost five times as much as others:
-    what is added and taken off rounds them to zero.
+    Single precision halves the work; its relative error of 1e-6 is far below the convergence tolerance. Far
+    from its peak a mode's derivatives have subnormal products, which take five times as long as normal ones;
+    adding and subtracting ``ROUNDING_OFFSET`` sets them to zero.
     """
     weight = np.sqrt(data.count).astype(np.float32)
     u, w = derivative_factors(data, p, model, white, np.complex64)
     u *= weight
     for factor in (u, w):
-        factor += ROUNDED_OFF
-        factor -= ROUNDED_OFF
+        factor += ROUNDING_OFFSET
+        factor -= ROUNDING_OFFSET
     return gram(u, w, misfit.transpose(1, 2, 0).astype(np.complex64) * weight)
 
 
@@ -248,8 +250,8 @@ def inverse_root(matrices: ComplexArray) -> ComplexArray:
     return np.asarray(np.linalg.inv(np.linalg.cholesky(matrices)))
 
 
-def _far(p: Parameters, step: FloatArray) -> float:
-    """Return how far a step goes, over the neighbourhood in which the model is nearly linear."""
+def _relative_step(p: Parameters, step: FloatArray) -> float:
+    """Return the length of a step over the neighbourhood in which the model is nearly linear."""
     n, n_pairs = len(p.log_f), len(p.coherence)
     size = np.linalg.norm(p.shapes, axis=1, keepdims=True)
     reach = np.concatenate(
@@ -266,10 +268,10 @@ def _far(p: Parameters, step: FloatArray) -> float:
     return float(np.max(np.abs(step) / reach))
 
 
-def _solved(fisher: FloatArray, score: FloatArray, lift: float) -> FloatArray:
-    """Solve the damped scoring equation, every parameter in units of its own information."""
+def _solve(fisher: FloatArray, score: FloatArray, ridge: float) -> FloatArray:
+    """Solve the damped scoring equation with every parameter scaled by its own information."""
     unit = 1.0 / np.sqrt(np.diag(fisher))
-    scaled = fisher * np.outer(unit, unit) + lift * np.eye(len(unit))
+    scaled = fisher * np.outer(unit, unit) + ridge * np.eye(len(unit))
     solution, fault = lapack.dposv(scaled, unit * score)[1:]
     if fault:
         return np.asarray(unit * linalg.lstsq(scaled, unit * score)[0])

@@ -1,10 +1,11 @@
-"""Refinement in narrow bands, where the spectrum of the whole band is not that of the model.
+"""Refinement in narrow bands, for records whose whole band does not follow the model.
 
-Over a wide band the model asks that force spectra be powers of frequency and that no mode outside act in it.
-Turbulence on a rotor keeps neither. Around one group of close modes every smooth spectrum is a power of
-frequency; the modes beside the band take part with the frequencies and damping they have, and what is farther
-is a background (``background.py``). Shapes may lag: a rotor's dashpot lets the other direction take part
-late, and with little noise a few degrees move the damping.
+The model assumes that force spectra are powers of frequency and that no mode outside the band acts in it.
+Turbulence on a rotor violates both over a wide band. Around one group of close modes, however,
+every smooth spectrum is nearly a power of frequency. Modes just outside the band are included
+with fixed frequencies and damping; those farther away form a background (``background.py``).
+Shapes may have a phase lag: the dashpot of a rotor makes the other direction respond late,
+and with little noise a lag of a few degrees changes the damping.
 """
 
 from __future__ import annotations
@@ -15,32 +16,33 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray
-from jackettwin.identification.maximum_likelihood.directions import at_channels, directions, projected
+from jackettwin.identification.maximum_likelihood.directions import directions, expand_to_channels, project
 from jackettwin.identification.maximum_likelihood.refined import Refined
-from jackettwin.identification.maximum_likelihood.refinement import Narrow, refine
+from jackettwin.identification.maximum_likelihood.refinement import NarrowBand, refine
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
-REACH = 1.35
-"""Modes nearer than this ratio are fitted together, in a band wider by this ratio on both sides."""
+GROUP_RATIO = 1.35
+"""Modes whose frequency ratio is below this are fitted together, in a band that extends by the same ratio
+beyond them."""
 
 DITHER_SHARES = (1.0, 10.0)
-"""Share of the local median spectrum added; the next one where a fit with the one before does not describe
-the lines. One force moves all channels, and between the peaks their ratios fix the damping more sharply than
-the record allows, as far as the model is exact; the more is added, the less they count."""
+"""Shares of the local median spectrum added as dither, tried in turn until a fit describes the lines.
+Since one force moves all channels, their ratios between the peaks would fix the damping more sharply than the
+inexact model permits; a larger dither reduces their weight."""
 
-BESIDE = 2.0
-"""Modes outside the band, but nearer to its edge than this ratio, do more in it than a background can."""
+NEIGHBOUR_RATIO = 2.0
+"""Modes within this ratio of the edges of the band are modelled as modes, not as background."""
 
-FEW_LINES = 1.5
-"""The covariance is multiplied by this: a narrow band holds few lines for its many parameters."""
+FEW_LINES_FACTOR = 1.5
+"""Factor on the covariance, as a narrow band holds few lines for its many parameters."""
 
 
 @dataclass(frozen=True)
 class FitGroup:
-    """Neighbouring modes, the candidates among them, and the band they are fitted in.
+    """Candidates that are fitted together, and their band.
 
     Attributes
     ----------
@@ -53,9 +55,9 @@ class FitGroup:
 
 
 def groups(frequency_hz: FloatArray, sure: BoolArray, band_hz: tuple[float, float]) -> list[FitGroup]:
-    """Part the sure candidates where neighbours are farther apart than the reach.
+    """Divide the sure candidates into groups whose frequencies differ by more than ``GROUP_RATIO``.
 
-    Doubtful ones join the group in whose band they lie. Bands of neighbouring groups meet halfway.
+    Doubtful candidates join the group in whose band they lie. The bands of neighbouring groups meet halfway.
 
     Examples
     --------
@@ -65,11 +67,11 @@ def groups(frequency_hz: FloatArray, sure: BoolArray, band_hz: tuple[float, floa
     [np.int64(2), np.int64(2)]
     """
     f = np.sort(frequency_hz[sure])
-    parts = np.split(f, np.flatnonzero(f[1:] / f[:-1] > REACH) + 1)
+    parts = np.split(f, np.flatnonzero(f[1:] / f[:-1] > GROUP_RATIO) + 1)
     low, high = (np.array([edge(part) for part in parts]) for edge in (np.min, np.max))
     middle = np.sqrt(high[:-1] * low[1:])
-    lower = np.maximum(low / REACH, np.append(band_hz[0], middle))
-    upper = np.minimum(high * REACH, np.append(middle, band_hz[1]))
+    lower = np.maximum(low / GROUP_RATIO, np.append(band_hz[0], middle))
+    upper = np.minimum(high * GROUP_RATIO, np.append(middle, band_hz[1]))
     return [
         FitGroup((frequency_hz > a) & (frequency_hz < b), (float(a), float(b)))
         for a, b in zip(lower, upper, strict=True)
@@ -88,20 +90,25 @@ def refine_group(
     derivatives: Sequence[int],
     avoid_hz: Sequence[tuple[float, float]] = (),
     dither_share: float = DITHER_SHARES[0],
-    most_lack_of_fit: float = np.inf,
+    max_lack_of_fit: float = np.inf,
 ) -> Refined:
-    """Fit one group; parameters as of ``refine``, candidates counted as there.
+    """Fit one group; parameters and candidate numbers are those of ``refine``.
 
-    Of many channels only the directions that move in the band are fitted (``directions.py``). What the lack
-    of fit exceeds 1 by multiplies the covariance.
+    Many channels are projected on the directions that move in the band (``directions.py``).
+    A lack of fit above 1 multiplies the covariance.
     """
     among = np.flatnonzero(group.members)
     low, high = group.band_hz
-    beside = sure & ~group.members & (frequency_hz > low / BESIDE) & (frequency_hz < high * BESIDE)
+    beside = (
+        sure
+        & ~group.members
+        & (frequency_hz > low / NEIGHBOUR_RATIO)
+        & (frequency_hz < high * NEIGHBOUR_RATIO)
+    )
     own = shapes[group.members & sure]
     basis = directions(y, sample_rate_hz, group.band_hz, own) if len(set(derivatives)) == 1 else None
     if basis is not None:
-        y = projected(y, basis)
+        y = project(y, basis)
         shapes, derivatives = shapes @ basis, derivatives[: basis.shape[1]]
     fit = refine(
         y,
@@ -114,12 +121,12 @@ def refine_group(
         derivatives=derivatives,
         avoid_hz=avoid_hz,
         background=True,
-        narrow=Narrow(dither_share, frequency_hz[beside], damping_ratio[beside], shapes[beside]),
-        most_lack_of_fit=most_lack_of_fit,
+        narrow=NarrowBand(dither_share, frequency_hz[beside], damping_ratio[beside], shapes[beside]),
+        max_lack_of_fit=max_lack_of_fit,
     )
-    wider = FEW_LINES * max(fit.lack_of_fit, 1.0)
+    wider = FEW_LINES_FACTOR * max(fit.lack_of_fit, 1.0)
     if basis is not None:
-        fit = at_channels(fit, basis)
+        fit = expand_to_channels(fit, basis)
     return replace(
         fit,
         candidate=among[fit.candidate],

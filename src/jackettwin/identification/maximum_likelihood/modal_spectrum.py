@@ -12,8 +12,8 @@ transform of :math:`e^{p\tau}`, at a Fourier frequency into :math:`F_p + L_p`,
 
 .. math:: F_p(\omega) = \frac{1}{i\omega-p}, \qquad L_p(\omega) = \frac{e^{pT}-1}{T\,(i\omega-p)^2}.
 
-L is what leaks from the peak: it follows the force at the mode's frequency, F the force at ω. Over the
-lines of a group, of variance v about their mean ω, their means are :math:`F_p(1 - vF_p^2)` and
+L is leakage from the peak: it follows the force at the mode's frequency, whereas F follows the force at ω.
+Over the lines of a group, of variance v about their mean ω, the means are :math:`F_p(1 - vF_p^2)` and
 :math:`L_p(1 - 3vF_p^2)`.
 """
 
@@ -32,7 +32,7 @@ def poles(frequency_hz: FloatArray, damping_ratio: FloatArray) -> ComplexArray:
 def kernel(
     omega: FloatArray, variance: FloatArray, duration_s: float, first: ComplexArray, second: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Return the expected cross periodogram of unit-force modes: of the force at ω, and what leaks there.
+    """Return the expected cross periodogram of modes under unit forces: the response at ω and the leakage.
 
     Parameters
     ----------
@@ -66,9 +66,9 @@ def fejer(
     """Return the means of F_p and L_p over groups of lines, (n_omega, n_poles) each."""
     inverse = 1.0 / (1j * omega[:, None] - p)
     square = inverse**2
-    bend = variance[:, None] * square
+    curvature = variance[:, None] * square
     leak = np.expm1(p * duration_s) / duration_s
-    return np.asarray(inverse * (1.0 - bend)), np.asarray(leak * square * (1.0 - 3.0 * bend))
+    return np.asarray(inverse * (1.0 - curvature)), np.asarray(leak * square * (1.0 - 3.0 * curvature))
 
 
 def _transfer(s: ComplexArray, lam: ComplexArray) -> ComplexArray:

@@ -1,9 +1,9 @@
-r"""Whether a refined mode is still the mode it started from.
+r"""Test whether a refined mode is still the mode it started from.
 
-A likelihood has other maxima than the one at the modes of the record: where forces are not what the model
-says, a mode may leave its peak to stand for a slope of the spectrum, or shrink to a single line. What a
-record can tell limits both: the frequency stays within a few half bandwidths, ln ζ within a few of its
-standard deviations, and nobody knows ζ better than :math:`1/\sqrt{2\pi\zeta fT}` (Au 2014).
+A likelihood has other maxima than the one at the modes of the record. Where the forces do not follow
+the model, a mode may leave its peak to describe a slope of the spectrum, or shrink to a single line.
+The information in a record limits both: the frequency must stay within a few half bandwidths and ln ζ within
+a few standard deviations, and no estimate of ζ is more certain than :math:`1/\sqrt{2\pi\zeta fT}` (Au 2014).
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
     from jackettwin.identification.maximum_likelihood.refined import Refined
 
 
-HALF_BANDWIDTHS = 3.0
-"""Largest change of frequency, in half bandwidths of the start …"""
-STANDARD_DEVIATIONS = 3.0
-"""… and of ln ζ, in its standard deviations at the start."""
-TOO_CERTAIN = 0.5
-"""A mode known better than this share of the limit of long data is none: its lines were never seen."""
+MAX_FREQUENCY_DRIFT = 3.0
+"""Largest change of frequency, in half bandwidths of the start."""
+MAX_DAMPING_DRIFT = 3.0
+"""Largest change of ln ζ, in its standard deviations at the start."""
+MIN_UNCERTAINTY = 0.5
+"""Smallest credible uncertainty of the damping, as a share of the long-data limit."""
 
 
 def long_data_limits(f: FloatArray | float, zeta: FloatArray | float, duration_s: float) -> FloatArray:
-    """Return the least coefficients of variation of f and ζ, √(ζ/(2πfT)) and 1/√(2πζfT), (2, …) (Au 2014).
+    """Return the smallest coefficients of variation of f and ζ, √(ζ/(2πfT)) and 1/√(2πζfT), (2, …) (Au 2014).
 
     Examples
     --------
@@ -38,40 +38,40 @@ def long_data_limits(f: FloatArray | float, zeta: FloatArray | float, duration_s
     return np.asarray(np.sqrt([zeta / cycles, 1.0 / (zeta * cycles)]))
 
 
-def has_left(
+def frequency_left(
     frequency_hz: FloatArray, start_hz: FloatArray, start_damping_ratio: FloatArray, duration_s: float
 ) -> BoolArray:
-    """Return which frequencies are too far from where they started, (n_modes,)."""
+    """Tell which frequencies are too far from where they started, (n_modes,)."""
     least = long_data_limits(start_hz, start_damping_ratio, duration_s)[0]
-    reach = HALF_BANDWIDTHS * np.maximum(start_damping_ratio, least)
+    reach = MAX_FREQUENCY_DRIFT * np.maximum(start_damping_ratio, least)
     return np.asarray(np.abs(np.log(frequency_hz / start_hz)) > reach)
 
 
-def strayed(
+def drifted(
     refined: Refined,
     *,
     frequency_hz: FloatArray,
     damping_ratio: FloatArray,
     log_damping_std: FloatArray,
     duration_s: float,
-    most_damping: float,
+    max_damping_ratio: float,
 ) -> BoolArray:
-    """Return which refined modes are no longer those they started from, (n_modes,).
+    """Tell which refined modes are no longer those they started from, (n_modes,).
 
     Parameters
     ----------
     frequency_hz, damping_ratio, log_damping_std : (n_candidates,)
-        At the start; a standard deviation below the limit of long data counts as that limit.
-    most_damping : float
-        A damping ratio above it is of no mode.
+        Values at the start; a standard deviation below the long-data limit is raised to that limit.
+    max_damping_ratio : float
+        Largest damping ratio of a mode.
     """
     f, zeta = frequency_hz[refined.candidate], damping_ratio[refined.candidate]
     std = np.maximum(log_damping_std[refined.candidate], long_data_limits(f, zeta, duration_s)[1])
     possible = long_data_limits(refined.frequency_hz, refined.damping_ratio, duration_s)[1]
     claimed = np.sqrt(refined.covariance[:, 1, 1])
     return np.asarray(
-        has_left(refined.frequency_hz, f, zeta, duration_s)
-        | (np.abs(np.log(refined.damping_ratio / zeta)) > STANDARD_DEVIATIONS * std)
-        | (claimed < TOO_CERTAIN * possible)
-        | (refined.damping_ratio > most_damping)
+        frequency_left(refined.frequency_hz, f, zeta, duration_s)
+        | (np.abs(np.log(refined.damping_ratio / zeta)) > MAX_DAMPING_DRIFT * std)
+        | (claimed < MIN_UNCERTAINTY * possible)
+        | (refined.damping_ratio > max_damping_ratio)
     )

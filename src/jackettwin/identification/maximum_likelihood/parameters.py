@@ -9,8 +9,8 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 
-MOST_PAIRS = 91
-"""Coherences fitted at most: those of all pairs of fourteen modes."""
+MAX_PAIRS = 91
+"""Most coherences fitted: those of all pairs of fourteen modes."""
 
 
 @dataclass(frozen=True)
@@ -21,22 +21,22 @@ class Parameters:
     ----------
     log_f, log_zeta, colour : (n_modes,)
     shapes : (n_modes, n_channels)
-        Real parts, scaled by the root of the force density at the mode's frequency.
+        Real parts of the shapes, scaled by the root of the force density at the mode's frequency.
     coherence : (n_pairs,) complex
-        Of the modal forces.
+        Coherences of the modal forces.
     noise : (2, n_channels)
         Logarithm of the noise density at the middle of the band, and its exponent.
     pairs : (n_pairs, 2) int
         Modes i < j whose forces may be coherent; not a parameter.
     background : int
-        So many of the first modes are backgrounds: far below the band, so that they follow their force.
-        They stand for what is far outside the band.
+        Number of backgrounds, which come first: modes far below the band, so that they follow their force.
+        They represent the modes far outside the band.
     outside : int
-        So many of the next modes are beside the band, and keep their frequencies and damping ratios.
+        Number of modes beside the band, which come next; their frequencies and damping ratios are fixed.
     exponent : float
-        Common to the force spectra, the centre of the prior of ``colour``; not a parameter.
-    lag : (n_modes − held, n_channels) or (0, 0)
-        Imaginary parts of the shapes of the modes that are sought; none where they are taken to be real.
+        Common exponent of the force spectra, the centre of the prior of ``colour``; not a parameter.
+    lag : (n_modes − n_fixed, n_channels) or (0, 0)
+        Imaginary parts of the shapes of the fitted modes; empty if these are taken to be real.
     """
 
     log_f: FloatArray
@@ -52,8 +52,8 @@ class Parameters:
     lag: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
 
     @property
-    def held(self) -> int:
-        """Number of modes that are not sought: backgrounds, and those beside the band."""
+    def n_fixed(self) -> int:
+        """Number of modes that are not fitted: backgrounds, and modes beside the band."""
         return self.background + self.outside
 
     @cached_property
@@ -66,14 +66,14 @@ class Parameters:
 
     @cached_property
     def complex_shapes(self) -> ComplexArray | FloatArray:
-        """Shapes with their imaginary parts, real if there are none, (n_modes, n_channels)."""
+        """Shapes with their imaginary parts, real if these are empty, (n_modes, n_channels)."""
         if not self.lag.size:
             return self.shapes
-        return self.shapes + 1j * np.vstack([np.zeros_like(self.shapes[: self.held]), self.lag])
+        return self.shapes + 1j * np.vstack([np.zeros_like(self.shapes[: self.n_fixed]), self.lag])
 
     @property
     def lagging_size(self) -> FloatArray:
-        """Norms of the shapes that may lag, (n_lagging, 1)."""
+        """Norms of the shapes with a phase lag, (n_lagging, 1)."""
         last = self.shapes[len(self.shapes) - len(self.lag) :]
         return np.asarray(np.linalg.norm(last, axis=1, keepdims=True))
 
@@ -85,7 +85,7 @@ class Parameters:
         return np.concatenate([np.ravel(part) for part in (*modal, *rest)])
 
     def moved(self, step: FloatArray) -> Parameters:
-        """Return the parameters after a step of their vector."""
+        """Return the parameters with ``step`` added to their vector."""
         n, n_pairs = len(self.log_f), len(self.coherence)
         cuts = np.cumsum([n, n, n, self.shapes.size, n_pairs, n_pairs, self.noise.size])
         f, zeta, colour, shape, re, im, noise, lag = np.split(self.vector + step, cuts)
@@ -104,7 +104,7 @@ class Parameters:
         )
 
     def without(self, mode: int) -> Parameters:
-        """Return the parameters of the other modes."""
+        """Return the parameters without one mode."""
         kept = ~np.any(self.pairs == mode, axis=1)
         f, zeta, colour = (np.delete(x, mode) for x in (self.log_f, self.log_zeta, self.colour))
         pairs = self.pairs[kept]
@@ -116,11 +116,11 @@ class Parameters:
             shapes=np.delete(self.shapes, mode, axis=0),
             coherence=self.coherence[kept],
             pairs=pairs - (pairs > mode),
-            lag=np.delete(self.lag, mode - self.held, axis=0) if self.lag.size else self.lag,
+            lag=np.delete(self.lag, mode - self.n_fixed, axis=0) if self.lag.size else self.lag,
         )
 
-    def joined(self, log_f: float, log_zeta: float, shape: FloatArray) -> Parameters:
-        """Return the parameters with one more mode, last, driven independently of the others."""
+    def with_mode(self, log_f: float, log_zeta: float, shape: FloatArray) -> Parameters:
+        """Return the parameters with another mode added last, under a force independent of the others."""
         n = len(self.log_f)
         f = np.append(self.log_f, log_f)
         pairs = coherent_pairs(f)
@@ -130,7 +130,7 @@ class Parameters:
             self,
             log_f=f,
             log_zeta=np.append(self.log_zeta, log_zeta),
-            colour=np.append(self.colour, np.median(self.colour[self.held :])),
+            colour=np.append(self.colour, np.median(self.colour[self.n_fixed :])),
             shapes=np.vstack([self.shapes, shape]),
             coherence=gamma[pairs[:, 0], pairs[:, 1]],
             pairs=pairs,
@@ -141,5 +141,5 @@ class Parameters:
 def coherent_pairs(log_f: FloatArray) -> Int64Array:
     """Return the pairs of modes whose forces may be coherent, (n_pairs, 2): the nearest neighbours."""
     i, j = np.triu_indices(len(log_f), 1)
-    nearest = np.argsort(np.abs(log_f[i] - log_f[j]), kind="stable")[:MOST_PAIRS]
+    nearest = np.argsort(np.abs(log_f[i] - log_f[j]), kind="stable")[:MAX_PAIRS]
     return np.stack([i, j], axis=1)[np.sort(nearest)].astype(np.int64)

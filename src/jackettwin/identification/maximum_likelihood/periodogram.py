@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 
 LINES_IN_HALF_BANDWIDTH = 3
-"""Groups of lines are this much narrower than the half bandwidth of the nearest mode …"""
+"""Groups of lines are narrower than the half bandwidth of the nearest mode by this factor, at its peak."""
 FAR_LINES = 6.0
-"""… and may widen to this fraction of the distance to it."""
+"""The width of a group grows with its distance from that mode, divided by this."""
 DITHER_SHARE = 0.3
-"""Share of the local median spectrum added to model and data …"""
+"""Share of the local median spectrum added to model and data, up to ``DITHER_LINES`` lines in the median."""
 DITHER_LINES = 90.0
-"""… where the median is of this many lines; of more lines it is less in proportion. The ratios between
-channels are known from the lines of a peak, and with few lines a fit believes them more than it should."""
+"""Above this number of lines in the median, the dither falls in inverse proportion. With few lines a fit is
+too certain of the ratios between channels, which it takes from the lines of the peaks."""
 MEDIAN_SHARE_OF_BAND = 0.25
 """Width of the running median, as a share of the frequency it is taken at."""
 
@@ -41,7 +41,7 @@ class Periodogram:
     density : (n_groups, n_channels, n_channels) complex
         Mean of X Xᴴ / (duration), of the second time derivative of displacement-like channels.
     floor : (n_groups, n_channels)
-        Local median of each channel's density, over a quarter of the frequency.
+        Local median of each channel's density, over a window a quarter of the frequency wide.
     dither : (n_groups, n_channels)
         Power added to the diagonal of model **and** data: a share of the floor.
     duration_s : float
@@ -89,15 +89,15 @@ def periodogram(
     Parameters
     ----------
     y : (n_channels, n_samples)
-        Zero-mean samples; a missing one (NaN) counts as zero and the power is scaled back.
+        Zero-mean samples; a missing one (NaN) counts as zero and the power is corrected for it.
     modes : (frequency_hz, damping_ratio)
-        Rough modal parameters: lines are kept single where the spectrum bends.
+        Approximate modal parameters: lines stay single where the spectrum curves.
     derivatives : (n_channels,) int
     avoid_hz : sequence of (low, high)
         Groups of lines that touch one of these ranges are left out.
     dither_share : float, optional
-        Of the local median; by default one that falls with frequency. A small one keeps spectral matrices
-        regular where a record has little noise; a large one hides what is not a peak.
+        Dither as a share of the local median; by default one that falls with frequency. A small dither keeps
+        spectral matrices regular where a record has little noise; a large one hides everything but peaks.
     """
     n_channels, n_samples = y.shape
     duration = n_samples / sample_rate_hz
@@ -133,7 +133,7 @@ def periodogram(
 def group_starts(
     f: FloatArray, duration: float, frequency_hz: FloatArray, damping_ratio: FloatArray
 ) -> IntArray:
-    """Return the first line of each group: narrow where the spectrum of the modes bends."""
+    """Return the first line of each group; groups are narrow where the spectrum of the modes curves."""
     half_bandwidth = frequency_hz * damping_ratio
     distance = np.abs(f[:, None] - frequency_hz)
     width = np.min(half_bandwidth / LINES_IN_HALF_BANDWIDTH + distance / FAR_LINES, axis=1)

@@ -1,4 +1,4 @@
-"""Priors of the spectral model: weak ones on forces, noise and lags, none on the modes that are sought."""
+"""Priors of the spectral model: weak ones on forces, noise and phase lags, none on the fitted modes."""
 
 from __future__ import annotations
 
@@ -14,18 +14,20 @@ if TYPE_CHECKING:
     from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
 
 
-LIKELY_NOISE = 0.01
-"""Centre of the noise, as a share of the lowest local median: noise may be all of it, or next to nothing …"""
+NOISE_CENTRE = 0.01
+"""Centre of the prior of the noise, as a share of the smallest local median."""
 COHERENCE_PRIOR = 1.0
-"""Weight of ln det Γ: coherences stay inside the unit circle."""
+"""Weight of ln det Γ, which keeps coherences inside the unit circle."""
 COLOUR_PRIOR = 3.0
-"""Standard deviation of the exponents of the force spectra about the common one of the start."""
+"""Standard deviation of the exponents of the force spectra about their common exponent."""
 NOISE_PRIOR = (2.7, 1.0)
-"""… the standard deviation of a logarithm spread evenly over four decades; and that of its exponent."""
+"""Standard deviations of the logarithm of the noise and of its exponent. The first is that of a uniform
+distribution over four decades: noise may be the whole floor or next to none of it."""
 LAG_PRIOR = 0.05
-"""Standard deviation of the imaginary parts of a shape, as a share of its norm: 3° of all its channels."""
-HELD = 1e-4
-"""Standard deviation of the prior on ln f and ln ζ of modes that are not sought."""
+"""Standard deviation of the imaginary parts of a shape, as a share of its norm (3° for all channels
+together)."""
+FIXED_STD = 1e-4
+"""Standard deviation of the prior on ln f and ln ζ of modes that are not fitted."""
 
 
 @dataclass(frozen=True)
@@ -37,28 +39,28 @@ class ParameterPrior:
 
 
 def noise_level(data: Periodogram, share: float) -> FloatArray:
-    """Return ln of a share of the lowest local median of every channel, (n_channels,)."""
+    """Return the logarithm of a share of each channel's smallest local median, (n_channels,)."""
     return np.asarray(np.log(share * data.floor.min(axis=0)))
 
 
 def prior_of(data: Periodogram, p: Parameters) -> ParameterPrior:
-    """Return the prior: weak on colours, noise and lags, none on the modes but those that are not sought."""
-    level = noise_level(data, LIKELY_NOISE)
+    """Return the prior: weak on exponents, noise and phase lags, tight on modes that are not fitted."""
+    level = noise_level(data, NOISE_CENTRE)
     blank = p.moved(-p.vector)
     mode = np.arange(len(p.log_f))
-    held, background = (mode < p.held).astype(float), (mode < p.background).astype(float)
+    fixed, background = (mode < p.n_fixed).astype(float), (mode < p.background).astype(float)
     centre = replace(
         blank,
-        log_f=p.log_f * held,
-        log_zeta=p.log_zeta * held,
+        log_f=p.log_f * fixed,
+        log_zeta=p.log_zeta * fixed,
         colour=p.exponent * (1.0 - background),
         noise=np.stack([level, np.zeros_like(level)]),
     )
     std = np.repeat(np.array(NOISE_PRIOR)[:, None], len(level), axis=1)
     precision = replace(
         blank,
-        log_f=held * HELD**-2,
-        log_zeta=held * HELD**-2,
+        log_f=fixed * FIXED_STD**-2,
+        log_zeta=fixed * FIXED_STD**-2,
         colour=np.full(len(p.colour), COLOUR_PRIOR**-2),
         noise=std**-2.0,
         lag=np.broadcast_to((LAG_PRIOR * p.lagging_size) ** -2.0, p.lag.shape),
@@ -67,7 +69,7 @@ def prior_of(data: Periodogram, p: Parameters) -> ParameterPrior:
 
 
 def add_coherence_prior(p: Parameters, score: FloatArray, fisher: FloatArray) -> None:
-    """Add slope and curvature of ln det Γ."""
+    """Add the gradient and curvature of ln det Γ to the score and the information."""
     i, j = p.pairs.T
     if not len(i):
         return

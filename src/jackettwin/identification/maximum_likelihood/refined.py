@@ -1,4 +1,4 @@
-"""What a maximum-likelihood fit of the modes of a band gives."""
+"""Result of a maximum-likelihood fit of the modes of a band."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Refined:
     Attributes
     ----------
     candidate : (n_modes,) int
-        Position among the candidates.
+        Index among the candidates.
     frequency_hz, damping_ratio : (n_modes,)
         Corrected for the small sample.
     shapes : (n_modes, n_channels)
@@ -23,11 +23,11 @@ class Refined:
         Of (ln f, ln ζ).
     shape_covariance : (n_modes, n_channels, n_channels)
     cramer_rao : (n_modes, 2)
-        Least standard deviations of ln f and ln ζ of the fitted model.
+        Smallest attainable standard deviations of ln f and ln ζ of the fitted model.
     gain : (n_candidates,)
-        Log-likelihood a doubtful candidate would add; infinite for modes that were sure.
+        Log-likelihood that a doubtful candidate would add; infinite for sure ones.
     lack_of_fit : float
-        ``accuracy.lack_of_fit``: near 1 where the record is what the model says.
+        ``accuracy.lack_of_fit``: near 1 where the model describes the record.
     converged : bool
     """
 

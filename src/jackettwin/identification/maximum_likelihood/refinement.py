@@ -1,10 +1,10 @@
-r"""From the modes of a subspace method to their maximum-likelihood estimates.
+r"""Maximum-likelihood estimates of the modes that a subspace method found.
 
-What a small sample does is taken back: the bias b of ln ζ from the curvature of the model
-(``accuracy.curvature_bias``), and that of ζ over its logarithm, whose error is the one that is nearly
-Gaussian: :math:`\hat\zeta = \zeta\,e^{-b}/(1+\sigma^2/2)`, σ the standard deviation of ln ζ. The information
-is that of many lines, and of few the scatter is larger: :math:`\sigma^2(1+\sigma^2)` is reported (of one
-mode alone, intervals then cover 94 to 95 % down to 2πζfT = 6; without it, 93 to 95 %).
+Two small-sample biases are corrected: b, the bias of ln ζ due to the curvature of the model
+(``accuracy.curvature_bias``), and that of ζ given an error of ln ζ that is nearly Gaussian with standard
+deviation σ: :math:`\hat\zeta = \zeta\,e^{-b}/(1+\sigma^2/2)`. The information holds for many lines;
+with few the scatter is larger, so that :math:`\sigma^2(1+\sigma^2)` is reported as variance.
+Intervals of a single mode then cover 94 to 95 % down to 2πζfT = 6; without this factor, 93 to 95 %.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray, Int64Array
 from jackettwin.identification.maximum_likelihood import accuracy, likelihood
 from jackettwin.identification.maximum_likelihood.admission import (
-    APPROACH,
     PARAMETERS_OF_A_MODE,
-    joined,
-    needed_gain,
-    thinned,
+    STEPS_BEFORE_ADMISSION,
+    admit_modes,
+    drop_unneeded_modes,
+    required_gain,
 )
 from jackettwin.identification.maximum_likelihood.background import with_background
 from jackettwin.identification.maximum_likelihood.periodogram import periodogram
@@ -34,40 +34,42 @@ if TYPE_CHECKING:
     from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
 
 
-BEYOND_HOPE = 3.5
-"""A fit is given up before the doubtful modes are looked at, if it lacks this many times what it may, …"""
-STUCK, LEFT_OF_FIRST = 2.0, 0.5
-"""… or this many times that, and more than this of what it lacked at first. Of a hundred fits that came to
-be accepted none lacked more than 2.6 times what it may by then, and these less than four tenths of it. …"""
-HOPELESS = 3.0
-"""A fit is given up when the doubtful modes are judged, if it lacks this many times what it may …"""
-WORTH_A_TRY = 12
-"""… and after so many steps more …"""
-STILL_HOPELESS = 1.5
-"""… if it still lacks this many times that."""
-MOST_STEPS, FEWEST_STEPS = 30, 8
-"""Steps after those: fits that end take eight to twenty as a rule …"""
-MOST_WORK = 4e9
-"""… and no more than this many products: what is still on its way then seldom arrives."""
-MOST_STEP_WORK = 2e9
-"""A fit of which one step takes more products is not tried: of seven hundred that came to be accepted none
-took more than half as many, and one such fit costs more than the whole rest of an identification."""
-MOST_BIAS = 0.5
-"""Standard deviations beyond which an expansion to second order is not believed."""
+EARLY_LIMIT = 3.5
+"""A fit is abandoned before admission if its lack of fit exceeds the accepted one by this factor."""
+SLOW_LIMIT, SLOW_SHARE = 2.0, 0.5
+"""A fit is also abandoned before admission if its lack of fit exceeds the accepted one by the first
+factor and is still above this share of its initial value. Of a hundred fits that were accepted in the end,
+none had by then more than 2.6 times the accepted lack of fit, and those above twice it had come down to less
+than 0.4 of their initial value."""
+ADMISSION_LIMIT = 3.0
+"""A fit is abandoned after admission if its lack of fit exceeds the accepted one by this factor."""
+TRIAL_STEPS = 12
+"""Further steps, after which ``TRIAL_LIMIT`` applies."""
+TRIAL_LIMIT = 1.5
+"""A fit is abandoned after the trial steps if its lack of fit exceeds the accepted one by this factor."""
+MAX_STEPS, MIN_STEPS = 30, 8
+"""Most and fewest steps after the trial; fits that converge usually take eight to twenty."""
+MAX_WORK = 4e9
+"""Most products in these steps; fits that take more rarely converge."""
+MAX_STEP_WORK = 2e9
+"""Most products in one step of a fit that is tried. Of seven hundred accepted fits none took more than half
+as many, and such a fit costs more than the rest of an identification."""
+MAX_BIAS = 0.5
+"""Largest bias corrected, in standard deviations; beyond it a second-order expansion is not valid."""
 
 
 @dataclass(frozen=True)
-class Narrow:
-    """What the fit of a narrow band is told of the rest of the spectrum.
+class NarrowBand:
+    """What the fit of a narrow band assumes about the rest of the spectrum.
 
     Attributes
     ----------
     dither_share : float
-        So much of the local median spectrum is added to model and data.
+        Share of the local median spectrum added to model and data.
     frequency_hz, damping_ratio : (n_beside,)
-        Of the modes beside the band; they are kept.
+        Modes beside the band; these values are fixed.
     shapes : (n_beside, n_channels)
-        Real, where the fit starts.
+        Real shapes from which their fit starts.
     """
 
     dither_share: float
@@ -88,10 +90,10 @@ def refine(
     derivatives: Sequence[int],
     avoid_hz: Sequence[tuple[float, float]] = (),
     background: bool = False,
-    narrow: Narrow | None = None,
-    most_lack_of_fit: float = np.inf,
+    narrow: NarrowBand | None = None,
+    max_lack_of_fit: float = np.inf,
 ) -> Refined:
-    """Fit the sure candidates together, admit the doubtful ones that are needed.
+    """Fit the sure candidates together and admit the doubtful ones that are needed.
 
     Parameters
     ----------
@@ -103,16 +105,17 @@ def refine(
     sure : (n_candidates,) bool
         At least one.
     derivatives : (n_channels,) int
-        Derivatives in time by which a channel lags acceleration.
+        Number of time derivatives from a channel's quantity to acceleration.
     avoid_hz : sequence of (low, high)
-        Ranges that are left out of the fit.
+        Ranges left out of the fit.
     background : bool
-        Whether shapes that follow their force are fitted too: the modes outside the band, or waves below it.
-    narrow : Narrow, optional
-        Given where the band holds some of the modes only; the shapes of its modes may lag there.
-    most_lack_of_fit : float
-        A fit that lacks more is returned before modes are dropped from it: fewer fit no better. One that
-        lacks much more is given up, and returned without modes.
+        Whether backgrounds are fitted too: the quasi-static response of modes above the band,
+        or waves below it.
+    narrow : NarrowBand, optional
+        Given if the band holds only some of the modes; their shapes may then have a phase lag.
+    max_lack_of_fit : float
+        Largest accepted lack of fit. A fit above it is returned without removing modes,
+        as fewer modes fit no better; a fit far above it is abandoned and returned without modes.
     """
     data = periodogram(
         y,
@@ -126,53 +129,53 @@ def refine(
     unit = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
     chosen = np.flatnonzero(sure)
     sought = (frequency_hz[chosen], damping_ratio[chosen], unit[chosen])
-    first = likelihood.start(data, *sought) if narrow is None else _beside(narrow, data, *sought)
+    first = likelihood.start(data, *sought) if narrow is None else _start_narrow(narrow, data, *sought)
     if background:
         first = with_background(data, first)
-    if _step_work(data, first) > MOST_STEP_WORK:
-        return _given_up(np.full(len(sure), np.inf), unit.shape[1], np.inf)
-    climb = likelihood.climbed(data, first, APPROACH)
-    lack = accuracy.lack_of_fit(data, climb.parameters)
-    if narrow is None and _beyond_hope(lack, accuracy.lack_of_fit(data, first), most_lack_of_fit):
-        return _given_up(np.full(len(sure), np.inf), unit.shape[1], lack)
-    least = PARAMETERS_OF_A_MODE + unit.shape[1] if narrow is None else needed_gain(data)
-    climb, chosen, gain = joined(data, climb, chosen, frequency_hz, damping_ratio, unit, least)
-    lack = accuracy.lack_of_fit(data, climb.parameters)
-    if narrow is None and lack > HOPELESS * most_lack_of_fit:
-        return _given_up(gain, unit.shape[1], lack)
-    climb = likelihood.climbed(data, climb.parameters, WORTH_A_TRY)
-    lack = accuracy.lack_of_fit(data, climb.parameters)
-    if lack > STILL_HOPELESS * most_lack_of_fit:
-        return _given_up(gain, unit.shape[1], lack)
-    if not climb.converged:
-        climb = likelihood.climbed(data, climb.parameters, _steps(data, climb.parameters))
-        lack = accuracy.lack_of_fit(data, climb.parameters)
-    known = accuracy.accuracy_of(data, climb.parameters)
-    if climb.converged and lack <= most_lack_of_fit:
-        climb, chosen, known = thinned(data, climb, chosen, known)
-    return _result(data, climb, chosen, gain, known)
+    if _step_work(data, first) > MAX_STEP_WORK:
+        return _abandoned(np.full(len(sure), np.inf), unit.shape[1], np.inf)
+    optimum = likelihood.maximise(data, first, STEPS_BEFORE_ADMISSION)
+    lack = accuracy.lack_of_fit(data, optimum.parameters)
+    if narrow is None and _abandon_early(lack, accuracy.lack_of_fit(data, first), max_lack_of_fit):
+        return _abandoned(np.full(len(sure), np.inf), unit.shape[1], lack)
+    least = PARAMETERS_OF_A_MODE + unit.shape[1] if narrow is None else required_gain(data)
+    optimum, chosen, gain = admit_modes(data, optimum, chosen, frequency_hz, damping_ratio, unit, least)
+    lack = accuracy.lack_of_fit(data, optimum.parameters)
+    if narrow is None and lack > ADMISSION_LIMIT * max_lack_of_fit:
+        return _abandoned(gain, unit.shape[1], lack)
+    optimum = likelihood.maximise(data, optimum.parameters, TRIAL_STEPS)
+    lack = accuracy.lack_of_fit(data, optimum.parameters)
+    if lack > TRIAL_LIMIT * max_lack_of_fit:
+        return _abandoned(gain, unit.shape[1], lack)
+    if not optimum.converged:
+        optimum = likelihood.maximise(data, optimum.parameters, _steps(data, optimum.parameters))
+        lack = accuracy.lack_of_fit(data, optimum.parameters)
+    known = accuracy.accuracy_of(data, optimum.parameters)
+    if optimum.converged and lack <= max_lack_of_fit:
+        optimum, chosen, known = drop_unneeded_modes(data, optimum, chosen, known)
+    return _result(data, optimum, chosen, gain, known)
 
 
-def _beyond_hope(lack: float, at_first: float, most: float) -> bool:
-    """Tell whether a fit of the whole band that has taken its first steps cannot come to be accepted."""
-    stuck = lack > STUCK * most and lack > LEFT_OF_FIRST * at_first
-    return stuck or lack > BEYOND_HOPE * most
+def _abandon_early(lack: float, at_first: float, most: float) -> bool:
+    """Tell whether a fit of the whole band is unlikely to be accepted, judged after its first steps."""
+    stuck = lack > SLOW_LIMIT * most and lack > SLOW_SHARE * at_first
+    return stuck or lack > EARLY_LIMIT * most
 
 
 def _steps(data: Periodogram, p: Parameters) -> int:
-    """Return the steps a fit may take yet, by what each costs."""
-    return int(np.clip(MOST_WORK / _step_work(data, p), FEWEST_STEPS, MOST_STEPS))
+    """Return how many more steps a fit may take, given the work per step."""
+    return int(np.clip(MAX_WORK / _step_work(data, p), MIN_STEPS, MAX_STEPS))
 
 
 def _step_work(data: Periodogram, p: Parameters) -> int:
-    """Return how many products one step of a fit takes."""
+    """Return the number of products in one step of a fit."""
     return int(p.vector.size**2 * p.shapes.shape[1] ** 2 * len(data.omega))
 
 
-def _beside(
-    narrow: Narrow, data: Periodogram, f: FloatArray, zeta: FloatArray, unit: FloatArray
+def _start_narrow(
+    narrow: NarrowBand, data: Periodogram, f: FloatArray, zeta: FloatArray, unit: FloatArray
 ) -> Parameters:
-    """Return first parameters of the modes of a narrow band and of those beside it."""
+    """Return the starting point for the modes of a narrow band and those beside it."""
     first = likelihood.start(
         data,
         np.append(narrow.frequency_hz, f),
@@ -180,34 +183,34 @@ def _beside(
         np.vstack([narrow.shapes, unit]),
         len(narrow.shapes),
     )
-    # one channel has nothing to lag behind: its phase is that of the mode, which no spectrum knows
+    # the phase of a single channel cannot be told from the phase of the mode
     return replace(first, lag=np.zeros_like(unit)) if unit.shape[1] > 1 else first
 
 
 def _result(
     data: Periodogram,
-    climb: likelihood.Climb,
+    optimum: likelihood.Optimum,
     chosen: Int64Array,
     gain: FloatArray,
     known: accuracy.Accuracy,
 ) -> Refined:
-    p = climb.parameters
+    p = optimum.parameters
     n, n_channels = p.shapes.shape
     covariance = known.covariance
-    mode = np.arange(p.held, n)
+    mode = np.arange(p.n_fixed, n)
     mode = mode[np.argsort(p.log_f[mode])]
     both = np.stack([mode, mode + n], axis=1)
     shape = 3 * n + mode[:, None] * n_channels + np.arange(n_channels)
     log_covariance = covariance[both[:, :, None], both[:, None, :]]
     bias, excess = np.zeros((len(mode), 2)), np.zeros(len(mode))
-    # a background takes its share of the peaks, and with it the bias of the small sample
+    # a background takes part of the peaks, and with it the small-sample bias
     if not p.background:
         excess = log_covariance[:, 1, 1]
-        most = MOST_BIAS * np.sqrt(np.diagonal(log_covariance, axis1=1, axis2=2))
+        most = MAX_BIAS * np.sqrt(np.diagonal(log_covariance, axis1=1, axis2=2))
         bias = np.clip(accuracy.curvature_bias(data, p, known)[both], -most, most)
     wider = np.stack([np.ones(len(mode)), np.sqrt(1.0 + excess)], axis=1)
     return Refined(
-        candidate=chosen[mode - p.held],
+        candidate=chosen[mode - p.n_fixed],
         frequency_hz=np.exp(p.log_f[mode] - bias[:, 0]),
         damping_ratio=np.exp(p.log_zeta[mode] - bias[:, 1]) / (1.0 + 0.5 * excess),
         shapes=p.shapes[mode],
@@ -216,12 +219,12 @@ def _result(
         cramer_rao=known.cramer_rao[both],
         gain=gain,
         lack_of_fit=accuracy.lack_of_fit(data, p),
-        converged=climb.converged,
+        converged=optimum.converged,
     )
 
 
-def _given_up(gain: FloatArray, n_channels: int, lack_of_fit: float) -> Refined:
-    """Return a fit of no mode."""
+def _abandoned(gain: FloatArray, n_channels: int, lack_of_fit: float) -> Refined:
+    """Return a fit without modes."""
     return Refined(
         candidate=np.zeros(0, dtype=np.int64),
         frequency_hz=np.zeros(0),

@@ -1,13 +1,14 @@
-r"""The spectrum that the identified modes would have, to lay over the measured one.
+r"""Spectrum of the identified modes, for comparison with the measured one.
 
-Frequencies, damping and shapes are taken as identified; the densities S of white modal forces and N of noise
-are the most likely ones by the lines near the modes, found by minorisation (Zhou, Hu, Zhou & Lange 2019):
+Frequencies, damping and shapes are those identified.
+The densities S of white modal forces and N of noise maximise the likelihood of the lines near the modes;
+they are found by minorisation (Zhou, Hu, Zhou & Lange 2019):
 
 .. math:: E(f) = \sum_{ij} S_{ij}\, \phi_i \phi_j^H\, \overline{h_i h_j^*} + N, \quad
           h_i = \frac{-f^2}{f_i^2 - f^2 + 2 i \zeta_i f_i f}
 
-The bar is the average over the lines that Welch's window mixes: a light mode is as blunt in E as it is in the
-measured spectrum. What E misses, no mode explains.
+The bar is the average over the lines that Welch's window mixes, so that a lightly damped mode is smeared in E
+as it is in the measured spectrum. Where E is below the measured spectrum, no mode explains it.
 """
 
 from __future__ import annotations
@@ -31,17 +32,18 @@ if TYPE_CHECKING:
     from jackettwin.records import Record
 
 
-REACH_LINES = 2.0
-"""Lines to either side that a Hann window mixes in …"""
-SAMPLES = 81
-"""… and the number of points at which the average is taken."""
-NEAR, NEAR_LINES = 3.0, 2.0
-"""Half bandwidths, and lines, to either side of a mode at which S and N are fitted."""
-KNOWN = 0.3
-"""Share of the measured densities added to both sides: else the smallest singular values decide alone."""
-ROUNDS = 100
-LEAST_NOISE = 1e-3
-"""Share of a channel's mean density from which the noise starts."""
+WINDOW_LINES = 2.0
+"""Reach of a Hann window, in lines to either side."""
+WINDOW_SAMPLES = 81
+"""Number of points over that reach at which the average is taken."""
+NEAR_HALF_BANDWIDTHS, NEAR_LINES = 3.0, 2.0
+"""S and N are fitted to lines within this many half bandwidths plus this many lines of a mode."""
+REGULARISATION = 0.3
+"""Share of the measured densities added to data and model;
+without it the smallest singular values dominate."""
+ITERATIONS = 100
+START_NOISE_SHARE = 1e-3
+"""Initial noise, as a share of a channel's mean density."""
 
 
 def modal_fit(record: Record, found: Identification) -> Spectrum | None:
@@ -50,7 +52,7 @@ def modal_fit(record: Record, found: Identification) -> Spectrum | None:
     Parameters
     ----------
     record : Record
-        The one the modes were identified from.
+        Record from which the modes were identified.
     """
     if not found.modes:
         return None
@@ -66,7 +68,7 @@ def modal_fit(record: Record, found: Identification) -> Spectrum | None:
     band = (f > s.lowest_frequency_hz) & (f < s.highest_frequency_hz)
     derivatives = np.array(left_to_differentiate(ready.channels, ready.differentiated))
     motion = _motion(found.modes, f[band], f[1], derivatives, ready.scale)
-    near = _near(found.modes, f[band], f[1])
+    near = _lines_near_modes(found.modes, f[band], f[1])
     fitted = _fitted(measured[band], motion, near)
     density = np.einsum("faa->af", fitted).real * ready.scale[:, None] ** 2
     singular = np.linalg.svd(fitted, compute_uv=False).T.astype(np.float64)
@@ -80,9 +82,9 @@ def _motion(
 
     Returns
     -------
-    (n_frequencies, SAMPLES, n_modes, n_channels), times the root of the window's weight of each point
+    (n_frequencies, WINDOW_SAMPLES, n_modes, n_channels), times the root of the window's weight at each point
     """
-    bins = np.linspace(-REACH_LINES, REACH_LINES, SAMPLES)
+    bins = np.linspace(-WINDOW_LINES, WINDOW_LINES, WINDOW_SAMPLES)
     weight = np.sinc(bins) ** 2 / np.where(np.abs(np.abs(bins) - 1.0) < 1e-9, np.inf, 1.0 - bins**2) ** 2
     weight[np.abs(np.abs(bins) - 1.0) < 1e-9] = 0.25
     fine = np.maximum(f[:, None] + step * bins, 0.1 * step)[:, :, None]
@@ -94,27 +96,29 @@ def _motion(
     return np.asarray(h[..., None] * shapes * of_quantity * np.sqrt(weight / weight.sum())[:, None, None])
 
 
-def _near(modes: Sequence[ModalEstimate], f: FloatArray, step: float) -> BoolArray:
-    """Return the lines near a mode: there the modes are, elsewhere much else."""
-    reach = np.array([NEAR * m.damping_ratio * m.frequency_hz + NEAR_LINES * step for m in modes])
+def _lines_near_modes(modes: Sequence[ModalEstimate], f: FloatArray, step: float) -> BoolArray:
+    """Tell which lines are near a mode; elsewhere other motion prevails."""
+    reach = np.array(
+        [NEAR_HALF_BANDWIDTHS * m.damping_ratio * m.frequency_hz + NEAR_LINES * step for m in modes]
+    )
     return np.asarray((np.abs(f[:, None] - [m.frequency_hz for m in modes]) < reach).any(axis=1))
 
 
 def _fitted(measured: ComplexArray, motion: ComplexArray, near: BoolArray) -> ComplexArray:
-    """Return E at the S and N most likely by the lines near the modes; every round raises the likelihood."""
+    """Return E with the S and N that are most likely given the lines near the modes."""
     everywhere = np.einsum("fsia,fsjb->ijfab", motion, motion.conj(), optimize=True)
     measured, products = measured[near], everywhere[:, :, near]
-    known = KNOWN * np.einsum("faa->fa", measured).real[:, :, None] * np.eye(measured.shape[1])
+    known = REGULARISATION * np.einsum("faa->fa", measured).real[:, :, None] * np.eye(measured.shape[1])
     power = np.einsum("faa->f", measured).real
     force = np.diag(power.max() / np.einsum("iifaa->if", products).real.max(axis=1)).astype(complex)
-    noise = LEAST_NOISE * np.einsum("faa->a", measured).real / len(measured)
+    noise = START_NOISE_SHARE * np.einsum("faa->a", measured).real / len(measured)
     fitted = _spectrum(force, noise, products) + known
-    for _ in range(ROUNDS):
+    for _ in range(ITERATIONS):
         inverse = np.linalg.inv(fitted)
         twice = inverse @ (measured + known) @ inverse
         gain = np.einsum("fba,ijfab->ji", twice, products, optimize=True)
         loss = np.einsum("fba,ijfab->ji", inverse, products, optimize=True)
-        force = _middle(loss, force @ gain @ force)
+        force = _geometric_mean(loss, force @ gain @ force)
         noise = noise * np.sqrt(np.einsum("faa->a", twice).real / np.einsum("faa->a", inverse).real)
         fitted = _spectrum(force, noise, products) + known
     return _spectrum(force, noise, everywhere)
@@ -124,7 +128,7 @@ def _spectrum(force: ComplexArray, noise: FloatArray, products: ComplexArray) ->
     return np.asarray(np.einsum("ij,ijfab->fab", force, products, optimize=True) + np.diag(noise))
 
 
-def _middle(b: ComplexArray, c: ComplexArray) -> ComplexArray:
+def _geometric_mean(b: ComplexArray, c: ComplexArray) -> ComplexArray:
     """Return the positive semi-definite X with X B X = C."""
     root = _root(b)
     inverse = np.linalg.inv(root)

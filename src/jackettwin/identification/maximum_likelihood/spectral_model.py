@@ -5,11 +5,11 @@ At a group k of Fourier lines
 .. math:: E_k = \Phi^T\,(\Gamma\circ(K_k\circ c_k c_k^T + L_k))\,\bar\Phi + N_k, \qquad
           c_{ki} = (f_k/f_i)^{-\alpha_i/2}, \quad N_k = \mathrm{diag}\,e^{a + b\ln(f_k/f_0)}
 
-with the rows of Φ scaled by the roots of the force densities, Γ the coherences of the modal forces, K + L
-the closed-form expected periodogram of unit forces (``modal_spectrum.kernel``: no bias from the finite
-record; L is what leaks from the peaks), α the exponents of the force spectra. Shapes are real, or lag: near
-its peak a mode moves as a real one times a complex row of Φ. Every parameter changes E by a matrix
-:math:`u w^H + w u^H`, of which all derivatives are made.
+with the rows of Φ scaled by the roots of the force densities, Γ the coherences of the modal forces,
+α the exponents of the force spectra, and K + L the expected periodogram of unit forces in closed
+form (``modal_spectrum.kernel``: without bias from the finite record; L is leakage from the peaks).
+Shapes are real or have a phase lag: near its peak a mode moves as a real one times a complex row of Φ.
+Every parameter changes E by a matrix :math:`u w^H + w u^H`, from which all derivatives are formed.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 STEP = 1e-5
-"""Relative step of the central differences of the kernel, whose error is its square."""
+"""Relative step of the central differences of the kernel; their error is its square."""
 
 
 @dataclass(frozen=True)
@@ -40,11 +40,11 @@ class Expected:
     Attributes
     ----------
     forced : (n_groups, n_modes, n_modes)
-        K with colours.
+        K ∘ ccᵀ.
     coloured : (n_groups, n_modes, n_modes)
-        The same with L.
+        K ∘ ccᵀ + L.
     modal : (n_groups, n_modes, n_modes)
-        Γ∘ that.
+        Γ ∘ (K ∘ ccᵀ + L).
     matrix : (n_groups, n_channels, n_channels)
         E.
     """
@@ -66,7 +66,7 @@ def noise_density(data: Periodogram, p: Parameters) -> FloatArray:
 
 
 def expected(data: Periodogram, p: Parameters, share: float = 1.0) -> Expected:
-    """Evaluate the model; so much of the data's dither is added to the diagonal of E."""
+    """Evaluate the model with ``share`` of the data's dither on the diagonal of E."""
     lam = poles(np.exp(p.log_f), np.exp(p.log_zeta))
     steady, leaked = _kernel(data, p, lam, lam)
     colour = np.exp(-0.5 * p.colour * log_distance(data, p))
@@ -111,13 +111,15 @@ def modal_slopes(data: Periodogram, p: Parameters, model: Expected) -> tuple[Com
     return by_f, by_zeta, by_colour
 
 
-def linear_bend(data: Periodogram, p: Parameters, model: Expected, covariance: FloatArray) -> ComplexArray:
+def linear_curvature(
+    data: Periodogram, p: Parameters, model: Expected, covariance: FloatArray
+) -> ComplexArray:
     """Return Σ C_rs ∂²_rs E over real shapes, coherences and noise, (n_groups, n_channels, n_channels).
 
     Parameters
     ----------
     covariance : (n, n)
-        C, of those parameters alone, in the order of the vector.
+        C of these parameters, in the order of the vector.
     """
     n_modes, n_channels = p.shapes.shape
     i, j = p.pairs.T
@@ -128,20 +130,20 @@ def linear_bend(data: Periodogram, p: Parameters, model: Expected, covariance: F
         return covariance[np.ix_(rows, of_shape)].reshape(-1, n_modes, n_channels)
 
     both = with_shapes(of_shape).reshape(n_modes, n_channels, n_modes, n_channels)
-    bend = 2.0 * np.einsum("iajb,kij->kab", both, model.modal, optimize=True)
+    curvature = 2.0 * np.einsum("iajb,kij->kab", both, model.modal, optimize=True)
     across = np.zeros((n_modes, n_modes, n_channels), dtype=complex)
     real, imaginary = with_shapes(of_real), with_shapes(of_imaginary)
     pair = np.arange(len(i))
     across[i, j] = real[pair, i] + 1j * imaginary[pair, i]
     across[j, i] = real[pair, j] - 1j * imaginary[pair, j]
     half = 2.0 * np.einsum("ija,kij,jb->kab", across, model.coloured, p.shapes, optimize=True)
-    bend += half + half.conj().transpose(0, 2, 1)
+    curvature += half + half.conj().transpose(0, 2, 1)
     x = data.log_position[:, None]
     of_noise = covariance[level, level] + 2.0 * x * covariance[level, exponent]
     of_noise = of_noise + x**2 * covariance[exponent, exponent]
     channel = np.arange(n_channels)
-    bend[:, channel, channel] += noise_density(data, p) * of_noise
-    return np.asarray(bend)
+    curvature[:, channel, channel] += noise_density(data, p) * of_noise
+    return np.asarray(curvature)
 
 
 def derivative_factors(
@@ -176,7 +178,7 @@ def derivative_factors(
     u += [white, white]
     w += [white * half, white * half * data.log_position[:, None, None]]
     if p.lag.size:
-        of_sought = slice(p.held * n_channels, None)
+        of_sought = slice(p.n_fixed * n_channels, None)
         u.append(1j * u[3][:, :, of_sought])
         w.append(w[3][:, :, of_sought])
     return _stacked(u, precision), _stacked(w, precision)
@@ -187,12 +189,12 @@ def gram(
 ) -> tuple[FloatArray, FloatArray]:
     r"""Return the inner products of :math:`G_p = u_p w_p^H + w_p u_p^H` with a matrix and with each other.
 
-    One pair of channels at a time, so that nothing large is formed.
+    Channels are taken pair by pair, so that no large array is formed.
 
     Parameters
     ----------
     u, w : (n_channels, n_parameters, n_groups)
-        Complex, of single or of double precision: in that the products are formed.
+        Complex, of single or double precision, in which the products are formed.
     misfit : (n_channels, n_channels, n_groups), optional
         Hermitian, of the same precision.
 
@@ -222,9 +224,9 @@ def gram(
 def _kernel(
     data: Periodogram, p: Parameters, first: ComplexArray, second: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Return K and L of the poles of all modes, or of several such sets one after the other, and of all.
+    """Return K and L between sets of poles of all modes (``first``, one set or several) and one such set.
 
-    A background has no peak to leak from, though its force may be large far below.
+    A background has no peak and therefore no leakage, though its force may be large far below the band.
     """
     steady, leaked = kernel(data.omega, data.variance, data.duration_s, first, second)
     leaked[:, np.arange(len(first)) % len(second) < p.background] = 0.0

@@ -198,7 +198,7 @@ def _start(
             *(tone.disturbed_hz for tone in tones.drifting),
             *(_taken_hz(f, ready.duration_s) for f in ready.tones_hz),
         ),
-        most_damping=settings.max_damping_ratio,
+        max_damping_ratio=settings.max_damping_ratio,
     )
 
 
