@@ -70,7 +70,7 @@ FAULTS = (
         ("fluctuations have half the variance", "sigma = SIGMA_RATIOS[component] * wind.sigma", "sigma = 0.7 * SIGMA_RATIOS[component] * wind.sigma"),
         ("x and y of a wave's direction are swapped", "np.stack([u * np.cos(self.direction), u * np.sin(self.direction), w], axis=1)", "np.stack([u * np.sin(self.direction), u * np.cos(self.direction), w], axis=1)"),
     )),
-    *_of("response", rows=(
+    *_of("response", "tests/response", "tests/structure/test_rotor_modes.py", rows=(
         ("damped frequencies are imaginary parts", "return np.abs(self.eigenvalues) / (2.0 * pi)", "return self.eigenvalues.imag / (2.0 * pi)"),
         ("MAC without normalisation of one side", "cross / np.outer(own, np.einsum(\"ij,ij->j\", x.conj(), Mx).real)", "cross / np.outer(own, np.ones(x.shape[1]))"),
         ("a superelement's damping takes mass for stiffness", "damping.alpha * element.M[b, b] + damping.beta * element.K[b, b]", "damping.beta * element.M[b, b] + damping.alpha * element.K[b, b]"),

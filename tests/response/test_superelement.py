@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from jackettwin.decks import read_structure
+from jackettwin.decks.subdyn import DeckDamping
 from jackettwin.errors import InputError
 from jackettwin.response.superelement.accuracy import damping_ratio, default_band_hz, reduced_modes
 from jackettwin.response.superelement.craig_bampton import (
@@ -16,6 +17,7 @@ from jackettwin.response.superelement.craig_bampton import (
     fixed_interface_frequencies,
     slowed,
     superelement,
+    with_deck_damping,
 )
 from jackettwin.response.superelement.files import read_superelement, write_superelement
 from jackettwin.response.system import build_system
@@ -147,6 +149,17 @@ def test_a_cantilever_s_tip_is_its_textbook_stiffness() -> None:
     # clamped-clamped: β₁L = 4.730041
     held = fixed_interface_frequencies(build_system(assemble(column), clamped(column)), 1)[0]
     assert held == pytest.approx(4.730041**2 / (2 * pi) * np.sqrt(E * I / (7850 * A * L**4)), rel=2e-3)
+
+
+def test_a_deck_damps_mass_by_alpha_stiffness_by_beta_and_internal_coordinates_by_ratio() -> None:
+    """SubDyn's Guyan damping: C = α M + β K of the interface, 2 ζ ω inside."""
+    element = superelement(jacket15(FEET)[0], number=4)
+    damping = DeckDamping((0.01,), 0.02, 0.003, np.zeros((6, 6)))
+    C = with_deck_damping(element, damping).C - element.C
+    b = slice(INTERFACE)
+    np.testing.assert_allclose(C[b, b], 0.02 * element.M[b, b] + 0.003 * element.K[b, b], rtol=1e-12)
+    omega = np.sqrt(np.diag(element.K)[INTERFACE:])
+    np.testing.assert_allclose(np.diag(C)[INTERFACE:], 2.0 * 0.01 * omega, rtol=1e-12)
 
 
 def test_another_reference_point_is_a_rigid_transfer() -> None:
