@@ -29,6 +29,8 @@ from jackettwin.store import open_database, people, read_waveform, work, writing
 from jackettwin.twin import OBSERVATION
 
 TWIN = "structure: jacket15\n"
+HERE = ("127.0.0.1", 50000)
+"""Who is at the other end of a connection from this machine."""
 PASSWORD = "three small words"
 NOON = datetime(2025, 3, 1, 12, tzinfo=UTC)
 
@@ -178,7 +180,7 @@ def make_service(
 
 @pytest.fixture
 def client(service: Service) -> Iterator[TestClient]:
-    with TestClient(create_app(service), base_url="http://127.0.0.1:8470") as client:
+    with TestClient(create_app(service), base_url="http://127.0.0.1:8470", client=HERE) as client:
         yield client
 
 
@@ -197,7 +199,9 @@ def users(service: Service, password_hash: str) -> Service:
 
 @pytest.fixture
 def stranger(users: Service) -> Iterator[TestClient]:
-    with TestClient(create_app(users), base_url="http://127.0.0.1:8470", follow_redirects=False) as client:
+    with TestClient(
+        create_app(users), base_url="http://127.0.0.1:8470", client=HERE, follow_redirects=False
+    ) as client:
         yield client
 
 

@@ -11,7 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from fastapi.testclient import TestClient
-from tests.service.conftest import Done, description, hour, record_file, turn, upload
+from tests.service.conftest import HERE, Done, description, hour, record_file, turn, upload
 
 from jackettwin.service.context import Service
 
@@ -177,7 +177,7 @@ def test_an_upload_over_the_limit_is_refused_and_leaves_nothing(tmp_path, monkey
     from jackettwin.service.web.app import create_app
 
     for small in make_service(tmp_path, None, monkeypatch, upload_limit_bytes=1000):
-        with TestClient(create_app(small), base_url="http://127.0.0.1:8470") as client:
+        with TestClient(create_app(small), base_url="http://127.0.0.1:8470", client=HERE) as client:
             assert upload(client, 1).status_code == 413
         assert list(small.settings.spool.iterdir()) == []
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
-from tests.service.conftest import TWIN, description, hour, record_file, turn
+from tests.service.conftest import HERE, TWIN, description, hour, record_file, turn
 
 from jackettwin.client import Client
 from jackettwin.errors import InputError
@@ -19,7 +19,7 @@ from jackettwin.service.web.app import API, create_app
 def twin(service: Service) -> Client:
     made = Client("http://127.0.0.1:8470")
     made._http.close()
-    made._http = TestClient(create_app(service), base_url=f"http://127.0.0.1:8470{API}")  # type: ignore[assignment]
+    made._http = TestClient(create_app(service), base_url=f"http://127.0.0.1:8470{API}", client=HERE)  # type: ignore[assignment]
     return made
 
 

@@ -12,7 +12,7 @@ import cbor2
 import pytest
 from fastapi.testclient import TestClient
 from hypothesis import HealthCheck, given, settings, strategies as st
-from tests.service.conftest import PASSWORD, description, make_service, record_file, turn, upload
+from tests.service.conftest import HERE, PASSWORD, description, make_service, record_file, turn, upload
 from tests.service.test_security import token
 from tests.store.conftest import fresh
 
@@ -83,7 +83,7 @@ def test_a_file_of_somebody_who_may_send_none_is_refused_for_that(
 def test_an_upload_is_bounded_if_it_does_not_say_its_length(tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setattr(web, "_FIELDS_BYTES", 1000)
     for small in make_service(tmp_path, None, monkeypatch, upload_limit_bytes=20_000):
-        with TestClient(create_app(small), base_url="http://127.0.0.1:8470") as client:
+        with TestClient(create_app(small), base_url="http://127.0.0.1:8470", client=HERE) as client:
             answer = client.post("/api/v1/assets/wtg/records", content=pieces(5), headers=FORM)
             assert answer.status_code == 413
         assert list(small.settings.spool.iterdir()) == []
@@ -125,7 +125,7 @@ def test_text_that_no_database_can_keep_is_refused(
 ) -> None:
     """Half a character, and in PostgreSQL a NUL."""
     for service in make_service(tmp_path, fresh(postgresql_url), monkeypatch):
-        with TestClient(create_app(service), base_url="http://127.0.0.1:8470") as client:
+        with TestClient(create_app(service), base_url="http://127.0.0.1:8470", client=HERE) as client:
             for text in ("\ud800", "a\0b"):
                 asset = json.dumps({"name": "other", "twin": "structure: jacket15", "comment": text})
                 assert client.post("/api/v1/assets", content=asset, headers=JSON).status_code == 422
@@ -254,7 +254,9 @@ def test_events_end_so_that_who_listens_is_asked_again(
 def test_a_fault_of_ours_is_a_problem_document_without_its_insides(service: Service, monkeypatch) -> None:
     monkeypatch.setattr("jackettwin.service.web.catalogue.overview", lambda _: {}["secret"])
     app = create_app(service)
-    with TestClient(app, base_url="http://127.0.0.1:8470", raise_server_exceptions=False) as client:
+    with TestClient(
+        app, base_url="http://127.0.0.1:8470", client=HERE, raise_server_exceptions=False
+    ) as client:
         answer = client.get("/api/v1/assets")
     assert (answer.status_code, answer.json()["title"]) == (500, "Internal Server Error")
     assert "secret" not in answer.text

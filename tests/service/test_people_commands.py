@@ -19,6 +19,7 @@ def ran(store: Path, *words: str, given: str = "", code: int = 0) -> Any:
 
 def test_a_token_is_changed_without_a_moment_without_one(tmp_path: Path) -> None:
     password = "three small words\n"
+    ran(tmp_path, "user", "add", "anna", "--role", "admin", "--password-stdin", given=password)
     ran(tmp_path, "user", "add", "logger", "--role", "engineer", "--password-stdin", given=password)
     for label in ("2025", "2026"):
         assert len(ran(tmp_path, "token", "add", "logger", "--label", label)["token"]) > 30

@@ -11,7 +11,7 @@ from typing import get_type_hints
 import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import event
-from tests.service.conftest import NOON, TWIN, make_service, turn, upload
+from tests.service.conftest import HERE, NOON, TWIN, make_service, turn, upload
 
 from jackettwin.service import adopt_version, rebuild
 from jackettwin.service.answer_cache import Answer, AnswerCache, has_tag
@@ -84,7 +84,7 @@ def standing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TestCli
     """Two turbines, one of them with two versions and four records."""
     patch = pytest.MonkeyPatch()
     for service in make_service(tmp_path_factory.mktemp("standing"), None, patch):
-        with TestClient(create_app(service), base_url="http://127.0.0.1:8470") as client:
+        with TestClient(create_app(service), base_url="http://127.0.0.1:8470", client=HERE) as client:
             client.post("/api/v1/assets", json={"name": "other", "twin": TWIN})
             client.put("/api/v1/assets/wtg", json={"twin": TWIN + "gravity: false\n"})
             for k in range(4):

@@ -13,7 +13,7 @@ import pyarrow.parquet as pq
 import pytest
 from fastapi.routing import APIRoute
 from fastapi.testclient import TestClient
-from tests.service.conftest import NOON, PASSWORD, Done, make_service, upload
+from tests.service.conftest import HERE, NOON, PASSWORD, Done, make_service, upload
 
 from jackettwin.errors import InputError
 from jackettwin.service import ServiceSettings
@@ -104,7 +104,7 @@ def test_a_session_needs_its_csrf_token_for_what_it_changes(stranger: TestClient
 
 def test_cookies_are_secure_where_answers_are_encrypted(users: Service) -> None:
     object.__setattr__(users.settings, "behind_proxy", True)
-    with TestClient(create_app(users), base_url="https://127.0.0.1") as client:
+    with TestClient(create_app(users), base_url="https://127.0.0.1", client=HERE) as client:
         answer = client.post("/api/v1/login", json={"name": "viewer", "password": PASSWORD})
         assert "Secure" in answer.headers["set-cookie"]
         assert "max-age" in answer.headers["strict-transport-security"]
@@ -179,7 +179,7 @@ def test_a_file_that_expands_beyond_the_limit_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for small in make_service(tmp_path, None, monkeypatch, samples_limit=100):
-        with TestClient(create_app(small), base_url="http://127.0.0.1:8470") as client:
+        with TestClient(create_app(small), base_url="http://127.0.0.1:8470", client=HERE) as client:
             answer = upload(client, 1)
         assert (answer.status_code, answer.json()["field"]) == (422, "file")
         assert "expands" in answer.json()["detail"]

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
-from tests.service.conftest import description, hour, make_service, record_file, upload
+from tests.service.conftest import HERE, description, hour, make_service, record_file, upload
 from tests.service.servers import Broker, Database, Server, opened, publish
 
 from jackettwin.service import add_twin, take_here
@@ -166,7 +166,7 @@ def test_a_full_disk_is_said_and_nothing_is_half_kept(
         pytest.skip("needs the right to mount a small file system")
     try:
         for full in make_service(folder / "store", None, monkeypatch):
-            with TestClient(create_app(full), base_url="http://127.0.0.1:8470") as client:
+            with TestClient(create_app(full), base_url="http://127.0.0.1:8470", client=HERE) as client:
                 answer = upload(client)
                 assert answer.status_code == 507
                 assert "full" in answer.json()["detail"]

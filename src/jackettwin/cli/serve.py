@@ -12,6 +12,8 @@ import click
 from jackettwin.cli.console import FiniteFloat, messages, print_json
 from jackettwin.cli.store_options import needs_service
 
+FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
+
 
 @click.command("serve")
 @click.argument("store", type=click.Path(path_type=Path, file_okay=False))
@@ -20,10 +22,20 @@ from jackettwin.cli.store_options import needs_service
 @click.option("--database", envvar="JACKETTWIN_DATABASE", help="URL of PostgreSQL; default: SQLite in STORE.")
 @click.option("--scheduler", help="Address of a Dask scheduler; default: workers of its own.")
 @click.option("--workers", default=2, show_default=True, type=click.IntRange(1, 256), help="Of its own.")
-@click.option("--mqtt", help="mqtt[s]://[USER:PASSWORD@]HOST[:PORT] of a broker to listen to.")
-@click.option("--tls-certificate", type=click.Path(path_type=Path, exists=True, dir_okay=False))
-@click.option("--tls-key", type=click.Path(path_type=Path, exists=True, dir_okay=False))
+@click.option("--mqtt", help="mqtt[s]://[USER@]HOST[:PORT] of a broker to listen to.")
+@click.option("--mqtt-password-file", type=FILE, help="Its first line is the broker's password.")
+@click.option("--mqtt-ca", type=FILE, help="By which the broker is known; default: what the system trusts.")
+@click.option("--mqtt-certificate", type=FILE, help="By which the broker knows us.")
+@click.option("--mqtt-key", type=FILE)
+@click.option("--tls-certificate", type=FILE)
+@click.option("--tls-key", type=FILE)
 @click.option("--behind-proxy", is_flag=True, help="A proxy in front ends TLS.")
+@click.option(
+    "--trusted-proxy",
+    "trusted_proxies",
+    multiple=True,
+    help="Address or network of that proxy, again for each; default: this machine.",
+)
 @click.option("--trusted-header", help="Header in which the proxy names the user it authenticated.")
 @click.option(
     "--raw-days",
@@ -57,5 +69,6 @@ def serve_command(store: Path, demo: bool, as_json: bool, **options: Any) -> Non
         if demo:
             demonstrate(service)
 
-    serve(read_settings(store=store, **options), ready)
+    given = {name: value for name, value in options.items() if value not in (None, (), False)}
+    serve(read_settings(store=store, **given), ready)
     messages.print("stopped; what was under way goes on at the next start")

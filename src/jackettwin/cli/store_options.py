@@ -47,9 +47,9 @@ class StorePlace:
             value=str(self.folder),
             remedy="begin with `jackettwin asset add NAME TWIN --store STORE` or `jackettwin serve STORE`",
         )
-        from jackettwin.store import open_database, sqlite_url
+        from jackettwin.store import open_database, private_folder, sqlite_url
 
-        self.folder.mkdir(parents=True, exist_ok=True)
+        private_folder(self.folder)
         return open_database(self.database or sqlite_url(self.folder))
 
 

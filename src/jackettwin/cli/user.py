@@ -66,6 +66,4 @@ def remove_user(name: str, at: StorePlace) -> Reply:
         people.known_user(connection, name)
         people.remove_user(connection, name)
         people.note_down(connection, "command line", "user remove", name, "ok", datetime.now(UTC))
-        left = people.any_user(connection)
-    nobody = "" if left else "; nobody is left: who is on this machine may do everything"
-    return Reply({"user": name, "removed": True}, lambda: say(f"{name} is removed{nobody}"))
+    return Reply({"user": name, "removed": True}, lambda: say(f"{name} is removed"))

@@ -15,8 +15,11 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def atomic_path(path: Path | str) -> Iterator[Path]:
-    """Yield a temporary path beside ``path``; rename it into place only if the block succeeds."""
+def atomic_path(path: Path | str, *, mode: int = 0o644) -> Iterator[Path]:
+    """Yield a temporary path beside ``path``; rename it into place only if the block succeeds.
+
+    Nobody else reads it before, and then whom ``mode`` lets.
+    """
     target = Path(path)
     target.parent.mkdir(parents=True, exist_ok=True)
     with _named(target):
@@ -26,7 +29,7 @@ def atomic_path(path: Path | str) -> Iterator[Path]:
     try:
         with _full_disk_named(target):
             yield temporary
-            temporary.chmod(0o644)
+            temporary.chmod(mode)
             temporary.replace(target)
     finally:
         temporary.unlink(missing_ok=True)

@@ -18,7 +18,7 @@ from jackettwin.service.day_cache import DayCache
 from jackettwin.service.event_feed import Feed
 from jackettwin.service.login_attempts import LoginAttempts
 from jackettwin.service.settings import ServiceSettings
-from jackettwin.store import open_database
+from jackettwin.store import open_database, private_folder
 
 
 def _now() -> datetime:
@@ -75,7 +75,8 @@ def open_service(settings: ServiceSettings) -> Service:
     InputError
         If the database cannot be opened.
     """
-    for folder in (settings.store, settings.spool, settings.models):
+    private_folder(settings.store)
+    for folder in (settings.spool, settings.models):
         folder.mkdir(parents=True, exist_ok=True)
     database = open_database(settings.database_url)
     return Service(

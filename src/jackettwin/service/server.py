@@ -6,6 +6,7 @@ import asyncio
 import errno
 import json
 import logging
+import os
 import signal
 import socket
 import ssl
@@ -83,13 +84,13 @@ def serve(settings: ServiceSettings, ready: Callable[[Service], None] = lambda _
     """
     signal.signal(signal.SIGTERM, _interrupt)
     _check_tls(settings)
+    os.umask(0o077)  # of our workers, too: what is kept is nobody else's to read
     with _listening(settings) as door, running(settings) as service:
         config = uvicorn.Config(
             create_app(service),
             log_level="warning",
             access_log=False,
-            proxy_headers=settings.behind_proxy,
-            forwarded_allow_ips="*" if settings.behind_proxy else None,
+            proxy_headers=False,  # the application believes the proxies that are named, and nobody else
             ssl_certfile=settings.tls_certificate,
             ssl_keyfile=settings.tls_key,
             timeout_graceful_shutdown=3,

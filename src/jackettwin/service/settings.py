@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import ipaddress
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import Field, ValidationError
+from pydantic import AfterValidator, Field, SecretStr, ValidationError
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from jackettwin.errors import InputError, require
 from jackettwin.store import sqlite_url
+
+LOOPBACK = ("127.0.0.1", "::1")
+
+
+def _network(text: str) -> str:
+    return str(ipaddress.ip_network(text))
 
 
 class ServiceSettings(BaseSettings):
@@ -36,12 +42,23 @@ class ServiceSettings(BaseSettings):
     workers: int = Field(default=2, ge=1)
     """Number of own workers, one thread each."""
     mqtt: str | None = None
-    """``mqtt[s]://[user:password@]host[:port]`` of a broker to listen to."""
+    """``mqtt[s]://[user@]host[:port]`` of a broker to listen to; its ports are 1883 and 8883."""
+    mqtt_password: SecretStr | None = None
+    """Of the broker's user; from the environment alone, since every user of a machine reads its commands."""
+    mqtt_password_file: Path | None = None
+    """File whose first line is that password."""
+    mqtt_ca: Path | None = None
+    """Certificates by which the broker is known; None for those the system trusts."""
+    mqtt_certificate: Path | None = None
+    """By which the broker knows us, with ``mqtt_key``."""
+    mqtt_key: Path | None = None
     tls_certificate: Path | None = None
     """For HTTPS without a proxy, with ``tls_key``."""
     tls_key: Path | None = None
     behind_proxy: bool = False
     """Whether a proxy in front ends TLS and passes on who asked."""
+    trusted_proxies: tuple[Annotated[str, AfterValidator(_network)], ...] = LOOPBACK
+    """Addresses and networks of the proxies whose word on who asks is taken; nobody else's is."""
     trusted_header: str | None = None
     """Header in which the proxy names the user it has authenticated, as OIDC proxies do."""
     raw_days: float | None = None
@@ -71,6 +88,14 @@ class ServiceSettings(BaseSettings):
     def secure(self) -> bool:
         """Whether what browsers send is encrypted on its way."""
         return self.tls_certificate is not None or self.behind_proxy
+
+    def trusts(self, host: str) -> bool:
+        """Whether a proxy is at the other end of a connection, and its word is taken."""
+        try:
+            peer = ipaddress.ip_address(host)
+        except ValueError:
+            return False
+        return self.behind_proxy and any(peer in ipaddress.ip_network(net) for net in self.trusted_proxies)
 
     @property
     def spool(self) -> Path:
@@ -122,14 +147,15 @@ def refuse_exposed(settings: ServiceSettings, users: bool) -> None:
     Raises
     ------
     InputError
-        If the host is not loopback and there are no users, or no TLS of our own or of a proxy.
+        If the host is not loopback, or a proxy passes others on, and there are no users; or if there is no
+        TLS of our own or of a proxy.
     """
     require(
-        settings.loopback or users,
+        (settings.loopback and not settings.behind_proxy) or users,
         "others can reach this address, and no user is defined",
         field="host",
         value=settings.host,
-        allowed="127.0.0.1, or users",
+        allowed="127.0.0.1 without a proxy, or users",
         remedy="define one: jackettwin user add NAME --role admin --store STORE",
     )
     require(

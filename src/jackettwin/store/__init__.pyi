@@ -1,5 +1,6 @@
 from .database import (
     open_database as open_database,
+    private_folder as private_folder,
     reading as reading,
     sqlite_url as sqlite_url,
     writing as writing,

@@ -36,7 +36,7 @@ def backup(database: Engine, store: Path, target: Path) -> dict[str, int]:
     """
     counts: dict[str, int] = {}
     with (
-        atomic_path(target) as temporary,
+        atomic_path(target, mode=0o600) as temporary,  # hashes of passwords are in it
         database.connect() as connection,
         tarfile.open(temporary, "w:gz") as out,
     ):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Iterator, Mapping
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,25 @@ _MIGRATIONS = Path(__file__).with_name("migrations")
 def sqlite_url(store: Path) -> str:
     """Return the URL of the database that lives in a store's folder."""
     return f"sqlite:///{store / 'jackettwin.sqlite'}"
+
+
+def private_folder(folder: Path) -> None:
+    """Make the folder of a store, which only its owner enters; a store that others could enter is closed."""
+    with suppress(FileExistsError):
+        folder.mkdir(mode=0o700, parents=True)
+        return
+    is_store = any((folder / known).exists() for known in ("jackettwin.sqlite", "models"))
+    if is_store and folder.stat().st_mode & 0o077:
+        with suppress(PermissionError):  # it is somebody else's, who let us in
+            folder.chmod(0o700)
+
+
+def private_file(path: Path) -> None:
+    """Make a file that only its owner reads, or close one that others could read: it will hold secrets."""
+    path.touch(mode=0o600)
+    if path.stat().st_mode & 0o077:
+        with suppress(PermissionError):
+            path.chmod(0o600)
 
 
 def open_database(url: str, *, migrate: bool = True) -> Engine:
@@ -87,6 +106,10 @@ def insert_new(connection: Connection, table: Table, row: Mapping[str, Any]) -> 
 
 
 def _sqlite(url: str) -> Engine:
+    name = make_url(url).database
+    if name and name != ":memory:":
+        with suppress(OSError):  # the database says itself what is wrong with its place
+            private_file(Path(name))  # the files that SQLite puts beside it are as private
     engine = create_engine(url, connect_args={"timeout": _BUSY_S}, **_POOL)
 
     @event.listens_for(engine, "connect")
@@ -180,6 +203,7 @@ def _copy(connection: Connection, url: str, version: str) -> None:
     if connection.dialect.name == "sqlite":
         path = Path(str(make_url(url).database))
         target = path.with_name(f"{path.stem}.schema-{version}{path.suffix}")
+        private_file(target)
         with closing(sqlite3.connect(path)) as source, closing(sqlite3.connect(target)) as copy:
             source.backup(copy)
         return

@@ -48,8 +48,16 @@ def any_user(connection: Connection) -> bool:
 
 
 def add_user(connection: Connection, user: User) -> None:
-    """Add a user, or replace who has the name; open sessions and tokens of the old one end."""
-    remove_user(connection, user.name)
+    """Add a user, or replace who has the name; open sessions and tokens of the old one end.
+
+    Raises
+    ------
+    InputError
+        If the last admin would become something less.
+    """
+    if user.role != "admin" or user.disabled:
+        _refuse_last(connection, user.name)
+    _remove(connection, user.name)
     connection.execute(insert(users).values(**vars(user)))
 
 
@@ -148,7 +156,29 @@ def revoke_tokens(connection: Connection, user: str, label: str | None = None) -
 
 
 def remove_user(connection: Connection, name: str) -> bool:
-    """Remove a user with all sessions and tokens; tell whether there was one."""
+    """Remove a user with all sessions and tokens; tell whether there was one.
+
+    Raises
+    ------
+    InputError
+        If it is the last admin, or the last user, without whom everything would be open again.
+    """
+    _refuse_last(connection, name)
+    if [user.name for user in list_users(connection)] == [name]:
+        raise InputError("the last user stays, or everything would be open", field="user", value=name)
+    return _remove(connection, name)
+
+
+def _refuse_last(connection: Connection, name: str) -> None:
+    enabled = (users.c.role == "admin", users.c.disabled.is_(False))
+    admins = connection.scalars(select(users.c.name).where(*enabled).with_for_update()).all()
+    if admins == [name]:
+        raise InputError(
+            "the last admin stays", field="user", value=name, remedy="make another one admin before"
+        )
+
+
+def _remove(connection: Connection, name: str) -> bool:
     revoke_tokens(connection, name)
     return connection.execute(delete(users).where(users.c.name == name)).rowcount == 1
 

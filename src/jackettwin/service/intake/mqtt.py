@@ -14,16 +14,19 @@ import paho.mqtt.client as mqtt
 from paho.mqtt.enums import CallbackAPIVersion, MQTTProtocolVersion
 
 from jackettwin.errors import InputError
+from jackettwin.files import read_text
 from jackettwin.service.intake.packets import TOPIC, read_packets
 from jackettwin.store import Packet, assets, streams, writing
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Service
+    from jackettwin.service.settings import ServiceSettings
 
 log = logging.getLogger(__name__)
 
 SILENT_S = 120.0
 """A stream of which nothing came for so long, by our stopwatch, is silent."""
+_PORTS = {"mqtt": 1883, "mqtts": 8883}
 _BATCH = 500
 _REMEMBERED = 1000
 
@@ -47,8 +50,15 @@ class MqttIntake:
             raise InputError(
                 "not a broker's address",
                 field="mqtt",
-                value=url,
-                allowed="mqtt[s]://[USER:PASSWORD@]HOST[:PORT]",
+                value=place.scheme,
+                allowed="mqtt[s]://[USER@]HOST[:PORT]",
+            )
+        if place.password is not None:
+            raise InputError(
+                "a password in an address can be read by every user of this machine",
+                field="mqtt",
+                allowed="mqtt[s]://[USER@]HOST[:PORT]",
+                remedy="give --mqtt-password-file, or JACKETTWIN_SERVE_MQTT_PASSWORD in the environment",
             )
         self._client = mqtt.Client(
             CallbackAPIVersion.VERSION2,
@@ -58,14 +68,16 @@ class MqttIntake:
             manual_ack=True,
         )
         if place.username:
-            self._client.username_pw_set(unquote(place.username), unquote(place.password or ""))
+            self._client.username_pw_set(unquote(place.username), _password(service.settings))
         if place.scheme == "mqtts":
-            self._client.tls_set(cert_reqs=ssl.CERT_REQUIRED)
+            self._client.tls_set_context(_tls(service.settings))
         self._client.reconnect_delay_set(1, 30)
         self._client.on_connect = self._subscribe
         self._client.on_connect_fail = lambda *_: log.warning("the broker does not answer; it is asked again")
         self._client.on_message = lambda _client, _data, message: self._inbox.put(message)
-        self._client.connect_async(place.hostname or "127.0.0.1", place.port or 1883, keepalive=30)
+        self._client.connect_async(
+            place.hostname or "127.0.0.1", place.port or _PORTS[place.scheme], keepalive=30
+        )
 
     @property
     def connected(self) -> bool:
@@ -124,6 +136,35 @@ class MqttIntake:
     def silent(self, asset: str) -> bool:
         """Tell whether nothing came of an asset for so long that its stream has ended."""
         return time.monotonic() - self._heard.setdefault(asset, time.monotonic()) > SILENT_S
+
+
+def _password(settings: ServiceSettings) -> str:
+    """Return the password for the broker, of a file or of the environment."""
+    if settings.mqtt_password_file is not None:
+        return read_text(settings.mqtt_password_file, what="password file").partition("\n")[0].rstrip("\r")
+    return "" if settings.mqtt_password is None else settings.mqtt_password.get_secret_value()
+
+
+def _tls(settings: ServiceSettings) -> ssl.SSLContext:
+    """Return how the broker is known to us, and we to it.
+
+    Raises
+    ------
+    InputError
+        If a file is no certificate, or its key does not fit.
+    """
+    file, field = settings.mqtt_ca, "mqtt-ca"
+    try:
+        context = ssl.create_default_context(cafile=file)
+        if settings.mqtt_certificate is not None:
+            file, field = settings.mqtt_certificate, "mqtt-certificate"
+            context.load_cert_chain(file, settings.mqtt_key)
+    except OSError as error:  # an SSLError is one
+        reason = error.strerror or str(error)
+        raise InputError(
+            f"not a certificate in PEM with its key ({reason})", file=file, field=field
+        ) from None
+    return context
 
 
 def _waiting(inbox: queue.Queue[mqtt.MQTTMessage], most: int) -> Iterable[mqtt.MQTTMessage]:

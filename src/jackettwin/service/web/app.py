@@ -14,6 +14,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from starlette.datastructures import MutableHeaders
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from jackettwin.service.context import Service
 from jackettwin.service.web import auth, pages, problems
@@ -74,6 +75,7 @@ def create_app(service: Service) -> FastAPI:
     app.openapi = lambda: described(app)  # type: ignore[method-assign]
     app.add_middleware(Guard, service=service)
     app.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=1)
+    app.add_middleware(Peer, service=service)
     return app
 
 
@@ -92,6 +94,21 @@ def described(app: FastAPI) -> dict[str, Any]:
             one = EXAMPLES[of]
             schema["example"] = one if of == name else {"items": [one], "next_cursor": None}
     return document
+
+
+class Peer:
+    """Note who is at the other end of the connection, then take a trusted proxy's word on who asks."""
+
+    def __init__(self, app: ASGIApp, service: Service) -> None:
+        self._app, trusted = app, service.settings.trusted_proxies
+        if service.settings.behind_proxy:
+            self._app = ProxyHeadersMiddleware(app, trusted_hosts=list(trusted))  # type: ignore[arg-type, assignment]
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on."""
+        if scope["type"] == "http":
+            scope.setdefault("state", {})["peer"] = (scope["client"] or ("", 0))[0]
+        await self._app(scope, receive, send)
 
 
 class Guard:

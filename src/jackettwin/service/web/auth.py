@@ -25,8 +25,15 @@ COOKIE = "jackettwin_session"
 SESSION = timedelta(hours=12)
 TOKEN = timedelta(days=365)
 SAFE_METHODS = ("GET", "HEAD", "OPTIONS")
-ATTEMPTS, ATTEMPTS_FROM = 5, 30
-"""Failed logins a minute: of one name from one address, and of any from it."""
+ATTEMPTS, ATTEMPTS_FROM, ATTEMPTS_OF = 5, 30, 20
+"""Failed logins a minute: of one name from one address, of any from it, and of one name from anywhere."""
+PROXY_HEADERS = (
+    "forwarded",
+    "via",
+    "x-real-ip",
+    *(f"x-forwarded-{x}" for x in ("for", "host", "proto", "server")),
+)
+"""One of these comes with whatever a proxy passes on, if it is told to say so."""
 SHORTEST_PASSWORD = 12
 """Characters; NIST SP 800-63B asks for 8 and advises more."""
 
@@ -91,19 +98,19 @@ def opened_session(
     ApiError
         401 if it is nobody's, 429 after too many tries.
     """
-    key = f"{place}/{name}"
-    wait = max(attempts.wait_s(place, ATTEMPTS_FROM), attempts.wait_s(key, ATTEMPTS))
+    peer = attempts.place(place)
+    limits = {f"from {peer}": ATTEMPTS_FROM, f"{name} from {peer}": ATTEMPTS, f"{name}": ATTEMPTS_OF}
+    wait = attempts.wait_s(limits)
     if wait > 0.0:
         raise ApiError(429, "too many failed logins; wait", headers={"Retry-After": str(ceil(wait))})
     with reading(database) as connection:  # it takes its time, and guesses must not hold up those who write
         user = checked_login(connection, name, password)
     with writing(database) as connection:
-        people.note_down(connection, name, "login", key, "ok" if user else "refused", now)
+        people.note_down(connection, name, "login", place, "ok" if user else "refused", now)
         grant = ("", "") if user is None else new_grant(connection, name, "session", "browser", now, SESSION)
     if user is None:
         raise ApiError(401, "name or password is wrong")
-    attempts.succeeded(place)
-    attempts.succeeded(key)
+    attempts.succeeded(limits)
     return user, *grant
 
 
@@ -125,7 +132,9 @@ def who_asks(request: Request, database: Engine, settings: ServiceSettings, now:
     """
     with reading(database) as connection:
         if not people.any_user(connection):
-            return Who("local", "admin", "open") if settings.loopback and _from_here(request) else None
+            return (
+                Who("local", "admin", "open") if settings.loopback and _from_here(request, settings) else None
+            )
         scheme, _, token = request.headers.get("authorization", "").partition(" ")
         kind = "token" if scheme.lower() == "bearer" else "session"
         secret = token.strip() if kind == "token" else request.cookies.get(COOKIE)
@@ -134,7 +143,7 @@ def who_asks(request: Request, database: Engine, settings: ServiceSettings, now:
             if found is None or found.kind != kind:
                 return None
             return Who(found.user, found.role, kind, found.csrf if kind == "session" else "")
-        if settings.trusted_header and settings.behind_proxy:
+        if settings.trusted_header and settings.trusts(request.state.peer):
             user = people.find_user(connection, request.headers.get(settings.trusted_header, ""))
             return Who(user.name, user.role, "proxy") if user and not user.disabled else None
     return None
@@ -189,12 +198,13 @@ def refuse_forged(request: Request, who: Who | None) -> None:
             raise ApiError(403, "the header X-CSRF-Token is missing or wrong; GET /api/v1/me tells it")
 
 
-def _from_here(request: Request) -> bool:
-    """Tell whether an open server was asked by its own name.
+def _from_here(request: Request, settings: ServiceSettings) -> bool:
+    """Tell whether an open server was asked from its own machine, by its own name, and by no proxy.
 
-    A page elsewhere may point its name at 127.0.0.1.
+    A page elsewhere may point its name at 127.0.0.1, and a proxy names its server so.
     """
-    return is_loopback(request.url.hostname or "")
+    passed_on = settings.behind_proxy or any(name in request.headers for name in PROXY_HEADERS)
+    return not passed_on and is_loopback(request.state.peer) and is_loopback(request.url.hostname or "")
 
 
 VIEWER, ENGINEER, ADMIN = (Depends(allowed(role)) for role in people.ROLES)
