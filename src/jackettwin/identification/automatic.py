@@ -126,7 +126,7 @@ def identify(
     identified = Identification(
         records=(record.name,),
         channels=ready.channels,
-        modes=modes if fallen is None else fallen.doubted(modes),
+        modes=modes if fallen is None else fallen.as_doubtful(modes),
         rejected=chosen.rejected,
         stabilisation=replace(poles, cluster=label),
         spectrum=as_measured(welch(y * scale[:, None], resolved.sample_rate_hz), ready.differentiated),
@@ -150,9 +150,9 @@ def _fallen(
     try:
         found = identify(fallen.beside, settings, progress=progress)
     except InputError:
-        return transient(record, settings, knocks=True)
+        return transient(record, settings, impacts=True)
     if not any(mode.status is ModeStatus.OK for mode in found.modes):
-        return transient(record, settings, knocks=True)
+        return transient(record, settings, impacts=True)
     said = Finding("beside_knock", params={"fall": fallen.fall, "used_s": fallen.beside.duration_s})
     found = replace(found, findings=(said, *found.findings), warnings=(str(said), *found.warnings))
     return replace(fallen, identified=found)

@@ -13,7 +13,7 @@ from jackettwin.identification.decays.damped_cosines import (
     DampedCosines,
     _jacobian,
     _products,
-    _projected,
+    _project,
     damped_cosines,
 )
 from jackettwin.identification.mode_shapes import mac
@@ -50,11 +50,11 @@ def test_products_are_those_of_the_slopes() -> None:
     rng, t = np.random.default_rng(7), T[:400]
     y = rng.standard_normal((4, 400))
     p = np.log([2.0 * np.pi * 0.3, 2.0 * np.pi * 0.7, 0.02, 0.05])
-    value, slope, second = _products(_projected(y, t, p))
-    flat = _jacobian(_projected(y, t, p)).reshape(4, -1)
+    value, slope, second = _products(_project(y, t, p))
+    flat = _jacobian(_project(y, t, p)).reshape(4, -1)
     assert_allclose(second, flat @ flat.T, rtol=1e-9)
     step = 1e-6 * np.eye(4)
-    ahead, behind = ([_products(_projected(y, t, p + side * d))[0] for d in step] for side in (1.0, -1.0))
+    ahead, behind = ([_products(_project(y, t, p + side * d))[0] for d in step] for side in (1.0, -1.0))
     assert value > 0.0
     assert_allclose(slope, np.subtract(ahead, behind) / 2e-6, rtol=1e-5)
 

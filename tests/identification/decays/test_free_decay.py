@@ -12,7 +12,7 @@ import pytest
 
 from jackettwin.identification import IdentificationSettings, identify, mac
 from jackettwin.identification.decays import free_decay
-from jackettwin.identification.decays.free_decay import HOPELESS, transient
+from jackettwin.identification.decays.free_decay import MIN_EXPLAINED_FIRST, transient
 from jackettwin.identification.decays.modes_of_decay import DecayFit, modes_of_decay
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.synthetic import ModalSystem, simulate
@@ -136,7 +136,7 @@ def test_what_forces_shake_while_it_fades_is_searched_once_at_most(
     assert found is not None
     assert found.identified is None
     assert len(explained) == searches
-    assert all(share < HOPELESS for share in explained)
+    assert all(share < MIN_EXPLAINED_FIRST for share in explained)
 
 
 def test_a_force_that_goes_on_for_a_while_puts_off_the_start() -> None:

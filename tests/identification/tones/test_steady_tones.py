@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jackettwin.identification.synthetic import ModalSystem, simulate
-from jackettwin.identification.tones.sinusoid import FARTHEST, sinusoid
+from jackettwin.identification.tones.sinusoid import MAX_OFFSET, sinusoid
 from jackettwin.identification.tones.steady_tones import steady_tones, without_tones
 
 RATE = 5.0
@@ -30,7 +30,7 @@ def test_no_line_of_noise_is_a_tone_nor_one_far_away(rng):
     """Where most is explained at an end of what is tried, the parabola through it has no top."""
     noise = rng.standard_normal((500, 2, 3, 60))
     found = [sinusoid(real + 1j * imaginary, 30) for real, imaginary in noise]
-    assert max(abs(tone.position - 30.0) for tone in found) <= FARTHEST * (1.0 + 1e-12)
+    assert max(abs(tone.position - 30.0) for tone in found) <= MAX_OFFSET * (1.0 + 1e-12)
     # of 4,000 such lines none was above 7
     assert max(tone.ratio for tone in found) < 12.0
 

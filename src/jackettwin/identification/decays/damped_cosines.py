@@ -1,22 +1,23 @@
 r"""Damped cosines in noise, by maximum likelihood: the modes of a free decay.
 
-The channels of a structure that is let go share poles and nothing else,
+After a structure is released, its channels share poles and nothing else,
 
 .. math:: y_c(t) = b_c + \mathrm{Re} \sum_m a_{cm} e^{\lambda_m t} + e_c(t), \qquad
           \lambda = -\zeta\omega + i\omega\sqrt{1 - \zeta^2},
 
-so the amplitudes :math:`a_{cm}`, which are the shapes, are linear and drop out (variable projection; Golub &
-Pereyra 1973, with the derivative of Kaufman 1975): what is left to search is ln ω and ln ζ of each mode. In
-white noise of each channel's own strength the least squares of the whitened residual are maximum likelihood,
-and their information is the Cramér–Rao bound; for one mode that dies within the record
+so that the amplitudes :math:`a_{cm}`, which are the shapes, are linear parameters and can be
+eliminated (variable projection: Golub & Pereyra 1973, with the derivative of Kaufman 1975).
+Only ln ω and ln ζ of each mode are searched. In white noise of a different strength in each channel, least
+squares of the whitened residual are the maximum likelihood, and their information gives the Cramér–Rao bound.
+For one mode that dies out within the record it is
 
 .. math:: \mathrm{var}(\hat\omega) = \mathrm{var}(\hat\alpha) = 16\,\alpha^3\sigma^2\Delta t / A^2,
           \qquad \alpha = \zeta\omega
 
-(Yao & Pandit 1995, in the limit of many samples a decay). What a structure does under wind and waves while it
-decays is no white noise, but strongest just at the mode: the covariance is therefore the sandwich
-:math:`I^{-1} V I^{-1}`, V the variance of the score in noise with the spectrum of what is left, or of the
-record after the decay.
+(Yao & Pandit 1995, in the limit of many samples per decay).
+The response to wind and waves during a decay is not white: it is strongest at the mode itself.
+The covariance is therefore the sandwich estimate :math:`I^{-1} V I^{-1}`, where V is the variance of the
+score in noise with the spectrum of the residual, or of the record after the decay.
 """
 
 from __future__ import annotations
@@ -32,21 +33,22 @@ from numpy import fft
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.signals import next_fast_len
 
-REWEIGHTED = 2
-"""Number of times that the noise of each channel is estimated again."""
-MOST_DAMPING = 0.5
-CONVERGED = 1e-3
-"""Slope that ends a fit, by parameters in units of their standard deviations."""
-MOST_STEPS = 40
-"""Most iterations of a fit; one that needs more rests against its bounds."""
-FARTHEST = 0.2
-"""Largest change of ln ω from the start of a fit: what lies farther away is another mode."""
-LEAST_AFTER = 0.125
-"""Length of the noise after a decay, over the decay's, from which it tells more than what a fit leaves."""
-LEAST_NOISE = 1e-6
-"""Least noise of a channel, as a share of its rms."""
-FEWEST_FREEDOM = 2.0
-"""Degrees of freedom of a variance that rests on one line of noise."""
+REWEIGHTINGS = 2
+"""Number of times that the noise of each channel is re-estimated."""
+MAX_DAMPING_RATIO = 0.5
+GRADIENT_TOLERANCE = 1e-3
+"""Gradient at which a fit has converged, with parameters in units of their standard deviations."""
+MAX_ITERATIONS = 40
+"""Most iterations of a fit; one that needs more is at its bounds."""
+MAX_FREQUENCY_CHANGE = 0.2
+"""Largest change of ln ω from the start of a fit; a frequency farther away belongs to another mode."""
+MIN_NOISE_LENGTH = 0.125
+"""Length of the record after a decay, over the decay's, from which the noise is estimated there and not from
+the residual."""
+MIN_NOISE = 1e-6
+"""Smallest noise of a channel, as a share of its rms."""
+MIN_DEGREES_OF_FREEDOM = 2.0
+"""Degrees of freedom of a variance estimated from one line of noise, the smallest used."""
 
 
 @dataclass(frozen=True)
@@ -58,12 +60,12 @@ class DampedCosines:
     frequency_hz, damping_ratio : (n_modes,)
         |λ|/2π and −Re λ/|λ|.
     amplitudes : (n_modes, n_channels) complex
-        At the first sample, in the units of the samples.
+        Amplitudes at the first sample, in the units of the samples.
     residual : (n_channels, n_samples)
     log_covariance : (2 n_modes, 2 n_modes)
-        Of (ln f, …, ln ζ, …), for the noise there is.
+        Covariance of (ln f, …, ln ζ, …) in the actual noise.
     cramer_rao : (2 n_modes, 2 n_modes)
-        The same for white noise of the residual's variance.
+        The same in white noise of the residual's variance.
     explained : float
         Share of the channels' whitened power that the cosines explain.
     """
@@ -90,10 +92,10 @@ def damped_cosines(
     Parameters
     ----------
     y : (n_channels, n_samples)
-        Nothing missing.
+        Samples of the decay, none missing.
     frequency_hz, damping_ratio : (n_modes,)
     noise : (n_channels, n_more), optional
-        The same channels after the decay: less what still decays, its spectrum is that of the noise.
+        The same channels after the decay; less the rest of the decay, they give the spectrum of the noise.
 
     Examples
     --------
@@ -106,25 +108,25 @@ def damped_cosines(
     t = np.arange(y.shape[1]) / sample_rate_hz
     start = np.concatenate([np.log(2.0 * np.pi * frequency_hz), np.log(damping_ratio)])
     n = len(frequency_hz)
-    low = np.concatenate([start[:n] - FARTHEST, np.full(n, np.log(1e-5))])
-    high = np.concatenate([start[:n] + FARTHEST, np.full(n, np.log(MOST_DAMPING))])
-    least = LEAST_NOISE * y.std(axis=1) + 1e-300
+    low = np.concatenate([start[:n] - MAX_FREQUENCY_CHANGE, np.full(n, np.log(1e-5))])
+    high = np.concatenate([start[:n] + MAX_FREQUENCY_CHANGE, np.full(n, np.log(MAX_DAMPING_RATIO))])
+    least = MIN_NOISE * y.std(axis=1) + 1e-300
     sigma, p = y.std(axis=1) + least, np.clip(start, low + 1e-9, high - 1e-9)
-    for _ in range(REWEIGHTED):
+    for _ in range(REWEIGHTINGS):
         white = y / sigma[:, None]
         p = _least_squares(white, t, p, (low, high))
-        residual = _projected(y, t, p).left
+        residual = _project(y, t, p).residual
         free = max(len(t) - 2 * n - 1, 1)
         sigma = np.sqrt(np.sum(residual**2, axis=1) / free) + least
     white = y / sigma[:, None]
-    fit = _projected(white, t, p)
+    fit = _project(white, t, p)
     bound = np.linalg.pinv(_products(fit)[2])
-    background = fit.left
-    if noise is not None and noise.shape[1] >= LEAST_AFTER * len(t):
+    background = fit.residual
+    if noise is not None and noise.shape[1] >= MIN_NOISE_LENGTH * len(t):
         later = t[-1] + np.arange(1, noise.shape[1] + 1) / sample_rate_hz
-        background = noise / sigma[:, None] - _sums(p, fit.amplitudes, later)
+        background = noise / sigma[:, None] - _decays_at(p, fit.amplitudes, later)
     variance, freedom = _score_variance(_jacobian(fit), background)
-    # of few lines of noise the variance is itself hardly known: intervals are Student's
+    # a variance from few lines of noise is itself uncertain: intervals are Student's
     wider = scipy.special.stdtrit(freedom, 0.975) / scipy.special.ndtri(0.975)
     covariance = bound @ variance @ bound * np.outer(wider, wider)
     about = white - white.mean(axis=1, keepdims=True)
@@ -132,30 +134,30 @@ def damped_cosines(
         frequency_hz=np.exp(p[:n]) / (2.0 * np.pi),
         damping_ratio=np.exp(p[n:]),
         amplitudes=fit.amplitudes * sigma,
-        residual=fit.left * sigma[:, None],
+        residual=fit.residual * sigma[:, None],
         log_covariance=np.asarray(covariance),
         cramer_rao=np.asarray(bound),
-        explained=1.0 - float(np.sum(fit.left**2) / np.sum(about**2)),
+        explained=1.0 - float(np.sum(fit.residual**2) / np.sum(about**2)),
     )
 
 
 def _least_squares(
     y: FloatArray, t: FloatArray, p: FloatArray, bounds: tuple[FloatArray, FloatArray]
 ) -> FloatArray:
-    """Return the parameters within bounds that leave least, from p on, by Gauss–Newton steps.
+    """Return the parameters within bounds that minimise the residual, starting from p, by Gauss–Newton steps.
 
-    What the amplitudes take is projected out (variable projection: Golub & Pereyra 1973; slopes as Kaufman
-    1975), and only products of the slopes are formed, which costs the same for any number of channels.
+    The amplitudes are eliminated by projection (variable projection: Golub & Pereyra 1973; slopes after
+    Kaufman 1975). Only products of the slopes are formed, at the same cost for any number of channels.
     """
     low, high = bounds
-    # in units of what the data tell of each parameter
-    unit = 1.0 / np.sqrt(np.diag(_products(_projected(y, t, p))[2]) + 1e-300)
+    # parameters are scaled by their information
+    unit = 1.0 / np.sqrt(np.diag(_products(_project(y, t, p))[2]) + 1e-300)
     nowhere = (np.inf, np.zeros(len(p)), np.eye(len(p)))
 
     @lru_cache(maxsize=1)
     def at(scaled: bytes) -> tuple[float, FloatArray, FloatArray]:
         q = unit * np.frombuffer(scaled)
-        return _products(_projected(y, t, q)) if np.all((q > low) & (q < high)) else nowhere
+        return _products(_project(y, t, q)) if np.all((q > low) & (q < high)) else nowhere
 
     found = scipy.optimize.minimize(  # type: ignore[call-overload]
         lambda q: at(q.tobytes())[0],
@@ -163,23 +165,23 @@ def _least_squares(
         method="trust-exact",
         jac=lambda q: unit * at(q.tobytes())[1],
         hess=lambda q: np.outer(unit, unit) * at(q.tobytes())[2],
-        options={"gtol": CONVERGED, "maxiter": MOST_STEPS},
+        options={"gtol": GRADIENT_TOLERANCE, "maxiter": MAX_ITERATIONS},
     )
     return np.asarray(unit * found.x)
 
 
 def _products(fit: _Projection) -> tuple[float, FloatArray, FloatArray]:
-    """Return half the sum of squares of what is left, its slope, and the slopes' products."""
-    left, amplitudes, q, moved = fit
+    """Return half the sum of squares of the residual, its gradient, and its Gauss–Newton Hessian."""
+    residual, amplitudes, q, moved = fit
     parts = np.concatenate([moved.real, -moved.imag], axis=1)
     parts -= q @ (q.T @ parts)
     twice = np.concatenate([amplitudes, amplitudes])
     weight = np.concatenate([twice.real, twice.imag])
-    slope = -np.sum(weight * (left @ parts).T, axis=1)
+    slope = -np.sum(weight * (residual @ parts).T, axis=1)
     second = (parts.T @ parts) * (weight @ weight.T)
     n = moved.shape[1]
     return (
-        0.5 * float(np.sum(left**2)),
+        0.5 * float(np.sum(residual**2)),
         slope[:n] + slope[n:],
         second[:n, :n] + second[:n, n:] + second[n:, :n] + second[n:, n:],
     )
@@ -192,8 +194,8 @@ def _pole_slopes(p: FloatArray) -> ComplexArray:
     return np.concatenate([_poles(p), by_log_zeta])
 
 
-def _sums(p: FloatArray, amplitudes: ComplexArray, t: FloatArray) -> FloatArray:
-    """Return the decays of amplitudes (n_modes, n_channels) at later times, (n_channels, n_times)."""
+def _decays_at(p: FloatArray, amplitudes: ComplexArray, t: FloatArray) -> FloatArray:
+    """Return decays of given amplitudes (n_modes, n_channels) at later times, (n_channels, n_times)."""
     return np.asarray((amplitudes.T @ np.exp(np.outer(_poles(p), t))).real)
 
 
@@ -203,26 +205,26 @@ def _poles(p: FloatArray) -> ComplexArray:
 
 
 class _Projection(NamedTuple):
-    """What the best amplitudes, and a constant, leave, and what its derivatives are made of.
+    """Residual after the best amplitudes and a constant, with the parts of its derivatives.
 
     Attributes
     ----------
     left : (n_channels, n_samples)
     amplitudes : (n_modes, n_channels)
     q : (n_samples, 2 n_modes + 1)
-        Orthonormal, along Re and −Im of the decays and the constant.
+        Orthonormal basis of Re and −Im of the decays and of the constant.
     moved : (n_samples, 2 n_modes)
         Derivatives of the decays by ln ω, then by ln ζ.
     """
 
-    left: FloatArray
+    residual: FloatArray
     amplitudes: ComplexArray
     q: FloatArray
     moved: ComplexArray
 
 
-def _projected(y: FloatArray, t: FloatArray, p: FloatArray) -> _Projection:
-    """Project out what the best amplitudes, and a constant, take."""
+def _project(y: FloatArray, t: FloatArray, p: FloatArray) -> _Projection:
+    """Project out the best amplitudes and a constant."""
     decays = np.exp(np.outer(t, _poles(p)))
     basis = np.concatenate([decays.real, -decays.imag, np.ones((len(t), 1))], axis=1)
     q, r = np.linalg.qr(basis)
@@ -234,9 +236,9 @@ def _projected(y: FloatArray, t: FloatArray, p: FloatArray) -> _Projection:
 
 def _jacobian(fit: _Projection) -> FloatArray:
     """Return the residual's derivatives by ln ω and ln ζ, (2 n_modes, n_channels, n_samples)."""
-    left, amplitudes, q, moved = fit
+    residual, amplitudes, q, moved = fit
     n = len(amplitudes)
-    out = np.empty((2 * n, *left.shape))
+    out = np.empty((2 * n, *residual.shape))
     for i in range(2 * n):
         change = np.outer(moved[:, i], amplitudes[i % n]).real.T
         out[i] = -(change - (change @ q) @ q.T)
@@ -244,15 +246,16 @@ def _jacobian(fit: _Projection) -> FloatArray:
 
 
 def _score_variance(jacobian: FloatArray, noise: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the variance of Jᵀe for noise e of the spectrum of a sample of it, and its degrees of freedom.
+    """Return the variance of Jᵀe, where the noise e has the spectrum of a sample, and its degrees of freedom.
 
-    Averaged over all times the sample may begin at, and never less than in white noise of its power.
+    The variance is averaged over all positions of the sample, and at least that of white noise of its power.
 
     Returns
     -------
     variance : (n_parameters, n_parameters)
     freedom : (n_parameters,)
-        Of the variance of each, two for every line of the sample that it rests on (Welch & Satterthwaite).
+        Degrees of freedom of each variance: two per line of the sample on which it rests (Welch &
+        Satterthwaite).
     """
     n_parameters, n_channels, n_samples = jacobian.shape
     length = noise.shape[1]
@@ -266,14 +269,14 @@ def _score_variance(jacobian: FloatArray, noise: FloatArray) -> tuple[FloatArray
     power = np.mean(noise**2, axis=1)
     white = np.einsum("pct,qct,c->pq", jacobian, jacobian, power)
     values, vectors = _generalised(variance.real, white)
-    # of one line two; padding spreads a line over several
+    # two per line; zero padding spreads a line over several
     each = np.abs(score) ** 2
     freedom = 2.0 * each.sum(axis=1) ** 2 / np.sum(each**2, axis=1) * length / size
-    return vectors @ np.diag(np.maximum(values, 1.0)) @ vectors.T, np.maximum(freedom, FEWEST_FREEDOM)
+    return vectors @ np.diag(np.maximum(values, 1.0)) @ vectors.T, np.maximum(freedom, MIN_DEGREES_OF_FREEDOM)
 
 
 def _generalised(a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the values of A over B, and vectors V with A = V diag(values) Vᵀ and B = V Vᵀ."""
+    """Return generalised eigenvalues of A, B, and vectors V with A = V diag(values) Vᵀ and B = V Vᵀ."""
     root = np.linalg.cholesky(b + 1e-12 * np.trace(b) / len(b) * np.eye(len(b)))
     inner = np.linalg.solve(root, np.linalg.solve(root, a).T)
     values, vectors = np.linalg.eigh(0.5 * (inner + inner.T))

@@ -1,9 +1,9 @@
-r"""Find the part of a record in which a structure that was let go swings out.
+r"""Find the part of a record in which a released structure decays freely.
 
-The power of the channels, smoothed over cycles of the strongest frequency and each over what it is when
-nothing happens, is searched for a highest point from which it falls by e-folds and never comes back. Fading
-does that in the response to random forces too, but seldom so deep; whether it was a decay, the fit of damped
-cosines tells: they explain nearly all of a decay, and little of a record in which forces act.
+The power of each channel is smoothed over cycles of the strongest frequency and divided by its quiet level.
+The decay starts at the highest point, from which the power falls by e-folds without recovering.
+Fading of the response to random forces does that too, but rarely to such depth; the fit of damped cosines
+decides, since they explain nearly all of a free decay and little of a forced response.
 """
 
 from __future__ import annotations
@@ -18,34 +18,34 @@ from jackettwin.signals import hann, next_fast_len
 
 CYCLES = 2.0
 """Cycles of the strongest frequency over which the power is averaged."""
-LEAST_FALL = 1.0
-"""Least fall of the amplitude from its highest point to the end of the decay, in e-folds."""
-AGAIN = 1.0
-"""After the decay the amplitude stays this many e-folds below its highest point."""
+MIN_FALL = 1.0
+"""Smallest fall of the amplitude over a decay, in e-folds."""
+MIN_LATER_DROP = 1.0
+"""E-folds by which the amplitude after the decay stays below its highest point."""
 FLOOR_SHARE = 1.5
 """The decay ends where its amplitude is this multiple of the amplitude after it."""
-FEWEST_SAMPLES = 64
-"""Shorter records cannot be identified at all; whoever looks for their band says so."""
-FEWEST_CYCLES = 8.0
-"""Least number of cycles of the strongest frequency in a decay."""
-LATEST = 0.9
-"""Share of the record in which a decay must begin."""
+MIN_SAMPLES = 64
+"""Shortest record searched; the choice of the band reports shorter ones."""
+MIN_CYCLES = 8.0
+"""Fewest cycles of the strongest frequency in a decay."""
+LATEST_START = 0.9
+"""Latest start of a decay, as a share of the record."""
 FLOOR_QUANTILE = 0.1
-"""Quantile of the power after the highest point that is taken as the level without a decay."""
+"""Quantile of the power after the highest point that is taken as the level outside the decay."""
 
 
 @dataclass(frozen=True)
 class DecayPart:
-    """Samples from the highest point on in which the amplitude falls.
+    """Part of a record in which the amplitude falls from its highest point.
 
     Attributes
     ----------
     first, last : int
         Samples [first, last).
     strongest_hz : float
-        Frequency of most power there.
+        Frequency of the largest power in it.
     fall : float
-        E-folds of the amplitude.
+        Fall of the amplitude in e-folds.
     """
 
     first: int
@@ -55,7 +55,7 @@ class DecayPart:
 
 
 def decay_part(y: FloatArray, sample_rate_hz: float) -> DecayPart | None:
-    """Return where a record decays; None if it does not.
+    """Return the part of a record that decays, or None.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def decay_part(y: FloatArray, sample_rate_hz: float) -> DecayPart | None:
     >>> 48.0 < found.first / 10.0 < 54.0, bool(found.fall > 3.0)
     (True, True)
     """
-    if y.shape[1] < FEWEST_SAMPLES:
+    if y.shape[1] < MIN_SAMPLES:
         return None
     width = _cycles_width(y, sample_rate_hz)
     if width is None:
@@ -81,7 +81,7 @@ def decay_part(y: FloatArray, sample_rate_hz: float) -> DecayPart | None:
         rows, axis=1, keepdims=True
     )
     smooth = np.mean(rows / (quiet + 1e-300), axis=0)
-    inside = smooth[: int(LATEST * len(smooth))]
+    inside = smooth[: int(LATEST_START * len(smooth))]
     first = int(np.argmax(inside))
     after = smooth[first:]
     floor = float(np.quantile(after, FLOOR_QUANTILE))
@@ -89,15 +89,15 @@ def decay_part(y: FloatArray, sample_rate_hz: float) -> DecayPart | None:
     last = first + int(below[0])
     fall = 0.5 * float(np.log(smooth[first] / smooth[last]))
     highest_later = float(smooth[last:].max(initial=0.0))
-    long_enough = (last - first) * strongest / sample_rate_hz >= FEWEST_CYCLES
-    again = highest_later > np.exp(-2.0 * AGAIN) * smooth[first]
-    if fall < LEAST_FALL or again or not long_enough:
+    long_enough = (last - first) * strongest / sample_rate_hz >= MIN_CYCLES
+    again = highest_later > np.exp(-2.0 * MIN_LATER_DROP) * smooth[first]
+    if fall < MIN_FALL or again or not long_enough:
         return None
     return DecayPart(first, last, strongest, fall)
 
 
 def _cycles_width(y: FloatArray, sample_rate_hz: float) -> int | None:
-    """Return the samples of two cycles of the frequency at which the channels move most, where they do."""
+    """Return the samples in two cycles of the strongest frequency, or None if the record is too short."""
     white = y / (y.std(axis=1, keepdims=True) + 1e-300)
     fourth = np.mean(np.square(np.square(white)), axis=0)
     rough = ndimage.uniform_filter1d(fourth, max(y.shape[1] // 50, 8), mode="nearest")
@@ -105,11 +105,11 @@ def _cycles_width(y: FloatArray, sample_rate_hz: float) -> int | None:
     if strongest is None:
         return None
     width = max(round(CYCLES * sample_rate_hz / strongest), 4)
-    return width if y.shape[1] >= FEWEST_CYCLES / CYCLES * width else None
+    return width if y.shape[1] >= MIN_CYCLES / CYCLES * width else None
 
 
 def _strongest_hz(y: FloatArray, sample_rate_hz: float) -> float | None:
-    """Return the frequency at which the channels move most."""
+    """Return the frequency of the largest power."""
     n = y.shape[1]
     if n < 64:
         return None

@@ -1,4 +1,4 @@
-"""The modes of a structure that was released, from its free decay."""
+"""Modes of a released structure from its free decay."""
 
 from __future__ import annotations
 
@@ -36,84 +36,89 @@ if TYPE_CHECKING:
     from jackettwin.records import Record
 
 
-SAMPLES_A_CYCLE = 40.0
-"""Least samples in a cycle of the strongest frequency: modes up to sixteen times as high are seen."""
-MOST_MISSING = 0.02
-"""Largest share of a channel's samples that is interpolated; a channel that misses more is left out."""
-DEEP = 1.5
-"""Fall in e-folds from which fading ambient vibration is hardly ever mistaken for a free decay …"""
-MOSTLY = 0.88
-"""… if damped cosines explain this share of it; responses to random forces leave more …"""
-NEARLY_ALL = 0.97
-"""… and this share of a shallower one."""
-BRIEF = 0.1
-"""Share of the record below which a decay may be a knock …"""
-A_KNOCK = 3.0
-"""… if it falls by fewer e-folds: then the rest of the record tells more of the modes."""
-STILL_FORCED = 1.5
-"""Residual power in the first quarter of a fit over that in the rest, from which forces still act."""
-LATER_STARTS = 8
-"""Number of times that the start is put off by two cycles."""
-HOPELESS = 0.8
-"""Share of a decay that damped cosines explain, below which no later start makes it a free one: of those that
-end as one the first explains 0.95, of a shaking table that fades 0.3, wherever it begins."""
-CLEAR = 25.0
-"""Power of a mode over the noise power in its cosines, from which the mode is certain."""
-UNFORCED = 0.92
-"""Share of a decay that its modes must explain for their intervals to cover the effect of forces."""
-LEAST_FOLDS = 1.0
-"""Least number of e-folds by which a mode falls within the decay."""
-MOST_SPREAD = 0.5
-"""Standard deviation of ln ζ from which the damping is unknown."""
-EXPLAINED_HALVES = 0.95
-"""Share that the modes explain of either half of a decay, from which the two are compared …"""
-CHANGES = 3.5
-"""… and standard deviations between their ln ζ from which it is not one damping."""
-LEAST_CHANGE = 0.1
-"""Least change of ln ζ that is reported."""
-MOST_SPREAD_OF_HALVES = 0.3
-"""Standard deviation of ln ζ of either half up to which the two are compared."""
+SAMPLES_PER_CYCLE = 40.0
+"""Fewest samples per cycle of the strongest frequency; modes up to sixteen times as high are then
+resolved."""
+MAX_MISSING_SHARE = 0.02
+"""Largest share of missing samples in a channel that is interpolated; others are left out."""
+DEEP_FALL = 1.5
+"""Fall in e-folds from which ambient vibration that fades is rarely mistaken for a free decay."""
+MIN_EXPLAINED_DEEP = 0.88
+"""Smallest share of a deep decay that damped cosines must explain;
+they explain less of a response to random forces."""
+MIN_EXPLAINED_SHALLOW = 0.97
+"""Smallest share that damped cosines must explain of a decay shallower than ``DEEP_FALL``."""
+BRIEF_SHARE = 0.1
+"""Share of the record below which a decay may come from an impact."""
+MAX_IMPACT_FALL = 3.0
+"""Fall in e-folds below which a brief decay counts as an impact, whose record says more about the modes
+beside it."""
+FORCED_RATIO = 1.5
+"""Ratio of the residual power in the first quarter of a fit to that in the rest above which forces still
+act."""
+MAX_STARTS = 8
+"""Number of starts of the decay that are tried, each two cycles later."""
+MIN_EXPLAINED_FIRST = 0.8
+"""Share explained by damped cosines below which no later start is tried. In decays that are accepted in the
+end the first fit explains 0.95; on a shaking table that fades it explains 0.3 from any start."""
+CERTAIN_RATIO = 25.0
+"""Ratio of the power of a mode to the noise power in its cosines from which the mode is certain."""
+MIN_EXPLAINED_INTERVALS = 0.92
+"""Smallest share of a decay that its modes must explain for their intervals to allow for the remaining
+forces."""
+MIN_MODE_FALL = 1.0
+"""Smallest fall of a mode within the decay, in e-folds."""
+MAX_LOG_DAMPING_STD = 0.5
+"""Standard deviation of ln ζ above which the damping counts as unknown."""
+MIN_EXPLAINED_HALVES = 0.95
+"""Smallest share explained of each half of a decay for the halves to be compared."""
+CHANGE_STANDARD_DEVIATIONS = 3.5
+"""Difference of ln ζ between the halves, in standard deviations, above which the damping is not constant."""
+MIN_LOG_CHANGE = 0.1
+"""Smallest change of ln ζ that is reported."""
+MAX_LOG_DAMPING_STD_HALVES = 0.3
+"""Largest standard deviation of ln ζ of either half for the halves to be compared."""
 
 
 @dataclass(frozen=True)
 class _Decay:
     whole: DecayPart
     part: DecayPart
-    found: DecayFit
+    modes_fit: DecayFit
 
 
 @dataclass(frozen=True)
 class Transient:
-    """A record that falls from one high point and does not come back.
+    """A record whose amplitude falls from one high point and does not recover.
 
     Attributes
     ----------
     fall : float
-        E-folds of the amplitude.
+        Fall of the amplitude in e-folds.
     identified : Identification or None
-        Its modes, where damped cosines explain what falls, or those of what is beside it; None where forces
-        go on.
+        Modes of the decay if damped cosines explain it; None if forces act on.
     beside : Record or None
-        The longer stretch before or after a fall so brief and shallow that it may be a knock.
+        The longer part of the record before or after a decay that is so brief and shallow that it may come
+        from an impact.
     """
 
     fall: float
     identified: Identification | None
     beside: Record | None = None
 
-    def doubted(self, modes: Iterable[ModalEstimate]) -> tuple[ModalEstimate, ...]:
-        """Return modes that were taken from the whole record, which is not stationary, as doubtful."""
+    def as_doubtful(self, modes: Iterable[ModalEstimate]) -> tuple[ModalEstimate, ...]:
+        """Flag modes of the whole record as doubtful, since it is not stationary."""
         reason = Finding("transient", params={"fall": self.fall})
         return tuple(mode.flagged(ModeStatus.DOUBTFUL, reason) for mode in modes)
 
 
-def transient(record: Record, settings: IdentificationSettings, *, knocks: bool = False) -> Transient | None:
-    """Return the decay in a record, with its modes if it is a free one; None if the record does not decay.
+def transient(record: Record, settings: IdentificationSettings, *, impacts: bool = False) -> Transient | None:
+    """Return the decay in a record, with its modes if it is free; None if the record does not decay.
 
     Parameters
     ----------
     knocks : bool
-        Whether the modes of what may be a knock are sought as well.
+        Whether a decay that may come from an impact is identified too.
 
     Raises
     ------
@@ -122,7 +127,7 @@ def transient(record: Record, settings: IdentificationSettings, *, knocks: bool 
     """
     usable, warnings = usable_channels(record)
     missing = dict(zip(usable.channel_names, np.isnan(usable.data).mean(axis=1), strict=True))
-    gaps = {name: share for name, share in missing.items() if share > MOST_MISSING}
+    gaps = {name: share for name, share in missing.items() if share > MAX_MISSING_SHARE}
     if len(gaps) == len(missing):
         return None
     usable = usable.select([name for name in missing if name not in gaps])
@@ -131,32 +136,32 @@ def transient(record: Record, settings: IdentificationSettings, *, knocks: bool 
     level, times = accelerated(measured, as_declared=True)
     part, level = _falling(level)
     if part is None and times.any():
-        # noise that two derivatives lift may hide what a displacement shows
+        # differentiating twice amplifies noise, which may hide a decay that the displacement shows
         times = np.zeros_like(times)
         part, level = _falling(measured)
     if part is None:
         return None
     rate = level.sample_rate_hz
-    beside = _beside_knock(record, part, level)
-    if beside is not None and not knocks:
+    beside = _part_beside_impact(record, part, level)
+    if beside is not None and not impacts:
         return Transient(part.fall, None, beside)
-    decay = _free(part, level.data, rate)
+    decay = _free_part(part, level.data, rate)
     if decay is None:
         return Transient(part.fall, None)
     part = decay.part
-    said = Finding(
+    finding = Finding(
         "free_decay",
         params={
             "from_s": part.first / rate,
             "to_s": part.last / rate,
             "fall": part.fall,
-            "explained": decay.found.fit.explained,
+            "explained": decay.modes_fit.fit.explained,
         },
     )
     modes = _modes(decay, level.data, rate)
     low, high = settings.lowest_frequency_hz or 0.0, settings.highest_frequency_hz or np.inf
     inside = [mode for mode in modes if low <= mode.frequency_hz <= high]
-    f = decay.found.fit.frequency_hz
+    f = decay.modes_fit.fit.frequency_hz
     identified = Identification(
         records=(record.name,),
         channels=usable.channels,
@@ -172,23 +177,24 @@ def transient(record: Record, settings: IdentificationSettings, *, knocks: bool 
             low or 0.5 * float(f.min()), min(high, 0.4 * rate), rate, 0, (), (part.last - part.first) / rate
         ),
         duration_s=record.duration_s,
-        warnings=(*warnings, str(said)),
+        warnings=(*warnings, str(finding)),
     )
     return Transient(part.fall, identified)
 
 
-def _beside_knock(record: Record, part: DecayPart, level: Record) -> Record | None:
-    """Return the longer stretch before or after a decay that may be a knock; None if it is more.
+def _part_beside_impact(record: Record, part: DecayPart, level: Record) -> Record | None:
+    """Return the longer part before or after a decay that may come from an impact, else None.
 
-    It is more where nothing moved before; as much again is left out after it, in which it still rings.
+    A decay without motion before it is no impact. As much time as the decay lasts is left out after it,
+    since the structure still rings.
     """
-    # its highest point is that of a mean over cycles: it begins before
+    # the highest point is that of a mean over cycles, so the decay begins earlier
     begin = max(part.first - round(2.0 * CYCLES * level.sample_rate_hz / part.strongest_hz), 0)
     times = record.sample_rate_hz / level.sample_rate_hz
     first, last = int(begin * times), int((2 * part.last - part.first) * times)
-    brief = part.last - part.first < BRIEF * level.data.shape[1]
+    brief = part.last - part.first < BRIEF_SHARE * level.data.shape[1]
     before = level.data[:, :begin]
-    if part.fall > A_KNOCK or not brief or before.shape[1] < FEWEST_SAMPLES:
+    if part.fall > MAX_IMPACT_FALL or not brief or before.shape[1] < FEWEST_SAMPLES:
         return None
     if lowest_peak_hz(welch(before, level.sample_rate_hz)) is None:
         return None
@@ -199,47 +205,47 @@ def _beside_knock(record: Record, part: DecayPart, level: Record) -> Record | No
 
 
 def _falling(level: Record) -> tuple[DecayPart | None, Record]:
-    """Return the part that falls, and the record without gaps at the rate that is needed for it."""
+    """Return the decaying part, and the record without gaps at the sample rate that it needs."""
     level = replace(level, data=np.apply_along_axis(bridge, 1, level.data))
     part = decay_part(level.data, level.sample_rate_hz)
-    factor = 1 if part is None else int(level.sample_rate_hz / (SAMPLES_A_CYCLE * part.strongest_hz))
+    factor = 1 if part is None else int(level.sample_rate_hz / (SAMPLES_PER_CYCLE * part.strongest_hz))
     if factor > 1:
         level = decimate(level, sample_rate_hz=level.sample_rate_hz / factor)
         part = decay_part(level.data, level.sample_rate_hz)
     return part, level
 
 
-def _free(part: DecayPart, y: FloatArray, rate: float) -> _Decay | None:
-    """Return the part of a decay in which no force acts any more, and its modes."""
+def _free_part(part: DecayPart, y: FloatArray, rate: float) -> _Decay | None:
+    """Return the part of a decay in which forces no longer act, and its modes."""
     step, whole = round(CYCLES * rate / part.strongest_hz), part
     fit: DampedCosines | None = None
-    for put_off in range(LATER_STARTS):
+    for attempt in range(MAX_STARTS):
         falling = y[:, part.first : part.last]
         if falling.shape[1] < 4 * step:
             return None
         if fit is not None:
-            # the modes found first tell where forces act no more; from there they are sought again
+            # the first modes show when forces cease to act; from there modes are sought again
             fit = damped_cosines(falling, rate, fit.frequency_hz, fit.damping_ratio)
-        if fit is None or not _still_forced(fit) or put_off == LATER_STARTS - 1:
-            found = modes_of_decay(falling, rate, part.strongest_hz, y[:, part.last :])
-            if found is None or found.fit.explained < HOPELESS:
+        if fit is None or not _forces_act(fit) or attempt == MAX_STARTS - 1:
+            modes_fit = modes_of_decay(falling, rate, part.strongest_hz, y[:, part.last :])
+            if modes_fit is None or modes_fit.fit.explained < MIN_EXPLAINED_FIRST:
                 return None
-            if not _still_forced(found.fit):
-                enough = MOSTLY if part.fall >= DEEP else NEARLY_ALL
-                return _Decay(whole, part, found) if found.fit.explained >= enough else None
-            fit = found.fit
+            if not _forces_act(modes_fit.fit):
+                enough = MIN_EXPLAINED_DEEP if part.fall >= DEEP_FALL else MIN_EXPLAINED_SHALLOW
+                return _Decay(whole, part, modes_fit) if modes_fit.fit.explained >= enough else None
+            fit = modes_fit.fit
         part = replace(part, first=part.first + step)
     return None
 
 
-def _still_forced(fit: DampedCosines) -> bool:
+def _forces_act(fit: DampedCosines) -> bool:
     power = np.mean((fit.residual / (fit.residual.std(axis=1, keepdims=True) + 1e-300)) ** 2, axis=0)
     quarter = len(power) // 4
-    return bool(power[:quarter].mean() > STILL_FORCED * power[quarter:].mean())
+    return bool(power[:quarter].mean() > FORCED_RATIO * power[quarter:].mean())
 
 
 def _modes(decay: _Decay, y: FloatArray, rate: float) -> list[ModalEstimate]:
-    fit, part = decay.found.fit, decay.part
+    fit, part = decay.modes_fit.fit, decay.part
     n = len(fit.frequency_hz)
     halves = _halves(decay, y, rate)
     out = []
@@ -259,7 +265,12 @@ def _modes(decay: _Decay, y: FloatArray, rate: float) -> list[ModalEstimate]:
         mode = with_covariance(mode, fit.log_covariance[both])
         out.append(
             _judged(
-                mode, float(decay.found.ratio[k]), fit.explained, (part.last - part.first) / rate, halves, k
+                mode,
+                float(decay.modes_fit.ratio[k]),
+                fit.explained,
+                (part.last - part.first) / rate,
+                halves,
+                k,
             )
         )
     return out
@@ -269,20 +280,20 @@ def _judged(
     mode: ModalEstimate,
     ratio: float,
     explained: float,
-    watched_s: float,
+    duration_s: float,
     halves: tuple[DampedCosines, DampedCosines] | None,
     k: int,
 ) -> ModalEstimate:
-    """Flag a mode that is weak, hardly falls, or whose damping changes with the amplitude."""
-    folds = 2.0 * np.pi * mode.frequency_hz * mode.damping_ratio * watched_s
-    if ratio < CLEAR:
+    """Flag a mode that is weak, hardly decays, or whose damping depends on the amplitude."""
+    folds = 2.0 * np.pi * mode.frequency_hz * mode.damping_ratio * duration_s
+    if ratio < CERTAIN_RATIO:
         mode = mode.flagged(ModeStatus.DOUBTFUL, Finding("decay_weak", params={"ratio": ratio}))
-    if explained < UNFORCED:
+    if explained < MIN_EXPLAINED_INTERVALS:
         forced = Finding("decay_forced", params={"left": 1.0 - explained})
         mode = mode.flagged(ModeStatus.DOUBTFUL, forced)
-    if folds < LEAST_FOLDS:
+    if folds < MIN_MODE_FALL:
         mode = mode.flagged(ModeStatus.DOUBTFUL, Finding("decay_short", params={"folds": folds}))
-    if mode.log_covariance is not None and mode.log_covariance[1, 1] > MOST_SPREAD**2:
+    if mode.log_covariance is not None and mode.log_covariance[1, 1] > MAX_LOG_DAMPING_STD**2:
         spread = float(np.sqrt(mode.log_covariance[1, 1]))
         mode = mode.flagged(
             ModeStatus.DAMPING_UNKNOWN, Finding("decay_damping_unknown", params={"spread": spread})
@@ -293,18 +304,18 @@ def _judged(
     n = len(early.frequency_hz)
     zeta = early.damping_ratio[k], late.damping_ratio[k]
     variances = [half.log_covariance[n + k, n + k] for half in halves]
-    if max(variances) > MOST_SPREAD_OF_HALVES**2:
+    if max(variances) > MAX_LOG_DAMPING_STD_HALVES**2:
         return mode
     change = abs(float(np.log(zeta[1] / zeta[0])))
-    if change > max(CHANGES * np.sqrt(sum(variances)), LEAST_CHANGE):
+    if change > max(CHANGE_STANDARD_DEVIATIONS * np.sqrt(sum(variances)), MIN_LOG_CHANGE):
         params = {"early": float(zeta[0]), "late": float(zeta[1])}
         mode = mode.flagged(ModeStatus.DOUBTFUL, Finding("decay_damping_changes", params=params))
     return mode
 
 
 def _halves(decay: _Decay, y: FloatArray, rate: float) -> tuple[DampedCosines, DampedCosines] | None:
-    """Fit the same modes to either half of the whole decay, if damped cosines explain both."""
-    fit, part = decay.found.fit, decay.whole
+    """Fit the same modes to each half of the whole decay; None unless damped cosines explain both."""
+    fit, part = decay.modes_fit.fit, decay.whole
     rate_of_fall = 2.0 * np.pi * float(fit.frequency_hz[0] * fit.damping_ratio[0])
     length = min(part.last - part.first, int(part.fall / rate_of_fall * rate))
     middle = part.first + length // 2
@@ -315,7 +326,7 @@ def _halves(decay: _Decay, y: FloatArray, rate: float) -> tuple[DampedCosines, D
         damped_cosines(y[:, a:b], rate, fit.frequency_hz, fit.damping_ratio, noise=noise)
         for a, b in ((part.first, middle), (middle, part.first + length))
     )
-    return (early, late) if min(early.explained, late.explained) > EXPLAINED_HALVES else None
+    return (early, late) if min(early.explained, late.explained) > MIN_EXPLAINED_HALVES else None
 
 
 def _no_poles(n_channels: int) -> Stabilisation:

@@ -1,1 +1,1 @@
-"""Other methods, for comparison."""
+"""Frequency-domain identification methods, for comparison."""

@@ -1,11 +1,12 @@
 r"""Enhanced frequency domain decomposition, for comparison with SSI.
 
-Peaks of the first singular value of the spectral matrix (FDD: Brincker, Zhang & Andersen 2001); around
-each, the lines whose singular vector resembles that of the peak form the bell of one mode. Its inverse
-transform is the covariance of that mode, a free decay whose envelope and phase give ζ and f (EFDD).
+Modes are peaks of the first singular value of the spectral matrix (FDD: Brincker, Zhang & Andersen 2001).
+Around each peak, the lines whose singular vector resembles that of the peak form the bell of one mode.
+The inverse transform of the bell is the covariance of that mode, a free decay whose envelope and phase give ζ
+and f (EFDD).
 
-The resolution of the spectrum lends every mode extra damping, the more the lighter it is: do not trust ζ
-of EFDD below about ten lines in the half-power band.
+The finite resolution of the spectrum adds damping to every mode, relatively more to lightly damped ones:
+ζ of EFDD is unreliable with fewer than about ten lines in the half-power band.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
 
 SEGMENT_CYCLES = 20.0
-"""Length of a Welch segment in cycles of the lower edge of the band."""
+"""Length of a Welch segment, in cycles of the lower edge of the band."""
 BELL_MAC = 0.8
 """Lines whose singular vector has at least this MAC with that of the peak belong to its bell."""
 DECAY_FROM, DECAY_TO = 0.9, 0.3
@@ -39,7 +40,7 @@ DECAY_FROM, DECAY_TO = 0.9, 0.3
 def fdd(record: Record, settings: IdentificationSettings | None = None) -> Identification:
     """Identify the modes of a record by enhanced frequency domain decomposition.
 
-    The same result type as ``identify``, without stabilisation and without uncertainty.
+    The result has the type of ``identify``, without stabilisation and uncertainty.
 
     Raises
     ------
@@ -83,7 +84,7 @@ def _peaks(values: FloatArray, inside: BoolArray) -> list[int]:
 def _mode(
     f: FloatArray, values: FloatArray, vectors: ComplexArray, peak: int, scale: FloatArray
 ) -> ModalEstimate | None:
-    """Return the mode of one bell, or None when its covariance does not decay within the segment."""
+    """Return the mode of one bell, or None if its covariance does not decay within the segment."""
     alike = mac(vectors, vectors[peak]) > BELL_MAC
     low, high = peak, peak
     while low > 0 and alike[low - 1]:

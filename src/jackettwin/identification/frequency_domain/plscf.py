@@ -6,12 +6,12 @@ structure. They are fitted by a right matrix fraction in :math:`\Omega = e^{-i\o
 .. math:: S^+_o(\omega) \approx B_o(\Omega) A(\Omega)^{-1}, \quad
    A = \sum_{r=0}^{n} \alpha_r \Omega^r,\ \alpha_n = I,
 
-linearised, with the coefficients of B eliminated output by output (Peeters, Van der Auweraer, Guillaume &
-Leuridan 2004; Cauberghe 2004). With :math:`\alpha_n = I` poles that fit noise come out unstable and drop
-out. A root :math:`\Omega_i` with :math:`A(\Omega_i) v_i = 0` is a pole :math:`\mu_i = 1/\Omega_i`, and the
-residue there is proportional to :math:`B(\Omega_i) v_i`: the mode shape.
+which is linearised, with the coefficients of B eliminated output by output (Peeters, Van der Auweraer,
+Guillaume & Leuridan 2004; Cauberghe 2004). With :math:`\alpha_n = I` poles that fit noise are unstable and
+can be dropped. A root :math:`\Omega_i` with :math:`A(\Omega_i) v_i = 0` is a pole :math:`\mu_i = 1/\Omega_i`,
+and the residue there is proportional to :math:`B(\Omega_i) v_i`, the mode shape.
 
-An exponential window takes the noise from the long lags; the damping it adds is exact and taken off again.
+An exponential window suppresses the noise at long lags; the damping it adds is known exactly and subtracted.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 WINDOW_END = 0.01
-"""What the exponential window leaves of the last lag."""
+"""Value of the exponential window at the last lag."""
 
 
 def plscf_poles(
@@ -42,11 +42,11 @@ def plscf_poles(
     Parameters
     ----------
     covariances : (n_lags + 1, n_channels, n_references)
-        Lags 0 … n_lags of channels with references.
+        Covariances of channels with references at lags 0 … n_lags.
     orders : sequence of int
-        Degrees of the polynomials; a degree has as many poles a reference.
+        Degrees of the polynomials; each degree adds one pole per reference.
     band : (low, high)
-        Frequencies that are fitted, cycles a sample.
+        Fitted frequencies, in cycles per sample.
     """
     n_lags, _, n_references = covariances.shape[0] - 1, *covariances.shape[1:]
     decay = -np.log(WINDOW_END) / n_lags
@@ -61,7 +61,7 @@ def half_spectra(covariances: FloatArray, decay: float) -> tuple[FloatArray, Com
     """Return frequencies [1/sample] and positive half spectra (n_frequencies, n_out, n_references)."""
     n_lags = len(covariances) - 1
     window = np.exp(-decay * np.arange(n_lags + 1))
-    # lag 0 holds the measurement noise, which is white: a constant that the polynomial B takes up
+    # lag 0 contains the measurement noise, which is white: a constant that B absorbs
     weighted = covariances * window[:, None, None]
     weighted[0] *= 0.5
     size = 2 * n_lags
@@ -94,7 +94,7 @@ def _order(normal: _Normal, n: int, n_references: int, undo: float) -> OrderPole
     r = normal.r[: n + 1, : n + 1]
     s = normal.s[:, : n + 1, : n + 1].reshape(len(normal.s), n + 1, size)
     t = normal.t[: n + 1, :, : n + 1].reshape(size, size)
-    # powers of a narrow band are nearly dependent at high order
+    # in a narrow band the powers are nearly linearly dependent at high order
     solved = linalg.lstsq(r, s.transpose(1, 0, 2).reshape(n + 1, -1), check_finite=False)[0]
     eliminated = solved.reshape(n + 1, len(s), size).transpose(1, 0, 2)
     m = t - np.einsum("oai,oaj->ij", s, eliminated)

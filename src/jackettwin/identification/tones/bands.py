@@ -1,6 +1,6 @@
-"""Bands of a record, the channels' best combination in each, and how steady its envelope is.
+"""Bands of a record: the best combination of channels in each and the steadiness of its envelope.
 
-Hundreds of bands are looked at in every record: what can be done for all of them together is.
+Each record has hundreds of bands, so that all operations are vectorised over bands.
 """
 
 from __future__ import annotations
@@ -13,24 +13,24 @@ from numpy import fft
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.identification.tones.envelopes import independent_values, least_variance, relative_variance
-from jackettwin.identification.tones.sinusoid import lines_around, regular
+from jackettwin.identification.tones.sinusoid import lines_around, regularised
 
-TOGETHER = 2**18
-"""Most elements of the signals in memory at a time."""
+MAX_ELEMENTS = 2**18
+"""Most elements of the signals held in memory at a time."""
 
 
 @dataclass(frozen=True)
 class Band:
-    """A band, the signal of the channels' best combination in it, and how steady its envelope is.
+    """A band, its best combination of channels, and the steadiness of the envelope of that signal.
 
     Attributes
     ----------
     middle_hz, half_hz : float
     combination : (n_channels,) complex
     variance : float
-        Relative, of the squared envelope.
+        Relative variance of the squared envelope.
     expected : float
-        What the variance of a Gaussian process of as many independent values is hardly ever below.
+        Bound that the variance of a Gaussian process with as many independent values rarely falls below.
     """
 
     middle_hz: float
@@ -40,21 +40,21 @@ class Band:
     expected: float
 
 
-def overlapping(
+def overlapping_bands(
     first_hz: float, end_hz: float, share: float, least_hz: float, step: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return middles and half widths of bands as wide as a share of their middle, (n_bands,) each.
+    """Return middles and half widths of bands of constant relative width, (n_bands,) each.
 
     Parameters
     ----------
     least_hz : float
-        Least half width.
+        Smallest half width.
     step : float
-        From one band to the next, in half widths.
+        Distance of neighbouring bands, in half widths.
 
     Examples
     --------
-    >>> middle, half = overlapping(1.0, 1.3, 0.1, 0.05, 1.0)
+    >>> middle, half = overlapping_bands(1.0, 1.3, 0.1, 0.05, 1.0)
     >>> middle.round(3).tolist(), half.round(3).tolist()
     ([1.0, 1.1, 1.21], [0.1, 0.11, 0.121])
     """
@@ -69,14 +69,15 @@ def overlapping(
 def bands_of(
     lines: ComplexArray, duration_s: float, middle_hz: FloatArray, half_hz: FloatArray
 ) -> list[Band]:
-    """Combine the channels so that most is from each band, and least from as many lines on either side.
+    """Combine the channels so that the power in each band is largest over that of as many lines around it.
 
-    Or, where that makes a steadier envelope, along their main direction: a tone may move them as a mode does.
+    The principal direction of the channels is used instead if its envelope is steadier,
+    as a tone may move the channels in the same shape as a mode.
 
     Parameters
     ----------
     lines : (n_channels, n_lines)
-        Of the channels' transforms, from zero frequency.
+        Transforms of the channels, from zero frequency.
     middle_hz, half_hz : (n_bands,)
     """
     if not len(middle_hz):
@@ -93,7 +94,7 @@ def bands_of(
     own = np.eye(len(lines)) * inside
     both = np.stack([_strongest(inside, outside), _strongest(inside, own)])
     variance, values = (np.empty((2, len(first))) for _ in range(2))
-    for at, n in _alike(n_lines):
+    for at, n in _batches(n_lines):
         signals = np.zeros((2, len(at), n), dtype=complex)
         for row, k in enumerate(at):
             signals[:, row, : n_lines[k]] = both[:, k].conj() @ lines[:, first[k] : last[k] + 1]
@@ -111,12 +112,12 @@ def bands_of(
     ]
 
 
-def _alike(n_lines: IntArray) -> Iterator[tuple[IntArray, int]]:
-    """Yield bands of a like number of lines, and a length at which envelopes of them all are sampled well."""
+def _batches(n_lines: IntArray) -> Iterator[tuple[IntArray, int]]:
+    """Yield bands of similar numbers of lines, and a length that samples all their envelopes well."""
     length = 2 ** np.ceil(np.log2(2 * n_lines)).astype(np.intp)
     for n in np.unique(length):
         at = np.flatnonzero(length == n)
-        for part in np.array_split(at, -(-len(at) * int(n) // TOGETHER)):
+        for part in np.array_split(at, -(-len(at) * int(n) // MAX_ELEMENTS)):
             yield part, int(n)
 
 
@@ -125,8 +126,8 @@ def _products(lines: ComplexArray) -> ComplexArray:
 
 
 def _strongest(inside: ComplexArray, noise: ComplexArray) -> ComplexArray:
-    """Return the channels' combinations with most over a noise, (n_bands, n_channels)."""
-    inverse = np.linalg.inv(np.linalg.cholesky(regular(noise)))
+    """Return the combinations of channels of largest power over a noise, (n_bands, n_channels)."""
+    inverse = np.linalg.inv(np.linalg.cholesky(regularised(noise)))
     adjoint = inverse.conj().transpose(0, 2, 1)
     direction = np.linalg.eigh(inverse @ inside @ adjoint)[1][:, :, -1:]
     return np.asarray((adjoint @ direction)[:, :, 0])

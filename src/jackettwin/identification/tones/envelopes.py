@@ -1,12 +1,12 @@
-r"""Tell the tones of a rotor from modes by the statistics of their envelopes.
+r"""Distinguish the tones of a rotor from modes by the statistics of their envelopes.
 
-The envelope of a mode driven by random forces wanders as that of a Gaussian process; that of a tone does
-not (Jacobsen, Andersen & Brincker 2007 use the kurtosis for the same purpose). How far it wanders in a record
-is itself random: of n independent values the relative variance of the squared envelope falls below
+The envelope of a mode under random forces varies as that of a Gaussian process; that of a tone does not
+(Jacobsen, Andersen & Brincker 2007 use the kurtosis for this purpose). How much it varies within a record is
+itself random: with n independent values the relative variance of the squared envelope falls below
 
 .. math:: v_n = e^{-6/\sqrt n}
 
-in one record of two thousand (Gaussian modes of ζfT from 0.4 to 180, the smallest of three bands).
+in one of two thousand records (Gaussian modes of ζfT from 0.4 to 180, the smallest of three bands).
 """
 
 from __future__ import annotations
@@ -17,21 +17,21 @@ from numpy import fft
 from jackettwin.arrays import ComplexArray, FloatArray
 
 HALF_WIDTH = 0.02
-"""Half width of the band around a candidate, as a share of its frequency …"""
-FEWEST_LINES = 4.0
-"""… and at least this many Fourier lines."""
-STEADY = 0.25
-"""Largest relative variance of the squared envelope of a steady tone; 1 for a Gaussian process."""
-SPREAD = 6.0
-"""The 6 in the exponent of v_n."""
+"""Half width of the band around a candidate, as a share of its frequency."""
+MIN_LINES = 4.0
+"""Fewest Fourier lines in half a band."""
+MAX_STEADY_VARIANCE = 0.25
+"""Largest relative variance of the squared envelope of a steady tone; a Gaussian process has 1."""
+VARIANCE_COEFFICIENT = 6.0
+"""Coefficient 6 in the exponent of v_n."""
 MANY_VALUES = 12.0
 """2πζfT of a mode above which it is broader than a tone that drifts a little."""
 BANDWIDTHS = 3.0
-"""Half width, in half bandwidths, of the band in which the envelope of a light mode is looked at."""
-SUSPICIOUS = 0.3
-"""Relative variance of the squared envelope there, below which the mode may be a tone."""
-LEAST_HALF_BANDWIDTH = 0.9
-"""Least half bandwidth of a pole, in lines: narrower poles count as if they had it."""
+"""Half width, in half bandwidths, of the band in which the envelope of a lightly damped mode is judged."""
+SUSPICIOUS_VARIANCE = 0.3
+"""Relative variance of the squared envelope in that band below which the mode may be a tone."""
+MIN_HALF_BANDWIDTH = 0.9
+"""Smallest half bandwidth assumed for a pole, in lines."""
 
 
 def envelope_variance(
@@ -41,8 +41,8 @@ def envelope_variance(
 
     .. math:: v = \mathrm{var}(|a|^2) / \mathrm{mean}(|a|^2)^2
 
-    with a the analytic signal of the channels projected on the shape: 1 for a Gaussian process that is
-    observed for long, 0 for a steady tone.
+    with a the analytic signal of the channels projected on the shape;
+    it is 1 for a Gaussian process observed for long and 0 for a steady tone.
 
     Parameters
     ----------
@@ -50,17 +50,17 @@ def envelope_variance(
         Of the channels' transforms, from zero frequency.
     shape : (n_channels,) complex
     """
-    half = max(HALF_WIDTH * frequency_hz, FEWEST_LINES / duration_s)
+    half = max(HALF_WIDTH * frequency_hz, MIN_LINES / duration_s)
     return float(relative_variance(_analytic(lines, duration_s, frequency_hz, half, shape)))
 
 
 def is_suspiciously_steady(
     lines: ComplexArray, duration_s: float, frequency_hz: float, damping_ratio: float, shape: ComplexArray
 ) -> bool:
-    """Return whether a light mode has the envelope of a tone that swells and drifts a little.
+    """Tell whether a lightly damped mode has the envelope of a tone that swells and drifts a little.
 
-    Of simulated modes with 2πζfT of 3, 6 and 11, a fifth, 7 % and 3 % have so steady an envelope by chance;
-    of tones that swell by 30 % and drift by 0.5 to 1 %, three quarters and more.
+    By chance, a fifth of simulated modes with 2πζfT = 3 have such an envelope, 7 % with 6 and 3 % with 11.
+    Of tones that swell by 30 % and drift by 0.5 to 1 %, at least three quarters have it.
 
     Parameters
     ----------
@@ -72,32 +72,34 @@ def is_suspiciously_steady(
     bandwidth = damping_ratio * frequency_hz
     if 2.0 * np.pi * bandwidth / line > MANY_VALUES:
         return False
-    half = max(BANDWIDTHS * bandwidth, 0.5 * HALF_WIDTH * frequency_hz, FEWEST_LINES * line)
-    return bool(relative_variance(_analytic(lines, duration_s, frequency_hz, half, shape)) < SUSPICIOUS)
+    half = max(BANDWIDTHS * bandwidth, 0.5 * HALF_WIDTH * frequency_hz, MIN_LINES * line)
+    return bool(
+        relative_variance(_analytic(lines, duration_s, frequency_hz, half, shape)) < SUSPICIOUS_VARIANCE
+    )
 
 
 def least_variance(n: float) -> float:
-    """Return v_n, below which the envelope of n independent values is not that of a mode.
+    """Return v_n, below which an envelope with n independent values is not that of a mode.
 
     Examples
     --------
     >>> [round(least_variance(n), 2) for n in (5, 20, 100)]
     [0.07, 0.26, 0.55]
     """
-    return float(np.exp(-SPREAD / np.sqrt(n)))
+    return float(np.exp(-VARIANCE_COEFFICIENT / np.sqrt(n)))
 
 
 def is_steady_tone(
     lines: ComplexArray, duration_s: float, frequency_hz: float, damping_ratio: float, shape: ComplexArray
 ) -> bool:
-    """Return whether a candidate is a steady tone rather than a mode.
+    """Tell whether a candidate is a steady tone and not a mode.
 
-    Independent values there are no more than lines in the band, nor than 2πζfT of a mode of that damping.
+    The number of independent values is limited by the lines in the band and by 2πζfT of the mode.
     """
     line = 1.0 / duration_s
-    n_lines = 2.0 * max(HALF_WIDTH * frequency_hz / line, FEWEST_LINES)
-    peak = 2.0 * np.pi * max(damping_ratio * frequency_hz / line, LEAST_HALF_BANDWIDTH)
-    most = min(STEADY, least_variance(1.0 / np.hypot(1.0 / n_lines, 1.0 / peak)))
+    n_lines = 2.0 * max(HALF_WIDTH * frequency_hz / line, MIN_LINES)
+    peak = 2.0 * np.pi * max(damping_ratio * frequency_hz / line, MIN_HALF_BANDWIDTH)
+    most = min(MAX_STEADY_VARIANCE, least_variance(1.0 / np.hypot(1.0 / n_lines, 1.0 / peak)))
     return envelope_variance(lines, duration_s, frequency_hz, shape) < most
 
 
@@ -106,7 +108,8 @@ def _analytic(
 ) -> ComplexArray:
     """Return the analytic signal of the channels projected on a shape, in a band around a frequency.
 
-    About the band's first line, at so many instants that the mean of its fourth power is exact.
+    The signal is taken relative to the first line of the band, at enough instants that the mean of its fourth
+    power is exact.
     """
     first = max(int(np.ceil((frequency_hz - half_hz) * duration_s)), 0)
     last = min(int((frequency_hz + half_hz) * duration_s), lines.shape[1] - 1)
@@ -120,7 +123,7 @@ def relative_variance(analytic: ComplexArray) -> FloatArray:
 
 
 def independent_values(lines: ComplexArray) -> FloatArray:
-    """Return 2(Σp)²/Σp² of the powers of lines, which of a Gaussian process scatter as exponentials.
+    """Return 2(Σp)²/Σp² of the powers of lines, which are exponentially distributed for a Gaussian process.
 
     Examples
     --------

@@ -1,17 +1,17 @@
-r"""Follow the phase of a tone through a record, and tell by what is left whether it is one.
+r"""Track the phase of a tone through a record, and test by the residual whether it is one.
 
-A tone of steady amplitude whose frequency drifts is one line again once time is warped by its phase,
+A tone of steady amplitude and drifting frequency becomes one line if its phase is taken off,
 
 .. math:: z(t) = y(t)\,e^{-i\theta(t)}, \qquad
           \theta(t) = 2\pi f t + \sum_k c_k B_k(t),
 
-B cubic splines. The phase is that of the best sinusoid in coloured Gaussian noise: the channels are combined
-by :math:`w = R^{-1}a`, a their amplitudes and R their covariance on the lines around, and the spline takes
-up the angle of :math:`w^H z`, weighted by its power, again and again. The ratio D of ``sinusoid.py`` then
-tells what it is. Such a phase straightens that of a mode as well as that of a tone, but a mode's amplitude
-wanders whatever its phase does. In 1,040 records of light modes (ζ from 0.2 %) no band that was looked at had
-three quarters of ``least_ratio``, in one of a hundred records one had 0.4 of it; tones of 0.3 of the rms of
-the channels that drift by up to 5 % have 1,000 to 60,000.
+where B are cubic splines. The phase is that of the best sinusoid in coloured Gaussian noise. The channels
+are combined by :math:`w = R^{-1}a`, with a their amplitudes and R their covariance on the lines around;
+the angle of :math:`w^H z`, weighted by its power, is fitted by the spline, and both steps are repeated.
+The ratio D of ``sinusoid.py`` then decides. Such a phase also straightens a mode,
+but the amplitude of a mode varies whatever its phase. In 1,040 records of lightly damped modes (ζ from 0.2 %)
+no band reached three quarters of ``least_ratio``, and one in a hundred records reached 0.4 of it.
+Tones of 0.3 of the rms of the channels that drift by up to 5 % have D from 1,000 to 60,000.
 """
 
 from __future__ import annotations
@@ -25,36 +25,36 @@ import scipy  # scipy.interpolate is loaded where it is used
 from numpy import fft
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.identification.tones.sinusoid import lines_around, regular, sinusoid
+from jackettwin.identification.tones.sinusoid import lines_around, regularised, sinusoid
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline
 
 INTERVALS = (1, 4, 8, 16, 32)
-"""Numbers of intervals of the spline; the smallest is taken that fits nearly as well as the largest."""
-HOPELESS = 0.1
+"""Numbers of intervals of the spline; the smallest that fits nearly as well as the largest is used."""
+MIN_FIRST_SHARE = 0.1
 """Share of the least ratio below which no simpler phase is tried; bands of modes have 0.02 to 0.07."""
-LITTLE_MORE = 3.0
+MAX_LOSS = 3.0
 """Largest loss of D for a simpler phase, as a factor."""
-ROUNDS = 4
+ITERATIONS = 4
 """Number of corrections of the phase."""
 DEGREE = 3
-END = 0.02
-"""Share of the record at either end where the frequency is not read off."""
+END_SHARE = 0.02
+"""Share of the record at each end that is ignored for the range of frequency."""
 LEAST_RATIO = 120.0
-"""D of a tone whose phase is a straight line …"""
-RATIO_A_COEFFICIENT = 12.0
-"""… and for each coefficient of its spline: the more a phase may bend, the more of a mode it straightens."""
+"""Least D of a tone whose phase is a straight line."""
+RATIO_PER_COEFFICIENT = 12.0
+"""Increase of the least D per coefficient of the spline: a more flexible phase straightens more of a mode."""
 
 
 @dataclass(frozen=True)
 class Baseband:
-    """The lines of all channels around a frequency, as a signal that turns slowly.
+    """Lines of all channels around a frequency as a slowly varying complex signal.
 
     Attributes
     ----------
     signal : (n_channels, n_lines) complex
-        At as many instants, evenly spread over the record.
+        Signal at as many instants as lines, evenly spaced over the record.
     middle_hz : float
     duration_s : float
     """
@@ -66,13 +66,13 @@ class Baseband:
 
 @dataclass(frozen=True)
 class PhaseTrack:
-    """The smooth phase of what may be a tone.
+    """Smooth phase of a possible tone.
 
     Attributes
     ----------
     middle_hz, duration_s : float
     coefficients : (n_coefficients,)
-        Of the spline of the phase less 2π times the middle frequency times time [rad].
+        Spline coefficients of the phase less 2π times middle frequency times time [rad].
     ratio : float
         D along the phase.
     """
@@ -89,19 +89,19 @@ class PhaseTrack:
 
     @cached_property
     def swept_hz(self) -> tuple[float, float]:
-        """Lowest and highest frequency [Hz]; at its very ends a spline is hardly known."""
-        t = np.linspace(END, 1.0 - END, 8 * len(self.coefficients))
+        """Lowest and highest frequency [Hz]; the ends of the spline are left out as uncertain."""
+        t = np.linspace(END_SHARE, 1.0 - END_SHARE, 8 * len(self.coefficients))
         f = self.middle_hz + self._spline.derivative()(t) / (2.0 * np.pi * self.duration_s)
         return float(f.min()), float(f.max())
 
     def passes(self, frequency_hz: float) -> bool:
-        """Return whether the tone is at a frequency at some time."""
+        """Tell whether the tone crosses a frequency."""
         low, high = self.swept_hz
         return low < frequency_hz < high
 
     @property
     def disturbed_hz(self) -> tuple[float, float]:
-        """The range in which the phase follows what is not of the tone, and that goes with it [Hz]."""
+        """Range in which subtracting the tone also removes other motion [Hz]."""
         beyond = 0.5 * len(self.coefficients) / self.duration_s
         low, high = self.swept_hz
         return low - beyond, high + beyond
@@ -112,14 +112,14 @@ class PhaseTrack:
 
 
 def least_ratio(n_coefficients: int) -> float:
-    """Return the D of a tone along a phase of so many coefficients.
+    """Return the least D of a tone along a phase of ``n_coefficients`` coefficients.
 
     Examples
     --------
     >>> least_ratio(0), least_ratio(19)
     (120.0, 348.0)
     """
-    return LEAST_RATIO + RATIO_A_COEFFICIENT * n_coefficients
+    return LEAST_RATIO + RATIO_PER_COEFFICIENT * n_coefficients
 
 
 def baseband(lines: ComplexArray, duration_s: float, frequency_hz: float, half_hz: float) -> Baseband:
@@ -128,9 +128,9 @@ def baseband(lines: ComplexArray, duration_s: float, frequency_hz: float, half_h
     Parameters
     ----------
     lines : (n_channels, n_lines)
-        Of the channels' transforms, from zero frequency.
+        Transforms of the channels, from zero frequency.
     half_hz : float
-        Half its width; less at the ends of the spectrum.
+        Half width of the band; less at the ends of the spectrum.
     """
     first = max(int((frequency_hz - half_hz) * duration_s), 1)
     last = min(int((frequency_hz + half_hz) * duration_s), lines.shape[1] - 1)
@@ -141,14 +141,14 @@ def baseband(lines: ComplexArray, duration_s: float, frequency_hz: float, half_h
 
 
 def phase_track(band: Baseband, start: FloatArray, *, share: float = 1.0) -> PhaseTrack | None:
-    """Return the simplest smooth phase of a tone near a first one, None if there is no tone.
+    """Return the simplest smooth phase of a tone near a first phase, None if there is no tone.
 
     Parameters
     ----------
     start : (n_instants,)
         Phase of the baseband signal [rad], within half a turn or so.
     share : float
-        Of ``least_ratio``, which D must exceed.
+        Share of ``least_ratio`` that D must exceed.
     """
 
     def is_tone(track: PhaseTrack) -> bool:
@@ -158,49 +158,49 @@ def phase_track(band: Baseband, start: FloatArray, *, share: float = 1.0) -> Pha
     possible = [n for n in INTERVALS if n + DEGREE + reach < band.signal.shape[1] // 2]
     best: PhaseTrack | None = None
     for intervals in reversed(possible[-2:]):
-        track = _followed(band, start, intervals)
+        track = _refine_phase(band, start, intervals)
         if is_tone(track) and (best is None or track.ratio > best.ratio):
             best = track
-        if track.ratio < HOPELESS * least_ratio(len(track.coefficients)):
+        if track.ratio < MIN_FIRST_SHARE * least_ratio(len(track.coefficients)):
             break
     if best is None:
         return None
-    followed = _values(band, best.coefficients)
+    phase_values = _values(band, best.coefficients)
     for intervals in possible:
         if intervals + DEGREE >= len(best.coefficients):
             break
-        simpler = _followed(band, followed, intervals)
-        if is_tone(simpler) and LITTLE_MORE * simpler.ratio > best.ratio:
+        simpler = _refine_phase(band, phase_values, intervals)
+        if is_tone(simpler) and MAX_LOSS * simpler.ratio > best.ratio:
             return simpler
     return best
 
 
-def _followed(band: Baseband, start: FloatArray, intervals: int) -> PhaseTrack:
-    """Correct a phase by the angle of the channels' best combination along it."""
+def _refine_phase(band: Baseband, start: FloatArray, intervals: int) -> PhaseTrack:
+    """Refine a phase by the angle of the channels' best combination along it."""
     n_coefficients = intervals + DEGREE
     basis = _basis(band.signal.shape[1], intervals)
-    coefficients = _fitted(basis, start, np.ones(len(start)))
-    for _ in range(ROUNDS):
+    coefficients = _fit_spline(basis, start, np.ones(len(start)))
+    for _ in range(ITERATIONS):
         along = _along(band, basis @ coefficients)
-        s = _combined(along, n_coefficients)
+        s = _combine(along, n_coefficients)
         turned = np.angle(s * np.sum(s).conj())
-        coefficients = coefficients + _fitted(basis, turned, np.abs(s) ** 2)
+        coefficients = coefficients + _fit_spline(basis, turned, np.abs(s) ** 2)
     spectrum = fft.fftshift(_along(band, basis @ coefficients), axes=1)
     tone = sinusoid(spectrum, spectrum.shape[1] // 2)
     return PhaseTrack(band.middle_hz, band.duration_s, coefficients, tone.ratio)
 
 
 def _along(band: Baseband, theta: FloatArray) -> ComplexArray:
-    """Return the lines of the signal turned back by a phase, (n_channels, n_lines)."""
+    """Return the lines of the signal after a phase is taken off, (n_channels, n_lines)."""
     return np.asarray(fft.fft(band.signal * np.exp(-1j * theta), axis=1))
 
 
-def _combined(along: ComplexArray, within: int) -> ComplexArray:
-    """Return wᴴz of the lines up to so many from zero, the noise being that of those beyond."""
+def _combine(along: ComplexArray, within: int) -> ComplexArray:
+    """Return wᴴz of the lines up to ``within`` from zero; the lines beyond give the noise."""
     n_channels, n = along.shape
     m = np.arange(within + 1, min(within + lines_around(n_channels), n // 2 - 1) + 1)
     around = along[:, np.concatenate([-m, m])]
-    covariance = regular(np.asarray(around @ around.conj().T / around.shape[1]))
+    covariance = regularised(np.asarray(around @ around.conj().T / around.shape[1]))
     w = np.linalg.solve(covariance, along[:, 0])
     near = np.zeros(n, dtype=complex)
     inside = np.arange(-within, within + 1)
@@ -231,8 +231,8 @@ def _basis(n: int, intervals: int) -> FloatArray:
     return basis
 
 
-def _fitted(basis: FloatArray, values: FloatArray, weight: FloatArray) -> FloatArray:
-    """Return the coefficients of weighted least squares, held where there is no weight."""
+def _fit_spline(basis: FloatArray, values: FloatArray, weight: FloatArray) -> FloatArray:
+    """Return weighted least-squares coefficients, regularised where there is no weight."""
     weighted = basis.T * weight
     information = weighted @ basis
     information[np.diag_indices(len(information))] += 1e-6 * np.trace(information) / len(information)
@@ -240,6 +240,6 @@ def _fitted(basis: FloatArray, values: FloatArray, weight: FloatArray) -> FloatA
 
 
 def first_phase(signal: ComplexArray, intervals: int = INTERVALS[-1]) -> FloatArray:
-    """Return the phase of a slowly turning signal (n_instants,), smoothed [rad]."""
+    """Return the smoothed phase of a slowly varying complex signal (n_instants,) [rad]."""
     basis = _basis(len(signal), min(intervals, max(len(signal) // 4, 1)))
-    return np.asarray(basis @ _fitted(basis, np.unwrap(np.angle(signal)), np.abs(signal) ** 2))
+    return np.asarray(basis @ _fit_spline(basis, np.unwrap(np.angle(signal)), np.abs(signal) ** 2))

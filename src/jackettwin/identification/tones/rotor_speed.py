@@ -1,14 +1,14 @@
-r"""The speed of a rotor that nobody measured, from tones that move together.
+r"""Estimate the speed of a rotor without a speed signal, from tones with coupled phases.
 
-The orders 1P, 3P and 6P of a rotor have one angle: whatever the speed and the wind do to them, the phase of a
-higher order is a multiple of that of a lower one. In pairs of bands at f and r f, r = 2 for 3P and 6P, 3 for
-1P and 3P, the analytic signals a and b of the channels' best combination are compared by
+The orders 1P, 3P and 6P of a rotor follow one angle: whatever the speed and the wind, the phase of a higher
+order is a multiple of that of a lower one. In pairs of bands at f and r f, with r = 2 for 3P and 6P and r = 3
+for 1P and 3P, the analytic signals a and b of the channels' best combination are compared by
 
 .. math:: C = \Bigl|\frac1T \int \frac{b\,\bar a^{\,r}}{|b|\,|a|^r} dt\Bigr| ,
 
-which is 1 for tones however they drift and swell, and small for two modes, whose phases random forces lead
-apart. What is small is told by the same record: b is shifted against a in time, which leaves
-each as it is and takes from two orders what they have in common.
+which is 1 for tones, however they drift and swell, and small for two modes,
+whose phases random forces make independent. The same record shows which value occurs by chance:
+shifting b against a in time preserves each signal but destroys what two orders have in common.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import numpy as np
 from numpy import fft
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.identification.tones.bands import Band, bands_of, overlapping
+from jackettwin.identification.tones.bands import Band, bands_of, overlapping_bands
 from jackettwin.identification.tones.phase_track import baseband
 from jackettwin.identification.tones.sinusoid import lines_around, sinusoid, transform
 
@@ -29,18 +29,19 @@ if TYPE_CHECKING:
 
 
 PAIRS = ((3, 1, 3), (2, 3, 6))
-"""Ratio of two orders that are compared, the lower order, and the higher."""
+"""Ratio of two compared orders, the lower order, and the higher."""
 ORDERS = (1, 3, 6)
-"""Multiples of the speed at which three blades excite a tower …"""
+"""Multiples of the speed at which three blades excite a tower."""
 HIGHER = range(9, 31, 3)
-"""… and multiples that count only where a tone is found: most of them cannot be seen."""
-SEEN = 8.0
-"""D (``sinusoid.py``) along the phase that the speed gives a higher order. Of an offshore turbine at rated
-speed the orders 9 to 24 have 9 to 60, other multiples up to 5; modes where an order would be up to 3."""
+"""Higher multiples, which count only where a tone is found, since most of them are too weak."""
+MIN_RATIO = 8.0
+"""Least D (``sinusoid.py``) along the phase that the speed gives a higher order.
+At rated speed of an offshore turbine the orders 9 to 24 have 9 to 60, other multiples up to 5;
+modes at the place of an order up to 3."""
 WIDTHS = (0.015, 0.05)
-"""Half widths of the bands, as a share of their middle …"""
-FEWEST_LINES = 5.0
-"""… and at least so many Fourier lines."""
+"""Half widths of the bands, as a share of their middle."""
+MIN_LINES = 5.0
+"""Fewest Fourier lines in half a band."""
 STEP = 0.5
 """Distance of neighbouring bands, in half widths."""
 HIGHEST = 0.45
@@ -48,22 +49,22 @@ HIGHEST = 0.45
 LEAST_SPEED_HZ, MOST_SPEED_HZ = 0.04, 0.6
 """Range of the rotor's speed: 2.4 to 36 revolutions a minute."""
 SHIFTS = 16
-"""Number of shifts of one signal against the other, which show what coherence chance gives."""
+"""Number of shifts of one signal against the other, which show the coherence that arises by chance."""
 LEAST_COHERENCE = 0.6
-"""Least C of two orders, whose bands contain modes and noise as well …"""
+"""Least C of two orders; their bands contain modes and noise as well."""
 MARGIN = 0.3
-"""… and the least excess over the C of every shift."""
-CERTAIN = 0.93
-"""C of two orders that needs no such excess: tones that hardly drift are coherent at any shift."""
+"""Least excess of C over that of every shift."""
+CERTAIN_COHERENCE = 0.93
+"""C of two orders above which no excess is required: tones that hardly drift are coherent at any shift."""
 PASSING = (2.0, 98.0)
-"""Percentiles of the speed between which an order passes."""
-SMOOTHED = 0.03
+"""Percentiles of the speed that limit the range of an order."""
+SMOOTHING_SHARE = 0.03
 """Share of the record over which the phase is smoothed for the speed."""
 
 
 @dataclass(frozen=True)
 class EstimatedSpeed:
-    """The speed of a rotor, from two of its orders.
+    """Speed of a rotor estimated from two of its orders.
 
     Attributes
     ----------
@@ -72,9 +73,9 @@ class EstimatedSpeed:
     coherence : float
         C of the two orders.
     seen : (low, high)
-        The orders it was seen in.
+        The two orders.
     higher : tuple of (order, low, high)
-        Orders above the sixth that are seen, and the range of frequency each passes [Hz].
+        Detected orders above the sixth, and the frequency range of each [Hz].
     """
 
     speed_hz: FloatArray
@@ -84,17 +85,17 @@ class EstimatedSpeed:
 
     @property
     def orders(self) -> tuple[tuple[int, float, float], ...]:
-        """Orders with the range of frequency each passes: (order, low, high)."""
+        """Orders with the frequency range of each: (order, low, high) [Hz]."""
         return (*((order, *self.swept_hz(order)) for order in ORDERS), *self.higher)
 
     def swept_hz(self, order: int) -> tuple[float, float]:
-        """Return the range of frequency an order passes."""
+        """Return the frequency range of an order [Hz]."""
         low, high = np.percentile(order * self.speed_hz, PASSING)
         return float(low), float(high)
 
 
 def estimated_speed(y: FloatArray, sample_rate_hz: float) -> EstimatedSpeed | None:
-    """Return the speed of a rotor two orders of which are in a record; None if no two move together.
+    """Return the speed of a rotor if two of its orders are in a record, else None.
 
     Parameters
     ----------
@@ -116,7 +117,7 @@ def estimated_speed(y: FloatArray, sample_rate_hz: float) -> EstimatedSpeed | No
     best: EstimatedSpeed | None = None
     for pair in PAIRS:
         for width in WIDTHS:
-            for found in _together(lines, duration, *_bands(width, pair, duration, highest), pair):
+            for found in _coherent_speeds(lines, duration, *_bands(width, pair, duration, highest), pair):
                 if best is None or found.coherence > best.coherence:
                     best = found
     if best is None:
@@ -127,16 +128,16 @@ def estimated_speed(y: FloatArray, sample_rate_hz: float) -> EstimatedSpeed | No
 def higher_orders(
     y: FloatArray, sample_rate_hz: float, speed_hz: FloatArray
 ) -> Iterator[tuple[int, float, float]]:
-    """Yield the orders above the sixth that are seen, with the range of frequency each passes [Hz].
+    """Yield the detected orders above the sixth with the frequency range of each [Hz].
 
-    Turned back by the phase that the speed gives it, an order is one line.
+    Once the phase derived from the speed is taken off, an order is a single line.
 
     Parameters
     ----------
     y : (n_channels, n_samples)
         Zero mean; NaN marks a missing sample and counts as zero.
     speed_hz : (n_instants,)
-        Evenly spread over the record.
+        Evenly spaced over the record.
     """
     lines, duration = transform(y), y.shape[1] / sample_rate_hz
     turns = np.append(0.0, np.cumsum(speed_hz)) * duration / len(speed_hz)
@@ -152,7 +153,7 @@ def higher_orders(
         turned = order * np.interp(at, np.linspace(0.0, 1.0, len(turns)), turns)
         phase = 2.0 * np.pi * (turned - band.middle_hz * duration * at)
         along = fft.fftshift(fft.fft(band.signal * np.exp(-1j * phase), axis=1), axes=1)
-        if sinusoid(along, n // 2).ratio > SEEN:
+        if sinusoid(along, n // 2).ratio > MIN_RATIO:
             yield order, low, high
 
 
@@ -161,18 +162,18 @@ def _bands(
 ) -> tuple[FloatArray, FloatArray]:
     """Return middles and half widths of overlapping bands in which the lower order of a pair may lie."""
     ratio, order, _ = pair
-    least = FEWEST_LINES / duration_s
-    middle, half = overlapping(
+    least = MIN_LINES / duration_s
+    middle, half = overlapping_bands(
         max(order * LEAST_SPEED_HZ, 4.0 * least), order * MOST_SPEED_HZ, width, least, STEP
     )
     below = ratio * (middle + 3.0 * half) <= highest_hz
     return middle[below], half[below]
 
 
-def _together(
+def _coherent_speeds(
     lines: ComplexArray, duration_s: float, f: FloatArray, half: FloatArray, pair: tuple[int, int, int]
 ) -> Iterator[EstimatedSpeed]:
-    """Yield the speeds of orders of a pair that are in the bands at f and at the multiple of it."""
+    """Yield speeds whose two orders are in the bands at f and at its multiple."""
     ratio, lower, higher = pair
     lows, highs = bands_of(lines, duration_s, f, half), bands_of(lines, duration_s, ratio * f, ratio * half)
     length = 2 ** np.ceil(np.log2(8.0 * ratio * half * duration_s + 8.0)).astype(np.intp)
@@ -181,22 +182,22 @@ def _together(
         a = _analytic(lines, duration_s, [lows[k] for k in at], int(n))
         b = _analytic(lines, duration_s, [highs[k] for k in at], int(n))
         unit_a, unit_b = a / (np.abs(a) + 1e-300), b / (np.abs(b) + 1e-300)
-        # both basebands are about their own middle line; the multiple of the one is not quite the other
+        # each baseband is relative to its own middle line, which the multiple does not quite meet
         low, high = (np.array([_line(band, duration_s) for band in x]) for x in (lows, highs))
         turn = np.exp(2j * np.pi * np.outer(high - ratio * low, np.arange(n))[at] / n)
         product = unit_a.conj() ** ratio * turn
         coherence = np.abs(np.mean(unit_b * product, axis=1))
         for i in np.flatnonzero(coherence >= LEAST_COHERENCE):
             c = float(coherence[i])
-            if c >= CERTAIN or _only_together(unit_b[i], product[i], c):
+            if c >= CERTAIN_COHERENCE or _exceeds_chance(unit_b[i], product[i], c):
                 yield EstimatedSpeed(_speed(b[i], int(high[at[i]]), higher, duration_s), c, (lower, higher))
 
 
 def _speed(b: ComplexArray, line: int, order: int, duration_s: float) -> FloatArray:
-    """Return the speed that the phase of an order tells, smoothed, (n_instants,)."""
+    """Return the smoothed speed from the phase of an order, (n_instants,)."""
     n = len(b)
     angle = (np.unwrap(np.angle(b)) + 2.0 * np.pi * line * np.arange(n) / n) / order
-    width = max(int(SMOOTHED * n), 3)
+    width = max(int(SMOOTHING_SHARE * n), 3)
     kernel = np.hanning(width + 2)[1:-1]
     speed = np.gradient(angle) * n / (2.0 * np.pi * duration_s)
     return np.asarray(
@@ -204,21 +205,21 @@ def _speed(b: ComplexArray, line: int, order: int, duration_s: float) -> FloatAr
     )
 
 
-def _only_together(b: ComplexArray, product: ComplexArray, coherence: float) -> bool:
-    """Return whether no shift in time makes two signals as coherent."""
+def _exceeds_chance(b: ComplexArray, product: ComplexArray, coherence: float) -> bool:
+    """Tell whether two signals are more coherent than after any shift in time."""
     n = len(b)
     shifts = [(k * n) // (SHIFTS + 1) for k in range(1, SHIFTS + 1)]
-    return bool(coherence > MARGIN + max(_any_offset(np.roll(b, k) * product, k, n) for k in shifts))
+    return bool(coherence > MARGIN + max(_shifted_mean(np.roll(b, k) * product, k, n) for k in shifts))
 
 
-def _any_offset(product: ComplexArray, shift: int, n: int) -> float:
-    """Return the mean of a shifted product, either part of the record for itself: the ends do not join."""
+def _shifted_mean(product: ComplexArray, shift: int, n: int) -> float:
+    """Return the larger mean of the two parts of a shifted product, which are not joined at the wrap."""
     parts = [part for part in (product[:shift], product[shift:]) if len(part) > n // 4]
     return max((float(np.abs(np.mean(part))) for part in parts), default=0.0)
 
 
 def _analytic(lines: ComplexArray, duration_s: float, bands: Sequence[Band], n: int) -> ComplexArray:
-    """Return the signals of the channels' best combinations, about their middle lines, (n_bands, n)."""
+    """Return the best combinations of channels relative to their middle lines, (n_bands, n)."""
     spread = np.zeros((len(bands), n), dtype=complex)
     for row, band in zip(spread, bands, strict=True):
         middle, reach = _line(band, duration_s), int(band.half_hz * duration_s)

@@ -1,9 +1,9 @@
-"""Find steady tones in a record and subtract them, so that the response to random forces is left.
+"""Find and subtract steady tones, which leaves the response to random forces.
 
-Where a line stands out of those around it, a sinusoid is fitted (``sinusoid.py``). With several channels a
-tone need not outweigh a mode to be seen beside it, or within its peak: it moves them otherwise. One that
-wanders by a few lines leaves much when a steady one is subtracted, and is followed instead
-(``phase_track.py``).
+A sinusoid is fitted wherever a line stands out from those around it (``sinusoid.py``).
+With several channels a tone need not exceed a mode to be detected beside it or within its peak,
+because it moves the channels in another shape. If a tone drifts by a few lines,
+subtracting a steady one leaves much of it; then its phase is tracked (``phase_track.py``).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from jackettwin.identification.tones.sinusoid import (
     LINES,
     REACH,
     lines_around,
-    regular,
+    regularised,
     sinusoid,
     transform,
 )
@@ -33,20 +33,20 @@ if TYPE_CHECKING:
 
 NEAREST_LINE = 8
 """Lowest Fourier line at which tones are sought."""
-WORTH_A_LOOK = 4.0
-"""Power of a line over that of the background, whitened, from which a sinusoid is fitted to it."""
-ELEMENTS = 2**18
-"""Most elements of the covariances of lines in memory at a time."""
-MOST = 30
+MIN_POWER_RATIO = 4.0
+"""Ratio of the whitened power of a line to that of the background from which a sinusoid is fitted."""
+MAX_ELEMENTS = 2**18
+"""Most elements of the lines' covariances held in memory at a time."""
+MAX_TONES = 30
 """Most tones that are subtracted."""
-MUCH_MORE = 4.0
-"""Least D of a curved phase, over that of a straight one."""
+MIN_RATIO_GAIN = 4.0
+"""Least ratio of D along a curved phase to that along a straight one."""
 
 
 def steady_tones(
     y: FloatArray, sample_rate_hz: float
 ) -> tuple[tuple[float, ...], tuple[PhaseTrack, ...], FloatArray]:
-    """Return the frequencies of steady tones [Hz], those that wander by few lines, the samples less them all.
+    """Return steady tones [Hz], tracks of tones that drift a little, and the samples without both.
 
     Parameters
     ----------
@@ -63,42 +63,42 @@ def steady_tones(
     """
     duration = y.shape[1] / sample_rate_hz
     steady: list[float] = []
-    wandering: list[PhaseTrack] = []
+    drifting: list[PhaseTrack] = []
     left, found = y, list[float]()
     if y.shape[1] // 2 <= 2 * (NEAREST_LINE + lines_around(len(y))):
         return (), (), left
-    while len(found) < MOST:
+    while len(found) < MAX_TONES:
         spectrum = transform(left)
         tones = [t for t in _clear_tones(spectrum) if _apart(t.position, found)]
         if not tones:
             break
         for tone in tones:
             found.append(tone.position)
-            track = _wandering(spectrum, tone, duration)
+            track = _drifting_track(spectrum, tone, duration)
             if track is None:
-                left = _less(left, tone.position)
+                left = _subtract(left, tone.position)
                 steady.append(tone.position / duration)
             else:
                 left = less_phase(left, track.phase(y.shape[1]))
-                wandering.append(track)
-    return tuple(steady), tuple(wandering), left
+                drifting.append(track)
+    return tuple(steady), tuple(drifting), left
 
 
-def _wandering(spectrum: ComplexArray, tone: Sinusoid, duration_s: float) -> PhaseTrack | None:
-    """Return the phase of a tone that a straight one leaves much of."""
+def _drifting_track(spectrum: ComplexArray, tone: Sinusoid, duration_s: float) -> PhaseTrack | None:
+    """Return the phase track of a tone if it explains much more than a straight phase."""
     room = (INTERVALS[-1] + 2 * lines_around(len(spectrum))) / duration_s
     frequency = tone.position / duration_s
     band = baseband(spectrum, duration_s, frequency, room)
     n = band.signal.shape[1]
     straight = 2.0 * np.pi * (frequency - band.middle_hz) * duration_s * np.arange(n) / n
     track = phase_track(band, straight)
-    return track if track is not None and track.ratio > MUCH_MORE * tone.ratio else None
+    return track if track is not None and track.ratio > MIN_RATIO_GAIN * tone.ratio else None
 
 
 def without_tones(y: FloatArray, sample_rate_hz: float, tones_hz: Iterable[float]) -> FloatArray:
-    """Return samples less the least-squares sinusoid near each frequency.
+    """Return samples without the least-squares sinusoid near each frequency.
 
-    The frequency is sought within three lines, where a sinusoid explains most.
+    The frequency is the best within three lines.
 
     Parameters
     ----------
@@ -120,14 +120,14 @@ def without_tones(y: FloatArray, sample_rate_hz: float, tones_hz: Iterable[float
         near = near[(near > edge) & (near < spectrum.shape[1] - edge)]
         if len(near):
             top = near[np.argmax(np.sum(np.abs(spectrum[:, near]) ** 2, axis=0))]
-            out = _less(out, sinusoid(spectrum, int(top)).position)
+            out = _subtract(out, sinusoid(spectrum, int(top)).position)
     return out
 
 
 def _clear_tones(spectrum: ComplexArray) -> list[Sinusoid]:
-    """Return the lines that are tones, the clearest first, none within reach of a clearer one."""
+    """Return the tones, the clearest first, none within reach of a clearer one."""
     ratio = _over_background(spectrum)
-    clear = np.flatnonzero(ratio > WORTH_A_LOOK)
+    clear = np.flatnonzero(ratio > MIN_POWER_RATIO)
     clear = clear[(ratio[clear] >= ratio[clear - 1]) & (ratio[clear] >= ratio[clear + 1])]
     tones = [sinusoid(spectrum, int(k)) for k in clear]
     apart: list[Sinusoid] = []
@@ -138,26 +138,26 @@ def _clear_tones(spectrum: ComplexArray) -> list[Sinusoid]:
 
 
 def _apart(position: float, others: Iterable[float]) -> bool:
-    """Tell whether a tone is none of the others, nor what one that is not quite steady leaves."""
+    """Tell whether a tone is neither one of the others nor the remainder of one."""
     return all(abs(position - other) > LINES for other in others)
 
 
 def _over_background(spectrum: ComplexArray) -> FloatArray:
-    """Return the power of every line over that of the lines around, in units of their covariance, (n_lines,).
+    """Return the whitened power of every line over that of the lines around it, (n_lines,).
 
-    Expected to be 1 where channels and lines are alike; 0 at the ends, where there are none around.
+    Its expectation is 1 where channels and lines are alike. It is 0 at the ends, which lack lines around.
     """
     n_channels, n_lines = spectrum.shape
     reach = lines_around(n_channels)
     n = 2 * (reach - REACH)
     out = np.zeros(n_lines)
-    chunk = max(ELEMENTS // n_channels**2, 4 * reach)
+    chunk = max(MAX_ELEMENTS // n_channels**2, 4 * reach)
     for first in range(max(NEAREST_LINE, reach + 1), n_lines - reach, chunk):
         k = np.arange(first, min(first + chunk, n_lines - reach))
         wide = spectrum[:, k[0] - reach : k[-1] + reach + 1]
         products = np.zeros((wide.shape[1] + 1, n_channels, n_channels), dtype=complex)
         np.cumsum(wide.T[:, :, None] * wide.T[:, None, :].conj(), axis=0, out=products[1:])
-        around = regular((_moving(products, reach, reach) - _moving(products, reach, REACH)) / n)
+        around = regularised((_moving(products, reach, reach) - _moving(products, reach, REACH)) / n)
         x = spectrum[:, k].T
         solved = np.linalg.solve(around, x[:, :, None])[:, :, 0]
         out[k] = np.einsum("ka,ka->k", x.conj(), solved).real
@@ -165,11 +165,11 @@ def _over_background(spectrum: ComplexArray) -> FloatArray:
 
 
 def _moving(sums: ComplexArray, ends: int, half: int) -> ComplexArray:
-    """Return sums of 2 half + 1 terms about each but ``ends`` terms at either end, from running sums."""
+    """Return moving sums of 2 half + 1 terms from running sums, without ``ends`` terms at each end."""
     n = len(sums) - 1 - 2 * ends
     return np.asarray(sums[ends + half + 1 :][:n] - sums[ends - half :][:n])
 
 
-def _less(y: FloatArray, position: float) -> FloatArray:
-    """Return samples less the least-squares sinusoid of a frequency, given in lines."""
+def _subtract(y: FloatArray, position: float) -> FloatArray:
+    """Return samples without the least-squares sinusoid at a frequency, given in lines."""
     return less_phase(y, 2.0 * np.pi * position / y.shape[1] * np.arange(y.shape[1]))
