@@ -1,7 +1,11 @@
 from .blade_files import read_flexible_rotor as read_flexible_rotor
-from .formats import read_structure as read_structure, shipped_structures as shipped_structures
+from .formats import (
+    StructureChoice as StructureChoice,
+    read_structure as read_structure,
+    shipped_structures as shipped_structures,
+)
 from .openfast import Deck as Deck, DeckRow as DeckRow, read_deck as read_deck, to_float as to_float
 from .sacs import is_sacs as is_sacs, sacs_remarks as sacs_remarks
-from .structure_yaml import RnaSchema as RnaSchema, StructureChoice as StructureChoice
+from .structure_yaml import RnaSchema as RnaSchema
 from .subdyn import DeckDamping as DeckDamping, read_deck_damping as read_deck_damping
 from .subdyn_writer import write_subdyn as write_subdyn

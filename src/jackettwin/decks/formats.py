@@ -7,9 +7,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from jackettwin.decks.sacs import is_sacs, read_sacs
-from jackettwin.decks.structure_yaml import read_yaml_structure
+from jackettwin.decks.structure_yaml import RnaSchema, read_yaml_structure
 from jackettwin.decks.subdyn import read_subdyn
-from jackettwin.files import find_file, shipped
+from jackettwin.decks.tower import TowerSchema
+from jackettwin.errors import located, require
+from jackettwin.files import Schema, find_file, shipped
 from jackettwin.structure import Structure
 
 
@@ -49,5 +51,41 @@ def read_structure(source: str | Path, *, folder: Path | None = None) -> Structu
     """
     also = f", {', or '.join(form.name for form in FORMATS)}"
     path = find_file(source, "structures", folder=folder, also=also)
-    read = next((form.read for form in FORMATS if form.fits(path)), read_yaml_structure)
-    return read(path)
+    read = next((form.read for form in FORMATS if form.fits(path)), None)
+    return read_yaml_structure(path, _read) if read is None else read(path)
+
+
+def _read(source: str, folder: Path | None) -> Structure:
+    return read_structure(source, folder=folder)
+
+
+class StructureChoice(Schema):
+    """A structure of a file with overrides; or a foundation of a file, and the tower on it."""
+
+    source: str | None = None
+    foundation: str | None = None
+    tower: TowerSchema | None = None
+    rna: RnaSchema | None = None
+
+    def read(self, folder: Path | None) -> Structure:
+        """Return the structure; its rotor–nacelle assembly is left to the caller.
+
+        Raises
+        ------
+        InputError
+            If it is not given in just one way, or its file is missing or wrong.
+        """
+        one = (self.source is None) != (self.foundation is None)
+        remedy = "source: FILE, or foundation: FILE with tower: {…}"
+        require(one, "give a structure in one way", field="structure", remedy=remedy)
+        if self.source is not None:
+            told = {"field": "structure.tower", "remedy": "give foundation: in the place of source:"}
+            require(self.tower is None, "a tower stands on a foundation", **told)
+            return read_structure(self.source, folder=folder)
+        assert self.foundation is not None
+        require(
+            self.tower is not None, "required key is missing", field="structure.tower", remedy="add 'tower'"
+        )
+        assert self.tower is not None
+        with located(field="structure"):
+            return self.tower.stand_on(read_structure(self.foundation, folder=folder), folder=folder)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from math import radians
 from pathlib import Path
@@ -11,7 +12,8 @@ from pydantic import Field
 
 from jackettwin.decks.blade_files import read_flexible_rotor
 from jackettwin.decks.sections_yaml import SHAPES, SectionInFile, TubeSchema, build_tube
-from jackettwin.errors import located, look_up, require
+from jackettwin.decks.tower import TowerSchema
+from jackettwin.errors import InputError, located, look_up, require
 from jackettwin.files import Angle, Placed, Schema, read_yaml, validate
 from jackettwin.structure import (
     STEEL,
@@ -101,13 +103,6 @@ class RnaSchema(BodySchema):
         return bare if self.blades is None else with_rotor(bare, self.blades.build(folder), top)
 
 
-class StructureChoice(Schema):
-    """A structure with overrides."""
-
-    source: str
-    rna: RnaSchema | None = None
-
-
 class MassSchema(BodySchema):
     """A rigid body on a named node."""
 
@@ -149,6 +144,8 @@ class StructureSchema(Schema):
     name: str = ""
     sea_level_z_m: float = 0.0
     jacket: JacketSchema | None = None
+    foundation: str | None = None
+    tower: TowerSchema | None = None
     materials: dict[str, MaterialInFile] = {}
     sections: dict[str, SectionInFile] = {}
     nodes: dict[str, Vector] = {}
@@ -163,8 +160,12 @@ class StructureSchema(Schema):
     subdivide: Annotated[int, Field(ge=1, le=1000)] = 1
 
 
-def read_yaml_structure(path: Path) -> Structure:
-    """Read a structure from a YAML file.
+Read = Callable[[str, Path | None], Structure]
+"""Reads a structure of any format, by its name and the folder that this is relative to."""
+
+
+def read_yaml_structure(path: Path, read: Read) -> Structure:
+    """Read a structure from a YAML file; ``read`` reads the foundation that it names.
 
     Raises
     ------
@@ -173,12 +174,16 @@ def read_yaml_structure(path: Path) -> Structure:
     """
     schema = validate(StructureSchema, read_yaml(path, what="structure file"), file=path)
     with located(file=path):
-        return build_structure(schema, default_name=path.stem, folder=path.parent)
+        return build_structure(schema, read, default_name=path.stem, folder=path.parent)
 
 
-def build_structure(schema: StructureSchema, *, default_name: str, folder: Path | None = None) -> Structure:
+def build_structure(
+    schema: StructureSchema, read: Read, *, default_name: str, folder: Path | None = None
+) -> Structure:
     """Return the structure a checked file describes."""
     name = schema.name or default_name
+    if schema.foundation is not None or schema.tower is not None:
+        return replace(_on_foundation(schema, read, folder), name=name)
     if schema.jacket is not None:
         own = {"nodes", "members", "sections", "materials", "rna", "rigid_links"} & schema.model_fields_set
         require(
@@ -205,6 +210,28 @@ def build_structure(schema: StructureSchema, *, default_name: str, folder: Path 
         beam=schema.beam,
         rotary_inertia=schema.rotary_inertia,
     )
+    return structure if schema.rna is None else schema.rna.stand_on(structure, folder=folder)
+
+
+def _on_foundation(schema: StructureSchema, read: Read, folder: Path | None) -> Structure:
+    """Return a foundation from another file, with its tower, and the bodies of this one."""
+    kept = {"name", "foundation", "tower", "rna", "masses", "interface_nodes"}
+    for key in sorted(schema.model_fields_set - kept):
+        raise InputError(
+            "a foundation from another file defines this itself",
+            field=key,
+            allowed=", ".join(sorted(kept)),
+            remedy="take it out, or write it into the foundation's own file",
+        )
+    for key in ("foundation", "tower"):
+        require(getattr(schema, key), "required key is missing", field=key, remedy=f"add {key!r}")
+    assert schema.foundation is not None and schema.tower is not None
+    structure = read(schema.foundation, folder)
+    if schema.interface_nodes:
+        structure = replace(structure, interface_nodes=tuple(schema.interface_nodes))
+    structure = schema.tower.stand_on(structure, folder=folder)
+    bodies = tuple(m.build(m.node, field=f"masses.{i}") for i, m in enumerate(schema.masses))
+    structure = structure.with_masses((*structure.masses, *bodies))
     return structure if schema.rna is None else schema.rna.stand_on(structure, folder=folder)
 
 

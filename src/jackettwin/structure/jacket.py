@@ -290,13 +290,20 @@ def _add_tower(tower: Tower, z0: float, nodes: dict[str, Vector], members: list[
     names = ["tp_top", *(f"tower_{k}" for k in range(1, tower.elements)), "tower_top"]
     for k, name in enumerate(names[1:], start=1):
         nodes[name] = (0.0, 0.0, z0 + tower.height_m * k / tower.elements)
-    for k, ends in enumerate(pairwise(names)):
-        at = (k + 0.5) / tower.elements
-        section = Section(
-            tower.bottom.outer_diameter_m + at * (tower.top.outer_diameter_m - tower.bottom.outer_diameter_m),
-            tower.bottom.thickness_m + at * (tower.top.thickness_m - tower.bottom.thickness_m),
+    for k, (ends, tube) in enumerate(zip(pairwise(names), tower_tubes(tower), strict=True), start=1):
+        members.append(_member(f"tower_{k}", ends, tube, tower.material, "tower"))
+
+
+def tower_tubes(tower: Tower) -> list[Section]:
+    """Return the tubes of a tower's pieces, from the bottom up."""
+    bottom, top = tower.bottom, tower.top
+    return [
+        Section(
+            bottom.outer_diameter_m + at * (top.outer_diameter_m - bottom.outer_diameter_m),
+            bottom.thickness_m + at * (top.thickness_m - bottom.thickness_m),
         )
-        members.append(_member(f"tower_{k + 1}", ends, section, tower.material, "tower"))
+        for at in ((k + 0.5) / tower.elements for k in range(tower.elements))
+    ]
 
 
 def _member(name: str, ends: tuple[str, str], section: Section, material: Material, part: str) -> Member:

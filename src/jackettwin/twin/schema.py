@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AwareDatetime, BeforeValidator, Field
 
-from jackettwin.decks import RnaSchema, StructureChoice, read_structure
+from jackettwin.decks import RnaSchema, StructureChoice
 from jackettwin.errors import InputError, located, require
 from jackettwin.files import Schema, one_of
 from jackettwin.loads import WaterSchema
@@ -44,7 +44,7 @@ class RefinedStructure(StructureChoice):
 
     def build(self, folder: Path) -> Structure:
         """Return the structure, refined; its rotor–nacelle assembly is left to the caller."""
-        structure = read_structure(self.source, folder=folder)
+        structure = self.read(folder)
         for part, factors in self.steel.items():
             with located(field="structure.steel"):
                 structure = structure.with_material(part, **factors.model_dump())

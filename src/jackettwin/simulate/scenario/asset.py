@@ -138,7 +138,7 @@ def _check_loops(foundation: Foundation, model: PileModel | None) -> None:
 
 def _structure(schema: AssetSchema, folder: Path) -> Structure:
     choice = schema.structure
-    structure = read_structure(choice if isinstance(choice, str) else choice.source, folder=folder)
+    structure = read_structure(choice, folder=folder) if isinstance(choice, str) else choice.read(folder)
     rna = schema.rna or (None if isinstance(choice, str) else choice.rna)
     return structure if rna is None else rna.stand_on(structure, folder=folder)
 
