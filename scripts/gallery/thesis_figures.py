@@ -12,6 +12,7 @@ import plotly.graph_objects as go
 from gallery import figures_theory, schematics
 from gallery.figures_elevation import elevation
 from gallery.modes_3d import Shape, mode_shapes_3d
+from gallery.open_questions import open_questions
 from gallery.structure_3d import structure_3d
 from jackettwin.decks import read_structure
 from jackettwin.identification import Identification, identify, mac
@@ -43,6 +44,7 @@ from jackettwin.updating import (
 )
 from jackettwin.updating.steel import only_parts
 from jackettwin.verify import supports
+from jackettwin.verify.open_questions import fit, ways
 
 RECORD = "pile_U12_s301"
 """The shipped record behind the figures of identification: OpenFAST, 12 m/s."""
@@ -84,6 +86,7 @@ def thesis_figures(step: Callable[[str], None] = lambda _: None) -> list[PageSec
     step("figures of chapters 7 and 8")
     sections.append(PageSection("Chapter 7: viscoelastic supports", (_figure_7_1(jacket),)))
     sections.append(PageSection("Chapter 8: updating", tuple(_chapter_8(jacket))))
+    sections.append(open_questions())
     step("figures of chapter 11")
     sections.append(PageSection("Chapter 11: appendix", tuple(_chapter_11(record, found, names))))
     return sections
@@ -267,8 +270,7 @@ def _figure_7_1(jacket: _Jacket) -> Plot:
 
 
 def _chapter_8(jacket: _Jacket) -> list[Plot]:
-    kv = support_model(jacket.assembly, family=family("kelvin-voigt"), rayleigh=jacket.steel)
-    plots = [_figure_8_1(jacket), *_surfaces(kv)]
+    plots = [_figure_8_1(jacket), *_surfaces()]
     bare_kv = support_model(jacket.assembly, family=family("kelvin-voigt"), rayleigh=Rayleigh())
     plots += [
         _locus(bare_kv, theta, f"figure_8_4_{x}", f"Figure 8.4 ({x})")
@@ -295,8 +297,8 @@ def _figure_8_1(jacket: _Jacket) -> Plot:
     return Plot("figure_8_1", caption, figures_theory.frequency_along(path, 0, (limits[0], limits[1])))
 
 
-def _surfaces(model: SupportModel) -> list[Plot]:
-    result = supports.fitted(model, supports.table_6_1())
+def _surfaces() -> list[Plot]:
+    result = fit("kelvin-voigt", zeta_4=False)
     k, c = _KV_1
     points = [("thesis, point 1", k, c), ("thesis, point 2: damper nearly locked", *_KV_2)]
     points += [
@@ -313,8 +315,9 @@ def _surfaces(model: SupportModel) -> list[Plot]:
     return [
         Plot(
             "figure_8_2",
-            "Figure 8.2: cost of the Kelvin–Voigt model over its bounds, targets of Table 6.1.",
-            landscape.cost_surface(wide, points),
+            "Figure 8.2: cost of the Kelvin–Voigt model over its bounds, targets of Table 6.1, and where the "
+            "simplex goes from the thesis's points and from 16 scattered ones.",
+            landscape.cost_surface(wide, points, ways("kelvin-voigt", "nelder-mead")),
         ),
         Plot("figure_8_3", "Figure 8.3: close-up of point 1.", landscape.cost_surface(close, near)),
     ]

@@ -50,5 +50,5 @@ def _summary(rows: tuple[Row, ...]) -> str:
     checked = [row.ok for row in rows if row.ok is not None]
     return (
         f"{sum(checked)} of {len(checked)} checked rows hold; {len(rows) - len(checked)} rows only inform: "
-        "they need drawings or data that were not published"
+        "most need drawings or data that were not published, and --json says why of each"
     )

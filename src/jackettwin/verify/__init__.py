@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from jackettwin.verify import chapters, supports
+from jackettwin.verify import chapters, open_questions, supports
 from jackettwin.verify.rows import Computed, Row, published, rows_of
 
 __all__ = ["STEPS", "Row", "published", "published_rows"]
@@ -17,6 +17,7 @@ _CHAPTERS: dict[str, Callable[[], Computed]] = {
     "chapter 8: the thesis's own parameters": supports.own_parameters,
     "chapter 8: fit kelvin-voigt to Table 6.1": partial(supports.fit, "kelvin-voigt"),
     "chapter 8: fit zener to Table 6.1": partial(supports.fit, "zener"),
+    "chapter 10: open questions": open_questions.open_questions,
 }
 STEPS = len(_CHAPTERS)
 """How often ``published_rows`` announces what it does."""

@@ -90,7 +90,7 @@ def elastic_f1(assembly: Assembly, k: float) -> float:
 
 def _figure_8_1() -> Computed:
     """Return the ends of figure 8.1 and its limits against the reference systems (undamped steel)."""
-    assembly, _ = _jacket()
+    assembly, _ = reference_jacket()
     model = support_model(assembly, family=family("zener"), rayleigh=Rayleigh())
     low, high = (
         float(model.exact_modes(np.array([FIGURE_8_1_K0, c, FIGURE_8_1_K1]), (1,)).frequency_hz[0])
@@ -105,14 +105,14 @@ def _figure_8_1() -> Computed:
 
 
 @cache
-def _jacket() -> tuple[Assembly, Rayleigh]:
+def reference_jacket() -> tuple[Assembly, Rayleigh]:
     """Return the jacket and its steel's damping: 1 % at the first frequency on pinned feet."""
     assembly = assemble(read_structure("jacket15"))
     return assembly, Rayleigh.minimum(0.01, float(numbered_modes(assembly, 1).frequency_hz[0]))
 
 
 def _model(law: str) -> SupportModel:
-    assembly, rayleigh = _jacket()
+    assembly, rayleigh = reference_jacket()
     return support_model(assembly, family=family(law), rayleigh=rayleigh)
 
 
