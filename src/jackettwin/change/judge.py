@@ -8,7 +8,7 @@ days hold is asked for only where it is needed: after a quiet day, of that day a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime, timedelta
 from functools import cache
@@ -87,7 +87,23 @@ class Days:
     @classmethod
     def of(cls, state: TwinState) -> Days:
         """Return the days of a state that is here as a whole."""
-        return cls({date: digest(day) for date, day in state.days.items()}, state.days.__getitem__)
+        return cls(_Identities(state.days), state.days.__getitem__)
+
+
+@dataclass(frozen=True)
+class _Identities(Mapping[str, str]):
+    """Identities of days, made when they are asked for."""
+
+    days: Mapping[str, Day]
+
+    def __getitem__(self, date: str) -> str:
+        return digest(self.days[date])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.days)
+
+    def __len__(self) -> int:
+        return len(self.days)
 
 
 def judge(

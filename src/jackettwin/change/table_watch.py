@@ -22,13 +22,15 @@ from jackettwin.watching import (
     Look,
     Watch,
     diagnose,
+    fresh,
     general_causes,
+    regressors,
     start,
     step,
     typical,
     unexplained_std,
 )
-from jackettwin.watching.design import WHOLE_YEAR_DAYS, fresh, regressors
+from jackettwin.watching.design import WHOLE_YEAR_DAYS
 from jackettwin.watching.history import deviations
 from jackettwin.watching.variance_shares import shares, slopes
 from jackettwin.watching.watch import columns_to_watch

@@ -8,19 +8,23 @@ how many days there were, since the state holds their sums.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from datetime import UTC, date, datetime
+from itertools import takewhile
 from typing import Literal
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.change import Days
 from jackettwin.errors import InputError
 from jackettwin.files import NOT_KEPT, Keep, digest
 from jackettwin.progress import SILENT, Progress
 from jackettwin.study.fit_data import recorded_modes, residuals, updating
-from jackettwin.study.follow_result import FEWEST_DAYS, STIFFNESS, Followed, Known, since_first
+from jackettwin.study.follow_result import FEWEST_DAYS, STIFFNESS, Followed, Known, Pooled, since_first
+from jackettwin.study.in_time.stiffness import Reference, StiffnessLevel, sensitivity
+from jackettwin.study.in_time.track import StiffnessTrack, resumed
 from jackettwin.study.problem import UpdateEvidence, law_model, model_problem, tied_problem
 from jackettwin.study.relaxations import measured_relaxations, relaxing
 from jackettwin.study.rotor import RotorDamping, States, mean_wind, operating_states, rotor_damping
@@ -54,6 +58,9 @@ Each = Literal["day", "record"]
 
 _WHOLE_SPAN = 2.0
 """Prior standard deviation of the logarithm by which stiffness drifts over the whole time."""
+GROWN = 1.3
+"""Growth of the number of records after which all together are asked again: until then they tell an eighth
+more of damping, and a posterior costs a thousand times what a day of stiffness does."""
 MOST_SPANS = 10
 """Spans of days that a drift is fitted to: its cost is that of the tenth day, however many there are."""
 
@@ -128,10 +135,10 @@ def follow_observations(
         raise InputError("no new records to follow", file=config.path, field="records", value=[])
     question = _question(config, model, used, law, prior)
     if each == "record":
-        known = () if prior is None else prior.days
-        days = (*known, *(question.after_record(seen, then, progress) for seen, then in moments))
+        in_time = question.after_records(moments, prior, progress)
     else:
-        days = question.after_days(used, () if prior is None else prior.days, progress)
+        in_time = question.after_days(used, prior, _same_days(state, prior), progress)
+    days, last = in_time.days, in_time.last
     return Followed(
         name=config.name,
         law=question.support.family.name,
@@ -142,7 +149,18 @@ def follow_observations(
         drift=question.drift(used, days),
         state=state,
         warnings=tuple(findings),
+        pooled=in_time.pooled,
+        track=in_time.track.stored(),
+        smoothed={} if last is None else in_time.track.levels(last.reference),
+        ahead={} if last is None else in_time.track.ahead(last.reference),
     )
+
+
+def _same_days(state: TwinState, prior: Followed | None) -> set[str]:
+    """Return the days, from the first on, that are as an earlier run had them."""
+    before = {} if prior is None else prior.state.days
+    dates = (date_ for date_ in state.days if date_ != UNDATED)
+    return set(takewhile(lambda date_: state.days[date_] is before.get(date_), dates))
 
 
 def _observed(
@@ -215,6 +233,39 @@ def _states(config: TwinConfig, model: TwinModel, state: TwinState, wind: float 
 
 
 @dataclass(frozen=True)
+class _InTime:
+    """What is known up to a day: the stiffness so far, of each day, and what all records said together."""
+
+    track: StiffnessTrack
+    days: tuple[Known, ...] = ()
+    pooled: Mapping[str, Pooled] = field(default_factory=dict)
+
+    @property
+    def last(self) -> Pooled | None:
+        """What all records said together when they were asked the last time."""
+        return next(reversed(dict(self.pooled).values()), None)
+
+    def with_day(self, date_: str, pooled: Pooled, *, asked: bool) -> _InTime:
+        """Return what is known after one more day; ``asked`` if all records were asked after it."""
+        every = {**self.pooled, date_: pooled} if asked else self.pooled
+        if pooled.about is None:
+            return replace(self, pooled=every)
+        track = self.track.with_day(date_, pooled.about, copied=asked)
+        track = track.with_changes(pooled.reference).moved(pooled.reference)
+        return replace(self, track=track, pooled=every)
+
+    def with_known(self, known: Known) -> _InTime:
+        return replace(self, days=(*self.days, known))
+
+    def again(self, date_: str, known: Known | None, pooled: Pooled | None) -> _InTime:
+        """Return what is known with a day that an earlier run knew already."""
+        of = pooled or self.last
+        if known is None or of is None:
+            return self
+        return self.with_day(date_, of, asked=pooled is not None).with_known(known)
+
+
+@dataclass(frozen=True)
 class _Question:
     """What is asked of the state after each day."""
 
@@ -228,46 +279,121 @@ class _Question:
     def units(self) -> dict[str, str]:
         return {p.name: p.unit for p in self.support.parameters}
 
-    def after_days(self, state: TwinState, known: Sequence[Known], progress: Progress) -> tuple[Known, ...]:
-        """Return what is known after each day: what is out of date is estimated anew, nothing else."""
-        before, days = {day.date: day for day in known}, []
-        running = replace(state, days={}, totals={}, clearest={})
-        for date_, day in state.days.items():
-            running = running.with_day(date_, day)
-            old = before.get(date_)
-            if not running.totals[ALL].modes:
+    def after_days(
+        self, state: TwinState, prior: Followed | None, as_before: set[str], progress: Progress
+    ) -> _InTime:
+        """Return what is known after each day; an earlier run knew it of the first ones."""
+        dates = [own for own in state.days if own != UNDATED]
+        same = sum(1 for own in dates if own in as_before)
+        every = Days.of(state)
+        known = {} if prior is None else {day.date: day for day in prior.days if day.date in dates[:same]}
+        pooled = {} if prior is None else {d: one for d, one in prior.pooled.items() if d in dates[:same]}
+        track = None
+        if prior is not None and prior.track is not None and same == len(prior.days) == len(known):
+            track = resumed(self.model, every, prior.track, dates[:same], unchanged=True)
+        found = _InTime(
+            StiffnessTrack(self.model, every) if track is None else track,
+            tuple(known.values()) if track is not None else (),
+            pooled if track is not None else {},
+        )
+        running = state.until(dates[same - 1]) if same else replace(state, days={}, totals={}, clearest={})
+        for i, date_ in enumerate(dates[0 if track is None else same :], 0 if track is None else same):
+            if i < same:
+                found = found.again(date_, known.get(date_), pooled.get(date_))
                 continue
-            if old is not None and old.evidence == self._identity(running):
-                days.append(old)
+            running = running.with_day(date_, state.days[date_])
+            if ALL not in running.totals or not running.totals[ALL].modes:
                 continue
-            progress(f"update after {date_}")
-            time = day.time_utc
-            if date_ != UNDATED and time is not None:
-                days.append(self._known(running, Known(date_, time, len(day.records), "", {}, {}), progress))
-        return tuple(days)
+            found = self._after_day(found, date_, running, progress)
+        return found
 
-    def after_record(self, seen: Observation, state: TwinState, progress: Progress) -> Known:
-        """Return what is known after one record."""
-        if seen.start_utc is None:
-            raise ValueError("a record that is followed has a start")
-        progress(f"update after {seen.name}")
-        time = seen.start_utc.astimezone(UTC)
-        return self._known(state, Known(time.isoformat(), time, 1, "", {}, {}), progress)
+    def _after_day(self, found: _InTime, date_: str, running: TwinState, progress: Progress) -> _InTime:
+        """Return what is known after one more day."""
+        day, time = running.days[date_], running.days[date_].time_utc
+        if time is None:
+            return found
+        progress(f"update after {date_}")
+        return self._moment(found, date_, running, Known(date_, time, len(day.records), "", {}, {}), progress)
+
+    def _moment(
+        self, found: _InTime, date_: str, running: TwinState, moment: Known, progress: Progress
+    ) -> _InTime:
+        number, last = running.totals[ALL].conditions.records, found.last
+        new = None if last is not None and number < GROWN * last.records else self._pooled(running, progress)
+        pooled = last if new is None else new
+        if pooled is None:
+            raise ValueError("nothing is known of all records")
+        found = found.with_day(date_, pooled, asked=new is not None)
+        known = replace(
+            moment, evidence=self._identity(running), median=pooled.median, interval_90=pooled.interval_90,
+            status=pooled.status,
+        )  # fmt: skip
+        return found.with_known(self._on_the_day(known, found.track.level(pooled.reference)))
+
+    def _on_the_day(self, known: Known, level: StiffnessLevel | None) -> Known:
+        """Return what is known with the stiffness of the day."""
+        if level is None:
+            return known
+        stiff = [name for name, unit in self.units.items() if unit == STIFFNESS]
+        own = dict(zip(stiff, level.absolute, strict=True))
+        return replace(
+            known,
+            median={**known.median, **{name: span[1] for name, span in own.items()}},
+            interval_90={**known.interval_90, **{name: (span[0], span[2]) for name, span in own.items()}},
+            relative=level.relative,
+        )
+
+    def after_records(
+        self, moments: Sequence[tuple[Observation, TwinState]], prior: Followed | None, progress: Progress
+    ) -> _InTime:
+        """Return what is known after each record; the stiffness is that of the day so far."""
+        found = _InTime(StiffnessTrack(self.model, Days.of(empty_state(self.model))))
+        if prior is not None:
+            found = replace(found, days=prior.days, pooled=dict(prior.pooled))
+        before = found.track
+        for seen, state in moments:
+            if seen.start_utc is None:
+                raise ValueError("a record that is followed has a start")
+            time = seen.start_utc.astimezone(UTC)
+            date_ = time.date().isoformat()
+            if found.track.dates and found.track.dates[-1] != date_:
+                before = found.track
+            found = replace(found, track=replace(before, every=Days.of(state)))
+            progress(f"update after {seen.name}")
+            known = Known(time.isoformat(), time, 1, "", {}, {})
+            found = self._moment(found, date_, state, known, progress)
+        return found
 
     def _known(self, state: TwinState, moment: Known, progress: Progress = SILENT) -> Known:
-        """Return the moment with what the records up to then say."""
+        """Return the moment with what the records up to then say together."""
+        found = self._pooled(state, progress)
+        return replace(
+            moment, evidence=self._identity(state), median=found.median, interval_90=found.interval_90,
+            status=found.status,
+        )  # fmt: skip
+
+    def _pooled(self, state: TwinState, progress: Progress = SILENT) -> Pooled:
+        """Return what some records say together."""
         evidence = _evidence(self.config, self.model, self.rotor, self.wind, state)
         highest = max(mode for data, _ in evidence.states.values() for mode in data.modes)
         problem = model_problem(self.config, evidence, self.support.reaching(highest))
         log_theta, status = _draws(self.config, problem, progress)
         names = [p.name for p in problem.parameters]
         low, median, high = np.exp(np.quantile(log_theta, [0.05, 0.5, 0.95], axis=0))
-        return replace(
-            moment,
-            evidence=self._identity(state),
-            median=dict(zip(names, median.tolist(), strict=True)),
-            interval_90=dict(zip(names, zip(low.tolist(), high.tolist(), strict=True), strict=True)),
-            status=status,
+        stiff = [i for i, p in enumerate(problem.parameters) if p.unit == STIFFNESS]
+        modes = tuple(
+            sorted(
+                {m for data, _ in evidence.states.values() for m in data.modes} & {*self.config.update.modes}
+            )
+        )
+        about = sensitivity(problem, np.log(median), stiff, modes) if stiff and modes else None
+        return Pooled(
+            state.totals[ALL].conditions.records,
+            dict(zip(names, median.tolist(), strict=True)),
+            dict(zip(names, zip(low.tolist(), high.tolist(), strict=True), strict=True)),
+            status,
+            about,
+            Reference.of(log_theta, stiff),
         )
 
     def _identity(self, state: TwinState) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,8 @@ from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, located
 from jackettwin.files import StoredSchema
 from jackettwin.soil import parameter_words
+from jackettwin.study.in_time.stiffness import Reference, Sensitivity, Span3, StiffnessLevel
+from jackettwin.study.in_time.track import SuddenChange, Tracked
 from jackettwin.twin import TwinState
 from jackettwin.updating import Drift
 from jackettwin.version import __version__
@@ -30,7 +32,7 @@ _BLIND = 100.0
 
 @dataclass(frozen=True)
 class Known:
-    """What all records up to the end of a day say of the parameters.
+    """What is known of the parameters after a day: of stiffness as it is then, of others by all days so far.
 
     Attributes
     ----------
@@ -46,6 +48,8 @@ class Known:
     interval_90 : {parameter: (low, high)}
     status : str
         ``"ok"``, or why there is no posterior; then median and interval are Laplace's.
+    relative : (low, median, high) or None
+        The stiffness of the day over that of the first, 90 %.
     """
 
     date: str
@@ -55,6 +59,27 @@ class Known:
     median: Mapping[str, float]
     interval_90: Mapping[str, tuple[float, float]]
     status: str = "ok"
+    relative: Span3 | None = None
+
+
+@dataclass(frozen=True)
+class Pooled:
+    """What all records up to the end of a day say together: asked when they have grown by a third.
+
+    Attributes
+    ----------
+    records : how many there were
+    median, interval_90, status : of every parameter, as of :class:`Known`
+    about : how frequencies follow the stiffness there, or None if no mode can be followed
+    reference : draws of the stiffness
+    """
+
+    records: int
+    median: Mapping[str, float]
+    interval_90: Mapping[str, tuple[float, float]]
+    status: str
+    about: Sensitivity | None
+    reference: Reference
 
 
 @dataclass(frozen=True)
@@ -75,6 +100,14 @@ class Followed:
     state : TwinState
         Of all records.
     warnings : sentences
+    pooled : {date: Pooled}
+        On the days after which all records together were asked.
+    track : Tracked or None
+        What the stiffness is followed on from.
+    smoothed : {date: StiffnessLevel}
+        The stiffness on each day, by all days together.
+    ahead : {days: StiffnessLevel}
+        What is to be expected so many days after the last one.
     """
 
     name: str
@@ -86,6 +119,10 @@ class Followed:
     drift: Drift | None
     state: TwinState
     warnings: tuple[str, ...] = field(default=())
+    pooled: Mapping[str, Pooled] = field(default_factory=dict)
+    track: Tracked | None = None
+    smoothed: Mapping[str, StiffnessLevel] = field(default_factory=dict)
+    ahead: Mapping[int, StiffnessLevel] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         last = "" if not self.days else ", ".join(f"{k} {v:.3g}" for k, v in self.days[-1].median.items())
@@ -107,8 +144,28 @@ class Followed:
         return since_first([day.time_utc for day in self.days])
 
     @property
+    def changes(self) -> tuple[SuddenChange, ...]:
+        """Sudden changes of the stiffness."""
+        return () if self.track is None else self.track.changes
+
+    @property
     def statement(self) -> str:
-        """What is known of a drift, in a sentence."""
+        """What is known of the stiffness through time: one slope unless it jumped, and where it is now."""
+        return " ".join(filter(None, (self._slope, *map(_sudden, self.changes), self._now)))
+
+    @property
+    def _now(self) -> str:
+        last = next(iter(self.days[-1:]), None)
+        if last is None or last.relative is None or len(self.days) < FEWEST_DAYS:
+            return ""
+        low, middle, high = (f"{x:.3f}" for x in last.relative)
+        when = f"{last.time_utc:%Y-%m-%d}"
+        return f"On {when} it is {middle} of what it was on the first day, 90 % interval {low} to {high}."
+
+    @property
+    def _slope(self) -> str:
+        if self.changes:  # a slope through a step says nothing
+            return ""
         if self.drift is None:
             return f"Too early to speak of a drift: {FEWEST_DAYS} days with data are needed."
         slope, low, high = 100.0 * np.expm1([self.drift.slope_per_day, *self.drift.interval_90])
@@ -127,6 +184,20 @@ class Followed:
         return (
             said if self.drift.detected else f"{said} A drift of more than {most:.2g} % a day would be seen."
         )
+
+
+def _sudden(change: SuddenChange) -> str:
+    """Return what is said of a sudden change."""
+    first, when, last = (f"{day_utc(x):%Y-%m-%d}" for x in change.days)
+    low, middle, high = (100.0 * (x - 1.0) for x in change.factor)
+    verb = "fell" if middle < 0.0 else "rose"
+    about = f"on {when}" if first == last else f"about {when} (between {first} and {last})"
+    return f"The stiffness {verb} by {abs(middle):.2g} % {about}, 90 % interval {low:+.2g} to {high:+.2g} %."
+
+
+def day_utc(day: float) -> datetime:
+    """Return a time that is given in days since 1970."""
+    return datetime(1970, 1, 1, tzinfo=UTC) + timedelta(days=day)
 
 
 def since_first(times: Sequence[datetime]) -> FloatArray:
@@ -154,6 +225,7 @@ def follow_document(followed: Followed) -> dict[str, Any]:
                 "time_utc": day.time_utc.isoformat(),
                 "records": day.records,
                 "status": day.status,
+                "relative_stiffness": None if day.relative is None else _span(day.relative),
                 "parameters": {
                     name: {"median": median, "interval_90": list(day.interval_90[name])}
                     for name, median in day.median.items()
@@ -178,10 +250,32 @@ def follow_document(followed: Followed) -> dict[str, Any]:
                 for name in followed.stiffness
             },
         },
+        "stiffness_in_time": _in_time(followed),
         "statement": followed.statement,
         "warnings": list(followed.warnings),
         "code_version": __version__,
         STORED: FOLLOWED.dump(followed),
+    }
+
+
+def _span(span: Span3) -> dict[str, Any]:
+    return {"median": span[1], "interval_90": [span[0], span[2]]}
+
+
+def _in_time(followed: Followed) -> dict[str, Any]:
+    """Return the stiffness of each day by all days, what jumped, and what to expect; over the first day's."""
+    return {
+        "smoothed": {date: _span(level.relative) for date, level in followed.smoothed.items()},
+        "changes": [
+            {
+                "time_utc": day_utc(change.days[1]).isoformat(),
+                "time_utc_interval_90": [day_utc(change.days[i]).isoformat() for i in (0, 2)],
+                "factor": _span(change.factor),
+                "probability": change.probability,
+            }
+            for change in followed.changes
+        ],
+        "forecast": [{"days": days, **_span(level.relative)} for days, level in followed.ahead.items()],
     }
 
 

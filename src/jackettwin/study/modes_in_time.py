@@ -12,8 +12,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv as pacsv
 
-from jackettwin.change import Days
-from jackettwin.change.judge import Columns, history_of
+from jackettwin.change import Columns, Days, history_of
 from jackettwin.change.modal_table import QUANTITIES
 from jackettwin.files import atomic_path
 from jackettwin.twin import UNDATED, Observation, TwinModel, TwinState

@@ -5,7 +5,15 @@ from .causes import (
     sizes_about as sizes_about,
 )
 from .change import Change as Change
-from .design import Slope as Slope
+from .design import (
+    Design as Design,
+    Lagged as Lagged,
+    Slope as Slope,
+    design_of as design_of,
+    fresh as fresh,
+    regressors as regressors,
+    with_time_of_year as with_time_of_year,
+)
 from .diagnosis import (
     CauseVerdict as CauseVerdict,
     Diagnosis as Diagnosis,
@@ -14,6 +22,17 @@ from .diagnosis import (
 )
 from .directions import Pattern as Pattern
 from .history import History as History, typical as typical
+from .level import (
+    Hypotheses as Hypotheses,
+    Jump as Jump,
+    Mixture as Mixture,
+    Readings as Readings,
+    after_row as after_row,
+    forecast as forecast,
+    no_rows as no_rows,
+    rooted as rooted,
+    smoothed as smoothed,
+)
 from .state import Watch as Watch
 from .variance_shares import unexplained_std as unexplained_std
 from .watch import Look as Look, start as start, step as step

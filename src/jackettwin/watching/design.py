@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -164,6 +164,14 @@ def design_of(baseline: History) -> Design:
     by_size = [int(s) for s in numbers[np.argsort(-counts)] if counts[numbers == s] >= _FEWEST_OF_STATE]
     known = tuple(by_size) or (int(numbers[np.argmax(counts)]),)
     return Design(tuple(columns), known, min(2, len(known)))
+
+
+def with_time_of_year(design: Design) -> Design:
+    """Return the design with the time of year, where no temperature is told: it may move all there is."""
+    if any(c.lag_days > 0.0 or c.name == "time of year" for c in design.columns):
+        return design
+    year = [Column("time of year", -1, 0.0, shape, 0.0, YEAR_DAYS, _LINEAR) for shape in ("sine", "cosine")]
+    return replace(design, columns=(*design.columns, *year))
 
 
 def _whole_days(baseline: History) -> bool:

@@ -80,7 +80,7 @@ def _follow(response, info, score, cross, x, q, m, g, nu, s, steps):
 
 
 @compiled
-def _learn(mean, cov, g, nu, s):
+def learn_value(mean, cov, g, nu, s):
     """Let the state learn from one value."""
     for i in range(g.size):
         mean[i] += g[i] * nu / s
@@ -127,7 +127,7 @@ def filter_rows(
             s = _through(g, x, q, m) + noise[r, q]
             nu = values[r, q] - _through(mean, x, q, m)
             _follow(response, info, score, cross, x, q, m, g, nu, s, steps)
-            _learn(mean, cov, g, nu, s)
+            learn_value(mean, cov, g, nu, s)
             innovation[r, q] = nu
             spread[r, q] = s
             log_likelihood -= 0.5 * (np.log(2.0 * np.pi * s) + nu * nu / s)

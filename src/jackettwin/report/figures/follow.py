@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from datetime import timedelta
+from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from jackettwin.arrays import FloatArray
 from jackettwin.report.figures import style
 from jackettwin.soil import parameter_words
 from jackettwin.study import Followed
@@ -32,7 +33,7 @@ def parameters_through_time(followed: Followed, names: Sequence[str]) -> go.Figu
     figure.update_annotations(x=0.0, xanchor="left", font={"size": 13})
     for row, name in enumerate(names, start=1):
         _points(figure, followed, name, row)
-        if followed.drift is not None and name in followed.stiffness:
+        if followed.drift is not None and not followed.changes and name in followed.stiffness:
             _line(figure, followed, name, row)
     figure.update_yaxes(type="log", dtick="D2", tickformat=".1~g")  # whole numbers: no decade may be in view
     by_day = followed.moments == "day"
@@ -47,6 +48,50 @@ def parameters_through_time(followed: Followed, names: Sequence[str]) -> go.Figu
         height=110 + 170 * len(names),
         legend={**style.LEGEND_ABOVE, "y": 1.0, "yref": "container", "yanchor": "top"},
     )
+
+
+def stiffness_in_time(followed: Followed) -> go.Figure:
+    """Draw the stiffness of each day over that of the first: known then, known by now, and expected."""
+    figure, colour = go.Figure(), style.law_look(followed.law).colour
+    dates = [datetime.fromisoformat(date).replace(hour=12, tzinfo=UTC) for date in followed.smoothed]
+    by_now = np.array([level.relative for level in followed.smoothed.values()])
+    _band(figure, dates, by_now, colour, "by all days")
+    known = [day for day in followed.days if day.relative is not None]
+    then = np.array([day.relative for day in known])
+    figure.add_scatter(
+        x=[day.time_utc for day in known],
+        y=then[:, 1],
+        error_y={"type": "data", "symmetric": False, "array": then[:, 2] - then[:, 1],
+                 "arrayminus": then[:, 1] - then[:, 0], "thickness": 0.6, "width": 0},
+        mode="markers",
+        marker={"size": 4, "color": style.GREY},
+        name="known on the day, 90 %",
+    )  # fmt: skip
+    ahead = [known[-1].time_utc + timedelta(days=days) for days in followed.ahead]
+    expected = np.array([then[-1], *(level.relative for level in followed.ahead.values())])
+    _band(figure, [known[-1].time_utc, *ahead], expected, style.GREY, "expected", dash="dot")
+    figure.update_yaxes(title="stiffness over that of the first day")
+    figure.update_xaxes(type="date", title="time (UTC)")
+    return style.finish(figure, height=420, legend=style.LEGEND_ABOVE)
+
+
+def _band(
+    figure: go.Figure,
+    times: Sequence[datetime],
+    spans: FloatArray,
+    colour: str,
+    name: str,
+    dash: str = "solid",
+) -> None:
+    low, middle, high = spans.T
+    figure.add_scatter(
+        x=[*times, *times[::-1]], y=[*high, *low[::-1]], fill="toself", fillcolor=style.rgba(colour, 0.2),
+        mode="lines", line={"width": 0}, hoverinfo="skip", name=f"{name}, 90 %", showlegend=False,
+    )  # fmt: skip
+    figure.add_scatter(
+        x=list(times), y=middle, mode="lines", line={"color": colour, "width": 2, "dash": dash},
+        name=f"{name}, 90 %",
+    )  # fmt: skip
 
 
 def _points(figure: go.Figure, followed: Followed, name: str, row: int) -> None:

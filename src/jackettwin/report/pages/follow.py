@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from jackettwin.answers import Span
-from jackettwin.report.figures.follow import parameters_through_time
+from jackettwin.report.figures.follow import parameters_through_time, stiffness_in_time
 from jackettwin.report.pages.page import PageSection, Plot, Text, write_page
 from jackettwin.report.table import Table
 from jackettwin.report.tables.answers import ranged
@@ -26,8 +26,12 @@ def build_follow_page(followed: Followed, path: Path) -> Path:
     """
     each, others = followed.moments, [n for n in followed.units if n not in followed.stiffness]
     drift = (
-        f"Does the ground drift? What is known of its stiffness from all records up to each {each}; band: "
-        "one slope of all stiffness, 90 %, fitted to all data at once."
+        f"How stiff is the ground? What was known of it after each {each}, with what the model may have "
+        "wrong on all of them alike; band: one slope of all stiffness, 90 %, if it did not jump."
+    )
+    in_time = (
+        "How did the stiffness change since the first day? Points: what was known on the day; band: what all "
+        "days say of it by now; dotted: what to expect. Weather is taken out by the conditions that are told."
     )
     more = f"What else becomes known, {each} after {each}? Median and 90 %."
     sections = [
@@ -35,6 +39,8 @@ def build_follow_page(followed: Followed, path: Path) -> Path:
             "Drift",
             (
                 Text((followed.statement,)),
+                *([Plot("stiffness_in_time", in_time, stiffness_in_time(followed), fits=True)]
+                  if len(followed.smoothed) > 1 else []),
                 _plot(followed, "stiffness_through_time", drift, followed.stiffness),
                 _table(followed, followed.stiffness),
             ),

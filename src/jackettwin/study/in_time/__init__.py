@@ -1,0 +1,1 @@
+"""The stiffness of the ground through time."""

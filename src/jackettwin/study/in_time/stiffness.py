@@ -1,0 +1,221 @@
+r"""The ground's stiffness through time: what frequencies say of it, less what the weather does to them.
+
+All stiffness grows or falls together, k(t) = k₁ e^{x(t)} with k₁ that of the first day. Frequencies follow it
+less the stiffer the ground is, all of them alike: ln f = ln f₁ + s h(x) with
+
+.. math:: h(x) = (1 - e^{-ax}) / a
+
+and one a for all modes; it is 1 where the ground gives a small share of all flexibility, for frequencies are
+linear in 1/k then. So ℓ = h(x) is the level of :mod:`jackettwin.watching.level`; s and a are the model's. How
+stiff the ground is decides how much frequencies tell of a change, so that each draw of the posterior counts
+with its own slope e^{-aΔ} s. What all records say together goes with the mean of ℓ so far.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import ndtr
+
+from jackettwin.arrays import FloatArray
+from jackettwin.change import Columns, Days, history_of
+from jackettwin.twin import TwinModel
+from jackettwin.updating import Problem
+from jackettwin.watching import (
+    Design,
+    History,
+    Jump,
+    Lagged,
+    Mixture,
+    Readings,
+    design_of,
+    regressors,
+    typical,
+    with_time_of_year,
+)
+
+_APART = 0.4
+"""Change of ln k, both ways, that slopes and bend are taken from."""
+_LEAST_SLOPE = 0.02
+"""Share of the steepest mode's slope below which a mode tells nothing."""
+_MOST_MODES = 6
+_LEAST_SPREAD = 5e-4
+"""Standard deviation of ln f that conditions may explain where less is seen."""
+_EPOCH = np.datetime64("1970-01-01")
+_MOST_DRAWS = 60
+_FARTHEST = 4.0
+"""Largest change of ln k: a factor of 50."""
+
+Span3 = tuple[float, float, float]
+"""Quantiles of 5, 50 and 95 %."""
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """How frequencies follow a common change x of ln k: ln f = s h(x), h(x) = (1 − e^{−ax})/a.
+
+    Attributes
+    ----------
+    modes : their numbers
+    slopes : (m,) s at ``log_k``
+    bend : a
+    log_k : mean of ln k of the stiffness parameters
+    """
+
+    modes: tuple[int, ...]
+    slopes: FloatArray
+    bend: float
+    log_k: float
+
+
+def sensitivity(
+    problem: Problem, z: FloatArray, stiff: Sequence[int], modes: tuple[int, ...]
+) -> Sensitivity | None:
+    """Return how the frequencies of some modes follow the stiffness about a point z = ln θ.
+
+    None if none of them can be followed there.
+
+    Parameters
+    ----------
+    stiff : places of the stiffness parameters
+    """
+    points = np.array([z, z, z])
+    points[np.ix_([0, 2], list(stiff))] += np.array([[-_APART], [_APART]])
+    theta = problem.vectors(points, problem.states[0])
+    poles = problem.model.predict_many(theta, modes, slopes=False).poles
+    down, up = np.log(np.abs(poles[[0, 2]]) / np.abs(poles[1]))
+    rise = up - down
+    seen = np.isfinite(rise) & (rise > 0.0)
+    if not seen.any():
+        return None
+    best = float(np.max(rise[seen]))
+    kept = [i for i in np.argsort(-np.nan_to_num(rise)) if seen[i] and rise[i] > _LEAST_SLOPE * best]
+    kept = sorted(kept[:_MOST_MODES])
+    ratio = float(np.sum(rise[kept] * (up + down)[kept]) / np.sum(rise[kept] ** 2))
+    bend = float(np.clip(-np.arctanh(np.clip(ratio, -0.9, 0.9)) / (0.5 * _APART), 1e-3, 5.0))
+    slopes = rise[kept] * bend / (2.0 * np.sinh(_APART * bend))
+    return Sensitivity(tuple(modes[i] for i in kept), slopes, bend, float(np.mean(z[list(stiff)])))
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What all records up to a day say together: draws of ln of the stiffnesses, (n, n_stiff)."""
+
+    log_k: FloatArray
+
+    @classmethod
+    def of(cls, log_theta: FloatArray, stiff: Sequence[int]) -> Reference:
+        """Return some of a posterior's draws."""
+        chosen = np.linspace(0, len(log_theta) - 1, min(_MOST_DRAWS, len(log_theta))).round().astype(np.intp)
+        return cls(log_theta[np.ix_(chosen, np.array(stiff, dtype=np.intp))])
+
+
+class StiffnessLevel(NamedTuple):
+    """Stiffness at a time: over that of the first day, and of each parameter; 5, 50 and 95 %."""
+
+    relative: Span3
+    absolute: tuple[Span3, ...]
+
+
+def level_of(mixture: Mixture, reference: Reference, about: Sensitivity) -> StiffnessLevel:
+    """Return the stiffness that a level stands for."""
+    draws = reference.log_k
+    flatter = np.exp(-about.bend * (draws.mean(axis=1) - about.log_k))
+    none = np.zeros(len(draws))
+    relative = _quantiles(mixture.weights, mixture.level, mixture.level_std, flatter, none, about.bend)
+    absolute = tuple(
+        _quantiles(mixture.weights, mixture.shift, mixture.shift_std, flatter, own, about.bend)
+        for own in draws.T
+    )
+    return StiffnessLevel(relative, absolute)
+
+
+def _quantiles(
+    weights: FloatArray,
+    mean: FloatArray,
+    std: FloatArray,
+    flatter: FloatArray,
+    origin: FloatArray,
+    bend: float,
+) -> Span3:
+    """Return quantiles of exp(origin + h⁻¹(level/flatter)) over draws and a mixture of levels."""
+    wanted = np.array([0.05, 0.5, 0.95])
+    low, high = np.full(3, origin.min() - _FARTHEST), np.full(3, origin.max() + _FARTHEST)
+    kept = weights > 1e-4
+    weights, mean, std = weights[kept] / weights[kept].sum(), mean[kept], std[kept]
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        x = np.clip(middle[:, None] - origin, -_FARTHEST, _FARTHEST)
+        h = -np.expm1(-bend * x) / bend * flatter
+        below = (ndtr((h[:, :, None] - mean) / std) @ weights).mean(axis=1) < wanted
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    a, b, c = np.exp(0.5 * (low + high)).tolist()
+    return a, b, c
+
+
+def change_of(jump: Jump, reference: Reference, about: Sensitivity) -> Span3:
+    """Return the factor on the stiffness that a jump stands for."""
+    low, middle, high = jump.size
+    flatter = np.exp(-about.bend * (float(np.median(reference.log_k.mean(axis=1))) - about.log_k))
+    inside = np.minimum(np.array([low, middle, high]) / flatter * about.bend, 1.0 - np.exp(-_FARTHEST))
+    a, b, c = np.exp(-np.log1p(-inside) / about.bend).tolist()
+    return a, b, c
+
+
+@dataclass(frozen=True)
+class Normalisation:
+    """What rows are made by: as the first days have it, so that later ones go on in the same way."""
+
+    columns: Columns
+    design: Design
+    about: Sensitivity
+    typical: FloatArray
+    spread: FloatArray
+    usual_std: FloatArray
+
+
+def normalisation_of(
+    model: TwinModel, every: Days, dates: Sequence[str], about: Sensitivity
+) -> Normalisation | None:
+    """Return by what rows are made, from some days; None if they show no mode of those that tell."""
+    columns = Columns.of(model, every, dates)
+    seen = [i for i, number in enumerate(about.modes) if number in columns.numbers]
+    if not seen:
+        return None
+    about = replace(about, modes=tuple(about.modes[i] for i in seen), slopes=about.slopes[seen])
+    history = history_of(columns, every, dates)
+    frequency, std = _of_modes(columns, about, history)
+    middle = typical(frequency)
+    with np.errstate(invalid="ignore"):
+        y, relative = np.log(frequency / middle), std / frequency
+        usual = np.nanmedian(np.where(relative > 0.0, relative, np.nan), axis=0)
+        own = np.nanvar(y, axis=0) - usual**2
+    usual = np.nan_to_num(usual, nan=_LEAST_SPREAD)
+    spread = np.sqrt(np.maximum(np.nan_to_num(own), 0.0) + _LEAST_SPREAD**2)
+    return Normalisation(columns, with_time_of_year(design_of(history)), about, middle, spread, usual)
+
+
+def _of_modes(columns: Columns, about: Sensitivity, history: History) -> tuple[FloatArray, FloatArray]:
+    chosen = [columns.numbers.index(number) for number in about.modes]
+    return history.frequency[:, chosen], history.frequency_std[:, chosen]
+
+
+def readings_of(
+    known: Normalisation, every: Days, dates: Sequence[str], lagged: Lagged, copied: Container[str]
+) -> tuple[Readings, Lagged]:
+    """Return the rows of some days, and what late regressors remember after them."""
+    history = history_of(known.columns, every, dates)
+    rows, lagged = regressors(known.design, history, lagged)
+    frequency, std = _of_modes(known.columns, known.about, history)
+    with np.errstate(invalid="ignore"):
+        values, relative = np.log(frequency / known.typical), std / frequency
+    noise = np.where(relative > 0.0, relative, known.usual_std)
+    noise = np.clip(noise, 0.3 * known.usual_std, 10.0 * known.usual_std) ** 2
+    values[~np.isfinite(rows).all(axis=1)] = np.nan
+    of = np.floor(history.days).astype(np.intp)
+    last = np.append(of[1:] != of[:-1], True)[: of.size]
+    flags = np.array([end and str(_EPOCH + int(day)) in copied for end, day in zip(last, of, strict=True)])
+    return Readings(history.days, np.nan_to_num(rows), values, noise, flags), lagged

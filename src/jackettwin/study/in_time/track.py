@@ -1,0 +1,261 @@
+"""The stiffness followed day by day: what was known, what is known by now, and what to expect.
+
+The filter's state is kept as it was before a window of some weeks, and the days of the window are taken again
+in every run: so later days correct the window's, a day costs the same whatever came before, and a run that
+goes on from another gives what one run over all days gives, bit for bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from jackettwin.change import Days
+from jackettwin.files import digest
+from jackettwin.study.in_time.stiffness import (
+    Normalisation,
+    Reference,
+    Sensitivity,
+    Span3,
+    StiffnessLevel,
+    change_of,
+    level_of,
+    normalisation_of,
+    readings_of,
+)
+from jackettwin.twin import TwinModel
+from jackettwin.watching import (
+    Hypotheses,
+    Lagged,
+    Readings,
+    after_row,
+    forecast,
+    fresh,
+    no_rows,
+    rooted,
+    smoothed,
+)
+
+LEARNT_DAYS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
+"""Numbers of days after which conditions are standardised and slopes taken anew, and all is followed
+again."""
+STEP_DAYS = 32
+"""Days after which the oldest as many of a window of twice the length are final, and left behind."""
+SURE = 0.95
+"""Probability from which a jump is called a change."""
+AHEAD_DAYS = (30, 90, 365)
+"""What is forecast: so many days after the last one."""
+
+
+@dataclass(frozen=True)
+class SuddenChange:
+    """The stiffness changed within days.
+
+    Attributes
+    ----------
+    probability : that it did, when it was said
+    days : 5, 50 and 95 % of when, in days since 1970
+    factor : 5, 50 and 95 % of the stiffness after it over that before
+    """
+
+    probability: float
+    days: Span3
+    factor: Span3
+
+
+@dataclass(frozen=True)
+class Tracked:
+    """What is kept from one run to the next.
+
+    Attributes
+    ----------
+    normal : how rows are made
+    start, lagged : what is known before the window, and what late regressors remember; None before the first
+        row
+    days : before the window
+    identified, of : number of days that all this follows from, and their identity
+    copied : dates after which the mean level so far became the reference
+    final : {date: StiffnessLevel} of days before the window, smoothed
+    changes : found so far
+    """
+
+    normal: Normalisation
+    start: Hypotheses | None = None
+    lagged: Lagged | None = None
+    days: int = 0
+    identified: int = 0
+    of: str = ""
+    copied: tuple[str, ...] = ()
+    final: Mapping[str, StiffnessLevel] = field(default_factory=dict)
+    changes: tuple[SuddenChange, ...] = ()
+
+
+@dataclass(frozen=True)
+class StiffnessTrack:
+    """The stiffness up to a day.
+
+    Attributes
+    ----------
+    model, every : whose days they are
+    dates : all so far
+    kept : what stays; None before the first day that tells anything
+    bank, lagged : after the last day
+    window : rows of the window, their noise as it was taken, and {date: number of rows up to its end}
+    """
+
+    model: TwinModel
+    every: Days
+    dates: tuple[str, ...] = ()
+    kept: Tracked | None = None
+    bank: Hypotheses | None = None
+    lagged: Lagged | None = None
+    window: tuple[Readings, ...] = ()
+    copied: tuple[str, ...] = ()
+
+    def with_day(self, date: str, about: Sensitivity, *, copied: bool) -> StiffnessTrack:
+        """Return the track after one more day.
+
+        Parameters
+        ----------
+        about : how frequencies follow the stiffness, as is known by now
+        copied : whether what all records say together was asked after this day
+        """
+        track = replace(
+            self, dates=(*self.dates, date), copied=(*self.copied, date) if copied else self.copied
+        )
+        if self.bank is None or len(track.dates) in LEARNT_DAYS:
+            return track._learnt_anew(about)
+        return track._ran((date,))
+
+    def _learnt_anew(self, about: Sensitivity) -> StiffnessTrack:
+        known = normalisation_of(self.model, self.every, self.dates, about)
+        if known is None:
+            return self
+        changes = () if self.kept is None else self.kept.changes
+        n, of = len(self.dates), _chained("", self.every, self.dates)
+        kept = Tracked(known, identified=n, of=of, changes=changes)
+        return replace(self, kept=kept)._from_start(self.dates)
+
+    def _from_start(self, dates: Sequence[str]) -> StiffnessTrack:
+        """Return the track with the days of its window taken again."""
+        if self.kept is None:
+            raise ValueError("a track that has not begun")
+        start, lagged = _start(self.kept)
+        return replace(self, bank=start, lagged=lagged, window=())._ran(dates)
+
+    def _ran(self, dates: Sequence[str]) -> StiffnessTrack:
+        """Return the track with the rows of some more days."""
+        kept, bank, lagged, window = self.kept, self.bank, self.lagged, self.window
+        if kept is None or bank is None or lagged is None:
+            raise ValueError("a track that has not begun")
+        read, lagged = readings_of(kept.normal, self.every, dates, lagged, self.copied)
+        noise = read.noise.copy()
+        for r in range(read.days.size):
+            bank, noise[r] = after_row(bank, read, r)
+        window = (*window, replace(read, noise=noise)) if read.days.size else window
+        return replace(self, bank=bank, lagged=lagged, window=window)
+
+    def level(self, reference: Reference) -> StiffnessLevel | None:
+        """What is known of the last day."""
+        if self.kept is None or self.bank is None:
+            return None
+        return level_of(self.bank.mixture, reference, self.kept.normal.about)
+
+    def ahead(self, reference: Reference) -> dict[int, StiffnessLevel]:
+        """What is to be expected so many days after the last one."""
+        if self.kept is None or self.bank is None:
+            return {}
+        return {
+            days: level_of(forecast(self.bank, days), reference, self.kept.normal.about)
+            for days in AHEAD_DAYS
+        }
+
+    def with_changes(self, reference: Reference) -> StiffnessTrack:
+        """Return the track that knows of a jump that is sure by now; a later word on the same counts."""
+        if self.kept is None or self.bank is None:
+            return self
+        jump, about = self.bank.jump, self.kept.normal.about
+        if jump is None or jump.probability < SURE:
+            return self
+        found = SuddenChange(jump.probability, jump.days, change_of(jump, reference, about))
+        others = [c for c in self.kept.changes if c.days[2] < found.days[0] - 1.0]
+        return replace(self, kept=replace(self.kept, changes=(*others, found)))
+
+    def levels(self, reference: Reference) -> dict[str, StiffnessLevel]:
+        """What all days together say of each: those of the window, and before."""
+        if self.kept is None:
+            return {}
+        return {**self.kept.final, **self._window_levels(reference)}
+
+    def _window_levels(self, reference: Reference) -> dict[str, StiffnessLevel]:
+        kept, bank = self.kept, self.bank
+        if kept is None or bank is None or not self.window:
+            return {}
+        whole = joined(self.window)
+        every = smoothed(_start(kept)[0], bank, whole)
+        days = np.floor(whole.days).astype(np.intp)
+        last = {int(day): i for i, day in enumerate(days)}
+        epoch = np.datetime64("1970-01-01")
+        return {str(epoch + day): level_of(every[i], reference, kept.normal.about) for day, i in last.items()}
+
+    def moved(self, reference: Reference) -> StiffnessTrack:
+        """Return the track with a window that is not too long: its oldest days become final."""
+        kept, n = self.kept, len(self.dates)
+        if kept is None or n <= LEARNT_DAYS[-1] or n - kept.days < 2 * STEP_DAYS:
+            return self
+        cut = n - STEP_DAYS
+        whole = self._window_levels(reference)
+        gone = {date: whole[date] for date in self.dates[kept.days : cut] if date in whole}
+        before = self._from_start(self.dates[kept.days : cut])
+        if before.bank is None:
+            raise ValueError("a track that has not begun")
+        all_roots = replace(before, bank=rooted(before.bank), window=())._ran(self.dates[cut:])
+        start = rooted(before.bank, all_roots.bank)
+        known = max(kept.identified, cut)
+        window = replace(
+            kept, start=start, lagged=before.lagged, days=cut, final={**kept.final, **gone}, identified=known,
+            of=_chained(kept.of, self.every, self.dates[kept.identified : known]),
+        )  # fmt: skip
+        return replace(self, kept=window)._from_start(self.dates[cut:])
+
+    def stored(self) -> Tracked | None:
+        """Return what the next run goes on from."""
+        return None if self.kept is None else replace(self.kept, copied=self.copied)
+
+
+def joined(parts: Sequence[Readings]) -> Readings:
+    """Return rows as one."""
+    fields = ("days", "rows", "values", "noise", "copied")
+    return Readings(*(np.concatenate([getattr(part, name) for part in parts]) for name in fields))
+
+
+def _chained(of: str, every: Days, dates: Sequence[str]) -> str:
+    """Return the identity of some days after others."""
+    for date in dates:
+        of = digest([of, date, every.identities[date]])
+    return of
+
+
+def resumed(
+    model: TwinModel, every: Days, kept: Tracked, dates: Sequence[str], *, unchanged: bool = False
+) -> StiffnessTrack:
+    """Return the track after some days, from what an earlier run kept; empty if that is not of these days.
+
+    Parameters
+    ----------
+    unchanged : whether it is known already that the days are those of the earlier run
+    """
+    empty, n = StiffnessTrack(model, every), kept.identified
+    if n > len(dates) or not (unchanged or kept.of == _chained("", every, dates[:n])):
+        return empty
+    return replace(empty, dates=tuple(dates), kept=kept, copied=kept.copied)._from_start(dates[kept.days :])
+
+
+def _start(kept: Tracked) -> tuple[Hypotheses, Lagged]:
+    """Return what is known before the window, and what late regressors remember there."""
+    if kept.start is not None and kept.lagged is not None:
+        return kept.start, kept.lagged
+    design, about = kept.normal.design, kept.normal.about
+    return no_rows(about.slopes, design.coefficients(kept.normal.spread).std), fresh(design)

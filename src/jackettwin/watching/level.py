@@ -1,0 +1,398 @@
+r"""A level that moves all quantities along known directions, followed through what weather does to them.
+
+.. math:: y_q(t) = X(t) β_q + u_q(t) + u(t) + s_q ℓ(t) + e_q(t)
+
+with y the logarithms of frequencies, X the conditions' regressors (:mod:`jackettwin.watching.design`), β
+unknown coefficients, u what no condition explains (own and common, of days and of weeks), s known slopes, e
+the stated noise, and ℓ a random walk that may jump. Given hyperparameters and the days of jumps all is linear
+and normal: each such hypothesis is a Kalman filter, exact, and the answer is their mixture by evidence.
+Hypotheses of one set of hyperparameters whose jumps lie long ago are merged by their moments (Blom & Bar-
+Shalom 1988), so that a row's cost does not depend on how many there were.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from jackettwin.arrays import BoolArray, FloatArray, IntArray
+from jackettwin.watching.level_kernels import (
+    BEFORE,
+    LEVEL,
+    REFERENCE,
+    age_all,
+    average_all,
+    jump_all,
+    learn_all,
+    smooth_one,
+)
+
+UNEXPLAINED = (1e-4, 3e-4, 1e-3, 3e-3)
+"""Standard deviations of ln f that no condition explains."""
+WALKS = (1e-4, 5e-4, 3e-3)
+"""Standard deviations of a day's step of the level: a fifth of a per cent, one, or six, in a year."""
+SCALES = (1.0, 2.5)
+"""Factors on stated variances."""
+_GRID = np.array(list(product(UNEXPLAINED, WALKS, SCALES)))
+FAST_DAYS, SLOW_DAYS = 2.0, 30.0
+"""Memories of what is unexplained. A third of its variance is white, a third fast, a third slow; of the
+latter half is common to all quantities."""
+JUMPS = (0.05, 0.3)
+"""Standard deviations of a jump."""
+JUMPS_A_DAY = 1e-3
+_MOST, _YOUNG_ROWS, _OLD_ROWS, _PARENTS = 40, 6, 40, 3
+"""Hypotheses kept by weight; rows for which a new one is kept anyhow; rows after which one's jump is merged
+with others; and hypotheses that may jump on a day."""
+_MOST_ROOTS = 8
+"""Hypotheses that are kept where a window begins."""
+_NEGLIGIBLE = 16.0
+"""Below the likeliest, in ln of the weight: what is dropped."""
+_DOUBTFUL = 3.0
+_SMOOTHED = 6
+"""Hypotheses, the likeliest, that the past is smoothed by."""
+
+
+@dataclass(frozen=True)
+class Readings:
+    """Rows of quantities, in the order of time.
+
+    Attributes
+    ----------
+    days : (n,)
+    rows : (n, p) regressors
+    values, noise : (n, m) logarithms less typical ones, NaN where missing, and their stated variances
+    copied : (n,) bool, whether the mean level becomes the reference after the row
+    """
+
+    days: FloatArray
+    rows: FloatArray
+    values: FloatArray
+    noise: FloatArray
+    copied: BoolArray
+
+    def part(self, first: int, last: int) -> Readings:
+        """Return some of the rows."""
+        s = slice(first, last)
+        return Readings(self.days[s], self.rows[s], self.values[s], self.noise[s], self.copied[s])
+
+
+@dataclass(frozen=True)
+class Mixture:
+    """Normal distributions with weights: of the level, and of the level less its reference."""
+
+    weights: FloatArray
+    level: FloatArray
+    level_std: FloatArray
+    shift: FloatArray
+    shift_std: FloatArray
+
+
+@dataclass(frozen=True)
+class Jump:
+    """That the level jumped lately: how probable, since when, by how much; quantiles of 5, 50 and 95 %."""
+
+    probability: float
+    days: tuple[float, float, float]
+    size: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Hypotheses:
+    """What is known after some rows.
+
+    Attributes
+    ----------
+    mean, cov, log_weight : (h, n), (h, n, n), (h,)
+    model : (h,) which hyperparameters
+    row, jumped : (h,) row and day on which each last jumped; −1 and NaN for never or long ago
+    root : (h,) number at the last :func:`rooted`
+    paths : of each, (row, place in ``JUMPS``) of its jumps since then
+    slopes : (m,) of the quantities with the level
+    n_rows, day : how many rows it knows, and the day of the last
+    taken : Σ of rows' weights in the mean of the level
+    """
+
+    mean: FloatArray
+    cov: FloatArray
+    log_weight: FloatArray
+    model: IntArray
+    row: IntArray
+    jumped: FloatArray
+    root: IntArray
+    paths: tuple[tuple[tuple[int, int], ...], ...]
+    slopes: FloatArray
+    n_rows: int = 0
+    day: float = float("nan")
+    taken: float = 0.0
+
+    @property
+    def weights(self) -> FloatArray:
+        """Of the hypotheses, (h,); they sum to one."""
+        return np.asarray(np.exp(self.log_weight - np.logaddexp.reduce(self.log_weight)))
+
+    @property
+    def mixture(self) -> Mixture:
+        """Where the level is."""
+        level, reference = self.mean[:, LEVEL], self.mean[:, REFERENCE]
+        var = self.cov[:, LEVEL, LEVEL]
+        apart = var - 2.0 * self.cov[:, LEVEL, REFERENCE] + self.cov[:, REFERENCE, REFERENCE]
+        return Mixture(self.weights, level, _root(var), level - reference, _root(apart))
+
+    @property
+    def jump(self) -> Jump | None:
+        """The last jump, if any hypothesis has one that is not long ago."""
+        chosen = self.row >= 0
+        if not chosen.any():
+            return None
+        w = self.weights[chosen]
+        size = self.mean[chosen, LEVEL] - self.mean[chosen, BEFORE]
+        cov = self.cov[chosen]
+        std = _root(cov[:, LEVEL, LEVEL] - 2.0 * cov[:, LEVEL, BEFORE] + cov[:, BEFORE, BEFORE])
+        return Jump(
+            float(w.sum()),
+            _three(_steps(self.jumped[chosen], w)),
+            _three(mixture_quantiles(w / w.sum(), size, std, (0.05, 0.5, 0.95))),
+        )
+
+
+def _three(x: FloatArray) -> tuple[float, float, float]:
+    return float(x[0]), float(x[1]), float(x[2])
+
+
+def _steps(x: FloatArray, w: FloatArray) -> FloatArray:
+    order = np.argsort(x)
+    total = np.cumsum(w[order]) / w.sum()
+    return np.asarray(x[order][np.minimum(np.searchsorted(total, [0.05, 0.5, 0.95]), x.size - 1)])
+
+
+def _root(x: FloatArray) -> FloatArray:
+    return np.asarray(np.sqrt(np.maximum(x, 1e-18)))
+
+
+def mixture_quantiles(
+    weights: FloatArray, mean: FloatArray, std: FloatArray, levels: tuple[float, ...]
+) -> FloatArray:
+    """Return quantiles of a mixture of normal distributions, by halving intervals.
+
+    >>> mixture_quantiles(np.ones(1), np.zeros(1), np.ones(1), (0.05, 0.5)).round(3)
+    array([-1.645,  0.   ])
+    """
+    from scipy.special import ndtr
+
+    low = np.full(len(levels), float(np.min(mean - 8.0 * std)))
+    high = np.full(len(levels), float(np.max(mean + 8.0 * std)))
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        below = ndtr((middle[:, None] - mean) / std) @ weights < np.asarray(levels)
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    return np.asarray(0.5 * (low + high))
+
+
+def no_rows(slopes: FloatArray, coefficient_std: FloatArray) -> Hypotheses:
+    """Return what is known before the first row: every set of hyperparameters alike, the level at nought.
+
+    Parameters
+    ----------
+    slopes : (m,) of the quantities with the level
+    coefficient_std : (m, p) prior standard deviations of the coefficients
+    """
+    m, p = coefficient_std.shape
+    n, h = m * p + 2 * m + 6, len(_GRID)
+    cov = np.zeros((h, n, n))
+    diagonal = np.zeros((h, n))
+    diagonal[:, : m * p] = coefficient_std.ravel() ** 2
+    diagonal[:, m * p : n - 4] = _process_variance(_GRID[:, 0, None])
+    cov[:, range(n), range(n)] = diagonal
+    whole = np.arange(h)
+    return Hypotheses(
+        np.zeros((h, n)), cov, np.zeros(h), whole, np.full(h, -1), np.full(h, np.nan), whole,
+        ((),) * h, np.asarray(slopes, dtype=np.float64),
+    )  # fmt: skip
+
+
+def _process_variance(unexplained: FloatArray) -> FloatArray:
+    """Return the variance of each of the four processes: a third of all, halved between own and common."""
+    return np.asarray(unexplained**2 / 6.0)
+
+
+def _decay(gap: float) -> tuple[FloatArray, FloatArray]:
+    """Return what of own and common, fast and slow processes is left after a gap, and what is new."""
+    keep = np.exp(-gap / np.array([FAST_DAYS, SLOW_DAYS, FAST_DAYS, SLOW_DAYS]))
+    return keep, 1.0 - keep**2
+
+
+def after_row(known: Hypotheses, readings: Readings, r: int) -> tuple[Hypotheses, FloatArray]:
+    """Return what is known after one more row, and the noise (m,) that its values were taken to have."""
+    day, m = float(readings.days[r]), known.slopes.size
+    p = readings.rows.shape[1]
+    gap = 0.0 if known.n_rows == 0 else max(day - known.day, 0.0)
+    mean, cov = known.mean.copy(), known.cov.copy()
+    keep, grown = _decay(gap)
+    grid = _GRID[known.model]
+    age_all(mean, cov, gap, m, p, keep, grown * _process_variance(grid[:, :1]), grid[:, 1])
+    known = replace(known, mean=mean, cov=cov)
+    if known.n_rows and np.floor(day) > np.floor(known.day):
+        known = _branched(known, day, gap)
+        mean, cov, grid = known.mean, known.cov, _GRID[known.model]
+    noise = readings.noise[r].copy()
+    likelihood = learn_all(
+        mean, cov, readings.rows[r], readings.values[r], noise, known.slopes, grid[:, 2],
+        grid[:, 0] ** 2 / 3.0, known.weights, _DOUBTFUL,
+    )  # fmt: skip
+    taken, share = _mean_step(known.taken, readings, r, known.slopes)
+    average_all(mean, cov, share, bool(readings.copied[r]))
+    weight = known.log_weight + likelihood
+    known = replace(known, log_weight=weight - weight.max(), day=day, taken=taken, n_rows=known.n_rows + 1)
+    return _pruned(known), noise
+
+
+def _mean_step(taken: float, readings: Readings, r: int, slopes: FloatArray) -> tuple[float, float]:
+    """Return the weight of all rows so far in the mean of the level, and the share of this one."""
+    seen = np.isfinite(readings.values[r])
+    own = float(np.sum(slopes[seen] ** 2 / readings.noise[r][seen]))
+    total = taken + own
+    return total, own / total if total > 0.0 else 0.0
+
+
+def _branched(known: Hypotheses, day: float, gap: float) -> Hypotheses:
+    """Return the hypotheses with those beside them in which the level jumped since the last row."""
+    best = np.argsort(-known.log_weight, kind="stable")[:_PARENTS]
+    parents, sizes = np.repeat(best, len(JUMPS)), np.tile(np.arange(len(JUMPS)), best.size)
+    mean, cov = known.mean[parents], known.cov[parents]
+    jump_all(mean, cov, np.array(JUMPS)[sizes] ** 2)
+    chance = -np.expm1(-JUMPS_A_DAY * gap) / len(JUMPS)
+    paths = tuple(
+        (*known.paths[i], (known.n_rows, int(size))) for i, size in zip(parents, sizes, strict=True)
+    )
+    join = np.concatenate
+    return replace(
+        known,
+        mean=join([known.mean, mean]),
+        cov=join([known.cov, cov]),
+        log_weight=join([known.log_weight, known.log_weight[parents] + np.log(chance)]),
+        model=join([known.model, known.model[parents]]),
+        row=join([known.row, np.full(parents.size, known.n_rows)]),
+        root=join([known.root, known.root[parents]]),
+        paths=(*known.paths, *paths),
+        jumped=join([known.jumped, np.full(parents.size, day)]),
+    )
+
+
+def _pruned(known: Hypotheses) -> Hypotheses:
+    """Return the hypotheses that are worth their cost."""
+    old = (known.row < 0) | (known.n_rows - known.row > _OLD_ROWS)
+    if (old & (known.row >= 0)).any():
+        known = _merged(known, old)
+    order = np.argsort(-known.log_weight, kind="stable")
+    kept = np.zeros(order.size, dtype=np.bool_)
+    kept[order[:_MOST]] = True
+    kept &= known.log_weight > known.log_weight[order[0]] - _NEGLIGIBLE
+    kept |= (known.row >= 0) & (known.n_rows - known.row <= _YOUNG_ROWS)
+    return _chosen(known, np.flatnonzero(kept))
+
+
+def _chosen(known: Hypotheses, kept: IntArray) -> Hypotheses:
+    return replace(
+        known,
+        mean=known.mean[kept],
+        cov=known.cov[kept],
+        log_weight=known.log_weight[kept],
+        model=known.model[kept],
+        row=known.row[kept],
+        root=known.root[kept],
+        jumped=known.jumped[kept],
+        paths=tuple(known.paths[i] for i in kept),
+    )
+
+
+def _merged(known: Hypotheses, old: BoolArray) -> Hypotheses:
+    """Return the hypotheses with one for each set of hyperparameters that has no jump of late."""
+    mean, cov = known.mean.copy(), known.cov.copy()
+    weight, row, jumped = known.log_weight.copy(), known.row.copy(), known.jumped.copy()
+    kept = list(np.flatnonzero(~old))
+    for model in np.unique(known.model[old]):
+        members = np.flatnonzero(old & (known.model == model))
+        likeliest = members[np.argmax(weight[members])]
+        total = float(np.logaddexp.reduce(weight[members]))
+        w = np.exp(weight[members] - total)
+        middle = w @ mean[members]
+        off = mean[members] - middle
+        cov[likeliest] = np.einsum("h,hij->ij", w, cov[members]) + (w[:, None] * off).T @ off
+        mean[likeliest], weight[likeliest] = middle, total
+        row[likeliest], jumped[likeliest] = -1, np.nan
+        kept.append(likeliest)
+    merged = replace(known, mean=mean, cov=cov, log_weight=weight, row=row, jumped=jumped)
+    return _chosen(merged, np.array(sorted(kept)))
+
+
+def forecast(known: Hypotheses, days: float) -> Mixture:
+    """Return where the level will be so many days later: it walks on, and may jump once."""
+    now = known.mixture
+    walked = _GRID[known.model, 1] ** 2 * days
+    chance = -np.expm1(-JUMPS_A_DAY * days)
+    parts = [(1.0 - chance, 0.0), *((chance / len(JUMPS), jump**2) for jump in JUMPS)]
+    many = len(parts)
+    more = np.concatenate([walked + variance for _, variance in parts])
+    return Mixture(
+        np.concatenate([share * now.weights for share, _ in parts]),
+        np.tile(now.level, many),
+        np.sqrt(np.tile(now.level_std, many) ** 2 + more),
+        np.tile(now.shift, many),
+        np.sqrt(np.tile(now.shift_std, many) ** 2 + more),
+    )
+
+
+def rooted(known: Hypotheses, later: Hypotheses | None = None) -> Hypotheses:
+    """Return hypotheses as roots of those to come: what is smoothed starts here.
+
+    Parameters
+    ----------
+    later : what became of them, rooted there: few of those that are likely then are taken
+    """
+    if later is not None:
+        weight = np.bincount(later.root, later.weights, known.log_weight.size)
+        known = _chosen(known, np.sort(np.argsort(-weight, kind="stable")[:_MOST_ROOTS]))
+    h = known.log_weight.size
+    return replace(known, root=np.arange(h), paths=((),) * h)
+
+
+def smoothed(start: Hypotheses, end: Hypotheses, readings: Readings) -> tuple[Mixture, ...]:
+    """Return what all rows say of the level after each of those since ``start``, where ``end`` is rooted.
+
+    Parameters
+    ----------
+    readings : of the rows between, their noise as it was taken
+    """
+    best = np.argsort(-end.log_weight, kind="stable")[:_SMOOTHED]
+    weights = end.weights[best] / end.weights[best].sum()
+    gaps = np.diff(readings.days, prepend=readings.days[0] if np.isnan(start.day) else start.day)
+    decays = [_decay(max(gap, 0.0)) for gap in gaps]
+    shares, taken = np.empty(gaps.size), start.taken
+    for r in range(gaps.size):
+        taken, shares[r] = _mean_step(taken, readings, r, start.slopes)
+    keep = np.array([one for one, _ in decays])
+    parts, spread = [], []
+    for h in best:
+        root, (unexplained, walk, scale) = end.root[h], _GRID[end.model[h]]
+        jumps = np.zeros(gaps.size)
+        for row, size in end.paths[h]:
+            jumps[row - start.n_rows] = JUMPS[size] ** 2
+        grown = np.array([new for _, new in decays]) * _process_variance(unexplained)
+        parts.append(
+            smooth_one(
+                start.mean[root].copy(), start.cov[root].copy(), readings.rows, readings.values,
+                readings.noise, start.slopes, np.maximum(gaps, 0.0), jumps, shares, readings.copied, keep,
+                grown, walk, scale, unexplained**2 / 3.0,
+            )
+        )  # fmt: skip
+        spread.append((end.mean[h, REFERENCE], end.cov[h, REFERENCE, REFERENCE]))
+    out, (reference, variance) = np.array(parts), np.array(spread).T
+    return tuple(
+        Mixture(
+            weights, out[:, r, 0], _root(out[:, r, 1]), out[:, r, 0] - reference,
+            _root(out[:, r, 1] - 2.0 * out[:, r, 2] + variance),
+        )
+        for r in range(gaps.size)
+    )  # fmt: skip
