@@ -49,7 +49,7 @@ def test_every_setting_of_an_identification_is_documented() -> None:
 
 def test_every_python_file_that_a_page_names_exists() -> None:
     root = PAGE.parents[2]
-    folders = ("src", "tests", "qualify", "benchmarks", "scripts")
+    folders = ("src", "tests", "qualify", "benchmarks", "examples", "scripts")
     there = [path.as_posix() for folder in folders for path in (root / folder).rglob("*.py")]
     for page in (root / "docs").rglob("*.md"):
         for name in re.findall(r"`(?:python )?([a-z_/0-9]+\.py)\b", page.read_text(encoding="utf-8")):
