@@ -1,4 +1,4 @@
-"""From a record to its modes without a hand on it."""
+"""Automatic identification of the modes of a record."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from jackettwin.identification.frequency_domain.fdd import fdd
 from jackettwin.identification.methods import EFDD, method_names
 from jackettwin.identification.picks import Pick, of_record
 from jackettwin.identification.pole_methods import relaxations, uncertain
-from jackettwin.identification.preparation.components import at_all_channels, components
+from jackettwin.identification.preparation.components import components, expand_to_all_channels
 from jackettwin.identification.preparation.prepared import prepare
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.preparation.whitening import as_measured
 from jackettwin.identification.quiet_bands import candidates_of, searched, with_quiet_bands
-from jackettwin.identification.selection.choice import chosen_modes, cleared, screened_choice
+from jackettwin.identification.selection.choice import chosen_modes, clear_damping_doubts, screened_choice
 from jackettwin.identification.selection.picked import left_out, picked_clusters, with_verdicts
 from jackettwin.identification.selection.screening import evidence
 from jackettwin.identification.settings import IdentificationSettings
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from jackettwin.records import Record
 
 
-STEADFAST = 0.8
-"""Share of the orders in which a mode must appear where no uncertainty speaks for it."""
+MIN_PERSISTENCE = 0.8
+"""Share of the model orders in which a mode must appear if the method gives no uncertainty."""
 
 
 @on_one_blas_thread
@@ -47,22 +47,22 @@ def identify(
 ) -> Identification:
     """Identify the modes of a record.
 
-    Vibration channels only; others are left aside. Detrended, decimated and scaled to unit variance,
-    then SSI-cov over a sweep of model orders, clustering of the poles, hard criteria, refinement of the
-    modes by maximum likelihood. A record of a structure that was let go is recognised, and its modes are
-    those of the decay (``decays/free_decay.py``; their ``method`` is "decay").
+    Only vibration channels are used. They are detrended, decimated and scaled to unit variance.
+    SSI-cov over a sweep of model orders, clustering of the poles,
+    hard criteria and refinement by maximum likelihood follow. A free decay is recognised;
+    then its modes are those of the decay (``decays/free_decay.py``; their ``method`` is "decay").
 
     Parameters
     ----------
     record : Record
         NaN marks a missing sample.
     settings : IdentificationSettings, optional
-        What is not set follows from the data.
+        Settings left open follow from the data.
     picks : sequence of Pick, optional
-        Poles to take instead of the automatic selection, e.g. ``Identification.picks`` of an earlier run;
-        picks of other records are passed over.
+        Poles to use instead of the automatic selection, e.g. ``Identification.picks`` of an earlier run;
+        picks of other records are ignored.
     progress : callable, optional
-        Called with a few words at the start of every step.
+        Called with the name of every step at its start.
 
     Raises
     ------
@@ -87,12 +87,12 @@ def identify(
     if settings.method == EFDD:
         _refuse_picks(wanted)
         return fdd(record, settings)
-    fallen = _fallen(record, settings, progress) if settings.method == "ssi-cov" and not wanted else None
-    if fallen is not None and fallen.identified is not None:
-        return fallen.identified
+    decay = _decay(record, settings, progress) if settings.method == "ssi-cov" and not wanted else None
+    if decay is not None and decay.identified is not None:
+        return decay.identified
     if settings.method != "ssi-cov":
-        # what is compared is the method; without uncertainties, persistence alone tells modes from noise
-        share = max(settings.min_order_share, STEADFAST)
+        # the methods are compared as such; without uncertainties, only persistence separates modes from noise
+        share = max(settings.min_order_share, MIN_PERSISTENCE)
         settings = settings.model_copy(update={"refine": False, "min_order_share": share})
     say = progress or (lambda text: None)
     say("preparing")
@@ -111,14 +111,16 @@ def identify(
         missing = left_out(judged, picked)
         judged = with_verdicts(wanted, candidates_of(poles, picked, tones, ready, settings))
     say("refinement")
-    known = None
+    screening_data = None
     if uncertain(settings):
-        known = evidence(tones.clean, ready, record.conditions, bands=search.bands, sensors=basis is None)
-    if known is not None and not wanted:
-        judged = cleared(judged, known)
+        screening_data = evidence(
+            tones.clean, ready, record.conditions, bands=search.bands, sensors=basis is None
+        )
+    if screening_data is not None and not wanted:
+        judged = clear_damping_doubts(judged, screening_data)
     chosen = chosen_modes(judged, tones, ready, settings)
-    if known is not None:
-        chosen = screened_choice(chosen, judged, known, rescue=not wanted, drifting=tones.drifting)
+    if screening_data is not None:
+        chosen = screened_choice(chosen, judged, screening_data, rescue=not wanted, drifting=tones.drifting)
     label = poles.cluster.copy()
     for number, index in enumerate(chosen.candidate):
         label[judged[index].cluster.poles] = number
@@ -126,7 +128,7 @@ def identify(
     identified = Identification(
         records=(record.name,),
         channels=ready.channels,
-        modes=modes if fallen is None else fallen.as_doubtful(modes),
+        modes=modes if decay is None else decay.as_doubtful(modes),
         rejected=chosen.rejected,
         stabilisation=replace(poles, cluster=label),
         spectrum=as_measured(welch(y * scale[:, None], resolved.sample_rate_hz), ready.differentiated),
@@ -137,29 +139,29 @@ def identify(
         real_poles=relaxations(ready, settings) if settings.real_poles else (),
         picks=tuple(_pick(poles, c, record.name) for c in judged if c.objection is None),
     )
-    return identified if basis is None else at_all_channels(identified, whole, basis)
+    return identified if basis is None else expand_to_all_channels(identified, whole, basis)
 
 
-def _fallen(
+def _decay(
     record: Record, settings: IdentificationSettings, progress: Callable[[str], None] | None
 ) -> Transient | None:
-    """Return what falls in a record, with its modes if it is a free decay, or those beside it if a knock."""
-    fallen = transient(record, settings)
-    if fallen is None or fallen.beside is None:
-        return fallen
+    """Return a decay with its modes if it is free, or with those beside it if it is an impact."""
+    decay = transient(record, settings)
+    if decay is None or decay.beside is None:
+        return decay
     try:
-        found = identify(fallen.beside, settings, progress=progress)
+        found = identify(decay.beside, settings, progress=progress)
     except InputError:
         return transient(record, settings, impacts=True)
     if not any(mode.status is ModeStatus.OK for mode in found.modes):
         return transient(record, settings, impacts=True)
-    said = Finding("beside_knock", params={"fall": fallen.fall, "used_s": fallen.beside.duration_s})
-    found = replace(found, findings=(said, *found.findings), warnings=(str(said), *found.warnings))
-    return replace(fallen, identified=found)
+    finding = Finding("beside_knock", params={"fall": decay.fall, "used_s": decay.beside.duration_s})
+    found = replace(found, findings=(finding, *found.findings), warnings=(str(finding), *found.warnings))
+    return replace(decay, identified=found)
 
 
 def _pick(poles: Stabilisation, chosen: Candidate, record: str) -> Pick:
-    """Return the pick that stands for a candidate."""
+    """Return the pick of a candidate."""
     k = chosen.cluster.representative
     return Pick(float(poles.frequency_hz[k]), int(poles.order[k]), record, chosen.doubt is not None)
 

@@ -1,4 +1,4 @@
-"""The same record by every method: how far the numbers depend on who asks."""
+"""Comparison of all identification methods on one record."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from jackettwin.records import Record
 
 FREQUENCY_SCALE = 0.03
-"""Relative change of frequency that counts as much as shapes at right angles."""
+"""Relative change of frequency that counts as much as orthogonal shapes."""
 SAME_MODE = 1.0
-"""Largest distance, frequency and shape together, of one mode by two methods."""
+"""Largest distance of one mode by two methods, frequency and shape combined."""
 
 
 @dataclass(frozen=True)
@@ -34,9 +34,9 @@ class Comparison:
     ----------
     reference : Identification
     modes : mapping of str to tuple
-        By method, what it has for each mode of the reference; None where it has none.
+        By method, its estimate of each mode of the reference, or None.
     refused : mapping of str to str
-        Methods that could not take the record, and why.
+        Methods that refused the record, and their reasons.
     """
 
     reference: Identification
@@ -52,7 +52,7 @@ def compare_methods(
     Parameters
     ----------
     record : Record
-        The one the reference was identified from.
+        Record from which the reference was identified.
     """
     band = reference.settings
     plain = (settings or IdentificationSettings()).model_copy(
@@ -77,7 +77,7 @@ def compare_methods(
 def paired(
     wanted: Sequence[ModalEstimate], found: Sequence[ModalEstimate]
 ) -> tuple[ModalEstimate | None, ...]:
-    """Return for each wanted mode the found one nearest in frequency and shape, none twice."""
+    """Return for each wanted mode the mode nearest in frequency and shape, each used once."""
     out: list[ModalEstimate | None] = [None] * len(wanted)
     if not wanted or not found:
         return tuple(out)

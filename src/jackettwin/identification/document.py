@@ -1,4 +1,4 @@
-"""The modes of one record as plain JSON data: the keys users script against."""
+"""Identification of one record as JSON data; users' scripts rely on the keys."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def identification_document(
     conditions: Mapping[str, Any],
     compared: Comparison | None = None,
 ) -> dict[str, Any]:
-    """Return the modes of one record, what was rejected, the settings used and the record's quality."""
+    """Return the modes of one record, rejected poles, the settings used and the record's quality."""
     names = [channel.name for channel in found.channels]
     return {
         "records": list(found.records),
@@ -52,7 +52,7 @@ def identification_document(
 
 
 def mode_document(m: ModalEstimate, channels: Sequence[str] | None) -> dict[str, Any]:
-    """Return one identified mode; shapes as [real, imaginary] a channel, left out without channels."""
+    """Return one identified mode; shapes are [real, imaginary] per channel, left out without channels."""
     known, interval = m.status != ModeStatus.DAMPING_UNKNOWN, m.damping_ratio_interval_95
     bound = (None, None) if m.cramer_rao_log_std is None else map(float, m.cramer_rao_log_std)
     frequency_bound, damping_bound = bound
@@ -84,12 +84,12 @@ def mode_document(m: ModalEstimate, channels: Sequence[str] | None) -> dict[str,
 
 
 def shape_document(shape: ComplexArray, channels: Sequence[str]) -> dict[str, list[float]]:
-    """Return a shape as [real, imaginary] a channel."""
+    """Return a shape as [real, imaginary] per channel."""
     return {name: [float(v.real), float(v.imag)] for name, v in zip(channels, shape, strict=True)}
 
 
 def _comparison_document(compared: Comparison) -> dict[str, Any]:
-    """Return what every method has for each mode of the reference, null where it has none."""
+    """Return the estimates of each method for the modes of the reference, null where there is none."""
     names = [channel.name for channel in compared.reference.channels]
     return {
         "modes": {

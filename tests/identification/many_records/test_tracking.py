@@ -16,7 +16,7 @@ from jackettwin.identification import (
     mac,
 )
 from jackettwin.identification.estimate import ResolvedSettings
-from jackettwin.identification.many_records.tracking import PATIENCE, follow
+from jackettwin.identification.many_records.tracking import MAX_ABSENCE, follow
 from jackettwin.records import Channel
 
 F = np.array([0.178, 0.186, 0.74, 0.77, 1.3])
@@ -137,15 +137,15 @@ def test_records_need_not_share_one_channel_with_all_others() -> None:
 
 def test_a_mode_not_seen_for_long_is_not_waited_for() -> None:
     def truth(i: int) -> np.ndarray:
-        there = i in (0, 1, 2) or i >= 2 * PATIENCE
+        there = i in (0, 1, 2) or i >= 2 * MAX_ABSENCE
         return np.array([F[0], np.nan, F[2] if there else np.nan, np.nan, np.nan])
 
     found = records(truth, 3)
     empty = record(3, truth(3), np.arange(8), np.random.default_rng(2))
     late = records(truth, 3)
-    many = [*found, *[empty] * (2 * PATIENCE - 3), *(replace(one, records=("late",)) for one in late)]
+    many = [*found, *[empty] * (2 * MAX_ABSENCE - 3), *(replace(one, records=("late",)) for one in late)]
     tracks = follow((one, None) for one in many).tracks
-    assert sorted(len(track.sightings()) for track in tracks) == [6, 2 * PATIENCE + 3]
+    assert sorted(len(track.sightings()) for track in tracks) == [6, 2 * MAX_ABSENCE + 3]
 
 
 def test_each_key_has_its_own_part() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from jackettwin.identification import IdentificationSettings, identify, mac
-from jackettwin.identification.preparation.components import COMPONENTS, MOST_CHANNELS, components
+from jackettwin.identification.preparation.components import COMPONENTS, MAX_CHANNELS, components
 from jackettwin.identification.preparation.prepared import prepare
 from jackettwin.identification.synthetic import ModalSystem, simulate
 
@@ -53,7 +53,7 @@ def test_what_components_leave_out_is_noise(record):
 
 
 def test_few_channels_mixed_kinds_and_chosen_references_stay(record):
-    few = record.select(record.channel_names[:MOST_CHANNELS])
+    few = record.select(record.channel_names[:MAX_CHANNELS])
     assert components(prepare(few, SETTINGS), SETTINGS)[1] is None
     kinds = (replace(record.channels[0], quantity="strain"), *record.channels[1:])
     mixed = replace(record, channels=kinds)

@@ -30,7 +30,7 @@ def test_decimating_first_loses_nothing(fast, monkeypatch):
     search = prepared.steady_tones
     monkeypatch.setattr(prepared, "steady_tones", lambda y, rate: (rates.append(rate), search(y, rate))[1])
     thinned = prepare(fast, settings)
-    monkeypatch.setattr(prepared, "SPARE", 1e6)
+    monkeypatch.setattr(prepared, "TONE_RATE_RATIO", 1e6)
     whole = prepare(fast, settings)
     assert rates == pytest.approx([200.0 / 6.0, 200.0])
     assert thinned.tones_hz == pytest.approx(whole.tones_hz, abs=1e-4)

@@ -9,7 +9,7 @@ import pytest
 
 from jackettwin.identification import ModalEstimate, identify
 from jackettwin.identification.selection.candidates import with_covariance
-from jackettwin.identification.selection.neighbours import of_neighbours, told_twice
+from jackettwin.identification.selection.neighbours import combinations_of_neighbours, identified_twice
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Record
 
@@ -29,9 +29,9 @@ def test_a_combination_of_the_modes_beside_it_is_theirs(part: float) -> None:
         estimate(f, 0.02, s) for f, s in zip([0.3, 0.6, 1.0], [SHAPES[0], between, SHAPES[1]], strict=True)
     ]
     # each of the three is a combination of the other two; only one has neighbours on both sides
-    assert of_neighbours(modes, np.ones(6), 2.0) == [1]
+    assert combinations_of_neighbours(modes, np.ones(6), 2.0) == [1]
     own = estimate(0.6, 0.02, SHAPES[2])
-    assert of_neighbours([modes[0], own, modes[2]], np.ones(6), 2.0) == []
+    assert combinations_of_neighbours([modes[0], own, modes[2]], np.ones(6), 2.0) == []
 
 
 @pytest.mark.parametrize(("zeta", "told"), [((0.05, 0.01), [1]), ((0.01, 0.05), [2])])
@@ -44,7 +44,7 @@ def test_of_two_that_may_each_be_of_the_others_the_broader_is_told(
     modes = [
         estimate(f, z, s) for f, z, s in zip([0.3, 0.6, 1.0, 3.0], [0.01, *zeta, 0.01], shapes, strict=True)
     ]
-    assert of_neighbours(modes, np.ones(6), 2.0) == told
+    assert combinations_of_neighbours(modes, np.ones(6), 2.0) == told
 
 
 def test_of_three_close_modes_in_one_plane_the_least_known_is_told_twice() -> None:
@@ -53,12 +53,13 @@ def test_of_three_close_modes_in_one_plane_the_least_known_is_told_twice() -> No
         with_covariance(estimate(f, 0.02, s), np.diag([std, 0.3]) ** 2)
         for f, s, std in zip([0.74, 0.755, 0.76], shapes, [0.008, 0.012, 0.004], strict=True)
     ]
-    assert told_twice(modes, np.ones(6), 2.0) == [1]
+    assert identified_twice(modes, np.ones(6), 2.0) == [1]
     # a fit of all three parts them; farther away it is no matter; a third may move in its own shape
-    assert told_twice([replace(m, unrefined=m) for m in modes], np.ones(6), 2.0) == []
-    assert told_twice([modes[0], replace(modes[1], frequency_hz=0.9), modes[2]], np.ones(6), 2.0) == []
+    assert identified_twice([replace(m, unrefined=m) for m in modes], np.ones(6), 2.0) == []
+    assert identified_twice([modes[0], replace(modes[1], frequency_hz=0.9), modes[2]], np.ones(6), 2.0) == []
     assert (
-        told_twice([modes[0], replace(modes[1], mode_shape=SHAPES[2] + 0j), modes[2]], np.ones(6), 2.0) == []
+        identified_twice([modes[0], replace(modes[1], mode_shape=SHAPES[2] + 0j), modes[2]], np.ones(6), 2.0)
+        == []
     )
 
 
@@ -68,7 +69,7 @@ def test_in_few_channels_nothing_is_said() -> None:
         estimate(f, 0.02, s)
         for f, s in zip([0.3, 0.6, 1.0], [shapes[0], shapes[0] + shapes[1], shapes[1]], strict=True)
     ]
-    assert of_neighbours(modes, np.ones(3), 2.0) == []
+    assert combinations_of_neighbours(modes, np.ones(3), 2.0) == []
 
 
 def forced(seed: int, peak: float) -> Record:

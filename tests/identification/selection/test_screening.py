@@ -18,8 +18,8 @@ from jackettwin.identification.selection.screening import (
     Evidence,
     contrast,
     evidence,
-    rescued,
-    screened,
+    screen,
+    with_unknown_damping,
     worth_keeping,
 )
 from jackettwin.identification.synthetic import ModalSystem, simulate
@@ -180,14 +180,14 @@ def clear(tower, rng) -> tuple[ModalEstimate, Evidence]:
 
 def test_a_known_frequency_is_kept_where_the_damping_is_not_known(clear):
     mode, known = clear
-    assert screened([mode], known)[0].status == "ok"
+    assert screen([mode], known)[0].status == "ok"
     # the logarithm of the damping is known to 1.5: within a factor of nineteen
     unsure = replace(mode, log_covariance=np.diag([1e-6, 1.5**2]))
-    (judged,) = screened([unsure], known)
+    (judged,) = screen([unsure], known)
     assert (judged.status, [r.code for r in judged.reasons]) == ("damping unknown", ["damping_unknown"])
     assert worth_keeping(unsure, [], known)
-    assert rescued(unsure).status == "damping unknown"
-    assert rescued(unsure).frequency_interval_95 == mode.frequency_interval_95
+    assert with_unknown_damping(unsure).status == "damping unknown"
+    assert with_unknown_damping(unsure).frequency_interval_95 == mode.frequency_interval_95
     # neither where the frequency is not known, nor what is known already, nor what has no peak
     assert not worth_keeping(replace(unsure, frequency_std_hz=0.05), [], known)
     assert not worth_keeping(unsure, [mode], known)
@@ -198,11 +198,11 @@ def test_a_known_frequency_is_kept_where_the_damping_is_not_known(clear):
 def test_one_peak_told_twice_is_doubted(clear):
     mode, known = clear
     near = replace(mode, frequency_hz=mode.frequency_hz * 1.004)
-    for judged in screened([mode, near], known):
+    for judged in screen([mode, near], known):
         assert "shape_twice" in [reason.code for reason in judged.reasons]
     # a close mode of another shape is one of a pair, one far away another of the tower's
     other = replace(near, mode_shape=np.roll(mode.mode_shape, 2) * np.where(np.arange(8) % 2, -1.0, 1.0))
     far = replace(mode, frequency_hz=mode.frequency_hz * 1.2)
     for beside in (other, far):
-        judged = screened([mode, beside], known)
+        judged = screen([mode, beside], known)
         assert not {"shape_twice"} & {reason.code for one in judged for reason in one.reasons}

@@ -1,1 +1,1 @@
-"""What several records say together."""
+"""Modes of many records: tracking, fusion, setups, close pairs."""

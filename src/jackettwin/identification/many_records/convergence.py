@@ -1,4 +1,4 @@
-"""How the interval of a fused mode shrinks as records are added."""
+"""Width of the interval of a fused mode as records are added."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Step:
 
 
 def convergence(mode: FusedMode) -> tuple[Step, ...]:
-    """Return a fused mode after 1, 2, 4, … and all of the records that hold it, in their order."""
+    """Return a fused mode after 1, 2, 4, … and all of the records that contain it, in order."""
     steps = []
     for n in _doublings(len(mode.sightings)):
         mean = average(mode.sightings.at(slice(n)))

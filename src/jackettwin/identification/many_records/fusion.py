@@ -1,16 +1,17 @@
-r"""One estimate from many records.
+r"""Fusion of the modes of many records into one estimate per mode.
 
-Modes are tracked across records by shape and frequency, then averaged. Weights hold the uncertainty of each
-record and the scatter between records (random effects; DerSimonian & Laird 1986):
+Modes are tracked across records by shape and frequency, then averaged. Weights combine the uncertainty of
+each record and the scatter between records (random effects; DerSimonian & Laird 1986):
 
 .. math:: \hat\theta = \frac{\sum w_r \theta_r}{\sum w_r}, \quad w_r = \frac{1}{s_r^2 + \tau^2}
 
-θ is ln f, and ζ itself: estimates of a record are unbiased in ζ, so their logarithms are not, and the mean
-of many records would inherit it. The variance s_r² is taken at the *fused* damping: an estimate that
-happens to be high also claims to be sharp, and weights of its own would pull the mean up.
+where θ is ln f, and ζ itself: each record's estimate is unbiased in ζ but not in ln ζ, and the mean of many
+records would inherit that bias. The variance s_r² is evaluated at the *fused* damping: an estimate that
+happens to be high also claims a small relative variance, so that its own weight would bias the mean upwards.
 
-The mean of ζ rests on the records in which the mode is ``OK``, that of f on those in which it is at worst
-``DAMPING_UNKNOWN``; where there is none, on all that hold the mode. The status of a fused mode is the median.
+The mean of ζ uses the records in which the mode is ``OK``, that of f those in which it
+is at worst ``DAMPING_UNKNOWN``; if there are none, all records that contain the mode.
+The status of a fused mode is the median.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.identification.many_records.setups import WEAK_TIE, tie
+from jackettwin.identification.many_records.setups import WEAK_CONNECTION, tie
 from jackettwin.identification.many_records.tracking import Track, TrackedModes, follow
 from jackettwin.identification.status import ModeStatus
 from jackettwin.intervals import log_interval_95
@@ -34,8 +35,8 @@ if TYPE_CHECKING:
     from jackettwin.records import Channel
 
 
-FEWEST_SHARE = 0.3
-"""A fused mode must be found in this share of the records."""
+MIN_RECORD_SHARE = 0.3
+"""Smallest share of the records in which a fused mode is found."""
 
 
 @dataclass(frozen=True)
@@ -47,9 +48,9 @@ class Average:
     log_std : (of ln f, of ln ζ)
         Of the mean.
     scatter : (of ln f, of ln ζ)
-        Between records, beyond their own uncertainty.
+        Standard deviation between records in excess of their own uncertainty.
     correlation : float
-        Of ln f and ln ζ of the mean; what scatters between records counts as independent.
+        Correlation of ln f and ln ζ of the mean; scatter between records counts as uncorrelated.
     """
 
     frequency_hz: float
@@ -77,7 +78,7 @@ class Average:
 
 @dataclass(frozen=True)
 class FusedMode:
-    """A mode followed through several records.
+    """A mode tracked through several records.
 
     Attributes
     ----------
@@ -88,12 +89,12 @@ class FusedMode:
     log_covariance : (2, 2)
         Of (ln f, ln ζ).
     mode_shape : (n_channels,) complex
-        NaN at a channel that no record with this mode has.
+        Mean shape; NaN at a channel that no record with this mode has.
     scatter_frequency, scatter_damping_ratio : float
-        Between-record standard deviations of f and ζ, relative, beyond what the records' own uncertainty
-        explains: wind, tide and temperature show here.
+        Relative standard deviations of f and ζ between records in excess of the records' own uncertainty,
+        due to wind, tide and temperature.
     sightings : Sightings
-        The mode in each record that holds it.
+        Estimates of the mode in each record that contains it.
     """
 
     frequency_hz: float
@@ -110,7 +111,7 @@ class FusedMode:
 
     @property
     def status(self) -> ModeStatus:
-        """The median status over the records that hold the mode."""
+        """Median status over the records that contain the mode."""
         return self.sightings.status
 
     @property
@@ -131,9 +132,9 @@ class FusedIdentification:
 
 
 def fuse(identifications: Iterable[Identification]) -> FusedIdentification:
-    """Fuse the modes of several records, each met once and not kept.
+    """Fuse the modes of several records, each read once and not kept.
 
-    Modes are followed in the order of the records (``tracking``); shapes hold every channel (``setups``).
+    Modes are tracked in the order of the records (``tracking``); shapes cover all channels (``setups``).
 
     Raises
     ------
@@ -144,13 +145,13 @@ def fuse(identifications: Iterable[Identification]) -> FusedIdentification:
 
 
 def fused_records(followed: TrackedModes, key: Hashable = None) -> FusedIdentification:
-    """Return the modes of records that were followed, over those of one key; over all if it is None.
+    """Return the modes fused over the records of one key, or over all records if it is None.
 
-    A mode counts if it is found in ``FEWEST_SHARE`` of them.
+    A mode counts if it is found in ``MIN_RECORD_SHARE`` of them.
     """
     mine = np.array([key is None or own == key for own in followed.keys])
     keys = dict.fromkeys(followed.keys if key is None else [key])
-    at_least = max(1, round(FEWEST_SHARE * int(mine.sum())))
+    at_least = max(1, round(MIN_RECORD_SHARE * int(mine.sum())))
     parts = ((track, track.sightings()) for track in followed.tracks)
     kept = [(track, seen.at(mine[seen.record])) for track, seen in parts]
     modes = [_fused_mode(track, seen, keys, followed) for track, seen in kept if len(seen) >= at_least]
@@ -166,8 +167,8 @@ def fused_records(followed: TrackedModes, key: Hashable = None) -> FusedIdentifi
 def random_effects(values: FloatArray, variances: FloatArray) -> tuple[float, float, float]:
     """Return mean, variance of the mean and between-record variance τ² of independent estimates.
 
-    DerSimonian & Laird 1986; the variance of the mean follows Hartung & Knapp 2001, which keeps its
-    coverage with few records and is never taken below the fixed-effects variance.
+    The method is that of DerSimonian & Laird 1986. The variance of the mean follows Hartung & Knapp 2001,
+    which keeps its coverage with few records; it is at least the fixed-effects variance.
 
     Examples
     --------
@@ -193,7 +194,7 @@ def random_effects(values: FloatArray, variances: FloatArray) -> tuple[float, fl
 def average(seen: Sightings) -> Average:
     """Return the mean of one mode over records: ln f and ζ, with random effects.
 
-    A record that does not know its variance takes the long-data limits.
+    A record without variances is given the long-data limits.
     """
     of_f, of_zeta = map(seen.no_worse_than, (ModeStatus.DAMPING_UNKNOWN, ModeStatus.OK))
     zeta = float(np.mean(of_zeta.damping_ratio))
@@ -213,7 +214,7 @@ def average(seen: Sightings) -> Average:
 
 
 def _correlation(seen: Sightings) -> float:
-    """Return the correlation of ln f and ln ζ inside a record: the median over those that state it."""
+    """Return the correlation of ln f and ln ζ within a record, the median over those that state it."""
     c = seen.log_covariance
     known = (c[:, 0, 1] / np.sqrt(c[:, 0, 0] * c[:, 1, 1]))[np.isfinite(c[:, 0, 0])]
     return float(np.median(known)) if len(known) else 0.0
@@ -238,10 +239,11 @@ def _fused_mode(track: Track, seen: Sightings, keys: Iterable[Hashable], followe
 
 
 def _variances(seen: Sightings, which: int, zeta: float) -> FloatArray:
-    """Return the variance of ln f (0) or ln ζ (1) of each record, were its damping the common one.
+    """Return the variance of ln f (0) or ln ζ (1) of each record at the common damping.
 
-    The information limit at the common damping, inflated by the ratio of claimed variance to limit: of ln f
-    that of the record, whose fit may be worse than others'; of ln ζ the median, as ratios go with the error.
+    This is the information limit at the common damping times the ratio of claimed variance to limit.
+    For ln f that ratio is the record's own, since its fit may be worse than others';
+    for ln ζ it is the median, since the ratio correlates with the error.
     """
     cycles = 2.0 * np.pi * seen.frequency_hz * seen.duration_s
     limit = zeta / cycles if which == 0 else 1.0 / (zeta * cycles)
@@ -254,14 +256,14 @@ def _variances(seen: Sightings, which: int, zeta: float) -> FloatArray:
 
 
 def _warnings(followed: TrackedModes, modes: Sequence[FusedMode]) -> tuple[str, ...]:
-    """Say so if records hold different channels, and where those they share hardly move."""
+    """Warn if records have different channels, and of modes whose shared sensors hardly move."""
     names = [c.name for c in followed.channels]
     if len(followed.shared) == len(names):
         return ()
     if not followed.shared:
         return ("not every record has every channel, and none is in all: shapes are tied record by record",)
     at = np.array([names.index(name) for name in followed.shared], dtype=np.int64)
-    loose = [mode.frequency_hz for mode in modes if tie(mode.mode_shape, at) < WEAK_TIE]
+    loose = [mode.frequency_hz for mode in modes if tie(mode.mode_shape, at) < WEAK_CONNECTION]
     return (
         f"not every record has every channel: shapes are tied by {', '.join(followed.shared)}",
         *(f"{f:.4g} Hz: the shared sensors hardly move; the parts of the shape may not fit" for f in loose),

@@ -1,8 +1,8 @@
-r"""Close pairs: two modes of one shape in two directions, which one record does not tell apart.
+r"""Alignment of close pairs: two modes of similar shape in two directions, which one record cannot separate.
 
-Within a pair closer than its bandwidth the plane of the two shapes is known well, the shapes in it are not:
-the stronger mode leaks into the weaker one. Where a symmetry of the structure says how the modes lie, as that
-of a rotor does in its own axes, the shapes are turned within their plane, and nothing outside it is invented:
+If a pair is closer than its bandwidth, the plane of its shapes is well determined but the shapes in it are
+not: the stronger mode leaks into the weaker. If symmetry defines the directions of the modes, as that of a
+rotor does in its own axes, the shapes are rotated within their plane; nothing outside the plane is added:
 
 .. math:: \phi_{fa}, \phi_{ss} = \arg\max, \min_{\phi \in \mathrm{span}(\phi_1, \phi_2)}
           \frac{\lVert P_{fa}\,\phi \rVert^2}{\lVert \phi \rVert^2}
@@ -25,28 +25,28 @@ if TYPE_CHECKING:
     from jackettwin.records import Channel
 
 
-CLOSE = 2.0
+CLOSE_DISTANCE = 2.0
 """Two modes are a pair if their frequencies differ by less than this times the sum of half bandwidths."""
-PURE = 0.95
-"""Share of its energy along one axis, above which the plane holds a shape of that axis."""
-APART = 0.99
-"""MAC with the pure shapes above which the record itself tells the two apart, and nothing is turned."""
-HORIZONTAL = 0.9
-"""Length of the horizontal part of a channel's direction that counts."""
+MIN_AXIS_SHARE = 0.95
+"""Smallest share of energy along one axis for the plane to contain a shape of that axis."""
+SEPARATED_MAC = 0.99
+"""MAC with the aligned shapes above which the record itself separates the modes and nothing is rotated."""
+MIN_HORIZONTAL = 0.9
+"""Smallest horizontal part of the unit vector of a channel."""
 
 
 def along_axes(found: Identification) -> Identification:
-    """Return the identification with the shapes of close pairs turned to the first two axes.
+    """Return the identification with the shapes of close pairs rotated to the first two axes.
 
-    Only for pairs whose plane holds a shape of either axis; what they were before is kept in
-    ``mode_shape_unaligned``, and a note says so.
+    Only pairs whose plane contains a shape of each axis are rotated.
+    The original shapes are kept in ``mode_shape_unaligned``, and a note reports the rotation.
     """
     first = _first_axis(found.channels)
     if first is None:
         return found
     modes, notes = list(found.modes), []
     for i, j in close_pairs(modes):
-        turned = _turned(modes[i], modes[j], first)
+        turned = _rotated(modes[i], modes[j], first)
         if turned is not None:
             notes.append(_note(modes[i], modes[j], first))
             modes[i], modes[j] = turned
@@ -54,7 +54,7 @@ def along_axes(found: Identification) -> Identification:
 
 
 def close_pairs(modes: Sequence[ModalEstimate]) -> list[tuple[int, int]]:
-    """Return neighbours in frequency that overlap, each mode in one pair at most, the closest first."""
+    """Return overlapping neighbours in frequency, each mode in at most one pair, the closest first."""
     gaps = []
     for i, (a, b) in enumerate(zip(modes, modes[1:], strict=False)):
         width = a.damping_ratio * a.frequency_hz + b.damping_ratio * b.frequency_hz
@@ -62,16 +62,16 @@ def close_pairs(modes: Sequence[ModalEstimate]) -> list[tuple[int, int]]:
     taken: set[int] = set()
     out = []
     for gap, i in sorted(gaps):
-        if gap < CLOSE and not taken & {i, i + 1}:
+        if gap < CLOSE_DISTANCE and not taken & {i, i + 1}:
             taken |= {i, i + 1}
             out.append((i, i + 1))
     return sorted(out)
 
 
 def _first_axis(channels: Sequence[Channel]) -> FloatArray | None:
-    """Return the cosines with the first horizontal axis, squared; None unless all lie along the two axes."""
+    """Return squared cosines with the first horizontal axis; None unless all channels lie along two axes."""
     x, y = np.abs([c.direction[:2] for c in channels]).T
-    if np.any(np.maximum(x, y) < HORIZONTAL) or not np.any(x > y) or not np.any(y > x):
+    if np.any(np.maximum(x, y) < MIN_HORIZONTAL) or not np.any(x > y) or not np.any(y > x):
         return None
     return np.asarray((x > y).astype(float))
 
@@ -81,16 +81,16 @@ def _share(shape: ComplexArray, first: FloatArray) -> float:
     return float(first @ power / power.sum())
 
 
-def _turned(
+def _rotated(
     a: ModalEstimate, b: ModalEstimate, first: FloatArray
 ) -> tuple[ModalEstimate, ModalEstimate] | None:
     plane, _ = np.linalg.qr(np.array([a.mode_shape, b.mode_shape]).T)
     shares, vectors = np.linalg.eigh(plane.conj().T @ (first[:, None] * plane))
-    if shares[0] > 1.0 - PURE or shares[1] < PURE:
+    if shares[0] > 1.0 - MIN_AXIS_SHARE or shares[1] < MIN_AXIS_SHARE:
         return None
     pure = (plane @ vectors).T
     subspace_mac = mac(np.array([a.mode_shape, b.mode_shape]), pure)
-    if subspace_mac.max(axis=1).min() > APART:
+    if subspace_mac.max(axis=1).min() > SEPARATED_MAC:
         return None
     swapped = subspace_mac[0, 1] + subspace_mac[1, 0] > subspace_mac[0, 0] + subspace_mac[1, 1]
     for_a, for_b = pure[::-1] if swapped else pure
@@ -98,7 +98,7 @@ def _turned(
 
 
 def _with_shape(mode: ModalEstimate, shape: ComplexArray) -> ModalEstimate:
-    """Return the mode with another shape; how well it is known rests on the symmetry, not on the record."""
+    """Return the mode with another shape; its certainty then rests on the symmetry, not on the record."""
     shape = normalised(aligned(np.asarray(shape)))
     return replace(
         mode,

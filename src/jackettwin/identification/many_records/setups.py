@@ -1,15 +1,16 @@
-r"""One shape from several setups: sensors moved between records, a few left in place.
+r"""Mode shapes from several setups: some sensors are moved between records, others remain.
 
-Each setup knows its part of a shape up to a factor. The sensors they share tie the parts ("post-separate-
-estimation re-scaling"; Reynders, Magalhães, De Roeck & Cunha 2009): factors and whole shape follow from
+Each setup determines its part of a shape up to a factor.
+The shared sensors connect the parts ("post-separate-estimation re-scaling"; Reynders, Magalhães,
+De Roeck & Cunha 2009): factors and whole shape follow from
 
 .. math:: \min_{\Phi,\, \alpha_r} \sum_r \lVert \alpha_r \phi_r - \Phi_{(r)} \rVert^2,
           \quad \sum_r \lVert\Phi_{(r)}\rVert^2 = 1
 
-with :math:`\Phi_{(r)}` the entries of the channels of setup r. With the best factors in place, what is left
-is an eigenvalue problem of the size of the channels, :math:`G\Phi = \mu D\Phi` with the largest μ, where G
-is the sum of the :math:`\phi_r\phi_r^H/\lVert\phi_r\rVert^2` and D counts the setups of each channel: sums
-over any number of records are enough.
+with :math:`\Phi_{(r)}` the entries of the channels of setup r. Elimination of the factors leaves
+an eigenvalue problem of the size of the channels, :math:`G\Phi = \mu D\Phi` with the largest μ.
+G is the sum of :math:`\phi_r\phi_r^H/\lVert\phi_r\rVert^2` and D counts the setups of each channel,
+so that sums over any number of records suffice.
 """
 
 from __future__ import annotations
@@ -30,20 +31,20 @@ if TYPE_CHECKING:
     from jackettwin.records import Channel
 
 
-WEAK_TIE = 0.05
-"""Share of a shape's energy at the shared sensors, below which setups are hardly tied."""
+WEAK_CONNECTION = 0.05
+"""Share of a shape's energy at the shared sensors below which setups are hardly connected."""
 
 
 @dataclass(frozen=True)
 class ShapeSum:
-    """Shapes of one mode, summed up.
+    """Sums over the shapes of one mode.
 
     Attributes
     ----------
     gram : (n_channels, n_channels) complex
-        Sum of the shapes' outer products with themselves, each of unit length.
+        Sum of the outer products of the shapes, each of unit length.
     count : (n_channels,)
-        Shapes that hold each channel.
+        Number of shapes that contain each channel.
     """
 
     gram: ComplexArray
@@ -62,7 +63,7 @@ class ShapeSum:
         return self.plus(own)
 
     def plus(self, other: ShapeSum) -> ShapeSum:
-        """Return the sum of both; the one of fewer channels has the first of them."""
+        """Return the sum of both; the channels of the smaller are the first of the larger."""
         small, large = sorted((self, other), key=lambda total: len(total.count))
         n = len(small.count)
         out = ShapeSum(large.gram.copy(), large.count.copy())
@@ -88,8 +89,8 @@ class ShapeSum:
         return shape
 
 
-def joined_channels(known: dict[str, Channel], result: Identification) -> None:
-    """Add the channels of a record to those known by name, in the order in which they appear.
+def add_channels(known: dict[str, Channel], result: Identification) -> None:
+    """Add the channels of a record to the known ones, in the order in which they appear.
 
     Raises
     ------
@@ -103,14 +104,14 @@ def joined_channels(known: dict[str, Channel], result: Identification) -> None:
                 "one name stands for different sensors",
                 file=result.records[0],
                 field=f"channels.{channel.name}",
-                value=_said(channel),
-                allowed=_said(before),
+                value=_description(channel),
+                allowed=_description(before),
                 remedy="rename the sensor that moved",
             )
 
 
 def tied(sets: Sequence[Sequence[str]]) -> bool:
-    """Tell whether sets of channels hang together: each shares one with the others, directly or through them.
+    """Tell whether sets of channels are connected, directly or through others.
 
     >>> tied([("a", "b"), ("c",), ("b", "c")]), tied([("a",), ("b",)])
     (True, False)
@@ -131,7 +132,7 @@ def tie(shape: ComplexArray, shared: Int64Array) -> float:
 
 
 def _differ(a: Channel, b: Channel) -> bool:
-    """Tell whether what both channels say of themselves differs; zeros and None say nothing."""
+    """Tell whether two descriptions of a channel conflict; zeros and None are unknown."""
     placed = [(a.node, b.node), (a.height_m, b.height_m)]
     if a.quantity != b.quantity or any(None not in pair and pair[0] != pair[1] for pair in placed):
         return True
@@ -139,6 +140,6 @@ def _differ(a: Channel, b: Channel) -> bool:
     return known and float(np.dot(a.direction, b.direction)) < 0.999
 
 
-def _said(channel: Channel) -> str:
+def _description(channel: Channel) -> str:
     place = channel.node if channel.node is not None else f"{channel.height_m} m"
     return f"{channel.quantity} at {place} along {channel.direction}"

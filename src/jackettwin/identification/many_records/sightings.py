@@ -1,4 +1,4 @@
-"""One mode through many records, as columns: what a mean over the records needs of it."""
+"""Estimates of one mode in many records, as columns."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ UNKNOWN = np.full((2, 2), np.nan)
 
 @dataclass(frozen=True)
 class Sightings:
-    """A mode over records.
+    """Estimates of a mode in the records that contain it.
 
     Attributes
     ----------
     record : (n,) int
-        Position of each record among all.
+        Index of each record among all.
     mode : (n,) int
-        Position of the mode among those of its record.
+        Index of the mode among those of its record.
     frequency_hz, damping_ratio, duration_s : (n,)
     log_covariance : (n, 2, 2)
-        Of (ln f, ln ζ); NaN where it is not known.
+        Covariance of (ln f, ln ζ); NaN where unknown.
     severity : (n,) int
-        Of the mode's status in each record.
+        Severity of the mode's status in each record.
     """
 
     record: Int64Array
@@ -47,16 +47,16 @@ class Sightings:
 
     @property
     def status(self) -> ModeStatus:
-        """The median status over the records; of two in the middle the milder one."""
+        """Median status over the records; of two in the middle, the milder one."""
         return STATUSES[int(np.sort(self.severity)[(len(self) - 1) // 2])]
 
     def no_worse_than(self, status: ModeStatus) -> Sightings:
-        """Return the sightings whose status is at most as severe; all of them if there is none."""
+        """Return the estimates whose status is at most as severe; all of them if there is none."""
         rows = self.severity <= status.severity
         return self.at(rows) if rows.any() else self
 
     def at(self, rows: BoolArray | slice) -> Sightings:
-        """Return some of the sightings."""
+        """Return the estimates of some rows."""
         return Sightings(*(column[rows] for column in vars(self).values()))
 
 

@@ -1,1 +1,1 @@
-"""From a record to what every method starts from: band, gaps, components, spectra."""
+"""Preparation of a record for all methods: band, gaps, components, spectra."""

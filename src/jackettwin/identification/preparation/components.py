@@ -1,12 +1,12 @@
-r"""Many channels by a few: what dozens of sensors say together fits into fewer signals.
+r"""Reduction of many channels to a few principal components.
 
-The work of a subspace method grows with the cube of the number of channels, its knowledge does not: a
-structure moves in few modes, and what the channels hold beyond is noise of their own. With the eigenvectors U
-of the channels' covariance that belong to the largest eigenvalues,
+The work of a subspace method grows with the cube of the number of channels, its information does not:
+a structure moves in few modes, and the rest of the channels is noise.
+With U the eigenvectors of the channels' covariance of the largest eigenvalues,
 
 .. math:: z(t) = U^T y(t), \qquad \phi = U \phi_z ,
 
-modes are identified from z, and their shapes hold all channels again.
+modes are identified from z, and their shapes are expanded to all channels.
 """
 
 from __future__ import annotations
@@ -28,26 +28,26 @@ if TYPE_CHECKING:
     from jackettwin.identification.settings import IdentificationSettings
 
 
-MOST_CHANNELS = 24
-"""More channels of one kind are taken together."""
+MAX_CHANNELS = 24
+"""Number of channels of one kind above which they are reduced."""
 COMPONENTS = 12
-"""Into so many."""
+"""Number of components."""
 
 
 def components(ready: Prepared, settings: IdentificationSettings) -> tuple[Prepared, FloatArray | None]:
-    """Return what is identified from, and the matrix (n_channels, n_components) back to all channels.
+    """Return the data to identify from, and the matrix (n_channels, n_components) back to all channels.
 
-    The channels themselves and None if they are few or of several kinds, or references were chosen.
+    These are the channels themselves and None if there are few, of several kinds, or with chosen references.
     """
     kinds = {channel.quantity for channel in ready.channels}
-    if len(ready.channels) <= MOST_CHANNELS or len(kinds) > 1 or settings.reference_channels is not None:
+    if len(ready.channels) <= MAX_CHANNELS or len(kinds) > 1 or settings.reference_channels is not None:
         return ready, None
     whole = np.asarray(np.isfinite(ready.y).all(axis=0))
     there = ready.y[:, whole]
     powers, vectors = np.linalg.eigh(there @ there.T)
     U = vectors[:, -COMPONENTS:]
     share = float(powers[-COMPONENTS:].sum() / powers.sum())
-    said = f"identified from {COMPONENTS} components of {len(U)} channels, {share:.1%} of their power"
+    sentence = f"identified from {COMPONENTS} components of {len(U)} channels, {share:.1%} of their power"
     fewer = replace(
         ready,
         channels=tuple(Channel(f"component {i}", kinds.copy().pop()) for i in range(COMPONENTS)),
@@ -55,13 +55,13 @@ def components(ready: Prepared, settings: IdentificationSettings) -> tuple[Prepa
         scale=np.ones(COMPONENTS),
         references=list(range(COMPONENTS)),
         differentiated=np.repeat(ready.differentiated[:1], COMPONENTS),
-        warnings=(*ready.warnings, said),
+        warnings=(*ready.warnings, sentence),
     )
     return fewer, ready.scale[:, None] * U
 
 
-def at_all_channels(found: Identification, ready: Prepared, basis: FloatArray) -> Identification:
-    """Return what was identified from components with the shapes and spectra of all channels."""
+def expand_to_all_channels(found: Identification, ready: Prepared, basis: FloatArray) -> Identification:
+    """Return an identification from components with shapes and spectra at all channels."""
     rate = found.settings.sample_rate_hz
     return replace(
         found,
@@ -97,7 +97,7 @@ def _poles(poles: Stabilisation, basis: FloatArray) -> Stabilisation:
 
 
 def _std(std: FloatArray | None, shapes: ComplexArray, basis: FloatArray) -> FloatArray | None:
-    """Return standard deviations at all channels, the components' errors taken as independent."""
+    """Return standard deviations at all channels, taking the components' errors as independent."""
     if std is None:
         return None
     return np.asarray(np.sqrt(std**2 @ (basis**2).T) / np.abs(shapes).max(axis=-1, keepdims=True))

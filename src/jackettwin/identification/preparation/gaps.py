@@ -1,14 +1,14 @@
 r"""Missing samples of one channel, predicted from the others.
 
-Covariances of different pairs of channels, each over the samples that pair happens to have, do not form
-the covariance of any one process: the Hankel matrix loses its structure and weak modes with it. But
-sensors on one structure repeat each other. What a channel read while it was silent is its conditional mean
+Covariances of different pairs of channels, each over the samples which that pair has,
+are not the covariance of any one process: the Hankel matrix loses its structure and weak modes are lost.
+However, sensors on one structure are correlated. A missing sample is replaced by its conditional mean
 
 .. math:: \hat y_{i,t} = \sum_{j \ne i} \sum_{|k| \le L} b_{ijk}\, y_{j,t+k}
 
-with :math:`b` by least squares over the instants at which every channel is there (regression imputation:
-Little & Rubin 2019, §4.2). Only where the others explain almost all of the channel; elsewhere, and where
-all channels are silent together, a gap stays a gap.
+with :math:`b` by least squares over the instants at which every channel is present (regression imputation:
+Little & Rubin 2019, §4.2). This is done only if the others explain almost all of the channel;
+otherwise, or if all channels are missing together, a gap remains.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from scipy import linalg, ndimage
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 
 REACH = (5, 2, 0)
-"""Samples before and after that take part; the longest for which there is data enough."""
-CASES_A_COEFFICIENT = 15
+"""Samples before and after that take part; the longest reach with enough data is used."""
+CASES_PER_COEFFICIENT = 15
 """Complete instants needed per coefficient."""
-LEAST_EXPLAINED = 0.9
+MIN_EXPLAINED_SHARE = 0.9
 """Share of a channel's variance the others must explain."""
 RIDGE = 1e-9
-"""Keeps sensors that repeat each other exactly apart; a share of the variance."""
+"""Regularisation as a share of the variance, needed if sensors repeat each other exactly."""
 
 
 def fill(y: FloatArray) -> FloatArray:
-    """Return samples with the gaps of single channels filled from the channels that were there.
+    """Return samples with gaps of single channels filled from the channels that are present.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def fill(y: FloatArray) -> FloatArray:
     Returns
     -------
     (n_channels, n_samples)
-        NaN where the other channels were missing too, or say too little of this one.
+        NaN where the other channels are missing too, or explain too little of this one.
 
     Examples
     --------
@@ -69,7 +69,7 @@ def fill(y: FloatArray) -> FloatArray:
 
 
 def _around(valid: BoolArray, reach: int) -> BoolArray:
-    """Return where a channel has this sample and ``reach`` more on either side."""
+    """Return where a channel has a sample and ``reach`` more on either side."""
     line = np.ones(2 * reach + 1, dtype=bool)
     return np.asarray(ndimage.binary_erosion(valid, line, border_value=0))
 
@@ -77,13 +77,13 @@ def _around(valid: BoolArray, reach: int) -> BoolArray:
 def _reach(valid: BoolArray) -> int | None:
     for reach in REACH:
         complete = np.count_nonzero(_around(np.asarray(valid.all(axis=0)), reach))
-        if complete >= CASES_A_COEFFICIENT * len(valid) * (2 * reach + 1):
+        if complete >= CASES_PER_COEFFICIENT * len(valid) * (2 * reach + 1):
             return reach
     return None
 
 
 def _patterns(covered: BoolArray, i: int) -> list[BoolArray]:
-    """Return the sets of channels that are there while channel ``i`` is not, empty sets left out."""
+    """Return the non-empty sets of channels that are present while channel ``i`` is missing."""
     found = np.unique(covered, axis=1).T
     return [there for there in found if there.any() and not there[i]]
 
@@ -97,7 +97,7 @@ def _gram(y: FloatArray, complete: BoolArray, reach: int) -> FloatArray:
 
 
 def _weights(gram: FloatArray, i: int, there: BoolArray, reach: int) -> FloatArray | None:
-    """Return b (n_channels, shifts), zero for what is not there; None if it explains too little."""
+    """Return b (n_channels, shifts), zero for missing channels; None if it explains too little."""
     n_shifts = 2 * reach + 1
     size = int(np.count_nonzero(there)) * n_shifts
     a = gram[there][:, :, there].reshape(size, size)
@@ -105,7 +105,7 @@ def _weights(gram: FloatArray, i: int, there: BoolArray, reach: int) -> FloatArr
     own = gram[i, reach, i, reach]
     lift = RIDGE * float(np.trace(a)) / size
     solved = linalg.solve(a + lift * np.eye(size), b, assume_a="pos", check_finite=False)
-    if own <= 0.0 or float(b @ solved) < LEAST_EXPLAINED * own:
+    if own <= 0.0 or float(b @ solved) < MIN_EXPLAINED_SHARE * own:
         return None
     out = np.zeros((len(there), n_shifts))
     out[there] = solved.reshape(-1, n_shifts)

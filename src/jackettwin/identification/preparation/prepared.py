@@ -1,4 +1,4 @@
-"""What every method of identification starts from."""
+"""Preparation common to all identification methods."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from jackettwin.identification.preparation.resolve import (
     EDGE_BELOW_PEAK,
     FEWEST_SAMPLES,
     GUARD,
-    MOST_ORDER,
-    SAMPLES_A_CYCLE,
+    MAX_ORDER,
+    SAMPLES_PER_CYCLE,
     resolve,
     shortness,
     usable_channels,
@@ -35,14 +35,15 @@ if TYPE_CHECKING:
     from jackettwin.records import Channel, Record
 
 
-SPARE = 2.0
-"""Tones are sought at so many times the rate that a band from the lowest peak on needs: that may be one."""
-FEW_CHANNELS = 6
-"""That are looked at for it."""
-FEWEST_DEGREES = 10
-"""pLSCF goes up to this degree at least."""
-WORTH_SAYING = 0.005
-"""Share of filled samples below which nothing is said."""
+TONE_RATE_RATIO = 2.0
+"""Rate at which tones are sought, over the rate needed for a band that starts at the lowest peak,
+which may itself be a tone."""
+PEAK_CHANNELS = 6
+"""Number of channels used to find that peak."""
+MIN_TOP_DEGREE = 10
+"""Lowest limit of the degree of pLSCF."""
+MIN_REPORTED_SHARE = 0.005
+"""Share of filled samples above which a warning is given."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ class Prepared:
     ----------
     channels : tuple of Channel
     y : (n_channels, n_samples)
-        Zero mean, unit variance; NaN where nothing is known.
+        Samples of zero mean and unit variance; NaN where unknown.
     scale : (n_channels,)
         Standard deviations by which the channels were divided.
     references : list of int
@@ -61,16 +62,16 @@ class Prepared:
     settings : ResolvedSettings
     duration_s : float
     tones_hz : tuple of float
-        Steady tones that were taken out.
+        Steady tones that were subtracted.
     drifting : tuple of PhaseTrack
-        Tones that drift, taken out as well.
+        Drifting tones that were subtracted.
     warnings : tuple of str
     differentiated : (n_channels,) int
-        How often each channel was differentiated with respect to time.
+        Number of times each channel was differentiated with respect to time.
     rotor_orders : tuple of (order, low, high)
-        Where the orders of a rotor pass whose speed the record tells [Hz]; empty if it tells none.
+        Frequency ranges of rotor orders [Hz] if the record reveals the speed; else empty.
     recorded_hz : float
-        Rate at which the record was taken.
+        Sample rate of the record.
     """
 
     channels: tuple[Channel, ...]
@@ -88,9 +89,9 @@ class Prepared:
 
 
 def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
-    """Keep the live vibration channels, detrend, whiten, take out tones, decimate, fill gaps, scale.
+    """Select live vibration channels, detrend, whiten, subtract tones, decimate, fill gaps, and scale.
 
-    Channels are scaled to unit variance, else the loudest direction hides the other.
+    Channels are scaled to unit variance, so that the direction of largest motion does not hide the other.
 
     Raises
     ------
@@ -101,11 +102,11 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
     usable, warnings = usable_channels(record)
     level, differentiated = accelerated(detrend(usable))
     top = _band_top_hz(level, settings) or np.inf
-    level = _thinned(level, top, settings)
+    level = _decimated(level, top, settings)
     rotor = estimated_speed(level.data, level.sample_rate_hz)
-    tones, wandering, without = steady_tones(level.data, level.sample_rate_hz)
+    tones, slowly_drifting, without = steady_tones(level.data, level.sample_rate_hz)
     drifting, without = drifting_tones(without, level.sample_rate_hz, highest_hz=top)
-    drifting = (*wandering, *drifting)
+    drifting = (*slowly_drifting, *drifting)
     if tones or drifting:
         level = replace(level, data=without)
         settings = _above_tones(level, settings, min([*tones, *(tone.swept_hz[0] for tone in drifting)]))
@@ -114,7 +115,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
     y = fill(reduced.data)
     filled = np.mean(np.isnan(reduced.data) & np.isfinite(y), axis=1)
     for channel, share in zip(usable.channels, filled, strict=True):
-        if share > WORTH_SAYING:
+        if share > MIN_REPORTED_SHARE:
             warnings += (f"channel {channel.name}: {share:.1%} missing, predicted from the other channels",)
     scale = np.sqrt(np.nanmean(y**2, axis=1))
     references = _references(record, usable, settings)
@@ -137,38 +138,38 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
 
 
 def _band_top_hz(level: Record, settings: IdentificationSettings) -> float | None:
-    """Return what the band reaches up to at most if its lowest peak is of a mode; None if there is no peak.
+    """Return the upper limit of the band, or None without a peak.
 
-    Judged from a few channels: if they miss the lowest peak, it is more than need be.
+    A few channels are examined; if they miss the lowest peak, the limit is merely higher than needed.
     """
     if settings.highest_frequency_hz is not None:
         return GUARD * settings.highest_frequency_hz
     if settings.lowest_frequency_hz is not None:
         return GUARD * BAND_RATIO * settings.lowest_frequency_hz
-    few = level.data[:: -(-len(level.data) // FEW_CHANNELS)]
+    few = level.data[:: -(-len(level.data) // PEAK_CHANNELS)]
     if few.shape[1] < FEWEST_SAMPLES:
         return None
     peak = lowest_peak_hz(welch(few, level.sample_rate_hz))
     return None if peak is None else GUARD * BAND_RATIO * peak
 
 
-def _thinned(level: Record, top_hz: float, settings: IdentificationSettings) -> Record:
-    """Decimate what is sampled far faster than its band can need: tones are sought in less."""
-    needed = SPARE * max(SAMPLES_A_CYCLE * top_hz, settings.sample_rate_hz or 0.0)
+def _decimated(level: Record, top_hz: float, settings: IdentificationSettings) -> Record:
+    """Decimate a record sampled much faster than its band needs, to speed up the search for tones."""
+    needed = TONE_RATE_RATIO * max(SAMPLES_PER_CYCLE * top_hz, settings.sample_rate_hz or 0.0)
     factor = int(level.sample_rate_hz / needed)
     return decimate(level, sample_rate_hz=level.sample_rate_hz / factor) if factor > 1 else level
 
 
 def _above_tones(level: Record, settings: IdentificationSettings, lowest_hz: float) -> IdentificationSettings:
-    """Let the band start at the tones where nothing but tones stood out."""
+    """Start the band at the tones if nothing else stands out."""
     if settings.lowest_frequency_hz is not None or lowest_peak_hz(welch(level.data, level.sample_rate_hz)):
         return settings
     return settings.model_copy(update={"lowest_frequency_hz": EDGE_BELOW_PEAK * lowest_hz})
 
 
 def _degrees(settings: IdentificationSettings, n_references: int) -> tuple[int, ...]:
-    """Return degrees of polynomials with as many poles as SSI's model orders, and twice that at most."""
-    top = max(2 * (settings.max_order or MOST_ORDER) // n_references, FEWEST_DEGREES)
+    """Return polynomial degrees with as many poles as SSI's model orders, at most twice that."""
+    top = max(2 * (settings.max_order or MAX_ORDER) // n_references, MIN_TOP_DEGREE)
     return tuple(range(2, top + 1))
 
 

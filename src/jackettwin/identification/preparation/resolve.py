@@ -1,4 +1,4 @@
-"""What an identification works on: usable channels, band, sample rate and lag window."""
+"""Resolve the settings of an identification: usable channels, band, sample rate and lag window."""
 
 from __future__ import annotations
 
@@ -23,42 +23,43 @@ EDGE_BELOW_PEAK = 0.65
 """Lower edge of the band as a share of the lowest clear peak."""
 BAND_RATIO = 25.0
 """Upper edge of the band over its lower edge."""
-SAMPLES_A_CYCLE = 2.5
+SAMPLES_PER_CYCLE = 2.5
 """Sample rate over the upper edge of the band: the decimation filter passes up to 0.8 of Nyquist."""
 WINDOW_CYCLES = 1.0
-"""Block rows in cycles of the lower edge. Twice that is the lag window: long enough to tell a pair of
-frequencies a few per cent apart, short enough that the covariances are still determined."""
-ALONE_CYCLES = 2.5
-"""The same at most of a channel alone: no second shape parts two modes an eighth of their frequency apart,
-which one cycle tells as one, twice as broad …"""
-ALONE_SHARE = 1.0 / 400.0
-"""… and the share of the record that these may be: where it has hundreds of cycles, they are determined."""
+"""Block rows in cycles of the lower edge. The lag window is twice that: long enough to separate a pair of
+frequencies a few per cent apart, short enough that the covariances are well determined."""
+SINGLE_CHANNEL_CYCLES = 2.5
+"""Most block rows of a single channel, in the same cycles. Without a second shape,
+one cycle merges two modes an eighth of their frequency apart into one, twice as broad."""
+SINGLE_CHANNEL_SHARE = 1.0 / 400.0
+"""Share of the record up to which these block rows are used:
+with hundreds of cycles the covariances are determined."""
 GUARD = 1.25
-"""Poles are sought, and spectra fitted, up to this multiple of the band's upper edge if the sample rate
-allows: a mode near the edge is known by its whole peak, and one beyond it must be accounted for."""
+"""Poles are sought and spectra fitted up to this multiple of the band's upper edge if the sample rate allows:
+a mode near the edge needs its whole peak, and one just beyond must be modelled."""
 WINDOW_SHARE = 0.2
 """Largest lag window as a share of the record."""
-MOST_ORDER = 60
+MAX_ORDER = 60
 """Largest model order."""
-ENOUGH_ORDER = 40
-"""Of a model of few channels: for it there are block rows, however short a cycle of the lower edge is."""
+FEW_CHANNELS_ORDER = 40
+"""Model order that few channels must be able to reach; block rows are added for it."""
 DENSE_ORDERS = 20
-"""Model orders up to which every step is taken, then every second; of relaxations, which are in few,
-all are taken."""
-FEW_CYCLES = 60.0
-"""With fewer cycles of its lowest mode a record is called short."""
-STRONG_BELOW = 0.1
-"""Largest singular value below the band, over that in it, which is worth saying."""
+"""Model orders up to which every step is taken, and every second beyond. Relaxations appear in few orders,
+so that all are taken for them."""
+SHORT_RECORD_CYCLES = 60.0
+"""Number of cycles of its lowest mode below which a record counts as short."""
+STRONG_RATIO = 0.1
+"""Ratio of the largest singular value below the band to that within it above which a warning is given."""
 FEWEST_SAMPLES = 64
-"""Fewer make no spectrum."""
-DEAD = 1e-9
-"""A channel is dead when it moves less than this share of its largest value."""
+"""Fewest samples for a spectrum."""
+DEAD_SHARE = 1e-9
+"""A channel is dead if it varies by less than this share of its largest value."""
 
 
 def usable_channels(record: Record) -> tuple[Record, tuple[str, ...]]:
-    """Return the vibration channels that are alive, and a sentence on each that is not.
+    """Return the live vibration channels, and a sentence on each that is left out.
 
-    A frozen reading is no reading: such stretches become missing samples.
+    Frozen readings become missing samples.
     """
     vibration = [c.name for c in record.channels if c.quantity in VIBRATIONS]
     alive: list[str] = []
@@ -74,7 +75,7 @@ def usable_channels(record: Record) -> tuple[Record, tuple[str, ...]]:
             warnings.append(
                 f"channel {channel.name} left out: {1.0 - len(finite) / max(len(y), 1):.0%} missing"
             )
-        elif np.ptp(finite) <= max(DEAD * np.abs(finite).max(), SMALLEST):
+        elif np.ptp(finite) <= max(DEAD_SHARE * np.abs(finite).max(), SMALLEST):
             warnings.append(f"channel {channel.name} left out: constant")
         else:
             alive.append(channel.name)
@@ -93,17 +94,17 @@ def usable_channels(record: Record) -> tuple[Record, tuple[str, ...]]:
 
 
 def resolve(record: Record, settings: IdentificationSettings) -> tuple[ResolvedSettings, Record]:
-    """Choose what the settings leave open, and decimate."""
+    """Choose the settings left open, and decimate."""
     _check_samples(record)
     low, high = _band(record, settings)
     rate = settings.sample_rate_hz
     if rate is None:
-        rate = record.sample_rate_hz / max(int(record.sample_rate_hz / (SAMPLES_A_CYCLE * high)), 1)
+        rate = record.sample_rate_hz / max(int(record.sample_rate_hz / (SAMPLES_PER_CYCLE * high)), 1)
     n_channels = len(record.channels)
     window = settings.block_rows or _block_rows(rate / low, n_channels, record.duration_s * rate)
     _check_duration(record, low, 2.0 * window / rate)
     reduced = decimate(record, sample_rate_hz=rate) if rate < record.sample_rate_hz else record
-    top = min(settings.max_order or MOST_ORDER, (window - 1) * n_channels)
+    top = min(settings.max_order or MAX_ORDER, (window - 1) * n_channels)
     orders = _orders(settings.order_step, top, top if settings.real_poles else DENSE_ORDERS)
     return ResolvedSettings(low, high, reduced.sample_rate_hz, window, orders, 2.0 * window / rate), reduced
 
@@ -119,14 +120,17 @@ def _block_rows(samples_a_cycle: float, n_channels: int, n_samples: float) -> in
     (64, 150)
     """
     cycles = max(int(np.ceil(WINDOW_CYCLES * samples_a_cycle)), 4)
-    wanted = -(-ENOUGH_ORDER // n_channels) + 1
+    wanted = -(-FEW_CHANNELS_ORDER // n_channels) + 1
     if n_channels == 1:
-        wanted = max(wanted, int(min(np.ceil(ALONE_CYCLES * samples_a_cycle), ALONE_SHARE * n_samples)))
+        wanted = max(
+            wanted,
+            int(min(np.ceil(SINGLE_CHANNEL_CYCLES * samples_a_cycle), SINGLE_CHANNEL_SHARE * n_samples)),
+        )
     return max(cycles, min(wanted, int(0.5 * WINDOW_SHARE * n_samples)))
 
 
 def _orders(step: int, top: int, dense: int = DENSE_ORDERS) -> tuple[int, ...]:
-    """Return the model orders: high ones differ by little from their neighbours, and are half as dense.
+    """Return the model orders; of high ones, which differ little, every second is left out.
 
     Examples
     --------
@@ -138,25 +142,25 @@ def _orders(step: int, top: int, dense: int = DENSE_ORDERS) -> tuple[int, ...]:
 
 
 def shortness(reduced: Record, resolved: ResolvedSettings, *, chosen: bool) -> tuple[str, ...]:
-    """Say what a record is too short for.
+    """Return sentences on what the record is too short for.
 
     Parameters
     ----------
     reduced : Record
-        At the rate of the identification, zero mean.
+        Record at the rate of the identification, with zero mean.
     chosen : bool
-        Whether the lower edge of the band was chosen here, not set by the user.
+        Whether the lower edge of the band was chosen automatically.
     """
     low, duration = resolved.lowest_frequency_hz, reduced.duration_s
     first = low / EDGE_BELOW_PEAK if chosen else low
     out: tuple[str, ...] = ()
-    if first * duration < FEW_CYCLES:
+    if first * duration < SHORT_RECORD_CYCLES:
         out += (
             f"a short record: {duration:.3g} s hold {first * duration:.0f} cycles of {first:.3g} Hz; "
             f"distrust modes so low, by hundreds of cycles they are known",
         )
     strongest = _strongest_below(welch(reduced.data, reduced.sample_rate_hz), low) if chosen else None
-    if strongest is not None and strongest * duration < FEW_CYCLES:
+    if strongest is not None and strongest * duration < SHORT_RECORD_CYCLES:
         out += (
             f"the band starts at {low:.3g} Hz, yet the record moves strongly near {strongest:.2g} Hz: too "
             f"few cycles to tell a peak there; use a longer record, or state lowest_frequency_hz",
@@ -165,17 +169,17 @@ def shortness(reduced: Record, resolved: ResolvedSettings, *, chosen: bool) -> t
 
 
 def _strongest_below(spectrum: Spectrum, low: float) -> float | None:
-    """Return the frequency below an edge at which a record moves as strongly as anywhere above."""
+    """Return the frequency of strong motion below an edge, or None."""
     f, s = spectrum.frequencies_hz[1:], spectrum.singular_values[0, 1:]
     below, above = f < low, f >= low
-    if not below.any() or s[below].max() < STRONG_BELOW * s[above].max():
+    if not below.any() or s[below].max() < STRONG_RATIO * s[above].max():
         return None
     return float(f[below][np.argmax(s[below])])
 
 
 def guarded_band_hz(resolved: ResolvedSettings) -> tuple[float, float]:
-    """Return the band in which poles are sought: that of the modes and a guard above it."""
-    passed = resolved.sample_rate_hz / SAMPLES_A_CYCLE
+    """Return the band in which poles are sought: that of the modes plus a guard above it."""
+    passed = resolved.sample_rate_hz / SAMPLES_PER_CYCLE
     high = max(min(GUARD * resolved.highest_frequency_hz, passed), resolved.highest_frequency_hz)
     return resolved.lowest_frequency_hz, high
 
@@ -194,7 +198,7 @@ def _band(record: Record, settings: IdentificationSettings) -> tuple[float, floa
                 "wind or for longer; to see the spectra all the same, state lowest_frequency_hz",
             )
         low = EDGE_BELOW_PEAK * peak
-    limit = 2.0 / SAMPLES_A_CYCLE * nyquist
+    limit = 2.0 / SAMPLES_PER_CYCLE * nyquist
     high = settings.highest_frequency_hz or min(BAND_RATIO * low, limit)
     if not low < high < nyquist:
         raise InputError(

@@ -1,4 +1,4 @@
-"""Spectral densities, their singular values, and the lowest frequency that stands out."""
+"""Spectral densities, their singular values, and the lowest clear peak."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from jackettwin.records import spectral_matrix, welch_densities
 from jackettwin.signals import local_peaks
 
 SEGMENTS = 8
-"""Segments of a record in Welch's method (half overlapping): a resolution of 8 cycles a record."""
+"""Number of segments in Welch's method (half overlapping)."""
 
 CLEAR_PEAK = 8.0
-"""A peak counts when it stands this much above the median of the octave around it."""
+"""Smallest ratio of a peak to the median of the two octaves around it."""
 
 FEWEST_CYCLES = 20.0
-"""A frequency counts when the record holds this many cycles of it."""
+"""Fewest cycles in the record of a frequency that is considered."""
 
 
 def welch(y: FloatArray, sample_rate_hz: float, segment_length: int | None = None) -> Spectrum:
@@ -31,19 +31,19 @@ def welch(y: FloatArray, sample_rate_hz: float, segment_length: int | None = Non
     f, matrix = spectral_matrix(y, sample_rate_hz, segment_length or _length(y))
     density = np.asarray(np.einsum("faa->af", matrix).real)
     scale = np.sqrt(np.nanmean(y**2, axis=1))
-    # of a positive Hermitian matrix these are the singular values, at a third of their cost
+    # for a positive Hermitian matrix these are the singular values, at a third of their cost
     singular = np.linalg.eigvalsh(matrix / np.multiply.outer(scale, scale))[:, ::-1].T
     return Spectrum(f, density, np.abs(singular))
 
 
 def densities(y: FloatArray, sample_rate_hz: float, segment_length: int | None = None) -> Spectrum:
-    """Return the spectra of :func:`welch` channel by channel, without singular values: a third of it."""
+    """Return the densities of :func:`welch` without singular values, at a third of the cost."""
     f, density = welch_densities(y, sample_rate_hz, segment_length or _length(y))
     return Spectrum(f, density, np.empty((0, f.size)))
 
 
 def _length(y: FloatArray) -> int:
-    """Return the samples of a segment."""
+    """Return the number of samples in a segment."""
     return max(int(y.shape[1]) // SEGMENTS, 16)
 
 

@@ -1,16 +1,16 @@
-r"""Signals of one colour: velocities and displacements are differentiated before anything is judged.
+r"""Whitening: velocities and displacements are differentiated before identification.
 
 The spectrum of a displacement falls as :math:`f^{-4}` above the first mode where that of the acceleration is
-level. What stands out of such a slope, what a model order spends on it and what leaks down it depends on the
-quantity a sensor happens to measure; the modes do not. All channels are brought to the acceleration by
+level. Peaks over such a slope, the model orders spent on it and the leakage along it depend on the measured
+quantity, although the modes do not. All channels are converted to acceleration by
 
 .. math:: \frac{d^n y}{dt^n} \;\leftrightarrow\; (i\omega)^n\, Y(\omega), \qquad
           n = 0, 1, 2 \text{ for acceleration, velocity, displacement}.
 
-A derivative is a linear filter: it multiplies a mode by :math:`\lambda^n` and leaves its pole and, where all
-channels get the same, its shape as they are. Where the noise of the sensors, which a derivative lifts, would
-then decide the colour, one fewer is taken; where a record still falls steeply, as one that was integrated and
-does not say so, one more.
+A derivative is a linear filter: it multiplies a mode by :math:`\lambda^n` and preserves its pole and,
+if all channels are treated alike, its shape. One derivative fewer is taken if sensor noise, which
+differentiation amplifies, would dominate the spectrum. One more is taken if the spectrum still falls steeply,
+as that of an undeclared integral does.
 """
 
 from __future__ import annotations
@@ -32,35 +32,35 @@ if TYPE_CHECKING:
 
 
 DERIVATIVES = {"acceleration": 0, "velocity": 1, "displacement": 2, "strain": 2, "inclination": 2}
-"""How often a quantity is differentiated in time to follow the acceleration of a mode."""
-MOST_DERIVATIVES = 2
-STEEPEST_RISE = 1.5
-"""Exponent of the spectrum over frequency above which there is a derivative too many: accelerations under
-white forces have 0 to 0.7, white noise of a sensor has 2 for each derivative."""
-STEEPEST_FALL = -3.0
+"""Number of time derivatives from a quantity to acceleration."""
+MAX_DERIVATIVES = 2
+MAX_EXPONENT = 1.5
+"""Exponent of the spectrum over frequency above which there is a derivative too many:
+accelerations under white forces have 0 to 0.7, white sensor noise has 2 per derivative."""
+MIN_EXPONENT = -3.0
 """Exponent below which there is a derivative too few: accelerations under turbulence have −1 to −2,
 displacements under white forces −4."""
 OCTAVES = 4.0
-"""Above the lowest peak, over which the exponent is taken …"""
-HIGHEST = 0.4
-"""… and up to this share of the sample rate at most."""
-FEWEST_LINES = 16
-"""Of a spectrum, from which an exponent is taken."""
+"""Octaves above the lowest peak over which the exponent is taken."""
+MAX_RATE_SHARE = 0.4
+"""Upper limit of that range, as a share of the sample rate."""
+MIN_LINES = 16
+"""Fewest spectral lines for an exponent."""
 HALF_LENGTH = 32
-"""Of the differentiator in samples …"""
-KAISER = 8.0
-"""… and the parameter of its window: right to 5e-4 up to 0.8 of Nyquist, which is what decimation passes."""
+"""Half length of the differentiating filter in samples."""
+KAISER_BETA = 8.0
+"""Parameter of its Kaiser window: accurate to 5e-4 up to 0.8 of Nyquist, the passband of decimation."""
 
 
 def accelerated(record: Record, *, as_declared: bool = False) -> tuple[Record, Int64Array]:
-    """Return the record differentiated towards accelerations, and how often each channel was, (n_channels,).
+    """Return the record differentiated towards acceleration, and the derivatives per channel, (n_channels,).
 
     Parameters
     ----------
     record : Record
         Vibration channels without trend; NaN marks a missing sample.
     as_declared : bool
-        Go by the quantities alone, whatever the spectrum looks like: that of a decay says little.
+        Use the declared quantities alone; the spectrum of a decay is not informative.
 
     Examples
     --------
@@ -73,7 +73,7 @@ def accelerated(record: Record, *, as_declared: bool = False) -> tuple[Record, I
     """
     declared = np.array([DERIVATIVES[c.quantity] for c in record.channels], dtype=np.int64)
     more = 0 if as_declared else _more(record, declared)
-    times = np.clip(declared + more, 0, MOST_DERIVATIVES)
+    times = np.clip(declared + more, 0, MAX_DERIVATIVES)
     if not times.any():
         return record, times
     rate = record.sample_rate_hz
@@ -84,8 +84,8 @@ def accelerated(record: Record, *, as_declared: bool = False) -> tuple[Record, I
 def differentiated(y: FloatArray, sample_rate_hz: float, times: int) -> FloatArray:
     """Return the derivative of samples (n_samples,) with respect to time; gaps stay gaps.
 
-    The filter needs samples on either side: gaps are bridged for it by a cubic spline, the ends extended by
-    point reflection, which keeps the slope.
+    The filter needs samples on either side. Gaps are bridged by a cubic spline;
+    the ends are extended by point reflection, which preserves the slope.
     """
     there = np.isfinite(y)
     if not times or there.sum() < 2 * HALF_LENGTH:
@@ -103,12 +103,12 @@ def differentiated(y: FloatArray, sample_rate_hz: float, times: int) -> FloatArr
 
 
 def left_to_differentiate(channels: Iterable[Channel], times: Int64Array) -> list[int]:
-    """Return how often more samples must be differentiated for accelerations; integrated, if less than 0."""
+    """Return the derivatives still needed for acceleration; negative values mean integration."""
     return [DERIVATIVES[c.quantity] - int(n) for c, n in zip(channels, times, strict=True)]
 
 
 def as_measured(spectrum: Spectrum, times: Int64Array) -> Spectrum:
-    """Return a spectrum with the densities of the channels as they were before they were differentiated."""
+    """Return a spectrum with the densities of the channels before differentiation."""
     if not times.any():
         return spectrum
     omega = 2.0 * np.pi * spectrum.frequencies_hz
@@ -121,28 +121,28 @@ def _taps() -> FloatArray:
     """Return the ideal differentiator (−1)ᵐ/m under a Kaiser window, per sample."""
     m = np.arange(-HALF_LENGTH, HALF_LENGTH + 1)
     ideal = np.where(m == 0, 0.0, (-1.0) ** m / np.where(m == 0, 1, m))
-    return np.asarray(ideal * np.kaiser(len(m), KAISER))
+    return np.asarray(ideal * np.kaiser(len(m), KAISER_BETA))
 
 
 def _more(record: Record, declared: Int64Array) -> int:
-    """Return how many derivatives more than the quantities say make the spectrum nearest to level."""
+    """Return the number of derivatives, beyond the declared ones, that make the spectrum most level."""
     if (
         record.data.shape[1] < 2 * HALF_LENGTH
     ):  # too short to be identified; whoever looks for its band says so
         return 0
     spectrum = densities(record.data, record.sample_rate_hz)
-    for more in range(MOST_DERIVATIVES - int(declared.min()), -int(declared.max()) - 1, -1):
-        if more <= 0 and _exponent(spectrum, declared + more) <= STEEPEST_RISE:
+    for more in range(MAX_DERIVATIVES - int(declared.min()), -int(declared.max()) - 1, -1):
+        if more <= 0 and _exponent(spectrum, declared + more) <= MAX_EXPONENT:
             break
-    while (declared + more).min() < MOST_DERIVATIVES and (
-        _exponent(spectrum, declared + more) < STEEPEST_FALL or _hides_a_peak(spectrum, declared + more)
+    while (declared + more).min() < MAX_DERIVATIVES and (
+        _exponent(spectrum, declared + more) < MIN_EXPONENT or _hides_a_peak(spectrum, declared + more)
     ):
         more += 1
     return more
 
 
 def _hides_a_peak(spectrum: Spectrum, times: Int64Array) -> bool:
-    """Return whether a peak stands out of the channels' mean spectrum only after one derivative more."""
+    """Tell whether the mean spectrum of the channels has a peak only after one more derivative."""
     return _peak_hz(spectrum, times) is None and _peak_hz(spectrum, times + 1) is not None
 
 
@@ -159,16 +159,16 @@ def _level(spectrum: Spectrum, times: Int64Array) -> FloatArray:
 
 
 def _exponent(spectrum: Spectrum, times: Int64Array) -> float:
-    """Return the power of frequency that the channels' mean spectrum follows above its lowest peak.
+    """Return the exponent of the channels' mean spectrum over frequency above its lowest peak.
 
-    Without one, over the highest octaves.
+    If there is no peak, the highest octaves are used.
     """
     f, level = spectrum.frequencies_hz[1:], _level(spectrum, times)
-    highest = HIGHEST * 2.0 * f[-1]
+    highest = MAX_RATE_SHARE * 2.0 * f[-1]
     peak = _peak_hz(spectrum, times)
     lowest = highest / 2.0**OCTAVES if peak is None else peak
     inside = (f >= lowest) & (f <= min(lowest * 2.0**OCTAVES, highest)) & (level > 0.0)
-    if inside.sum() < FEWEST_LINES:
+    if inside.sum() < MIN_LINES:
         return 0.0
     log_f, log_s = np.log(f[inside]), np.log(level[inside])
     return float(np.polyfit(log_f, log_s, 1, w=1.0 / np.sqrt(f[inside]))[0])

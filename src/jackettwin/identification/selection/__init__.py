@@ -1,1 +1,1 @@
-"""Which poles are modes, and why the others are not."""
+"""Selection of modes among poles, with a reason for each pole that is rejected."""

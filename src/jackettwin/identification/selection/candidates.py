@@ -1,4 +1,4 @@
-"""Which clusters of poles are modes, with their uncertainty, and why the others are not."""
+"""Candidate modes from clusters of poles, with their uncertainty and the objections to them."""
 
 from __future__ import annotations
 
@@ -29,17 +29,18 @@ if TYPE_CHECKING:
     from jackettwin.identification.tones.phase_track import PhaseTrack
 
 
-FEWEST_ORDERS = 5
-"""A mode appears in at least so many model orders (or 0.4 of them, if there are few)."""
-A_TONE = "steady tone: its envelope does not wander as that of a mode"
+MIN_ORDERS = 5
+"""Fewest model orders in which a mode appears (0.4 of the orders if that is less)."""
+TONE_OBJECTION = "steady tone: its envelope does not wander as that of a mode"
 TONE_REACH = 6.0
-"""A tone nearer than this many half bandwidths disturbs a mode …"""
+"""Distance of a tone, in half bandwidths, within which it disturbs a mode."""
 ORDER_REACH = 2.0
-"""Half bandwidths of a mode within which an order of a rotor passes it …"""
-LEAST_REACH = 0.015
-"""… and this share of its frequency: the ends of the range of an estimated speed are hardly known."""
+"""Distance of a rotor order, in half bandwidths, within which it disturbs a mode."""
+MIN_ORDER_REACH = 0.015
+"""Smallest such distance as a share of the frequency, as the range of an estimated speed is uncertain at its
+ends."""
 TONE_WIDENING = 2.0
-"""… whose standard deviations are multiplied by this."""
+"""Factor on the standard deviations of a mode that a tone disturbs."""
 
 
 @dataclass(frozen=True)
@@ -53,9 +54,9 @@ class Tones:
     steady_hz : tuple of float
         Steady tones among them.
     drifting : tuple of PhaseTrack
-        Those that drift, and those that were taken out before.
+        Drifting tones, including those subtracted before.
     clean : (n_channels, n_samples)
-        Samples less the tones.
+        Samples without the tones.
     """
 
     representatives: frozenset[int]
@@ -66,14 +67,14 @@ class Tones:
 
 @dataclass(frozen=True)
 class Candidate:
-    """A cluster of poles, the mode it would be, and what speaks against it.
+    """A cluster of poles, the mode it would be, and the objections to it.
 
     Attributes
     ----------
     objection : str or None
         Why it is not a mode.
     doubt : str or None
-        Why it may not be one, unless the spectrum needs it.
+        Why it may not be a mode, unless the spectrum needs it.
     """
 
     cluster: Cluster
@@ -84,7 +85,7 @@ class Candidate:
     @property
     def is_tone(self) -> bool:
         """Whether its envelope is that of a tone."""
-        return self.objection == A_TONE
+        return self.objection == TONE_OBJECTION
 
     @property
     def rejected(self) -> Rejected:
@@ -103,7 +104,7 @@ def candidates(
     duration_s: float,
     n_orders: int,
 ) -> list[Candidate]:
-    """Judge every cluster by the hard criteria.
+    """Apply the hard criteria to every cluster.
 
     Parameters
     ----------
@@ -111,13 +112,13 @@ def candidates(
         Representative poles of clusters that are steady tones.
     """
     steady = set(tones)
-    fewest = min(FEWEST_ORDERS, int(np.ceil(0.4 * n_orders)))
+    fewest = min(MIN_ORDERS, int(np.ceil(0.4 * n_orders)))
     out = []
     for cluster in found:
         mode = _mode(poles, cluster, duration_s)
         objection = _objection(cluster, mode, settings, fewest)
         if cluster.representative in steady:
-            objection = A_TONE
+            objection = TONE_OBJECTION
         out.append(Candidate(cluster, mode, objection, _doubt(cluster, mode, settings)))
     return out
 
@@ -133,14 +134,14 @@ def find_tones(
 ) -> Tones:
     """Return the tones among the clusters.
 
-    A drifting tone leaves several poles: all poles it passed are of it.
+    A drifting tone causes several poles; all poles that it crosses belong to it.
 
     Parameters
     ----------
     y : (n_channels, n_samples)
-        Divided by ``scale``.
+        Samples divided by ``scale``.
     drifting : iterable of PhaseTrack
-        Drifting tones that were taken out already: what is left of them has poles as well.
+        Drifting tones already subtracted; their remainders cause poles too.
     """
     likely = [c.representative for c in found if c.order_share >= settings.min_order_share]
     f, zeta = poles.frequency_hz, poles.damping_ratio
@@ -157,7 +158,7 @@ def find_tones(
                 clean = without_tones(clean, sample_rate_hz, [f[k]])
             else:
                 continue
-            # the others are held against what this tone leaves
+            # the remaining clusters are tested on the samples without this tone
             lines = transform(clean)
             break
     passed = {k for k in likely if any(tone.passes(f[k]) for tone in followed)}
@@ -165,14 +166,14 @@ def find_tones(
 
 
 def beside_orders(mode: ModalEstimate, orders: Iterable[tuple[int, float, float]]) -> ModalEstimate:
-    """Flag a mode that an order of a rotor passes, or that is one itself.
+    """Flag a mode that a rotor order crosses, or that may be one.
 
     Parameters
     ----------
     orders : iterable of (order, low, high)
     """
     f = mode.frequency_hz
-    reach = max(ORDER_REACH * mode.damping_ratio, LEAST_REACH) * f
+    reach = max(ORDER_REACH * mode.damping_ratio, MIN_ORDER_REACH) * f
     for order, low, high in orders:
         if low - reach < f < high + reach:
             mode = mode.flagged(ModeStatus.DOUBTFUL, Finding("rotor_order_passes", params={"order": order}))
@@ -180,7 +181,7 @@ def beside_orders(mode: ModalEstimate, orders: Iterable[tuple[int, float, float]
 
 
 def beside_tones(mode: ModalEstimate, tones_hz: Iterable[tuple[float, float]]) -> ModalEstimate:
-    """Flag a mode near a tone, and widen what is said of it.
+    """Flag a mode near a tone, and widen its intervals.
 
     Parameters
     ----------
@@ -205,7 +206,7 @@ def beside_tones(mode: ModalEstimate, tones_hz: Iterable[tuple[float, float]]) -
 
 
 def with_covariance(mode: ModalEstimate, covariance: FloatArray) -> ModalEstimate:
-    """Return the mode with the covariance of (ln f, ln ζ) and what follows from it."""
+    """Return the mode with a covariance of (ln f, ln ζ) and its standard deviations and intervals."""
     std_f, std_zeta = np.sqrt(np.diag(covariance))
     return replace(
         mode,
@@ -218,9 +219,10 @@ def with_covariance(mode: ModalEstimate, covariance: FloatArray) -> ModalEstimat
 
 
 def _mode(poles: Stabilisation, cluster: Cluster, duration_s: float) -> ModalEstimate:
-    """Return the representative pole; its uncertainty and the scatter over the model orders together.
+    """Return the representative pole with its uncertainty and the scatter over model orders combined.
 
-    Never below the long-data limits: blocks shorter than the memory of a mode underestimate its scatter.
+    The result is at least the long-data limit: blocks shorter than the memory of a mode underestimate its
+    scatter.
     """
     k = cluster.representative
     f, zeta = float(poles.frequency_hz[k]), float(poles.damping_ratio[k])
@@ -263,7 +265,7 @@ def _objection(
 
 
 def _doubt(cluster: Cluster, mode: ModalEstimate, settings: IdentificationSettings) -> str | None:
-    """Return why a cluster is doubtful: its damping is hardly known, or far worse than the record allows."""
+    """Return why a cluster is doubtful, or None: its damping is too uncertain."""
     if cluster.damping_cov > settings.max_damping_cov:
         return (
             f"damping uncertain by {cluster.damping_cov:.0%}, at most {settings.max_damping_cov:.0%} allowed"

@@ -1,4 +1,4 @@
-"""The modes that are reported: the candidates no one doubts, refined, and those the spectrum needs."""
+"""Choice of the reported modes: sure candidates, refined, and doubtful ones that the spectrum needs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from jackettwin.identification.selection.candidates import (
     with_covariance,
 )
 from jackettwin.identification.selection.neighbours import apart
-from jackettwin.identification.selection.screening import rescued, screened, worth_keeping
+from jackettwin.identification.selection.screening import screen, with_unknown_damping, worth_keeping
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.envelopes import is_suspiciously_steady
 from jackettwin.identification.tones.mains import is_mains
@@ -39,30 +39,33 @@ if TYPE_CHECKING:
     from jackettwin.identification.tones.phase_track import PhaseTrack
 
 
-MOST_MISSING = 0.01
-"""Share of missing samples in a channel up to which a periodogram is trusted."""
+MAX_MISSING_SHARE = 0.01
+"""Largest share of missing samples in a channel for a fit to the periodogram."""
 
-LEAST_SHARE = 0.8
-"""Standard deviations over the long-data limits, at least. The ratios between many quiet channels tell more
-than the lines of a peak do: of ten modes in eight channels the Cramér-Rao bound is 0.79 of the limit."""
+MIN_LIMIT_SHARE = 0.8
+"""Smallest standard deviations, over the long-data limits.
+The ratios between many channels of low noise hold more information than the lines of a peak:
+for ten modes in eight channels the Cramér-Rao bound is 0.79 of the limit."""
 HINT_ORDER_SHARE = 0.25
-"""Share of the model orders in which what may be a mode must appear to be worth a hint."""
+"""Share of the model orders in which a possible mode must appear to be worth a hint."""
 SAME_SHAPE = 0.8
-"""MAC from which a pole is the mode beside it."""
+"""MAC above which a pole is the same mode as its neighbour."""
 SAME_CANDIDATE = 1e-3
-"""Relative distance of frequencies up to which a refused candidate is the one that came back."""
+"""Relative distance of frequencies within which a rejected candidate is the mode that was restored."""
 CLOSE_PAIR = 1.0
-"""Half bandwidths of both together within which the subspace method trades damping between two modes …"""
+"""Distance of two modes, over the sum of their half bandwidths, within which the subspace method confuses
+their damping."""
 PAIR_WIDENING = 1.6
-"""… where forces are not smooth, so that no fit describes them: the errors of ln ζ of 75 such modes of
-simulated jackets in waves had 1.55 times their standard deviations, those of 50 farther apart 1.16 times."""
-TAKEN_LINES = 0.75
-"""A line as far from a tone as this went with it."""
+"""Factor on the damping uncertainty of a close pair that no fit describes, since forces are not smooth.
+For 75 such modes of simulated jackets in waves the errors of ln ζ were 1.55 times their standard deviations;
+for 50 modes farther apart, 1.16 times."""
+LOST_LINES = 0.75
+"""Lines within this distance of a subtracted tone are lost with it."""
 
 
 @dataclass(frozen=True)
 class Choice:
-    """Modes by ascending frequency, the candidate each came from, what was left out, what to beware of."""
+    """Modes by ascending frequency, the candidate of each, rejected poles, and findings."""
 
     modes: tuple[ModalEstimate, ...]
     candidate: tuple[int, ...]
@@ -81,7 +84,7 @@ def chosen_modes(
     findings: tuple[Finding, ...] = ()
     modes = {i: judged[i].mode for i, certain in zip(open_to, sure, strict=True) if certain}
     if settings.refine and sure.any():
-        if np.isnan(y).mean(axis=1).max() > MOST_MISSING:
+        if np.isnan(y).mean(axis=1).max() > MAX_MISSING_SHARE:
             f = np.array([mode.frequency_hz for mode in modes.values()])
             findings = (not_refined(f, "gaps remain in the record"),)
         else:
@@ -91,7 +94,7 @@ def chosen_modes(
             for fit in fits:
                 for position in np.flatnonzero(fit.candidates):
                     modes.pop(open_to[position], None)
-                modes |= _numbers(judged, open_to, fit.modes, scale, duration_s)
+                modes |= _refined_modes(judged, open_to, fit.modes, scale, duration_s)
     tones_hz = [(f, f) for f in (*tones.steady_hz, *ready.tones_hz)]
     tones_hz += [tone.swept_hz for tone in tones.drifting]
     found = _sorted(judged, modes, tones_hz, resolved, settings, findings)
@@ -100,12 +103,12 @@ def chosen_modes(
     found = replace(found, modes=tuple(_steady(mode, lines, duration_s, scale) for mode in flagged))
     if settings.refine:
         found = replace(found, findings=(*found.findings, *_hidden(judged, found)))
-        found = replace(found, modes=tuple(_widened(m, found.modes) for m in found.modes))
+        found = replace(found, modes=tuple(_widen_close_pair(m, found.modes) for m in found.modes))
     return replace(found, rejected=(*found.rejected, *_tones(ready, resolved)))
 
 
-def _widened(mode: ModalEstimate, modes: Sequence[ModalEstimate]) -> ModalEstimate:
-    """Widen what is said of the damping of a mode that no fit describes, close to another."""
+def _widen_close_pair(mode: ModalEstimate, modes: Sequence[ModalEstimate]) -> ModalEstimate:
+    """Widen the damping interval of a mode that is close to another and that no fit describes."""
     beside = (apart(mode, other) for other in modes if other is not mode)
     if mode.unrefined is not None or mode.log_covariance is None or min(beside, default=np.inf) > CLOSE_PAIR:
         return mode
@@ -114,17 +117,17 @@ def _widened(mode: ModalEstimate, modes: Sequence[ModalEstimate]) -> ModalEstima
 
 
 def _steady(mode: ModalEstimate, lines: ComplexArray, duration_s: float, scale: FloatArray) -> ModalEstimate:
-    """Flag a light mode whose envelope is as steady as that of a tone."""
+    """Flag a lightly damped mode whose envelope is as steady as that of a tone."""
     shape = mode.mode_shape / scale
     if not is_suspiciously_steady(lines, duration_s, mode.frequency_hz, mode.damping_ratio, shape):
         return mode
     return mode.flagged(ModeStatus.DOUBTFUL, Finding("steady_envelope"))
 
 
-def cleared(judged: Sequence[Candidate], known: Evidence) -> list[Candidate]:
-    """Return the candidates, none doubted for its damping alone where everything else says it is a mode.
+def clear_damping_doubts(judged: Sequence[Candidate], known: Evidence) -> list[Candidate]:
+    """Clear the doubt about candidates whose damping is uncertain but which are otherwise modes.
 
-    A fit may then tell its damping.
+    A fit may then determine their damping.
     """
     out = list(judged)
     sure = [c.mode for c in judged if c.objection is None and c.doubt is None]
@@ -143,16 +146,16 @@ def screened_choice(
     rescue: bool = True,
     drifting: Sequence[PhaseTrack] = (),
 ) -> Choice:
-    """Give every mode its status; bring back those whose frequency is known, leave out what is no mode.
+    """Give modes their statuses, restore those of known frequency, drop those that are no modes.
 
     Parameters
     ----------
     rescue : bool
-        Whether modes are brought back.
+        Whether modes are restored.
     drifting : sequence of PhaseTrack
-        Tones that were taken out: what still stands out where one passed is a mode, or what is left of it.
+        Tones already subtracted: a peak that remains where one crossed is a mode or a remainder of the tone.
     """
-    modes = dict(zip(chosen.candidate, screened(chosen.modes, known), strict=True))
+    modes = dict(zip(chosen.candidate, screen(chosen.modes, known), strict=True))
     rejected = list(chosen.rejected)
     for i, c in enumerate(judged if rescue else ()):
         f = c.mode.frequency_hz
@@ -161,7 +164,9 @@ def screened_choice(
             continue
         if worth_keeping(c.mode, list(modes.values()), known):
             rejected = [r for r in rejected if not _about(r, c.mode)]
-            modes[i] = rescued(c.mode) if passing is None else beside_tones(c.mode, [passing.swept_hz])
+            modes[i] = (
+                with_unknown_damping(c.mode) if passing is None else beside_tones(c.mode, [passing.swept_hz])
+            )
     forced = {i: m for i, m in modes.items() if not m.status.is_a_mode}
     order = sorted((i for i in modes if i not in forced), key=lambda i: modes[i].frequency_hz)
     left_out = [
@@ -176,7 +181,7 @@ def screened_choice(
 
 
 def _about(refused: Rejected, mode: ModalEstimate) -> bool:
-    """Tell whether a candidate was refused that later came back; refined, it may have moved a little."""
+    """Tell whether a rejected candidate is a restored mode, which refinement may have moved slightly."""
     return abs(refused.frequency_hz / mode.frequency_hz - 1.0) < SAME_CANDIDATE
 
 
@@ -196,7 +201,7 @@ def _start(
         derivatives=left_to_differentiate(ready.channels, ready.differentiated),
         avoid_hz=(
             *(tone.disturbed_hz for tone in tones.drifting),
-            *(_taken_hz(f, ready.duration_s) for f in ready.tones_hz),
+            *(_lost_hz(f, ready.duration_s) for f in ready.tones_hz),
         ),
         max_damping_ratio=settings.max_damping_ratio,
     )
@@ -206,12 +211,12 @@ def _log_damping_std(mode: ModalEstimate) -> float:
     return 0.0 if mode.log_covariance is None else float(np.sqrt(mode.log_covariance[1, 1]))
 
 
-def _taken_hz(tone_hz: float, duration_s: float) -> tuple[float, float]:
-    """Return the range of the lines that went with a tone: one on either side of it, or that it is on."""
-    return tone_hz - TAKEN_LINES / duration_s, tone_hz + TAKEN_LINES / duration_s
+def _lost_hz(tone_hz: float, duration_s: float) -> tuple[float, float]:
+    """Return the range of the lines lost with a tone: the line it is on, or one on either side."""
+    return tone_hz - LOST_LINES / duration_s, tone_hz + LOST_LINES / duration_s
 
 
-def _numbers(
+def _refined_modes(
     judged: Sequence[Candidate], open_to: list[int], refined: Refined, scale: FloatArray, duration_s: float
 ) -> dict[int, ModalEstimate]:
     """Return the refined modes by candidate."""
@@ -220,7 +225,7 @@ def _numbers(
         index = open_to[position]
         f, zeta = float(refined.frequency_hz[k]), float(refined.damping_ratio[k])
         limits = long_data_limits(f, zeta, duration_s)
-        lift = np.maximum(LEAST_SHARE * limits / np.sqrt(np.diag(refined.covariance[k])), 1.0)
+        lift = np.maximum(MIN_LIMIT_SHARE * limits / np.sqrt(np.diag(refined.covariance[k])), 1.0)
         shape = refined.shapes[k] * scale
         top = int(np.argmax(np.abs(shape)))
         relative = shape / shape[top]
@@ -249,7 +254,7 @@ def _sorted(
     settings: IdentificationSettings,
     findings: tuple[Finding, ...],
 ) -> Choice:
-    """Drop what is outside the band or hardly known; order by frequency."""
+    """Drop modes outside the band or with too uncertain damping, and sort by frequency."""
     rejected = {i: c.rejected for i, c in enumerate(judged) if i not in modes}
     for i, refused in rejected.items():
         if not refused.reason:
@@ -285,9 +290,9 @@ def _kind_of_tone(frequency_hz: float, steady: bool, ready: Prepared) -> ModeSta
 
 
 def _hidden(judged: Sequence[Candidate], found: Choice) -> list[Finding]:
-    """Say where what was left out may be the other mode of a close pair, beside the mode it is nearest to.
+    """Report rejected poles that may be the other mode of a close pair, at the nearest mode.
 
-    Only beside modes that no fit describes: where one does, the spectrum needs no other.
+    Only modes that no fit describes are considered: otherwise the spectrum needs no further mode.
     """
     out: dict[float, Finding] = {}
     for i, c in enumerate(judged):

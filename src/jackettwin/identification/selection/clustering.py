@@ -1,4 +1,4 @@
-"""Groups of poles that belong to one mode, found without a random start."""
+"""Deterministic clustering of poles that belong to one mode."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ class Cluster:
     representative: int
     """The pole nearest to the median of frequency and damping of the core."""
     core: Int64Array
-    """The half of the poles whose damping is known best; all of them where that is not known."""
+    """The half of the poles of least uncertain damping; all of them if the uncertainty is unknown."""
     order_share: float
-    """Share of the model orders that hold the mode, from the first one on."""
+    """Share of the model orders, from the first that contains the mode, in which it appears."""
     damping_cov: float
-    """Standard deviation of ln ζ: of the representative pole and over the core together."""
+    """Standard deviation of ln ζ: that of the representative pole and the scatter over the core combined."""
 
 
 def clusters(
@@ -48,8 +48,8 @@ def clusters(
     orders : sequence of int
         All model orders, ascending.
     scale : (n_channels,)
-        Standard deviations of the channels; MAC is taken of shapes scaled by it, so that a channel in
-        other units or at a quiet place counts.
+        Standard deviations of the channels, which scale shapes for the MAC,
+        so that channels in other units or at places of little motion count.
     """
     n_poles = len(poles.order)
     if n_poles < 2:
@@ -86,7 +86,7 @@ def _cluster(poles: Stabilisation, members: Int64Array, orders: Sequence[int]) -
 
 
 def _one_an_order(poles: Stabilisation, members: Int64Array) -> Int64Array:
-    """Keep of every model order the pole nearest to the middle of the group."""
+    """Keep the pole nearest to the middle of the group in every model order."""
     order = np.lexsort((_away(poles, members), poles.order[members]))
     _, first = np.unique(poles.order[members][order], return_index=True)
     return np.asarray(members[order[first]])

@@ -1,10 +1,10 @@
-r"""Peaks of the forces between two modes, and modes told twice, by their shape.
+r"""Recognise, by shape, force peaks between two modes and modes that were identified twice.
 
-Between its modes a structure moves in a combination of those on either side,
-:math:`y(f) = \sum_i \phi_i h_i(f) p_i(f)`: a peak of the forces p makes a peak of y, sharp and stable as that
-of a mode, whose shape lies in the plane of its neighbours' shapes. So does a peak of what shakes the
-structure and is not measured itself. That of a mode of the structure lies there by chance only. Of close
-modes that no fit describes, one may be told twice: then its second shape is a combination of theirs.
+Between its modes a structure moves in a combination of the modes on either side,
+:math:`y(f) = \sum_i \phi_i h_i(f) p_i(f)`. A peak of the forces p thus makes a peak of y, which can be as
+sharp and stable as that of a mode but has a shape in the plane of its neighbours' shapes. The same holds for
+a peak of an unmeasured base motion. The shape of a mode lies in that plane only by chance. Among close modes
+that no fit describes, one may be identified twice; its second shape is a combination of the others' shapes.
 """
 
 from __future__ import annotations
@@ -20,18 +20,20 @@ from jackettwin.identification.status import ModeStatus
 if TYPE_CHECKING:
     from jackettwin.identification.estimate import ModalEstimate
 
-OUTSIDE = 0.01
-"""Share of a shape outside of its neighbours' below which it is theirs. Peaks of waves between the first two
-pairs of a simulated jacket have 0.001; of 60 modes of random systems none had less than 0.03."""
-LEFT = 2
-"""Dimensions that the neighbours must leave: in fewer any shape is nearly theirs."""
+MAX_OUTSIDE_SHARE = 0.01
+"""Share of a shape outside the span of its neighbours' shapes below which it is their combination.
+Wave peaks between the first two pairs of a simulated jacket have 0.001;
+of 60 modes of random systems none had less than 0.03."""
+MIN_FREE_DIMENSIONS = 2
+"""Dimensions outside the neighbours' span that are required; with fewer,
+almost any shape is a combination."""
 
 
-def of_neighbours(modes: Sequence[ModalEstimate], scale: FloatArray, close: float) -> list[int]:
+def combinations_of_neighbours(modes: Sequence[ModalEstimate], scale: FloatArray, close: float) -> list[int]:
     """Return the modes whose shapes are combinations of those of the modes below and above.
 
-    Modes that are doubted already are nobody's neighbours; one that is told takes no part in the others'. Two
-    pairs may each lie in the plane of the other and a third: the broader is told first, as forces are broad.
+    Doubtful modes are not used as neighbours, nor are modes already returned. Two pairs may each lie in the
+    plane of the other and a third: the more damped is returned first, as force peaks are broad.
 
     Parameters
     ----------
@@ -39,18 +41,19 @@ def of_neighbours(modes: Sequence[ModalEstimate], scale: FloatArray, close: floa
     scale : (n_channels,)
         By which shapes are divided.
     close : float
-        Half bandwidths together within which modes are neighbours of one another, not on either side.
+        Distance over the sum of half bandwidths within which modes count as close,
+        not as one below and one above.
     """
-    return _one_after_another(
+    return _take_in_turn(
         modes, scale, lambda free, i: _either_side(modes, free, i, close), lambda mode: mode.damping_ratio
     )
 
 
-def told_twice(modes: Sequence[ModalEstimate], scale: FloatArray, close: float) -> list[int]:
-    """Return the modes that no fit describes whose shapes are combinations of those of modes close to them.
+def identified_twice(modes: Sequence[ModalEstimate], scale: FloatArray, close: float) -> list[int]:
+    """Return modes without a fit whose shapes are combinations of those of modes close to them.
 
-    Of several that are so of one another the one of least known frequency is told first. Two close modes of
-    nearly one shape are told by its MAC alone; here they are at least three.
+    Of several modes that are combinations of one another, the one of most uncertain frequency is returned
+    first. Two close modes of nearly one shape are recognised by their MAC; here at least three are involved.
 
     Parameters
     ----------
@@ -58,32 +61,32 @@ def told_twice(modes: Sequence[ModalEstimate], scale: FloatArray, close: float) 
     scale : (n_channels,)
         By which shapes are divided.
     close : float
-        Half bandwidths together within which modes are close.
+        Distance over the sum of half bandwidths within which modes are close.
     """
 
     def beside(free: Sequence[int], i: int) -> list[int]:
         near = [j for j in free if j != i and apart(modes[i], modes[j]) < close]
         return near if modes[i].unrefined is None and len(near) > 1 else []
 
-    return _one_after_another(
+    return _take_in_turn(
         modes, scale, beside, lambda mode: (mode.frequency_std_hz or np.inf) / mode.frequency_hz
     )
 
 
-def _one_after_another(
+def _take_in_turn(
     modes: Sequence[ModalEstimate],
     scale: FloatArray,
     beside: Callable[[Sequence[int], int], Sequence[int]],
     rank: Callable[[ModalEstimate], float],
 ) -> list[int]:
-    """Return the modes whose shapes are those of others beside them, that of the highest rank first.
+    """Return modes whose shapes are combinations of others, the one of highest rank first.
 
-    ``beside`` says which of the modes that are free, neither doubted nor told, lie beside one of them.
+    ``beside`` returns which of the remaining modes, neither doubtful nor returned, are neighbours of a mode.
     """
     found: list[int] = []
     while True:
         free = [i for i, m in enumerate(modes) if i not in found and m.status != ModeStatus.DOUBTFUL]
-        theirs = [i for i in free if _outside(modes, i, beside(free, i), scale) < OUTSIDE]
+        theirs = [i for i in free if _outside(modes, i, beside(free, i), scale) < MAX_OUTSIDE_SHARE]
         if not theirs:
             return found
         found.append(max(theirs, key=lambda i: rank(modes[i])))
@@ -102,8 +105,8 @@ def _either_side(modes: Sequence[ModalEstimate], free: Sequence[int], i: int, cl
 
 
 def _outside(modes: Sequence[ModalEstimate], i: int, beside: Sequence[int], scale: FloatArray) -> float:
-    """Return the share of a shape outside of those of others; 1 if there are none or too many of them."""
-    if not beside or len(beside) > len(scale) - LEFT:
+    """Return the share of a shape outside the span of others; 1 if there are none or too many of them."""
+    if not beside or len(beside) > len(scale) - MIN_FREE_DIMENSIONS:
         return 1.0
     basis: ComplexArray = np.linalg.qr(np.array([modes[j].mode_shape / scale for j in beside]).T)[0]
     shape = modes[i].mode_shape / scale
@@ -112,6 +115,6 @@ def _outside(modes: Sequence[ModalEstimate], i: int, beside: Sequence[int], scal
 
 
 def apart(mode: ModalEstimate, other: ModalEstimate) -> float:
-    """Return the distance of two modes in their half bandwidths together."""
+    """Return the distance of two modes over the sum of their half bandwidths."""
     both = mode.damping_ratio * mode.frequency_hz + other.damping_ratio * other.frequency_hz
     return abs(mode.frequency_hz - other.frequency_hz) / both

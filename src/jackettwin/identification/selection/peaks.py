@@ -1,4 +1,4 @@
-"""How a mode stands out of what is beside it, and when, seen through the filter that its shape makes."""
+"""Prominence of a mode over its surroundings, in frequency and in time, through the filter of its shape."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ from jackettwin.signals import local_peaks
 if TYPE_CHECKING:
     from jackettwin.identification.estimate import ModalEstimate
 
-CLEAR = 3.0
-"""Power of a peak, in one channel, over the median around it and over the valleys beside it: of noise,
-averaged over fifteen half-overlapping segments, one line in ten million stands out so far."""
-AROUND, FEWEST_AROUND = 0.3, 21
-"""Width over which the median is taken, as a share of the frequency, and its fewest lines."""
-BESIDE = (2.5, 8.0)
-"""Half bandwidths from a mode between which the power beside it is taken, …"""
+MIN_PEAK_RATIO = 3.0
+"""Smallest ratio of a peak in one channel to the median around it and to the minima beside it.
+In noise averaged over fifteen half-overlapping segments one line in ten million exceeds it."""
+MEDIAN_WIDTH, MIN_MEDIAN_LINES = 0.3, 21
+"""Width of that median as a share of the frequency, and its fewest lines."""
+BESIDE_HALF_BANDWIDTHS = (2.5, 8.0)
+"""Range of distances from a mode, in half bandwidths, over which the power beside it is taken."""
 BESIDE_LINES = 4
-"""… over so many lines a channel at least."""
-REGULAR = 1e-4
-"""Share of the mean power beside the mode that counts as noise of every channel."""
+"""Fewest lines per channel in that range."""
+ADDED_NOISE = 1e-4
+"""Noise added to every channel, as a share of the mean power beside the mode."""
 PARTS = 10
-"""Of a record, whose power is held against each other."""
+"""Number of parts of a record whose powers are compared."""
 
 
 def clear_peaks_hz(frequency_hz: FloatArray, density: FloatArray) -> list[float]:
-    """Return where any channel has a peak that stands clear of the level around it, ascending."""
+    """Return the frequencies of clear peaks of any channel, ascending."""
     found: set[int] = set()
     for row in np.maximum(density, np.finfo(float).tiny):
-        for k in local_peaks(np.log(row), prominence=np.log(CLEAR)):
-            half = max(int(0.5 * AROUND * k), FEWEST_AROUND // 2)
-            if row[k] > CLEAR * np.median(row[max(k - half, 1) : k + half + 1]):
+        for k in local_peaks(np.log(row), prominence=np.log(MIN_PEAK_RATIO)):
+            half = max(int(0.5 * MEDIAN_WIDTH * k), MIN_MEDIAN_LINES // 2)
+            if row[k] > MIN_PEAK_RATIO * np.median(row[max(k - half, 1) : k + half + 1]):
                 found.add(int(k))
     return [float(frequency_hz[k]) for k in sorted(found)]
 
@@ -41,14 +41,14 @@ def clear_peaks_hz(frequency_hz: FloatArray, density: FloatArray) -> list[float]
 def contrast(
     lines: ComplexArray, duration_s: float, mode: ModalEstimate, shape: ComplexArray
 ) -> tuple[float, float]:
-    """Return the power at a mode over that beside it through its filter, and the excess over its deviation.
+    """Return the ratio of power at a mode to that beside it, and its excess in standard deviations.
 
     Parameters
     ----------
     lines : (n_channels, n_lines)
         Fourier transform of the samples.
     shape : (n_channels,)
-        In the scaling of the samples.
+        Shape in the scaling of the samples.
     """
     at, beside = _lines_of(lines, duration_s, mode)
     if at.sum() < 2 or beside.sum() <= len(lines):
@@ -61,7 +61,7 @@ def contrast(
 def share_of_one_part(
     lines: ComplexArray, duration_s: float, mode: ModalEstimate, shape: ComplexArray
 ) -> float:
-    """Return the largest share of a mode's power, through its filter, in two neighbouring tenths."""
+    """Return the largest share of a mode's filtered power in two neighbouring tenths of the record."""
     at, beside = _lines_of(lines, duration_s, mode)
     if beside.sum() <= len(lines):
         return 0.0
@@ -75,14 +75,16 @@ def _lines_of(lines: ComplexArray, duration_s: float, mode: ModalEstimate) -> tu
     """Return the lines at a mode and those beside it, (n_lines,) each."""
     f = np.arange(lines.shape[1]) / duration_s
     half = max(mode.damping_ratio * mode.frequency_hz, 1.5 / duration_s)
-    far = max(BESIDE[1] * half, BESIDE_LINES * len(lines) / duration_s)
+    far = max(BESIDE_HALF_BANDWIDTHS[1] * half, BESIDE_LINES * len(lines) / duration_s)
     away = np.abs(f - mode.frequency_hz)
-    return np.asarray(away <= half), np.asarray((away > BESIDE[0] * half) & (away <= far) & (f > 0.0))
+    return np.asarray(away <= half), np.asarray(
+        (away > BESIDE_HALF_BANDWIDTHS[0] * half) & (away <= far) & (f > 0.0)
+    )
 
 
 def _through(lines: ComplexArray, beside: BoolArray, shape: ComplexArray) -> ComplexArray:
-    """Return the lines through the filter that a shape makes against what is beside it, (n_lines,)."""
+    """Return the lines through the filter of a shape against its surroundings, (n_lines,)."""
     around = lines[:, beside]
     matrix = around @ around.conj().T / beside.sum()
-    matrix += REGULAR * np.trace(matrix).real / len(lines) * np.eye(len(lines))
+    matrix += ADDED_NOISE * np.trace(matrix).real / len(lines) * np.eye(len(lines))
     return np.asarray(np.linalg.solve(matrix, shape).conj() @ lines)

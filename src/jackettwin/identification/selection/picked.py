@@ -1,4 +1,4 @@
-"""Picks take the place of the criteria on clusters of poles."""
+"""Modes picked by the user replace the criteria on clusters of poles."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from jackettwin.identification.selection.candidates import Candidate
     from jackettwin.identification.selection.clustering import Cluster
 
-REACH = 0.02
+MAX_PICK_DISTANCE = 0.02
 """Largest relative distance of a picked frequency from a pole."""
 
 
 def picked_clusters(poles: Stabilisation, found: Sequence[Cluster], picks: Sequence[Pick]) -> list[Cluster]:
-    """Return for every pick the cluster of its pole, which then speaks for the cluster.
+    """Return the cluster of each picked pole, with the pole as its representative.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def picked_clusters(poles: Stabilisation, found: Sequence[Cluster], picks: Seque
 
 
 def with_verdicts(picks: Sequence[Pick], judged: Sequence[Candidate]) -> list[Candidate]:
-    """Return the candidates as the picks want them: no objection, and doubt only where it is said."""
+    """Return the candidates as picked: without objection, and doubtful only where the pick says so."""
     return [
         replace(c, objection=None, doubt=(c.doubt or "doubtful by the picks") if pick.doubtful else None)
         for pick, c in zip(picks, judged, strict=True)
@@ -62,7 +62,7 @@ def with_verdicts(picks: Sequence[Pick], judged: Sequence[Candidate]) -> list[Ca
 
 
 def left_out(judged: Sequence[Candidate], picked: Sequence[Cluster]) -> tuple[str, ...]:
-    """Say which modes would have been taken without picks and no pick means: a fit of the band lacks them."""
+    """Report modes that would be chosen without picks but are not picked; a fit lacks them."""
     taken = {int(k) for cluster in picked for k in cluster.poles}
     free = [c for c in judged if c.objection is None and c.doubt is None]
     f = [c.mode.frequency_hz for c in free if not taken & {int(k) for k in c.cluster.poles}]
@@ -75,19 +75,21 @@ def left_out(judged: Sequence[Candidate], picked: Sequence[Cluster]) -> tuple[st
 
 
 def _pole(poles: Stabilisation, found: Sequence[Cluster], pick: Pick) -> int:
-    """Return the position of the pole meant by a pick."""
+    """Return the index of the pole that a pick refers to."""
     if pick.order is None:
         among = np.array([c.representative for c in found], dtype=np.int64)
     else:
         among = np.flatnonzero(poles.order == pick.order)
     away = np.abs(poles.frequency_hz[among] / pick.frequency_hz - 1.0)
-    if not len(away) or away.min() > REACH:
+    if not len(away) or away.min() > MAX_PICK_DISTANCE:
         orders = sorted(set(poles.order.tolist()))
         raise InputError(
             "no pole near the pick" + ("" if pick.order is None else f" in order {pick.order}"),
             field="picks",
             value=pick.frequency_hz,
-            allowed=f"within {REACH:.0%} of a pole; orders {orders[0]} to {orders[-1]}" if orders else "none",
+            allowed=f"within {MAX_PICK_DISTANCE:.0%} of a pole; orders {orders[0]} to {orders[-1]}"
+            if orders
+            else "none",
             remedy=f"the nearest is at {poles.frequency_hz[among[np.argmin(away)]]:.6g} Hz"
             if len(away)
             else "use the settings the picks were made with",

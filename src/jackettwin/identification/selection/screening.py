@@ -1,6 +1,6 @@
-r"""What a reported peak is taken for: a mode, one to doubt, or the forces.
+r"""Screening of reported peaks: a mode, a doubtful one, or forces.
 
-Five things are asked of a mode, none of which alone tells it from noise, waves or a slope of the spectrum:
+Five criteria are applied, none of which alone separates a mode from noise, waves or a slope of the spectrum:
 
 1. a *second look*: subspace identification again, with a shorter lag window, finds the same
    frequency and shape;
@@ -8,8 +8,8 @@ Five things are asked of a mode, none of which alone tells it from noise, waves 
 
    .. math:: P(f) = w^H \hat S(f)\, w, \qquad w = R^{-1}\phi,
 
-   R the mean spectral matrix beside the mode, the power at the mode stands out of that beside it (the peak of
-   FDD, without its singular values, which follow whatever is loudest);
+   with R the mean spectral matrix beside the mode, the power at the mode must stand out from that beside it
+   (the peak of FDD, but without its singular values, which follow the strongest motion);
 3. a *shape* that is nearly real, unless a close mode shares its plane;
 4. to be there all the *time* that the others are: a tone that ends, or a blow, is of one part of the record;
 5. not to be *forces*: as broad as a wave spectrum, where waves are; or a peak of forces that is seen through
@@ -27,8 +27,8 @@ from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.findings import Finding
 from jackettwin.identification.mode_shapes import mac
 from jackettwin.identification.preparation.spectra import welch
-from jackettwin.identification.selection.neighbours import apart, of_neighbours, told_twice
-from jackettwin.identification.selection.one_sensor import FEWEST_PEERS, of_one_sensor
+from jackettwin.identification.selection.neighbours import apart, combinations_of_neighbours, identified_twice
+from jackettwin.identification.selection.one_sensor import MIN_OTHER_SENSORS, of_one_sensor
 from jackettwin.identification.selection.peaks import clear_peaks_hz, contrast, share_of_one_part
 from jackettwin.identification.selection.second_look import SAME_SHAPE, SecondLook, second_look, seen_again
 from jackettwin.identification.status import ModeStatus
@@ -43,90 +43,94 @@ if TYPE_CHECKING:
 
 Verdict = tuple[ModeStatus, Finding]
 
-SEEN_AGAIN = 0.4
-"""Share of the orders of the second look, from the first that holds the mode on, that must hold it."""
-LEAST_MPC = 0.5
-"""Shapes less collinear than this are doubted …"""
-CLOSE = 2.0
-"""… unless another mode is nearer than so many of their half bandwidths together: one record determines the
-plane of a close pair, not the shapes in it."""
-LEAST_CONTRAST = 6.0
-"""Least power at the peak over that beside it, where there are sensors enough to keep the other modes out,
-and where the sea has forces. A mode alone has 17: π/4 of its peak within its half bandwidth, 0.05 of it
-between 2.5 and 8 of them; with 6, a tenth of the power at the peak is not the mode's. Peaks that the sea
-makes between the modes of simulated jackets have 2 to 6; of 530 modes of random systems, in four sensors and
-more, 1 in 70 less …"""
+MIN_SECOND_LOOK_SHARE = 0.4
+"""Share of the orders of the second look, from the first that contains the mode, that must contain it."""
+MIN_MPC = 0.5
+"""Smallest collinearity of a shape that is not doubtful, unless another mode is close."""
+CLOSE_DISTANCE = 2.0
+"""Distance over the sum of half bandwidths within which modes are close:
+one record determines the plane of a close pair, not the shapes in it."""
+MIN_CONTRAST = 6.0
+"""Smallest ratio of the power at the peak to that beside it,
+with enough sensors to suppress the other modes or within the range of sea forces. A single mode has 17:
+π/4 of its peak within its half bandwidth, 0.05 of it between 2.5 and 8 half bandwidths. At 6, a tenth of
+the power at the peak is not of the mode. Sea peaks between the modes of simulated jackets have 2 to 6;
+of 530 modes of random systems with four or more sensors 1 in 70 has less than 6."""
 BROAD_IN_SEA, BROAD_CONTRAST = 0.02, 12.0
-"""Damping ratio from which, where the sea has forces, a peak must stand out twice as clearly, as forces are
-broad. Of 180 modes of simulated jackets there none so broad has less; peaks of the sea have 6 to 9."""
-LEAST_SEEN = 1.5
-"""… elsewhere this much …"""
-LEAST_CONTRAST_STD = 3.0
-"""… and the least number of standard deviations by which it exceeds it."""
-WAVES_HZ = (0.04, 0.4)
-"""Where seas have their power."""
-BROAD = 0.04
-"""Damping ratio from which a peak is as broad as a wave spectrum: that of JONSWAP with γ = 3.3, times the
-transfer to acceleration, is identified with 5 to 10 %."""
+"""Damping ratio above which a peak in the range of sea forces must have the second value, as force peaks are
+broad. None of 180 modes of simulated jackets with such damping has less; sea peaks have 6 to 9."""
+MIN_CONTRAST_ELSEWHERE = 1.5
+"""The same ratio elsewhere."""
+MIN_CONTRAST_STD = 3.0
+"""Smallest excess of that ratio over 1, in standard deviations."""
+SEA_BAND_HZ = (0.04, 0.4)
+"""Frequency range of sea power."""
+BROAD_DAMPING = 0.04
+"""Damping ratio above which a peak is as broad as a wave spectrum: JONSWAP with γ = 3.3,
+transferred to acceleration, is identified with 5 to 10 %."""
 TOP_OF_SEA = 0.25
-"""Relative distance from 1/Tp within which a broad peak is the sea's."""
+"""Relative distance from 1/Tp within which a broad peak is attributed to the sea."""
 BESIDE_SEA = 0.1
-"""Relative distance from 1/Tp within which a peak that may be twice as broad as ``BROAD`` is doubted."""
+"""Relative distance from 1/Tp within which a peak is doubtful if it may be twice as broad as
+``BROAD_DAMPING``."""
 SEAS_FORCES = (0.75, 4.0)
-"""Where a sea has forces, in multiples of 1/Tp."""
-TOO_BROAD = 0.10
-"""Damping ratio from which nothing is called a mode without doubt."""
-TWICE = 0.9
-"""MAC of two close modes, in enough sensors, from which they are one peak told twice: modes of one frequency
-move in different shapes."""
-ONE_SENSOR = 0.98
-"""Share of a shape, in units of each channel's motion, from which it is of one sensor …"""
-ENOUGH_SENSORS = 4
-"""… of so many at least."""
-ONE_PART = 0.75
-"""Share of a mode's power in two neighbouring tenths of the record from which it is of one part: modes of
-random systems have 0.2 to 0.6, the third order of a rotor that stops after thirty of 600 s 0.9."""
-KNOWN_FREQUENCY = 0.03
-"""Standard deviation of a frequency, relative, up to which it is called known."""
-STEADY = 0.7
-"""Share of the model orders, of either look, that must hold a mode whose damping is not known."""
-KEPT_CONTRAST, KEPT_CONTRAST_STD = 3.0, 8.0
-"""Contrast asked of it: there are dozens of such candidates in a record, few of them modes. Those that fit
-noise have 0.7 to 1.7 with up to 4 standard deviations, modes that were doubted for their damping 4 to 40."""
-UNKNOWN_DAMPING = 1.0
-"""Standard deviation of ln ζ above which damping is called unknown."""
+"""Range of sea forces, in multiples of 1/Tp."""
+MAX_CLEAR_DAMPING = 0.10
+"""Damping ratio above which every mode is doubtful."""
+SAME_PEAK_MAC = 0.9
+"""MAC above which two close modes in enough sensors are one peak identified twice:
+modes of equal frequency move in different shapes."""
+ONE_SENSOR_SHARE = 0.98
+"""Share of one channel in a shape, in units of each channel's motion,
+above which the motion is of one sensor."""
+MIN_SENSORS = 4
+"""Fewest channels for the criteria on shapes."""
+ONE_PART_SHARE = 0.75
+"""Share of a mode's power in two neighbouring tenths of the record above which it belongs to one part of it:
+modes of random systems have 0.2 to 0.6, the third order of a rotor that stops after thirty of 600 s 0.9."""
+MAX_KNOWN_FREQUENCY_STD = 0.03
+"""Largest relative standard deviation of a known frequency."""
+MIN_ORDER_SHARE = 0.7
+"""Share of the model orders, in both looks, that must contain a mode of unknown damping."""
+MIN_RESTORED_CONTRAST, MIN_RESTORED_CONTRAST_STD = 3.0, 8.0
+"""Smallest contrast, and its standard deviations, of a mode of unknown damping: a record has dozens of such
+candidates, few of which are modes. Those that fit noise have 0.7 to 1.7 with up to 4 standard deviations;
+modes doubted for their damping have 4 to 40."""
+MAX_LOG_DAMPING_STD = 1.0
+"""Standard deviation of ln ζ above which damping is unknown."""
 OUTSIDE_PEAK, BESIDE_PEAK = 1.5, 4.0
-"""Half bandwidths from a mode between which a second clear peak may be told with it as one …"""
+"""Range of distances from a mode, in half bandwidths, where a second clear peak may have been merged with
+it."""
 LINES_OF_A_PEAK = 8.0
-"""… and least half bandwidth, in lines of the record: the spectrum's are as wide."""
+"""Smallest half bandwidth for that, in lines of the record, equal to the width of the spectrum's lines."""
 PERIODS = ("tp_s", "wave_tp_s", "wave_peak_period_s", "peak_period_s", "Tp", "wave_period_s")
 """Names of the peak period of the sea among a record's conditions."""
-NARROW = 1.5
+MIN_DAMPING_CYCLES = 1.5
 """2πζfT below which a peak is hardly broader than a line."""
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """What the five questions are answered from.
+    """Data for the five criteria.
 
     Attributes
     ----------
     looks : tuple of SecondLook
-        At all frequencies, and at those of each further band.
+        Second looks at all frequencies, and at those of each further band.
     lines : (n_channels, n_lines)
     scale : (n_channels,)
-        By which the channels were divided.
+        Standard deviations by which the channels were divided.
     duration_s : float
     peak_of_sea_hz : float or None
-        1/Tp where the conditions say it.
+        1/Tp if the conditions state it.
     band_hz : (low, high)
-        Of interest.
+        Band of interest.
     comparable : (n_channels, n_channels)
-        Which channels may show the same motion.
+        Channels that may show the same motion.
     peaks_hz : tuple of float
         Clear peaks of any channel.
     sensors : bool
-        Whether channels are sensors: a mode may well move one component of many alone.
+        Whether channels are sensors; a mode may well move a single one of many components.
     """
 
     looks: tuple[SecondLook, ...]
@@ -158,18 +162,19 @@ def evidence(
     bands: Sequence[QuietBand] = (),
     sensors: bool = True,
 ) -> Evidence:
-    """Gather what modes are judged by.
+    """Gather the data by which modes are judged.
 
     Parameters
     ----------
     y : (n_channels, n_samples)
-        Without tones, divided by the channels' scale; NaN marks a missing sample.
+        Samples without tones, divided by the channels' scale; NaN marks a missing sample.
     conditions : mapping
-        Of the record; ``wave_period_s`` or another of ``PERIODS`` is the peak period of the sea [s].
+        Conditions of the record; ``wave_period_s`` or another of ``PERIODS`` is the peak period of the sea
+        [s].
     bands : sequence of QuietBand
-        Where modes were sought once more.
+        Further bands in which modes were sought.
     sensors : bool
-        Whether the channels are sensors, not what dozens of them say together.
+        Whether the channels are sensors, not components of many sensors.
     """
     periods = [conditions[key] for key in PERIODS if isinstance(conditions.get(key), int | float)]
     return Evidence(
@@ -193,17 +198,17 @@ def _peaks_hz(y: FloatArray, sample_rate_hz: float) -> tuple[float, ...]:
     return tuple(clear_peaks_hz(spectrum.frequencies_hz, spectrum.density))
 
 
-def screened(modes: Sequence[ModalEstimate], known: Evidence) -> list[ModalEstimate]:
-    """Return the modes with their statuses; some are not modes."""
+def screen(modes: Sequence[ModalEstimate], known: Evidence) -> list[ModalEstimate]:
+    """Return the modes with their statuses, including those found not to be modes."""
     judged = [_judged(mode, [m for m in modes if m is not mode], known) for mode in modes]
-    for i in of_neighbours(judged, known.scale, CLOSE):
+    for i in combinations_of_neighbours(judged, known.scale, CLOSE_DISTANCE):
         judged[i] = judged[i].flagged(ModeStatus.DOUBTFUL, Finding("shape_of_neighbours"))
-    for i in told_twice(judged, known.scale, CLOSE):
+    for i in identified_twice(judged, known.scale, CLOSE_DISTANCE):
         judged[i] = judged[i].flagged(ModeStatus.DOUBTFUL, Finding("shape_twice"))
     for i, share in _of_one_part(judged, known).items():
         judged[i] = judged[i].flagged(ModeStatus.DOUBTFUL, Finding("one_part", params={"share": share}))
-    if known.sensors and len(known.scale) >= ENOUGH_SENSORS:
-        for i, share in of_one_sensor(judged, known.scale, known.comparable, CLOSE).items():
+    if known.sensors and len(known.scale) >= MIN_SENSORS:
+        for i, share in of_one_sensor(judged, known.scale, known.comparable, CLOSE_DISTANCE).items():
             judged[i] = judged[i].flagged(
                 ModeStatus.DOUBTFUL, Finding("sensor_beside", params={"share": share})
             )
@@ -211,42 +216,43 @@ def screened(modes: Sequence[ModalEstimate], known: Evidence) -> list[ModalEstim
 
 
 def _of_one_part(modes: Sequence[ModalEstimate], known: Evidence) -> dict[int, float]:
-    """Return which modes are seen in one part of the record only, though the others are seen in all of it."""
+    """Return modes seen in one part of the record only, although the others are seen in all of it."""
     shares = np.array(
         [share_of_one_part(known.lines, known.duration_s, m, m.mode_shape / known.scale) for m in modes]
     )
     return {
         i: float(share)
         for i, share in enumerate(shares)
-        if share > ONE_PART and np.median(np.delete(shares, i) if len(shares) > 1 else 0.0) < ONE_PART
+        if share > ONE_PART_SHARE
+        and np.median(np.delete(shares, i) if len(shares) > 1 else 0.0) < ONE_PART_SHARE
     }
 
 
 def worth_keeping(mode: ModalEstimate, others: Sequence[ModalEstimate], known: Evidence) -> bool:
-    """Tell whether a candidate whose damping is hardly known is a mode whose frequency is."""
+    """Tell whether a candidate of unknown damping is a mode of known frequency."""
     std = mode.frequency_std_hz
-    if std is None or std > KNOWN_FREQUENCY * mode.frequency_hz or mode.order_share < STEADY:
+    if std is None or std > MAX_KNOWN_FREQUENCY_STD * mode.frequency_hz or mode.order_share < MIN_ORDER_SHARE:
         return False
-    if mode.mpc < LEAST_MPC or any(_same(mode, other, known.scale) for other in others):
+    if mode.mpc < MIN_MPC or any(_same(mode, other, known.scale) for other in others):
         return False
     ratio, excess = contrast(known.lines, known.duration_s, mode, mode.mode_shape / known.scale)
     again = seen_again(known.looks, mode, ())
-    return ratio > KEPT_CONTRAST and excess > KEPT_CONTRAST_STD and again >= STEADY
+    return ratio > MIN_RESTORED_CONTRAST and excess > MIN_RESTORED_CONTRAST_STD and again >= MIN_ORDER_SHARE
 
 
-def rescued(mode: ModalEstimate) -> ModalEstimate:
-    """Return a mode of known frequency with the status that says what is not known of it."""
+def with_unknown_damping(mode: ModalEstimate) -> ModalEstimate:
+    """Return a mode of known frequency with the status that its damping is unknown."""
     std = float("inf") if mode.log_covariance is None else float(np.sqrt(mode.log_covariance[1, 1]))
     return mode.flagged(ModeStatus.DAMPING_UNKNOWN, Finding("damping_unknown", params={"log_std": std}))
 
 
 def _same(mode: ModalEstimate, other: ModalEstimate, scale: FloatArray) -> bool:
     alike = float(mac(mode.mode_shape / scale, other.mode_shape / scale)) > SAME_SHAPE
-    return alike and apart(mode, other) < CLOSE
+    return alike and apart(mode, other) < CLOSE_DISTANCE
 
 
 def _judged(mode: ModalEstimate, others: Sequence[ModalEstimate], known: Evidence) -> ModalEstimate:
-    close = [m for m in others if apart(mode, m) < CLOSE]
+    close = [m for m in others if apart(mode, m) < CLOSE_DISTANCE]
     for status, finding in (
         *_forces(mode, close, known.peak_of_sea_hz),
         *_shape(mode, close, known.scale),
@@ -261,57 +267,59 @@ def _judged(mode: ModalEstimate, others: Sequence[ModalEstimate], known: Evidenc
 def _forces(mode: ModalEstimate, close: Sequence[ModalEstimate], peak_hz: float | None) -> Iterator[Verdict]:
     f, zeta = mode.frequency_hz, mode.damping_ratio
     percent = {"damping_percent": 100.0 * zeta}
-    lighter = sum(m.damping_ratio < BROAD for m in close)
-    if peak_hz is not None and abs(f / peak_hz - 1.0) < TOP_OF_SEA and zeta > BROAD:
+    lighter = sum(m.damping_ratio < BROAD_DAMPING for m in close)
+    if peak_hz is not None and abs(f / peak_hz - 1.0) < TOP_OF_SEA and zeta > BROAD_DAMPING:
         status = ModeStatus.DOUBTFUL if lighter else ModeStatus.WAVE
         yield status, Finding("follows_the_sea", params={**percent, "period_s": 1.0 / peak_hz})
-    elif peak_hz is not None and abs(f / peak_hz - 1.0) < BESIDE_SEA and _may_reach(mode, 2.0 * BROAD):
+    elif (
+        peak_hz is not None and abs(f / peak_hz - 1.0) < BESIDE_SEA and _may_reach(mode, 2.0 * BROAD_DAMPING)
+    ):
         yield ModeStatus.DOUBTFUL, Finding("follows_the_sea", params={**percent, "period_s": 1.0 / peak_hz})
-    elif peak_hz is None and WAVES_HZ[0] < f < WAVES_HZ[1] and zeta > BROAD:
-        # the air may damp one of a pair so much more than the other, never a third beside two
+    elif peak_hz is None and SEA_BAND_HZ[0] < f < SEA_BAND_HZ[1] and zeta > BROAD_DAMPING:
+        # aerodynamic damping may make one of a pair broad, but not a third mode beside two
         if lighter != 1:
             yield ModeStatus.DOUBTFUL, Finding("broad_as_waves", params=percent)
-    if zeta > TOO_BROAD:
+    if zeta > MAX_CLEAR_DAMPING:
         yield ModeStatus.DOUBTFUL, Finding("broad", params=percent)
 
 
 def _may_reach(mode: ModalEstimate, damping_ratio: float) -> bool:
-    """Whether the interval of a mode's damping holds so much."""
+    """Tell whether the interval of a mode's damping contains a value."""
     interval = mode.damping_ratio_interval_95
     return interval is not None and interval[1] > damping_ratio
 
 
 def _shape(mode: ModalEstimate, close: Sequence[ModalEstimate], scale: FloatArray) -> Iterator[Verdict]:
-    if mode.mpc < LEAST_MPC and not close:
+    if mode.mpc < MIN_MPC and not close:
         yield ModeStatus.DOUBTFUL, Finding("complex_shape", params={"mpc": mode.mpc})
     share = np.abs(mode.mode_shape / scale) ** 2
     share = share / share.sum()
-    if len(share) < ENOUGH_SENSORS:
+    if len(share) < MIN_SENSORS:
         return
-    if any(float(mac(mode.mode_shape / scale, m.mode_shape / scale)) > TWICE for m in close):
+    if any(float(mac(mode.mode_shape / scale, m.mode_shape / scale)) > SAME_PEAK_MAC for m in close):
         yield ModeStatus.DOUBTFUL, Finding("shape_twice")
 
 
 def _agreement(mode: ModalEstimate, close: Sequence[ModalEstimate], known: Evidence) -> Iterator[Verdict]:
     again = seen_again(known.looks, mode, close)
-    if again < SEEN_AGAIN:
+    if again < MIN_SECOND_LOOK_SHARE:
         yield ModeStatus.DOUBTFUL, Finding("one_method", params={"share": again})
     shape = mode.mode_shape / known.scale
     ratio, excess = contrast(known.lines, known.duration_s, mode, shape)
     in_sea = known.in_sea(mode.frequency_hz)
-    least = LEAST_CONTRAST if in_sea or len(shape) >= ENOUGH_SENSORS else LEAST_SEEN
+    least = MIN_CONTRAST if in_sea or len(shape) >= MIN_SENSORS else MIN_CONTRAST_ELSEWHERE
     if in_sea and mode.damping_ratio > BROAD_IN_SEA:
         least = BROAD_CONTRAST
-    if ratio < least or excess < LEAST_CONTRAST_STD:
+    if ratio < least or excess < MIN_CONTRAST_STD:
         yield ModeStatus.DOUBTFUL, Finding("no_peak", params={"ratio": ratio})
     yield from _one_sensor(mode, shape, known)
 
 
 def _two_peaks(mode: ModalEstimate, others: Sequence[ModalEstimate], known: Evidence) -> Iterator[Verdict]:
-    """Tell of a mode that no fit describes whether it has a second clear peak, which is of no other mode.
+    """Flag a mode without a fit that has a second clear peak, which belongs to no other mode.
 
-    A channel alone hardly parts two modes that a short lag window holds few cycles of: one pole, broader than
-    either, stands for both.
+    With one channel, two modes that have few cycles in a short lag window are hardly separated:
+    one pole, broader than either, represents both.
     """
     if mode.unrefined is not None:
         return
@@ -327,25 +335,25 @@ def _two_peaks(mode: ModalEstimate, others: Sequence[ModalEstimate], known: Evid
 
 
 def _one_sensor(mode: ModalEstimate, shape: ComplexArray, known: Evidence) -> Iterator[Verdict]:
-    """Tell what moves one sensor alone: no mode where the others, which could see it, show no peak."""
+    """Flag motion of one sensor; it is no mode if the others, which could see it, show no peak."""
     share = np.abs(shape) ** 2 / np.sum(np.abs(shape) ** 2)
-    if not known.sensors or len(share) < ENOUGH_SENSORS or share.max() <= ONE_SENSOR:
+    if not known.sensors or len(share) < MIN_SENSORS or share.max() <= ONE_SENSOR_SHARE:
         return
     others = known.comparable[share.argmax()] & (np.arange(len(share)) != share.argmax())
-    if others.sum() < FEWEST_PEERS:
+    if others.sum() < MIN_OTHER_SENSORS:
         return
     ratio, excess = contrast(known.lines[others], known.duration_s, mode, shape[others])
-    seen = ratio > LEAST_SEEN and excess > LEAST_CONTRAST_STD
+    seen = ratio > MIN_CONTRAST_ELSEWHERE and excess > MIN_CONTRAST_STD
     status = ModeStatus.DOUBTFUL if seen else ModeStatus.LOCAL
     yield status, Finding("one_sensor", params={"share": float(share.max())})
 
 
 def _damping(mode: ModalEstimate, known: Evidence) -> Iterator[Verdict]:
-    """Say where damping is not known: by its own standard deviation, or as the peak is a line."""
+    """Flag unknown damping: its standard deviation is large, or the peak is a single line."""
     if mode.log_covariance is None:
         return
-    if 2.0 * np.pi * mode.damping_ratio * mode.frequency_hz * known.duration_s < NARROW:
+    if 2.0 * np.pi * mode.damping_ratio * mode.frequency_hz * known.duration_s < MIN_DAMPING_CYCLES:
         yield ModeStatus.DAMPING_UNKNOWN, Finding("narrow_as_a_line")
     std = float(np.sqrt(mode.log_covariance[1, 1]))
-    if std > UNKNOWN_DAMPING:
+    if std > MAX_LOG_DAMPING_STD:
         yield ModeStatus.DAMPING_UNKNOWN, Finding("damping_unknown", params={"log_std": std})

@@ -1,4 +1,4 @@
-"""Subspace identification once more with a shorter lag window: what is a mode is found again."""
+"""Second look: subspace identification with a shorter lag window, which finds modes again."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ if TYPE_CHECKING:
     from jackettwin.identification.estimate import ModalEstimate
     from jackettwin.identification.preparation.prepared import Prepared
 
-SHORTER = 0.6
+WINDOW_RATIO = 0.6
 """Lag window of the second look over that of the first."""
 SECOND_ORDERS = 10
 """Model orders of the second look."""
 SAME_SHAPE = 0.7
-"""Least MAC of the two looks, or of two modes that are one …"""
+"""Smallest MAC of a mode in both looks, or of two modes that are one."""
 SAME_FREQUENCY = 2.0
-"""… and farthest apart, in half bandwidths or in standard deviations of the frequency, whichever is more."""
+"""Largest distance of their frequencies, in half bandwidths or standard deviations, whichever is larger."""
 
 
 @dataclass(frozen=True)
 class QuietBand:
-    """The samples of a further band, and between which frequencies modes are taken from it [Hz]."""
+    """Samples of a further band, and the range of frequency in which modes are taken from it [Hz]."""
 
     ready: Prepared
     taken_hz: tuple[float, float]
@@ -37,20 +37,20 @@ class QuietBand:
 
 @dataclass(frozen=True)
 class SecondLook:
-    """Poles of the second look: flat arrays of the same length.
+    """Poles of the second look, as flat arrays of equal length.
 
     Attributes
     ----------
     order : (n_poles,)
     frequency_hz : (n_poles,)
     shape : (n_poles, n_channels)
-        In the scaling of the samples.
+        Shapes in the scaling of the samples.
     orders : tuple of int
-        All of them.
+        All model orders.
     scale : (n_channels,)
-        By which the channels were divided.
+        Standard deviations by which the channels were divided.
     band_hz : (low, high)
-        Where it counts.
+        Range in which this look counts.
     """
 
     order: Int64Array
@@ -64,7 +64,7 @@ class SecondLook:
 def second_look(y: FloatArray, ready: Prepared, band_hz: tuple[float, float] = (0.0, np.inf)) -> SecondLook:
     """Return the poles of a shorter lag window, without their uncertainty."""
     rate = ready.settings.sample_rate_hz
-    rows = max(int(SHORTER * ready.settings.block_rows), 3)
+    rows = max(int(WINDOW_RATIO * ready.settings.block_rows), 3)
     top = min(ready.settings.orders[-1], (rows - 1) * len(ready.references), (rows - 1) * len(y))
     step = max(2 * round(0.5 * top / SECOND_ORDERS), 2)
     lags = covariances(y, 2 * rows)[:, :, ready.references]
@@ -82,10 +82,10 @@ def second_look(y: FloatArray, ready: Prepared, band_hz: tuple[float, float] = (
 
 
 def seen_again(looks: Sequence[SecondLook], mode: ModalEstimate, others: Sequence[ModalEstimate]) -> float:
-    """Return the share of a second look's orders that hold the mode, from the first that does on.
+    """Return the share of a second look's orders, from the first that contains the mode, that contain it.
 
-    Of a close pair a shape counts that lies in the plane of the two; of several looks at its frequency the
-    one that holds it best.
+    In a close pair, any shape in the plane of the two counts. Of several looks at its frequency,
+    the one with the largest share is used.
     """
     there = (look for look in looks if look.band_hz[0] < mode.frequency_hz < look.band_hz[1])
     return max((_held(look, mode, others) for look in there), default=0.0)
