@@ -38,7 +38,12 @@ class ServiceSettings(BaseSettings):
     database: str | None = None
     """URL of PostgreSQL; None for SQLite in the store."""
     scheduler: str | None = None
-    """Address of a Dask scheduler whose workers see the store at the same path; None for own workers."""
+    """``tls://`` address of a Dask scheduler whose workers see the store at this path; None for own ones."""
+    scheduler_ca: Path | None = None
+    """Certificates by which that scheduler is known."""
+    scheduler_certificate: Path | None = None
+    """By which it knows us, with ``scheduler_key``."""
+    scheduler_key: Path | None = None
     workers: int = Field(default=2, ge=1)
     """Number of own workers, one thread each."""
     mqtt: str | None = None

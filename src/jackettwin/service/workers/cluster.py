@@ -22,6 +22,7 @@ from distributed.core import Status
 
 from jackettwin.errors import InputError
 from jackettwin.service.settings import ServiceSettings
+from jackettwin.service.workers.certificates import given_security, own_security
 from jackettwin.service.workers.failures import NoWorker
 from jackettwin.service.workers.memory import give_back
 
@@ -50,6 +51,8 @@ _DASK = {
     "distributed.admin.system-monitor.log-length": 100,
     "distributed.admin.low-level-log-length": 10,
     "distributed.worker.preload": [_START],
+    "distributed.scheduler.http.routes": ["distributed.http.health"],
+    "distributed.worker.http.routes": ["distributed.http.health"],
     "distributed.nanny.pre-spawn-environ.MALLOC_ARENA_MAX": 1,
 }
 """A worker over its memory is ended, not paused.
@@ -58,7 +61,7 @@ A task that ended a worker comes back to us at once, and counts a try. A free wo
 busy one: an upload does not wait for a posterior. The timeout of a lost worker is when Dask ends whoever took
 its place, if that one is just starting: after its own 15 s that happened. Dask's profiler and monitor
 keep what every thread did for an hour, and its logs the last thousand messages of every connection with all
-that was sent: off, and short.
+that was sent: off, and short. What it tells without being asked who asks is that it lives.
 """
 
 _REMEMBERED = 10_000
@@ -89,6 +92,7 @@ class WorkerCluster:
         self._wanted = settings.workers
         self._topic, self._began = f"begun-{secrets.token_hex(8)}", dict[str, float]()
         self._cluster: LocalCluster | None = None
+        security = own_security() if settings.scheduler is None else given_security(settings)
         if settings.scheduler is None:
             self._cluster = LocalCluster(
                 n_workers=0,  # they come while the server answers already
@@ -96,19 +100,23 @@ class WorkerCluster:
                 processes=True,
                 memory_limit=settings.worker_memory_bytes,
                 dashboard_address="127.0.0.1:0",
+                worker_dashboard_address="127.0.0.1:0",
                 host="127.0.0.1",
+                protocol="tls://",
+                security=security,
                 silence_logs=logging.ERROR,
             )
             self._cluster.scale(settings.workers)
         try:
-            self.client = Client(self._cluster or settings.scheduler, set_as_default=False, timeout="30s")
-        except (OSError, ValueError):
+            where = self._cluster or settings.scheduler
+            self.client = Client(where, security=security, set_as_default=False, timeout="30s")
+        except (OSError, ValueError):  # an SSLError is an OSError
             raise InputError(
                 "no scheduler of Dask answers there",
                 field="scheduler",
                 value=settings.scheduler,
-                allowed="tcp://HOST:PORT",
-                remedy="see that `dask scheduler` runs there and may be reached",
+                allowed="tls://HOST:PORT",
+                remedy="see that `dask scheduler` runs there, may be reached, and trusts our certificate",
             ) from None
         self.client.subscribe_topic(self._topic, self._note)
         self._ever, self._ended = set[str](), 0
