@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,18 +15,18 @@ from jackettwin.report.view.motions import damped_motion, record_motion, undampe
 from jackettwin.report.view.page import (
     ColouredQuantity,
     View,
-    thickness_quantities,
     view_document,
     write_view,
 )
+from jackettwin.report.view.quantities import damping_quantity, material_quantities, thickness_quantities
 from jackettwin.response.modes.modal import damped_modes, undamped_modes
 from jackettwin.response.motion.passage import wave_passage
 from jackettwin.response.motion.playback import Playback
 from jackettwin.response.sensors import Sensor
 from jackettwin.response.system import System, build_system
-from jackettwin.soil import on_translations
+from jackettwin.soil import on_translations, pinned, read_foundation
 from jackettwin.soil.laws.viscoelastic import kelvin_voigt
-from jackettwin.structure import Section, Structure, assemble
+from jackettwin.structure import Rayleigh, Section, Structure, assemble, check
 from jackettwin.structure.model import STEEL, Member, Reaction, RigidLink
 from jackettwin.structure.two_node import two_node_element
 
@@ -176,3 +177,28 @@ def test_a_leg_measures_to_its_neighbour_not_across_nor_to_the_middle() -> None:
     )
     (width,) = dimensions(assemble(structure))["widths"]
     assert width["text"] == "8.66 m"
+
+
+def test_colours_of_material_mass_and_damping() -> None:
+    """Mass per metre times length is the steel's mass; shares of damping add to one hundred per cent."""
+    foundation = read_foundation("jacket15")
+    for rayleigh, where in ((Rayleigh(), "piles"), (Rayleigh.minimum(0.01, 0.18), None)):
+        piled, support = foundation.piled(read_structure("jacket15"))
+        if where is None:
+            piled, support = read_structure("jacket15"), pinned(read_structure("jacket15"))
+        system = build_system(assemble(piled), support, rayleigh=rayleigh)
+        L, members = system.assembly.mesh.properties.L, piled.members
+        mass = next(q for q in material_quantities(system.assembly) if q.name == "mass per metre")
+        bare = replace(piled, masses=())
+        assert 1e3 * mass.values @ L == pytest.approx(check(assemble(bare)).mass_kg, rel=1e-9)
+        found = damping_quantity(system, damped_modes(system, below_hz=0.3))
+        assert found is not None
+        assert found.values @ L == pytest.approx(100.0)
+        own = np.array([members[k].part == where for k in system.assembly.mesh.member])
+        if where is not None:
+            # all in the ground: what is not at piles is at the members that meet their heads
+            assert 50.0 < found.values[own] @ L[own] < 100.0
+        else:
+            assert (found.values > 0.0).all()
+    still = build_system(assemble(read_structure("jacket15")), pinned(read_structure("jacket15")))
+    assert damping_quantity(still, damped_modes(still, below_hz=0.3)) is None

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from math import pi, radians
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
 
 from jackettwin.axes import DOFS_PER_NODE
-from jackettwin.cli.console import Reply, answers, numbers_of, say, say_all, show_table
+from jackettwin.cli.comparison import comparison_of, show_comparison
+from jackettwin.cli.console import PageFile, Reply, answers, numbers_of, say, say_all, show_table
 from jackettwin.errors import located
 from jackettwin.report import Table, TableColumn
 
@@ -54,6 +56,17 @@ _OVERDAMPED = 0.3
     metavar="ROTOR[,PITCH]",
     help="Let the blades bend: iea15, a windIO or an ElastoDyn file; pitch in degrees, default 90.",
 )
+@click.option(
+    "--shapes",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="FILE.csv: write the undamped modes, by mode and node.",
+)
+@click.option(
+    "--against",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="FILE.csv: modes of another program; MAC of each with each.",
+)
+@click.option("--figure", type=PageFile(), help="With --against: a page that lays shapes side by side.")
 @answers
 def modes_command(
     structure: str,
@@ -66,6 +79,9 @@ def modes_command(
     subdivide: int | None,
     rayleigh: str | None,
     blades: str | None,
+    shapes: Path | None,
+    against: Path | None,
+    figure: Path | None,
 ) -> Reply:
     """Compute undamped and damped modes of STRUCTURE.
 
@@ -90,6 +106,7 @@ def modes_command(
     own = f"the structure's own: {described(held)}"
     document = {**_document(system, number, bare), "support": own if support is None else support}
     document["warnings"] = [*document["warnings"], *held.notes]
+    document |= comparison_of(system, number, shapes=shapes, against=against, figure=figure)
     return Reply(document, lambda: _show(document))
 
 
@@ -255,6 +272,9 @@ def _show(document: dict[str, Any]) -> None:
     say(f"support: {document['support']}{beside}")
     say_all(document["warnings"], "warning")
     show_table(Table("", _COLUMNS, document["modes"]))
+    show_comparison(document["shapes"])
+    for page in filter(None, (document["shapes_file"], document["page"])):
+        say(f"wrote {page}")
     if document["free_motions"]:
         say(f"{document['free_motions']} free motions: the structure floats, or part of it swings")
     if document["overdamped_poles"]:

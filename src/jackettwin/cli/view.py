@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import radians
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
@@ -12,6 +13,7 @@ import numpy.typing as npt
 
 from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.cli.check import nodal_force
+from jackettwin.cli.comparison import compared_with, comparison_document, show_comparison
 from jackettwin.cli.console import PageFile, Reply, answers, numbers_of, say_all
 from jackettwin.cli.modes import pile_model_option, rayleigh_option, supported_option
 from jackettwin.errors import InputError, located
@@ -59,6 +61,11 @@ _MOST_PARTS = 8
 )
 @click.option("--flooded", multiple=True, metavar="PART", help="A flooded part or member; may be repeated.")
 @click.option("--wave", metavar="HEIGHT,PERIOD[,DIRECTION_DEG]", help="A regular wave passing.")
+@click.option(
+    "--against",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="FILE.csv: modes of another program, to watch beside one's own; MAC of each.",
+)
 @click.option("--record", type=click.Path(dir_okay=False, path_type=Path), help="A record to play back.")
 @click.option(
     "--force",
@@ -79,6 +86,7 @@ def view_command(
     growth: tuple[str, ...],
     flooded: tuple[str, ...],
     wave: str | None,
+    against: Path | None,
     record: Path | None,
     forces: tuple[str, ...],
 ) -> Reply:
@@ -90,7 +98,8 @@ def view_command(
     from jackettwin.loads import Coefficients
     from jackettwin.records import read_record
     from jackettwin.report.view.motions import record_motion, wave_motion
-    from jackettwin.report.view.page import View, thickness_quantities, write_view
+    from jackettwin.report.view.page import View, write_view
+    from jackettwin.report.view.quantities import material_quantities, thickness_quantities
     from jackettwin.response import build_system, playback, record_sensors, undamped_modes, wave_passage
     from jackettwin.structure import assemble, check
 
@@ -101,7 +110,9 @@ def view_command(
     system = build_system(assembly, held, rayleigh=rayleigh_option(rayleigh))
     coefficients = Coefficients(growth=tuple(_band(text) for text in growth))
     _require_parts(assembly, flooded)
-    motions = _modes(assembly, system, number)
+    motions, lost = _modes(assembly, system, number)
+    other, compared = _others(system, number, against)
+    motions += other
     sensors: tuple[Sensor, ...] = ()
     if wave is not None:
         H, T, *heading = numbers_of(wave, "--wave", "H,T[,HEADING]", (2, 3))
@@ -124,7 +135,12 @@ def view_command(
     unchecked = not (held.springs or held.fixed) or not chosen.members
     view = View(
         assembly,
-        (*thickness_quantities(assembly), *(() if unchecked else _uses(assembly, system, loads))),
+        (
+            *thickness_quantities(assembly),
+            *material_quantities(assembly),
+            *lost,
+            *(() if unchecked else _uses(assembly, system, loads)),
+        ),
         tuple(motions),
         sensors,
         coefficients,
@@ -139,8 +155,35 @@ def view_command(
         "motions": [motion.name for motion in motions],
         "dimensions": list(dimensions),
         "not_read": list(remarks),
+        "colours": [quantity.name for quantity in view.quantities],
+        "shapes": compared,
     }
-    return Reply(document, lambda: say_all([*(f"  {line}" for line in dimensions), f"wrote {path}"]))
+
+    def show() -> None:
+        say_all(f"  {line}" for line in dimensions)
+        show_comparison(compared)
+        say_all([f"wrote {path}"])
+
+    return Reply(document, show)
+
+
+def _others(
+    system: System, number: int, against: Path | None
+) -> tuple[list[DrawnMotion], dict[str, Any] | None]:
+    """Return the modes of another program's table as motions, and how they compare with our own."""
+    from jackettwin.report.view.motions import undamped_motion
+    from jackettwin.response import expanded
+
+    if against is None:
+        return [], None
+    found = compared_with(system, max(number, 1), against)
+    shapes = expanded(system.assembly, found.other)
+    mac = {pair.other: f", MAC {pair.mac:.3f} with mode {pair.own + 1}" for pair in found.pairs}
+    drawn = [
+        undamped_motion(system.assembly, f"{against.stem} {k + 1}{mac.get(k, '')}", float(f), shapes[:, k])
+        for k, f in enumerate(found.other.frequency_hz)
+    ]
+    return [replace(one, group="another program") for one in drawn], comparison_document(found)
 
 
 def _remarks(structure: str) -> tuple[str, ...]:
@@ -197,13 +240,19 @@ def _require_parts(assembly: Assembly, names: tuple[str, ...]) -> None:
             raise InputError("no such member or part", field="--flooded", value=name)
 
 
-def _modes(assembly: Assembly, system: System, number: int) -> list[DrawnMotion]:
-    """Return undamped modes, and damped ones if anything dissipates; what floats freely is no mode."""
+def _modes(
+    assembly: Assembly, system: System, number: int
+) -> tuple[list[DrawnMotion], tuple[ColouredQuantity, ...]]:
+    """Return undamped modes, and damped ones if anything dissipates; and where the first of these does.
+
+    What floats freely is no mode.
+    """
     from jackettwin.report.view.motions import damped_motion, undamped_motion
+    from jackettwin.report.view.quantities import damping_quantity
     from jackettwin.response import UndampedModes, damped_modes, mode_kinds, mode_labels, undamped_modes
 
     if number == 0:
-        return []
+        return [], ()
     still = undamped_modes(system, number + DOFS_PER_NODE)
     shown = range(still.n_at_rest, min(still.n_at_rest + number, still.omega.size))
     still = UndampedModes(still.omega[shown], still.shapes[:, shown])
@@ -215,6 +264,7 @@ def _modes(assembly: Assembly, system: System, number: int) -> list[DrawnMotion]
     damped = damped_modes(system, below_hz=1.02 * float(still.frequency_hz[-1]))
     lively = np.flatnonzero((damped.damping_ratio < _OVERDAMPED) & (damped.damping_ratio > 1e-9))[:number]
     labels = mode_labels(mode_kinds(assembly, damped.shapes[:, lively], damped.frequency_hz[lively]))
+    lost = damping_quantity(system, damped) if lively.size else None
     return motions + [
         damped_motion(
             assembly,
@@ -223,7 +273,7 @@ def _modes(assembly: Assembly, system: System, number: int) -> list[DrawnMotion]
             damped.shapes[:, i],
         )
         for k, (i, label) in enumerate(zip(lively, labels, strict=True))
-    ]
+    ], () if lost is None else (lost,)
 
 
 def _uses(

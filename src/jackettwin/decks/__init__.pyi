@@ -4,6 +4,7 @@ from .formats import (
     read_structure as read_structure,
     shipped_structures as shipped_structures,
 )
+from .mode_tables import NodalModes as NodalModes, read_modes as read_modes, write_modes as write_modes
 from .openfast import Deck as Deck, DeckRow as DeckRow, read_deck as read_deck, to_float as to_float
 from .sacs import is_sacs as is_sacs, sacs_remarks as sacs_remarks
 from .structure_yaml import RnaSchema as RnaSchema

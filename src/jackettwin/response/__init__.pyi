@@ -10,6 +10,12 @@ from .condensation.numbered_modes import (
     numbered_poles as numbered_poles,
 )
 from .condensation.relaxation import Relaxation as Relaxation, nearest_relaxation as nearest_relaxation
+from .modes.comparison import (
+    ModeComparison as ModeComparison,
+    compare_modes as compare_modes,
+    expanded as expanded,
+    nodal_modes as nodal_modes,
+)
 from .modes.labels import (
     LOCAL as LOCAL,
     mode_kinds as mode_kinds,

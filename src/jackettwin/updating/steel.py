@@ -11,8 +11,8 @@ from scipy.optimize import least_squares
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import located, require
-from jackettwin.response import track_modes
-from jackettwin.structure import Structure, assemble, check
+from jackettwin.response import UndampedModes, track_modes
+from jackettwin.structure import Assembly, Structure, assemble, check
 from jackettwin.updating.band import numbered_modes
 
 
@@ -217,12 +217,19 @@ class Stage:
     ----------
     parts : names of the parts standing
     mass_kg : float
-    frequency_hz : (n_modes,) undamped
+    assembly : Assembly
+    modes : UndampedModes
     """
 
     parts: tuple[str, ...]
     mass_kg: float
-    frequency_hz: FloatArray
+    assembly: Assembly
+    modes: UndampedModes
+
+    @property
+    def frequency_hz(self) -> FloatArray:
+        """Undamped frequencies (n_modes,)."""
+        return self.modes.frequency_hz
 
     @property
     def name(self) -> str:
@@ -247,5 +254,5 @@ def stages(structure: Structure, number: int, *, gravity: bool = False) -> tuple
         # the whole keeps what no member holds, rigid links' ends among them
         standing = structure if k == len(parts) else only_parts(structure, parts[:k])
         assembly = assemble(standing, gravity=gravity)
-        found.append(Stage(parts[:k], check(assembly).mass_kg, numbered_modes(assembly, number).frequency_hz))
+        found.append(Stage(parts[:k], check(assembly).mass_kg, assembly, numbered_modes(assembly, number)))
     return tuple(found)

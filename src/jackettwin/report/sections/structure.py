@@ -8,7 +8,8 @@ from jackettwin.report.pages.page import Block, Embedded
 from jackettwin.report.table import Table
 from jackettwin.report.tables.numbers import UNKNOWN, fixed, words
 from jackettwin.report.view.motions import damped_motion
-from jackettwin.report.view.page import View, render_view, thickness_quantities
+from jackettwin.report.view.page import View, render_view
+from jackettwin.report.view.quantities import thickness_quantities
 from jackettwin.study import TwinResult
 from jackettwin.updating import recommended
 

@@ -36,7 +36,7 @@ class DrawnMotion:
 
     name: str
     note: str
-    group: Literal["undamped modes", "damped modes", "loads and response"]
+    group: Literal["undamped modes", "damped modes", "another program", "loads and response"]
     shapes: FloatArray
     q: FloatArray
     step_s: float

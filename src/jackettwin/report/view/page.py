@@ -99,7 +99,7 @@ def view_document(view: View) -> dict[str, Any]:
         "nodes": _rounded(points, 3),
         "start": mesh.start,
         "end": mesh.end,
-        "diameter": _rounded(_diameter(assembly), 4),
+        "diameter": _rounded(diameters(assembly), 4),
         "growth": _rounded(_growth(assembly, points, view.coefficients), 4),
         "flooded": np.array(flooded, dtype=int)[mesh.member],
         "text": member_text(assembly),
@@ -136,20 +136,8 @@ def view_document(view: View) -> dict[str, Any]:
     }
 
 
-def thickness_quantities(assembly: Assembly) -> tuple[ColouredQuantity, ...]:
-    """Return wall thickness, diameter and slenderness of every element."""
-    p = assembly.mesh.properties
-    D = _diameter(assembly)
-    bore = np.sqrt(np.maximum(D**2 - 4.0 * p.A / np.pi, 0.0))
-    t = 0.5 * (D - bore)
-    return (
-        ColouredQuantity("wall thickness", "mm", 1e3 * t, log=True),
-        ColouredQuantity("outer diameter", "m", D, log=True),
-        ColouredQuantity("diameter over wall", "–", D / t),
-    )
-
-
-def _diameter(assembly: Assembly) -> FloatArray:
+def diameters(assembly: Assembly) -> FloatArray:
+    """Return the outer diameter of every element [m]."""
     p = assembly.mesh.properties
     return np.asarray(np.sqrt(2.0 * (p.A / np.pi + 4.0 * p.I / p.A)))
 

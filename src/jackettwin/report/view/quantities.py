@@ -1,0 +1,78 @@
+"""What a view colours elements by: dimensions, material, mass, and where a mode loses its energy."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.report.view.page import ColouredQuantity, diameters
+from jackettwin.response import DampedModes, System
+from jackettwin.structure import Assembly, beam
+
+_LIVELY = 0.3
+"""More damped poles are motions of the supports: nothing to look at."""
+
+
+def thickness_quantities(assembly: Assembly) -> tuple[ColouredQuantity, ...]:
+    """Return wall thickness, diameter and slenderness of every element."""
+    p = assembly.mesh.properties
+    D = diameters(assembly)
+    bore = np.sqrt(np.maximum(D**2 - 4.0 * p.A / np.pi, 0.0))
+    t = 0.5 * (D - bore)
+    return (
+        ColouredQuantity("wall thickness", "mm", 1e3 * t, log=True),
+        ColouredQuantity("outer diameter", "m", D, log=True),
+        ColouredQuantity("diameter over wall", "–", D / t),
+    )
+
+
+def material_quantities(assembly: Assembly) -> tuple[ColouredQuantity, ...]:
+    """Return Young's modulus, density, and mass per metre of every element."""
+    p = assembly.mesh.properties
+    return (
+        ColouredQuantity("Young's modulus", "GPa", p.E / 1e9),
+        ColouredQuantity("density", "kg/m³", p.rho),
+        ColouredQuantity("mass per metre", "t/m", p.rho * p.A / 1e3, from_zero=True),
+    )
+
+
+def damping_quantity(system: System, modes: DampedModes, name: str = "") -> ColouredQuantity | None:
+    """Return where the first of some modes loses its energy: each element's share a metre; None if nowhere.
+
+    An element has its part of the steel's Rayleigh damping αM + βK; what the springs and dashpots at a node
+    dissipate is divided among the elements that meet there.
+    """
+    lively = np.flatnonzero(modes.damping_ratio < _LIVELY)
+    if lively.size == 0:
+        return None
+    assembly, pole = system.assembly, complex(modes.eigenvalues[lively[0]])
+    mesh, shape = assembly.mesh, modes.shapes[:, lively[0]]
+    u = np.asarray(assembly.expand @ shape)
+    power = _of_steel(system, u)
+    met = np.bincount(np.concatenate([mesh.start, mesh.end]), minlength=len(mesh.node_names))
+    place = {node: k for k, node in enumerate(mesh.node_names)}
+    at_node = np.zeros(len(mesh.node_names))
+    for spring in system.support.springs:
+        moved = u[mesh.node_dofs(spring.node)]
+        loss = complex(spring.law.stiffness(pole)).imag / pole.imag
+        at_node[place[spring.node]] += loss * float((moved.conj() @ spring.matrix @ moved).real)
+    share = at_node / np.maximum(met, 1)
+    power += share[mesh.start] + share[mesh.end]
+    total = float(power.sum())
+    if not total > 0.0:
+        return None
+    return ColouredQuantity(
+        f"damping: share of {name or 'the first mode'}",
+        "%/m",
+        100.0 * power / total / mesh.properties.L,
+        from_zero=True,
+    )
+
+
+def _of_steel(system: System, u: FloatArray) -> FloatArray:
+    """Return uᴴ(αM + βK)u of every element for motions u of the mesh's DOFs."""
+    mesh, rayleigh = system.assembly.mesh, system.pencil.rayleigh
+    ends = u[mesh.element_dofs()].reshape(-1, 4, 3)
+    local = np.einsum("eij,ekj->eki", mesh.axes, ends).reshape(-1, 12)
+    C = rayleigh.alpha * beam.mass(mesh.properties) + rayleigh.beta * beam.stiffness(mesh.properties)
+    return np.asarray(np.einsum("ei,eij,ej->e", local.conj(), C, local).real)
