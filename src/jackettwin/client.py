@@ -107,6 +107,10 @@ class Client:
         """Return whose damping each mode's is, by source."""
         return list(self._pages(f"/assets/{asset}/damping-budget"))
 
+    def sensitivity(self, asset: str) -> list[dict[str, Any]]:
+        """Return by how much every updated parameter moves each measured mode."""
+        return list(self._pages(f"/assets/{asset}/sensitivity"))
+
     def findings(self, asset: str, **query: Any) -> Iterator[dict[str, Any]]:
         """Yield what was worth saying, newest first."""
         return self._pages(f"/assets/{asset}/findings", **query)

@@ -153,7 +153,16 @@ def known(twin: Any, sums: Any, newest: Any, in_all: tuple[int, float]) -> tuple
     budget = [
         {"label": "mode_1", "measured": None, "sources": {"soil": {"value": 0.01, "low": 0.0, "high": 0.02}}}
     ]
-    return {"status": "ok", "parameters": parameters, "records": in_all[0], "budget": budget}, None
+    moved = {
+        "mode": 1,
+        "label": "mode_1",
+        "frequency_hz": 0.5,
+        "damping_ratio": 0.01,
+        "frequency_sensitivity": {"k": 0.02},
+        "damping_sensitivity": {"k": -0.01},
+    }
+    found = {"status": "ok", "parameters": parameters, "records": in_all[0], "budget": budget}
+    return {**found, "sensitivity": [moved]}, None
 
 
 @pytest.fixture

@@ -34,6 +34,7 @@ def test_records_in_and_answers_out(twin: Client, service: Service, tmp_path: Pa
     assert len(list(twin.modes("wtg", label="mode_1"))) == 3
     assert twin.twin("wtg")["records"] == 3
     assert twin.damping_budget("wtg")[0]["sources"]["soil"]["value"] == 0.01
+    assert twin.sensitivity("wtg")[0]["frequency_sensitivity"] == {"k": 0.02}
 
 
 def test_versions_are_compared_before_one_is_adopted(twin: Client, service: Service, tmp_path: Path) -> None:

@@ -74,6 +74,16 @@ def test_sources_make_up_the_damping(answered: tuple[dict, str]) -> None:
     assert first["sources"]["structure"]["value"] == pytest.approx(0.0055, rel=0.1)  # Rayleigh's, at 0.183 Hz
 
 
+def test_a_softer_ground_slows_the_first_mode(answered: tuple[dict, str]) -> None:
+    """By how much every parameter moves each mode: the steel has most of the stiffness."""
+    known, _ = answered
+    first = known["sensitivity"][0]
+    assert first["mode"] in (1, 2) and first["label"] == known["budget"][0]["label"]
+    assert set(first["frequency_sensitivity"]) == set(known["parameters"])
+    assert 0.0 < first["frequency_sensitivity"]["k"] < 0.5
+    assert first["damping_sensitivity"]["k"] < 0.0 < first["damping_sensitivity"]["c"]
+
+
 def test_the_page_is_of_all_records(answered: tuple[dict, str]) -> None:
     _, page = answered
     assert "3 records, 30 minutes" in page  # two of them are shown one by one

@@ -32,6 +32,7 @@ QUERIES = {
     "/assets/{asset}/modes": 4,
     "/assets/{asset}/twin": 7,
     "/assets/{asset}/damping-budget": 7,
+    "/assets/{asset}/sensitivity": 7,
     "/assets/{asset}/comparison": 12,
     "/assets/{asset}/life": 3,
     "/assets/{asset}/findings": 4,

@@ -9,6 +9,7 @@ from .explore import (
     exploration_document as exploration_document,
     explore as explore,
     explore_model as explore_model,
+    sensitivity_rows as sensitivity_rows,
 )
 from .follow import follow as follow
 from .follow_result import Followed as Followed

@@ -267,19 +267,6 @@ def _known(name: str, known: Sequence[str]) -> None:
 
 def exploration_document(found: Exploration) -> dict[str, Any]:
     """Return an exploration as JSON data, SI units."""
-    s = found.sensitivity
-    names = [p.name for p in s.parameters]
-    modes = [
-        {
-            "mode": mode,
-            "label": label,
-            "frequency_hz": float(s.frequency_hz[i]),
-            "damping_ratio": float(s.damping_ratio[i]),
-            "frequency_sensitivity": dict(zip(names, map(float, s.frequency[i]), strict=True)),
-            "damping_sensitivity": dict(zip(names, map(float, s.damping[i]), strict=True)),
-        }
-        for i, (mode, label) in enumerate(zip(s.modes, found.labels, strict=True))
-    ]
     values = zip(found.model.parameters, found.theta, strict=True)
     return {
         "name": found.name,
@@ -288,11 +275,32 @@ def exploration_document(found: Exploration) -> dict[str, Any]:
             {"name": p.name, "unit": p.unit, "value": float(v), "low": p.low, "high": p.high}
             for p, v in values
         ],
-        "modes": modes,
-        "largest_difference_from_central_differences": s.difference,
+        "modes": sensitivity_rows(found.sensitivity, found.labels),
+        "largest_difference_from_central_differences": found.sensitivity.difference,
         "loci": [_locus(locus, found.labels) for locus in found.loci],
         **(_no_landscape() if found.landscape is None else _landscape_document(found.landscape)),
     }
+
+
+def sensitivity_rows(s: Sensitivity, labels: Sequence[str]) -> list[dict[str, Any]]:
+    """Return the modes at a point and by how much every parameter moves them, a row a mode.
+
+    Parameters
+    ----------
+    labels : of the modes
+    """
+    names = [p.name for p in s.parameters]
+    return [
+        {
+            "mode": mode,
+            "label": label,
+            "frequency_hz": float(s.frequency_hz[i]),
+            "damping_ratio": float(s.damping_ratio[i]),
+            "frequency_sensitivity": dict(zip(names, map(float, s.frequency[i]), strict=True)),
+            "damping_sensitivity": dict(zip(names, map(float, s.damping[i]), strict=True)),
+        }
+        for i, (mode, label) in enumerate(zip(s.modes, labels, strict=True))
+    ]
 
 
 def _locus(locus: Locus, labels: tuple[str, ...]) -> dict[str, Any]:

@@ -287,6 +287,20 @@ class BudgetOut(BaseModel):
     sources: dict[str, Value]
 
 
+class SensitivityOut(BaseModel):
+    """A mode at the medians of the updated parameters, and by how much each of them moves it.
+
+    Frequencies as ∂ ln f/∂ ln θ, damping ratios as ∂ζ/∂ ln θ.
+    """
+
+    mode: int
+    label: str
+    frequency_hz: float
+    damping_ratio: float
+    frequency_sensitivity: dict[str, float]
+    damping_sensitivity: dict[str, float]
+
+
 class ChangeOut(BaseModel):
     """A quantity under two versions; null where one does not know it.
 

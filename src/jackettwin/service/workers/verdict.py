@@ -11,16 +11,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from typing import Any
 
+import numpy as np
+
 from jackettwin.answers import ModeAnswer, answer
+from jackettwin.arrays import FloatArray
 from jackettwin.change import JUDGED, Days, Ground, finding_of, judge
 from jackettwin.report import PageSection
 from jackettwin.report.build import report_sections
 from jackettwin.report.pages.page import page_text
 from jackettwin.service.workers import engine
+from jackettwin.study import TwinResult, sensitivity_rows
 from jackettwin.study.measure import Measured
 from jackettwin.study.run import updated_twin
 from jackettwin.twin import ALL, OBSERVATION
 from jackettwin.twin.operation import OperationRule
+from jackettwin.updating import Update, sensitivity
 from jackettwin.version import __version__
 
 CANNOT_MEET = "the model cannot meet what was measured on any ground: no interval; see the report"
@@ -70,7 +75,16 @@ def known(
             for p, value, span in zip(u.problem.parameters, median, spans, strict=True)
         },
         "budget": [_budget(mode) for mode in answers.modes],
+        "sensitivity": _sensitivity(u, median, result),
     }, sections
+
+
+def _sensitivity(u: Update, median: FloatArray, result: TwinResult) -> list[dict[str, Any]]:
+    """Return by how much every parameter moves each measured mode; of none that does not oscillate."""
+    theta = u.problem.vectors(np.log(median)[None], u.problem.states[0])[0]
+    found = sensitivity(u.model, theta, tuple(m.mode for m in result.measured))
+    rows = sensitivity_rows(found, [m.label for m in result.measured])
+    return [row for row in rows if np.isfinite(row["frequency_hz"])]
 
 
 def _budget(mode: ModeAnswer) -> dict[str, Any]:

@@ -27,6 +27,7 @@ from jackettwin.service.web.schemas import (
     FindingOut,
     ModeOut,
     Page,
+    SensitivityOut,
     TwinOut,
 )
 from jackettwin.store import journal, people, results
@@ -84,6 +85,16 @@ def damping_budget(
     asked = known_version(connection, asset, version)
     found = said.twin(connection, parts, asked, signals.with_zone(at, "at"))
     return Page(items=found.parameters.get("budget", []))
+
+
+@router.get("/assets/{asset}/sensitivity", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def sensitivity(
+    asset: AssetName, parts: Parts, connection: Told, version: AnyVersion = None
+) -> Page[SensitivityOut]:
+    """Return by how much every updated parameter moves each measured mode, at the medians of now."""
+    asked = known_version(connection, asset, version)
+    found = said.twin(connection, parts, asked)
+    return Page(items=found.parameters.get("sensitivity", []))
 
 
 @router.get("/assets/{asset}/life", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
