@@ -19,10 +19,10 @@ from jackettwin.updating import (
     CostCurve,
     CostSurface,
     Locus,
+    ModeSensitivity,
     Problem,
     SearchMethod,
     SearchPath,
-    Sensitivity,
     SupportModel,
     Update,
     cost_curve,
@@ -93,7 +93,7 @@ class Exploration:
     model : SupportModel
     theta : (n_parameters,) the model's parameters at the point explored
     labels : of the modes of ``sensitivity``
-    sensitivity : Sensitivity
+    sensitivity : ModeSensitivity
     loci : one a parameter
     landscape : CostLandscape or None
         None where nothing was measured.
@@ -103,7 +103,7 @@ class Exploration:
     model: SupportModel
     theta: FloatArray
     labels: tuple[str, ...]
-    sensitivity: Sensitivity
+    sensitivity: ModeSensitivity
     loci: tuple[Locus, ...]
     landscape: CostLandscape | None = None
 
@@ -282,7 +282,7 @@ def exploration_document(found: Exploration) -> dict[str, Any]:
     }
 
 
-def sensitivity_rows(s: Sensitivity, labels: Sequence[str]) -> list[dict[str, Any]]:
+def sensitivity_rows(s: ModeSensitivity, labels: Sequence[str]) -> list[dict[str, Any]]:
     """Return the modes at a point and by how much every parameter moves them, a row a mode.
 
     Parameters

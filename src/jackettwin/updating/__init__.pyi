@@ -23,7 +23,7 @@ from .explore.cost import (
 )
 from .explore.locus import Locus as Locus, root_locus as root_locus
 from .explore.paths import SearchPath as SearchPath, search_paths as search_paths
-from .explore.sensitivity import Sensitivity as Sensitivity, sensitivity as sensitivity
+from .explore.sensitivity import ModeSensitivity as ModeSensitivity, sensitivity as sensitivity
 from .joint import Growth as Growth, joint as joint, single as single
 from .law_choice import (
     approximate_probability as approximate_probability,

@@ -17,7 +17,7 @@ _STEP = 1e-4
 
 
 @dataclass(frozen=True)
-class Sensitivity:
+class ModeSensitivity:
     """Derivatives at a point; NaN where a mode does not oscillate.
 
     Attributes
@@ -41,7 +41,7 @@ class Sensitivity:
     difference: float
 
 
-def sensitivity(model: SupportModel, theta: FloatArray, modes: tuple[int, ...]) -> Sensitivity:
+def sensitivity(model: SupportModel, theta: FloatArray, modes: tuple[int, ...]) -> ModeSensitivity:
     """Return the analytic derivatives of some modes at a point, beside central differences.
 
     Parameters
@@ -60,7 +60,7 @@ def sensitivity(model: SupportModel, theta: FloatArray, modes: tuple[int, ...]) 
     by_f, by_zeta = ((a[: theta.size] - a[theta.size :]).T / (2.0 * _STEP) for a in (ln_f, ratio))
     apart = np.concatenate([np.abs(by_f - frequency), np.abs(by_zeta - damping)])
     known = apart[np.isfinite(apart)]
-    return Sensitivity(
+    return ModeSensitivity(
         model.parameters,
         modes,
         size / (2.0 * pi),
