@@ -321,6 +321,11 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "identification": Kind("warning", "{text}"),
     "no_mode_of_the_model": Kind("warning", "none of its {modes} identified modes is one of the model"),
+    "record_mismatched": Kind(
+        "warning",
+        "none of its {modes} modes is one of the twin's: is it of another turbine, or are its sensors "
+        "elsewhere than the twin says? It does not count.",
+    ),
     # twin: an observation on its way into the state
     "record_doubled": Kind("warning", "these samples are known already and count once"),
     "record_overlaps": Kind(

@@ -3,10 +3,12 @@
 Whatever order records come in, however often, and wherever a server dies, the states are the same.
 """
 
+import json
 import random
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from threading import Event
 
@@ -17,12 +19,14 @@ from sqlalchemy.exc import OperationalError
 from tests.service.conftest import description, hour, make_service, record_file, turn
 from tests.store.conftest import fresh
 
+from jackettwin.findings import Finding
 from jackettwin.service.context import Service
-from jackettwin.service.web import uploads
+from jackettwin.service.web import catalogue, uploads
 from jackettwin.service.work import consequences, dispatch
 from jackettwin.service.work.dispatch import Dispatcher
 from jackettwin.service.workers.tasks import Outcome, observe_stored
 from jackettwin.store import assets, reading, results, tables, work, writing
+from jackettwin.twin import OBSERVATION
 
 RECORDS = 6
 
@@ -291,3 +295,37 @@ def test_two_servers_share_one_queue(service: Service) -> None:
         done = [job for job in work.list_jobs(connection, state="done") if job.kind == "observe"]
         assert len(done) == RECORDS
         assert len(connection.execute(select(tables.observations)).all()) == RECORDS
+
+
+def test_a_record_of_another_turbine_is_said_and_counts_nowhere(service: Service) -> None:
+    """The asset is not ok, its dates are those of its own records, and the record has a remark."""
+    send(service, 0)
+    turn(service, 2)
+    before = hashes(service)
+    send(service, 5)
+    job, outcome = leased(service)
+    seen = OBSERVATION.load(json.loads(outcome.document or ""))
+    finding = Finding("no_mode_of_the_model", params={"modes": len(seen.recognised)})
+    other = replace(seen, recognised=(None,) * len(seen.recognised), findings=(finding,))
+    problem = {"detail": "none of its modes is one of this twin's", "field": "record"}
+    document = json.dumps(OBSERVATION.dump(other))
+    keep(service, (job, Outcome(document, problem=problem)))
+    with reading(service.database) as connection:
+        version = assets.found_version(connection, "wtg")
+        (asset,) = catalogue.overview(connection)
+        newest = connection.execute(
+            select(tables.records.c.status, tables.records.c.problem).order_by(
+                tables.records.c.start_utc.desc()
+            )
+        ).first()
+        said = results.count_findings(connection, "wtg")["wtg"]
+        number, _ = results.observed_time(connection, "wtg", version.model_hash)
+    assert hashes(service) == before
+    assert asset.status == "warning" and asset.records == {"observed": 1, "mismatched": 1}
+    assert asset.last_record_utc is not None and asset.last_record_utc.hour == hour(6).hour
+    assert (
+        newest is not None
+        and newest.status == "mismatched"
+        and "none of its modes" in newest.problem["detail"]
+    )
+    assert said["warning"] >= 1 and number == 1

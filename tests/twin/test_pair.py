@@ -15,6 +15,7 @@ from observations import estimate, observation
 from tests.support.sightings import sightings
 
 from jackettwin.errors import InputError
+from jackettwin.findings import Finding
 from jackettwin.identification import ModalEstimate
 from jackettwin.identification.many_records.fusion import average as average_of_sightings
 from jackettwin.identification.status import ModeStatus
@@ -279,3 +280,26 @@ def test_documents_of_another_kind_or_version_are_refused(seen: Observation) -> 
         OBSERVATION.load(damaged)
     with pytest.raises(InputError, match="name: required key is missing"):
         OBSERVATION.load({k: v for k, v in document.items() if k != "name"})
+
+
+def of_another_turbine(seen: Observation) -> Observation:
+    """Return an observation none of whose modes is the model's."""
+    finding = Finding("no_mode_of_the_model", params={"modes": len(seen.recognised)})
+    return replace(
+        seen, recognised=(None,) * len(seen.recognised), findings=(*seen.findings, finding), record_id="other"
+    )
+
+
+def test_a_record_of_another_structure_counts_nowhere() -> None:
+    own = observation({1: estimate(0.2, 0.01)}, NOON, name="own")
+    other = of_another_turbine(replace(own, name="other"))
+    assert other.mismatched and not own.mismatched
+    state, _ = advance(TwinState("model"), own)
+    after, (said,) = advance(state, other)
+    assert after is state
+    assert (said.code, said.severity, said.subject) == ("record_mismatched", "warning", "other")
+    # one without any mode, of a quiet hour, is no other turbine's
+    quiet = replace(
+        of_another_turbine(own), identification=replace(own.identification, modes=()), recognised=()
+    )
+    assert not quiet.mismatched

@@ -152,6 +152,7 @@ def summaries(connection: Connection, name: str | None = None, *, archived: bool
     """Return every asset by name that is archived, or is not; or one, whichever it is."""
     start = records.c.start_utc
     last = select(func.max(start, type_=start.type)).where(records.c.asset == assets.c.name)
+    last = last.where(records.c.status != "mismatched")
     adopted = (versions.c.asset == assets.c.name) & (versions.c.version == assets.c.adopted_version)
     query = select(
         assets.c.name,

@@ -15,7 +15,7 @@ from jackettwin.errors import InputError
 from jackettwin.store.database import insert_new
 from jackettwin.store.tables import records
 
-STATUSES = ("received", "observing", "observed", "refused", "set_aside")
+STATUSES = ("received", "observing", "observed", "refused", "mismatched", "set_aside")
 
 
 @dataclass(frozen=True)

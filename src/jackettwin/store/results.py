@@ -101,11 +101,11 @@ def newest_observations(
 
 
 def observed_time(connection: Connection, asset: str, model_hash: str) -> tuple[int, float]:
-    """Return how many records a model observed, and how long they are together [s]."""
+    """Return how many records a model observed as its own, and how long they are together [s]."""
     own = (observations.c.asset == records.c.asset) & (observations.c.record_id == records.c.record_id)
     query = select(func.count(), func.sum(records.c.duration_s)).select_from(observations.join(records, own))
-    same = (observations.c.asset == asset, observations.c.model_hash == model_hash)
-    number, seconds = connection.execute(query.where(*same)).one()
+    query = query.where(observations.c.asset == asset, observations.c.model_hash == model_hash)
+    number, seconds = connection.execute(query.where(records.c.status != "mismatched")).one()
     return number, seconds or 0.0
 
 

@@ -109,7 +109,8 @@ records = Table(
     Index("ix_records_status", "asset", "status"),
     Index("ix_records_content", "record_id"),
 )
-"""``status``: received, observing, observed, refused (with a problem) or set_aside (with a reason)."""
+"""``status``: received, observing, observed, refused (with a problem), mismatched or set_aside (with a
+reason)."""
 
 work = Table(
     "work",

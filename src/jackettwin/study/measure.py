@@ -36,7 +36,8 @@ class Measured:
 
     Attributes
     ----------
-    observations : one a record, the first of those with the same samples
+    observations : one a record, the first of those with the same samples; without those of other structures,
+        unless all are
     state : TwinState
         Which all of them make.
     shown : Examination or None
@@ -104,7 +105,8 @@ def measure(
     state, findings = advance_all(empty_state(model), observations)
     first = {one.record_id: one for one in reversed(observations)}
     once = tuple(one for one in observations if first[one.record_id] is one)
-    return Measured(once, state, shown, findings, failed)
+    own = tuple(one for one in once if not one.mismatched)
+    return Measured(own or once, state, shown, findings, failed)
 
 
 def mean_target(mode: int, total: ModeTotal) -> Target:

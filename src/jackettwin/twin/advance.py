@@ -2,7 +2,8 @@
 
 The fold is commutative: every observation belongs to the day it began on (UTC), and what it adds there does
 not depend on what came before. One that comes late changes its own day; what was estimated for later days is
-then out of date, and a finding says from when on. One whose samples are known already changes nothing.
+then out of date, and a finding says from when on. One whose samples are known already changes nothing, and
+neither does one of another structure.
 """
 
 from __future__ import annotations
@@ -58,6 +59,9 @@ def advance(state: TwinState, observation: Observation) -> tuple[TwinState, tupl
             allowed=state.model_hash,
             remedy="observe the record with the model of the state, or rebuild the state with the new model",
         )
+    if observation.mismatched:
+        modes = len(observation.identification.modes)
+        return state, (Finding("record_mismatched", observation.name, {"modes": modes}),)
     date = day_of(observation)
     old = state.days.get(date, Day())
     if observation.record_id in old.records:

@@ -94,6 +94,12 @@ class Observation:
         return self.identification.duration_s
 
     @property
+    def mismatched(self) -> bool:
+        """Whether the record shows modes and none of them is the model's: it is of another structure."""
+        shown = any(mode.status.is_a_mode for mode in self.identification.modes)
+        return shown and any(f.code == "no_mode_of_the_model" for f in self.findings)
+
+    @property
     def modes(self) -> dict[int, tuple[ModalEstimate, Recognised]]:
         """The modes of the model that the record shows, {number: (estimate, which one)}."""
         pairs = zip(self.identification.modes, self.recognised, strict=True)

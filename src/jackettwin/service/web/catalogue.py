@@ -166,5 +166,6 @@ def _asset_out(row: assets.Summary, counts: dict[str, int], said: dict[str, int]
     elif unseen:
         status = "alarm"
     else:
-        status = "warning" if counts.get("set_aside") or counts.get("refused") else "ok"
+        left_out = any(counts.get(status) for status in ("set_aside", "refused", "mismatched"))
+        status = "warning" if left_out else "ok"
     return AssetOut(**vars(row), records=counts, findings=said, status=status)  # type: ignore[arg-type]

@@ -122,7 +122,7 @@ class RecordOut(BaseModel):
 
     record_id: str
     asset: str
-    status: Literal["received", "observing", "observed", "refused", "set_aside"]
+    status: Literal["received", "observing", "observed", "refused", "mismatched", "set_aside"]
     start_utc: datetime
     duration_s: float
     sample_rate_hz: float

@@ -157,7 +157,9 @@ def keep(connection: Connection, service: Service, job: work.Job, outcome: Outco
         ],
         [_finding_row(f, key, record.start_utc, day, "observe") for f in outcome.findings],
     )
-    records.set_status(connection, job.asset, job.record_id, "observed")
+    if job.model_hash == adopted.model_hash or record.status not in ("observed", "mismatched"):
+        status = "observed" if outcome.problem is None else "mismatched"
+        records.set_status(connection, job.asset, job.record_id, status, outcome.problem)
     fold(connection, service, job.asset, job.version, observation, anew=again)
     journal.tell(
         connection,
@@ -245,7 +247,8 @@ def fold(
     model = workers.engine.load_twin(twin_folder(connection, service, asset, version)).model
     before, new = stored.document if stored else None, [observation.document for observation in todo]
     folded = workers.engine.advance_day(model, day, before, new)
-    results.put_state(connection, StoredState(asset, model_hash, day, folded.n_records, folded.document))
+    if folded.n_records:  # none, if all are of another structure
+        results.put_state(connection, StoredState(asset, model_hash, day, folded.n_records, folded.document))
     key = {"asset": asset, "model_hash": model_hash}
     rows = [
         _finding_row(

@@ -77,8 +77,10 @@ def channels(config: TwinConfig) -> dict[str, Channel]:
 
 def observed(
     model: TwinModel, waveform: Path, conditions: Mapping[str, Any], picks: Sequence[Mapping[str, Any]] = ()
-) -> tuple[str, tuple[dict[str, Any], ...], tuple[dict[str, Any], ...]]:
+) -> tuple[str, tuple[dict[str, Any], ...], tuple[dict[str, Any], ...], dict[str, Any] | None]:
     """Return the observation of a stored record as a document, its modes and its findings as rows.
+
+    The last is why it does not count, if it is of another structure.
 
     ``picks`` are poles that a person chose instead of the automatic selection.
     """
@@ -103,7 +105,15 @@ def observed(
             }
         )
     document = json.dumps(OBSERVATION.dump(seen), ensure_ascii=False, separators=(",", ":"))
-    return document, tuple(rows), tuple(finding_row(f) for f in seen.findings)
+    said = tuple(finding_row(f) for f in seen.findings)
+    return document, tuple(rows), said, _MISMATCHED if seen.mismatched else None
+
+
+_MISMATCHED = {
+    "detail": "none of its modes is one of this twin's: it does not count",
+    "field": "record",
+    "remedy": "see whether it is of another turbine, and where the twin says that its sensors are",
+}
 
 
 def advance_day(model: TwinModel, day: str, stored: str | None, observations: Sequence[str]) -> FoldedDay:
@@ -114,7 +124,7 @@ def advance_day(model: TwinModel, day: str, stored: str | None, observations: Se
     for document in observations:
         state, findings = advance(state, OBSERVATION.load(json.loads(document)))
         found.append(tuple(finding_row(f) for f in findings if f.code != "record_late"))
-    known = state.days[day]
+    known = state.days.get(day, Day())
     text = json.dumps(DAY.dump(known), ensure_ascii=False, sort_keys=True, separators=(",", ":"))
     return FoldedDay(text, len(known.records), tuple(found))
 

@@ -32,6 +32,8 @@ class Task:
 class Outcome:
     """What came of a task: a document, or a problem (field, value, remedy) of the record itself.
 
+    With both, the record was observed and is of another structure.
+
     ``page`` is the report on a turbine's state, and ``of`` the identity of that state.
     """
 

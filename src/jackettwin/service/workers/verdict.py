@@ -50,7 +50,8 @@ def known(
     total = sums.state.totals.get(ALL)
     if total is None or not total.modes:
         return {"status": NO_MODE if total else NOT_TO_UPDATE, "parameters": {}}, None
-    shown = tuple(OBSERVATION.load(json.loads(document)) for document in newest)
+    every = (OBSERVATION.load(json.loads(document)) for document in newest)
+    shown = tuple(one for one in every if not one.mismatched)
     measured = Measured(shown, sums.state, in_all=in_all)
     laws = twin.config.update.laws[:1]
     config = replace(twin.config, operation=OperationRule())  # who may update was asked of each day

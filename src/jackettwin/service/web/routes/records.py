@@ -36,7 +36,7 @@ from jackettwin.store import people, records
 
 router = APIRouter(tags=["records"], route_class=Route)
 
-Status = Literal["received", "observing", "observed", "refused", "set_aside"]
+Status = Literal["received", "observing", "observed", "refused", "mismatched", "set_aside"]
 Limit = Annotated[int, Query(ge=1, le=1000)]
 
 
