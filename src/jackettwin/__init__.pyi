@@ -11,6 +11,7 @@ from .report import build_report as build_report
 from .response import (
     build_system as build_system,
     damped_modes as damped_modes,
+    state_model as state_model,
     undamped_modes as undamped_modes,
 )
 from .soil import read_support as read_support

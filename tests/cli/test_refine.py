@@ -9,10 +9,11 @@ from click.testing import CliRunner
 
 from jackettwin.cli import main
 from jackettwin.decks import read_structure
-from jackettwin.structure import assemble
+from jackettwin.structure import adjusted, assemble
 from jackettwin.twin import read_twin
-from jackettwin.updating import numbered_modes
+from jackettwin.updating import numbered_modes, only_parts
 
+JACKET15 = Path(read_structure.__code__.co_filename).parents[1] / "data" / "structures" / "jacket15.yaml"
 EXAMPLE = Path(__file__).parents[2] / "examples" / "refine_jacket15.yaml"
 
 
@@ -23,7 +24,9 @@ def test_planted_steel_comes_back_stage_by_stage_and_a_twin_takes_it(tmp_path: P
         {"parts": ["jacket"], "frequency_hz": {1: 0.836}},
         {"frequency_hz": {1: f[0], 4: f[3]}, "free": [{"part": "tower", "property": "youngs_modulus"}]},
     ]
-    (tmp_path / "r.yaml").write_text(yaml.safe_dump({"structure": "jacket15", "stages": stages}))
+    (tmp_path / "r.yaml").write_text(
+        yaml.safe_dump({"structure": "jacket15", "gravity": False, "stages": stages})
+    )
     result = CliRunner().invoke(main, ["refine", str(tmp_path / "r.yaml"), "--json"])
     assert result.exit_code == 0, result.stderr
     document = json.loads(result.stdout)
@@ -54,7 +57,9 @@ def test_a_mode_that_is_met_worse_than_before_is_named(tmp_path: Path) -> None:
     f = numbered_modes(assemble(read_structure("jacket15")), 4).frequency_hz.tolist()
     free = [{"part": "tower", "property": "youngs_modulus"}]
     stages = [{"frequency_hz": {1: 1.04 * f[0], 4: f[3]}, "free": free}]
-    (tmp_path / "r.yaml").write_text(yaml.safe_dump({"structure": "jacket15", "stages": stages}))
+    (tmp_path / "r.yaml").write_text(
+        yaml.safe_dump({"structure": "jacket15", "gravity": False, "stages": stages})
+    )
     said = CliRunner().invoke(main, ["refine", str(tmp_path / "r.yaml")])
     assert said.exit_code == 0, said.stderr
     words = " ".join(said.stdout.split())
@@ -65,9 +70,9 @@ def test_a_mode_that_is_met_worse_than_before_is_named(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("jacket, property", "jaket, property", "stages.0.part: no such part (got 'jaket')"),
+        ("jacket, property", "jaket, property", "stages.0.free.0.part: no such part (got 'jaket')"),
         ("property: density", "property: weight", "stages.0.free.0.property"),
-        ("[0.5, 2.0]", "[2.0, 0.5]", "stages.0.free.bounds: bounds are reversed"),
+        ("[0.5, 2.0]", "[2.0, 0.5]", "stages.0.free.0.bounds: bounds are reversed"),
         ("frequency_hz", "frequency", "did you mean 'frequency_hz'"),
         ("{1: 0.898, 2: 0.909, 3: 1.093, 4: 1.165}", "{}", "stages.0.frequency_hz"),
     ],
@@ -77,3 +82,68 @@ def test_mistakes_are_named(tmp_path: Path, old: str, new: str, message: str) ->
     result = CliRunner().invoke(main, ["refine", str(tmp_path / "r.yaml")])
     assert result.exit_code == 2
     assert "r.yaml" in result.stderr and message in result.stderr.replace("\n", " ")
+
+
+MASSLESS = """structure: tp.yaml
+gravity: false
+stages:
+  - frequency_hz: {1: 0.19}
+    free: [{part: transition_piece, property: density}]
+"""
+
+
+def test_a_part_without_density_is_refused_and_what_it_has_is_named(tmp_path: Path) -> None:
+    """The thesis's own transition piece: stiff beams without mass, and a body in its middle."""
+    structure = yaml.safe_load(JACKET15.read_text())
+    structure["jacket"]["transition_piece"]["material"]["density_kg_m3"] = 0.0
+    (tmp_path / "tp.yaml").write_text(yaml.safe_dump(structure))
+    (tmp_path / "r.yaml").write_text(MASSLESS)
+    said = CliRunner().invoke(main, ["refine", str(tmp_path / "r.yaml")])
+    assert said.exit_code == 2
+    words = " ".join(said.stderr.split())
+    assert "stages.0.free.0.property: changes nothing" in words
+    assert "allowed: youngs_modulus, wall_thickness, added_mass_kg" in words
+
+
+@pytest.mark.parametrize(
+    ("free", "value"),
+    [
+        ({"part": "jacket", "property": "wall_thickness"}, 1.12),
+        ({"part": "transition_piece", "property": "added_mass_kg", "bounds": [0.0, 2.0e6]}, 4.0e5),
+        ({"body": "rna", "property": "mass"}, 0.93),
+        ({"body": "tower_top", "property": "cg_shift_z_m", "bounds": [-3.0, 3.0]}, 1.7),
+        ({"body": "tp_bottom", "property": "added_mass_kg", "bounds": [0.0, 1.0e6]}, 2.5e5),
+    ],
+)
+def test_what_was_planted_comes_back_and_a_twin_takes_it(
+    tmp_path: Path, free: dict[str, object], value: float
+) -> None:
+    of, name = next(iter(free.items()))
+    planted = adjusted(read_structure("jacket15"), of, str(name), str(free["property"]), value)
+    f = numbered_modes(assemble(planted), 5).frequency_hz.tolist()
+    stages = [{"frequency_hz": dict(enumerate(f, start=1)), "free": [free]}]
+    text = yaml.safe_dump({"structure": "jacket15", "gravity": False, "stages": stages})
+    (tmp_path / "r.yaml").write_text(text)
+    result = CliRunner().invoke(main, ["refine", str(tmp_path / "r.yaml"), "--json"])
+    assert result.exit_code == 0, result.stderr
+    (change,) = json.loads(result.stdout)["adjusted"]
+    assert change["value"] == pytest.approx(value, rel=1e-5)
+    twin = {
+        "structure": {"source": "jacket15", "adjusted": [change]},
+        "targets": [{"mode": 1, "frequency_hz": 0.18}],
+    }
+    (tmp_path / "t.yaml").write_text(yaml.safe_dump(twin))
+    refined = read_twin(tmp_path / "t.yaml").structure
+    assert numbered_modes(assemble(refined), 5).frequency_hz.tolist() == pytest.approx(f, rel=1e-6)
+
+
+def test_a_later_stage_that_spoils_an_earlier_one_is_named(tmp_path: Path) -> None:
+    alone = numbered_modes(assemble(only_parts(read_structure("jacket15"), ("jacket",))), 1).frequency_hz[0]
+    stages = [
+        {"parts": ["jacket"], "frequency_hz": {1: float(alone)}},
+        {"frequency_hz": {1: 0.18}, "free": [{"part": "jacket", "property": "youngs_modulus"}]},
+    ]
+    text = yaml.safe_dump({"structure": "jacket15", "gravity": False, "stages": stages})
+    (tmp_path / "r.yaml").write_text(text)
+    said = CliRunner().invoke(main, ["refine", str(tmp_path / "r.yaml")])
+    assert "mode 1 of jacket is met worse when all stages are done:" in " ".join(said.stdout.split())

@@ -69,7 +69,7 @@ def init_command(
     from jackettwin.records import Unsaid, read_zone, record_files
     from jackettwin.structure import assemble
     from jackettwin.study.draft import draft_twin
-    from jackettwin.twin import read_twin
+    from jackettwin.twin import model_of_records, read_twin
 
     if out.exists() and not force:
         raise InputError("is there already", file=out, remedy="choose another --out, or --force")
@@ -80,7 +80,14 @@ def init_command(
     built = read_structure(structure)
     with progress(2 + min(len(files), _MOST_READ), "init") as step:
         step(f"assemble {structure}")
-        assembly = assemble(built, gravity=True)
+        stated = model_of_records(files)
+        assembly = assemble(
+            built,
+            gravity=stated.get("gravity", True),
+            beam_theory=stated.get("beam"),
+            rotary_inertia=stated.get("rotary_inertia"),
+            subdivide=stated.get("subdivide"),
+        )
         read, left_out, unsaid = [], [], Unsaid(sample_rate, unit, gain, zone)
         for file in files[:_MOST_READ]:
             step(f"read {file.name}")
@@ -102,7 +109,14 @@ def init_command(
             temporary.write_text(draft.text, encoding="utf-8")
         if draft.complete:
             read_twin(out)
-    return Reply(_document(draft, out, [str(file) for file in files]), lambda: _print(draft, out))
+    said = ", ".join(f"{key} {str(value).lower()}" for key, value in stated.items())
+    notes = [f"the records state their model, which the twin takes over: {said}"] if said else []
+
+    def show() -> None:
+        _print(draft, out)
+        say_all(notes, "note")
+
+    return Reply({**_document(draft, out, [str(file) for file in files]), "notes": notes}, show)
 
 
 def _read(file: Path, unsaid: Unsaid) -> tuple[Record, Unsaid]:

@@ -14,7 +14,7 @@ import numpy as np
 from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.cli.comparison import comparison_of, show_comparison
 from jackettwin.cli.console import PageFile, Reply, answers, numbers_of, say, say_all, show_table
-from jackettwin.errors import located
+from jackettwin.errors import located, require
 from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
@@ -67,6 +67,11 @@ _OVERDAMPED = 0.3
     help="FILE.csv: modes of another program; MAC of each with each.",
 )
 @click.option("--figure", type=PageFile(), help="With --against: a page that lays shapes side by side.")
+@click.option(
+    "--state",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Write the state matrices and the names of their states to this .npz.",
+)
 @answers
 def modes_command(
     structure: str,
@@ -82,6 +87,7 @@ def modes_command(
     shapes: Path | None,
     against: Path | None,
     figure: Path | None,
+    state: Path | None,
 ) -> Reply:
     """Compute undamped and damped modes of STRUCTURE.
 
@@ -107,7 +113,19 @@ def modes_command(
     document = {**_document(system, number, bare), "support": own if support is None else support}
     document["warnings"] = [*document["warnings"], *held.notes]
     document |= comparison_of(system, number, shapes=shapes, against=against, figure=figure)
+    document["gravity"] = gravity
+    document["state"] = None if state is None else _write_state(system, state)
     return Reply(document, lambda: _show(document))
+
+
+def _write_state(system: System, path: Path) -> dict[str, Any]:
+    """Write the state space of a system; return the file and how many states and inputs it has."""
+    from jackettwin.response import state_model, write_state_model
+
+    require(path.suffix == ".npz", "is no .npz", field="--state", value=str(path), remedy="name it model.npz")
+    model = state_model(system)
+    write_state_model(model, path)
+    return {"file": str(path), "states": len(model.states), "inputs": len(model.inputs)}
 
 
 def blades_option(text: str | None, structure: Structure) -> Structure:
@@ -275,6 +293,11 @@ def _show(document: dict[str, Any]) -> None:
     show_comparison(document["shapes"])
     for page in filter(None, (document["shapes_file"], document["page"])):
         say(f"wrote {page}")
+    if not document["gravity"]:
+        say("without P-Δ (--gravity), which scenarios and twins have unless they say gravity: false")
+    if document["state"]:
+        s = document["state"]
+        say(f"{s['file']}: A and B of {s['states']} states and {s['inputs']} inputs, with their names")
     if document["free_motions"]:
         say(f"{document['free_motions']} free motions: the structure floats, or part of it swings")
     if document["overdamped_poles"]:

@@ -9,46 +9,63 @@ from typing import TYPE_CHECKING, Any
 import click
 import yaml
 
-from jackettwin.cli.console import Reply, answers, output, say, show_table
-from jackettwin.errors import located
+from jackettwin.cli.console import Reply, answers, output, say, show_table, working
 from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
-    from jackettwin.updating import RefinementStage
+    from jackettwin.updating import Factor, RefinementStage
 
 
 @click.command("refine")
 @click.argument("file", type=click.Path(path_type=Path))
 @answers
 def refine_command(file: Path) -> Reply:
-    """Scale E and ρ of the steel to known frequencies.
+    """Fit steel, masses and springs to known frequencies.
 
-    Nothing is written. FILE lists stages: parts on pinned feet, their frequencies, what may change. The
-    factors are printed as the steel: block of a twin file.
+    Nothing is written. FILE lists stages: parts on pinned feet, their frequencies, and what may change of
+    steel, walls, masses, springs, each within bounds and a tolerance. The result is printed as the
+    structure: block of a twin file.
     """
     from jackettwin.study.refinement import read_refinement, refinement_document
-    from jackettwin.updating import refine
 
     config = read_refinement(file)
-    with located(file=file):
-        document = refinement_document(refine(config.structure, config.stages))
+    with working(f"refine {config.structure.name}"):
+        document = refinement_document(config.refine())
     return Reply(document, lambda: _show(config.stages, document))
 
 
 def _show(stages: Sequence[RefinementStage], document: Mapping[str, Any]) -> None:
     for stage, entry in zip(stages, document["stages"], strict=True):
-        factors = ", ".join(f"{name} × {value:.4f}" for name, value in entry["factors"].items())
         what = " + ".join(stage.parts) or "the whole structure"
-        show_table(Table(f"{what}: {factors or 'compared, nothing changed'}", _COLUMNS, entry["modes"]))
+        changes = ", ".join(_change(f, entry["factors"][f.name], entry["std"][f.name]) for f in stage.factors)
+        show_table(Table(f"{what}: {changes or 'compared, nothing changed'}", _COLUMNS, entry["modes"]))
+        for name in entry["at_bound"]:
+            say(f"warning: {name} ended on a bound: widen it if that is possible, or free something else")
         for m in entry["modes"]:
             if m["worse"]:
-                before, after = (f"{_error(m, key):+.2f} %" for key in ("before_hz", "after_hz"))
+                errors = _from_to(m, "before_hz", "after_hz")
                 say(
-                    f"warning: mode {m['mode']} is met worse than before: {before} became {after}; leave it "
-                    "out of frequency_hz, or free other steel"
+                    f"warning: mode {m['mode']} is met worse than before: {errors}; leave it out of "
+                    "frequency_hz, or free something else"
                 )
-    block = {"structure": {"source": "…", "steel": document["steel"]}}
-    output.print(yaml.safe_dump(block, sort_keys=False, allow_unicode=True), end="")
+            if m["worse_at_the_end"]:
+                say(
+                    f"warning: mode {m['mode']} of {what} is met worse when all stages are done: "
+                    f"{_from_to(m, 'after_hz', 'final_hz')}; a later stage changes these parts"
+                )
+    block = {"source": "…", **{key: document[key] for key in ("steel", "adjusted") if document[key]}}
+    output.print(yaml.safe_dump({"structure": block}, sort_keys=False, allow_unicode=True), end="")
+
+
+def _change(factor: Factor, value: float, std: float | None) -> str:
+    """Return what was done to a quantity, and how well it is known if that was asked by a tolerance."""
+    about = f" ± {std:.2g}" if std is not None and factor.tolerance is not None else ""
+    done = f"× {value:.4f}" if factor.is_factor else f"{value:+.6g}"
+    return f"{factor.name} {done}{about}"
+
+
+def _from_to(mode: Mapping[str, Any], before: str, after: str) -> str:
+    return f"{_error(mode, before):+.2f} % became {_error(mode, after):+.2f} %"
 
 
 def _error(mode: Mapping[str, Any], key: str) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -98,12 +98,25 @@ def _show(done: Simulation, path: Path) -> None:
     show_table(Table("", _MODES, modes[:_SHOWN]))
     if len(modes) > _SHOWN:
         say(f"and {len(modes) - _SHOWN} more up to {modes[-1]['frequency_hz']:.2f} Hz, in the record's JSON")
+    if decay := done.record.metadata["decrement"]:
+        say(_decay(decay))
     levels = done.record.metadata["levels"]
     beyond = done.record.metadata["levels_beyond_comparison"] if levels else ()
     if levels:
         show_table(Table("acceleration at the tower top, in wind of the same class", _LEVELS, levels))
     if beyond:
         say(f"OpenFAST's levels were not compared in such a case: {'; '.join(beyond)}")
+
+
+def _decay(decay: dict[str, Any]) -> str:
+    """Return the logarithmic decrement beside the pole that carries most of the decay."""
+    measured = f"ζ {100 * decay['damping_ratio']:.3f} % (peaks scatter by {100 * decay['scatter']:.2g} %)"
+    pole = f"{100 * decay['pole_damping_ratio']:.3f} % at {decay['pole_frequency_hz']:.4f} Hz"
+    return (
+        f"{decay['node']} let go: logarithmic decrement {decay['logarithmic_decrement']:.4g} over "
+        f"{decay['cycles']} cycles at {decay['frequency_hz']:.4f} Hz, {measured}; the pole that carries "
+        f"{100 * decay['pole_share']:.0f} % of the displacement has {pole}"
+    )
 
 
 def _sizes(y: FloatArray) -> tuple[float, float]:

@@ -66,7 +66,12 @@ from .sensors import (
     sensor_kinds as sensor_kinds,
     sensor_positions as sensor_positions,
 )
-from .state import state_matrix as state_matrix
+from .state import maxwell_branches as maxwell_branches, state_matrix as state_matrix
+from .state_model import (
+    StateModel as StateModel,
+    state_model as state_model,
+    write_state_model as write_state_model,
+)
 from .superelement.accuracy import (
     ReducedModes as ReducedModes,
     damping_ratio as damping_ratio,

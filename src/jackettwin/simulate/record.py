@@ -15,6 +15,7 @@ from jackettwin.quantities import quantity as quantity_of
 from jackettwin.records import Channel, Record
 from jackettwin.simulate.level import beyond_comparison, levels
 from jackettwin.simulate.motion.motion import Motion, simulate_motion
+from jackettwin.simulate.scenario.asset import Asset
 from jackettwin.simulate.scenario.scenario import Instrument, Scenario, in_words_of
 from jackettwin.simulate.sensing import flawed, readings
 from jackettwin.version import __version__
@@ -45,6 +46,7 @@ class Simulation:
             "seconds_simulated": self.seconds_simulated,
             "wall_s": self.wall_s,
             "true_modes": self.record.metadata["true_modes"],
+            "decrement": self.record.metadata["decrement"],
             "levels": self.record.metadata["levels"],
             "levels_beyond_comparison": self.record.metadata["levels_beyond_comparison"],
         }
@@ -76,7 +78,9 @@ def simulate(scenario: Scenario) -> Simulation:
             "source": f"jackettwin {__version__} simulate",
             "scenario": scenario.name,
             "true_support": scenario.asset.support_text,
+            "model": _model(scenario.asset),
             **_axes(scenario.instruments),
+            "decrement": None if motion.decrement is None else motion.decrement.document(),
             "levels": [asdict(level) for level in levels(motion, scenario)],
             "levels_beyond_comparison": beyond_comparison(scenario),
             "true_modes": [
@@ -92,6 +96,18 @@ def simulate(scenario: Scenario) -> Simulation:
         name=scenario.name,
     )
     return Simulation(record, scenario.clock.total_s, perf_counter() - start)
+
+
+def _model(asset: Asset) -> dict[str, Any]:
+    """Return how the structure was modelled, in the keys of scenarios and twins: what a twin takes over."""
+    structure = asset.structure
+    return {
+        "structure": structure.name,
+        "gravity": asset.gravity,
+        "beam": asset.beam or structure.beam,
+        "rotary_inertia": structure.rotary_inertia if asset.rotary_inertia is None else asset.rotary_inertia,
+        "subdivide": asset.subdivide or structure.subdivide,
+    }
 
 
 def _axes(instruments: tuple[Instrument, ...]) -> dict[str, str]:

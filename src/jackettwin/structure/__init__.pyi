@@ -1,3 +1,4 @@
+from .adjusted import PROPERTIES as PROPERTIES, adjusted as adjusted, foot_stiffness as foot_stiffness
 from .assemble import Assembly as Assembly, assemble as assemble
 from .check import (
     ModelCheck as ModelCheck,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from jackettwin.errors import InputError
@@ -13,6 +13,7 @@ from jackettwin.records import Channel, Record, Unsaid, with_conditions
 from jackettwin.records.readers.channel_names import read_name
 from jackettwin.response import Sensor, observation_matrix
 from jackettwin.structure import Assembly, Structure
+from jackettwin.twin import stated_model
 from jackettwin.updating import numbered_modes
 from jackettwin.version import __version__
 
@@ -95,7 +96,7 @@ def draft_twin(
     further : sequence of str
         Records that are listed without having been read.
     """
-    first = with_conditions(records[0][1])
+    first, stated = with_conditions(records[0][1]), stated_model(records[0][1].metadata)
     places = tuple(_place(channel, assembly) for channel in moving_channels(first).channels)
     missing = _missing(places, [record for _, record in records], assembly.structure)
     first_hz = float(numbered_modes(assembly, 1).frequency_hz[0])
@@ -103,7 +104,7 @@ def draft_twin(
         f"# A twin, drafted by `jackettwin init` {__version__}. Look through the lines that say CHECK.",
         "# docs/reference/twin.md lists every key.",
         f"structure: {_text(source)}",
-        "gravity: true                       # self-weight softens: 1 to 4 % on the first frequencies",
+        *_modelling(assembly, stated),
         f"damping: {{rayleigh: {{ratio: {STEEL_DAMPING}, frequency_hz: {first_hz:.3f}}}}}"
         "   # of the steel alone: CHECK",
         *_water(assembly.structure),
@@ -185,6 +186,18 @@ def _sensor_line(place: SensorPlace) -> str:
     if place.lacks:
         return f"  # {line}   # CHECK: lacks {place.lacks}"
     return f"  {line}" + (f"   # {place.why}" if place.why else "")
+
+
+def _modelling(assembly: Assembly, stated: Mapping[str, object]) -> list[str]:
+    """Return the keys that say how the structure is modelled: the record's, where it comes from a model."""
+    why = "as the record states it" if "gravity" in stated else "self-weight softens"
+    lines = [f"gravity: {str(assembly.gravity).lower():<28}# {why}: 1 to 4 % on the first frequencies"]
+    structure = assembly.structure
+    return lines + [
+        f"{key}: {str(value).lower()}   # as the record states it"
+        for key, value in stated.items()
+        if key != "gravity" and value != getattr(structure, key)
+    ]
 
 
 def _water(structure: Structure) -> list[str]:

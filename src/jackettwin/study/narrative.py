@@ -8,7 +8,7 @@ from typing import Any
 
 from jackettwin.study.measure import Measured
 from jackettwin.study.result import MeasuredMode, MeasuredRelaxation, unpaired_finding
-from jackettwin.twin import TwinConfig
+from jackettwin.twin import TwinConfig, stated_model
 from jackettwin.updating import Update
 
 
@@ -20,11 +20,13 @@ def assumptions(
 ) -> tuple[str, ...]:
     """Return what the run took for granted; dashpots are stated at the wind [m/s]."""
     s = config.structure
-    theory = {"euler-bernoulli": "Euler–Bernoulli", "timoshenko": "Timoshenko"}[config.beam or s.beam]
-    rotary = s.rotary_inertia if config.rotary_inertia is None else config.rotary_inertia
+    how = config.modelling()
+    theory = {"euler-bernoulli": "Euler–Bernoulli", "timoshenko": "Timoshenko"}[str(how["beam"])]
+    rotary = how["rotary_inertia"] or theory == "Timoshenko"
     lines = [
-        f"{theory} beams, {'with' if rotary or theory == 'Timoshenko' else 'without'} rotary inertia; "
-        + ("gravity's P-Δ stiffness is on." if config.gravity else "no gravity stiffness."),
+        f"{theory} beams, {'with' if rotary else 'without'} rotary inertia; "
+        + ("gravity's P-Δ stiffness is on" if config.gravity else "no gravity stiffness")
+        + (f"; {', '.join(config.of_records)}: as the records state it." if config.of_records else "."),
         f"Steel damping: Rayleigh, {100 * config.rayleigh_ratio:.3g} % at its minimum, on the structure only."
         if config.rayleigh_ratio
         else "The steel is undamped.",
@@ -92,7 +94,11 @@ def cautions(
     if found is not None:
         lines += [f"left out: {one.problem}" for one in found.failed]
         lines += [str(finding) for finding in found.findings]
-        lines += [*_of_records(found), *_strangers(found, labels, every=not updates)]
+        lines += [
+            *_of_another_model(config, found),
+            *_of_records(found),
+            *_strangers(found, labels, every=not updates),
+        ]
         lines += _wind_without_rotor(config, found, measured)
     lines += [*_unweighted(config, measured, updates), *_rotor_without_wind(config, updates)]
     for u in updates:
@@ -109,6 +115,25 @@ def cautions(
             if m.frequency_hz is not None and _misses(config, m, float(f))
         ]
     return tuple(lines)
+
+
+def _of_another_model(config: TwinConfig, found: Measured) -> list[str]:
+    """Return where records state that they come from a structure modelled otherwise than the twin's."""
+    ours = config.modelling()
+    differences: dict[str, list[str]] = {}
+    for seen in found.observations:
+        for key, value in stated_model(seen.truth).items():
+            if value != ours[key]:
+                text = f"{key} {_word(value)}; the twin has {_word(ours[key])}, which moves its frequencies"
+                differences.setdefault(f"{text}: write {key}: {_word(value)}, or leave it out", []).append(
+                    seen.name
+                )
+    return [f"{', '.join(names)}: simulated with {text}." for text, names in differences.items()]
+
+
+def _word(value: object) -> str:
+    """Return a value as YAML has it."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def _of_records(found: Measured) -> list[str]:

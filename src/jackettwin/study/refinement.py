@@ -1,4 +1,4 @@
-"""Refinement files: which frequencies are known of which parts, and which steel may change."""
+"""Refinement files: which frequencies are known of which parts, and what of the structure may change."""
 
 from __future__ import annotations
 
@@ -11,21 +11,28 @@ from pydantic import Field
 from jackettwin.errors import located
 from jackettwin.files import Schema, read_yaml, validate
 from jackettwin.structure import Structure
-from jackettwin.twin.schema import StructureOrName
-from jackettwin.updating import Factor, Refinement, RefinementStage
+from jackettwin.twin.schema import AdjustedPlace, StructureOrName
+from jackettwin.updating import Factor, Refinement, RefinementStage, refine
 
 WORSE = 1e-3
 """Relative misfit by which a mode must be met worse than before to be named: least squares trade less."""
+STEEL = ("youngs_modulus", "density")
+"""Properties of parts that are ``structure.steel`` of a twin file; the others are ``structure.adjusted``."""
 
 Positive = Annotated[float, Field(gt=0.0)]
 
 
-class FactorSchema(Schema):
+class FreeSchema(AdjustedPlace):
     """``stages[].free[]``."""
 
-    part: str
-    property: Literal["youngs_modulus", "density"]
-    bounds: tuple[Positive, Positive] = (0.1, 10.0)
+    bounds: tuple[float, float] | None = None
+    tolerance: Positive | None = None
+
+    def factor(self) -> Factor:
+        """Return it as the engine takes it."""
+        of, name = self.place
+        low, high = self.bounds or (None, None)
+        return Factor(name, self.what, low, high, self.tolerance, of)
 
 
 class StageSchema(Schema):
@@ -33,13 +40,16 @@ class StageSchema(Schema):
 
     parts: list[str] = []
     frequency_hz: dict[Annotated[int, Field(ge=1, le=50)], Positive] = Field(min_length=1)
-    free: list[FactorSchema] = []
+    frequency_std: Annotated[float, Field(gt=0.0, le=1.0)] = 0.005
+    free: list[FreeSchema] = []
 
 
 class RefinementSchema(Schema):
     """A refinement file."""
 
     structure: StructureOrName
+    gravity: bool = True
+    feet: Literal["pinned", "own"] = "pinned"
     stages: list[StageSchema] = Field(min_length=1)
 
 
@@ -50,6 +60,19 @@ class RefinementConfig:
     path: Path
     structure: Structure
     stages: tuple[RefinementStage, ...]
+    gravity: bool = True
+    own_feet: bool = False
+
+    def refine(self) -> Refinement:
+        """Return what its stages make of its structure.
+
+        Raises
+        ------
+        InputError
+            Names file, stage and field.
+        """
+        with located(file=self.path):
+            return refine(self.structure, self.stages, gravity=self.gravity, own_feet=self.own_feet)
 
 
 def read_refinement(path: Path | str) -> RefinementConfig:
@@ -64,39 +87,64 @@ def read_refinement(path: Path | str) -> RefinementConfig:
     schema = validate(RefinementSchema, read_yaml(path, what="refinement file"), file=path)
     with located(file=path):
         structure = schema.structure.build(path.parent)
-        return RefinementConfig(path, structure, tuple(_stage(i, s) for i, s in enumerate(schema.stages)))
+        stages = tuple(_stage(i, s) for i, s in enumerate(schema.stages))
+    return RefinementConfig(path, structure, stages, schema.gravity, schema.feet == "own")
 
 
 def _stage(index: int, schema: StageSchema) -> RefinementStage:
-    with located(field=f"stages.{index}.free"):
-        factors = tuple(Factor(f.part, f.property, *f.bounds) for f in schema.free)
-    return RefinementStage(tuple(schema.parts), dict(schema.frequency_hz), factors)
+    factors = []
+    for i, free in enumerate(schema.free):
+        with located(field=f"stages.{index}.free.{i}"):
+            factors.append(free.factor())
+    targets = dict(schema.frequency_hz)
+    return RefinementStage(tuple(schema.parts), targets, tuple(factors), schema.frequency_std)
 
 
 def refinement_document(result: Refinement) -> dict[str, Any]:
-    """Return the document of ``jackettwin refine``."""
+    """Return the document of ``jackettwin refine``.
+
+    ``worse`` says of a mode that the stage left it further off than it was, ``worse_at_the_end`` that the
+    later stages did.
+    """
+    steel: dict[str, dict[str, float]] = {}
+    adjusted = []
+    for factor, value in result.changes:
+        if factor.of == "part" and factor.what in STEEL:
+            steel.setdefault(factor.name_of, {})[factor.what] = value
+        else:
+            adjusted.append({factor.of: factor.name_of, "property": factor.what, "value": value})
     return {
         "stages": [
             {
                 "factors": dict(fit.factors),
+                "std": {name: value if value < float("inf") else None for name, value in fit.std.items()},
+                "at_bound": list(fit.at_bound),
                 "modes": [
                     {
                         "mode": mode,
                         "target_hz": target,
                         "before_hz": before,
                         "after_hz": after,
-                        "worse": abs(after / target - 1.0) > abs(before / target - 1.0) + WORSE,
+                        "final_hz": last,
+                        "worse": _further(after, before, target),
+                        "worse_at_the_end": _further(last, after, target) and _further(last, before, target),
                     }
-                    for mode, target, before, after in zip(
+                    for mode, target, before, after, last in zip(
                         fit.modes,
                         fit.target_hz.tolist(),
                         fit.before_hz.tolist(),
                         fit.after_hz.tolist(),
+                        final.tolist(),
                         strict=True,
                     )
                 ],
             }
-            for fit in result.stages
+            for fit, final in zip(result.stages, result.final_hz, strict=True)
         ],
-        "steel": {part: dict(values) for part, values in result.factors.items()},
+        "steel": steel,
+        "adjusted": adjusted,
     }
+
+
+def _further(after_hz: float, before_hz: float, target_hz: float) -> bool:
+    return abs(after_hz / target_hz - 1.0) > abs(before_hz / target_hz - 1.0) + WORSE

@@ -15,3 +15,4 @@ from .state import (
     TwinState as TwinState,
     empty_state as empty_state,
 )
+from .stated_model import model_of_records as model_of_records, stated_model as stated_model

@@ -181,6 +181,8 @@ class TwinConfig:
     """Lowest and highest speed of the rotor in operation; None leaves it to ``update.rotor``."""
     assigned: tuple[int, ...] = ()
     """Modes that were found for targets that give a frequency and no mode."""
+    of_records: tuple[str, ...] = ()
+    """Keys of the model (``gravity``, …) that the file leaves to its records, which state them."""
 
     def require_records(self) -> None:
         """Refuse a record that is not there, before any other is read.
@@ -202,6 +204,16 @@ class TwinConfig:
     def __repr__(self) -> str:
         data = f"{len(self.targets)} targets" if self.targets else f"{len(self.records)} records"
         return f"TwinConfig({self.name!r}, {self.structure!r}, {data}, laws {', '.join(self.update.laws)})"
+
+    def modelling(self) -> dict[str, object]:
+        """Return how the structure is modelled, by the keys of a twin file."""
+        s = self.structure
+        return {
+            "gravity": self.gravity,
+            "beam": self.beam or s.beam,
+            "rotary_inertia": s.rotary_inertia if self.rotary_inertia is None else self.rotary_inertia,
+            "subdivide": self.subdivide or s.subdivide,
+        }
 
 
 def assembled(config: TwinConfig) -> Assembly:

@@ -27,6 +27,7 @@ from jackettwin.twin.config import (
     assembled,
 )
 from jackettwin.twin.schema import SupportSchema, TwinSchema
+from jackettwin.twin.stated_model import model_of_records
 from jackettwin.twin.targets_table import assigned_modes, read_targets_table
 from jackettwin.twin.water import WaterConfig
 from jackettwin.updating import (
@@ -65,7 +66,8 @@ def read_twin(source: str | Path, *, records_follow: bool = False) -> TwinConfig
     given_keys = _keys(path)
     if isinstance(given_keys, dict) and isinstance(given_keys.get("targets"), str):
         given_keys = {**given_keys, "targets": read_targets_table(path.parent / given_keys["targets"])}
-    schema = validate(TwinSchema, given_keys, file=path)
+    stated = _stated(given_keys, path.parent)
+    schema = validate(TwinSchema, {**stated, **given_keys} if stated else given_keys, file=path)
     with located(file=path):
         given = [key for key in ("records", "targets") if getattr(schema, key)]
         require(
@@ -77,7 +79,16 @@ def read_twin(source: str | Path, *, records_follow: bool = False) -> TwinConfig
         numbered = _with_numbers(schema, path)
         pairs = zip(schema.targets, numbered.targets, strict=True)
         assigned = tuple(after.number or 0 for before, after in pairs if before.is_unnamed)
-        return replace(_build(numbered, path), assigned=assigned)
+        return replace(_build(numbered, path), assigned=assigned, of_records=tuple(stated))
+
+
+def _stated(keys: object, folder: Path) -> dict[str, Any]:
+    """Return what records say of the model they come from and the twin file does not."""
+    records = keys.get("records") if isinstance(keys, dict) else None
+    if not isinstance(keys, dict) or not isinstance(records, list):
+        return {}
+    said = model_of_records(folder / name for name in records if isinstance(name, str))
+    return {key: value for key, value in said.items() if key not in keys}
 
 
 def _keys(path: Path) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from jackettwin.twin.sensor_polarity import sensor_polarity
 from jackettwin.updating import Counterpart, Feet, counterparts, pair
 from jackettwin.version import __version__
 
-TRUTH = ("true_modes", "true_support")
+TRUTH = ("true_modes", "true_support", "model")
 """What records of a known structure say of it in their metadata."""
 
 

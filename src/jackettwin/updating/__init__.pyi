@@ -42,20 +42,19 @@ from .posterior.laplace import laplace_draws as laplace_draws
 from .posterior.scatter import leg_scatter as leg_scatter
 from .posterior.smc import Posterior as Posterior
 from .problem import Problem as Problem, State as State
+from .refined_quantity import Factor as Factor
+from .refinement import (
+    Refinement as Refinement,
+    RefinementStage as RefinementStage,
+    fit_stage as fit_stage,
+    refine as refine,
+)
 from .search.solutions import (
     MOST_EVALUATIONS as MOST_EVALUATIONS,
     SearchMethod as SearchMethod,
     starting_points as starting_points,
 )
-from .steel import (
-    Factor as Factor,
-    Refinement as Refinement,
-    RefinementStage as RefinementStage,
-    Stage as Stage,
-    only_parts as only_parts,
-    refine as refine,
-    stages as stages,
-)
+from .steel import Stage as Stage, only_parts as only_parts, stages as stages
 from .tie_groups import SIDES as SIDES, SPLIT_LEGS as SPLIT_LEGS
 from .update import (
     Fit as Fit,

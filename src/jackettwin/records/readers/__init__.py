@@ -3,6 +3,7 @@
 from jackettwin.records.readers.pieces import read_record_pieces
 from jackettwin.records.readers.registry import (
     Format,
+    described_by,
     description_file,
     formats,
     read_record,
@@ -13,6 +14,7 @@ from jackettwin.records.readers.sep005 import from_sep005, to_sep005
 
 __all__ = [
     "Format",
+    "described_by",
     "description_file",
     "formats",
     "from_sep005",

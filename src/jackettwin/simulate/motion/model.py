@@ -83,11 +83,18 @@ class TrueMode:
 
 def build_model(scenario: Scenario) -> Model:
     """Return the asset of a scenario in still air, its tower tuned if that is asked."""
-    return asset_model(scenario.asset, sea=scenario.sea, yaw=scenario.heading_rad)
+    return asset_model(
+        scenario.asset, sea=scenario.sea, yaw=scenario.heading_rad, pushed=scenario.pushed_nodes
+    )
 
 
-def asset_model(asset: Asset, *, sea: Sea | None = None, yaw: float = 0.0) -> Model:
-    """Return an asset in still air, its nacelle turned by ``yaw`` [rad], its tower tuned if that is asked."""
+def asset_model(
+    asset: Asset, *, sea: Sea | None = None, yaw: float = 0.0, pushed: tuple[str, ...] = ()
+) -> Model:
+    """Return an asset in still air, its nacelle turned by ``yaw`` [rad], its tower tuned if that is asked.
+
+    Nodes that are ``pushed`` keep coordinates of their own: they yield to a force as the whole model does.
+    """
     top_node = asset.structure.top_node
     structure = turned_nacelle(asset.structure, yaw)
     assembly = assemble(
@@ -102,7 +109,7 @@ def asset_model(asset: Asset, *, sea: Sea | None = None, yaw: float = 0.0) -> Mo
         assembly = replace(assembly, mass=assembly.mass + water_mass(assembly, grid, sea.water).tocsc())
     own = own_damping(assembly, asset.rayleigh)
     system = build_system(assembly, asset.support, rayleigh=asset.rayleigh, spread=own)
-    small = reduced(system, below_hz=BAND_HZ, keep=tuple(assembly.dofs(top_node)))
+    small = reduced(system, below_hz=BAND_HZ, keep=_own_dofs(assembly, (top_node, *pushed)))
     rows = assembly.expand[assembly.mesh.node_dofs(top_node)]
     sources = (*("soil",) * (len(small.pencil.groups) - len(own)), *("structure",) * len(own))
     model = Model(assembly, small, np.asarray(rows @ small.basis), sources)
@@ -110,6 +117,12 @@ def asset_model(asset: Asset, *, sea: Sea | None = None, yaw: float = 0.0) -> Mo
         return model
     damping = tuned_damping(assembly, small, asset.coupled_damping)
     return model.with_forces_of_motion("structure", damping=damping, stiffness=np.zeros_like(damping))
+
+
+def _own_dofs(assembly: Assembly, nodes: tuple[str, ...]) -> tuple[int, ...]:
+    """Return the independent DOFs that move nodes, those of the leader of one on a rigid link."""
+    rows = np.concatenate([assembly.mesh.node_dofs(node) for node in nodes])
+    return tuple(int(dof) for dof in np.unique(assembly.expand[rows].indices))
 
 
 @dataclass(frozen=True)

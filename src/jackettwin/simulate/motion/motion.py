@@ -22,6 +22,7 @@ from jackettwin.response import (
 from jackettwin.simulate.motion.driving import Loads, loads_on
 from jackettwin.simulate.motion.ground import EVALUATIONS, CyclicFeet
 from jackettwin.simulate.motion.model import BAND_HZ, Model, TrueMode, true_modes
+from jackettwin.simulate.motion.pushing import Decrement, decrement, pushed, started
 from jackettwin.simulate.motion.rotor_feedback import march_with_rotor
 from jackettwin.simulate.scenario.scenario import Scenario, in_words_of
 
@@ -40,6 +41,7 @@ class Motion:
     modes : the linear model's
     signals : channels of the environment at the load steps, (n_steps + 1,) each
     rotor_speed_rad_s : zero where it stands, or there is none
+    decrement : of a decay after a release, if nothing else moves the asset
     """
 
     model: Model
@@ -50,6 +52,7 @@ class Motion:
     modes: tuple[TrueMode, ...]
     signals: dict[str, FloatArray] = field(default_factory=dict)
     rotor_speed_rad_s: float = 0.0
+    decrement: Decrement | None = None
 
 
 def simulate_motion(scenario: Scenario) -> Motion:
@@ -81,6 +84,8 @@ def _motion(scenario: Scenario) -> Motion:
         x0 = x0 + periodic_start(own, np.vstack([series.loads, series.loads[:1]]))
         t = np.arange(n_steps + 1, dtype=np.float64) * clock.load_step_s
         force = force + loads.wave.at(t)
+    push, displacement = pushed(scenario, loads.model, n_steps)
+    force, x0 = force + push, started(x0, displacement, loads.model, space)
     try:
         states, force = _answered(scenario, loads, space, hold, x0, force)
     except NumericalError as error:
@@ -100,6 +105,7 @@ def _motion(scenario: Scenario) -> Motion:
         true_modes(loads.model, below_hz=BAND_HZ, heading_rad=scenario.heading_rad),
         loads.signals,
         0.0 if loads.rotor is None else float(loads.rotor.angle[1]) / clock.load_step_s,
+        decrement(scenario, loads.model, space, states),
     )
 
 

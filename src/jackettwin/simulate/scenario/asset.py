@@ -38,7 +38,7 @@ class Asset:
     beam: str | None = None
     rotary_inertia: bool | None = None
     subdivide: int | None = None
-    gravity: bool = False
+    gravity: bool = True
     rayleigh: Rayleigh = Rayleigh()
     support_text: str | None = None
     """The support as a short form, if it was given so: parameters that an update should find again."""
@@ -77,7 +77,7 @@ class AssetSchema(Schema):
     beam: Literal["euler-bernoulli", "timoshenko"] | None = None
     rotary_inertia: bool | None = None
     subdivide: Annotated[int, Field(ge=1, le=1000)] | None = None
-    gravity: bool = False
+    gravity: bool = True
     damping: SteelDampingSchema = SteelDampingSchema()
     soil: GroundSchema | None = None
     piles: Placed[Pile] | None = None

@@ -11,6 +11,7 @@ from jackettwin.loads import WaterSchema
 from jackettwin.response import observation_matrix
 from jackettwin.simulate.scenario.air import RotorSchema, WindSchema, build_air, build_turbine
 from jackettwin.simulate.scenario.asset import AssetSchema
+from jackettwin.simulate.scenario.pushes import StartSchema, read_forces
 from jackettwin.simulate.scenario.scenario import Instrument, Scenario, SimulationClock
 from jackettwin.simulate.scenario.sea import CurrentSchema, WavesSchema, build_sea
 from jackettwin.structure import Structure, assemble
@@ -22,6 +23,8 @@ class ScenarioSchema(AssetSchema):
     water: WaterSchema | None = None
     waves: WavesSchema | None = None
     current: CurrentSchema | None = None
+    forces: str | None = None
+    start: StartSchema | None = None
     wind: WindSchema | None = None
     rotor: RotorSchema | None = None
     time: Placed[SimulationClock] = SimulationClock()
@@ -63,6 +66,13 @@ def scenario_from(data: Any, path: Path) -> Scenario:
         _check_instruments(instruments, structure)
         top_m = structure.nodes[structure.top_node][2] - structure.sea_level_z_m
         duration_s = schema.time.duration_s
+        pull = None if schema.start is None else schema.start.build(structure, duration_s=duration_s)
+        require(
+            pull is None or asset.foundation is None,
+            "a ground that unloads and reloads has no rest under a lasting pull",
+            field="start",
+            remedy="give the push in a file (forces), or take soil.hysteresis out",
+        )
         return Scenario(
             name=path.stem,
             path=path,
@@ -73,6 +83,8 @@ def scenario_from(data: Any, path: Path) -> Scenario:
             clock=schema.time,
             instruments=instruments or _standard_instruments(structure),
             sensor_seed=schema.sensor_seed,
+            forces=None if schema.forces is None else read_forces(path.parent / schema.forces, structure),
+            pull=pull,
         )
 
 

@@ -15,6 +15,7 @@ from jackettwin.files import Height, one_of
 from jackettwin.response import Sensor, sensor_kinds
 from jackettwin.simulate.scenario.air import Air, Turbine
 from jackettwin.simulate.scenario.asset import Asset
+from jackettwin.simulate.scenario.pushes import GivenForces, Pull
 from jackettwin.simulate.scenario.sea import Sea
 
 _MOST_SAMPLES = 1e7
@@ -133,6 +134,16 @@ class Scenario:
     clock: SimulationClock
     instruments: tuple[Instrument, ...]
     sensor_seed: int = 0
+    forces: GivenForces | None = None
+    """On nodes, from a file."""
+    pull: Pull | None = None
+    """A node that is pulled aside and let go."""
+
+    @property
+    def pushed_nodes(self) -> tuple[str, ...]:
+        """Nodes that forces act on which the scenario gives itself."""
+        nodes = [] if self.forces is None else [*self.forces.nodes]
+        return tuple(dict.fromkeys([*nodes, *([] if self.pull is None else [self.pull.node])]))
 
     @property
     def heading_rad(self) -> float:

@@ -1,0 +1,83 @@
+"""The state space of a structure on its supports with a name for every state, and its file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.axes import DOFS_PER_NODE
+from jackettwin.errors import require
+from jackettwin.files import atomic_path
+from jackettwin.response.motion.time import state_space
+from jackettwin.response.state import maxwell_branches
+from jackettwin.response.system import System
+
+DISPLACEMENTS = ("ux_m", "uy_m", "uz_m", "rx_rad", "ry_rad", "rz_rad")
+_FORCES = ("fx_n", "fy_n", "fz_n", "mx_n_m", "my_n_m", "mz_n_m")
+_MOST_STATES = 12_000
+"""A dense matrix of more would take over a gigabyte."""
+
+
+@dataclass(frozen=True)
+class StateModel:
+    """ẋ = Ax + Bf, thesis (3.12), and (7.2), (7.5) with viscoelastic supports.
+
+    Attributes
+    ----------
+    A : (n_states, n_states)
+    B : (n_states, n_inputs)
+    states : tuple of str
+        ``NODE.ux_m`` … of the free degrees of freedom, their velocities ``NODE.ux_m/s`` …, then the internal
+        variables of Maxwell branches, ``NODE.ux_m~1`` …: displacements between spring and dashpot.
+    inputs : tuple of str
+        ``NODE.fx_n`` … of the same degrees of freedom.
+    """
+
+    A: FloatArray
+    B: FloatArray
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+
+
+def state_model(system: System) -> StateModel:
+    """Return the full state space of a structure on its supports.
+
+    Raises
+    ------
+    InputError
+        If a support's law has no finite number of states, or there are too many states for a dense matrix.
+    """
+    pencil, assembly = system.pencil, system.assembly
+    branches = maxwell_branches(pencil)
+    size = 2 * pencil.n + sum(branch.dofs.size for branch in branches)
+    require(
+        size <= _MOST_STATES,
+        "has too many states for a dense matrix",
+        field="structure",
+        value=size,
+        allowed=f"up to {_MOST_STATES}",
+        remedy="make a superelement of it, or subdivide it less",
+    )
+    free = assembly.independent[system.free]
+    nodes = [assembly.mesh.node_names[dof // DOFS_PER_NODE] for dof in free]
+    kinds = [int(dof % DOFS_PER_NODE) for dof in free]
+    moved = [f"{node}.{DISPLACEMENTS[kind]}" for node, kind in zip(nodes, kinds, strict=True)]
+    inner = [f"{moved[dof]}~{k}" for k, branch in enumerate(branches, start=1) for dof in branch.dofs]
+    space = state_space(pencil)
+    return StateModel(
+        space.A,
+        space.B,
+        (*moved, *(f"{name}/s" for name in moved), *inner),
+        tuple(f"{node}.{_FORCES[kind]}" for node, kind in zip(nodes, kinds, strict=True)),
+    )
+
+
+def write_state_model(model: StateModel, path: Path) -> None:
+    """Write A, B, states and inputs as a NumPy archive (``.npz``), which ``numpy.load`` reads without pickle."""
+    with atomic_path(path) as temporary, temporary.open("wb") as stream:
+        np.savez_compressed(
+            stream, A=model.A, B=model.B, states=np.array(model.states), inputs=np.array(model.inputs)
+        )

@@ -1,0 +1,110 @@
+"""A quantity of a structure that a refinement may change, within bounds and a tolerance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from jackettwin.errors import require
+from jackettwin.structure import PROPERTIES, Structure, adjusted
+
+_WIDEST = 3.0
+"""Tolerances that bounds lie apart from where a quantity is, unless they are given."""
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A quantity of a structure that may change: a factor on it, or what is added to it.
+
+    Attributes
+    ----------
+    name_of : str
+        The part, the node of a body (``rna`` for the top), the spring or the foot (``all``).
+    what : str
+        A key of ``PROPERTIES`` of its kind.
+    low, high : float, optional
+        Bounds, both or none; by default 0.1 and 10 of a factor, and three tolerances from where it is.
+    tolerance : float, optional
+        Standard deviation of what is known of it: of ln of a factor, of what is added in its own unit.
+    of : {"part", "body", "spring", "foot"}
+    """
+
+    name_of: str
+    what: str
+    low: float | None = None
+    high: float | None = None
+    tolerance: float | None = None
+    of: Literal["part", "body", "spring", "foot"] = "part"
+
+    def __post_init__(self) -> None:
+        low, high = self.bounds
+        rest = 1.0 if self.is_factor else 0.0
+        require(
+            low < high and (low > 0.0 or not self.is_factor),
+            "bounds are reversed or not positive",
+            field="bounds",
+            value=[low, high],
+            allowed="0 < low < high" if self.is_factor else "low < high",
+            remedy="give [low, high]",
+        )
+        require(
+            low <= rest <= high,
+            "bounds leave out what the structure has now",
+            field="bounds",
+            value=[low, high],
+            allowed=f"around {rest:g}",
+            remedy="change the structure itself first, or widen them",
+        )
+
+    @property
+    def is_factor(self) -> bool:
+        """Whether it multiplies what is there; else it is added."""
+        return PROPERTIES[self.of][self.what].is_factor
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Lowest and highest value."""
+        if self.low is not None and self.high is not None:
+            return self.low, self.high
+        return _usual_bounds(self.what, self.is_factor, self.tolerance)
+
+    @property
+    def scale(self) -> float:
+        """The unit that it is searched in: of a factor, its logarithm."""
+        low, high = self.bounds
+        return 1.0 if self.is_factor else self.tolerance or 0.5 * (high - low)
+
+    @property
+    def name(self) -> str:
+        """``part.property``."""
+        return f"{self.name_of}.{self.what}"
+
+    @property
+    def key(self) -> str:
+        """Its name with its kind, which no other quantity of the structure shares."""
+        return f"{self.of} {self.name}"
+
+    def value(self, z: float) -> float:
+        """Return the factor, or what is added, at a place z of the search."""
+        return float(np.exp(z)) if self.is_factor else float(self.scale * z)
+
+    def place(self, value: float) -> float:
+        """Return the inverse of :meth:`value`."""
+        return float(np.log(value)) if self.is_factor else value / self.scale
+
+    def on(self, structure: Structure, value: float) -> Structure:
+        """Return the structure with it changed."""
+        return adjusted(structure, self.of, self.name_of, self.what, value)
+
+
+def _usual_bounds(what: str, is_factor: bool, tolerance: float | None) -> tuple[float, float]:
+    if tolerance is None:
+        require(
+            is_factor, "needs bounds or a tolerance", field="bounds", value=None, remedy="bounds: [low, high]"
+        )
+        return 0.1, 10.0
+    if is_factor:
+        return float(np.exp(-_WIDEST * tolerance)), float(np.exp(_WIDEST * tolerance))
+    return (0.0 if what == "added_mass_kg" else -_WIDEST * tolerance), _WIDEST * tolerance
