@@ -34,7 +34,8 @@ def test_the_list_of_public_names() -> None:
         "Channel", "IdentificationSettings", "Observation", "Posterior", "Rayleigh", "Record", "TwinModel",
         "TwinState", "advance", "assemble", "build_report", "build_system", "damped_modes", "empty_state",
         "follow", "identify", "jacket", "observe", "read_record", "read_structure", "read_support",
-        "read_twin", "run_twin", "state_model", "to_arviz", "to_dataframe", "to_xarray", "twin_model", "undamped_modes",
+        "read_twin", "run_twin", "state_model",
+        "to_arviz", "to_dataframe", "to_xarray", "twin_model", "undamped_modes",
         "write_record",
     ]  # fmt: skip
 

@@ -9,6 +9,7 @@ from jackettwin.cli import main
 
 FREQUENCIES = """\
 structure: jacket15
+gravity: false
 damping:
   rayleigh:
     ratio: 0.01

@@ -21,7 +21,7 @@ SEA = {"type": "airy", "height_m": 8.0, "period_s": 9.0, "direction_deg": 20.0}
 
 def test_calm_is_statics_and_waves_add_to_it(scenario_file) -> None:
     structure = read_structure("jacket15")
-    assembly = assemble(structure)
+    assembly = assemble(structure, gravity=True)
     rest = static_displacement(build_system(assembly, pinned(structure)), self_weight(assembly))
     still = {use.member: use for use in frame_use(assembly, rest, along=element_weight(assembly)).members}
     calm = scenario_uses(read_scenario(scenario_file(support="pinned"))).members

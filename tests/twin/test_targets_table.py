@@ -144,7 +144,7 @@ def test_frequencies_alone_are_given_their_modes_and_the_assignment_is_said(tmp_
 
 def test_a_frequency_that_is_no_mode_is_refused_with_the_nearest(tmp_path: Path) -> None:
     (tmp_path / "t.yaml").write_text(
-        "structure: jacket15\ntargets: [{frequency_hz: 0.182}, {frequency_hz: 0.09}]\n"
+        "structure: jacket15\ngravity: false\ntargets: [{frequency_hz: 0.182}, {frequency_hz: 0.09}]\n"
     )
     message = r"t\.yaml: targets\.frequency_hz: is near no mode .*0\.09.*nearest is mode 1"
     with pytest.raises(InputError, match=message):

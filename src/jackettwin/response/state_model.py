@@ -76,7 +76,7 @@ def state_model(system: System) -> StateModel:
 
 
 def write_state_model(model: StateModel, path: Path) -> None:
-    """Write A, B, states and inputs as a NumPy archive (``.npz``), which ``numpy.load`` reads without pickle."""
+    """Write A, B, states and inputs as a NumPy archive (``.npz``) that ``numpy.load`` reads."""
     with atomic_path(path) as temporary, temporary.open("wb") as stream:
         np.savez_compressed(
             stream, A=model.A, B=model.B, states=np.array(model.states), inputs=np.array(model.inputs)
