@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from jackettwin.decks.sacs import is_sacs, read_sacs
+from jackettwin.decks.structure_changes import AdjustedSchema, SteelSchema, changed_structure
 from jackettwin.decks.structure_yaml import RnaSchema, read_yaml_structure
 from jackettwin.decks.subdyn import read_subdyn
 from jackettwin.decks.tower import TowerSchema
@@ -60,21 +61,29 @@ def _read(source: str, folder: Path | None) -> Structure:
 
 
 class StructureChoice(Schema):
-    """A structure of a file with overrides; or a foundation of a file, and the tower on it."""
+    """A structure of a file with overrides; or a foundation of a file, and the tower on it.
+
+    ``steel`` and ``adjusted`` are what ``jackettwin refine`` prints.
+    """
 
     source: str | None = None
     foundation: str | None = None
     tower: TowerSchema | None = None
     rna: RnaSchema | None = None
+    steel: dict[str, SteelSchema] = {}
+    adjusted: list[AdjustedSchema] = []
 
     def read(self, folder: Path | None) -> Structure:
-        """Return the structure; its rotor–nacelle assembly is left to the caller.
+        """Return the structure, changed; its rotor–nacelle assembly is left to the caller.
 
         Raises
         ------
         InputError
             If it is not given in just one way, or its file is missing or wrong.
         """
+        return changed_structure(self._unchanged(folder), self.steel, self.adjusted)
+
+    def _unchanged(self, folder: Path | None) -> Structure:
         one = (self.source is None) != (self.foundation is None)
         remedy = "source: FILE, or foundation: FILE with tower: {…}"
         require(one, "give a structure in one way", field="structure", remedy=remedy)

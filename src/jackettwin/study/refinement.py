@@ -8,10 +8,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from jackettwin.decks import AdjustedPlace
 from jackettwin.errors import located
 from jackettwin.files import Schema, read_yaml, validate
 from jackettwin.structure import Structure
-from jackettwin.twin.schema import AdjustedPlace, StructureOrName
+from jackettwin.twin.schema import StructureOrName
 from jackettwin.updating import Factor, Refinement, RefinementStage, refine
 
 WORSE = 1e-3
@@ -86,7 +87,7 @@ def read_refinement(path: Path | str) -> RefinementConfig:
     path = Path(path)
     schema = validate(RefinementSchema, read_yaml(path, what="refinement file"), file=path)
     with located(file=path):
-        structure = schema.structure.build(path.parent)
+        structure = schema.structure.read(path.parent)
         stages = tuple(_stage(i, s) for i, s in enumerate(schema.stages))
     return RefinementConfig(path, structure, stages, schema.gravity, schema.feet == "own")
 

@@ -314,7 +314,7 @@ def _dashpots(update: UpdateSettings) -> tuple[str, ...]:
 
 
 def _structure(schema: TwinSchema, folder: Path) -> Structure:
-    structure = schema.structure.build(folder)
+    structure = schema.structure.read(folder)
     rna = schema.rna or schema.structure.rna
     return structure if rna is None else rna.stand_on(structure, folder=folder)
 

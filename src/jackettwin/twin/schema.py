@@ -5,19 +5,18 @@ from __future__ import annotations
 from dataclasses import replace
 from datetime import UTC, datetime
 from itertools import pairwise
-from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import AwareDatetime, BeforeValidator, Field
 
 from jackettwin.decks import RnaSchema, StructureChoice
-from jackettwin.errors import InputError, located, look_up, require
+from jackettwin.errors import InputError, require
 from jackettwin.files import Schema, one_of
 from jackettwin.loads import WaterSchema
 from jackettwin.quantities import plain_unit, vibration_of
 from jackettwin.records import Unsaid, read_zone
 from jackettwin.response import Sensor, sensor_kinds
-from jackettwin.structure import PROPERTIES, RayleighSchema, Structure, adjusted as with_property
+from jackettwin.structure import RayleighSchema
 from jackettwin.twin.calibration import Calibration, Calibrations
 from jackettwin.twin.config import GivenRelaxation, Positive, UpdateSettings, WatchSettings
 from jackettwin.twin.operation import OperationRule
@@ -30,70 +29,8 @@ _OF_RELAXATIONS = {"rate_rad_s", "rate_std_rad_s"}
 _STANDARD_DEVIATIONS = {"frequency_hz": "frequency_std_hz", "damping_ratio": "damping_ratio_std"}
 
 
-class SteelSchema(Schema):
-    """Factors on the stiffness (E and G) and the density of a part."""
-
-    youngs_modulus: Positive = 1.0
-    density: Positive = 1.0
-
-
-class AdjustedPlace(Schema):
-    """Which property of a part, of the bodies on a node (``rna``), of a spring or a foot (``all``)."""
-
-    part: str | None = None
-    body: str | None = None
-    spring: str | None = None
-    foot: str | None = None
-    what: str = Field(alias="property")
-
-    @property
-    def place(self) -> tuple[Literal["part", "body", "spring", "foot"], str]:
-        """What it is of, and its name.
-
-        Raises
-        ------
-        InputError
-            If none or several are named, or there is no such property of it.
-        """
-        kinds: tuple[Literal["part", "body", "spring", "foot"], ...] = ("part", "body", "spring", "foot")
-        given = [(of, str(getattr(self, of))) for of in kinds if getattr(self, of) is not None]
-        require(
-            len(given) == 1,
-            "names none or several of part, body, spring and foot",
-            value=[of for of, _ in given],
-            allowed="one of them",
-            remedy="e.g. {part: jacket, property: density}",
-        )
-        look_up(PROPERTIES[given[0][0]], self.what, "property", field="property")
-        return given[0]
-
-
-class AdjustedSchema(AdjustedPlace):
-    """``structure.adjusted[]``: the factor on a property, or what is added to it."""
-
-    value: float
-
-
-class RefinedStructure(StructureChoice):
-    """A structure with overrides; ``steel`` and ``adjusted`` are what ``jackettwin refine`` prints."""
-
-    steel: dict[str, SteelSchema] = {}
-    adjusted: list[AdjustedSchema] = []
-
-    def build(self, folder: Path) -> Structure:
-        """Return the structure, refined; its rotor–nacelle assembly is left to the caller."""
-        structure = self.read(folder)
-        for part, factors in self.steel.items():
-            with located(field="structure.steel"):
-                structure = structure.with_material(part, **factors.model_dump())
-        for i, change in enumerate(self.adjusted):
-            with located(field=f"structure.adjusted.{i}"):
-                structure = with_property(structure, *change.place, change.what, change.value)
-        return structure
-
-
 StructureOrName = Annotated[
-    RefinedStructure, BeforeValidator(lambda given: {"source": given} if isinstance(given, str) else given)
+    StructureChoice, BeforeValidator(lambda given: {"source": given} if isinstance(given, str) else given)
 ]
 
 
