@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import located, require
-from jackettwin.response import UndampedModes, track_modes
+from jackettwin.errors import require
+from jackettwin.response import UndampedModes
 from jackettwin.structure import Assembly, Structure, assemble, check
 from jackettwin.updating.band import numbered_modes
 
