@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from jackettwin.verify import chapters, open_questions, supports
+from jackettwin.verify import chapters, open_questions, supports, tables
 from jackettwin.verify.rows import Computed, Row, published, rows_of
 
 __all__ = ["STEPS", "Row", "published", "published_rows"]
@@ -14,6 +14,7 @@ _CHAPTERS: dict[str, Callable[[], Computed]] = {
     "chapter 3: cantilever": chapters.cantilever,
     "chapter 4: viscoelasticity": chapters.viscoelasticity,
     "chapter 5: jacket": chapters.jacket,
+    "chapters 3 and 5: one geometry for all tables": tables.tables,
     "chapter 8: the thesis's own parameters": supports.own_parameters,
     "chapter 8: fit kelvin-voigt to Table 6.1": partial(supports.fit, "kelvin-voigt"),
     "chapter 8: fit zener to Table 6.1": partial(supports.fit, "zener"),
