@@ -49,9 +49,13 @@ def test_each_of_the_74_is_there_once_with_its_state() -> None:
     sorted({code for _, code, _ in CODE if code.startswith("jackettwin ")}),
     ids=lambda text: text[:60],
 )
-def test_every_command_can_be_given(command: str) -> None:
-    """Parsed with its options, choices and ranges, as the terminal would; nothing is computed."""
+def test_every_command_can_be_given(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Parsed with its options, choices and ranges, beside the user's own files; nothing is computed."""
+    monkeypatch.chdir(tmp_path)
     _, name, *arguments = shlex.split(command)
+    for own in (tmp_path / text for text in arguments if text.endswith((".csv", ".parquet", ".yaml"))):
+        own.parent.mkdir(exist_ok=True)
+        own.touch()
     found = main.get_command(click.Context(main), name)
     assert found is not None, f"no command {name}"
     found.make_context(name, arguments)
