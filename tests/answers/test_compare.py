@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from jackettwin.answers.compare import change, compare
+from jackettwin.answers.compare import change, changed_inputs, compare, shared_records
 from jackettwin.cli import main
 
 
@@ -72,3 +72,31 @@ def test_the_command_names_what_changed_and_refuses_what_is_no_run(tmp_path: Pat
     assert changes[0]["relative_change"] == pytest.approx(0.05)
     refused = CliRunner().invoke(main, ["compare", a, str(tmp_path / "c")])
     assert refused.exit_code == 2 and "no such run" in refused.stderr
+
+
+def made(records: str, twin: str = "t", said: str = "parked") -> dict:
+    hashes = {f"SHA-256 of {name}.parquet": name for name in records}
+    return {"provenance": {"SHA-256 of twin.yaml": twin, "made": "today", **hashes}, "assumptions": [said]}
+
+
+def test_errors_of_records_that_both_runs_have_cancel() -> None:
+    """A mean of n records and one of these and m − n more: var of the difference is σ²(1/n − 1/m)."""
+    a, b = made("ab"), made("abcdefgh")
+    assert shared_records(a, b) == pytest.approx(0.5)
+    std = 0.01
+    found = change("f", "Hz", (0.2, std / 2**0.5), (0.202, std / 8**0.5), shared_records(a, b))
+    assert found.sigmas == pytest.approx(log(1.01) / (std * (1 / 2 - 1 / 8) ** 0.5))
+    assert shared_records(a, made("xy")) == 0.0 and shared_records({}, a) == 0.0
+    # the same records on other ground: no chance parts them
+    same = change("k", "N/m", (1e9, 0.1), (1.01e9, 0.1), shared_records(a, a))
+    assert same.verdict == "by other inputs: the records are the same"
+
+
+def test_every_input_that_differs_is_named() -> None:
+    a, b = made("ab"), made("bc", twin="u", said="model error 1 %")
+    found = {(i.what, i.before, i.after) for i in changed_inputs(a, b)}
+    assert found == {
+        ("twin.yaml", "t", "u"), ("a.parquet", "a", None), ("c.parquet", None, "c"),
+        ("assumption", "parked", None), ("assumption", None, "model error 1 %"),
+    }  # fmt: skip
+    assert changed_inputs(a, a) == ()

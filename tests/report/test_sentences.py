@@ -174,3 +174,35 @@ def test_numbers_keep_their_units() -> None:
         percent_words(Span(0.0055, 0.0054, 0.0056)) == "0.55 %"
     )  # given, not found: its interval says nothing
     assert percent_words(Span(0.027, 0.02, 0.036)) == "2.7 % (2 to 3.6 %)"
+
+
+def test_a_mode_that_was_not_fitted_and_is_off_is_named() -> None:
+    """Fore-aft 3, 1.2 % off and in no fit, stood in no sentence of the first page."""
+    third = replace(
+        MODE, label="fore_aft_3", fits_frequency=False, measured_hz=Span(2.0, 1.995, 2.005),
+        model_hz=Span(2.024, 2.02, 2.03),
+    )  # fmt: skip
+    shorts = sentences(replace(ANSWERS, modes=(MODE, third))).questions[0].short
+    assert "Updated, the model puts fore-aft 3 1.2 % above what was measured; it was not fitted." in shorts
+    met = replace(third, model_hz=Span(2.0, 1.99, 2.01))
+    assert not any(
+        "was not fitted" in text for text in sentences(replace(ANSWERS, modes=(met,))).questions[0].short
+    )
+
+
+def test_shares_of_damping_are_of_what_was_measured() -> None:
+    """The steel was said to give 66 %, of the model's 0.82 % and not of the measured 1.15 %."""
+    sources = {"structure": Span(0.0054), "soil": Span(0.0028)}
+    mode = replace(
+        MODE, measured_damping=Span(0.0115, 0.006, 0.02), model_damping=Span(0.0082), sources=sources
+    )
+    said = sentences(replace(ANSWERS, modes=(mode,)))
+    assert "Of the damping, the steel gives 47 % in fore-aft 1." in said.headline
+    owners = next(q for q in said.questions if q.title == "Whose damping is it?").short
+    assert "Of the damping measured in fore-aft 1, 29 % has no source in the model." in owners
+
+
+def test_what_does_not_overlap_is_not_where_the_design_says() -> None:
+    near = replace(MODE, measured_hz=Span(0.2, 0.199, 0.201), design_hz=Span(0.203, 0.202, 0.204))
+    assert near.as_designed is False and near.near_design is True
+    assert "nearly as designed" in sentences(replace(ANSWERS, modes=(near,))).headline[0]

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from math import hypot, log
+from math import hypot, log, sqrt
 from typing import Any
 
 from jackettwin.answers.result import Span
 
+HASHES = "SHA-256 of "
+"""How a run's provenance names the content of its files."""
 CHANGED = 2.0
 """Standard deviations of the difference from which a change is called one: by chance once in twenty."""
+_NO_OTHER_DATA = 0.01
+"""Share of both uncertainties below which nothing is left of that of the difference."""
 
 
 @dataclass(frozen=True)
@@ -25,6 +29,8 @@ class ChangedNumber:
         ln after/before.
     sigmas : float or None
         That, over the standard deviation of the difference; None where an uncertainty is not known.
+    same_data : bool
+        Whether both are of the same records, so that chance does not part them.
     """
 
     what: str
@@ -33,6 +39,7 @@ class ChangedNumber:
     after: float | None
     log_change: float | None
     sigmas: float | None
+    same_data: bool = False
 
     @property
     def verdict(self) -> str:
@@ -41,17 +48,66 @@ class ChangedNumber:
             return "gone" if self.after is None else "new"
         if self.before == self.after:
             return "the same"
+        if self.same_data:
+            return "by other inputs: the records are the same"
         if self.sigmas is None:
             return "not known: no uncertainty"
         return "changed" if abs(self.sigmas) >= CHANGED else "within its uncertainty"
 
 
+@dataclass(frozen=True)
+class ChangedInput:
+    """An input that two runs do not share; None where a run does not have it."""
+
+    what: str
+    before: str | None
+    after: str | None
+
+
+def changed_inputs(a: Mapping[str, Any], b: Mapping[str, Any]) -> tuple[ChangedInput, ...]:
+    """Return every input that differs: files by their content, what was assumed, the version of the code."""
+    found = [
+        ChangedInput(name.removeprefix(HASHES), before.get(name), after.get(name))
+        for before, after in [(_hashes(a), _hashes(b))]
+        for name in dict.fromkeys((*before, *after))
+        if before.get(name) != after.get(name)
+    ]
+    mine, theirs = (tuple(document.get("assumptions") or ()) for document in (a, b))
+    found += [ChangedInput("assumption", said, None) for said in mine if said not in theirs]
+    found += [ChangedInput("assumption", None, said) for said in theirs if said not in mine]
+    versions = [document.get("code_version") for document in (a, b)]
+    if versions[0] != versions[1]:
+        found.append(ChangedInput("jackettwin", *versions))
+    return tuple(found)
+
+
+def _hashes(document: Mapping[str, Any]) -> dict[str, str]:
+    made = document.get("provenance") or {}
+    return {name: str(value) for name, value in made.items() if name.startswith(HASHES)}
+
+
+def shared_records(a: Mapping[str, Any], b: Mapping[str, Any]) -> float:
+    """Return the correlation that two means have by the records that both are of: n/√(n_a n_b).
+
+    Records of about one length weigh alike. It is 0 where runs do not tell their records.
+    """
+    mine, theirs = (
+        {value for name, value in _hashes(document).items() if not name.endswith((".yaml", ".yml"))}
+        for document in (a, b)
+    )
+    return len(mine & theirs) / sqrt(len(mine) * len(theirs)) if mine and theirs else 0.0
+
+
 def compare(a: Mapping[str, Any], b: Mapping[str, Any]) -> tuple[ChangedNumber, ...]:
-    """Return what two runs say of the same modes and parameters, in the order of the first."""
+    """Return what two runs say of the same modes and parameters, in the order of the first.
+
+    The errors of records that both runs have are the same, and cancel.
+    """
+    shared = shared_records(a, b)
     return (
-        *_paired(_modes(a, "frequency_hz"), _modes(b, "frequency_hz"), "Hz"),
-        *_paired(_modes(a, "damping_ratio"), _modes(b, "damping_ratio"), "-"),
-        *_parameters(a, b),
+        *_paired(_modes(a, "frequency_hz"), _modes(b, "frequency_hz"), "Hz", shared),
+        *_paired(_modes(a, "damping_ratio"), _modes(b, "damping_ratio"), "-", shared),
+        *_parameters(a, b, shared),
     )
 
 
@@ -59,12 +115,16 @@ _Value = tuple[float, float | None]
 """A number and the standard deviation of its logarithm."""
 
 
-def _paired(a: Mapping[str, _Value], b: Mapping[str, _Value], unit: str) -> Iterable[ChangedNumber]:
-    return [change(name, unit, a.get(name), b.get(name)) for name in dict.fromkeys((*a, *b))]
+def _paired(
+    a: Mapping[str, _Value], b: Mapping[str, _Value], unit: str, shared: float
+) -> Iterable[ChangedNumber]:
+    return [change(name, unit, a.get(name), b.get(name), shared) for name in dict.fromkeys((*a, *b))]
 
 
-def change(what: str, unit: str, before: _Value | None, after: _Value | None) -> ChangedNumber:
-    """Return one number in two runs.
+def change(
+    what: str, unit: str, before: _Value | None, after: _Value | None, shared: float = 0.0
+) -> ChangedNumber:
+    """Return one number in two runs, whose errors have a correlation by what the runs share.
 
     >>> change("f", "Hz", (0.2, 0.003), (0.21, 0.004)).sigmas
     9.758...
@@ -73,8 +133,11 @@ def change(what: str, unit: str, before: _Value | None, after: _Value | None) ->
         return ChangedNumber(what, unit, before and before[0], after and after[0], None, None)
     (x, s), (y, t) = before, after
     moved = log(y / x) if x > 0.0 and y > 0.0 else None
-    spread = None if s is None or t is None else hypot(s, t)
-    return ChangedNumber(what, unit, x, y, moved, moved / spread if moved is not None and spread else None)
+    spread = None if s is None or t is None else sqrt(max(s * s + t * t - 2.0 * shared * s * t, 0.0))
+    if spread is not None and spread < _NO_OTHER_DATA * hypot(s or 0.0, t or 0.0):
+        spread = None
+    sigmas = moved / spread if moved is not None and spread else None
+    return ChangedNumber(what, unit, x, y, moved, sigmas, shared > 1.0 - 1e-9)
 
 
 def _modes(document: Mapping[str, Any], quantity: str) -> dict[str, _Value]:
@@ -89,7 +152,7 @@ def _modes(document: Mapping[str, Any], quantity: str) -> dict[str, _Value]:
     return found
 
 
-def _parameters(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterable[ChangedNumber]:
+def _parameters(a: Mapping[str, Any], b: Mapping[str, Any], shared: float) -> Iterable[ChangedNumber]:
     """Return the ground under the law that the second run recommends, else under its first that both have."""
     laws = [{u["law"]: u for u in document.get("updates", [])} for document in (a, b)]
     wanted = (b.get("answers") or {}).get("law")
@@ -103,7 +166,7 @@ def _parameters(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterable[ChangedN
     before, after = ({name: _known(p) for name, p in one[law]["parameters"].items()} for one in laws)
     units = {name: p.get("unit", "") for one in laws for name, p in one[law]["parameters"].items()}
     return [
-        change(f"{name} ({law})", units[name], before.get(name), after.get(name))
+        change(f"{name} ({law})", units[name], before.get(name), after.get(name), shared)
         for name in dict.fromkeys((*before, *after))
     ]
 

@@ -83,7 +83,14 @@ class ModeAnswer:
 
     @property
     def as_designed(self) -> bool | None:
-        """Whether the measured frequency lies in what design and model error allow; None without either."""
+        """Whether measured frequency and design overlap, each with its interval; None without either."""
+        if self.measured_hz is None or self.design_hz is None:
+            return None
+        return self.measured_hz.meets(self.design_hz)
+
+    @property
+    def near_design(self) -> bool | None:
+        """Whether the model's own error may part the measured frequency from the design."""
         design = self.design_hz
         if self.measured_hz is None or design is None:
             return None

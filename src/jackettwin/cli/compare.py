@@ -26,10 +26,10 @@ def compare_command(a: Path, b: Path) -> Reply:
 
     A and B are folders that `jackettwin run` wrote, or their result.json.
     """
-    from jackettwin.answers.compare import compare
+    from jackettwin.answers.compare import changed_inputs, compare
 
     before, after = _result(a), _result(b)
-    changes = compare(before, after)
+    changes, inputs = compare(before, after), changed_inputs(before, after)
     document = {
         "changes": [
             {
@@ -40,10 +40,13 @@ def compare_command(a: Path, b: Path) -> Reply:
             }
             for c in changes
         ],
+        "inputs": [{"what": i.what, "before": i.before, "after": i.after} for i in inputs],
         "headline": {"before": before.get("headline"), "after": after.get("headline")},
     }
 
     def show() -> None:
+        for i in inputs:
+            say(f"Other input: {i.what}: {i.before or 'none'} → {i.after or 'none'}")
         say(_summary(changes))
         for name, run in ((a, before), (b, after)):
             if not ((run.get("answers") or {}).get("fit") or {}).get("fits", True):

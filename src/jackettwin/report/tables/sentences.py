@@ -127,12 +127,15 @@ def _stiff_enough(a: Answers) -> list[str]:
         worst = min(tight, key=lambda c: c.margin)
         where = "lies inside" if worst.margin <= 0.0 else f"comes within {100 * worst.margin:.0f} % of"
         return [f"{words(worst.label).capitalize()} {where} the {worst.order} range of the rotor."]
-    off = [m for m in first if m.as_designed is False]
+    off = [m for m in first if m.near_design is False]
     if off:
         return [f"The model is not as designed: {listed([_against_design(m) for m in off])}."]
     clear = _clear(a, {m.label for m in first})
     if all(m.as_designed for m in first):
         return [f"The foundation is stiff enough: {names} {_be(first)} as designed{clear}."]
+    if all(m.near_design for m in first):
+        beside = listed([_against_design(m) for m in first if not m.as_designed])
+        return [f"The foundation is nearly as designed: {beside}, within the model's own error{clear}."]
     higher = any(_softening(m) < 0.0 for m in first)
     sides = {_side(m) for m in first}
     each = [f"{_moved(m)} {_side(m)}" if len(sides) > 1 else _moved(m) for m in first]
@@ -233,11 +236,11 @@ def _shares(m: ModeAnswer) -> dict[str, float]:
     """Return each source's part of a mode's damping ratio, and what is measured beyond all of them."""
     parts = {source: span.value for source, span in m.sources.items()}
     beyond = m.measured_damping.value - sum(parts.values()) if m.measured_damping is not None else 0.0
-    return parts | ({_UNEXPLAINED: beyond} if parts and beyond > 0.0 and _disagrees(m) else {})
+    return parts | ({_UNEXPLAINED: beyond} if parts and beyond > 0.0 else {})
 
 
 def _owner_headline(a: Answers) -> str:
-    """Return which source gives more than half of the damping of each first bending mode."""
+    """Return which source gives more than half of the measured damping of each first bending mode."""
     by_owner: dict[str, list[str]] = {}
     for m in _firsts(a):
         shares = _shares(m) if m.measured_damping is not None else {}
@@ -245,11 +248,25 @@ def _owner_headline(a: Answers) -> str:
             if part > 0.5 * sum(shares.values()):
                 share = f"{100 * part / sum(shares.values()):.0f} % in {words(m.label)}"
                 by_owner.setdefault(owner, []).append(share)
+    if not by_owner:
+        by_owner = _largest(a)
     parts = [
         f"{listed(of)} is unexplained" if owner == _UNEXPLAINED else f"{_SOURCES[owner]} gives {listed(of)}"
         for owner, of in by_owner.items()
     ]
     return f"Of the damping, {listed(parts)}." if parts else ""
+
+
+def _largest(a: Answers) -> dict[str, list[str]]:
+    """Return the source that gives most of the measured damping of each first bending mode."""
+    found: dict[str, list[str]] = {}
+    for m in _firsts(a):
+        shares = _shares(m) if m.measured_damping is not None else {}
+        if shares:
+            owner = max(shares, key=lambda name: shares[name])
+            share = f"{100 * shares[owner] / sum(shares.values()):.0f} % in {words(m.label)}"
+            found.setdefault(owner, []).append(share)
+    return found
 
 
 def _next_headline(a: Answers) -> str:
@@ -273,8 +290,7 @@ def _model(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
         short.append(f"{good} of {count(len(judged), 'measured mode')} {lie} where the design says: {first}.")
         short += [f"{_against_design(m).capitalize()}." for m in judged if not m.as_designed]
         more.append(
-            "The design is the model on the foundation that the twin's priors state, within their 90 % and "
-            "the model's own error."
+            "The design is the model on the foundation that the twin's priors state, within their 90 %."
         )
     elif a.modes:
         beside = [
@@ -282,6 +298,7 @@ def _model(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
         ]
         short.append(f"The twin states no design foundation (update.priors). Measured: {listed(beside)}.")
     short += [] if a.fit is None else [fit_sentence(a.fit)]
+    short += _off_unfitted(a)
     short += _margins(a)
     misses = [
         (abs(m.model_hz.value / m.measured_hz.value - 1.0), m.label)
@@ -293,6 +310,20 @@ def _model(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
         how = "meets every fitted frequency within" if a.fits else "misses fitted frequencies by up to"
         more.append(f"Updated, the model {how} {100 * worst:.1f} % ({words(label)}).")
     return tuple(short), tuple(more)
+
+
+def _off_unfitted(a: Answers) -> list[str]:
+    """Name the modes that were measured, not fitted, and that the updated model does not meet."""
+    found = []
+    for m in a.modes:
+        if m.fits_frequency or m.model_hz is None or m.measured_hz is None:
+            continue
+        off = m.model_hz.value / m.measured_hz.value - 1.0
+        if abs(off) > _NOTHING and not m.measured_hz.meets(m.model_hz):
+            side = "above" if off > 0.0 else "below"
+            found.append(f"{words(m.label)} {100.0 * abs(off):.1f} % {side}")
+    what = "it was not fitted" if len(found) == 1 else "they were not fitted"
+    return [f"Updated, the model puts {listed(found)} what was measured; {what}."] if found else []
 
 
 def _hertz(span: Span | None) -> str:
@@ -365,6 +396,13 @@ def _law(a: Answers) -> list[str]:
 
 def _owners(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     short = [_budget_words(m) for m in _firsts(a) if m.sources and m.measured_damping is not None]
+    for m in _firsts(a):
+        beyond = _shares(m).get(_UNEXPLAINED, 0.0)
+        if m.measured_damping is not None and beyond > SMALL * m.measured_damping.value:
+            share = 100.0 * beyond / m.measured_damping.value
+            short.append(
+                f"Of the damping measured in {words(m.label)}, {share:.0f} % has no source in the model."
+            )
     missing = [
         _SOURCES[s] for s in ("rotor", "water") if a.modes and all(s not in m.sources for m in a.modes)
     ]
