@@ -101,10 +101,10 @@ def test_a_swapped_sign_is_found_and_turned_back(i: int, tower: SimpleNamespace)
     """In every one of 8 channels of 5 records, second bending mode included."""
     for seed in range(5):
         record = tower.record(seed)
-        swapped = with_row(record, i, -record.data[i])
-        quality = assess(swapped)
+        reversed_channels = with_row(record, i, -record.data[i])
+        quality = assess(reversed_channels)
         assert faults_of(quality) == {(record.channels[i].name, "sign_turned")}
-        assert np.array_equal(repair(swapped, quality).data, record.data)
+        assert np.array_equal(repair(reversed_channels, quality).data, record.data)
 
 
 def test_a_sensor_mounted_backwards_and_described_so_is_sound(tower: SimpleNamespace) -> None:
@@ -116,11 +116,11 @@ def test_a_sensor_mounted_backwards_and_described_so_is_sound(tower: SimpleNames
 
 def test_with_two_sensors_nobody_knows_which_is_wrong(tower: SimpleNamespace) -> None:
     record = tower.record(8).select(["acc_144_x", "acc_77_x"])
-    swapped = with_row(record, 0, -record.data[0])
-    quality = assess(swapped)
+    reversed_channels = with_row(record, 0, -record.data[0])
+    quality = assess(reversed_channels)
     assert len(quality.findings) == 1 and quality.findings[0].code == "sign_unclear"
     assert not quality.findings[0].repaired
-    assert np.array_equal(repair(swapped, quality).data, swapped.data)
+    assert np.array_equal(repair(reversed_channels, quality).data, reversed_channels.data)
 
 
 def test_strong_second_bending_is_no_swapped_sign(tower: SimpleNamespace) -> None:

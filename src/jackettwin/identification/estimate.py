@@ -1,4 +1,4 @@
-"""What an identification returns: modes, the poles they came from, the spectra and what was assumed."""
+"""Results of an identification: modes, poles, spectra and settings."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from jackettwin.records import Channel
 
 @dataclass(frozen=True)
 class ModalEstimate:
-    """One identified mode. What is not known is None.
+    """One identified mode; unknown values are None.
 
     Attributes
     ----------
@@ -24,13 +24,13 @@ class ModalEstimate:
     damping_ratio : float
         −Re λ/|λ|.
     mode_shape : (n_channels,) complex
-        1 at the largest entry. In the units of the channels; of channels of different kinds, as velocities
-        beside accelerations, the accelerations they imply.
+        1 at the largest entry, in the units of the channels. If their kinds differ, e.g.
+        velocities beside accelerations, the entries are the implied accelerations.
     frequency_std_hz, damping_ratio_std : float or None
     frequency_interval_95, damping_ratio_interval_95 : (low, high) or None
-        On the logarithms of frequency and damping.
+        Computed on the logarithms of frequency and damping.
     damping_ratio_cov_limit : float
-        Coefficient of variation no method can beat on this record: 1/√(2πζfT) (Au 2014).
+        Smallest coefficient of variation of the damping on this record: 1/√(2πζfT) (Au 2014).
     log_covariance : (2, 2) or None
         Covariance of (ln f, ln ζ).
     mode_shape_std : (n_channels,) or None
@@ -40,13 +40,13 @@ class ModalEstimate:
     order_share : float
         Share of the model orders in which the mode appears, from the first one on.
     method : str
-        Where the numbers come from.
+        Method that gave the numbers.
     unrefined : ModalEstimate or None
-        What the subspace method said of a mode whose numbers are of maximum likelihood.
+        The subspace estimate of a mode refined by maximum likelihood.
     cramer_rao_log_std : (2,) or None
-        Least standard deviations of ln f and ln ζ any unbiased method can have, of the fitted spectral model.
+        Smallest standard deviations of ln f and ln ζ of any unbiased method, for the fitted spectral model.
     mode_shape_unaligned : (n_channels,) complex or None
-        The shape as identified, of a mode whose shape was turned within the plane of a close pair.
+        The shape as identified, if it was rotated within the plane of a close pair.
     status : ModeStatus
         ``"ok"``, ``"damping unknown"``, ``"doubtful"`` or ``"not a mode: …"``.
     reasons : tuple of Finding
@@ -93,7 +93,7 @@ class RealPole:
         a = −λ [1/s]; a / 2π lies inside the band of the identification.
     rate_std_rad_s : float
     rate_interval_95 : (low, high)
-        On the logarithm of the rate.
+        Computed on the logarithm of the rate.
     mode_shape : (n_channels,) complex
         In the units of the channels, 1 at the largest entry.
     order_share : float
@@ -181,7 +181,7 @@ class Spectrum:
     density : (n_channels, n_frequencies)
         In the channel's unit squared per Hz.
     singular_values : (n_channels, n_frequencies)
-        Of the spectral matrix of the channels scaled to unit variance [1/Hz], falling.
+        Singular values of the spectral matrix of the channels scaled to unit variance [1/Hz], descending.
     """
 
     frequencies_hz: FloatArray
@@ -191,7 +191,7 @@ class Spectrum:
 
 @dataclass(frozen=True)
 class ResolvedSettings:
-    """The numbers an identification was run with."""
+    """Settings with which an identification was run."""
 
     lowest_frequency_hz: float
     highest_frequency_hz: float
@@ -202,7 +202,7 @@ class ResolvedSettings:
 
 
 _SHOWN = 8
-"""Modes and records that a result names when it is printed."""
+"""Number of modes and records named when a result is printed."""
 
 
 @dataclass(frozen=True)
@@ -218,15 +218,15 @@ class Identification:
     settings: ResolvedSettings
     duration_s: float
     warnings: tuple[str, ...] = ()
-    """What to beware of, the findings included."""
+    """Warnings, including the findings."""
     findings: tuple[Finding, ...] = ()
-    """What the refinement could not do."""
+    """Findings of the refinement."""
     notes: tuple[str, ...] = ()
-    """What was done to the modes, for those who ask; nothing to beware of."""
+    """Notes on what was done to the modes; not warnings."""
     real_poles: tuple[RealPole, ...] = ()
-    """Relaxations, if they were asked for."""
+    """Relaxations, if requested."""
     picks: tuple[Pick, ...] = ()
-    """The candidates that were considered; ``identify(…, picks=…)`` considers the same again."""
+    """Candidates that were considered; ``identify(…, picks=…)`` considers the same ones again."""
 
     def __repr__(self) -> str:
         shown = (f"{m.frequency_hz:.4g} Hz {100 * m.damping_ratio:.2g} %" for m in self.modes[:_SHOWN])
@@ -235,7 +235,7 @@ class Identification:
 
     @property
     def without_figures(self) -> Identification:
-        """The same without poles and spectrum, which figures alone need: a few kilobytes."""
+        """The same without poles and spectrum, which only figures need: a few kilobytes."""
         none, no = np.empty(0), np.empty(0, dtype=np.bool_)
         whole, n_channels = np.empty(0, dtype=np.int64), len(self.channels)
         shapes = np.empty((0, n_channels), dtype=np.complex128)

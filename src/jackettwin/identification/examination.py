@@ -1,4 +1,4 @@
-"""A record examined: judged, repaired, turned to the rotor's axes and identified. Stateless."""
+"""Examination of a record: quality, repair, rotor axes, identification. Stateless."""
 
 from __future__ import annotations
 
@@ -49,25 +49,25 @@ from jackettwin.records.quality.zero_steps import zeros_in_line
 from jackettwin.version import __version__
 
 UNFIT = ("another_time", "stored_backwards", "clocks_wander", "coarse_quantiser")
-"""What is found of a record that makes every mode of it doubtful, unless it was repaired."""
+"""Findings that make every mode of a record doubtful, unless the record was repaired."""
 ORDERS_FOUND = ("rotor_order_removed", "rotor_order_weak", "rotor_order_seen", "rotor_order_stated")
-"""Findings that say where a multiple of the rotor's speed was."""
+"""Findings on multiples of the rotor's speed."""
 
 
 @dataclass(frozen=True)
 class Examination:
-    """One record, judged, repaired and identified.
+    """One record with its quality, repairs and modes.
 
     Attributes
     ----------
     record : Record
-        As it was identified.
+        Record as it was identified.
     quality : Quality
-        Of the record as it was read.
+        Quality of the record as it was read.
     findings : tuple of Finding
-        What the steps of the preparation found.
+        Findings of the preparation steps.
     comparison : Comparison or None
-        The same modes by every method, if it was asked for.
+        The same modes by every method, if requested.
     """
 
     record: Record
@@ -87,7 +87,7 @@ def examine_file(
     compare: bool = False,
     keep: Keep = NOT_KEPT,
 ) -> Examination:
-    """Read and examine one record; ``unsaid`` holds rate and unit for a file that does not say them.
+    """Read and examine one record; ``unsaid`` gives rate and unit of a file that lacks them.
 
     Raises
     ------
@@ -108,19 +108,19 @@ def examine(
     compare: bool = False,
     keep: Keep = NOT_KEPT,
 ) -> Examination:
-    """Judge, repair, turn to the rotor's axes and identify one record.
+    """Assess, repair and identify one record in the rotor's axes.
 
     Parameters
     ----------
     places : sequence of Channel
-        Only the channels of these names, at the node, height and direction stated here; default: all that
-        measure motion, where the record says.
+        Channels to use by name, with node, height and direction; by default all that measure motion,
+        placed as the record says.
     picks : tuple of Pick
-        Poles to take instead of the automatic selection, for the records they name.
+        Poles to use instead of the automatic selection, for the records they name.
     compare : bool
-        Identify by every method as well.
+        Whether to identify by every method too.
     keep : Keep
-        Keeps what was identified for the next time.
+        Store of identifications for later calls.
 
     Raises
     ------
@@ -168,15 +168,15 @@ def examine(
 
 @dataclass(frozen=True)
 class Identified:
-    """The costly part of an examination.
+    """The expensive part of an examination.
 
     Attributes
     ----------
     found : Identification
     methods : mapping or None
-        The same modes by every method, if that was asked for.
+        The same modes by every method, if requested.
     refused : mapping
-        Methods that could not take the record, and why.
+        Methods that refused the record, and their reasons.
     """
 
     found: Identification
@@ -185,12 +185,12 @@ class Identified:
 
     @classmethod
     def of(cls, found: Identification, compared: Comparison | None) -> Identified:
-        """Return an identification with what other methods made of the record."""
+        """Return an identification with its comparison by other methods."""
         return cls(found) if compared is None else cls(found, compared.modes, compared.refused)
 
     @property
     def comparison(self) -> Comparison | None:
-        """The same modes by every method, None if that was not asked for."""
+        """The same modes by every method, None if not requested."""
         return None if self.methods is None else Comparison(self.found, self.methods, self.refused)
 
 
@@ -211,9 +211,9 @@ def identified_key(
     compare: bool,
     in_rotor_axes: bool,
 ) -> str:
-    """Return the identity of an identification: the same key, the same result to the last digit.
+    """Return the key of an identification; equal keys imply results equal to the last digit.
 
-    The record's name counts: it stands in the result, and picks go by it.
+    The record's name is included, as the result contains it and picks refer to it.
     """
     own = [pick for pick in picks if pick.record in (None, ready.name)]
     return digest(
@@ -230,7 +230,7 @@ def identified_key(
 
 
 def _beside_orders(found: Identification, findings: Findings) -> Identification:
-    """Flag the modes that a multiple of the rotor's speed passed."""
+    """Flag modes that a multiple of the rotor's speed crossed."""
     orders = [
         (int(f.params["order"] or 0), float(f.params["low_hz"] or 0.0), float(f.params["high_hz"] or 0.0))
         for f in findings
@@ -240,11 +240,11 @@ def _beside_orders(found: Identification, findings: Findings) -> Identification:
 
 
 def doubted(found: Identification, reasons: Findings) -> Identification:
-    """Doubt every mode of a record for reasons that concern all of it."""
+    """Mark every mode as doubtful for reasons that concern the whole record."""
     modes = []
     for mode in found.modes:
         cycles, decays = mode.frequency_hz * found.duration_s, mode.method == "decay"
-        # a decay is told by its e-folds
+        # a decay is judged by its e-folds, not its cycles
         own = [f for f in reasons if not (decays and f.code == "too_short")][:1]
         if cycles < CYCLES and not decays:
             own.append(Finding("few_cycles", params={"cycles": cycles}))

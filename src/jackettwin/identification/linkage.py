@@ -1,4 +1,4 @@
-"""Groups by average linkage: what is near on average belongs together."""
+"""Average-linkage clustering."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from jackettwin.arrays import FloatArray, Int64Array
 
 
 def average_linkage(apart: FloatArray, farthest: float) -> list[Int64Array]:
-    """Return the groups whose members are at most so far apart, on average, when the two halves are joined.
+    """Return clusters, merged while the average distance between two of them is within the limit.
 
-    Two groups that are each other's nearest are joined whatever becomes of the others: average linkage never
-    brings a third one nearer than both were (Murtagh 1983). All such pairs are therefore joined at once.
+    Two clusters that are each other's nearest can be merged at once, whatever the others:
+    average linkage never brings a third one closer than either was (Murtagh 1983).
+    All such pairs are therefore merged together.
 
     Parameters
     ----------

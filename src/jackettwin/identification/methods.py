@@ -1,7 +1,7 @@
-"""The identification methods: one table, to which installed packages add theirs.
+"""Registry of identification methods, to which installed packages add theirs.
 
-A method is a function from a prepared record and the settings to the poles of every model order: a
-``PoleMethod``. Settings, command line, comparison and report know all methods that stand here.
+A method is a function from a prepared record and the settings to the poles of every model order:
+a ``PoleMethod``. Settings, command line, comparison and report read this registry.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ POLE_METHODS: Mapping[str, str] = {
     "ssi-dat": "jackettwin.identification.pole_methods:by_ssi_dat",
     "plscf": "jackettwin.identification.pole_methods:by_plscf",
 }
-"""Where the function of each method stands, as an entry point says it: it is loaded when it is used."""
+"""Entry point of each method's function, loaded on first use."""
 EFDD = "efdd"
-"""The method without poles: it reads modes off peaks of the spectrum (``frequency_domain/fdd.py``)."""
+"""Method without poles, which takes modes from spectral peaks (``frequency_domain/fdd.py``)."""
 PLUGINS = "jackettwin.identification_methods"
-"""Group of entry points, each a function like those of ``POLE_METHODS``, by the name of the method."""
+"""Group of entry points for further methods, each a function like those of ``POLE_METHODS``."""
 
 
 def method_names() -> tuple[str, ...]:
-    """Return the names of all methods: ours, then those that installed packages bring."""
+    """Return the names of all methods: built-in ones, then those of installed packages."""
     return (*POLE_METHODS, EFDD, *(name for name in plugins(PLUGINS) if name not in (*POLE_METHODS, EFDD)))
 
 
 def is_method(name: str) -> bool:
-    """Tell whether a method has this name; of our own, without looking for plugins."""
+    """Tell whether a method has this name, without loading plugins for a built-in one."""
     return name in POLE_METHODS or name in method_names()

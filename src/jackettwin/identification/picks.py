@@ -1,7 +1,7 @@
-"""Modes chosen by hand, or kept from an earlier run: a selection that can be saved, edited and replayed.
+"""Modes picked by hand or from an earlier run: a selection that can be saved, edited and reused.
 
-A pick is a pole of the stabilisation diagram. Every result lists the picks that lead to it. Picks replace the
-criteria on clusters of poles; the limits on the band and on the uncertainty of the damping stay.
+A pick is a pole of the stabilisation diagram. Every result lists the picks that reproduce it. Picks replace
+the criteria on clusters of poles; the limits on the band and on damping uncertainty still apply.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ class Pick:
     Attributes
     ----------
     frequency_hz : float
-        The nearest pole is meant.
+        Frequency; the nearest pole is used.
     order : int or None
-        Of the model order; None leaves the order to the clustering.
+        Model order; None leaves it to the clustering.
     record : str or None
-        Name of the record it was picked in; None means every record.
+        Name of the record in which it was picked; None means every record.
     doubtful : bool
-        Whether the mode counts only if the spectrum needs it, as for a candidate in doubt.
+        Whether the mode counts only if the spectrum needs it, as for a doubtful candidate.
     """
 
     frequency_hz: float
@@ -72,7 +72,7 @@ def parse_picks(data: Any) -> tuple[Pick, ...]:
 
 
 def plain_picks(picks: Sequence[Pick]) -> list[dict[str, Any]]:
-    """Return picks as JSON data that ``parse_picks`` reads back."""
+    """Return picks as JSON data for ``parse_picks``."""
     return [dict(vars(pick)) for pick in picks]
 
 
@@ -82,7 +82,7 @@ def of_record(picks: Sequence[Pick], name: str) -> tuple[Pick, ...]:
 
 
 def refuse_strangers(picks: Sequence[Pick], names: Sequence[str]) -> None:
-    """Refuse picks of which none concerns the records: a misspelt name would choose nothing, silently.
+    """Refuse picks if none concerns the records, since a misspelt name would silently select nothing.
 
     Raises
     ------

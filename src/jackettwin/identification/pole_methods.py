@@ -1,4 +1,4 @@
-"""The poles of every model order by our own methods, with their uncertainty where it is known."""
+"""Poles of every model order by the built-in methods, with their uncertainty where known."""
 
 from __future__ import annotations
 
@@ -31,18 +31,18 @@ if TYPE_CHECKING:
     from jackettwin.identification.settings import IdentificationSettings
 
 FEWEST_BLOCKS = 5
-"""Fewer blocks give no standard deviation worth printing."""
+"""Fewest blocks that give a useful standard deviation."""
 EVERY = 2
-"""Samples from one instrument of the past to the next: neighbours tell nearly the same. As many modes of
-random systems are found as with all of them, with the same scatter, in half the time, …"""
+"""Samples between instruments of the past, as neighbours are nearly redundant.
+With 2, as many modes of random systems are found as with all, with equal scatter, in half the time."""
 ENOUGH_INSTRUMENTS = 2
-"""… where so many times the largest model order are left."""
+"""Fewest instruments left by this thinning, over the largest model order."""
 PLSCF_WINDOWS = 2
-"""Lags of the half spectra, in lag windows of SSI: a resolution of half a line of the lowest mode."""
+"""Lags of the half spectra, over the lag window of SSI: a resolution of half a line of the lowest mode."""
 
 
 PoleMethod = Callable[["Prepared", "IdentificationSettings"], list[OrderPoles]]
-"""An identification method: from a prepared record and the settings to the poles of every model order."""
+"""Identification method: function from a prepared record and settings to the poles of every model order."""
 
 
 def pole_method(name: str) -> PoleMethod:
@@ -59,7 +59,7 @@ def pole_method(name: str) -> PoleMethod:
 
 
 def poles_of(ready: Prepared, settings: IdentificationSettings) -> Stabilisation:
-    """Return the poles of all orders, with their uncertainty where it is known how to propagate it."""
+    """Return the poles of all orders, with their uncertainty if the method propagates it."""
     poles = pole_method(settings.method)(ready, settings)
     rate, band = ready.settings.sample_rate_hz, guarded_band_hz(ready.settings)
     return stabilisation(poles, settings, sample_rate_hz=rate, band_hz=band, scale=ready.scale)
@@ -86,7 +86,7 @@ def by_ssi_dat(ready: Prepared, settings: IdentificationSettings) -> list[OrderP
 
 
 def by_ssi_cov(ready: Prepared, settings: IdentificationSettings) -> list[OrderPoles]:
-    """Return the poles by covariance-driven SSI, with their uncertainty unless the settings leave it out."""
+    """Return the poles by covariance-driven SSI, with their uncertainty unless disabled."""
     rate, band = ready.settings.sample_rate_hz, guarded_band_hz(ready.settings)
     subspace = _subspace(ready, settings)
     orders = subspace.orders(ready.settings.orders)
@@ -124,7 +124,7 @@ def relaxations(ready: Prepared, settings: IdentificationSettings) -> tuple[Real
 
 
 def uncertain(settings: IdentificationSettings) -> bool:
-    """Tell whether the uncertainty of the poles is wanted, and known for this variant."""
+    """Tell whether the uncertainty of the poles is requested, and available for this variant."""
     variant = (settings.method, settings.weighting, settings.state_matrix)
     return settings.blocks >= FEWEST_BLOCKS and variant == ("ssi-cov", "br", "shift")
 
@@ -143,7 +143,7 @@ def _subspace(ready: Prepared, settings: IdentificationSettings) -> Subspace:
 
 
 def _every(ready: Prepared, settings: IdentificationSettings) -> int:
-    """Return the samples between the instruments of the past: one if relaxations are sought or few left."""
+    """Return the samples between instruments: one if relaxations are sought or few would be left."""
     enough = ENOUGH_INSTRUMENTS * max(ready.settings.orders, default=1)
     many = ready.settings.block_rows * len(ready.references) >= EVERY * enough
     return EVERY if many and not settings.real_poles else 1

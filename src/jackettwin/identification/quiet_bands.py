@@ -1,9 +1,9 @@
-"""Modes that the loudest ones hide: poles once more above them, wherever a peak is left without a mode.
+"""Weak modes hidden by strong ones: a further search for poles around peaks without a mode.
 
-The first modes of a tower move it a thousand times as strongly as its fifth. The errors of their covariances
-then exceed what the fifth leaves in them, while its peak stands clear in the spectrum of a channel. So for
-each clear peak that no candidate explains the samples are freed of all that is slower, and poles are sought
-in the octave that begins there.
+The first modes of a tower move it a thousand times as much as its fifth.
+Errors of their covariances then exceed the contribution of the fifth,
+although its peak is clear in the spectrum of a channel. For each clear peak that no candidate explains,
+the samples are high-passed and poles are sought in the octave that begins there.
 """
 
 from __future__ import annotations
@@ -36,21 +36,21 @@ if TYPE_CHECKING:
     from jackettwin.identification.settings import IdentificationSettings
 
 EXPLAINS = 3.0
-"""Half bandwidths of a mode, or lines of the spectrum, within which a peak is its own."""
+"""Distance from a mode, in half bandwidths or spectral lines, within which it explains a peak."""
 TRANSITION = 0.8
-"""Stop edge of the filter as a share of its pass edge, the lower edge of the band."""
+"""Stop edge of the high-pass filter as a share of its pass edge, the lower edge of the band."""
 WINDOW_CYCLES = 2.5
-"""Block rows in cycles of the lower edge: what is sought is quiet, and needs its full decay."""
+"""Block rows in cycles of the lower edge; weak modes need their full decay."""
 OCTAVE = 2.0
-"""Modes are taken from a band up to so many times the peak it was made for."""
+"""Upper limit of a band's modes over the peak for which it was made."""
 MOST_BANDS = 2
 SAME_SHAPE = 0.8
-"""MAC from which two candidates of one frequency are one."""
+"""MAC above which two candidates of one frequency are one."""
 
 
 @dataclass(frozen=True)
 class PoleSearch:
-    """Poles of one or several bands, the candidates among them, and the tones."""
+    """Poles of one or several bands, their candidates, and the tones."""
 
     poles: Stabilisation
     judged: list[Candidate]
@@ -59,7 +59,7 @@ class PoleSearch:
 
 
 def searched(ready: Prepared, settings: IdentificationSettings) -> PoleSearch:
-    """Return poles and judged candidates of the prepared samples."""
+    """Return poles and candidates of the prepared samples."""
     poles = poles_of(ready, settings)
     resolved = ready.settings
     found = clusters(poles, distance=settings.cluster_distance, orders=resolved.orders, scale=ready.scale)
@@ -75,7 +75,7 @@ def candidates_of(
     ready: Prepared,
     settings: IdentificationSettings,
 ) -> list[Candidate]:
-    """Judge clusters of poles of the prepared samples by the hard criteria."""
+    """Apply the hard criteria to clusters of poles of the prepared samples."""
     return candidates(
         poles,
         list(found),
@@ -87,7 +87,7 @@ def candidates_of(
 
 
 def with_quiet_bands(first: PoleSearch, ready: Prepared, settings: IdentificationSettings) -> PoleSearch:
-    """Return the search with what further bands add to it."""
+    """Return the search extended by further bands."""
     spectrum = welch(first.tones.clean, ready.settings.sample_rate_hz)
     out, above = first, 0.0
     for _ in range(MOST_BANDS):
@@ -102,7 +102,7 @@ def with_quiet_bands(first: PoleSearch, ready: Prepared, settings: Identificatio
 
 
 def _explained(peak_hz: float, line_hz: float, search: PoleSearch, ready: Prepared) -> bool:
-    """Tell whether a peak lies outside the band, or is that of a mode or of a tone."""
+    """Tell whether a peak is outside the band or explained by a mode or tone."""
     resolved, tones = ready.settings, search.tones
     if not resolved.lowest_frequency_hz < peak_hz < resolved.highest_frequency_hz:
         return True
@@ -116,7 +116,7 @@ def _explained(peak_hz: float, line_hz: float, search: PoleSearch, ready: Prepar
 
 
 def _above(ready: Prepared, low_hz: float) -> Prepared:
-    """Return the samples freed of all that is slower than a band's lower edge, of unit variance again."""
+    """Return the samples high-passed at a band's lower edge, scaled to unit variance."""
     rate = ready.settings.sample_rate_hz
     fast = ready.y - resample(ready.y, lowpass_taps(TRANSITION * low_hz / rate, low_hz / rate))
     scale = np.sqrt(np.nanmean(fast**2, axis=1))
@@ -133,7 +133,7 @@ def _above(ready: Prepared, low_hz: float) -> Prepared:
 
 
 def _joined(out: PoleSearch, ready: Prepared, high_hz: float, settings: IdentificationSettings) -> PoleSearch:
-    """Return the search with the candidates of one band more; of two for one mode the less doubtful one."""
+    """Return the search with those of another band; of two for one mode, the less doubtful is kept."""
     more, offset = searched(ready, settings), len(out.poles.order)
     if not len(more.poles.order):
         return out
@@ -156,7 +156,7 @@ def _joined(out: PoleSearch, ready: Prepared, high_hz: float, settings: Identifi
 
 
 def _tones(known: Tones, more: Tones, ready: Prepared, offset: int) -> Tones:
-    """Return the tones of both, all samples freed of those that are new."""
+    """Return the tones of both searches, and all samples without the new ones."""
     clean, new = known.clean, [t for t in more.drifting if not any(t is k for k in known.drifting)]
     for tone in new:
         clean = less_phase(clean, tone.phase(clean.shape[1]))
@@ -187,7 +187,7 @@ def _moved(cluster: Cluster, offset: int) -> Cluster:
 
 
 def _together(one: Stabilisation, other: Stabilisation) -> Stabilisation:
-    """Return the poles of both; orders of different bands may be alike."""
+    """Return the poles of both searches; orders of different bands may coincide."""
     if not len(one.order):
         return other
     both: dict[str, Any] = {

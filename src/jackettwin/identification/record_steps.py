@@ -1,4 +1,4 @@
-"""What is done to a record before it is identified: a list of steps ``Record -> (Record, findings)``."""
+"""Preparation steps of a record before identification, each ``Record -> (Record, findings)``."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ from jackettwin.records.quality.record_quality import Quality
 from jackettwin.records.quality.repair import common_time
 
 WORTH_SAYING = 1e-3
-"""Share of a channel's power from which a tone is mentioned."""
+"""Share of a channel's power above which a tone is reported."""
 FEWEST_TO_COMPARE = 3
-"""Sensors without a place of which it is said that they cannot be compared."""
+"""Number of sensors without a place above which a finding says that they cannot be compared."""
 MOTION = ("acceleration", "velocity", "displacement")
-"""Quantities of which one record may mix several."""
+"""Quantities of motion, which one record may mix."""
 DEFORMATION = ("inclination", "strain")
-"""Quantities identified where no channel measures motion, the first of them that there is."""
+"""Quantities used if no channel measures motion; the first one present is taken."""
 _NAMED = 5
-"""Channels that a finding names; more are dots."""
+"""Number of channels that a finding names."""
 
 Findings = tuple[Finding, ...]
 Step = Callable[[Record], tuple[Record, Findings]]
-"""One thing done to a record before it is identified."""
+"""One preparation step of a record."""
 
 
 def prepared(record: Record, steps: Iterable[Step]) -> tuple[Record, Findings]:
-    """Return a record after some steps, and everything they found."""
+    """Return a record after some steps, with all their findings."""
     findings: list[Finding] = []
     for step in steps:
         record, found = step(record)
@@ -43,20 +43,20 @@ def prepared(record: Record, steps: Iterable[Step]) -> tuple[Record, Findings]:
 
 
 def repaired(record: Record, *, quality: Quality) -> tuple[Record, Findings]:
-    """Take out what the quality says is damaged; what was damaged stands in the quality."""
+    """Remove samples that the quality reports as damaged."""
     return repair(record, quality), ()
 
 
 def cut_to_common_time(record: Record, *, quality: Quality) -> tuple[Record, Findings]:
-    """Cut a record to what all loggers have once in step; earlier steps need the source's samples."""
+    """Cut a record to the time that all loggers share once in step; earlier steps need all samples."""
     return common_time(record, quality), ()
 
 
 def in_rotor_axes(record: Record, *, source: Record) -> tuple[Record, Findings]:
-    """Detrend a record and turn it to the rotor's axes, if ``source`` knows the yaw.
+    """Detrend a record and rotate it to the rotor's axes if ``source`` contains the yaw.
 
-    Channels keep their names, so that records at different yaw compare and sensors find them: the one
-    nearer to global x is the fore-aft one. A yaw that is zero throughout changes nothing.
+    Channels keep their names, so that records at different yaw remain comparable:
+    of two, the one nearer to global x becomes fore-aft. A yaw of zero throughout changes nothing.
     """
     if record.metadata.get("axes") == "rotor":
         return record, ()
@@ -74,7 +74,7 @@ def in_rotor_axes(record: Record, *, source: Record) -> tuple[Record, Findings]:
 
 
 def without_rotor_orders(record: Record, *, source: Record) -> tuple[Record, Findings]:
-    """Take out the lowest tones of a rotor of measured speed; say where others, or of a stated one, are."""
+    """Subtract the lowest rotor tones of measured speed; report where other orders are."""
     speed = rotor_speed(source)
     if speed is None:
         stated = stated_orders(source.conditions, source.duration_s)
@@ -93,7 +93,7 @@ def _order(code: str, o: RotorOrder) -> Finding:
 
 
 def moving_channels(record: Record) -> Record:
-    """Return the record with only the channels that measure motion; without any, its inclinations or strains.
+    """Return the channels that measure motion; if there are none, inclinations or strains.
 
     Raises
     ------
@@ -121,9 +121,9 @@ def moving_channels(record: Record) -> Record:
 
 
 def placed(record: Record, places: Sequence[Channel]) -> tuple[Record, Findings]:
-    """Return the channels named in ``places`` at their nodes, heights and directions, and the absent ones.
+    """Return the channels named in ``places`` with their nodes, heights and directions, and the absent ones.
 
-    A name that is nearly that of a channel without a place is a slip, which ``select`` refuses.
+    A name close to that of a channel without a place is taken as a typing error, which ``select`` refuses.
     """
     names = {place.name for place in places}
     others = [name for name in record.channel_names if name not in names]
@@ -142,19 +142,19 @@ def placed(record: Record, places: Sequence[Channel]) -> tuple[Record, Findings]
 
 
 def unplaced(record: Record) -> Findings:
-    """Say that signs and units were not judged, where several sensors do not say where they sit."""
+    """Report that signs and units were not checked because several sensors have no place."""
     nowhere = [c.name for c in record.channels if c.node is None and c.height_m is None]
     return (Finding("places_unknown", _listed(nowhere)),) if len(nowhere) >= FEWEST_TO_COMPARE else ()
 
 
 def unclear(record: Record) -> Findings:
-    """Name the channels that are left out because nobody knows what they measure."""
+    """Name the channels that are left out because their quantity is unknown."""
     names = [f"{c.name} ({c.unit})" for c in record.channels if c.quantity == "other"]
     return (Finding("channels_unclear", _listed(names)),) if names else ()
 
 
 def set_aside(record: Record, chosen: Record) -> Findings:
-    """Name the inclinations and strains beside channels that measure motion."""
+    """Name inclinations and strains left out beside channels that measure motion."""
     names = [
         c.name for c in record.channels if c.quantity in DEFORMATION and c.name not in chosen.channel_names
     ]
@@ -162,6 +162,6 @@ def set_aside(record: Record, chosen: Record) -> Findings:
 
 
 def _listed(names: Iterable[str]) -> str:
-    """Return names in one text, at most ``_NAMED`` of them."""
+    """Return names as one text, at most ``_NAMED`` of them."""
     listed = list(names)
     return ", ".join(listed[:_NAMED]) + (" …" if len(listed) > _NAMED else "")

@@ -1,4 +1,4 @@
-"""What the user may choose about an identification; what is not chosen follows from the data."""
+"""Settings of an identification; those left open follow from the data."""
 
 from __future__ import annotations
 
@@ -15,16 +15,15 @@ Frequency = Annotated[float, Field(gt=0.0)]
 
 
 class IdentificationSettings(Schema):
-    """Choices of an identification; None means chosen from the data.
+    """Settings of an identification; None means chosen from the data.
 
     Attributes
     ----------
     method : str
-        How poles are found: "ssi-cov", "ssi-dat", "plscf", "efdd", or a method of an installed package.
-        Only SSI-cov states the uncertainty of every pole; the others are there to compare with.
+        Method: "ssi-cov", "ssi-dat", "plscf", "efdd", or that of an installed package.
+        Only SSI-cov gives the uncertainty of every pole; the others serve for comparison.
     reference_channels : tuple of str or None
-        Channels whose past the covariances are taken with (a few good ones: less work, less noise);
-        default all.
+        Reference channels of the covariances (a few good ones reduce work and noise); default all.
     lowest_frequency_hz : float or None
         Lower edge of the band of interest (> 0); default 0.65 of the lowest clear spectral peak. Sample
         rate and lag window follow from it.
@@ -54,19 +53,19 @@ class IdentificationSettings(Schema):
     max_damping_cov : float
         Hard criterion: largest standard deviation of ln ζ. A pole that fits noise has far more.
     max_damping_excess : float
-        The same in units of what a record can tell at best, 1/√(2πζfT). Above it a mode is doubtful: it
-        counts if the spectrum cannot be explained without it (``refine``), else it is dropped.
+        The same relative to the long-data limit 1/√(2πζfT). Above it a mode is doubtful:
+        it counts only if the spectrum cannot be explained without it (``refine``).
     cluster_distance : float
         Poles nearer than this, |Δλ|/|λ| + 1 − MAC on average, belong to one mode.
     min_order_share : float
-        A mode must appear in this share of the model orders, from the first that holds it on (0 to 1).
+        Share of the model orders, from the first that contains it, in which a mode must appear (0 to 1).
     refine : bool
         Whether the modes are refined by maximum likelihood.
     blocks : int
-        Blocks of the record whose scatter gives the uncertainty (0 to 1000); 0 leaves it out.
+        Number of blocks of the record whose scatter gives the uncertainty (0 to 1000); 0 disables it.
     real_poles : bool
-        Whether relaxations (poles that do not oscillate) are looked for as well. Method ssi-cov with
-        its uncertainty only.
+        Whether relaxations (poles that do not oscillate) are sought too.
+        Only for method ssi-cov with its uncertainty.
     """
 
     method: Annotated[str, one_of(method_names)] = "ssi-cov"

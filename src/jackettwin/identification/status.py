@@ -1,6 +1,7 @@
-"""What a peak of the spectrum is taken for: a mode, one to doubt, or no mode at all.
+"""Status of a spectral peak: mode, doubtful mode, or no mode.
 
-Every status but ``OK`` comes with findings that say why; the codes are in :mod:`jackettwin.findings`.
+Every status except ``OK`` comes with findings that give the reasons;
+their codes are in :mod:`jackettwin.findings`.
 """
 
 from __future__ import annotations
@@ -12,28 +13,28 @@ from jackettwin.findings import Finding
 
 
 class ModeStatus(StrEnum):
-    """What is thought of a reported mode. A member is a string: ``mode.status == "ok"`` works."""
+    """Status of a reported mode. Members are strings: ``mode.status == "ok"`` works."""
 
     OK = "ok"
-    """A mode, by everything that was asked: frequency and damping lie in their intervals."""
+    """A mode by all criteria: frequency and damping are known to their intervals."""
     DAMPING_UNKNOWN = "damping unknown"
-    """A mode whose frequency is known to its interval; the record does not tell its damping."""
+    """A mode of known frequency, whose damping the record does not determine."""
     DOUBTFUL = "doubtful"
-    """It may be a mode; the reasons say what speaks against it."""
+    """Possibly a mode; the reasons state the objections."""
     WAVE = "not a mode: wave"
-    """A peak of the forces of waves, which the structure follows."""
+    """A peak of wave forces that the structure follows."""
     TONE = "not a mode: tone"
-    """A line, or a line that drifts: a machine or the passing of blades."""
+    """A steady or drifting tone: a machine, or blades passing the tower."""
     ELECTRICAL = "not a mode: electrical"
-    """A line at the frequency of the mains, or its alias."""
+    """A tone at the frequency of the mains or an alias of it."""
     LOCAL = "not a mode: local"
-    """One sensor alone moves: its mount, its cable, a member or a handrail."""
+    """Motion of one sensor alone: its mount, its cable, a member or a handrail."""
     NOISE = "not a mode: noise"
-    """Poles that fit what is left of the noise."""
+    """Poles that fit noise."""
 
     @property
     def severity(self) -> int:
-        """Rank of the status: 0 of ``OK``, and more of what forbids more."""
+        """Rank of the status: 0 for ``OK``, higher for more severe ones."""
         return STATUSES.index(self)
 
     @property
@@ -47,7 +48,7 @@ STATUSES = tuple(ModeStatus)
 
 
 def worse(one: ModeStatus, other: ModeStatus) -> ModeStatus:
-    """Return the status that forbids more.
+    """Return the more severe of two statuses.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Records of a modal system whose truth is known, to judge estimators by."""
+"""Synthetic records of a known modal system, to test estimators."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from jackettwin.identification.maximum_likelihood.spectral_model import expected
 from jackettwin.records import Channel, Record
 
 REPEAT = 4
-"""The periodic signal is this many times longer than what is cut from it: its wrap-around is lost."""
+"""Length of the periodic signal over that of the record cut from it,
+so that its wrap-around has no effect."""
 
 FREQUENCIES = 20_001
-"""Of the sum that makes the variance of a channel."""
+"""Number of frequencies in the sum for the variance of a channel."""
 
 
 @dataclass(frozen=True)
@@ -28,13 +29,13 @@ class ModalSystem:
     ----------
     frequency_hz, damping_ratio : (n_modes,)
     mode_shapes : (n_modes, n_channels)
-        Real; entries of a complex one lag.
+        Mode shapes; real, or complex with a phase lag.
     force : (n_modes, n_modes)
         Spectral density of the modal forces per unit modal mass [1/Hz], symmetric positive definite.
     noise_ratio : float
-        Root mean square of the white noise over that of the signal, each channel.
+        Ratio of the rms of the white noise to that of the signal in each channel.
     force_slope : float
-        The force density falls with frequency to this power: 0 is white.
+        Exponent of the fall of the force density with frequency; 0 is white.
     """
 
     frequency_hz: FloatArray
@@ -55,8 +56,8 @@ def simulate(
     .. math:: \Phi^T H(f)\, S(f)\, H(f)^H\, \Phi, \qquad
               H_i = \frac{-f^2}{f_i^2 - f^2 + 2 i \zeta_i f_i f},
 
-    so the samples have the covariance of the continuous system band-limited at Nyquist: no time
-    integration, no error of a step.
+    so that the samples have the covariance of the continuous system band-limited at Nyquist,
+    without error of time integration.
     """
     n_samples = round(duration_s * sample_rate_hz)
     n_modes, n_channels = system.mode_shapes.shape
@@ -80,15 +81,15 @@ def cramer_rao(
     sample_rate_hz: float,
     band_hz: tuple[float, float],
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the least standard deviations of ln f and ln ζ of an unbiased method, (n_modes,) each.
+    """Return the smallest standard deviations of ln f and ln ζ of an unbiased method, (n_modes,) each.
 
-    Shapes (taken as real), forces, their coherences and exponents, and the noise of every channel are
-    unknown as well, as they are to the refinement. Records are as of ``simulate``, seen in a band.
+    Shapes (real), forces, their coherences and exponents, and the noise of every channel are unknown too,
+    as in the refinement. Records are those of ``simulate``, within a band.
 
     Parameters
     ----------
     sample_rate_hz : float
-        Of ``simulate``: it says how the noise is spread.
+        Sample rate in ``simulate``, which sets the bandwidth of the noise.
     """
     f, zeta = system.frequency_hz, system.damping_ratio
     lines = np.arange(int(np.ceil(band_hz[0] * duration_s)), int(band_hz[1] * duration_s) + 1) / duration_s

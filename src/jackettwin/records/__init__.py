@@ -1,6 +1,6 @@
-"""What was measured: records, their quality and their preparation.
+"""Measured records, their quality and their preparation.
 
-The names here are the daily ones. Other filters are in ``prepare``, SEP005 dictionaries in ``readers``.
+These are the names most used. Further filters are in ``prepare``, SEP005 dictionaries in ``readers``.
 """
 
 import lazy_loader

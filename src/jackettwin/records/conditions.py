@@ -1,4 +1,4 @@
-"""Wind, yaw and state of a record: what its description says, else what its channels say."""
+"""Wind, yaw and operating state of a record, from its description or else its channels."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ WIND_KEYS = ("mean_wind_speed_m_s", "wind_speed_m_s")
 
 
 def with_conditions(record: Record) -> Record:
-    """Return the record with the conditions its description leaves out, from its channels where they tell.
+    """Return the record with conditions that its description lacks, derived from its channels.
 
-    ``mean_wind_speed_m_s`` of the first channel of quantity wind speed, ``yaw_deg`` of the yaw,
-    ``state`` (``rotor turning`` or ``rotor standing``) of the rotor speed. What is stated stays.
+    ``mean_wind_speed_m_s`` is that of the first channel of quantity wind speed, ``yaw_deg`` that of the yaw,
+    and ``state`` (``rotor turning`` or ``rotor standing``) follows from the rotor speed.
+    Stated conditions are kept.
     """
     known: dict[str, Any] = dict(record.conditions)
     wind = _mean(record, "wind speed")

@@ -1,4 +1,4 @@
-"""A measured or simulated record: the one type in which both kinds of data meet, and its identity."""
+"""A measured or simulated record and its identity."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ if TYPE_CHECKING:
 Frame = Literal["global", "nacelle"]
 
 LARGEST = 1e15
-"""No sensor reads more than this in SI units; what does is damage, and would overflow when squared."""
+"""Largest credible reading in SI units; larger ones are corrupt and would overflow when squared."""
 SMALLEST = 1e-30
-"""No sensor resolves less than this in SI units: what varies by less does not vary."""
+"""Smallest variation that counts, in SI units; no sensor resolves less."""
 RATES_HZ = (1e-9, 1e9)
-"""Sample rates a logger may have."""
+"""Range of sample rates."""
 
 
 @dataclass(frozen=True)
 class Channel:
-    """One measured signal: what it is, where it sits and which way it points.
+    """One measured signal: its quantity, place and direction.
 
     ``height_m`` is above mean sea level on the tower axis; ``node`` names a node of the structure
     instead. ``direction`` is a unit vector in global axes (in the rotor's after ``to_rotor_axes``);
@@ -48,12 +48,12 @@ class Channel:
 
 
 _SHOWN = 6
-"""Channels that a record's ``repr`` names."""
+"""Number of channels named by a record's ``repr``."""
 
 
 @dataclass(frozen=True, repr=False)
 class Record:
-    """Samples of several channels at one rate, from one start.
+    """Samples of several channels with a common rate and start.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class Record:
     start_utc : datetime or None
         Start of the interval, time zone aware.
     conditions, metadata : mapping
-        What is known of wind, yaw and operating state; everything else the file said.
+        Wind, yaw and operating state; everything else in the file.
     name : str
         Identifies the record in messages and results.
     """
@@ -134,7 +134,7 @@ class Record:
 def record_id(record: Record) -> str:
     """Return the identity of a record: a hash of its samples, rate, start and channels.
 
-    Name, conditions and metadata do not count, so that a renamed or re-described file is the same record.
+    Name, conditions and metadata are excluded, so that a renamed or re-described file is the same record.
 
     Examples
     --------
@@ -153,7 +153,7 @@ def record_id(record: Record) -> str:
     ]
     head = [float(record.sample_rate_hz), start, list(record.data.shape), channels]
     samples = np.ascontiguousarray(record.data, dtype="<f8")
-    # one NaN and one zero: a reader may leave any
+    # readers may produce several kinds of NaN and zero, which must hash alike
     samples = np.where(np.isnan(samples), np.nan, samples) + 0.0
     hashed = hashlib.sha256(json.dumps(head, ensure_ascii=False).encode())
     hashed.update(samples.tobytes())
@@ -161,6 +161,6 @@ def record_id(record: Record) -> str:
 
 
 def record_content(record: Record) -> tuple[str, str, str]:
-    """Return the identity of a record's samples, its name, and all else that it says."""
+    """Return the identity of a record's samples, its name, and all its other content."""
     said = json.dumps([dict(record.conditions), dict(record.metadata)], sort_keys=True, default=str)
     return record_id(record), record.name, said

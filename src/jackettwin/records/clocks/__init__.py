@@ -1,30 +1,30 @@
-"""The clocks of the loggers behind one record: what they do, how it is found, and how it is taken back.
+"""Clock errors of the loggers of one record: their detection, correction and findings.
 
-One word has one meaning throughout:
+Terms:
 
 step
-    The time between two samples that follow each other, always the same on a regular grid.
+    Time between successive samples, constant on a regular grid.
 lag
-    The difference of two times in a correlation; nobody need be late.
+    Time shift in a correlation; it does not imply a clock error.
 main group
-    The largest group of channels that go together. Its clock is taken to be right.
+    Largest group of channels with a common clock, which is taken as correct.
 delay
-    Seconds by which a channel reads an event later than the main group; negative if earlier.
+    Seconds by which a channel records an event later than the main group; negative if earlier.
 drift
-    Growth of a delay, in seconds a second: a clock that is too slow or too fast.
+    Rate of change of a delay [s/s], of a clock that runs slow or fast.
 jump
-    A change between two samples: of a delay, of a sensitivity or of a sign.
+    Change of a delay, sensitivity or sign between two samples.
 lost time
-    Samples that a logger left out; what came after them is moved up.
+    Samples that a logger omitted, so that later ones are shifted.
 strangers
-    Channels with nothing in common with the others at any delay: of another time, or stored backwards.
+    Channels without coherence with the others at any delay: of another time, or stored backwards.
 window
-    A stretch of the record over which phases between channels are averaged; a series has one value a window.
+    Part of the record over which phases between channels are averaged; a series has one value per window.
 run
-    Windows one after the other between which no series jumps.
+    Successive windows between which no series jumps.
 
-``clocks_of`` looks for all of it, ``clock_findings`` says it, ``in_step`` takes it back and ``stretch`` gives
-the samples that are left.
+``clocks_of`` detects all of these, ``clock_findings`` reports them,
+``in_step`` corrects them and ``stretch`` gives the samples that remain.
 """
 
 import lazy_loader

@@ -1,7 +1,7 @@
-"""Delays of single channels: those of pairs brought down to one a channel, and which of them are late.
+"""Delays of single channels from those of pairs, and groups of late channels.
 
-The largest group of channels that go together is taken to be right. A channel is late behind it by a delay
-that stays or drifts: that of a logger with a clock of its own.
+The largest group of channels with a common clock is taken as correct. A channel is late if its delay behind
+that group is constant or drifts, as that of a logger with its own clock does.
 """
 
 from __future__ import annotations
@@ -18,21 +18,21 @@ from jackettwin.records.clocks.jumps import SIGMAS, lines, scatter
 from jackettwin.records.clocks.results import LateClock
 
 REACH_RAD = 0.25
-"""Phase, at the root mean square frequency of the pairs, of the least delay that parts two channels: those of
-a damped structure in wind scatter by up to this."""
-TIE = 1.0
-"""Weight of the expectation that channels at one place share a logger: any pair that tells weighs more."""
+"""Phase at the rms frequency of the pairs of the smallest delay that separates two channels;
+phases of a damped structure in wind scatter by up to this."""
+PLACE_WEIGHT = 1.0
+"""Weight of the assumption that channels at one place share a logger; any informative pair weighs more."""
 ROUNDS = 12
-"""Of the iteratively reweighted least squares that make the median of the pairs."""
-SOFT = 0.02
-"""Misfit below which all count alike, as a share of the least delay that parts two channels."""
-MOST_WINDOWS = 80.0
-"""Per cent of the windows in which channels of one group stay together."""
+"""Iterations of the reweighted least squares that give the median of the pairs."""
+SOFT_MISFIT = 0.02
+"""Misfit below which all weights are equal, as a share of the smallest separating delay."""
+MIN_WINDOW_PERCENT = 80.0
+"""Percentage of the windows in which channels of one group agree."""
 
 
 @dataclass(frozen=True)
 class Network:
-    """Which channels are held against each other.
+    """Network of channels whose delays are compared.
 
     Attributes
     ----------
@@ -40,11 +40,11 @@ class Network:
         Channels.
     pairs : (n_pairs, 2)
     informative : (n_pairs,) bool
-        Pairs that say anything.
+        Informative pairs.
     ties : (n_ties, 2)
         Channels at one place.
     reach_s : float
-        Least delay that parts two channels.
+        Smallest delay that separates two channels.
     """
 
     n: int
@@ -67,9 +67,9 @@ def ties(places: Sequence[object]) -> IntArray:
 
 
 def per_channel(network: Network, delay_s: FloatArray, weight: FloatArray) -> FloatArray:
-    """Return one delay a channel from those of the pairs: least sum of weighted absolute misfits.
+    """Return one delay per channel from those of pairs, by weighted least absolute deviations.
 
-    Channels that nothing joins have a mean of zero each.
+    Each connected set of channels has a mean delay of zero.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def per_channel(network: Network, delay_s: FloatArray, weight: FloatArray) -> Fl
     """
     pairs = np.vstack([network.pairs, network.ties])
     target = np.append(delay_s, np.zeros(len(network.ties)))
-    weight = np.append(weight, np.full(len(network.ties), TIE))
+    weight = np.append(weight, np.full(len(network.ties), PLACE_WEIGHT))
     rows = np.zeros((len(pairs), network.n))
     rows[np.arange(len(pairs)), pairs[:, 0]] = 1.0
     rows[np.arange(len(pairs)), pairs[:, 1]] = -1.0
@@ -85,25 +85,25 @@ def per_channel(network: Network, delay_s: FloatArray, weight: FloatArray) -> Fl
     for _ in range(ROUNDS):
         root = np.sqrt(weight * scale)
         out = np.asarray(np.linalg.lstsq(root[:, None] * rows, root * target, rcond=1e-9)[0])
-        scale = 1.0 / np.maximum(np.abs(rows @ out - target), SOFT * network.reach_s)
+        scale = 1.0 / np.maximum(np.abs(rows @ out - target), SOFT_MISFIT * network.reach_s)
         scale = np.asarray(scale / scale.max())
     return out
 
 
 def by_channel(network: Network, of_pairs: FloatArray, weight: FloatArray) -> FloatArray:
-    """Return what each channel does against the main group in every window, (n_windows, n_channels)."""
+    """Return the delay of each channel behind the main group in every window, (n_windows, n_channels)."""
     each = np.array([per_channel(network, d, w) for d, w in zip(of_pairs, weight, strict=True)])
     time = np.arange(len(each))
     for i in range(network.n):
-        # a channel that was silent, or shook by itself, kept its clock
-        told = weight[:, (network.pairs == i).any(axis=1)].any(axis=1)
-        if told.any():
-            each[:, i] = np.interp(time, time[told], each[told, i])
+        # a channel that was missing, or moved independently, kept its clock
+        informative = weight[:, (network.pairs == i).any(axis=1)].any(axis=1)
+        if informative.any():
+            each[:, i] = np.interp(time, time[informative], each[informative, i])
     return against_main(network, each)
 
 
 def against_main(network: Network, delay_s: FloatArray) -> FloatArray:
-    """Return delays against the main group among the channels that pairs join, in every window.
+    """Return delays behind the main group among connected channels, in every window.
 
     Parameters
     ----------
@@ -112,14 +112,14 @@ def against_main(network: Network, delay_s: FloatArray) -> FloatArray:
     out = np.zeros_like(delay_s)
     for part in joined(network):
         own = delay_s[:, part]
-        apart = np.percentile(np.abs(own[:, :, None] - own[:, None, :]), MOST_WINDOWS, axis=0)
+        apart = np.percentile(np.abs(own[:, :, None] - own[:, None, :]), MIN_WINDOW_PERCENT, axis=0)
         main = largest(connected(apart <= network.reach_s))
         out[:, part] = own - np.median(own[:, main], axis=1, keepdims=True)
     return out
 
 
 def joined(network: Network) -> list[list[int]]:
-    """Return the sets of channels that informative pairs and common places join."""
+    """Return the sets of channels connected by informative pairs and common places."""
     near = np.eye(network.n, dtype=bool)
     for i, j in [*network.pairs[network.informative], *network.ties]:
         near[i, j] = near[j, i] = True
@@ -127,12 +127,12 @@ def joined(network: Network) -> list[list[int]]:
 
 
 def largest(groups: list[list[int]]) -> list[int]:
-    """Return the largest group; of equal ones that of the first channel."""
+    """Return the largest group; of equal ones, that of the first channel."""
     return max(groups, key=lambda g: (len(g), -min(g)))
 
 
 def connected(near: BoolArray) -> list[list[int]]:
-    """Return the groups of what is near to each other, directly or through others.
+    """Return groups of channels that agree, directly or through others.
 
     >>> connected(np.array([[1, 0, 1], [0, 1, 0], [1, 0, 1]], dtype=bool))
     [[0, 2], [1]]
@@ -142,7 +142,7 @@ def connected(near: BoolArray) -> list[list[int]]:
 
 
 def without_gaps(values: FloatArray, reach: float) -> list[list[int]]:
-    """Return the groups of values between which there is no gap of the reach.
+    """Return groups of values separated by gaps of at least ``reach``.
 
     >>> without_gaps(np.array([0.0, 0.2, 0.001, 0.203]), 0.02)
     [[0, 2], [1, 3]]
@@ -153,36 +153,36 @@ def without_gaps(values: FloatArray, reach: float) -> list[list[int]]:
 
 
 DRIFT_RAD = 0.1
-"""The same of a drift over the whole record: changes are free of what the modes do."""
-PARALLEL = 1.5
-"""Spreads of the slopes within either group that the gap between them exceeds: channels of one logger drift
-alike, those of modes that take turns each in its own way."""
-FEWEST_ON_A_LINE = 6
-"""Windows: the scatter about a line through fewer is not known well enough to tell a drift."""
-PARTED = 0.1
-"""Share of the spread of the slopes of all channels within which that of a sharp one is known."""
-LEAST_GAIN = 0.04
-"""Rise of the explained share of the phases: they must come nearer to 0 or π by 8° (rms) at least …"""
-OVER_NOTHING, OVER_PHASE = 1.5, 0.7
-"""… and by so many times what is left unexplained; and so much more than one phase for all bands does."""
-EXPLAINED = 0.75
-"""Share of the phases a delay must explain."""
+"""The same for a drift over the whole record; changes of phase are independent of the modes."""
+MIN_GAP_RATIO = 1.5
+"""Ratio of the gap between the slopes of two groups to the spread within either that makes them distinct:
+channels of one logger drift alike, whereas modes that alternate cause different slopes."""
+MIN_DRIFT_WINDOWS = 6
+"""Fewest windows for a drift; with fewer, the scatter about the line is too uncertain."""
+SLOPE_TOLERANCE = 0.1
+"""Share of the spread of all slopes within which a precise slope is known."""
+MIN_RISE = 0.04
+"""Smallest rise of the explained share of the phases; they must come nearer to 0 or π by 8° (rms)."""
+MIN_RISE_RATIO, MIN_RISE_OVER_PHASE = 1.5, 0.7
+"""Smallest rise over what is left unexplained, and over the rise that one common phase achieves."""
+MIN_EXPLAINED_SHARE = 0.75
+"""Smallest share of the phases that a delay must explain."""
 CERTAIN_RAD = {False: 1.2, True: 0.4}
-"""Phase at the upper end of the band from which a delay is certain: of one channel, whose few modes may be
-complex by chance as a delay would make them, and of several that agree."""
+"""Phase at the upper end of the band above which a delay is certain, for one channel (False),
+whose few modes may be complex by chance, and for several that agree (True)."""
 BLOCKS = 6
-"""Of the bins, left out in turn: the delay must be that of all bands."""
-DELAY_SIGMAS = 4.0
-"""Standard deviations, by that, of the least delay believed."""
-OCTAVE = 1.6
-"""Upper over lower frequency of the middle 80 % of the weight, at least."""
+"""Blocks of frequency bins left out in turn, since a delay must be common to all bands."""
+MIN_DELAY_SIGMAS = 4.0
+"""Smallest accepted delay, in standard deviations from these blocks."""
+MIN_BAND_RATIO = 1.6
+"""Smallest ratio of upper to lower frequency of the middle 80 % of the weight."""
 
 
 def drifts(series: FloatArray, network: Network) -> tuple[FloatArray, FloatArray]:
-    """Return the slope of each channel [s a window], 0 for the main group's, and its deviation.
+    """Return the slope of each channel [s per window], 0 for the main group, and its standard deviation.
 
-    Channels whose slopes are alike are of one logger and share their mean; one whose slope is hardly known
-    goes with the nearest.
+    Channels of similar slopes belong to one logger and share their mean;
+    one of uncertain slope joins the nearest group.
     """
     n = len(series)
     slope, rest = lines(series)
@@ -190,10 +190,10 @@ def drifts(series: FloatArray, network: Network) -> tuple[FloatArray, FloatArray
     std = np.maximum(scatter(series), rest.std(axis=0)) / np.sqrt(power)
     least = DRIFT_RAD / REACH_RAD * network.reach_s / n
     out, spread = np.zeros(len(slope)), np.zeros(len(slope))
-    if n < FEWEST_ON_A_LINE:
+    if n < MIN_DRIFT_WINDOWS:
         return out, spread
     for part in joined(network):
-        clear = max(0.4 * least, PARTED * float(np.ptp(slope[part])))
+        clear = max(0.4 * least, SLOPE_TOLERANCE * float(np.ptp(slope[part])))
         sharp = [i for i in part if std[i] < clear]
         if len(sharp) < 2:
             continue
@@ -207,7 +207,7 @@ def drifts(series: FloatArray, network: Network) -> tuple[FloatArray, FloatArray
         for i, k in own.items():
             apart, error = middle[k] - middle[main], float(np.hypot(known[k], known[main]))
             gap = np.abs(slope[groups[k]][:, None] - slope[groups[main]]).min()
-            alike = gap > PARALLEL * max(spread_in[k], spread_in[main])
+            alike = gap > MIN_GAP_RATIO * max(spread_in[k], spread_in[main])
             if alike and abs(apart) > max(least, SIGMAS * error):
                 out[i], spread[i] = apart, error
     return out, spread
@@ -216,16 +216,16 @@ def drifts(series: FloatArray, network: Network) -> tuple[FloatArray, FloatArray
 def late_clocks(
     seen: Phases, network: Network, far_s: FloatArray, drift: tuple[FloatArray, FloatArray], middle_s: float
 ) -> tuple[LateClock, ...]:
-    """Return the groups that are late by a delay that all bands and pairs agree on, or that drift.
+    """Return the groups that drift, or are late by a delay consistent over all bands and pairs.
 
     Parameters
     ----------
     far_s : (n_channels,)
-        Delays that were taken back before.
+        Delays already corrected.
     drift : (n_channels,), (n_channels,)
-        Slopes, which were taken back as well, and their deviations.
+        Slopes, also already corrected, and their standard deviations.
     middle_s : float
-        Time for which the delays of the phases hold.
+        Time to which the delays from the phases refer.
     """
     z = doubled(seen)
     search = seen.search_s
@@ -247,7 +247,7 @@ def late_clocks(
 
 
 def _alike(delay_s: FloatArray, far_s: FloatArray, drift: FloatArray, reach_s: float) -> list[list[int]]:
-    """Return the channels of one delay and one drift."""
+    """Return groups of channels of equal delay and drift."""
     out: list[list[int]] = []
     for group in without_gaps(delay_s + far_s, reach_s):
         for value in np.unique(drift[group]):
@@ -258,7 +258,7 @@ def _alike(delay_s: FloatArray, far_s: FloatArray, drift: FloatArray, reach_s: f
 def _confirmed(
     seen: Phases, network: Network, z: ComplexArray, rows: list[int], main: IntArray, before_s: float
 ) -> tuple[float, float, bool] | None:
-    """Return delay, deviation and certainty of a group behind the main one, None if not all bands say so."""
+    """Return delay, standard deviation and certainty of a group, None if not all bands agree."""
     i, j = seen.pairs.T
     ahead = np.isin(i, rows) & np.isin(j, main) & network.informative
     behind = np.isin(j, rows) & np.isin(i, main) & network.informative
@@ -278,14 +278,14 @@ def _confirmed(
     low, high = seen.frequency_hz[np.searchsorted(passed, (0.1, 0.9))]
     left = 1.0 - explained
     if before_s != 0.0:
-        # that the clock is another is known already
-        return (float(delay[0]), std, True) if explained > EXPLAINED else None
+        # the drift has shown already that the clock is another
+        return (float(delay[0]), std, True) if explained > MIN_EXPLAINED_SHARE else None
     believed = (
-        explained > EXPLAINED
-        and explained - before > max(LEAST_GAIN, OVER_NOTHING * left)
-        and explained - one_phase > OVER_PHASE * left
-        and abs(delay[0]) > DELAY_SIGMAS * std
-        and high > OCTAVE * low
+        explained > MIN_EXPLAINED_SHARE
+        and explained - before > max(MIN_RISE, MIN_RISE_RATIO * left)
+        and explained - one_phase > MIN_RISE_OVER_PHASE * left
+        and abs(delay[0]) > MIN_DELAY_SIGMAS * std
+        and high > MIN_BAND_RATIO * low
     )
     certain = 2.0 * np.pi * high * abs(delay[0]) > CERTAIN_RAD[len(rows) > 1]
     return (float(delay[0]), std, bool(certain)) if believed else None

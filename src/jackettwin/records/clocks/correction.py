@@ -1,9 +1,9 @@
-r"""Channels brought into step: lost seconds given back, delays, drifts and changes of sensitivity taken back.
+r"""Correction of clock errors: lost time, delays, drifts and changes of sensitivity.
 
-A band-limited signal is known between its samples: its transform times :math:`e^{2\pi i f\tau}` is exact.
-The ends are extended by point reflection; a gap stays a gap, wider by the sample the shift touches. For a
-clock that runs too fast or too slow the delay grows, and the signal is read off a spline through four times
-the samples.
+A band-limited signal is known between its samples, so that multiplying its transform by
+:math:`e^{2\pi i f\tau}` shifts it exactly. The ends are extended by point reflection;
+a gap remains, widened by the sample that the shift affects. For a drifting clock the delay grows,
+and the signal is interpolated by a spline at four times the sample rate.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from jackettwin.records.clocks.results import LoggerClocks, LostTime
 from jackettwin.records.processing.filters import bridge, remove_line
 
 PAD = 256
-"""Reflected samples on either side."""
-FINER = 4
-"""Times the samples before a spline: the highest frequency has eight points a period."""
+"""Number of reflected samples at each end."""
+OVERSAMPLING = 4
+"""Oversampling before the spline: at least eight points per period."""
 DEGREE = 5
-"""Of the spline: it misses a sine of eight points a period by 3e-4, one of sixteen by 4e-6."""
+"""Degree of the spline; its error is 3e-4 for a sine of eight points per period, 4e-6 of sixteen."""
 
 
-def earlier(y: FloatArray, delay: float, growth: float = 0.0) -> FloatArray:
+def shifted_earlier(y: FloatArray, delay: float, growth: float = 0.0) -> FloatArray:
     """Return :math:`y(t + d + g t)`, the samples of a channel that was late by d + g·t.
 
     Parameters
@@ -38,13 +38,13 @@ def earlier(y: FloatArray, delay: float, growth: float = 0.0) -> FloatArray:
     Returns
     -------
     (n_samples,)
-        NaN where nothing was read.
+        NaN where there is no sample.
 
     Examples
     --------
     >>> t = np.arange(1000.0)
     >>> late = np.sin(0.3 * (t - 2.6))
-    >>> bool(np.allclose(earlier(late, 2.6)[300:700], np.sin(0.3 * t[300:700]), atol=1e-4))
+    >>> bool(np.allclose(shifted_earlier(late, 2.6)[300:700], np.sin(0.3 * t[300:700]), atol=1e-4))
     True
     """
     n = len(y)
@@ -58,7 +58,7 @@ def earlier(y: FloatArray, delay: float, growth: float = 0.0) -> FloatArray:
         out = moved[np.clip(index, 0, len(moved) - 1)]
     else:
         fine = _finer(padded)
-        place = np.arange(len(fine)) / FINER - pad
+        place = np.arange(len(fine)) / OVERSAMPLING - pad
         out = scipy.interpolate.make_interp_spline(place, fine, k=DEGREE)(np.clip(at, place[0], place[-1]))
     out = out + np.interp(at, np.arange(n), line)
     missing = ~np.isfinite(y)
@@ -69,29 +69,29 @@ def earlier(y: FloatArray, delay: float, growth: float = 0.0) -> FloatArray:
 
 
 def _turned(y: FloatArray, share: float) -> FloatArray:
-    """Return the periodic signal so much of a sample later."""
+    """Return the periodic signal shifted by a number of samples."""
     f = np.fft.rfftfreq(len(y))
     return np.asarray(np.fft.irfft(np.fft.rfft(y) * np.exp(2j * np.pi * f * share), len(y)))
 
 
 def _finer(y: FloatArray) -> FloatArray:
-    """Return the periodic signal at ``FINER`` times the rate."""
-    return np.asarray(np.fft.irfft(np.fft.rfft(y), FINER * len(y)) * FINER)
+    """Return the periodic signal at ``OVERSAMPLING`` times the rate."""
+    return np.asarray(np.fft.irfft(np.fft.rfft(y), OVERSAMPLING * len(y)) * OVERSAMPLING)
 
 
 def in_step(data: FloatArray, clocks: LoggerClocks, sample_rate_hz: float) -> FloatArray:
-    """Return samples with what is certainly late brought into step, NaN where no clock is known."""
+    """Return samples corrected for certain delays, NaN where no clock is known."""
     data = data.copy()
     for i in (i for one in clocks.strangers if one.backwards for i in one.rows):
         data[i] = data[i, ::-1]
     for lost in clocks.lost:
         for i in lost.rows:
-            data[i] = rejoined(data[i], lost)
+            data[i] = with_lost_samples(data[i], lost)
     out = data.copy()
     for late in clocks.late:
         if late.certain:
             for i in late.rows:
-                out[i] = earlier(data[i], late.delay_s * sample_rate_hz, late.drift)
+                out[i] = shifted_earlier(data[i], late.delay_s * sample_rate_hz, late.drift)
     for jump in clocks.gains:
         rows = list(jump.rows)
         out[rows, : jump.start] /= jump.factor[0]
@@ -106,7 +106,7 @@ def in_step(data: FloatArray, clocks: LoggerClocks, sample_rate_hz: float) -> Fl
 
 
 def stretch(clocks: LoggerClocks, n_samples: int, sample_rate_hz: float) -> tuple[int, int]:
-    """Return first and last sample (excluded) that all channels have once they are in step."""
+    """Return first and last sample (excluded) that all channels share once corrected."""
     ends = [
         (late.delay_s + late.drift * t) * sample_rate_hz
         for late in clocks.late
@@ -118,10 +118,10 @@ def stretch(clocks: LoggerClocks, n_samples: int, sample_rate_hz: float) -> tupl
     return max(first, 0), last
 
 
-def rejoined(y: FloatArray, lost: LostTime) -> FloatArray:
-    """Return a channel with room for the samples it lost, NaN there; less than none are taken out.
+def with_lost_samples(y: FloatArray, lost: LostTime) -> FloatArray:
+    """Return a channel with NaN inserted for lost samples; if the number is negative, samples are removed.
 
-    >>> rejoined(np.arange(8.0), LostTime((0,), 3, 4, 2))
+    >>> with_lost_samples(np.arange(8.0), LostTime((0,), 3, 4, 2))
     array([ 0.,  1.,  2., nan, nan, nan,  4.,  5.])
     """
     out = np.full_like(y, np.nan)

@@ -1,17 +1,17 @@
-r"""Delays between channels, and how they change in time, from the phases between channels.
+r"""Delays between channels and their change in time, from the phases between channels.
 
-A structure moves in phase or in antiphase wherever two of its points move together: the phase of their
-cross spectrum is 0 or π, twice it is 0. A clock that is late by τ adds :math:`-2\pi f\tau` over *all* bands
-in which they move together, which no mode does: the phase of a complex mode is of its own band. So the delay
-of channel i behind channel j is where
+Where two points of a structure move together they do so in phase or in antiphase:
+the phase of their cross spectrum is 0 or π, and twice that phase is 0. A clock that is late by τ adds
+:math:`-2\pi f\tau` over *all* bands in which they move together. No mode does so, since the phase of a
+complex mode is limited to its own band. The delay of channel i behind channel j is therefore where
 
 .. math:: J_{ij}(\tau) = \sum_b w_{ij,b}\,\cos 2(\varphi_{ij,b} + 2\pi f_b\tau), \qquad
           w = \frac{\gamma^2}{1-\gamma^2+\varepsilon}
 
-is largest (generalised correlation of the doubled phase, with weights of the maximum-likelihood kind: Knapp &
-Carter 1976), and :math:`R = J(\tau)/\sum w` says how much of the phases it explains. How a delay *changes* is
-told by the phases of one stretch of time against another, which are free of what the modes do: there no phase
-needs doubling.
+is largest (generalised correlation of the doubled phase with weights of the maximum-likelihood kind:
+Knapp & Carter 1976). :math:`R = J(\tau)/\sum w` is the share of the phases that it explains.
+The *change* of a delay follows from the phases of one window relative to another,
+which do not depend on the modes and need no doubling.
 """
 
 from __future__ import annotations
@@ -26,58 +26,60 @@ from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.records.processing.spectra import hann_lines
 from jackettwin.signals import next_fast_len
 
-FEWEST_LINES = 4
-"""Lines over which a cross spectrum is averaged at least: the coherence of independent lines is biased by a
-quarter, and that is taken back."""
-SHORTEST = 200
-"""Samples of a record that is looked at."""
+MIN_LINES = 4
+"""Fewest lines over which a cross spectrum is averaged; the coherence of independent lines is then biased by
+a quarter, which is corrected."""
+MIN_SAMPLES = 200
+"""Shortest record that is examined, in samples."""
 WANTED_BINS = 12
-"""Of frequency, rather than more windows."""
-MOST_BINS = 80
-"""Of frequency: more lines are averaged in a wide band."""
-CYCLES_A_WINDOW = 7.0
-"""Of the lower edge of the band: shorter windows hold too few lines of it."""
+"""Number of frequency bins that takes precedence over the number of windows."""
+MAX_BINS = 80
+"""Most frequency bins; in a wide band more lines are averaged instead."""
+CYCLES_PER_WINDOW = 7.0
+"""Length of a window in cycles of the lower edge of the band; shorter ones have too few lines."""
 WINDOWS = (4, 20)
-"""Fewest and most stretches of time."""
+"""Fewest and most windows."""
 BAND = (0.05, 0.98)
-"""Shares of the power over the noise floor below the lower edge of the band, and below another line …"""
+"""Shares of the power above the noise floor below the lower and the upper edge of the band."""
 BELOW, ABOVE = 0.7, 1.5
-"""… from and to which it reaches a little farther: modes of little power have clear phases, too."""
+"""Factors by which the band is then extended: modes of little power also have clear phases."""
 FLOOR = 3.0
-"""Over the median line, for a channel's noise floor: five per cent of noise lines are above."""
-LEAST_COHERENCE = 0.3
-"""Squared coherence below which a bin says nothing."""
-DULL = 0.1
-"""ε: no bin counts more than ten times as much as one of half the coherence."""
-FEWEST_BINS = 6
-"""Fewer do not tell a delay from a phase."""
-FARTHEST_S = 3.0
-"""Delays looked for by phases, where bins are narrow enough …"""
-FARTHEST_BIN = 0.25
-"""… up to this share of a turn over the width of a bin. Longer ones are brought into this range first, …"""
-LONGEST_SHARE = 0.1
-"""… up to this share of the record."""
+"""Noise floor of a channel over its median line; five per cent of noise lines exceed it."""
+MIN_COHERENCE = 0.3
+"""Squared coherence below which a bin is ignored."""
+WEIGHT_OFFSET = 0.1
+"""ε, which limits the weight of a bin to ten times that at half coherence."""
+MIN_BINS = 6
+"""Fewest bins that distinguish a delay from a constant phase."""
+MAX_PHASE_DELAY_S = 3.0
+"""Longest delay sought by phases, if bins are narrow enough."""
+MAX_BIN_TURNS = 0.25
+"""Largest phase change over the width of a bin, in turns, for such a delay;
+longer delays are corrected first."""
+MAX_DELAY_SHARE = 0.1
+"""Longest delay sought at all, as a share of the record."""
 SUB_BANDS = 8
-"""In each of which a mode's sign may be another."""
-IMPROBABLE = 45.0
-"""Sum over the sub-bands, a gamma variable of order 8 that exceeds this once in 10¹¹ delays."""
-OUTSHINES = 2.0
-"""So many times must the sum at a long delay exceed that at any short one."""
-FINE_COARSE = 2
-"""Delays tried for each line of the band."""
-FINE = 24.0
-"""Steps of the search in a period of the highest bin."""
+"""Number of sub-bands; the sign of a mode may differ between them."""
+MIN_LONG_DELAY_SUM = 45.0
+"""Threshold of the sum over the sub-bands, a gamma variable of order 8 that exceeds this once in 10¹¹
+delays."""
+LONG_OVER_SHORT = 2.0
+"""Smallest ratio of the sum at a long delay to that at any short one."""
+DELAYS_PER_LINE = 2
+"""Number of delays tried per line of the band."""
+STEPS_PER_PERIOD = 24.0
+"""Steps of the search per period of the highest bin."""
 
 
 @dataclass(frozen=True)
 class BandLines:
-    """Lines of the channels' spectra in the band of most power, each of unit size.
+    """Normalised lines of the channels' spectra in the band of most power.
 
     Attributes
     ----------
     unit : (n_channels, n_lines) complex
     duration_s : float
-        Of the samples they are of.
+        Duration of the samples.
     """
 
     unit: ComplexArray
@@ -86,7 +88,7 @@ class BandLines:
 
 @dataclass(frozen=True)
 class Phases:
-    """Coherencies of all pairs of channels, in bins of frequency and windows of time.
+    """Coherencies of all pairs of channels in frequency bins and time windows.
 
     Attributes
     ----------
@@ -94,11 +96,11 @@ class Phases:
     coherency : (n_windows, n_bins, n_pairs) complex
     weight : (n_bins, n_pairs)
     pairs : (n_pairs, 2)
-        i < j; the phase is that of i over j.
+        Pairs with i < j; the phase is that of i relative to j.
     bin_hz : float
         Width of a bin.
     log_amplitude : (n_windows, n_bins, n_channels)
-        Logarithm of the root of the power of every channel.
+        Logarithm of the rms of every channel.
     """
 
     frequency_hz: FloatArray
@@ -111,41 +113,41 @@ class Phases:
     @property
     def search_s(self) -> FloatArray:
         """Delays that are tried, (n_delays,)."""
-        most = min(FARTHEST_S, FARTHEST_BIN / self.bin_hz)
-        step = 1.0 / (FINE * self.frequency_hz[-1])
+        most = min(MAX_PHASE_DELAY_S, MAX_BIN_TURNS / self.bin_hz)
+        step = 1.0 / (STEPS_PER_PERIOD * self.frequency_hz[-1])
         n = int(most / step)
         return np.asarray(step * np.arange(-n, n + 1))
 
     @property
     def total(self) -> FloatArray:
-        """Sum of the weights, (n_pairs,)."""
+        """Sums of the weights, (n_pairs,)."""
         return np.asarray(self.weight.sum(axis=0))
 
 
 def phases(y: FloatArray, sample_rate_hz: float, turn: ComplexArray) -> Phases | None:
-    """Return the phases between channels; None if the record is too short to tell.
+    """Return the phases between channels; None if the record is too short.
 
     Parameters
     ----------
     y : (n_channels, n_samples)
         Zero mean, without gaps.
     turn : (n_channels,) complex
-        What brings each channel into the phase of an acceleration: i for a velocity.
+        Factors that convert each channel to the phase of acceleration: i for a velocity.
     """
     n = y.shape[1]
-    if n < SHORTEST:
+    if n < MIN_SAMPLES:
         return None
     lines, used = hann_lines(y)
     low_hz, high_hz = (edge * sample_rate_hz / used for edge in _band(lines))
-    most = min(low_hz / CYCLES_A_WINDOW, (high_hz - low_hz) / (FEWEST_LINES * WANTED_BINS))
+    most = min(low_hz / CYCLES_PER_WINDOW, (high_hz - low_hz) / (MIN_LINES * WANTED_BINS))
     windows = int(np.clip(n / sample_rate_hz * most, *WINDOWS))
     length = n // windows
     df = sample_rate_hz / length
     first = max(int(low_hz / df), 2)
     wanted = int(high_hz / df) - first
-    each = max(FEWEST_LINES, -(-wanted // MOST_BINS))
+    each = max(MIN_LINES, -(-wanted // MAX_BINS))
     bins = wanted // each
-    if bins < FEWEST_BINS:
+    if bins < MIN_BINS:
         return None
     kept = slice(first, first + bins * each)
     pairs = np.stack(np.triu_indices(len(y), 1), axis=1)
@@ -153,13 +155,13 @@ def phases(y: FloatArray, sample_rate_hz: float, turn: ComplexArray) -> Phases |
     coherency *= (turn[:, None] * turn.conj())[pairs[:, 0], pairs[:, 1]]
     g = np.mean(np.abs(coherency) ** 2, axis=0)
     g = np.clip((each * g - 1.0) / (each - 1.0), 0.0, 1.0)
-    weight = np.where(g > LEAST_COHERENCE, g / (1.0 - g + DULL), 0.0)
+    weight = np.where(g > MIN_COHERENCE, g / (1.0 - g + WEIGHT_OFFSET), 0.0)
     f = df * (first + each * np.arange(bins) + 0.5 * (each - 1))
     return Phases(f, coherency, weight, pairs, each * df, log_amplitude)
 
 
 def _band(lines: ComplexArray) -> tuple[float, float]:
-    """Return the edges of the band that holds most of the power of every channel, in lines."""
+    """Return the edges, in lines, of the band that contains most of the power of every channel."""
     power = np.abs(lines) ** 2
     power = np.maximum(power - FLOOR * np.median(power, axis=1, keepdims=True), 0.0)
     total = power.sum(axis=1, keepdims=True)
@@ -169,7 +171,7 @@ def _band(lines: ComplexArray) -> tuple[float, float]:
 
 
 def _coherency(y: FloatArray, windows: int, kept: slice, each: int) -> tuple[ComplexArray, FloatArray]:
-    """Return the coherency of pairs in windows and bins of so many lines, and the logarithm of amplitudes."""
+    """Return coherencies of pairs in windows and bins, and the logarithm of amplitudes."""
     length = y.shape[1] // windows
     taper = np.hanning(length)
     i, j = np.triu_indices(len(y), 1)
@@ -186,7 +188,7 @@ def _coherency(y: FloatArray, windows: int, kept: slice, each: int) -> tuple[Com
 
 
 def aligned(seen: Phases, delay_s: FloatArray) -> Phases:
-    """Return the phases after the channels' delays are taken back.
+    """Return the phases after correction of the channels' delays.
 
     Parameters
     ----------
@@ -199,7 +201,7 @@ def aligned(seen: Phases, delay_s: FloatArray) -> Phases:
 
 
 def doubled(seen: Phases) -> ComplexArray:
-    """Return the weights with twice the phases of the mean over time, (n_bins, n_pairs)."""
+    """Return weights with doubled mean phases over time, (n_bins, n_pairs)."""
     mean = seen.coherency.mean(axis=0)
     size = np.abs(mean)
     return np.asarray(seen.weight * (mean / np.where(size > 0.0, size, 1.0)) ** 2)
@@ -211,25 +213,25 @@ def objective(seen: Phases, z: ComplexArray, delay_s: FloatArray, times: float =
     Parameters
     ----------
     z : (n_bins, n_pairs)
-        Weights with phases, which are so many times those between the channels.
+        Weights times phase factors, at a multiple of the phases between the channels.
     """
     turn = np.exp(2j * np.pi * times * np.outer(delay_s, seen.frequency_hz))
     return np.asarray((turn @ z).real)
 
 
 def trajectories(seen: Phases) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return how much later each pair is in every window than in the first, and how well that is known.
+    """Return the change of each pair's delay since the first window, and its certainty.
 
-    Each window is held against the sum of those before it, brought into step, whatever its sign: a sensor may
-    be turned while the record runs.
+    Each window is compared with the sum of the corrected windows before it, up to a sign:
+    a sensor may reverse during the record.
 
     Returns
     -------
     delay_s : (n_windows, n_pairs)
     explained : (n_windows, n_pairs)
-        Share of the weight that moved on by that delay: 1 if it is nothing but a delay.
+        Share of the weight explained by that change of delay: 1 if it is a pure delay.
     sign : (n_windows, n_pairs)
-        −1 where one of the two is turned against the first window.
+        −1 where one of the two is reversed relative to the first window.
     """
     search = seen.search_s
     out = np.zeros((len(seen.coherency), len(seen.pairs)))
@@ -249,9 +251,10 @@ def trajectories(seen: Phases) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def gain_trajectories(seen: Phases) -> FloatArray:
-    """Return ln of how much larger channel i is against j in every window than usual, (n_windows, n_pairs).
+    """Return the logarithmic change of each pair's amplitude ratio in every window, (n_windows, n_pairs).
 
-    The weighted median over the bins: the ratio of two channels is that of one mode in each of them.
+    This is the weighted median over the bins, since in each bin the ratio of two channels is that of one
+    mode.
     """
     i, j = seen.pairs.T
     ratio = seen.log_amplitude[:, :, i] - seen.log_amplitude[:, :, j]
@@ -264,7 +267,7 @@ def gain_trajectories(seen: Phases) -> FloatArray:
 
 
 def refined_peak(search_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return place and height of the largest value of each column, by a parabola through three.
+    """Return position and height of the largest value of each column, by a parabola through three.
 
     >>> x = np.linspace(-1.0, 1.0, 9)
     >>> place, height = refined_peak(x, 1.0 - (x[:, None] - 0.1) ** 2)
@@ -283,7 +286,7 @@ def refined_peak(search_s: FloatArray, values: FloatArray) -> tuple[FloatArray, 
 
 
 def band_lines(y: FloatArray, sample_rate_hz: float) -> BandLines | None:
-    """Return the lines in the band of most power; None if the record is too short to tell a delay.
+    """Return the lines in the band of most power; None if the record is too short for a delay.
 
     Parameters
     ----------
@@ -292,35 +295,35 @@ def band_lines(y: FloatArray, sample_rate_hz: float) -> BandLines | None:
     """
     lines, used = hann_lines(y)
     low, high = (round(edge) for edge in _band(lines))
-    if high - low < SUB_BANDS * FEWEST_LINES:
+    if high - low < SUB_BANDS * MIN_LINES:
         return None
     lines = lines[:, low:high]
     return BandLines(lines / np.where(np.abs(lines) > 0.0, np.abs(lines), 1.0), used / sample_rate_hz)
 
 
 def in_common(lines: BandLines, pairs: IntArray) -> tuple[FloatArray, Iterator[FloatArray]]:
-    r"""Return delays and, pair after pair, how much its channels have in common at each of them.
+    r"""Return delays and, for each pair, the coherence sum at each of them.
 
     .. math:: T(\tau) = \sum_s n_s\left|\frac1{n_s}\sum_{k\in s} e^{i\varphi_k + 2\pi i f_k\tau}\right|^2
 
-    over the lines k of sub-bands s, with the phase of the cross spectrum alone (Knapp & Carter 1976): of
-    independent channels a gamma variable, whatever their spectra are.
+    over the lines k of sub-bands s, with the phase of the cross spectrum alone (Knapp & Carter 1976).
+    For independent channels it is a gamma variable, whatever their spectra.
 
     Returns
     -------
     delay_s : (n_delays,)
-        Of the first channel of a pair behind the second.
+        Delays of the first channel of a pair behind the second.
     sums : iterator over (n_delays,)
     """
     unit = lines.unit
-    size = int(2 ** np.ceil(np.log2(FINE_COARSE * unit.shape[1])))
+    size = int(2 ** np.ceil(np.log2(DELAYS_PER_LINE * unit.shape[1])))
     delay = np.fft.fftfreq(size, 1.0 / size) * lines.duration_s / size
     edges = np.linspace(0, unit.shape[1], SUB_BANDS + 1).astype(int)
     return delay, (_sum(unit[i] * unit[j].conj(), edges, size) for i, j in pairs)
 
 
 def _sum(cross: ComplexArray, edges: IntArray, size: int) -> FloatArray:
-    """Return the sum at ``size`` delays: its squares are series in the lags within sub-bands, which add."""
+    """Return the sum at ``size`` delays, from the lagged products within sub-bands."""
     short = next_fast_len(2 * int(np.diff(edges).max()))
     parts = (cross[first:last] for first, last in pairwise(edges))
     powers = sum(np.abs(np.fft.ifft(part, short)) ** 2 / len(part) for part in parts)
@@ -328,16 +331,16 @@ def _sum(cross: ComplexArray, edges: IntArray, size: int) -> FloatArray:
 
 
 def long_delays(
-    lines: BandLines | None, pairs: IntArray, near_s: float, longest: float = LONGEST_SHARE
+    lines: BandLines | None, pairs: IntArray, near_s: float, longest: float = MAX_DELAY_SHARE
 ) -> tuple[FloatArray, FloatArray]:
     """Return delays of the pairs beyond ``near_s``, 0 where there is none, and their weights.
 
-    Delays up to the share ``longest`` of the record are tried; no lines tell of none.
+    Delays up to the share ``longest`` of the record are tried; without lines there are none.
 
     Returns
     -------
     delay_s, weight : (n_pairs,)
-        The weight is 0 for pairs that are independent at all delays.
+        Weight; 0 for pairs that are independent at all delays.
     """
     out, weight = np.zeros(len(pairs)), np.zeros(len(pairs))
     if lines is None:
@@ -347,8 +350,8 @@ def long_delays(
     near = np.abs(delay) <= near_s
     for pair, sum_ in enumerate(sums):
         best = int(np.argmax(np.where(far, sum_, 0.0)))
-        if sum_[best] > IMPROBABLE:
+        if sum_[best] > MIN_LONG_DELAY_SUM:
             weight[pair] = sum_[best]
-            if not near[best] and sum_[best] > OUTSHINES * sum_[near].max():
+            if not near[best] and sum_[best] > LONG_OVER_SHORT * sum_[near].max():
                 out[pair] = delay[best]
     return out, weight

@@ -1,4 +1,4 @@
-"""Time stamps → a regular grid: gaps become missing samples, jitter is measured, not ignored."""
+"""Conversion of time stamps to a regular grid; gaps become missing samples and jitter is measured."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from jackettwin.errors import InputError
 from jackettwin.records.record import RATES_HZ
 
 RATE_TOLERANCE = 1e-3
-"""Relative difference allowed between the stated rate and that of the stamps."""
-PLACED_JITTER = 0.05
-"""Jitter, as a share of the step, below which samples are placed on the grid as they are."""
-MOST_GRID_POINTS = 20
-"""Grid points allowed per stamp: beyond, the stamps hold a jump, not a gap."""
-MOST_DISORDER = 0.05
-"""Share of repeated or backward stamps beyond which the time column is refused."""
-FEWEST_TICKS = 10
-"""Ticks of a coarse clock, at least, that tell how many samples share one."""
+"""Largest relative difference between the stated sample rate and that of the stamps."""
+MAX_PLACED_JITTER = 0.05
+"""Jitter, as a share of the step, up to which samples are placed on the grid without interpolation."""
+MAX_GRID_POINTS = 20
+"""Most grid points per stamp; beyond, the stamps contain a jump, not a gap."""
+MAX_DISORDER = 0.05
+"""Largest share of repeated or backward stamps in an accepted time column."""
+MIN_TICKS = 10
+"""Fewest ticks of a coarse clock that show how many samples share one."""
 
 
 @dataclass(frozen=True)
 class Clock:
-    """What the stamps said about the logger's clock.
+    """Properties of the logger's clock derived from the stamps.
 
     ``jitter_s`` is the rms distance of the stamps from the regular grid, ``missing`` the number of
     grid points without a stamp, ``disordered`` the number of stamps dropped because they were
@@ -67,7 +67,7 @@ def regularise(
     t, y = times_s[keep] - times_s[keep][0], data[:, keep]
     _refuse_absurd(t)
     index, step, offset = _grid(t)
-    if index[-1] > MOST_GRID_POINTS * len(t):
+    if index[-1] > MAX_GRID_POINTS * len(t):
         raise InputError(
             "time stamps jump",
             field="time",
@@ -79,7 +79,7 @@ def regularise(
     jitter = float(np.sqrt(np.mean(residual**2)))
     rate = _agreed_rate(1.0 / step, sample_rate_hz, jitter, index)
     n_grid = int(index[-1]) + 1
-    if jitter <= PLACED_JITTER * step:
+    if jitter <= MAX_PLACED_JITTER * step:
         out = np.full((len(y), n_grid), np.nan)
         out[:, index] = y
     else:
@@ -89,10 +89,10 @@ def regularise(
 
 
 def between_ticks(times_s: FloatArray) -> FloatArray | None:
-    """Return the stamps of a clock coarser than the samples, spread evenly; None if they are not its.
+    """Return the stamps of a coarse clock spread evenly over its ticks; None if the clock is not coarse.
 
-    Its ticks are evenly apart, and all but the first and the last stand beside as many samples, give or take
-    one: full seconds beside twenty samples each.
+    A coarse clock has evenly spaced ticks, each of which, except the first and the last,
+    is shared by the same number of samples within one: e.g. full seconds for twenty samples each.
 
     Examples
     --------
@@ -104,10 +104,10 @@ def between_ticks(times_s: FloatArray) -> FloatArray | None:
         return None
     ticks, first, count = np.unique(times_s, return_index=True, return_counts=True)
     inner = count[1:-1]
-    if len(inner) < FEWEST_TICKS or inner.min() < 2 or np.abs(inner - np.median(inner)).max() > 1:
+    if len(inner) < MIN_TICKS or inner.min() < 2 or np.abs(inner - np.median(inner)).max() > 1:
         return None
     steps = np.diff(ticks)
-    if np.ptp(steps) > PLACED_JITTER * steps.mean():
+    if np.ptp(steps) > MAX_PLACED_JITTER * steps.mean():
         return None
     n = first[-1] - first[1]
     rate = shortest_decimal(n / (ticks[-1] - ticks[1]), 1.0 / n)
@@ -119,7 +119,7 @@ def _increasing(times_s: FloatArray) -> IntArray:
     finite = np.where(np.isfinite(times_s), times_s, -np.inf)
     latest = np.concatenate([[-np.inf], np.maximum.accumulate(finite)[:-1]])
     keep = np.flatnonzero(finite > latest)
-    if len(keep) < 2 or len(keep) < (1.0 - MOST_DISORDER) * len(times_s):
+    if len(keep) < 2 or len(keep) < (1.0 - MAX_DISORDER) * len(times_s):
         raise InputError(
             "time stamps do not increase",
             field="time",
@@ -145,8 +145,8 @@ def _refuse_absurd(t: FloatArray) -> None:
 def _grid(t: FloatArray) -> tuple[Int64Array, float, float]:
     """Return each stamp's grid point, the step and the fitted time of grid point 0.
 
-    The fit grows from the first stamps to all, so that the step is always known well enough to
-    count across the next stretch: jitter does not add up, and a gap does not shift the count.
+    The fit is extended from the first stamps to all, so that the step is always known precisely enough to
+    count across the next part: jitter does not accumulate, and a gap does not shift the count.
     """
     steps = np.diff(t)
     usual = np.median(steps)
@@ -168,7 +168,7 @@ def _count(t: FloatArray, step: float) -> FloatArray:
 
 
 def _line(index: FloatArray, t: FloatArray, step: float) -> tuple[float, float]:
-    """Return slope and intercept of the least-squares line; the old slope if it has no say."""
+    """Return slope and intercept of the least-squares line; the old slope if it is undetermined."""
     x = index - index.mean()
     power = float(x @ x)
     slope = float(x @ t) / power if power > 0.0 else step
@@ -177,7 +177,7 @@ def _line(index: FloatArray, t: FloatArray, step: float) -> tuple[float, float]:
 
 def _agreed_rate(fitted: float, stated: float | None, jitter_s: float, index: Int64Array) -> float:
     if stated is None:
-        # Stamps are rounded: take the shortest decimal within their own uncertainty.
+        # stamps are rounded: use the shortest decimal within their uncertainty
         spread = float(np.std(index)) * np.sqrt(len(index))
         return shortest_decimal(fitted, max(4.0 * jitter_s / spread * fitted, 1e-9))
     if abs(fitted / stated - 1.0) > RATE_TOLERANCE:
@@ -205,6 +205,6 @@ def _interpolate(grid: FloatArray, t: FloatArray, y: FloatArray, longest: float)
     """Interpolate linearly, leaving NaN where the neighbouring stamps are farther apart than ``longest``."""
     right = np.clip(np.searchsorted(t, grid), 1, len(t) - 1)
     out = np.vstack([np.interp(grid, t, row) for row in y])
-    # A lost stamp leaves two steps between its neighbours, give or take the jitter.
+    # a lost stamp leaves two steps between its neighbours, plus or minus the jitter
     out[:, (t[right] - t[right - 1]) > longest] = np.nan
     return out

@@ -1,4 +1,4 @@
-"""Where series of a few windows, one a channel, leave their level or their line for another."""
+"""Jumps in short series, one per channel, from one level or line to another."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 
 SIGMAS = 6.0
-"""Standard deviations, of the scatter between windows, beyond which a change counts."""
+"""Change in standard deviations of the scatter between windows above which it is a jump."""
 
 
 @dataclass(frozen=True)
@@ -22,9 +22,9 @@ class SeriesJump:
     rows : tuple of int
         Series that jump.
     by : (n_series,)
-        Level after over level before, of all series.
+        Level after minus level before, of all series.
     before, after : int
-        Windows: the end (excluded) of the run before, the first of the run after.
+        Last window (excluded) of the run before and first window of the run after.
     """
 
     rows: tuple[int, ...]
@@ -34,7 +34,7 @@ class SeriesJump:
 
 
 def scatter(series: FloatArray) -> FloatArray:
-    """Return the standard deviation of each series in a window, by the differences between windows.
+    """Return the standard deviation of each series in a window, from differences between windows.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def runs(series: FloatArray, reach: float) -> list[tuple[int, int]]:
     _, rest = lines(series)
     change = np.diff(series, axis=0)
     change = change - np.median(change, axis=0)
-    # a line takes half of a jump in the middle
+    # a line follows half of a jump in the middle
     off = np.abs(rest).max(axis=0) > 0.5 * tolerance
     broken = 1 + np.flatnonzero((off & (np.abs(change) > tolerance)).any(axis=1))
     edges = [0, *(int(k) for k in broken), len(series)]
@@ -74,10 +74,10 @@ def runs(series: FloatArray, reach: float) -> list[tuple[int, int]]:
 
 
 def series_jumps(series: FloatArray, between: list[tuple[int, int]], reach: float) -> list[SeriesJump]:
-    """Return the jumps between runs; a run of one window is the one in which a jump lies.
+    """Return the jumps between runs; a run of one window is the window of a jump.
 
-    A clock does not jump back for one window: where a series does, two delays explain the phases alike, and
-    none is told.
+    A clock does not jump back after one window. A series that does has two delays that explain the phases
+    equally well, and no jump is reported.
     """
     tolerance = _tolerance(series, reach)
     kept = [run for run in between if run[1] - run[0] > 1] or between
@@ -95,5 +95,5 @@ def series_jumps(series: FloatArray, between: list[tuple[int, int]], reach: floa
 
 
 def _tolerance(series: FloatArray, reach: float) -> FloatArray:
-    """Return the least difference of each series that is a jump."""
+    """Return the smallest difference of each series that is a jump."""
     return np.asarray(np.maximum(reach, SIGMAS * scatter(series)))

@@ -1,10 +1,9 @@
-"""Channels whose clock is not that of the others: late, jumping, or running too fast.
+"""Clock errors of loggers: channels that are late, jump or drift relative to the others.
 
-Channels of one logger share its clock. Delays of all pairs (``delays.py``) are brought down to one a channel
-and window; channels that go together are one group, the largest group keeps the time. What groups do in time
-is told apart: a delay that stays is a shift, one that grows is a clock that runs too slow, one that jumps
-parts the record, of which the longest stretch without a jump is judged. A sensitivity that jumps shows in
-the same pairs.
+Channels of one logger share its clock. Delays of all pairs (``delays.py``) are reduced to one
+per channel and window. Channels that agree form a group, and the largest group is the reference.
+A constant delay of a group is an offset, a growing one is a slow clock, and a jump divides the record,
+of which the longest part without jumps is judged. Jumps of sensitivity appear in the same pairs.
 """
 
 from __future__ import annotations
@@ -27,9 +26,9 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from jackettwin.arrays import IntArray
-from jackettwin.records.clocks.another_time import may_be_compared, spanning_pairs, strangers
+from jackettwin.records.clocks.another_time import comparable_channels, spanning_pairs, strangers
 from jackettwin.records.clocks.channel_delays import (
-    EXPLAINED,
+    MIN_EXPLAINED_SHARE,
     REACH_RAD,
     Network,
     against_main,
@@ -40,7 +39,7 @@ from jackettwin.records.clocks.channel_delays import (
     ties,
     without_gaps,
 )
-from jackettwin.records.clocks.correction import rejoined
+from jackettwin.records.clocks.correction import with_lost_samples
 from jackettwin.records.clocks.delays import (
     Phases,
     aligned,
@@ -56,42 +55,42 @@ from jackettwin.records.clocks.jumps import runs, series_jumps
 from jackettwin.records.clocks.lost_time import lost_time
 from jackettwin.records.clocks.results import ClockJump, Strangers
 
-LEAST_WEIGHT = 20.0
-"""Sum of the weights of a pair that says anything: two bins of full coherence, or twenty of half."""
-MOSTLY_DELAY = 0.6
-"""Share of the weight that must have moved on by a delay."""
-NEAR_S, NEAR = 2.0, 0.6
-"""Delays up to this, and up to this share of the longest they are sought to, are left to the phases."""
-FEWEST_WINDOWS = 4
-"""Of a stretch that is judged."""
+MIN_WEIGHT = 20.0
+"""Smallest sum of the weights of an informative pair: two bins of full coherence, or twenty of half."""
+MIN_DELAY_SHARE = 0.6
+"""Smallest share of the weight that a change of delay must explain."""
+NEAR_S, NEAR_SHARE = 2.0, 0.6
+"""Delays up to this, and up to this share of the longest one sought, are determined from phases."""
+MIN_WINDOWS = 4
+"""Fewest windows of a part that is judged."""
 
 
-LEAST_PRESENT = 0.75
-"""Share of the samples of a channel whose clock can be judged: a longer gap, bridged, looks like another
-time."""
+MIN_PRESENT_SHARE = 0.75
+"""Smallest share of present samples in a channel whose clock is judged;
+a longer bridged gap resembles another time."""
 
 
 @dataclass(frozen=True)
-class _Seen:
-    """Phases, and which channels they hold against each other."""
+class _Compared:
+    """Phases, and the channels they compare."""
 
     phases: Phases
     network: Network
 
 
 def clocks_of(record: Record, slow_free: FloatArray) -> LoggerClocks:
-    """Return what the vibrations of a record say of the clocks of its loggers.
+    """Return the clock errors of loggers found in the vibrations of a record.
 
     Parameters
     ----------
     slow_free : (n_channels, n_samples)
-        Its samples without mean and drift; NaN marks missing ones.
+        Samples without mean and drift; NaN marks missing ones.
     """
     rows = [
         i
         for i, channel in enumerate(record.channels)
         if channel.quantity in VIBRATIONS
-        and np.isfinite(slow_free[i]).mean() > LEAST_PRESENT
+        and np.isfinite(slow_free[i]).mean() > MIN_PRESENT_SHARE
         and not is_constant(slow_free[i])
     ]
     if len(rows) < 2:
@@ -115,20 +114,20 @@ def logger_clocks(
     directions: Sequence[Sequence[float]] = (),
     losses: int = 2,
 ) -> LoggerClocks:
-    """Return which channels are late, jump or drift against the others, or are of another time.
+    """Return channels that are late, jump or drift relative to the others, or are of another time.
 
     Parameters
     ----------
     y : (n_channels, n_samples)
         Vibrations of zero mean, without gaps.
     velocity : (n_channels,) bool
-        Channels that are a quarter of a turn off, as velocities are.
+        Channels a quarter of a period off, such as velocities.
     places : (n_channels,)
-        Where each channel sits; None if it is not known.
+        Place of each channel, None if unknown.
     directions : (n_channels, 3), optional
-        Which way it points; zeros if that is not known.
+        Direction of each channel; zeros if unknown.
     losses : int
-        Of seconds, that are given back at most.
+        Most losses of time that are corrected.
     """
     whole = LoggerClocks(stop=y.shape[1])
     if len(y) < 2:
@@ -138,7 +137,7 @@ def logger_clocks(
     if first_look is None:
         return whole
     tree = spanning_pairs(first_look)
-    compared = may_be_compared(directions, len(y))
+    compared = comparable_channels(directions, len(y))
     again = partial(logger_clocks, sample_rate_hz=sample_rate_hz)
     apart = strangers(y, sample_rate_hz, first_look, tree, compared)
     if apart:
@@ -149,19 +148,19 @@ def logger_clocks(
     if lost is not None:
         moved = y.copy()
         for i in lost.rows:
-            moved[i] = bridge(rejoined(y[i], lost))
+            moved[i] = bridge(with_lost_samples(y[i], lost))
         found = again(moved, velocity=velocity, places=places, directions=directions, losses=losses - 1)
         return replace(found, lost=(lost, *found.lost))
     far = _long_delays(y, sample_rate_hz, first_look, same_place)
-    near = phases(_moved(y, far, sample_rate_hz), sample_rate_hz, turn) if far.any() else first_look
-    seen = _seen(near, len(y), same_place)
+    near = phases(_shifted(y, far, sample_rate_hz), sample_rate_hz, turn) if far.any() else first_look
+    seen = _compared(near, len(y), same_place)
     if seen is None:
         return whole
     length = y.shape[1] // len(seen.phases.coherency)
     window_s = length / sample_rate_hz
     weight, series, sign = _series(seen)
     jumping, growing = gain_changes(seen.phases, seen.network, weight, length)
-    # the sign of a motion in x against one in y is the wind's
+    # the sign of motion in x relative to y depends on the wind
     along = np.where(compared[seen.network.pairs[:, 0], seen.network.pairs[:, 1]], weight, 0.0)
     turning = sign_turns(y, sign, along, seen.network, length)
     whole = replace(whole, gains=(*jumping, *turning), growing=growing)
@@ -176,7 +175,7 @@ def logger_clocks(
         for jump in series_jumps(series, between, seen.network.reach_s)
     )
     first, last = max(between, key=lambda run: run[1] - run[0]) if jumps else (0, len(series))
-    if last - first < FEWEST_WINDOWS:
+    if last - first < MIN_WINDOWS:
         return replace(whole, jumps=jumps, judged=False)
     start, stop = (first * length, last * length) if jumps else (0, y.shape[1])
     stop = y.shape[1] if last == len(series) else stop
@@ -198,7 +197,7 @@ def _without_strangers(
     places: Sequence[object],
     directions: Sequence[Sequence[float]],
 ) -> LoggerClocks:
-    """Judge the channels again, those stored backwards turned, those of another time left out."""
+    """Repeat the judgement with reversed channels turned and those of another time left out."""
     turned = [i for one in apart if one.backwards for i in one.rows]
     out = {i for one in apart if not one.backwards for i in one.rows}
     rows = [i for i in range(len(y)) if i not in out]
@@ -214,10 +213,10 @@ def _without_strangers(
 
 
 def _long_delays(y: FloatArray, sample_rate_hz: float, seen: Phases, same_place: IntArray) -> FloatArray:
-    """Return delays too long for phases to show, in whole samples [s], (n_channels,)."""
+    """Return delays too long to appear in phases, in whole samples [s], (n_channels,)."""
     near_s = _near_s(seen)
     explained = objective(seen, doubled(seen), seen.search_s).max(axis=0)
-    unknown = (seen.total <= LEAST_WEIGHT) | (explained < EXPLAINED * seen.total)
+    unknown = (seen.total <= MIN_WEIGHT) | (explained < MIN_EXPLAINED_SHARE * seen.total)
     delay, weight = np.zeros(len(seen.pairs)), np.where(unknown, 0.0, seen.total)
     lines = band_lines(y, sample_rate_hz) if unknown.any() else None
     delay[unknown], weight[unknown] = long_delays(lines, seen.pairs[unknown], near_s)
@@ -231,33 +230,33 @@ def _long_delays(y: FloatArray, sample_rate_hz: float, seen: Phases, same_place:
 
 
 def _near_s(seen: Phases) -> float:
-    """Return the delay up to which the phases tell it."""
-    return min(NEAR_S, NEAR * float(seen.search_s[-1]))
+    """Return the longest delay that the phases determine."""
+    return min(NEAR_S, NEAR_SHARE * float(seen.search_s[-1]))
 
 
-def _moved(y: FloatArray, by_s: FloatArray, sample_rate_hz: float) -> FloatArray:
-    """Return the samples so much earlier, zeros where there are none."""
+def _shifted(y: FloatArray, by_s: FloatArray, sample_rate_hz: float) -> FloatArray:
+    """Return the samples shifted to earlier times, padded by zeros."""
     out = np.zeros_like(y)
     for row, new, by in zip(y, out, np.round(by_s * sample_rate_hz).astype(int), strict=True):
         new[max(-by, 0) : len(new) - max(by, 0)] = row[max(by, 0) : len(row) - max(-by, 0)]
     return out
 
 
-def _seen(found: Phases | None, n: int, same_place: IntArray) -> _Seen | None:
-    """Return the phases, the pairs that say something and the least delay they can tell."""
+def _compared(found: Phases | None, n: int, same_place: IntArray) -> _Compared | None:
+    """Return phases, informative pairs and the smallest delay that they determine."""
     if found is None:
         return None
-    informative = found.total > LEAST_WEIGHT
+    informative = found.total > MIN_WEIGHT
     if not informative.any():
         return None
     weight = found.weight[:, informative].sum(axis=1)
     rms_hz = float(np.sqrt(weight @ found.frequency_hz**2 / weight.sum()))
     reach_s = REACH_RAD / (2.0 * np.pi * rms_hz)
-    return _Seen(found, Network(n, found.pairs, informative, same_place, reach_s))
+    return _Compared(found, Network(n, found.pairs, informative, same_place, reach_s))
 
 
-def _series(seen: _Seen) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the weights of the pairs, how much later each channel is than in the first window, and signs.
+def _series(seen: _Compared) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return weights of pairs, delays of channels relative to the first window, and signs.
 
     Returns
     -------
@@ -266,5 +265,5 @@ def _series(seen: _Seen) -> tuple[FloatArray, FloatArray, FloatArray]:
     sign : (n_windows, n_pairs)
     """
     delay, explained, sign = trajectories(seen.phases)
-    weight = np.where(seen.network.informative & (explained > MOSTLY_DELAY), seen.phases.total, 0.0)
+    weight = np.where(seen.network.informative & (explained > MIN_DELAY_SHARE), seen.phases.total, 0.0)
     return weight, by_channel(seen.network, delay, weight), sign

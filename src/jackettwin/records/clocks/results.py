@@ -1,4 +1,4 @@
-"""What is found of the clocks and sensitivities of the loggers of one record: rows, times and sizes."""
+"""Clock and sensitivity errors of one record: rows, times and sizes."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class LateClock:
-    """Channels that are late by a delay that stays or grows.
+    """Channels that are late by a constant or growing delay.
 
     Attributes
     ----------
     rows : tuple of int
     delay_s, delay_std_s : float
-        At the beginning of the record; negative if they are early.
+        Delay at the beginning of the record; negative if early.
     drift, drift_std : float
-        Seconds a second by which the delay grows; 0 if it does not.
+        Growth of the delay [s/s]; 0 if it is constant.
     certain : bool
-        Whether no complex modes could look like it.
+        Whether complex modes are excluded as an explanation.
     """
 
     rows: tuple[int, ...]
@@ -39,7 +39,7 @@ class LateClock:
 
 @dataclass(frozen=True)
 class ClockJump:
-    """Channels whose delay jumps by so much between two samples."""
+    """Channels whose delay jumps between two samples."""
 
     rows: tuple[int, ...]
     start: int
@@ -49,7 +49,7 @@ class ClockJump:
 
 @dataclass(frozen=True)
 class LostTime:
-    """Channels that lost so many samples between two of theirs; gained, if negative."""
+    """Channels that lost a number of samples between two others; gained if negative."""
 
     rows: tuple[int, ...]
     start: int
@@ -59,9 +59,9 @@ class LostTime:
 
 @dataclass(frozen=True)
 class GainJump:
-    """Channels so many times as sensitive before ``start`` (factor[0]) or from ``stop`` on (factor[1]).
+    """Channels whose sensitivity is multiplied before ``start`` (factor[0]) or from ``stop`` on (factor[1]).
 
-    One of the factors is 1, the other negative where a sign turns; what lies between is not known.
+    One factor is 1; the other is negative if the sign reverses. Between ``start`` and ``stop`` it is unknown.
     """
 
     rows: tuple[int, ...]
@@ -72,7 +72,7 @@ class GainJump:
 
 @dataclass(frozen=True)
 class GrowingGain:
-    """Channels whose sensitivity grows steadily against the others', by e to this times the duration."""
+    """Channels whose relative sensitivity grows steadily, by e to this rate times the duration."""
 
     rows: tuple[int, ...]
     rate: float
@@ -80,15 +80,15 @@ class GrowingGain:
 
 @dataclass(frozen=True)
 class Strangers:
-    """Channels that have the spectrum of the others and nothing in common with them at any delay.
+    """Channels with the spectrum of the others but no coherence with them at any delay.
 
     Attributes
     ----------
     rows : tuple of int
     backwards : bool
-        Whether they have, stored from the end to the beginning.
+        Whether they are coherent once reversed in time.
     fewer : bool
-        Whether they are fewer than those they are held against: then it is they.
+        Whether they are fewer than the others, and therefore the ones at fault.
     """
 
     rows: tuple[int, ...]
@@ -98,23 +98,23 @@ class Strangers:
 
 @dataclass(frozen=True)
 class LoggerClocks:
-    """What the phases say of the clocks.
+    """Clock errors derived from phases.
 
     Attributes
     ----------
     late : tuple of LateClock
     jumps : tuple of ClockJump
     start, stop : int
-        Samples of the longest stretch without a jump, for which ``late`` holds.
+        Samples of the longest part without a jump, to which ``late`` applies.
     judged : bool
-        False if no stretch between jumps is long enough to be judged.
+        False if no part between jumps is long enough to be judged.
     gains : tuple of GainJump
         Channels whose sensitivity, or sign, jumps.
     growing : tuple of GrowingGain
     strangers : tuple of Strangers
-        Channels of another time; the rest is judged without them, or after they are turned.
+        Channels of another time; the rest is judged without them, or after they are reversed.
     lost : tuple of LostTime
-        To be given back before anything else here is taken back.
+        Losses to be corrected before any other error.
     """
 
     late: tuple[LateClock, ...] = ()
@@ -128,7 +128,7 @@ class LoggerClocks:
     lost: tuple[LostTime, ...] = ()
 
     def of_rows(self, rows: Sequence[int]) -> LoggerClocks:
-        """Return the same of channels that are these rows of a larger record."""
+        """Return the same result for channels that are these rows of a larger record."""
         named: dict[str, Any] = {
             key: tuple(replace(one, rows=tuple(rows[i] for i in one.rows)) for one in getattr(self, key))
             for key in ("late", "jumps", "gains", "growing", "strangers", "lost")
@@ -137,7 +137,7 @@ class LoggerClocks:
 
 
 def clock_findings(record: Record, clocks: LoggerClocks) -> Iterator[Finding]:
-    """Yield what is worth saying about the clocks."""
+    """Yield findings on the clocks."""
     rate = record.sample_rate_hz
     for stranger in clocks.strangers:
         code = "stored_backwards" if stranger.backwards else "another_time"

@@ -1,1 +1,1 @@
-"""Filters, axes, tones and merging: a record in, a record out."""
+"""Processing of records: filters, axes, tones and merging."""

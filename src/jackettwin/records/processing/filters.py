@@ -1,9 +1,9 @@
 """Zero-phase filters on arrays in which NaN marks a missing sample: a gap stays a gap.
 
-A missing sample is never taken as a number. Slow parts are estimated as weighted means of the
-samples that exist; low-pass filters bridge a gap by a straight line and declare every output
-missing in which bridges carry more than ``MISSING_WEIGHT`` of the filter. Bridges of at most half an
-output step do not count: what the filter passes hardly bends over so short a time.
+Missing samples are never replaced by numbers. Slow parts are weighted means of the samples present.
+Low-pass filters bridge a gap by a straight line, and an output is missing if bridges carry
+more than ``MISSING_WEIGHT`` of the filter. Bridges of at most half an output step are ignored,
+since the passed signal hardly changes over so short a time.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from jackettwin import signals
 from jackettwin.arrays import BoolArray, FloatArray
 
 STOPBAND_DB = 80.0
-"""Attenuation beyond the stop edge; the pass band ripples by 1e-4."""
+"""Attenuation beyond the stop edge [dB]; the pass-band ripple is 1e-4."""
 MISSING_WEIGHT = 0.1
 """Share of a low-pass filter's absolute weight that may fall on bridged samples."""
 
@@ -108,7 +108,7 @@ def resample(y: FloatArray, taps: FloatArray, up: int = 1, down: int = 1) -> Flo
 
 
 def half_length(taps: FloatArray, up: int = 1) -> int:
-    """Input samples on either side that one output of ``resample`` rests on."""
+    """Return the number of input samples on either side that one output of ``resample`` uses."""
     return -(-(len(taps) // 2) // up)
 
 

@@ -1,7 +1,7 @@
-"""Several loggers, one record: common rate and common time axis.
+"""Merging of simultaneous records of several loggers to a common rate and time axis.
 
-``merge`` is for loggers that ran at the same time. Setups measured one after another, with a few
-sensors left in place, cannot share a time axis; ``shared_channels`` names the sensors that tie them.
+``merge`` is for loggers that ran at the same time. Successive setups with a few fixed sensors cannot share a
+time axis; ``shared_channels`` names the sensors that connect them.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 ON_GRID = 1e-6
-"""Offset from a sample, in samples, below which nothing need be interpolated."""
+"""Offset in samples below which no interpolation is needed."""
 
 
 def shared_channels(records: Sequence[Record]) -> tuple[str, ...]:
@@ -66,10 +66,10 @@ def shared_channels(records: Sequence[Record]) -> tuple[str, ...]:
 
 
 def merge(records: Sequence[Record], *, name: str | None = None) -> Record:
-    """Return simultaneous records as one: the lowest rate, the time all of them cover.
+    """Return simultaneous records as one, at the lowest rate and over their common time.
 
-    Faster records are decimated; clocks that do not tick together are brought to one grid by cubic
-    interpolation, gaps staying gaps. Without start times all records start together.
+    Faster records are decimated. Clocks with an offset are interpolated to one grid by cubic splines;
+    gaps remain. Without start times all records are assumed to start together.
 
     Raises
     ------
@@ -99,7 +99,7 @@ def merge(records: Sequence[Record], *, name: str | None = None) -> Record:
             allowed="simultaneous records",
             remedy="merge what was measured together",
         )
-    rows = [_brought_to(r, rate, begin - o, n) for r, o in zip(records, offsets, strict=True)]
+    rows = [_resampled(r, rate, begin - o, n) for r, o in zip(records, offsets, strict=True)]
     first = records[0]
     start = None if first.start_utc is None else first.start_utc + timedelta(seconds=begin - offsets[0])
     return replace(
@@ -146,7 +146,7 @@ def _offsets_s(records: Sequence[Record]) -> list[float]:
     return [(start - starts[0]).total_seconds() for start in starts]
 
 
-def _brought_to(record: Record, rate: float, begin_s: float, n: int) -> FloatArray:
+def _resampled(record: Record, rate: float, begin_s: float, n: int) -> FloatArray:
     """Return n samples at ``rate`` from ``begin_s`` after the record's start on."""
     ratio = Fraction(rate / record.sample_rate_hz).limit_denominator(1000)
     if 0 < ratio < 1:

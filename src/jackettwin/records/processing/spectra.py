@@ -1,15 +1,15 @@
 r"""Fourier transforms of records, and Welch's estimate of power spectral densities.
 
-Channels may have missing samples. They count as zero, and the power of all segments is divided by the
-window's energy over the samples that are there,
+Channels may have missing samples. These count as zero, and the power of all segments is divided by the
+window's energy over the samples present,
 
 .. math:: S(f) = \frac{2}{f_s}\,
           \frac{\sum_m \big|\sum_k w_k\, x_{mk}\, e^{-2\pi i f k/f_s}\big|^2}{\sum_m \sum_k w_k^2\, a_{mk}},
 
-with w the Hann window, x the samples of segment m (half overlapping), and a = 1 where a sample is there, 0
-where it is missing. By Parseval's theorem the density integrates to the variance of the samples that are
-there, and white noise has its level, however much is missing. Samples that are missing here and there move
-their share of a line's power to all frequencies; a gap moves it to the neighbouring ones.
+with w the Hann window, x the samples of segment m (half overlapping), and a = 1 for a present sample and
+0 for a missing one. By Parseval's theorem the density integrates to the variance of the samples present,
+and white noise has its true level whatever share is missing. Scattered missing samples spread part of a
+line's power over all frequencies; a gap spreads it to neighbouring lines.
 """
 
 from __future__ import annotations
@@ -21,11 +21,10 @@ from jackettwin.signals import hann, prev_fast_len
 
 
 def of_fast_length(y: FloatArray) -> FloatArray:
-    """Return the samples without the few at the end that make their transform slow, along the last axis.
+    """Return samples, along the last axis, without the few at the end that slow down the transform.
 
-    Ten minutes at 100 Hz, both ends included, are 60,001 = 29 · 2069 samples, whose transform takes ten
-    times as long as that of 60,000. For what is read behind a window, or from the slowest lines, the last
-    samples matter nothing.
+    Ten minutes at 100 Hz, both ends included, are 60,001 = 29 · 2069 samples, whose transform takes ten times
+    as long as that of 60,000. For windowed data or the slowest lines, the last samples do not matter.
 
     >>> of_fast_length(np.zeros((2, 60001))).shape
     (2, 60000)
@@ -34,7 +33,7 @@ def of_fast_length(y: FloatArray) -> FloatArray:
 
 
 def hann_lines(y: FloatArray) -> tuple[ComplexArray, int]:
-    """Return the transforms of rows behind a Hann window, (n_channels, n_lines), and the samples they are of.
+    """Return transforms of rows under a Hann window, (n_channels, n_lines), and the samples used.
 
     Parameters
     ----------
@@ -57,7 +56,7 @@ def welch_densities(
     segment_length : int
         Samples of a segment, at most those of the record.
     less_mean : bool
-        Take from every segment the mean of its samples, as ``scipy.signal.welch`` does.
+        Subtract the mean of every segment, as ``scipy.signal.welch`` does.
 
     Examples
     --------
@@ -113,7 +112,7 @@ def _transforms(
 
 
 def _one_sided(segment_length: int) -> FloatArray:
-    """Return how often each line counts: the mean and the Nyquist line stand for themselves alone."""
+    """Return the weight of each line; the mean and the Nyquist line count once, the others twice."""
     times = np.full(segment_length // 2 + 1, 2.0)
     times[0] = 1.0
     if segment_length % 2 == 0:

@@ -1,10 +1,10 @@
-r"""Tones whose phase is known, taken out by least squares: the orders of a rotor whose speed is measured.
+r"""Subtraction of tones of known phase by least squares: the orders of a rotor of measured speed.
 
 With the azimuth :math:`\theta(t) = \int \Omega\, dt` the tone of order k is
-:math:`\mathrm{Re}\, c\, e^{ik\theta}`, one complex amplitude a channel, whatever the speed does. A mode is
-driven at random and has no fixed phase towards the rotor: over T seconds the fit takes no more of it than a
-line of width 1/T. A speed wrong by more than a few tenths of a turn over the record leaves the tone in, for
-its statistics to tell.
+:math:`\mathrm{Re}\, c\, e^{ik\theta}`, with one complex amplitude per channel, whatever the speed.
+A mode is driven at random and has no fixed phase relative to the rotor:
+over T seconds the fit removes no more of it than a line of width 1/T. If the speed is wrong by more than a
+few tenths of a turn over the record, the tone remains and is recognised by its statistics.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 
 
 FEWEST_SAMPLES = 30
-"""A channel with fewer keeps what it has: three unknowns a channel, tenfold."""
+"""Fewest samples of a channel that is treated: ten times its three unknowns."""
 
 
 def less_phase(y: FloatArray, phase: FloatArray) -> FloatArray:
-    """Return samples less the least-squares combination of the cosine and the sine of a phase.
+    """Return samples without the least-squares combination of cosine and sine of a phase.
 
-    A constant is fitted beside them and stays.
+    A constant is fitted too, but not subtracted.
 
     Parameters
     ----------
@@ -57,12 +57,12 @@ def less_phase(y: FloatArray, phase: FloatArray) -> FloatArray:
 
 ORDERS = (1, 3, 6)
 """Multiples of the rotor's speed at which three blades excite a tower."""
-FEWEST_TURNS = 20.0
-"""Fewer turns in a record are a rotor at rest, or too few to tell a tone."""
+MIN_TURNS = 20.0
+"""Fewest turns in a record; with fewer, the rotor stands or its tones cannot be separated."""
 SPEED_KEYS = ("rotor_speed_rpm", "mean_rotor_speed_rpm", "rotor_rpm")
 """Names of the mean speed of the rotor among a record's conditions."""
 SPREAD = 0.05
-"""Relative range of the speed about a mean that is stated, within ten minutes of operation."""
+"""Relative range of the speed about a stated mean, within ten minutes of operation."""
 
 
 @dataclass(frozen=True)
@@ -74,9 +74,9 @@ class RotorOrder:
     order : int
         3 for 3P.
     low_hz, high_hz : float
-        Where its frequency lay, 1st to 99th percentile.
+        Range of its frequency, 1st to 99th percentile.
     share : float
-        Largest share of a channel's power that was taken out.
+        Largest share of a channel's power that was subtracted.
     """
 
     order: int
@@ -92,21 +92,21 @@ def rotor_speed(record: Record) -> FloatArray | None:
         return None
     speed = np.abs(bridge(record.data[rows[0]]))
     turns = float(np.sum(speed)) / record.sample_rate_hz / (2.0 * np.pi)
-    return speed if turns >= FEWEST_TURNS else None
+    return speed if turns >= MIN_TURNS else None
 
 
 def stated_orders(conditions: Mapping[str, Any], duration_s: float) -> tuple[RotorOrder, ...]:
-    """Return where the orders lie by a mean speed that the conditions state; none for a rotor at rest."""
+    """Return the ranges of the orders by a mean speed in the conditions; none for a rotor at rest."""
     stated = [conditions[key] for key in SPEED_KEYS if isinstance(conditions.get(key), int | float)]
     turns_a_second = abs(stated[0]) / 60.0 if stated else 0.0
-    if turns_a_second * duration_s < FEWEST_TURNS:
+    if turns_a_second * duration_s < MIN_TURNS:
         return ()
     low, high = turns_a_second * (1.0 - SPREAD), turns_a_second * (1.0 + SPREAD)
     return tuple(RotorOrder(k, k * low, k * high, 0.0) for k in ORDERS)
 
 
 def without_orders(record: Record, speed_rad_s: FloatArray) -> tuple[Record, tuple[RotorOrder, ...]]:
-    """Return the record with the tones of the rotor taken from its vibration channels, and what they were.
+    """Return the record without the tones of the rotor in its vibration channels, and these tones.
 
     Parameters
     ----------

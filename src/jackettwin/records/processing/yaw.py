@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 ROTOR, GLOBAL = ("fore_aft", "side_side"), ("x", "y")
-LEAST_SINE = 0.5
+MIN_SINE = 0.5
 """Two sensors span the plane if the sine of the angle between them is at least this."""
 _ENDING = re.compile(r"[_ .\-]?(fore_aft|side_side|[xyXY])$")
 
@@ -126,7 +126,7 @@ def _pairs(record: Record) -> Iterator[tuple[int, int]]:
         first = record.channels[i]
         for j in left:
             second = record.channels[j]
-            if _place(first) == _place(second) and abs(_sine(first, second)) >= LEAST_SINE:
+            if _place(first) == _place(second) and abs(_sine(first, second)) >= MIN_SINE:
                 left.remove(j)
                 yield (i, j) if abs(first.direction[0]) >= abs(second.direction[0]) else (j, i)
                 break

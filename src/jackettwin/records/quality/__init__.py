@@ -1,1 +1,1 @@
-"""What is wrong with a record, and what can be repaired."""
+"""Quality of a record: faults and their repair."""

@@ -1,7 +1,7 @@
-"""Faults of one channel: detectors of what loggers do to a signal, and what is worth saying of them.
+"""Faults of one channel: detectors of logger and sensor errors, and the findings on them.
 
-Every detector takes the samples of one channel, NaN where one is missing, and says what it saw; none changes
-it.
+Every detector takes the samples of one channel, NaN where missing,
+and returns what it detects without changing them.
 """
 
 from __future__ import annotations
@@ -24,38 +24,40 @@ if TYPE_CHECKING:
 
 
 SPIKE_WINDOW = 9
-"""A spike is shorter than half of this [samples]."""
+"""Window of the running median; a spike is shorter than half of it [samples]."""
 SPIKE_BLOCK = 256
-"""Samples over which the usual departure is taken, beside the whole channel."""
+"""Length of the blocks over which the local scatter is taken [samples]."""
 SPIKE_SIGMAS = 8.0
-"""Robust standard deviations from the local median; 1e-15 for Gaussian noise."""
+"""Smallest distance of a spike from the running median, in robust standard deviations;
+its probability in Gaussian noise is 1e-15."""
 CREST_SIGMAS = 4.0
-"""Robust standard deviations of the window itself: a smooth crest, which the median cuts, reaches 0.8."""
+"""Smallest distance in robust standard deviations of the window; the crest of a smooth wave,
+which the median cuts, reaches 0.8."""
 RAIL_RATIO = 5.0
-"""Samples at a rail per sample at the levels next to it; a pure sine reaches 3."""
-LEAST_AT_RAIL = 5
-"""Fewer samples at the extreme say nothing."""
+"""Smallest ratio of samples at a rail to samples at the next levels; a pure sine reaches 3."""
+MIN_AT_RAIL = 5
+"""Fewest samples at an extreme that count as a rail."""
 STUCK_RUN_RATIO = 50.0
-"""Run of equal values, in units of the channel's usual run, that is a frozen reading."""
-MOST_UNSTEADY = 1e9
-"""What is said of a signal that is silent but for one part."""
+"""Length of a run of equal values, over the channel's usual run, from which it is a frozen reading."""
+MAX_UNSTEADINESS = 1e9
+"""Upper limit of the reported unsteadiness, for a signal that is zero except in one part."""
 
 
-MOST_LEVELS = 64
-"""A channel with more levels than this is not read coarsely."""
-FEWEST_SAMPLES_A_LEVEL = 20
-"""Fewer samples a level may have few levels by chance."""
+MAX_LEVELS = 64
+"""Most levels of a coarsely quantised channel."""
+MIN_SAMPLES_PER_LEVEL = 20
+"""Fewest samples per level; with fewer, a channel may have few levels by chance."""
 
 
 def quantiser_step(y: FloatArray) -> float:
-    """Return the step between the levels of a channel that takes few, else 0.
+    """Return the quantisation step of a channel with few levels, else 0.
 
     >>> float(quantiser_step(np.tile([0.0, 0.5, 1.0, 2.0], 100)))
     0.5
     """
     finite = y[np.isfinite(y)]
     levels = np.unique(finite)
-    if len(levels) < 2 or len(levels) > min(MOST_LEVELS, len(finite) / FEWEST_SAMPLES_A_LEVEL):
+    if len(levels) < 2 or len(levels) > min(MAX_LEVELS, len(finite) / MIN_SAMPLES_PER_LEVEL):
         return 0.0
     return float(np.min(np.diff(levels)))
 
@@ -79,12 +81,13 @@ def is_constant(y: FloatArray) -> bool:
 
 
 def spikes(y: FloatArray, *, hold: int = 1) -> BoolArray:
-    """Mark samples that leave their neighbours for less than five samples and by far.
+    """Mark short excursions of large amplitude (fewer than five samples).
 
-    Far is ``SPIKE_SIGMAS`` robust standard deviations of the departures from the running median, of
-    the whole channel and of the surroundings (a gust is no spike), ``CREST_SIGMAS`` of the window (nor is
-    the crest of a smooth wave, whose flanks the median follows), and one robust standard deviation of the
-    signal: smaller ones do no harm. ``hold`` is the number of samples each value is repeated.
+    The excursion must exceed ``SPIKE_SIGMAS`` robust standard deviations of the departures from
+    the running median, both of the whole channel and of the surroundings (a gust is no spike);
+    ``CREST_SIGMAS`` of the window (nor is the crest of a smooth wave, whose flanks the median follows);
+    and one robust standard deviation of the signal, as smaller ones are harmless.
+    ``hold`` is the number of samples for which each value is repeated.
     """
     finite = np.isfinite(y)
     if finite.sum() < 2 * SPIKE_WINDOW or is_constant(y):
@@ -110,7 +113,7 @@ def _spread_around(x: FloatArray, at: Int64Array, hold: int) -> FloatArray:
 
 
 def _surroundings(departure: FloatArray) -> FloatArray:
-    """Return for every sample the largest median of its block and the two beside it; the last goes on."""
+    """Return for every sample the largest median of its block and the two adjacent ones."""
     n_blocks = max(len(departure) // SPIKE_BLOCK, 1)
     block = len(departure) // n_blocks
     medians = np.median(departure[: n_blocks * block].reshape(n_blocks, block), axis=1)
@@ -123,19 +126,19 @@ def clipped(y: FloatArray) -> BoolArray:
     mask = np.zeros(len(y), dtype=np.bool_)
     finite = np.isfinite(y)
     levels, counts = np.unique(y[finite], return_counts=True)
-    if len(levels) < 2 * LEAST_AT_RAIL:
+    if len(levels) < 2 * MIN_AT_RAIL:
         return mask
     for rail, at_rail, beside in (
         (levels[-1], counts[-1], counts[-4:-1]),
         (levels[0], counts[0], counts[1:4]),
     ):
-        if at_rail >= LEAST_AT_RAIL and at_rail > RAIL_RATIO * max(float(np.mean(beside)), 1.0):
+        if at_rail >= MIN_AT_RAIL and at_rail > RAIL_RATIO * max(float(np.mean(beside)), 1.0):
             mask |= y == rail
     return mask
 
 
 def stuck(y: FloatArray, shortest: int) -> BoolArray:
-    """Mark runs of one value, at least ``shortest`` samples and far longer than usual, in a live channel."""
+    """Mark runs of one value that are at least ``shortest`` samples and much longer than usual."""
     mask = np.zeros(len(y), dtype=np.bool_)
     if is_constant(y):
         return mask
@@ -152,7 +155,9 @@ def stuck(y: FloatArray, shortest: int) -> BoolArray:
 
 
 def hold_length(y: FloatArray) -> int:
-    """Return how many samples every value is repeated: above 1, the channel has a lower rate."""
+    """Return the number of samples for which every value is repeated; above 1,
+    the channel has a lower rate.
+    """
     finite = np.isfinite(y)
     if finite.sum() < 20 or is_constant(y):
         return 1
@@ -166,7 +171,7 @@ def hold_length(y: FloatArray) -> int:
 
 
 def drift_ratio(slow: FloatArray, fast: FloatArray) -> float:
-    """Return the range of the slow part over the standard deviation of the fast part."""
+    """Return the ratio of the range of the slow part to the standard deviation of the fast part."""
     finite = np.isfinite(slow) & np.isfinite(fast)
     if finite.sum() < 2:
         return 0.0
@@ -175,7 +180,7 @@ def drift_ratio(slow: FloatArray, fast: FloatArray) -> float:
 
 
 def unsteadiness(y: FloatArray, n_parts: int) -> float:
-    """Return the rms of the loudest part of a channel over the median of its parts; 1 if it is steady.
+    """Return the ratio of the rms of the strongest part of a channel to the median of its parts.
 
     Parameters
     ----------
@@ -191,22 +196,22 @@ def unsteadiness(y: FloatArray, n_parts: int) -> float:
     rms = np.array([np.sqrt(np.mean(part**2)) for part in parts if len(part)])
     if len(rms) < n_parts or not rms.max() > 0.0:
         return 1.0
-    return float(min(rms.max() / max(float(np.median(rms)), SMALLEST), MOST_UNSTEADY))
+    return float(min(rms.max() / max(float(np.median(rms)), SMALLEST), MAX_UNSTEADINESS))
 
 
 DRIFT_RATIO = 3.0
-"""Range of the slow part over the rms of the rest, beyond which it is drift."""
+"""Ratio of the range of the slow part to the rms of the rest above which it is drift."""
 UNSTEADY_RATIO = 4.0
-"""Rms of the loudest part over the median of all, beyond which a record is not stationary: a light tower
-under steady forces reaches 2, in turbulence as well."""
+"""Ratio of the rms of the strongest part to the median above which a record is not stationary.
+A lightly damped tower under steady forces reaches 2, also in turbulence."""
 COARSE_STEPS = 0.7
-"""Step of a reading over the rms of the vibration, beyond which rounding is not white noise of step²/12: a
-Gaussian signal allows a step of its standard deviation (Widrow & Kollár 2008), others less."""
+"""Quantisation step over the rms of the vibration above which rounding is not white noise of step²/12.
+A Gaussian signal allows a step of its standard deviation (Widrow & Kollár 2008), others less."""
 
 
 @dataclass(frozen=True)
 class ChannelQuality:
-    """What was measured about one channel; shares are of all samples."""
+    """Quality measures of one channel; shares are of all samples."""
 
     name: str
     score: float
@@ -222,13 +227,13 @@ class ChannelQuality:
     unsteadiness: float
     swapped_sign: bool
     quantiser_steps: float = 0.0
-    """Step of the reading over the rms of the vibration; 0 if it is fine."""
+    """Quantisation step over the rms of the vibration; 0 if it is fine."""
 
 
 def channel_findings(
     channel: Channel, q: ChannelQuality, *, empty: bool, outliers: bool, sign: bool | None
 ) -> Iterator[Finding]:
-    """Yield what is worth saying about one channel."""
+    """Yield the findings on one channel."""
     name = q.name
     if empty:
         yield Finding("empty", name, {"share": q.gap_share}, repaired=True)
@@ -248,11 +253,11 @@ def channel_findings(
 
 
 def _signal_findings(channel: Channel, q: ChannelQuality) -> Iterator[Finding]:
-    """Yield what the sensor's range, its reading and its zero did."""
+    """Yield findings on the sensor's range, its resolution and its zero."""
     name = q.name
     if q.clipped_share > 0.0:
-        # Kept: the covariances of a clipped Gaussian signal keep their shape (Bussgang 1952), those of
-        # one with gaps at its peaks do not.
+        # clipped samples are kept: the covariances of a clipped Gaussian signal keep their shape (Bussgang
+        # 1952), whereas those of a signal with gaps at its peaks do not
         yield Finding("clipped", name, {"share": q.clipped_share})
     if q.stuck_share > 0.0:
         yield Finding("stuck", name, {"share": q.stuck_share}, repaired=True)
@@ -267,5 +272,5 @@ def _signal_findings(channel: Channel, q: ChannelQuality) -> Iterator[Finding]:
 
 
 def _drifts(channel: Channel, q: ChannelQuality) -> bool:
-    """Tell drift from the quasi-static response, which displacement, strain and tilt really have."""
+    """Tell drift from quasi-static response, which displacement, strain and tilt have."""
     return channel.quantity in ("acceleration", "velocity") and q.drift_ratio > DRIFT_RATIO

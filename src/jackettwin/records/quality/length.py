@@ -1,4 +1,4 @@
-"""Whether a record is long enough for what moves in it."""
+"""Test whether a record is long enough for its slowest motion."""
 
 from __future__ import annotations
 
@@ -10,14 +10,15 @@ from jackettwin.records.processing.filters import bridge
 from jackettwin.records.record import Record
 
 CYCLES = 30
-"""Motion of fewer cycles a record is not told: its damping is uncertain by a factor of two at 2 %."""
-FROM_CYCLES = 3
-"""Slower than this is drift."""
+"""Cycles in the record below which motion is too slow: at 2 % damping its damping is uncertain by a factor of
+two."""
+DRIFT_CYCLES = 3
+"""Cycles in the record below which motion is drift."""
 SHARE = 0.05
-"""Of the power, of any channel, that is motion of so few cycles: then what is faster is not all there is.
-White noise of a rate for which thirty cycles are little has less."""
+"""Share of a channel's power in motion that is too slow above which a finding is given. White noise has less,
+at rates for which thirty cycles are a small part of the record."""
 SHORT_S = 120.0
-"""Longer records hold thirty cycles of whatever structure; what is slower is wind, waves and drift."""
+"""Longer records hold thirty cycles of any structure; slower motion is wind, waves or drift."""
 
 
 def slow_share(y: FloatArray, duration_s: float) -> float:
@@ -41,13 +42,13 @@ def slow_share(y: FloatArray, duration_s: float) -> float:
     t = np.linspace(-1.0, 1.0, x.shape[1])
     x = x - np.array([np.polyval(np.polyfit(t, row, 1), t) for row in x])
     power = np.abs(np.fft.rfft(x * np.hanning(x.shape[1]), axis=1)) ** 2
-    total = power[:, FROM_CYCLES:].sum(axis=1)
-    share = power[:, FROM_CYCLES : CYCLES + 1].sum(axis=1) / np.where(total > 0.0, total, 1.0)
+    total = power[:, DRIFT_CYCLES:].sum(axis=1)
+    share = power[:, DRIFT_CYCLES : CYCLES + 1].sum(axis=1) / np.where(total > 0.0, total, 1.0)
     return float(share.max(initial=0.0))
 
 
 def too_short(record: Record) -> tuple[Finding, ...]:
-    """Say that most of what moves in a short record is slower than it can tell."""
+    """Report that most of the motion in a short record is too slow to be identified."""
     share = slow_share(record.data, record.duration_s)
     if share <= SHARE:
         return ()

@@ -1,4 +1,4 @@
-"""How good a record is: every fault found, in plain words, and whether it can be repaired."""
+"""Quality of a record: its faults, in words, and whether they can be repaired."""
 
 from __future__ import annotations
 
@@ -27,21 +27,21 @@ if TYPE_CHECKING:
 
 STUCK_S = 1.0
 """Shortest frozen reading [s]."""
-MOST_SPIKES = 0.02
-"""Share of samples beyond which outliers are the signal's nature, not spikes to remove."""
-EMPTY = 0.9
-"""Share of missing samples beyond which a channel carries nothing."""
+MAX_SPIKE_SHARE = 0.02
+"""Largest share of outliers that are removed as spikes; more of them are part of the signal."""
+MAX_MISSING_SHARE = 0.9
+"""Share of missing samples above which a channel counts as empty."""
 DRIFT_CYCLES = 5.0
-"""Drift is what is slower than this many cycles a record."""
-MOST_DRIFT = 1e9
-"""A channel that drifts over more rms than this holds a drift and its rounding, no vibration."""
+"""Cycles in the record below which motion is drift."""
+MAX_DRIFT = 1e9
+"""Ratio of drift to rms above which a channel contains only drift and its rounding, no vibration."""
 PARTS = 10
 """Parts of a record whose rms are compared."""
 WEAK_RATIO = 1.0 / 300.0
-"""Rms over the median of the channels of one quantity, below which a sensor is hardly alive, and above whose
-inverse it is in another unit."""
+"""Ratio of a channel's rms to the median of its quantity below which the sensor is nearly dead,
+and above whose inverse its unit is wrong."""
 JITTER = 0.05
-"""Clock jitter as a share of the step that deserves a word."""
+"""Clock jitter, as a share of the step, above which a finding is given."""
 
 
 @dataclass(frozen=True)
@@ -51,15 +51,15 @@ class Quality:
     Attributes
     ----------
     score : float
-        Mean score of the vibration channels: 1 is faultless, 0 carries nothing.
+        Mean score of the vibration channels: 1 is faultless, 0 is empty.
     channels : tuple of ChannelQuality
         In the record's order.
     findings : tuple of Finding
     suspect : (n_channels, n_samples) bool array
-        Samples that ``repair`` declares missing: spikes, frozen and unreadable ones, the shorter side of a
-        change.
+        Samples that ``repair`` makes missing: spikes, frozen and unreadable ones,
+        and the shorter side of a change.
     clocks : LoggerClocks
-        Channels that ``repair`` brings into step with the others, and the stretch without a jump of a clock.
+        Clock errors that ``repair`` corrects, and the part of the record without a jump of a clock.
     """
 
     score: float
@@ -88,13 +88,15 @@ def assess(record: Record) -> Quality:
     spikes = [faults.spikes(row, hold=hold) for row, hold in zip(record.data, held, strict=True)]
     slow_free = _without_slow(record, spikes)
     clocks = clocks_of(record, slow_free)
-    # channels are held against each other in step, where they are
+    # channels are compared after correction of their clocks
     together = in_step(slow_free, clocks, record.sample_rate_hz)
     groups = list(sensor_polarity.parallel_groups(record, together[:, clocks.start : clocks.stop]))
-    swapped = sensor_polarity.swapped(record, groups)
+    reversed_channels = sensor_polarity.reversed_channels(record, groups)
     changed = _changed(record, together)
     judged = [
-        _judge(record, i, held[i], spikes[i], slow_free[i], swapped.get(channel.name), changed.get(i))
+        _judge(
+            record, i, held[i], spikes[i], slow_free[i], reversed_channels.get(channel.name), changed.get(i)
+        )
         for i, channel in enumerate(record.channels)
     ]
     channels = tuple(quality for quality, _, _ in judged)
@@ -117,7 +119,7 @@ def shortest_stuck(sample_rate_hz: float) -> int:
 
 
 def _without_slow(record: Record, spikes: list[BoolArray]) -> FloatArray:
-    """Return the data without mean and drift, spikes taken out lest they hide it."""
+    """Return the data without mean and drift; spikes are removed first, as they would hide the drift."""
     data = record.data.copy()
     for row, mask in zip(data, spikes, strict=True):
         row[mask] = np.nan
@@ -125,7 +127,7 @@ def _without_slow(record: Record, spikes: list[BoolArray]) -> FloatArray:
 
 
 def _changed(record: Record, slow_free: FloatArray) -> dict[int, SensorChange]:
-    """Return by row the vibration channels that change while the record runs."""
+    """Return, by row, vibration channels that change during the record."""
     rows = [i for i, channel in enumerate(record.channels) if channel.quantity in VIBRATIONS]
     return {rows[c.row]: replace(c, row=rows[c.row]) for c in changes(slow_free[rows])}
 
@@ -144,7 +146,7 @@ def _judge(
     n, vibrates = max(len(y), 1), channel.quantity in VIBRATIONS
     missing = ~np.isfinite(y)
     longest = faults.runs(missing)[:, 1].max(initial=0)
-    empty = bool(missing.mean() > EMPTY) if len(y) else True
+    empty = bool(missing.mean() > MAX_MISSING_SHARE) if len(y) else True
     dead = empty or (vibrates and faults.is_constant(y))
     none = np.zeros(len(y), dtype=np.bool_)
     look = vibrates and not dead
@@ -152,8 +154,8 @@ def _judge(
     spikes = spikes if look else none
     clipped = faults.clipped(y) if look else none
     stuck = faults.stuck(y, shortest_stuck(record.sample_rate_hz)) if look else none
-    outliers = bool(spikes.mean() > MOST_SPIKES) if look else False
-    # a frozen reading is told already
+    outliers = bool(spikes.mean() > MAX_SPIKE_SHARE) if look else False
+    # a frozen reading has been reported already
     change = None if stuck.any() or not look else change
     changed = none.copy()
     if change is not None and change.certain:
@@ -163,7 +165,7 @@ def _judge(
     quality = ChannelQuality(
         name=channel.name,
         score=0.0,
-        dead=dead or drift > MOST_DRIFT,
+        dead=dead or drift > MAX_DRIFT,
         gap_share=float(missing.sum()) / n,
         longest_gap_s=float(longest) / record.sample_rate_hz,
         spike_share=float(spikes.sum()) / n,
@@ -188,7 +190,7 @@ def _judge(
 
 
 def _steps(y: FloatArray, slow_free: FloatArray) -> float:
-    """Return the step of a reading over the rms of its vibration."""
+    """Return the quantisation step over the rms of the vibration."""
     size = float(np.nanstd(slow_free)) if np.isfinite(slow_free).any() else 0.0
     return faults.quantiser_step(y) / size if size > 0.0 else 0.0
 
@@ -213,7 +215,7 @@ def _unreadable(record: Record, unreadable: BoolArray) -> Iterator[Finding]:
 
 
 def _weak(record: Record, channels: tuple[ChannelQuality, ...]) -> Iterator[Finding]:
-    """Yield channels whose rms is a tiny part, or a huge multiple, of that of their like."""
+    """Yield channels whose rms differs from that of similar channels by a very large factor."""
     live = [i for i, q in enumerate(channels) if not q.dead and record.channels[i].quantity in VIBRATIONS]
     rms = {i: float(np.nanstd(record.data[i])) for i in live}
     for i in live:
@@ -224,7 +226,7 @@ def _weak(record: Record, channels: tuple[ChannelQuality, ...]) -> Iterator[Find
 
 
 def _clock(record: Record) -> Iterator[Finding]:
-    """Yield what the time stamps of the file said, if it had any."""
+    """Yield findings on the time stamps of the file, if it had any."""
     clock = record.metadata.get("clock")
     if not isinstance(clock, dict):
         return

@@ -1,8 +1,7 @@
-"""Take out of a record what is certainly wrong with it, and say so; nothing is invented.
+"""Repair of a record: certain faults are removed and reported; no samples are invented.
 
-Samples known to be wrong become missing samples, channels that carry nothing are dropped, drift is
-taken out, loggers are brought into step, and a sign is turned only if the other channels leave no doubt.
-Everything done is listed in ``metadata["repair"]``.
+Wrong samples become missing, empty channels are dropped, drift is removed, clocks are corrected, and a sign
+is reversed only if the other channels leave no doubt. All changes are listed in ``metadata["repair"]``.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def repair(record: Record, quality: Quality) -> Record:
-    """Return the record without what ``assess`` found to be certainly wrong.
+    """Return the record without the faults that ``assess`` found with certainty.
 
     Raises
     ------
@@ -65,7 +64,7 @@ def repair(record: Record, quality: Quality) -> Record:
 
 
 def common_time(record: Record, quality: Quality) -> Record:
-    """Return the record cut to the samples all channels have once their clocks are in step."""
+    """Return the record cut to the samples that all channels share after correction of their clocks."""
     n, rate = record.data.shape[1], record.sample_rate_hz
     first, last = stretch(quality.clocks, n, rate)
     if (first, last) == (0, n):

@@ -1,4 +1,4 @@
-"""Samples that stand twice: each sample of a file several times, or a channel that repeats another."""
+"""Repeated samples: a file that stores each sample several times, or a channel that copies another."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from jackettwin.records.record import Record
 
 
 def without_repeats(record: Record) -> tuple[Record, int]:
-    """Return a record with each sample once, at the lower rate, and how often it stood there.
+    """Return a record with each sample once, at the lower rate, and the number of repetitions.
 
-    Only where all vibration channels that vary repeat alike; else the record as it is, and 1.
+    This requires that all varying vibration channels repeat alike; otherwise the record is unchanged, with 1.
 
     Examples
     --------
@@ -44,18 +44,18 @@ def without_repeats(record: Record) -> tuple[Record, int]:
 
 
 def each_sample_once(record: Record) -> tuple[Record, tuple[Finding, ...]]:
-    """Keep one of the samples that every channel repeats: those between make images of the modes."""
+    """Keep one of the samples that every channel repeats; repetitions cause aliases of the modes."""
     once, times = without_repeats(record)
     return once, (Finding("samples_repeated", params={"times": times}),) if times > 1 else ()
 
 
 ROUNDING = 1e-6
-"""Largest difference of two copies, as a share of their rms: that of a file that keeps seven digits.
-Two sensors differ by their noise, a hundred times that at least."""
+"""Largest difference of two copies, as a share of their rms: that of a file with seven digits.
+Two sensors differ by their noise, at least a hundred times that."""
 
 
 def duplicate_channels(y: FloatArray) -> dict[int, int]:
-    """Return the rows that repeat an earlier one, and which.
+    """Return the rows that copy an earlier one, with that row.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def duplicate_channels(y: FloatArray) -> dict[int, int]:
     out: dict[int, int] = {}
     for i in range(1, len(y)):
         for j in range(i):
-            # a look at the sizes spares most of the work
+            # comparing sizes first avoids most of the work
             if j in out or abs(size[i] - size[j]) > ROUNDING * size[j]:
                 continue
             both = np.isfinite(y[i]) & np.isfinite(y[j])

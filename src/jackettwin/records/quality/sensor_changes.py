@@ -1,13 +1,14 @@
-r"""Channels that change while a record runs: a sensor that dies, a gain or a sign that is another afterwards.
+r"""Changes of a sensor during a record: failure, or a change of gain or sign.
 
-Sensors on one structure repeat each other. In a band of frequencies, a channel is the same combination of the
-others as long as the structure moves in few modes there,
+Sensors on one structure are correlated. Within a frequency band in which the structure moves in few modes,
+a channel is a constant combination of the others,
 
 .. math:: z_i(t) \approx \sum_j b_j z_j(t),
 
-z the complex envelopes of the band. With b from a stretch of the record, the gain of the channel against its
-prediction, :math:`g = \langle \hat z_i, z_i\rangle / \langle\hat z_i, \hat z_i\rangle` over each part, is one
-throughout if the sensor is sound. A force that changes moves all channels, and leaves g at one.
+where z are the complex envelopes of the band.
+With b from one part of the record, the gain of the channel relative to its prediction,
+:math:`g = \langle \hat z_i, z_i\rangle / \langle\hat z_i, \hat z_i\rangle` in each part,
+remains one if the sensor is intact. A change of the forces affects all channels and leaves g at one.
 """
 
 from __future__ import annotations
@@ -18,53 +19,53 @@ import numpy as np
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.records.processing.spectra import of_fast_length
-from jackettwin.records.quality.sensor_polarity import LEAST_CYCLES, strongest_line
+from jackettwin.records.quality.sensor_polarity import MIN_CYCLES, strongest_line
 from jackettwin.signals import tukey
 
 PARTS = 20
 """Parts of a record over which the gain is taken."""
-FEWEST_PARTS = 4
-"""On either side of a change."""
-LEARNT_FROM = (slice(0, 10), slice(10, 20), slice(0, 6), slice(14, 20))
-"""Parts from which a prediction is learnt: one of them lies on one side of any change."""
+MIN_PARTS = 4
+"""Fewest parts on each side of a change."""
+LEARNING_PARTS = (slice(0, 10), slice(10, 20), slice(0, 6), slice(14, 20))
+"""Parts from which a prediction is learnt; for any change, one of them is on one side of it."""
 BANDS = 8
-"""Octaves looked at, from below the strongest line up."""
-LINES_A_PART = (2, 24)
-"""Spectral lines of a band for each part, least and most."""
-WELL_EXPLAINED = 0.98
-"""Coherence that makes it needless to look at further bands."""
-IN_MOST = 0.8
-"""Median over the parts of the coherence there: what is explained must not be a single event."""
-CASES_A_CHANNEL = 8.0
-"""Envelope samples needed for each channel of a prediction."""
-MOST_OTHERS = 6
-"""Channels a prediction is made from at most: those most like the one predicted."""
+"""Number of octaves examined, upwards from just below the strongest line."""
+LINES_PER_PART = (2, 24)
+"""Fewest and most spectral lines of a band per part."""
+SUFFICIENT_COHERENCE = 0.98
+"""Coherence above which no further bands are examined."""
+MIN_MEDIAN_COHERENCE = 0.8
+"""Smallest median of that coherence over the parts, so that it does not rest on a single event."""
+CASES_PER_CHANNEL = 8.0
+"""Fewest envelope samples per channel of a prediction."""
+MAX_OTHERS = 6
+"""Most channels in a prediction: those most similar to the one predicted."""
 EXPLAINED = 0.95
-"""Coherence with the prediction on a side of the change on which a channel follows the others."""
+"""Smallest coherence with the prediction on one side of the change."""
 FACTOR = 1.5
-"""Least change of gain that is reported."""
-CLEARER = 4.0
-"""So many times less must be left unexplained by two gains than by one, and than the others move where one
-shows nothing."""
+"""Smallest change of gain that is reported."""
+MIN_POWER_RATIO = 4.0
+"""Factor by which the unexplained power must be smaller with two gains than with one,
+and than the motion of the others where the channel shows nothing."""
 DEAD = 0.15
-"""Gain below which a channel shows nothing of what the others do."""
+"""Gain below which a channel is dead."""
 PRESENT = 0.9
-"""Share of the samples of a part that must be there."""
+"""Smallest share of present samples in a part."""
 
 
 @dataclass(frozen=True)
 class SensorChange:
-    """A channel that is another after some time, or before it.
+    """A channel that differs before and after some time.
 
     Attributes
     ----------
     row : int
     start, stop : int
-        Samples that do not go with the rest, the shorter side of the change.
+        Samples of the shorter side of the change.
     gain : float
-        There, over that of the rest; negative for a turned sign, 0 for a channel that shows nothing.
+        Gain there relative to the rest; negative for a reversed sign, 0 for a dead channel.
     certain : bool
-        Whether it is this channel: others agree among themselves, or it shows nothing at all.
+        Whether this channel is at fault: the others agree among themselves, or it is dead.
     """
 
     row: int
@@ -117,18 +118,18 @@ def changes(y: FloatArray) -> list[SensorChange]:
 def _envelopes(y: FloatArray) -> list[ComplexArray]:
     """Return the complex envelopes of all channels in octaves, each (n_channels, PARTS · samples a part).
 
-    The ends are tapered, lest the jump between them leak into every band.
+    The ends are tapered, so that the jump between them does not leak into every band.
     """
     out: list[ComplexArray] = []
     y = of_fast_length(y)
     n = y.shape[1]
-    if n < 4 * LEAST_CYCLES:
+    if n < 4 * MIN_CYCLES:
         return out
     taper = tukey(n, 1.0 / PARTS)
     spectra = np.fft.rfft(np.where(np.isfinite(y), y, 0.0) * taper, axis=1)
-    low = max(int(strongest_line(spectra) / np.sqrt(2.0)), LEAST_CYCLES)
+    low = max(int(strongest_line(spectra) / np.sqrt(2.0)), MIN_CYCLES)
     for _ in range(BANDS):
-        lines = min(max(low // PARTS, LINES_A_PART[0]), LINES_A_PART[1]) * PARTS
+        lines = min(max(low // PARTS, LINES_PER_PART[0]), LINES_PER_PART[1]) * PARTS
         if low + lines > spectra.shape[1]:
             break
         out.append(np.fft.ifft(spectra[:, low : low + lines], axis=1))
@@ -137,20 +138,20 @@ def _envelopes(y: FloatArray) -> list[ComplexArray]:
 
 
 def _present(y: FloatArray) -> BoolArray:
-    """Return which parts of which channels hold samples enough, (n_channels, PARTS)."""
+    """Tell which parts of which channels have enough samples, (n_channels, PARTS)."""
     parts = np.array_split(np.isfinite(y), PARTS, axis=1)
     return np.array([part.mean(axis=1) for part in parts]).T >= PRESENT
 
 
 def _change(bands: list[ComplexArray], there: BoolArray, rows: list[int], i: int) -> SensorChange | None:
     """Return the change of channel i, in parts, in the first band in which the others explain it well."""
-    best: _Against | None = None
+    best: _Prediction | None = None
     for z in bands:
-        for some in LEARNT_FROM:
-            seen = _against_others(z, there, rows, i, some)
+        for some in LEARNING_PARTS:
+            seen = _prediction(z, there, rows, i, some)
             if seen is not None and (best is None or seen.explained > best.explained):
                 best = seen
-        if best is not None and best.explained > WELL_EXPLAINED:
+        if best is not None and best.explained > SUFFICIENT_COHERENCE:
             break
     if best is None or best.explained < EXPLAINED:
         return None
@@ -158,19 +159,19 @@ def _change(bands: list[ComplexArray], there: BoolArray, rows: list[int], i: int
 
 
 @dataclass(frozen=True)
-class _Against:
-    """A channel beside its prediction: products summed over each part, zero where samples are missing."""
+class _Prediction:
+    """A channel and its prediction: products summed over each part, zero where samples are missing."""
 
     explained: float
     cross: ComplexArray
     predicted: FloatArray
     own: FloatArray
 
-    def over(self, parts: slice) -> _Against:
+    def over(self, parts: slice) -> _Prediction:
         """Return the sums over some parts, and the coherence there."""
         cross, predicted, own = self.cross[parts], self.predicted[parts], self.own[parts]
         power = max(float(predicted.sum()) * float(own.sum()), np.finfo(float).tiny)
-        return _Against(float(np.abs(cross.sum())) / power**0.5, cross, predicted, own)
+        return _Prediction(float(np.abs(cross.sum())) / power**0.5, cross, predicted, own)
 
     @property
     def follows(self) -> bool:
@@ -178,43 +179,43 @@ class _Against:
         there = self.predicted > 0.0
         power = np.sqrt(np.maximum(self.predicted * self.own, np.finfo(float).tiny))
         in_most = float(np.median((np.abs(self.cross) / power)[there])) if there.any() else 0.0
-        return self.explained > EXPLAINED and in_most > IN_MOST
+        return self.explained > EXPLAINED and in_most > MIN_MEDIAN_COHERENCE
 
     @property
     def gain(self) -> complex:
-        """Of the sums."""
+        """Gain from the sums."""
         return complex(self.cross.sum() / max(float(self.predicted.sum()), np.finfo(float).tiny))
 
     @property
     def left_over(self) -> float:
-        """Power of the channel its prediction does not explain."""
+        """Power of the channel that its prediction does not explain."""
         return float(self.own.sum()) * (1.0 - self.explained**2)
 
     def a_part(self, power: float) -> float:
-        """Return so much power over the parts in which samples are there."""
+        """Return a power per part with samples."""
         return power / max(int(np.count_nonzero(self.predicted)), 1)
 
 
-def _against_others(
+def _prediction(
     z: ComplexArray, there: BoolArray, rows: list[int], i: int, some: slice
-) -> _Against | None:
-    """Return a channel beside its prediction by the others, learnt in some parts of the record."""
+) -> _Prediction | None:
+    """Return a channel and its prediction by the others, learnt from some parts of the record."""
     parts = z.reshape(len(z), PARTS, -1)
     others = [j for j in rows if j != i]
     learn = np.zeros(PARTS, dtype=np.bool_)
     learn[some] = True
     learn &= there[[i, *others]].all(axis=0)
     x, own = parts[others][:, learn].reshape(len(others), -1), parts[i][learn].ravel()
-    if own.size < CASES_A_CHANNEL or not np.any(own):
+    if own.size < CASES_PER_CHANNEL or not np.any(own):
         return None
-    keep = _most_alike(x, own, min(MOST_OTHERS, int(own.size // CASES_A_CHANNEL)))
+    keep = _most_alike(x, own, min(MAX_OTHERS, int(own.size // CASES_PER_CHANNEL)))
     used = [others[k] for k in keep]
     b, *_ = np.linalg.lstsq(x[keep].T, own, rcond=1e-6)
     predicted = np.tensordot(b, parts[used], axes=1)
     valid = there[[i, *used]].all(axis=0)
     products = (predicted.conj() * parts[i], np.abs(predicted) ** 2, np.abs(parts[i]) ** 2)
     cross, power, mine = (np.where(valid, np.sum(product, axis=1), 0.0) for product in products)
-    whole = _Against(0.0, cross, power.real, mine.real)
+    whole = _Prediction(0.0, cross, power.real, mine.real)
     return replace(whole, explained=whole.over(some).explained)
 
 
@@ -224,14 +225,14 @@ def _most_alike(x: ComplexArray, own: ComplexArray, n: int) -> IntArray:
     return np.sort(np.argsort(-subspace_mac)[: max(n, 1)])
 
 
-def _split(i: int, seen: _Against, *, certain: bool) -> SensorChange | None:
-    """Return the change where two gains explain the channel best; None if one does as well.
+def _split(i: int, seen: _Prediction, *, certain: bool) -> SensorChange | None:
+    """Return the change at which two gains explain the channel best; None if one gain suffices.
 
-    The part in which the change lies belongs to neither side.
+    The part that contains the change belongs to neither side.
     """
     splits = {
         k: (seen.over(slice(0, k)), seen.over(slice(k + 1, PARTS)))
-        for k in range(FEWEST_PARTS, PARTS - FEWEST_PARTS)
+        for k in range(MIN_PARTS, PARTS - MIN_PARTS)
         if min(np.count_nonzero(seen.predicted[:k]), np.count_nonzero(seen.predicted[k + 1 :])) >= 3
     }
     if not splits:
@@ -240,17 +241,17 @@ def _split(i: int, seen: _Against, *, certain: bool) -> SensorChange | None:
     left, right = splits[k]
     gain = _gain_of_the_worse(left, right, first=k >= PARTS // 2)
     rest = left.left_over + right.left_over
-    if gain is None or (gain[0] != 0.0 and CLEARER * rest > seen.over(slice(0, PARTS)).left_over):
+    if gain is None or (gain[0] != 0.0 and MIN_POWER_RATIO * rest > seen.over(slice(0, PARTS)).left_over):
         return None
     ratio, worse_is_left = gain
     start, stop = (0, k + 1) if worse_is_left else (k, PARTS)
     return SensorChange(i, start, stop, ratio, certain or ratio == 0.0)
 
 
-def _gain_of_the_worse(left: _Against, right: _Against, *, first: bool) -> tuple[float, bool] | None:
-    """Return the gain of the worse side over that of the better, and whether the worse is the left.
+def _gain_of_the_worse(left: _Prediction, right: _Prediction, *, first: bool) -> tuple[float, bool] | None:
+    """Return the gain of the faulty side relative to the other, and whether it is the left one.
 
-    The worse is the one that shows nothing, else the shorter; None if the sides are alike or neither tells.
+    The faulty side is the dead one, else the shorter; None if the sides are alike or neither is coherent.
     """
     sound = [side.follows for side in (left, right)]
     if not any(sound):
@@ -259,8 +260,8 @@ def _gain_of_the_worse(left: _Against, right: _Against, *, first: bool) -> tuple
     better, worse = (left, right) if better_is_left else (right, left)
     ratio = worse.gain / better.gain
     if abs(ratio) < DEAD and not all(sound):
-        # where a structure comes to rest, what is left of a prediction is noise
-        moves = worse.a_part(float(worse.predicted.sum())) > CLEARER * better.a_part(better.left_over)
+        # where a structure comes to rest, the unexplained power is noise
+        moves = worse.a_part(float(worse.predicted.sum())) > MIN_POWER_RATIO * better.a_part(better.left_over)
         return (0.0, not better_is_left) if moves else None
     turned = abs(ratio.imag) > 0.5 * abs(ratio)
     if not all(sound) or turned or 1.0 / FACTOR < ratio.real < FACTOR:

@@ -1,16 +1,16 @@
-"""Which channels point the wrong way, where a record can tell.
+"""Detection of sensors with reversed sign.
 
-No record alone says which way a sensor points: turn it, and its row of every mode shape changes sign, which
-is as good a mode shape. It takes knowledge of the structure, and there are two pieces of it:
+A record alone does not determine the sign of a sensor: if it is reversed, its entry of every mode shape
+changes sign, which is an equally valid shape. Two facts about the structure are used:
 
 * two parallel sensors at one place (one ``node``, or one height on the tower axis) move together always;
 * in the first bending mode of a tower, and below it, every point of its axis moves the same way. Channels
   with a ``height_m`` must be in phase in the strongest narrow band of displacement, where that mode or what
   is slower prevails (higher bending modes move top and middle against each other by nature).
 
-On a bridge, or beside the axis of a building, neighbours may move against each other from the first mode on:
-nothing is said there. Neither is anything said where the same channels move together in a band nearby, which
-those of a tower do not: then torsion, or another structure than a tower, parts them.
+On a bridge, or off the axis of a building, neighbours may move against each other from the first mode on;
+then no finding is given. Nor is one given if the same channels move together in a nearby band,
+unlike those of a tower: then torsion, or another kind of structure, separates them.
 """
 
 from __future__ import annotations
@@ -33,38 +33,38 @@ if TYPE_CHECKING:
 
 BAND = 0.15
 """Half width of the band around the strongest line, as a share of its frequency."""
-LEAST_CYCLES = 20
-"""The band's frequency must fit this often into the record."""
+MIN_CYCLES = 20
+"""Fewest cycles of the band's frequency in the record."""
 CERTAIN = 0.9
-"""Coherency in the band, in absolute value, from which a sign is certain."""
+"""Absolute coherency in the band above which a sign is certain."""
 WIDTH = 1.3
-"""Of the bands in which a sign is looked for again: upper over lower edge."""
-NEARBY = 2.5
-"""Bands within this factor of the strongest are nearby: a tower's second bending mode is farther."""
-FEWEST_BANDS = 4
-"""Bands in which sensors at one place must move together."""
-UNCLEAR = 0.3
-"""Coherency, in absolute value, that noise alone reaches in a band."""
+"""Ratio of upper to lower edge of the bands in which a sign is confirmed."""
+NEARBY_RATIO = 2.5
+"""Ratio of frequencies within which bands are nearby; the second bending mode of a tower is farther."""
+MIN_BANDS = 4
+"""Fewest bands in which sensors at one place must move together."""
+NOISE_COHERENCY = 0.3
+"""Absolute coherency that noise alone reaches in a band."""
 SAME_SIZE = 1.25
 """Largest ratio of the amplitudes of two sensors at one place."""
 PARALLEL = 0.98
-"""Cosine of the angle between channels that measure the same."""
+"""Cosine of the angle above which two channels measure the same motion."""
 
 
 @dataclass(frozen=True)
 class SharedMotion:
-    """How parallel channels move together.
+    """Common motion of parallel channels.
 
     Attributes
     ----------
     rows : list of int
-        Of the record.
+        Rows of the record.
     peak : float
-        The strongest line of displacement.
+        Frequency of the strongest line of displacement.
     size : (n,) array
         Amplitude around that line.
     coherency : (n, n) array
-        Its real part around that line, signs as the directions say.
+        Real part of the coherency around that line, with signs by the stated directions.
     bands : list of (float, (n, n) array)
         Middle and coherency of the bands over all frequencies.
     """
@@ -85,7 +85,7 @@ class ParallelChannels:
 
 
 def parallel_groups(record: Record, y: FloatArray) -> Iterator[ParallelChannels]:
-    """Yield the parallel accelerations whose places say how they move together.
+    """Yield groups of parallel accelerations whose places determine how they move together.
 
     Parameters
     ----------
@@ -106,8 +106,8 @@ def parallel_groups(record: Record, y: FloatArray) -> Iterator[ParallelChannels]
             yield ParallelChannels(_together(rows, tower, spectra), heights)
 
 
-def swapped(record: Record, groups: Sequence[ParallelChannels]) -> dict[str, bool]:
-    """Return channels that move against parallel ones: True if it is certainly they, False if in doubt.
+def reversed_channels(record: Record, groups: Sequence[ParallelChannels]) -> dict[str, bool]:
+    """Return channels that move against parallel ones: True if certain, False if doubtful.
 
     Parameters
     ----------
@@ -140,28 +140,28 @@ def band_coherency(inside: ComplexArray) -> FloatArray:
 
 
 def strongest_line(spectra: ComplexArray) -> int:
-    """Return the line around which the channels' displacements, each of unit power, are strongest.
+    """Return the line of the strongest displacement, with each channel scaled to unit power.
 
     Parameters
     ----------
     spectra : (n_channels, n_lines) complex
-        Transforms of accelerations, more than ``LEAST_CYCLES`` lines.
+        Transforms of accelerations, more than ``MIN_CYCLES`` lines.
     """
-    k = np.arange(LEAST_CYCLES, spectra.shape[1])
-    displacement = np.abs(spectra[:, LEAST_CYCLES:] / k**2) ** 2
+    k = np.arange(MIN_CYCLES, spectra.shape[1])
+    displacement = np.abs(spectra[:, MIN_CYCLES:] / k**2) ** 2
     total = displacement.sum(axis=1, keepdims=True)
     common = np.sum(displacement / np.where(total > 0.0, total, 1.0), axis=0)
     return int(k[np.argmax(np.convolve(common, np.ones(5), mode="same"))])
 
 
 def around(spectra: ComplexArray, peak: float) -> ComplexArray:
-    """Return the lines of the narrow band around one."""
+    """Return the lines of the narrow band around a line."""
     k = np.arange(spectra.shape[1])
     return spectra[:, np.abs(k - peak) <= max(BAND * peak, 3)]
 
 
 def windowed_spectra(y: FloatArray) -> ComplexArray:
-    """Return the transforms of rows behind a Hann window, gaps bridged."""
+    """Return the transforms of rows under a Hann window, with gaps bridged."""
     x = np.apply_along_axis(bridge, 1, y)
     return hann_lines(x - x.mean(axis=1, keepdims=True))[0]
 
@@ -169,8 +169,8 @@ def windowed_spectra(y: FloatArray) -> ComplexArray:
 def against_majority(coherency: FloatArray) -> tuple[list[int], bool]:
     """Return the rows in counterphase with the others, and whether that is certain.
 
-    Certain takes at least three rows whose coherencies all exceed ``CERTAIN`` and a majority;
-    with two, or with as many on either side, all that is known is that they disagree.
+    Certainty needs at least three rows whose coherencies all exceed ``CERTAIN``, and a majority.
+    With two rows, or equal numbers on either side, it is only known that they disagree.
 
     >>> against_majority(np.array([[1.0, 0.99, -0.98], [0.99, 1.0, -0.97], [-0.98, -0.97, 1.0]]))
     ([2], True)
@@ -193,7 +193,7 @@ def _parallel(record: Record, y: FloatArray) -> Iterator[tuple[list[int], FloatA
         for i, channel in enumerate(record.channels)
         if channel.quantity == "acceleration" and any(channel.direction) and not faults.is_constant(y[i])
     ]
-    while left and y.shape[1] >= 4 * LEAST_CYCLES:
+    while left and y.shape[1] >= 4 * MIN_CYCLES:
         lead = record.channels[left[0]]
         along = {
             i: float(np.array(lead.direction) @ np.array(record.channels[i].direction))
@@ -221,8 +221,8 @@ def _one_place(places: list[str | float | None]) -> Iterator[list[int]]:
 def _together(rows: list[int], chosen: list[int], all_spectra: ComplexArray) -> SharedMotion:
     picked, spectra = [rows[k] for k in chosen], all_spectra[chosen]
     peak = strongest_line(spectra)
-    n_bands = max(int(np.log((spectra.shape[1] - 1) / LEAST_CYCLES) / np.log(WIDTH)), 0)
-    edges = (LEAST_CYCLES * WIDTH ** np.arange(n_bands + 1)).astype(np.int64)
+    n_bands = max(int(np.log((spectra.shape[1] - 1) / MIN_CYCLES) / np.log(WIDTH)), 0)
+    edges = (MIN_CYCLES * WIDTH ** np.arange(n_bands + 1)).astype(np.int64)
     bands = [((a + b) / 2.0, band_coherency(spectra[:, a:b])) for a, b in pairwise(edges)]
     inside = around(spectra, peak)
     size = np.linalg.norm(inside, axis=1)
@@ -230,15 +230,17 @@ def _together(rows: list[int], chosen: list[int], all_spectra: ComplexArray) -> 
 
 
 def one_motion(seen: SharedMotion) -> bool:
-    """Tell whether channels show one motion up to size and sign: in four bands, nowhere with another sign."""
+    """Tell whether channels show one motion up to size and sign: coherent in four bands, with one sign."""
     coherencies = np.array([coherency for _, coherency in seen.bands])
     clear = np.abs(coherencies) > CERTAIN
     same = np.sign(coherencies) == np.sign(seen.coherency)
-    return bool(np.all(clear.sum(axis=0) >= FEWEST_BANDS) and np.all(same | (np.abs(coherencies) < UNCLEAR)))
+    return bool(
+        np.all(clear.sum(axis=0) >= MIN_BANDS) and np.all(same | (np.abs(coherencies) < NOISE_COHERENCY))
+    )
 
 
 def _against_same_place(seen: SharedMotion) -> Iterator[tuple[int, bool]]:
-    """Yield the channels at one place that move against the others wherever they move together at all."""
+    """Yield channels that move against the others at one place in all coherent bands."""
     minority, certain = against_majority(seen.coherency)
     if minority and one_motion(seen):
         yield from ((i, certain) for i in minority)
@@ -247,19 +249,19 @@ def _against_same_place(seen: SharedMotion) -> Iterator[tuple[int, bool]]:
 def _against_tower(seen: SharedMotion, heights: list[float]) -> Iterator[tuple[int, bool]]:
     """Yield the channels of a tower that are in counterphase in its first mode."""
     minority, certain = against_majority(seen.coherency)
-    if not minority or _beside_the_axis(seen, heights):
+    if not minority or _off_axis(seen, heights):
         return
     for i in minority:
         for middle, coherency in seen.bands:
-            nearby = 1.0 / NEARBY < middle / seen.peak < NEARBY
+            nearby = 1.0 / NEARBY_RATIO < middle / seen.peak < NEARBY_RATIO
             together = [j for j in np.flatnonzero(coherency[i] > CERTAIN) if j not in minority]
             if together and (nearby or any(heights[j] == heights[i] for j in together)):
                 return
     yield from ((i, certain) for i in minority)
 
 
-def _beside_the_axis(seen: SharedMotion, heights: list[float]) -> bool:
-    """Tell whether sensors at one height do not see the same motion: then not all are on the axis."""
+def _off_axis(seen: SharedMotion, heights: list[float]) -> bool:
+    """Tell whether sensors at one height differ in motion, so that not all are on the axis."""
     return any(
         abs(seen.coherency[i, j]) < CERTAIN
         or max(seen.size[i], seen.size[j]) > SAME_SIZE * min(seen.size[i], seen.size[j])

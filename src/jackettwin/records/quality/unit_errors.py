@@ -1,6 +1,6 @@
-r"""Channels whose numbers are in another unit than the file says: g for m/s², mg for g.
+r"""Detection of channels in another unit than stated: g for m/s², mg for g.
 
-Three things tell, each a ratio that must be one:
+Three ratios that should be one are examined:
 
 * two parallel sensors at one place: the ratio of their amplitudes where they vibrate most;
 * parallel sensors on a tower, three heights at least: the amplitude of one over that between its neighbours,
@@ -33,30 +33,31 @@ TOO_LARGE = (
     ("mg or cm/s^2", "m/s^2", 1e3 / G0),
     ("mm/s^2", "g", 1e3 * G0),
 )
-"""Unit of the numbers, unit they were taken for, and how much too large that makes them."""
+"""Unit of the numbers, stated unit, and the factor by which that makes them too large."""
 WORDS = {
     **{factor: f"{own} taken for {taken}" for own, taken, factor in TOO_LARGE},
     **{1.0 / factor: f"{taken} taken for {own}" for own, taken, factor in TOO_LARGE},
 }
 FACTORS = tuple(WORDS)
-"""Ratios of the units of acceleration that are mixed up."""
+"""Ratios of units of acceleration that are confused."""
 GRAVITY_FACTORS = (1.0 / G0, G0, 1e3, 1e3 / G0)
-"""Of a mean of gravity. Smaller ones would be a usual offset."""
+"""Ratios considered for a mean of gravity; smaller ones would be an ordinary offset."""
 GRAVITY_TOLERANCE = 0.03
-"""Of gravity, relative: offset and tilt of a sensor."""
+"""Relative tolerance of gravity, for offset and tilt of a sensor."""
 ONE_PLACE_TOLERANCE = 0.2
-"""Of ln(ratio) of two sensors at one place."""
-SMOOTH = 0.9
-"""Largest |ln| of an amplitude over that between its neighbours; random cantilevers stay below 0.8."""
+"""Tolerance of ln(ratio) of two sensors at one place."""
+MAX_LOG_DEVIATION = 0.9
+"""Largest |ln| of the ratio of an amplitude to the one interpolated from its neighbours;
+random cantilevers stay below 0.8."""
 TOWER_TOLERANCE = 0.6
-"""Of ln(ratio) on a tower."""
+"""Tolerance of ln(ratio) on a tower."""
 BELOW = 0.5
-"""The foot of a tower lies this share of the sensors' span below the lowest of them."""
+"""Depth of the foot of a tower below the lowest sensor, as a share of the sensors' span."""
 
 
 @dataclass(frozen=True)
 class WrongUnit:
-    """A channel that is so many times too large; one of ``others`` may be the wrong one instead."""
+    """A channel that is too large by a factor; one of ``others`` may be wrong instead."""
 
     channel: str
     factor: float
@@ -75,7 +76,7 @@ class WrongUnit:
 
 
 def wrong_units(record: Record, groups: Sequence[ParallelChannels]) -> dict[str, WrongUnit]:
-    """Return by name the accelerations that must be in another unit than their like.
+    """Return, by name, accelerations whose unit conflicts with that of others.
 
     Parameters
     ----------
@@ -97,7 +98,7 @@ def _in_group(record: Record, group: ParallelChannels) -> Iterator[WrongUnit]:
 
 
 def _at_one_place(seen: SharedMotion, names: list[str]) -> Iterator[WrongUnit]:
-    """Yield what is a unit's ratio off the median of three sensors or more, or off the other of two."""
+    """Yield channels a unit's ratio off the median of three or more sensors, or off the other of two."""
     usual = np.median(seen.size) if len(names) > 2 else np.min(seen.size)
     for name, size in zip(names, seen.size, strict=True):
         factor = _nearest(float(np.log(size / usual)), ONE_PLACE_TOLERANCE)
@@ -106,9 +107,9 @@ def _at_one_place(seen: SharedMotion, names: list[str]) -> Iterator[WrongUnit]:
 
 
 def _on_a_tower(seen: SharedMotion, heights_m: FloatArray, names: list[str]) -> Iterator[WrongUnit]:
-    """Yield the one channel that, over a unit's ratio, makes the amplitudes grow smoothly with height."""
+    """Yield the channel whose correction by a unit's ratio makes the amplitudes grow smoothly with height."""
     size = np.log(seen.size)
-    if np.max(np.abs(_bend(heights_m, size))) < SMOOTH:
+    if np.max(np.abs(_bend(heights_m, size))) < MAX_LOG_DEVIATION:
         return
     cures = []
     for i in range(len(names)):
@@ -126,7 +127,7 @@ def _on_a_tower(seen: SharedMotion, heights_m: FloatArray, names: list[str]) -> 
 
 
 def _bend(heights_m: FloatArray, size: FloatArray) -> FloatArray:
-    """Return ln of each amplitude over what a power law through the two nearest other heights gives."""
+    """Return ln of the ratio of each amplitude to a power law through the two nearest other heights."""
     x = np.log(heights_m - heights_m.min() + BELOW * np.ptp(heights_m))
     out = np.zeros(len(size))
     for i in range(len(size)):
@@ -155,6 +156,6 @@ def _by_gravity(record: Record) -> Iterator[WrongUnit]:
 
 
 def _nearest(log_ratio: float, tolerance: float) -> float | None:
-    """Return the ratio of units that a ratio is near to, None if to none."""
+    """Return the ratio of units nearest to a ratio, None if none is near."""
     best = min(FACTORS, key=lambda factor: abs(log_ratio - np.log(factor)))
     return best if abs(log_ratio - np.log(best)) < tolerance else None

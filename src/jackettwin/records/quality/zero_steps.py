@@ -1,8 +1,8 @@
-r"""Channels whose zero steps: a level before, another afterwards.
+r"""Steps in the zero of a channel, from one level to another.
 
-The sum :math:`S_k = \sum_{j \le k} (y_j - \bar y)` of a vibration stays small, as its velocity does; a step
-of its zero by a at sample k makes a triangle of height a k (n − k)/n of it. A step is believed where it
-explains most of what is slow, which neither a drift nor a few slow swings does.
+The sum :math:`S_k = \sum_{j \le k} (y_j - \bar y)` of a vibration stays small, as its velocity does.
+A step of its zero by a at sample k adds a triangle of height a k (n − k)/n. A step is accepted if it explains
+most of the slow motion, which neither a drift nor a few slow oscillations do.
 """
 
 from __future__ import annotations
@@ -18,20 +18,21 @@ from jackettwin.records.processing.spectra import of_fast_length
 from jackettwin.records.record import Record
 
 SLOW = 20
-"""Cycles a record below which motion is slow."""
+"""Cycles in the record below which motion is slow."""
 EXPLAINED = 0.85
-"""Share of the slow power that a step must explain: the best of a straight drift explains 0.75."""
-LEAST_SIZE = 0.5
-"""Of a step, over the rms of the rest."""
-ENDS = 0.05
-"""Share of the record at either end in which a step is not told from a trend."""
+"""Smallest share of the slow power that a step must explain;
+the best step explains 0.75 of a linear drift."""
+MIN_STEP_SIZE = 0.5
+"""Smallest size of a step over the rms of the rest."""
+END_SHARE = 0.05
+"""Share of the record at each end in which a step cannot be told from a trend."""
 GAP_S = 0.5
-"""Seconds of the record on either side of a step that are declared missing, at least three samples."""
+"""Time on each side of a step that becomes missing, at least three samples [s]."""
 
 
 @dataclass(frozen=True)
 class ZeroStep:
-    """A channel whose zero is higher by so much from a sample on."""
+    """A channel whose zero rises by some amount at a sample."""
 
     at: int
     by: float
@@ -60,21 +61,21 @@ def zero_step(y: FloatArray) -> ZeroStep | None:
     x = bridge(y)
     x = x - x.mean()
     k = np.arange(1, n)
-    inside = (k > ENDS * n) & (k < (1.0 - ENDS) * n)
-    # by how much a step there lowers the sum of squares
+    inside = (k > END_SHARE * n) & (k < (1.0 - END_SHARE) * n)
+    # reduction of the sum of squares by a step at each sample
     gain = np.where(inside, np.cumsum(x)[:-1] ** 2 * n / (k * (n - k)), 0.0)
     at = int(k[np.argmax(gain)])
     by = float(x[at:].mean() - x[:at].mean())
     rest = x - np.where(np.arange(n) >= at, by, 0.0)
     slow = [float(np.sum(np.abs(np.fft.rfft(of_fast_length(s - s.mean()))[1:SLOW]) ** 2)) for s in (x, rest)]
     rms = float(rest.std())
-    if rms == 0.0 or abs(by) < LEAST_SIZE * rms or slow[1] > (1.0 - EXPLAINED) * slow[0]:
+    if rms == 0.0 or abs(by) < MIN_STEP_SIZE * rms or slow[1] > (1.0 - EXPLAINED) * slow[0]:
         return None
     return ZeroStep(at, by, abs(by) / rms)
 
 
 def without_step(y: FloatArray, step: ZeroStep, sample_rate_hz: float) -> FloatArray:
-    """Return a channel with its step taken back, missing around it."""
+    """Return a channel with its step removed and samples around it missing."""
     out = y.copy()
     out[step.at :] -= step.by
     gap = max(round(GAP_S * sample_rate_hz), 3)
@@ -83,7 +84,7 @@ def without_step(y: FloatArray, step: ZeroStep, sample_rate_hz: float) -> FloatA
 
 
 def zeros_in_line(record: Record) -> tuple[Record, tuple[Finding, ...]]:
-    """Take back the steps of zeros of accelerations and velocities; what most channels do at once is said."""
+    """Remove zero steps of accelerations and velocities; steps that most channels share are only reported."""
     data, findings, at = record.data.copy(), [], []
     rows = [i for i, c in enumerate(record.channels) if c.quantity in ("acceleration", "velocity")]
     for i in rows:

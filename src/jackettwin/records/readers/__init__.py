@@ -1,4 +1,4 @@
-"""Files in and out: one small reader a format behind one registry."""
+"""Readers and writers of record files, one module per format, and their registry."""
 
 from jackettwin.records.readers.pieces import read_record_pieces
 from jackettwin.records.readers.registry import (

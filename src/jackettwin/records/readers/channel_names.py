@@ -1,7 +1,7 @@
-"""What a channel's name says of its place and direction: ``ACC_088m_E``, ``TT_FA``, ``LAT097_SS``.
+"""Place and direction of a channel from its name: ``ACC_088m_E``, ``TT_FA``, ``LAT097_SS``.
 
-Two tables of patterns, read without regard to case. A name that says two different things says
-nothing. Whatever is taken from a name is told to the user (``told``), and a description overrules it.
+Two tables of patterns are used, ignoring case. A name with contradictory parts is ignored.
+Whatever is taken from a name is reported (``told``), and a description overrules it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 Vector = tuple[float, float, float]
 
 _ALONE = r"(?<![a-z0-9])(?<![_\s(]-)(?:{})(?![a-z0-9])"
-"""A word of its own. A minus before an axis (``acc_-x``) is not read: nobody knows whether it is a sign."""
+"""Pattern of a separate word. A minus before an axis (``acc_-x``) is not read,
+since it may be a sign or a separator."""
 _LETTERS = r"(?<![a-z])(?:{})(?![a-z])"
 
 DIRECTIONS: tuple[tuple[str, Vector, str], ...] = (
@@ -62,7 +63,7 @@ LEVELS: tuple[tuple[str, str], ...] = (
 
 @dataclass(frozen=True)
 class Reading:
-    """What a name says; None where it says nothing, or two different things.
+    """Content of a name; None where it says nothing or contradicts itself.
 
     Attributes
     ----------
@@ -88,7 +89,7 @@ class Reading:
 
 
 def read_name(name: str) -> Reading:
-    """Return what the name of a channel says of its place and direction.
+    """Return place and direction from the name of a channel.
 
     Examples
     --------
@@ -127,14 +128,14 @@ def read_name(name: str) -> Reading:
 
 
 def told(used: Mapping[str, Reading]) -> tuple[str, ...]:
-    """Return the remark that says what was taken from channels' names; none if it goes without saying.
+    """Return the remark on what was taken from channels' names, None if it is obvious.
 
-    A name that ends in the letter of its axis says it plainly and is not repeated.
+    A name that ends in the letter of its axis is obvious and not repeated.
 
     Parameters
     ----------
     used : mapping
-        Channel name → what of its reading was used.
+        Channel name → the parts of its reading that were used.
     """
     heights: dict[str, list[str]] = {}
     directions: dict[str, list[str]] = {}

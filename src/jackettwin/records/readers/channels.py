@@ -1,7 +1,7 @@
-"""One channel as its file, its description and its name say: in SI units, with place and direction.
+"""A channel from its file, description and name: in SI units, with place and direction.
 
-Numbers that loggers write where they have none (−9999, 1e30, the ends of an integer's range) become missing
-samples.
+Placeholders that loggers write for missing values (−9999, 1e30, the ends of an integer's range)
+become missing samples.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ if TYPE_CHECKING:
 
 
 RAW_UNITS = ("counts", "count", "cts", "digits", "digit", "lsb", "raw", "adc", "v", "mv", "volt", "volts")
-"""What a converter reads before it is scaled: a gain must say what one of them is worth."""
+"""Units of raw converter readings, which need a gain."""
 STANDING_FOR_RAW = "m/s^2"
-"""Unit of numbers times gain where nobody says it."""
+"""Unit of numbers times gain if none is stated."""
 
 
 @dataclass(frozen=True)
 class Unsaid:
-    """What holds for a file that does not say so itself, nor the JSON beside it.
+    """Properties of a file that neither it nor the JSON beside it states.
 
     Attributes
     ----------
@@ -47,10 +47,10 @@ class Unsaid:
     unit : str or None
         Of the channels without a unit: of acceleration, velocity, displacement or another vibration.
     gain : float or None
-        What one count (or volt) is worth in that unit, for the channels stored unscaled; without a unit
-        anywhere, of the channels without one as well.
+        Value of one count (or volt) in that unit, for channels stored unscaled;
+        if no unit is stated anywhere, also for channels without one.
     timezone : str or None
-        Zone of a clock that does not say it: an IANA name (``Europe/Berlin``) or an offset (``+02:00``).
+        Time zone of a clock without one: an IANA name (``Europe/Berlin``) or an offset (``+02:00``).
     """
 
     sample_rate_hz: float | None = None
@@ -61,7 +61,7 @@ class Unsaid:
 
 @dataclass(frozen=True)
 class Described:
-    """A channel, the factor that brings its stored numbers to SI, and what was taken from its name."""
+    """A channel, the factor from its stored numbers to SI, and what was taken from its name."""
 
     channel: Channel
     factor: float
@@ -69,7 +69,7 @@ class Described:
 
 
 def merged(own: ChannelEntry | None, given: ChannelEntry | None) -> dict[str, Any]:
-    """Return what the file says of a channel, overruled by what the description says: null is "not this"."""
+    """Return the file's entry of a channel, overruled by the description; null removes a value."""
     own_entry = (own or ChannelEntry()).model_dump(exclude_none=True)
     return own_entry | (given or ChannelEntry()).model_dump(exclude_unset=True)
 
@@ -104,7 +104,7 @@ def described_channel(name: str, entry: Mapping[str, Any], unsaid: Unsaid) -> De
 
 
 def _measures(name: str, entry: Mapping[str, Any], unsaid: Unsaid) -> tuple[str, str, float]:
-    """Return quantity, unit, and the gain that brings the stored numbers to this unit."""
+    """Return quantity, unit, and the gain from the stored numbers to this unit."""
     unit, gain = plain_unit(entry.get("unit") or ""), entry.get("gain")
     raw = unit.lower() in RAW_UNITS
     kind = entry.get("quantity") or guess_quantity(name, "" if raw else unit)
@@ -136,7 +136,7 @@ def _measures(name: str, entry: Mapping[str, Any], unsaid: Unsaid) -> tuple[str,
 
 
 def _from_name(name: str, entry: Mapping[str, Any], kind: str) -> Reading:
-    """Return what is taken from a vibration channel's name: what its entry does not say."""
+    """Return what is taken from a vibration channel's name because its entry lacks it."""
     if kind not in VIBRATIONS:
         return Reading()
     read = read_name(name)
@@ -188,18 +188,18 @@ SENTINELS = np.array(
         *(1e20, 1e30, -1e30, 1e35, 1e37, np.float64(np.float32(9.96921e36)), 1e38),
     ]
 )
-"""Values that stand for none, in the file's own unit."""
-FAR = 2.0
-"""A value that stands for none lies farther from all others than this many times their range."""
-LEAST = 2
-"""How often it must be there."""
+"""Placeholders for missing values, in the file's own unit."""
+MIN_DISTANCE = 2.0
+"""Smallest distance of a placeholder from all other values, over their range."""
+MIN_OCCURRENCES = 2
+"""Fewest occurrences of a placeholder."""
 
 
 def without_sentinels(y: FloatArray) -> tuple[FloatArray, float | None, int]:
-    """Return a channel with missing samples where it holds a sentinel, which one, and how many.
+    """Return a channel with placeholders made missing, the placeholder, and its number.
 
-    A value counts if it is exactly one of ``SENTINELS``, at least twice, and far from everything else; so a
-    power of 9999 kW stays, and so does what is clipped at the end of a range.
+    A placeholder is exactly one of ``SENTINELS``, occurs at least twice, and is far from all other values,
+    so that a power of 9999 kW or a signal clipped at the end of a range is kept.
 
     Examples
     --------
@@ -208,14 +208,14 @@ def without_sentinels(y: FloatArray) -> tuple[FloatArray, float | None, int]:
     ([0.1, nan, 0.3, nan, 0.2], -9999.0, 2)
     """
     hits = np.isin(y, SENTINELS)
-    if np.count_nonzero(hits) < LEAST:
+    if np.count_nonzero(hits) < MIN_OCCURRENCES:
         return y, None, 0
     values, counts = np.unique(y[hits], return_counts=True)
     value, count = float(values[np.argmax(counts)]), int(counts.max())
     rest = y[np.isfinite(y) & ~np.isin(y, SENTINELS)]
-    if count < LEAST or not rest.size:
+    if count < MIN_OCCURRENCES or not rest.size:
         return y, None, 0
     low, high = float(rest.min()), float(rest.max())
-    if max(low - value, value - high) <= FAR * (high - low):
+    if max(low - value, value - high) <= MIN_DISTANCE * (high - low):
         return y, None, 0
     return np.where(y == value, np.nan, y), value, count
