@@ -155,9 +155,7 @@ def stuck(y: FloatArray, shortest: int) -> BoolArray:
 
 
 def hold_length(y: FloatArray) -> int:
-    """Return the number of samples for which every value is repeated; above 1,
-    the channel has a lower rate.
-    """
+    """Return how many samples each value is repeated; above 1, the channel has a lower rate."""
     finite = np.isfinite(y)
     if finite.sum() < 20 or is_constant(y):
         return 1
