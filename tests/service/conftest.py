@@ -181,8 +181,7 @@ def make_service(
     monkeypatch.setattr(verdict, "known", known)
     monkeypatch.setattr(verdict, "watched", lambda twin, days, *_: ({"days": len(days)}, ()))
     made = Service(settings, open_database(settings.database_url), Here(), "test")  # type: ignore[arg-type]
-    with writing(made.database) as connection:
-        add_text_version(connection, made, "wtg", TWIN, {}, "test")
+    add_text_version(made, "wtg", TWIN, {}, "test")
     yield made
     made.database.dispose()
 

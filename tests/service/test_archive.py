@@ -75,8 +75,7 @@ def test_files_and_the_command_line_are_refused_too(
 
 def test_what_an_archived_turbine_left_waits_for_all_others(client: TestClient, service: Service) -> None:
     """It delays nobody, alarms nobody, and is observed in the end; brought back it waits in line again."""
-    with writing(service.database) as connection:
-        catalogue.add_text_version(connection, service, "other", TWIN, {}, "test")
+    catalogue.add_text_version(service, "other", TWIN, {}, "test")
     left = upload(client, 1).json()["record_id"]
     client.delete("/api/v1/assets/wtg?confirm=wtg")
     assert "jackettwin_queue_age_seconds 0.0" in client.get("/api/v1/metrics").text

@@ -17,7 +17,7 @@ from jackettwin.service.intake.folder import watch_folders
 from jackettwin.service.server import take_from_inbox
 from jackettwin.service.web.catalogue import add_text_version
 from jackettwin.service.workers.failures import NoWorker
-from jackettwin.store import reading, writing
+from jackettwin.store import reading
 from jackettwin.store.records import find_record
 
 
@@ -48,8 +48,7 @@ def test_a_record_is_carried_over_from_the_folder_of_another_store(service: Serv
     assert first is not None
     with reading(service.database) as connection:
         before = find_record(connection, "wtg", first.record_id)
-    with writing(service.database) as connection:
-        add_text_version(connection, service, "new", TWIN, {}, "test")
+    add_text_version(service, "new", TWIN, {}, "test")
     path = service.settings.inbox / "new" / Path(before.waveform).name
     shutil.copy(service.settings.store / before.waveform, path)
     again = taken(service, path)
@@ -84,8 +83,7 @@ def test_a_file_of_no_asset_is_said_and_waits_for_one(service: Service) -> None:
     assert taken(service, path) is None and path.exists()
     reason = path.with_name("r1.parquet.refused.json")
     assert json.loads(reason.read_text())["value"] == "wgt"
-    with writing(service.database) as connection:
-        add_text_version(connection, service, "wgt", TWIN, {}, "test")
+    add_text_version(service, "wgt", TWIN, {}, "test")
     found = taken(service, path)
     assert found is not None and found.new
     assert list(path.parent.iterdir()) == []

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import sys
+import time
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -12,19 +14,21 @@ import cbor2
 import pytest
 from fastapi.testclient import TestClient
 from hypothesis import HealthCheck, given, settings, strategies as st
-from tests.service.conftest import HERE, PASSWORD, description, make_service, record_file, turn, upload
+from tests.service.conftest import HERE, PASSWORD, Done, description, make_service, record_file, turn, upload
 from tests.service.test_security import token
 from tests.store.conftest import fresh
 
 from jackettwin.errors import InputError
 from jackettwin.service.answer_cache import Answer, AnswerCache
 from jackettwin.service.context import Service
-from jackettwin.service.intake.file_access import only_files_in
 from jackettwin.service.intake.packets import read_packets
 from jackettwin.service.web import app as web, auth
 from jackettwin.service.web.app import create_app
 from jackettwin.service.web.routes import health
-from jackettwin.store import people, writing
+from jackettwin.service.work import consequences
+from jackettwin.service.workers import engine
+from jackettwin.service.workers.file_access import only_files_in
+from jackettwin.store import people, records, writing
 
 FORM = {"Content-Type": "multipart/form-data; boundary=b"}
 JSON = {"Content-Type": "application/json"}
@@ -260,3 +264,73 @@ def test_a_fault_of_ours_is_a_problem_document_without_its_insides(service: Serv
         answer = client.get("/api/v1/assets")
     assert (answer.status_code, answer.json()["title"]) == (500, "Internal Server Error")
     assert "secret" not in answer.text
+
+
+BOMB = "a: &a [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n" + "".join(
+    f"{b}: &{b} [{', '.join([f'*{a}'] * 10)}]\n" for a, b in pairwise("abcdefghi")
+)
+"""Nine lines that stand for a thousand million numbers."""
+
+
+@pytest.mark.parametrize(
+    ("twin", "said"),
+    [
+        ("structure: jacket15\nsubdivide: 100\n", "freedoms"),
+        (BOMB + "structure: jacket15\n", "aliases"),
+        ("structure: jacket15\nsensors: &a [*a]\n", "aliases"),
+    ],
+)
+def test_a_twin_that_is_small_and_costs_much_is_refused_at_once(
+    client: TestClient, service: Service, twin: str, said: str
+) -> None:
+    for method, path in (("POST", "/api/v1/assets"), ("PUT", "/api/v1/assets/wtg")):
+        before = time.process_time()
+        answer = client.request(method, path, json={"name": "spy", "twin": twin})
+        assert time.process_time() - before < 2.0  # of minutes that it would take
+        assert answer.status_code == 422 and said in answer.json()["detail"]
+    assert [a["name"] for a in client.get("/api/v1/assets").json()["items"]] == ["wtg"]
+    assert list(service.settings.spool.iterdir()) == []
+
+
+def test_a_twin_is_evaluated_by_a_worker_while_others_write(
+    client: TestClient, service: Service, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """SQLite has one writer: within a transaction this would wait for itself."""
+    asked, submit = [], service.cluster.submit
+
+    def watched(task: Any, *given: Any, **how: Any) -> Any:
+        asked.append(task.__name__)
+        with writing(service.database) as connection:
+            people.note_down(connection, "another", "record", "", "ok", service.now())
+        return submit(task, *given, **how)
+
+    monkeypatch.setattr(service.cluster, "submit", watched)
+    body = {"name": "new", "twin": "structure: jacket15\n"}
+    assert client.post("/api/v1/assets", json=body).status_code == 201
+    assert client.put("/api/v1/assets/new", json=body).status_code == 200
+    assert asked == ["examine_twin"] * 2
+
+
+@pytest.mark.parametrize("error", [TimeoutError(), MemoryError(), RuntimeError("KilledWorker")])
+def test_a_twin_that_its_worker_does_not_survive_is_refused(
+    client: TestClient, service: Service, monkeypatch: pytest.MonkeyPatch, error: Exception
+) -> None:
+    monkeypatch.setattr(service.cluster, "submit", lambda *_, **__: Done(error=error))
+    answer = client.post("/api/v1/assets", json={"name": "new", "twin": "structure: jacket15\n"})
+    assert (answer.status_code, answer.json()["field"]) == (422, "twin")
+
+
+def test_the_server_never_builds_a_model(
+    client: TestClient, service: Service, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What it takes, keeps, folds and answers stands in the profile that a worker left beside the twin."""
+    turn(service)
+    upload(client, 1)
+    turn(service)  # the worker, which is this process here, has the model in its cache now
+    engine.load_twin.cache_clear()
+    monkeypatch.setattr(engine, "read_twin", lambda *_, **__: pytest.fail("the server read a twin"))
+    with writing(service.database) as connection:
+        number = records.list_records(connection, "wtg", limit=1)[0][0].record_id
+        consequences.set_aside(connection, service, "wtg", number, "a test")
+    assert client.get("/api/v1/assets/wtg/twin").status_code == 200
+    assert upload(client, 2).status_code == 202

@@ -18,6 +18,8 @@ except ImportError:  # PyYAML was built without libyaml
 
 _DEEPEST = 100
 """Levels of nesting. Loading recurses, in libyaml down to the end of the stack; parsing does not."""
+_MOST_REPEATED = 100_000
+"""Values that aliases may stand for in all: nine lines of ten aliases each stand for a thousand million."""
 
 
 class _Loader(_SafeLoader):
@@ -106,7 +108,7 @@ def read_yaml(path: Path | str, *, what: str = "file") -> dict[str, Any]:
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark is not None else ""
-        problem = getattr(error, "problem", None) or "is not valid YAML"
+        problem = getattr(error, "problem", None) or str(error) or "is not valid YAML"
         raise InputError(f"{where}{problem}", file=path, remedy="mend the YAML at that place") from None
     except RecursionError:
         raise InputError(
@@ -123,12 +125,27 @@ def read_yaml(path: Path | str, *, what: str = "file") -> dict[str, Any]:
 
 
 def _bounded(text: str) -> None:
-    """Raise RecursionError at the first place that is nested too deeply."""
-    level = 0
+    """Raise RecursionError where it is nested too deeply, YAMLError where aliases stand for too much."""
+    open_: list[tuple[str | None, int]] = []
+    sizes, size, repeated = dict[str | None, int](), 0, 0
     for event in yaml.parse(text, Loader=_Loader):
-        level += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
-        if level > _DEEPEST:
+        if isinstance(event, yaml.CollectionEndEvent):
+            anchor, before = open_.pop()
+            sizes[anchor] = size - before
+            continue
+        if isinstance(event, yaml.AliasEvent):  # of something that is open still: it would hold itself
+            repeated += sizes.get(event.anchor, _MOST_REPEATED)
+            size += sizes.get(event.anchor, 0)
+        elif isinstance(event, yaml.NodeEvent):
+            size += 1
+            sizes[event.anchor] = 1
+        if isinstance(event, yaml.CollectionStartEvent):
+            open_.append((event.anchor, size - 1))
+            sizes.pop(event.anchor, None)
+        if len(open_) > _DEEPEST:
             raise RecursionError
+        if repeated >= _MOST_REPEATED:
+            raise yaml.YAMLError("aliases stand for too much")
 
 
 def read_mapping(path: Path | str, *, what: str = "file") -> dict[str, Any]:

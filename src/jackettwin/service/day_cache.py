@@ -13,7 +13,7 @@ from jackettwin.service import workers
 from jackettwin.store import assets, results
 
 if TYPE_CHECKING:
-    from jackettwin.twin import TwinModel
+    pass
 
 _MOST = 256
 """Turbines whose sums are kept: some kilobytes each."""
@@ -38,7 +38,11 @@ class DayCache:
         self._lock = Lock()
 
     def told(
-        self, connection: Connection, version: assets.Version, model: TwinModel, day: str | None = None
+        self,
+        connection: Connection,
+        version: assets.Version,
+        model: workers.engine.TwinProfile,
+        day: str | None = None,
     ) -> DaysTold:
         """Return what all days, or those up to one, say; only days that are new or changed are read."""
         key = (version.asset, version.model_hash)

@@ -73,7 +73,9 @@ class ServiceSettings(BaseSettings):
     samples_limit: int = 200_000_000
     """Most samples, over all channels, that a file may expand to."""
     parse_limit_s: float = 120.0
-    """Time after which reading a file is given up."""
+    """Time after which reading a file, or evaluating a twin, is given up."""
+    freedoms_limit: int = 10_000
+    """Most freedoms of a twin's structure: at 6,200 every worker takes three CPU seconds to load it."""
     observe_limit_s: float = 600.0
     """Time after which observing a record is given up."""
     worker_memory_bytes: int = 3 * 2**30

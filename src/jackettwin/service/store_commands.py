@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -38,9 +39,8 @@ def add_twin(database: Engine, store: Path, name: str, twin: Path, comment: str 
     assets.check_name(name)
     contents = bundle(twin)
     opened = _opened(database, store)
-    with writing(database) as connection:
-        _refuse_archived(connection, name)
-        version = add_version(connection, opened, name, contents, "command line", comment)
+    fit = partial(_refuse_archived, asset=name)
+    version = add_version(opened, name, contents, "command line", comment, if_fit=fit)
     return {
         "asset": name,
         "version": version.version,

@@ -68,11 +68,6 @@ def twin_folder(connection: Connection, service: Place, asset: str, version: int
     return place
 
 
-def adopted_twin(connection: Connection, service: Place, asset: str) -> workers.engine.Twin:
-    """Return the twin whose answers count."""
-    return workers.engine.load_twin(twin_folder(connection, service, asset))
-
-
 def _walked(data: Any, take: Any) -> Any:
     if isinstance(data, dict):
         return {key: _walked(value, take) for key, value in data.items()}

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import Connection
 
-from jackettwin.service.intake.bundles import adopted_twin
 from jackettwin.service.workers.failures import DISK_FULL, LOST_WORKER, NoWorker
 from jackettwin.service.workers.tasks import File, Parsed, read_file
 from jackettwin.store import assets, journal, reading, records, work, writing
@@ -147,9 +146,11 @@ def living(connection: Connection, asset: str, adopted: assets.Version) -> list[
 
 def take_file(place: Place, parse: Reader, asset: str, path: Path, source_name: str) -> Accepted:
     """Read a file and keep its record, or those that a long one is cut into: all or none."""
+    from jackettwin.service.intake.examination import profile  # which discards what was spooled
+
     settings = place.settings
     with reading(place.database) as connection:
-        unsaid = adopted_twin(connection, place, asset).config.unsaid
+        unsaid = profile(connection, place, asset).unsaid
     limits = (settings.samples_limit, settings.worker_memory_bytes, place.now() + AHEAD)
     parsed = parse(File(str(path), asset, str(settings.store), *limits, unsaid))
     if parsed[0].problem is not None:

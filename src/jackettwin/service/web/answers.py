@@ -14,7 +14,7 @@ from sqlalchemy import Connection, select
 
 from jackettwin.errors import InputError
 from jackettwin.service import workers
-from jackettwin.service.intake.bundles import twin_folder
+from jackettwin.service.intake.examination import profile
 from jackettwin.service.web.schemas import (
     AlarmOut,
     ChangeOut,
@@ -117,7 +117,7 @@ def twin(
 ) -> TwinOut:
     """Return what the twin knows at a time, from the states of its days."""
     last = None if at is None else f"{at.astimezone(UTC):%Y-%m-%d}"
-    model = workers.engine.load_twin(twin_folder(connection, service, version.asset, version.version)).model
+    model = profile(connection, service, version.asset, version.version)
     told = service.days.told(connection, version, model, last)
     known = workers.engine.knowledge(model, told.sums)
     if at is None:

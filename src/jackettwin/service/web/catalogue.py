@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import re
-import tempfile
-from collections.abc import Mapping
-from pathlib import Path
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from sqlalchemy import Connection
 
 from jackettwin.errors import InputError
 from jackettwin.service import workers
-from jackettwin.service.intake.file_access import only_files_in
+from jackettwin.service.intake.examination import examined
 from jackettwin.service.web.schemas import AssetOut, VersionOut
 from jackettwin.service.work.consequences import ask_known
-from jackettwin.store import assets, journal, people, records, results, work
+from jackettwin.store import assets, journal, people, reading, records, results, work, writing
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Place
@@ -25,34 +23,49 @@ _PART = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,99}")
 
 
 def add_text_version(
-    connection: Connection,
     service: Place,
     name: str,
     twin: str,
     files: Mapping[str, str],
     by: str,
     comment: str = "",
+    *,
+    if_fit: Callable[[Connection], None] = lambda connection: None,
 ) -> assets.Version:
     """Add a version of a twin given as text; see :func:`add_version`."""
     contents = {path: text.encode() for path, text in {workers.engine.TWIN_FILE: twin, **files}.items()}
-    return add_version(connection, service, name, contents, by, comment)
+    return add_version(service, name, contents, by, comment, if_fit=if_fit)
 
 
 def add_version(
-    connection: Connection,
     service: Place,
     name: str,
     contents: Mapping[str, bytes],
     by: str,
     comment: str = "",
+    *,
+    if_fit: Callable[[Connection], None] = lambda connection: None,
 ) -> assets.Version:
     """Check a twin and add it as a version; records that are there are observed by it when there is time.
+
+    It is evaluated before the transaction begins in which it is added: nobody waits for it who writes.
+    ``if_fit`` raises if the asset takes no version; it is asked before and in that transaction.
 
     Raises
     ------
     InputError
         If the twin cannot be read, or a file's name could lead out of its folder.
     """
+    with reading(service.database) as connection:
+        if_fit(connection)
+    _check_names(contents)
+    found = examined(service, contents)
+    with writing(service.database) as connection:
+        if_fit(connection)
+        return _add(connection, service, name, contents, found, by, comment)
+
+
+def _check_names(contents: Mapping[str, bytes]) -> None:
     for path in contents:
         if not all(_PART.fullmatch(part) for part in path.split("/")):
             raise InputError(
@@ -62,17 +75,29 @@ def add_version(
                 allowed="relative paths of letters, digits, ., _ and -",
                 remedy="rename it, here and in the twin file",
             )
-    model_hash, settings_hash = _identity(contents)
+
+
+def _add(
+    connection: Connection,
+    service: Place,
+    name: str,
+    contents: Mapping[str, bytes],
+    found: workers.engine.TwinProfile,
+    by: str,
+    comment: str,
+) -> assets.Version:
+    model_hash = found.identity
     version = assets.add_version(
         connection,
         name,
         contents,
         model_hash=model_hash,
-        settings_hash=settings_hash,
+        settings_hash=found.settings_hash,
         by=by,
         now=service.now(),
         comment=comment,
     )
+    workers.engine.keep_profile(service.settings.models / version.bundle_hash, found)
     (service.settings.inbox / name).mkdir(parents=True, exist_ok=True)
     for record in records.all_with_samples(connection, name):
         work.enqueue(connection, version, record.record_id, service.now())
@@ -111,20 +136,6 @@ def archive(connection: Connection, service: Place, name: str, by: str, *, undo:
     work.reorder(connection, name, 0 if undo else work.GONE)
     people.note_down(connection, by, "unarchive" if undo else "archive", name, "ok", service.now())
     journal.tell(connection, "asset", name, {"archived": not undo}, service.now())
-
-
-def _identity(contents: Mapping[str, bytes]) -> tuple[str, str]:
-    with tempfile.TemporaryDirectory(prefix="jackettwin-") as folder:
-        for path, content in contents.items():
-            target = Path(folder) / path
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_bytes(content)
-        try:
-            with only_files_in(Path(folder)):
-                return workers.engine.identity(workers.engine.load_twin.__wrapped__(Path(folder)).model)
-        except InputError as error:
-            error.file = workers.engine.TWIN_FILE
-            raise
 
 
 def overview(connection: Connection, name: str | None = None, *, archived: bool = False) -> list[AssetOut]:

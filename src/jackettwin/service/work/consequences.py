@@ -15,6 +15,7 @@ from sqlalchemy import Connection, select
 
 from jackettwin.service import workers
 from jackettwin.service.intake.bundles import twin_folder
+from jackettwin.service.intake.examination import profile
 from jackettwin.service.intake.files import living
 from jackettwin.service.workers.tasks import Outcome, Question, Task
 from jackettwin.store import (
@@ -244,7 +245,7 @@ def fold(
         todo = [changed]
     if not todo:
         return
-    model = workers.engine.load_twin(twin_folder(connection, service, asset, version)).model
+    model = profile(connection, service, asset, version)
     before, new = stored.document if stored else None, [observation.document for observation in todo]
     folded = workers.engine.advance_day(model, day, before, new)
     if folded.n_records:  # none, if all are of another structure

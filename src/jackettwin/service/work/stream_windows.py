@@ -15,8 +15,7 @@ from scipy.interpolate import CubicSpline
 
 from jackettwin.arrays import FloatArray
 from jackettwin.records import Channel, Record
-from jackettwin.service import workers
-from jackettwin.service.intake.bundles import adopted_twin
+from jackettwin.service.intake.examination import profile
 from jackettwin.service.intake.files import accept
 from jackettwin.service.work import consequences
 from jackettwin.service.workers.tasks import stored
@@ -73,7 +72,7 @@ def close_window(service: Service, window: streams.OpenWindow) -> None:
     """
     with reading(service.database) as connection:
         packets = streams.packets_of(connection, window.asset, window.window_utc)
-        channels = workers.engine.channels(adopted_twin(connection, service, window.asset).config)
+        channels = profile(connection, service, window.asset).channels
     record = assembled(
         packets, window.window_utc, channels, f"{window.asset}_{window.window_utc:%Y%m%dT%H%M}"
     )

@@ -13,10 +13,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from jackettwin.files import StoredSchema, digest
+from jackettwin.errors import require
+from jackettwin.files import StoredSchema, atomic_path, digest
 from jackettwin.findings import Finding
 from jackettwin.identification import Pick
-from jackettwin.records import Channel
+from jackettwin.records import Channel, Unsaid
 from jackettwin.store import read_waveform
 from jackettwin.twin import (
     ALL,
@@ -27,11 +28,11 @@ from jackettwin.twin import (
     TwinState,
     advance,
     average,
-    empty_state,
     observe,
     read_twin,
     twin_model,
 )
+from jackettwin.version import __version__
 
 TWIN_FILE = "twin.yaml"
 DAY = StoredSchema("twin_day", Day)
@@ -61,18 +62,88 @@ def load_twin(folder: Path) -> Twin:
     return Twin(config, twin_model(config))
 
 
-def identity(model: TwinModel) -> tuple[str, str]:
-    """Return the hashes of a model and of the settings it observes with."""
+@dataclass(frozen=True)
+class TwinProfile:
+    """What a server must know of a version of a twin, so that it need not build the model.
+
+    Attributes
+    ----------
+    identity : hash of model and settings, by which a version's observations are known
+    settings_hash : of the settings it observes with
+    model_hash, by_wind, with_shapes : of the states that its observations become
+    labels : of its modes
+    channels : {name: channel}, as far as the twin file says
+    unsaid : what holds for a file that does not say so
+    """
+
+    identity: str
+    settings_hash: str
+    model_hash: str
+    by_wind: bool
+    with_shapes: bool
+    labels: tuple[str, ...]
+    channels: dict[str, Channel]
+    unsaid: Unsaid
+
+
+PROFILE = StoredSchema("twin_profile", TwinProfile)
+"""How a profile is sent by a worker, and stands beside the files of its version."""
+
+
+def profile_of(twin: Twin) -> TwinProfile:
+    """Return what a server must know of a twin."""
+    model = twin.model
     settings = model.settings_hash("")
-    return digest([model.model_hash, settings]), settings
-
-
-def channels(config: TwinConfig) -> dict[str, Channel]:
-    """Return what a twin says of its channels, {name: channel}."""
-    return {
+    named = {
         s.channel: Channel(s.channel, height_m=s.height_m, node=s.node, direction=s.direction)
-        for s in config.sensors
+        for s in twin.config.sensors
     }
+    keeps = (model.by_wind, model.with_shapes, tuple(model.labels))
+    identity = digest([model.model_hash, settings])
+    return TwinProfile(identity, settings, model.model_hash, *keeps, named, twin.config.unsaid)
+
+
+def examine(folder: Path, most_freedoms: int) -> TwinProfile:
+    """Evaluate a twin that a client sent.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or its structure has too many freedoms.
+    """
+    config = read_twin(folder / TWIN_FILE, records_follow=True)
+    usual = config.subdivide or config.structure.subdivide
+    inner = sum((bar.elements or usual) - 1 for bar in config.structure.bars)
+    freedoms = 6 * (len(config.structure.nodes) + inner)
+    require(
+        freedoms <= most_freedoms,
+        "the structure has too many freedoms to be observed with",
+        field="subdivide",
+        value=freedoms,
+        allowed=f"up to {most_freedoms} freedoms",
+        remedy="cut members less finely, or set JACKETTWIN_SERVE_FREEDOMS_LIMIT",
+    )
+    return profile_of(Twin(config, twin_model(config)))
+
+
+def profile_path(folder: Path) -> Path:
+    """Return where the profile of a version stands, as this version of the program sees it."""
+    return folder.with_name(f"{folder.name}-{__version__}.json")
+
+
+def keep_profile(folder: Path, profile: TwinProfile) -> None:
+    """Put a profile beside the files of its version."""
+    with atomic_path(profile_path(folder)) as temporary:
+        temporary.write_text(json.dumps(PROFILE.dump(profile)), encoding="utf-8")
+
+
+def read_profile(path: Path) -> TwinProfile:
+    """Return a profile that was kept."""
+    return PROFILE.load(json.loads(path.read_text(encoding="utf-8")))
+
+
+def _empty(model: TwinModel | TwinProfile) -> TwinState:
+    return TwinState(model.model_hash, model.by_wind, model.with_shapes)
 
 
 def observed(
@@ -116,10 +187,12 @@ _MISMATCHED = {
 }
 
 
-def advance_day(model: TwinModel, day: str, stored: str | None, observations: Sequence[str]) -> FoldedDay:
+def advance_day(
+    model: TwinModel | TwinProfile, day: str, stored: str | None, observations: Sequence[str]
+) -> FoldedDay:
     """Return the state of a day that knows some more observations of it."""
     days = {} if stored is None else {day: DAY.load(json.loads(stored))}
-    state = replace(empty_state(model), days=days)
+    state = replace(_empty(model), days=days)
     found = []
     for document in observations:
         state, findings = advance(state, OBSERVATION.load(json.loads(document)))
@@ -146,9 +219,9 @@ class Sums:
     last_utc: datetime | None = None
 
 
-def no_days(model: TwinModel) -> Sums:
+def no_days(model: TwinModel | TwinProfile) -> Sums:
     """Return what no day says."""
-    return Sums(empty_state(model))
+    return Sums(_empty(model))
 
 
 def with_day(
@@ -206,7 +279,7 @@ def summed(
     return with_day(sums, last, documents[last], twin.config.operation.may_update), past
 
 
-def knowledge(model: TwinModel, sums: Sums) -> dict[str, Any]:
+def knowledge(model: TwinModel | TwinProfile, sums: Sums) -> dict[str, Any]:
     """Return what some days say: the mean of every mode with its standard deviations, from when to when."""
     total = sums.state.totals.get(ALL)
     modes = []

@@ -166,6 +166,24 @@ def stored(record: Record, asset: str, store: Path) -> Parsed:
     return Parsed(number, place, size, about(record))
 
 
+def examine_twin(folder: str, most_freedoms: int, memory_bytes: int) -> Any:
+    """Return the profile of a twin that a client sent, as a document; what is wrong with it comes back."""
+    from jackettwin.service.workers import engine
+    from jackettwin.service.workers.file_access import only_files_in
+    from jackettwin.service.workers.memory import at_most
+
+    try:
+        with at_most(memory_bytes), only_files_in(Path(folder)):
+            return engine.PROFILE.dump(engine.examine(Path(folder), most_freedoms))
+    except InputError as error:
+        error.file = engine.TWIN_FILE
+        return error
+    except (MemoryError, RecursionError):
+        return InputError(
+            "evaluating it takes more memory than a worker has", field="twin", remedy="send a smaller model"
+        )
+
+
 def read_conditions(path: str, *, zone: str, end_stamped: bool) -> Any:
     """Read a table of conditions; an error of its input comes back, without our path."""
     from jackettwin.service.workers.condition_tables import read_table
@@ -235,12 +253,14 @@ def know(question: Question) -> Outcome | None:
 
 def observe_stored(task: Task) -> Outcome:
     """Observe a stored record. Input that is wrong comes back as a problem, faults of ours are raised."""
-    from jackettwin.service.workers.engine import load_twin, observed
+    from jackettwin.service.workers import engine
 
     try:
-        model = load_twin(Path(task.twin_folder)).model
+        twin, folder = engine.load_twin(Path(task.twin_folder)), Path(task.twin_folder)
+        if not engine.profile_path(folder).exists():  # of an older version of the program, or restored
+            engine.keep_profile(folder, engine.profile_of(twin))
         poles = (task.picks or {}).get("poles", ())
-        return Outcome(*observed(model, Path(task.waveform), task.conditions, poles))
+        return Outcome(*engine.observed(twin.model, Path(task.waveform), task.conditions, poles))
     except InputError as error:
         return Outcome(None, problem=problem_of(error))
     except JackettwinError as error:

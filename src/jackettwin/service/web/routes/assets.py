@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated
 
 from fastapi import APIRouter, File, Form, Path, Query, UploadFile
+from sqlalchemy import Connection
 
 from jackettwin.service.web import auth, catalogue, uploads
 from jackettwin.service.web.dependencies import (
@@ -30,7 +32,7 @@ from jackettwin.service.web.schemas import (
     VersionOut,
 )
 from jackettwin.service.work import conditions
-from jackettwin.store import assets
+from jackettwin.store import assets, reading
 
 router = APIRouter(tags=["assets"], route_class=Route)
 
@@ -42,14 +44,22 @@ def list_assets(connection: Told, archived: bool = False) -> Page[AssetOut]:
 
 
 @router.post(
-    "/assets", status_code=201, dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 409, 422)
+    "/assets",
+    status_code=201,
+    dependencies=[auth.ENGINEER, WAITING],
+    responses=answers(400, 401, 403, 409, 422, 503),
 )
-def add_asset(body: NewAsset, who: Asker, parts: Parts, connection: Writes) -> AssetOut:
-    """Add an asset with its twin file and the files that this one names."""
-    if body.name in assets.asset_names(connection):
-        raise ApiError(409, "there is such an asset already", field="name", value=body.name)
-    catalogue.add_text_version(connection, parts, body.name, body.twin, body.files, who.name, body.comment)
-    return catalogue.one(connection, body.name)
+def add_asset(body: NewAsset, who: Asker, parts: Parts) -> AssetOut:
+    """Add an asset with its twin file and the files that this one names; a worker evaluates it."""
+
+    def is_new(connection: Connection) -> None:
+        if body.name in assets.asset_names(connection):
+            raise ApiError(409, "there is such an asset already", field="name", value=body.name)
+
+    given = (body.twin, body.files, who.name, body.comment)
+    catalogue.add_text_version(parts, body.name, *given, if_fit=is_new)
+    with reading(parts.database) as connection:
+        return catalogue.one(connection, body.name)
 
 
 @router.get("/assets/{asset}", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
@@ -83,14 +93,17 @@ def unarchive_asset(asset: AssetName, who: Asker, parts: Parts, connection: Writ
     return catalogue.one(connection, asset)
 
 
-@router.put("/assets/{asset}", dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 404, 409, 422))
-def put_asset(asset: AssetName, body: NewVersion, who: Asker, parts: Parts, connection: Writes) -> VersionOut:
-    """Add a version; records are observed by it too, and it counts once it is adopted."""
-    living_asset(connection, asset)
-    version = catalogue.add_text_version(
-        connection, parts, asset, body.twin, body.files, who.name, body.comment
-    )
-    return catalogue.version_out(connection, version)
+@router.put(
+    "/assets/{asset}",
+    dependencies=[auth.ENGINEER, WAITING],
+    responses=answers(400, 401, 403, 404, 409, 422, 503),
+)
+def put_asset(asset: AssetName, body: NewVersion, who: Asker, parts: Parts) -> VersionOut:
+    """Add a version; records are observed by it too once a worker has seen it, and it counts once adopted."""
+    given = (body.twin, body.files, who.name, body.comment)
+    version = catalogue.add_text_version(parts, asset, *given, if_fit=partial(living_asset, name=asset))
+    with reading(parts.database) as connection:
+        return catalogue.version_out(connection, version)
 
 
 @router.get("/assets/{asset}/versions", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
