@@ -141,7 +141,7 @@ FAULTS = (
     )),
     *_of("answers", rows=(
         ("a prior's interval is one of 68 %", "np.exp(NORMAL_90 * p.log_std)", "np.exp(p.log_std)"),
-        ("two runs' deviations are not added", "hypot(s, t)", "max(s, t)"),
+        ("two runs' deviations are not added", "sqrt(max(s * s + t * t - 2.0 * shared * s * t, 0.0))", "max(s, t)"),
         ("a parameter's deviation is that of half the interval", "return log(self.high / self.low) / (2.0 * NORMAL_90)", "return log(self.high / self.low) / NORMAL_90"),
     )),
     *_of("intervals", "tests/test_intervals.py", rows=(

@@ -11,11 +11,15 @@ from jackettwin.answers import Answers, Span, answer
 from jackettwin.answers.fit import moved_by
 from jackettwin.answers.next_steps import next_steps, records_for
 from jackettwin.answers.result import NORMAL_90
+from jackettwin.cli.update import _modes as modes_of_terminal
 from jackettwin.decks import read_structure
+from jackettwin.report.tables.answers import modes_table
+from jackettwin.report.tables.numbers import words
 from jackettwin.response.modes.labels import mode_kinds, mode_labels
 from jackettwin.soil import family
 from jackettwin.structure import Rayleigh, assemble
 from jackettwin.study import TwinResult
+from jackettwin.study.document import update_document
 from jackettwin.study.result import MeasuredMode
 from jackettwin.updating import (
     Residuals,
@@ -206,3 +210,21 @@ def test_a_model_that_cannot_meet_its_data_makes_nothing_known(result: TwinResul
     assert found.fit.cover is not None and 0.01 < found.fit.cover < 0.1
     assert {g.verdict for g in found.ground} <= {"weak", "unidentified"}
     assert found.next_steps == ()
+
+
+def test_a_quantity_has_one_central_value(answers: Answers, result: TwinResult) -> None:
+    """Page, terminal and JSON told 0.7454, 0.743 and 0.7426 Hz of one mode: best fits beside medians."""
+    index, u = next((i, u) for i, u in enumerate(result.updates) if u.law == answers.law)
+    assert u.uncertainty is not None
+    document = update_document(result, index)
+    told = {m["mode"]: m for m in document["modes"]}
+    page = {row[0]: row for row in modes_table(answers, result).rows}
+    terminal = {row[1]: row for row in modes_of_terminal(result.measured, u).rows}
+    for m, one in zip(result.measured, answers.modes, strict=True):
+        assert one.model_hz is not None and one.model_damping is not None
+        assert told[m.mode]["frequency_hz"] == pytest.approx(one.model_hz.value, rel=1e-12)
+        assert told[m.mode]["damping_ratio"] == pytest.approx(one.model_damping.value, rel=1e-12)
+        assert f"{one.model_hz.value:.4f}" in str(page[words(m.label)][5])
+        assert terminal[m.label][3] == f"{one.model_hz.value:.4f}"
+    for g in answers.ground:
+        assert document["parameters"][g.name]["median"] == pytest.approx(g.value.value, rel=1e-12)

@@ -121,7 +121,7 @@ def _leg_scatter(u: Update) -> list[str]:
 
 
 def _modes(measured: tuple[MeasuredMode, ...], u: Update) -> Table:
-    columns = (measured, u.modes.frequency_hz, u.modes.undamped_hz, u.modes.damping_ratio)
+    columns = (measured, u.central_hz, u.modes.undamped_hz, u.central_damping)
     rows = [
         (
             m.mode,
@@ -134,7 +134,8 @@ def _modes(measured: tuple[MeasuredMode, ...], u: Update) -> Table:
         )
         for m, f, f0, zeta in zip(*columns, strict=True)
     ]
-    heads = ("mode", "", "measured f [Hz]", "best fit f [Hz]", "undamped", "measured ζ [%]", "best fit")
+    known = "best fit" if u.uncertainty is None else "median"
+    heads = ("mode", "", "measured f [Hz]", f"{known} f [Hz]", "undamped, best fit", "measured ζ [%]", known)
     return Table("", heads, rows)
 
 

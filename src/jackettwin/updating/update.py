@@ -11,6 +11,7 @@ from scipy.special import logsumexp
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import NumericalError
+from jackettwin.intervals import interval_90
 from jackettwin.processes import on_one_blas_thread
 from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.budget import Budget, damping_budget
@@ -138,6 +139,31 @@ class Update:
     def modes(self) -> ExactModes:
         """The shown modes of the full model at the best solution."""
         return self.fit.modes
+
+    @property
+    def central_hz(self) -> FloatArray:
+        """Frequencies of the shown modes as they are told: medians of the posterior, else the best fit."""
+        known = self.uncertainty
+        return self._central(
+            self.modes.frequency_hz, None if known is None else known.predictive.frequency_hz
+        )
+
+    @property
+    def central_damping(self) -> FloatArray:
+        """Damping ratios of the shown modes as they are told: medians of the posterior, else the best fit."""
+        known = self.uncertainty
+        return self._central(
+            self.modes.damping_ratio, None if known is None else known.predictive.damping_ratio
+        )
+
+    def _central(self, best: FloatArray, draws: FloatArray | None) -> FloatArray:
+        out = np.array(best, dtype=np.float64)
+        if draws is not None and self.uncertainty is not None:
+            predicted = self.uncertainty.predictive.modes
+            for i, mode in enumerate(self.shown):
+                known = interval_90(draws[:, predicted.index(mode)]) if mode in predicted else None
+                out[i] = out[i] if known is None else known[1]
+        return out
 
     @property
     def budget(self) -> Budget:

@@ -31,7 +31,7 @@ def shape_drawings(result: TwinResult, u: Update) -> list[Markup]:
         shape = u.modes.shapes[:, i]
         if not np.isfinite(shape).all() or not np.abs(shape).any():
             continue
-        drawn.append(_drawing(result, m, shape, _seen(result, m), float(u.modes.frequency_hz[i])))
+        drawn.append(_drawing(result, m, shape, _seen(result, m), float(u.central_hz[i])))
     return drawn
 
 
