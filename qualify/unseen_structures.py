@@ -46,7 +46,7 @@ def true_model(name: str) -> SupportModel:
         rayleigh=Rayleigh.minimum(STEEL["ratio"], STEEL["frequency_hz"]),
         tie="horizontal-vertical",
         heads=read_support(DECKS / "piles.yaml", structure),
-        head_priors=True,
+        informed=True,
         highest_mode=max(MODES) + 1,
     )
 

@@ -1,5 +1,6 @@
 """``jackettwin update``: every solution, how sure it is that these are all, why there are no intervals."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -65,3 +66,71 @@ def test_a_label_no_mode_has_is_refused(twin: Path) -> None:
     message = " ".join(result.stderr.split())
     for word in ("update.damping_of", "fore-aft_1", "allowed: side_side_1, fore_aft_1", "did you mean"):
         assert word in message
+
+
+def test_points_to_start_from_are_given_on_the_command_line_or_in_the_file(twin: Path) -> None:
+    given = ["update", str(twin), "--json", "--start", "k=5.7e9,c=1e8", "--start", "k=1e8,c=1e12"]
+    by_option = CliRunner().invoke(main, given)
+    assert by_option.exit_code == 0, by_option.output
+    twin.write_text(
+        FREQUENCIES.replace("starts: 8", "starts: [{k: 5.7e+9, c: 1.0e+8}, {k: 1.0e+8, c: 1.0e+12}]")
+    )
+    by_file = CliRunner().invoke(main, ["update", str(twin), "--json"])
+    assert by_file.exit_code == 0, by_file.output
+    one, other = json.loads(by_option.stdout), json.loads(by_file.stdout)
+    assert one["begun"] == other["begun"] and len(one["begun"]) == 2
+    assert one["begun"][0]["from"] == {"k": pytest.approx(5.7e9), "c": pytest.approx(1e8)}
+    assert one["completeness"]["missed_share_95"] is None
+
+
+@pytest.mark.parametrize(
+    ("option", "message"),
+    [
+        ("k=abc", "--start: not NAME=VALUE"),
+        ("k=-1", "--start: not positive"),
+        ("kk=1e9", "--start: a start names no parameters of the law"),
+        ("k=1e3", "starts[0].k: a start outside the bounds"),
+    ],
+)
+def test_a_wrong_point_is_refused(twin: Path, option: str, message: str) -> None:
+    result = CliRunner().invoke(main, ["update", str(twin), "--start", option])
+    assert result.exit_code == 2, result.output
+    assert message in " ".join(result.stderr.split())
+    assert result.stdout == ""
+
+
+def test_a_point_of_no_law_is_refused_in_the_file(twin: Path) -> None:
+    twin.write_text(FREQUENCIES.replace("starts: 8", "starts: [{k: 5.7e+9, k1: 1.0e+8}]"))
+    result = CliRunner().invoke(main, ["update", str(twin)])
+    assert result.exit_code == 2, result.output
+    assert "update.starts[0]: a start names parameters of no one law" in " ".join(result.stderr.split())
+
+
+def test_all_laws_are_ranked_by_cost(tmp_path: Path) -> None:
+    """Table 6.1: Zener contains Kelvin-Voigt and ends there; the others cannot reach its cost."""
+    path = tmp_path / "t.yaml"
+    more = "  - {mode: 4, frequency_hz: 0.7362, damping_ratio: 0.0281}\n"
+    text = FREQUENCIES.replace("[kelvin-voigt]", "[kelvin-voigt, maxwell-3]")
+    path.write_text(text.replace("  - {mode: 4, frequency_hz: 0.735126}\n", more))
+    shown = CliRunner().invoke(main, ["update", str(path), "--all-laws"])
+    assert shown.exit_code == 0, shown.output
+    assert "cost (8.4)" in " ".join(shown.stdout.split())
+    plain = json.loads(CliRunner().invoke(main, ["update", str(path), "--all-laws", "--json"]).stdout)
+    costs = [r["cost"] for r in plain["law_ranking"]]
+    assert costs == sorted(costs) and len(plain["updates"]) == 2
+    both = CliRunner().invoke(main, ["update", str(path), "--all-laws", "--law", "zener"])
+    assert both.exit_code == 2
+
+
+def test_weights_are_refused_where_standard_deviations_weigh(twin: Path) -> None:
+    weighed = FREQUENCIES.replace("  starts: 8", "  starts: 8\n  weights: {frequency: {1: 2.0, 4: 0}}")
+    twin.write_text(weighed)
+    plain = json.loads(CliRunner().invoke(main, ["update", str(twin), "--json"]).stdout)
+    assert plain["solutions"][0]["modes"] == [1, 2]  # a weight of zero leaves a value out
+    text = weighed
+    for f in ("0.182396", "0.185047", "0.735126"):
+        text = text.replace(f"{f}}}", f"{f}, frequency_std_hz: 0.001}}")
+    twin.write_text(text)
+    result = CliRunner().invoke(main, ["update", str(twin)])
+    assert result.exit_code == 2, result.output
+    assert "update.weights: weights are of the relative cost (8.4)" in " ".join(result.stderr.split())

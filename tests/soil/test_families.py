@@ -14,6 +14,9 @@ from jackettwin.soil.laws import families
 from jackettwin.soil.laws.coefficients import BRANCHES, K0, OMEGA0, law_stiffness
 
 
+PRONY = ("prony-2", "prony-3", "prony-4")
+
+
 class Rubber(Family):
     """A spring whose name of a parameter has an underscore."""
 
@@ -54,7 +57,7 @@ def test_a_law_of_another_package_is_a_support_by_its_short_form(rubber: Rubber)
 
 
 def test_our_laws_come_first_and_the_default_ones_are_ours(rubber: Rubber) -> None:
-    assert list(families.families()) == ["kelvin-voigt", "zener", "maxwell-3", "springpot", "rubber"]
+    assert list(families.families()) == ["kelvin-voigt", "zener", "maxwell-3", "springpot", *PRONY, "rubber"]
     assert set(DEFAULT_LAWS) < set(families.families())
 
 

@@ -224,3 +224,75 @@ def test_a_slow_descent_goes_on_to_its_minimum(jacket15: Assembly) -> None:
     end = descend(single(model, Residuals(targets, relative=True)), np.array([27.6, 22.7, 26.4]))
     assert end.settled
     np.testing.assert_allclose(end.z, np.log(truth), atol=1e-3)
+
+
+def test_given_points_are_searched_from_and_no_others(
+    models: dict[str, SupportModel], table_6_1: Residuals
+) -> None:
+    """The thesis's own way (section 8.4): two points, each with its end; the rest is not known."""
+    problem = single(models["kelvin-voigt"], table_6_1)
+    found = search(problem, starts=[{"k": 2.5e9, "c": 7.6e8}, {"k": 1e9}])
+    assert found.starts == 2 and found.deflated == 0 and found.missed_share_95 is None
+    assert "2 given points" in found.statement and "not known" in found.statement
+    np.testing.assert_allclose(found.begun[0].start, [2.5e9, 7.6e8])
+    # a parameter without a value starts from the middle of its bounds, in the logarithm
+    np.testing.assert_allclose(found.begun[1].start, [1e9, np.sqrt(1e4 * 1e14)])
+    best = search(problem, starts=4).solutions[0]
+    for b in found.begun:
+        assert b.settled
+        # the minimum of a two-parameter cost; the valley is flat, 1e-3 in θ is 1e-6 in the cost
+        np.testing.assert_allclose(b.end, best.theta, rtol=1e-3)
+
+
+def test_a_start_at_the_truth_stays_there(models: dict[str, SupportModel]) -> None:
+    model, theta = models["kelvin-voigt"], np.array([1.3e9, 4.0e8])
+    poles = model.predict(theta, (1, 2, 4)).poles
+    targets = tuple(
+        Target(m, abs(p) / (2 * np.pi), damping_ratio=-p.real / abs(p))
+        for m, p in zip((1, 2, 4), poles, strict=True)
+    )
+    problem = single(model, Residuals(targets, relative=True))
+    found = search(problem, starts=[{"k": 1.3e9, "c": 4.0e8}])
+    np.testing.assert_allclose(found.begun[0].end, theta, rtol=1e-6)
+    assert found.solutions[0].found == 1
+
+
+@pytest.mark.parametrize(
+    ("point", "message"),
+    [
+        ({"k2": 1e9}, r"starts\[0\].k2: no such parameter"),
+        ({"k": 1e3}, r"outside the bounds .got 1000"),
+        ({"k": float("nan")}, "outside the bounds"),
+        ({"k": 0.0}, "outside the bounds"),
+    ],
+)
+def test_wrong_points_are_refused(
+    models: dict[str, SupportModel], table_6_1: Residuals, point: dict[str, float], message: str
+) -> None:
+    with pytest.raises(InputError, match=message):
+        search(single(models["kelvin-voigt"], table_6_1), starts=[point])
+    with pytest.raises(InputError, match="at least one start"):
+        search(single(models["kelvin-voigt"], table_6_1), starts=[])
+
+
+def test_weights_move_the_compromise_as_the_thesis_weighs_it(models: dict[str, SupportModel]) -> None:
+    """(8.4): J = Σ w r². Where targets contradict, what weighs more is met better; all alike: no move."""
+    model = models["kelvin-voigt"]
+    values = ((1, 0.1819, 0.0127), (2, 0.1838, None), (4, 0.7362, 0.0281))
+
+    def best(w_f: float, w_zeta: float):
+        targets = tuple(
+            Target(m, f, damping_ratio=z, frequency_weight=w_f, damping_weight=w_zeta) for m, f, z in values
+        )
+        residuals = Residuals(targets, relative=True)
+        return search(single(model, residuals), starts=[{"k": 2.5e9, "c": 5e8}]).solutions[0]
+
+    plain, alike, damping = best(1.0, 1.0), best(4.0, 4.0), best(1e-4, 1.0)
+    np.testing.assert_allclose(alike.theta, plain.theta, rtol=1e-4)
+    assert alike.cost == pytest.approx(4.0 * plain.cost, rel=1e-6)
+    # the cost by hand, from the solution's own modes
+    zeta = ((plain.damping_ratio[[0, 2]] / [0.0127, 0.0281] - 1.0) ** 2).sum()
+    f = ((plain.frequency_hz / [0.1819, 0.1838, 0.7362] - 1.0) ** 2).sum()
+    assert plain.cost == pytest.approx(f + zeta, rel=1e-6)
+    weighed = ((damping.damping_ratio[[0, 2]] / [0.0127, 0.0281] - 1.0) ** 2).sum()
+    assert weighed < 0.9 * zeta

@@ -64,7 +64,7 @@ def test_the_axial_stiffness_is_the_closed_form(jacket15: Assembly, heads: Suppo
 
 def test_heads_give_priors_where_there_are_none(jacket15: Assembly, heads: Support) -> None:
     given = {"k_vertical": (3e9, 0.2)}
-    model = on_heads(jacket15, heads, "horizontal-vertical", head_priors=True, priors=given)
+    model = on_heads(jacket15, heads, "horizontal-vertical", informed=True, priors=given)
     known = {p.name: (p.median, p.log_std) for p in model.parameters}
     assert known["k_vertical"] == (3e9, 0.2)
     assert known["k_horizontal"][0] == pytest.approx(model.tie_groups.stiffness[0])

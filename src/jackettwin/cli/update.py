@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import click
 import numpy as np
 
 from jackettwin.cli.cache import keeping
-from jackettwin.cli.console import Reply, answers, output, progress, say, say_all, show_table
+from jackettwin.cli.console import Reply, answers, numbers_of, output, progress, say, say_all, show_table
+from jackettwin.errors import InputError, require
 from jackettwin.report import Table, cell
 
 if TYPE_CHECKING:
@@ -22,21 +25,58 @@ DEFAULT_TWIN = "openfast_pile"
 @click.command("update")
 @click.argument("twin", default=DEFAULT_TWIN)
 @click.option("--law", help="Only this law; default: the first of the twin file.")
+@click.option("--all-laws", is_flag=True, help="Every law of the twin file, ranked.")
+@click.option(
+    "--start",
+    "points",
+    multiple=True,
+    metavar="NAME=VALUE,…",
+    help="A point to start the search from, e.g. k=2.5e9,c=7.6e8; may be repeated.",
+)
 @click.option("--fresh", is_flag=True, help="Identify and fit again what an earlier run kept.")
 @answers
-def update_command(twin: str, law: str | None, fresh: bool) -> Reply:
-    """Update the supports of TWIN under one law; writes nothing."""
+def update_command(twin: str, law: str | None, all_laws: bool, points: tuple[str, ...], fresh: bool) -> Reply:
+    """Update the supports of TWIN under one law, or under all; writes nothing."""
     from jackettwin.soil import family
-    from jackettwin.study import count_steps, run_twin, update_document
+    from jackettwin.study import count_steps, ranking_document, run_twin, update_document
     from jackettwin.twin import read_twin
 
     config = read_twin(twin)
     if law is not None:
         family(law, field="--law")
-    laws = (law or config.update.laws[0],)
+    require(law is None or not all_laws, "one law or all", field="--law", value=law, remedy="leave one out")
+    if points:
+        config = replace(
+            config, update=config.update.model_copy(update={"starts": tuple(map(_point, points))})
+        )
+    laws = config.update.laws if all_laws else (law or config.update.laws[0],)
     with progress(count_steps(config, laws), config.name) as step:
         result = run_twin(config, laws=laws, progress=step, keep=keeping(fresh=fresh))
-    return Reply(update_document(result, 0), lambda: print_updates(result))
+    if points and not any(u.search.begun for u in result.updates):
+        raise InputError(
+            "a start names no parameters of the law",
+            field="--start",
+            value=points[0],
+            allowed=", ".join(p.name for p in result.updates[0].problem.parameters),
+        )
+    document = update_document(result, 0)
+    if all_laws:
+        document = {
+            "law_ranking": ranking_document(result.updates),
+            "updates": [update_document(result, i) for i in range(len(result.updates))],
+        }
+    return Reply(document, lambda: print_updates(result))
+
+
+def _point(text: str) -> dict[str, float]:
+    """Return the point of ``--start NAME=VALUE,…``."""
+    point = {}
+    for part in text.split(","):
+        name, _, value = part.partition("=")
+        (number,) = numbers_of(value, "--start", "NAME=VALUE,…", (1,), given=text)
+        require(number > 0.0, "not positive", field="--start", value=part, allowed="> 0")
+        point[name.strip()] = number
+    return point
 
 
 def print_updates(result: TwinResult, *, only: str = "") -> None:
@@ -50,13 +90,49 @@ def print_updates(result: TwinResult, *, only: str = "") -> None:
         show_table(_modes(result.measured, u))
         if len(u.solutions) > 1 or u.best.locked_damper or u.best.locks_within:
             show_table(_solutions(u))
+        if u.search.begun:
+            show_table(_begun(u))
         for line in (u.search.statement, *_status(u), *_relaxations(result, u), *_leg_scatter(u)):
             say(f"  {line}")
         for e in excess:
             if e.label in fitted and not e.explained:
                 say(f"  {e.label}: {_unexplained(e)}")
     output.print()
+    if len(result.updates) > 1 and not result.updates[0].problem.weighted:
+        show_table(_ranking(result.updates))
     say_all(result.warnings, "warning")
+
+
+def _ranking(updates: Sequence[Update]) -> Table:
+    """Return every law that was fitted by cost, with what it says of the shown modes' damping."""
+    from jackettwin.updating import ranked
+
+    of = {u.law: u for u in updates}
+    first = updates[0]
+    rows = []
+    for r in ranked(updates):
+        zeta = (cell(100.0 * z, ".2f") for z in of[r.law].modes.damping_ratio)
+        rows.append(
+            (r.place, r.law, r.parameters, f"{r.cost:.3g}", r.solutions, *zeta, "locked" if r.locked else "")
+        )
+    cost = "cost (8.4)" if first.problem.relative else "χ²"
+    modes = (f"ζ{mode} [%]" for mode in first.shown)
+    return Table("", ("place", "law", "parameters", cost, "solutions", *modes, "damper"), rows)
+
+
+def _begun(u: Update) -> Table:
+    """Return where the searches from given points ended."""
+    rows = [
+        (
+            ", ".join(f"{x:.3g}" for x in b.start),
+            ", ".join(f"{x:.3g}" for x in b.end),
+            f"{b.cost:.3g}",
+            "" if b.settled else "stalled",
+        )
+        for b in u.search.begun
+    ]
+    names = ", ".join(p.name for p in u.problem.parameters)
+    return Table("", (f"from ({names})", "to", "cost", ""), rows)
 
 
 def _parameters(u: Update) -> Table:

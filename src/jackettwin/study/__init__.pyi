@@ -1,4 +1,5 @@
 from .document import (
+    ranking_document as ranking_document,
     run_document as run_document,
     update_document as update_document,
 )

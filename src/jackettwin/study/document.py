@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from jackettwin.arrays import FloatArray
@@ -12,7 +13,15 @@ from jackettwin.intervals import interval_90
 from jackettwin.study.result import MeasuredMode, MeasuredRelaxation, TwinResult, held_document
 from jackettwin.study.truth import truth_document
 from jackettwin.twin import Observation
-from jackettwin.updating import SOURCES, Uncertainty, Update, beyond_literature, law_probability, leg_scatter
+from jackettwin.updating import (
+    SOURCES,
+    Uncertainty,
+    Update,
+    beyond_literature,
+    law_probability,
+    leg_scatter,
+    ranked,
+)
 from jackettwin.version import __version__
 
 MODAL = "frequency_hz", "frequency_std_hz", "damping_ratio", "damping_ratio_std"
@@ -27,6 +36,7 @@ def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
         "real_poles": [_relaxation(r) for r in result.relaxations],
         "updates": [update_document(result, i) for i in range(len(result.updates))],
         "law_probability": law_probability(result.updates),
+        "law_ranking": ranking_document(result.updates),
         "identification": [
             _recognised(seen, result.labels, None if i or result.shown is None else result.shown.comparison)
             for i, seen in enumerate(result.observations)
@@ -51,6 +61,12 @@ def _recognised(seen: Observation, labels: tuple[str, ...], compared: Comparison
         plain["label"] = label or None
         plain["held_against"] = held_document(mode, held, labels)
     return document
+
+
+def ranking_document(updates: Sequence[Update]) -> list[dict[str, Any]]:
+    """Return the laws by cost, best first."""
+    names = ("place", "law", "parameters", "cost", "solutions")
+    return [{**named(r, *names), "locked_damper": r.locked} for r in ranked(updates)]
 
 
 def update_document(result: TwinResult, index: int) -> dict[str, Any]:
@@ -80,6 +96,14 @@ def update_document(result: TwinResult, index: int) -> dict[str, Any]:
             **named(u.search, "statement", "starts", "missed_share_95"),
             "settled": u.search.spent is None,
         },
+        "begun": [
+            {
+                "from": dict(zip(names, b.start.tolist(), strict=True)),
+                "to": dict(zip(names, b.end.tolist(), strict=True)),
+                **named(b, "cost", "settled"),
+            }
+            for b in u.search.begun
+        ],
         "identifiability": dict.fromkeys(names)
         if known is None
         else {v.name: v.verdict for v in known.verdicts},

@@ -42,7 +42,7 @@ def fitted(
             problem,
             modes=shown,
             method=how.method,
-            starts=how.starts,
+            starts=how.starts_for(problem),
             particles=how.particles,
             sampler=how.sampler,
             seed=how.seed,

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from math import hypot, pi
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError, did_you_mean, located
+from jackettwin.errors import InputError, did_you_mean, located, require
 from jackettwin.identification import ModalEstimate
 from jackettwin.study.measure import mean_target
 from jackettwin.study.result import MeasuredMode, MeasuredRelaxation
 from jackettwin.twin import ALL, TwinConfig, TwinState
-from jackettwin.twin.config import ModelError
+from jackettwin.twin.config import ModelError, Weights
 from jackettwin.twin.targets_table import LEAST_SHARE, MOST_SHARE
 from jackettwin.updating import Residuals, Target
 
@@ -251,10 +252,30 @@ def residuals(
             remedy="give frequency_std_hz, damping_ratio_std and rate_std_rad_s, or weighting: relative",
         )
     relative = weighting == "relative" or not complete
+    require(
+        relative or config.update.weights is None,
+        "weights are of the relative cost (8.4); standard deviations weigh these data",
+        file=config.path,
+        field="update.weights",
+        remedy="leave weights out, or set weighting: relative",
+    )
     with located(file=config.path):
-        return Residuals(
-            tuple(_target(m, error, relative) for m, error in zip(measured, errors, strict=True)), relative
-        )
+        targets = [_target(m, error, relative) for m, error in zip(measured, errors, strict=True)]
+        return Residuals(tuple(_weighed(t, config.update.weights) for t in targets), relative)
+
+
+def _weighed(target: Target, weights: Weights | None) -> Target:
+    """Return a target with the weights of its mode; a value of weight zero takes no part."""
+    if weights is None:
+        return target
+    f, zeta = weights.of_mode(target.mode)
+    return replace(
+        target,
+        frequency_hz=target.frequency_hz if f > 0.0 else None,
+        damping_ratio=target.damping_ratio if zeta > 0.0 else None,
+        frequency_weight=f or 1.0,
+        damping_weight=zeta or 1.0,
+    )
 
 
 def _target(m: MeasuredMode, error: ModelError, relative: bool) -> Target:

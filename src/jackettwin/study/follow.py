@@ -430,7 +430,7 @@ def _draws(config: TwinConfig, problem: Problem, progress: Progress) -> tuple[Fl
     )
     if posterior is not None:
         return posterior.log_theta, status
-    found = search(problem, starts=how.starts, seed=how.seed, progress=progress)
+    found = search(problem, starts=how.starts_for(problem), seed=how.seed, progress=progress)
     return laplace_draws(problem, found.solutions[0].theta, seed=how.seed), status
 
 

@@ -130,7 +130,7 @@ def law_model(config: TwinConfig, evidence: UpdateEvidence, law: str) -> Support
             fastest_rate=max((r.rate_rad_s for r in evidence.relaxations), default=0.0),
             nuisance=nuisance,
             heads=_heads(config),
-            head_priors=not relative,
+            informed=not relative,
         )
     except InputError as error:
         raise error.at(file=config.path, field=_place(error)) from None

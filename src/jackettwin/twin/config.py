@@ -21,10 +21,12 @@ from jackettwin.structure import Assembly, Rayleigh, Structure, assemble
 from jackettwin.twin.calibration import Calibrations
 from jackettwin.twin.operation import OperationRule
 from jackettwin.twin.water import WaterConfig, moving_mass
-from jackettwin.updating import MOST_EVALUATIONS, Target
+from jackettwin.updating import MOST_EVALUATIONS, Problem, Target, points_of
 
 Positive = Annotated[float, Field(gt=0.0)]
 Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]
+Weight = Annotated[float, Field(ge=0.0, le=1e12)]
+DEFAULT_STARTS = 32
 PAIRED_MODES = 12
 """Modes of the model that measured modes may be paired with."""
 USUAL_MODES = (1, 2, 3, 4, 5)
@@ -45,6 +47,24 @@ class LognormalPrior(Schema):
 
     median: Positive
     log_std: Positive
+
+
+class Weights(Schema):
+    """What squared relative errors count by, w_ω and w_ζ of thesis (8.4): one number, or one a mode.
+
+    A mode without one counts by 1; by 0 it takes no part in the fit.
+    """
+
+    frequency: Weight | dict[Annotated[int, Field(ge=1, le=50)], Weight] = 1.0
+    damping: Weight | dict[Annotated[int, Field(ge=1, le=50)], Weight] = 1.0
+
+    def of_mode(self, mode: int) -> tuple[float, float]:
+        """Return the weights of a mode's frequency and damping ratio."""
+        f, zeta = (
+            given.get(mode, 1.0) if isinstance(given, dict) else given
+            for given in (self.frequency, self.damping)
+        )
+        return f, zeta
 
 
 @dataclass(frozen=True)
@@ -76,7 +96,12 @@ class UpdateSettings(Schema):
 
     laws: Annotated[tuple[str, ...], Field(min_length=1)] = DEFAULT_LAWS
     method: Literal["least-squares", "nelder-mead"] = "least-squares"
-    starts: Annotated[int, Field(ge=1, le=10000)] = 32
+    starts: (
+        Annotated[int, Field(ge=1, le=10000)]
+        | Annotated[tuple[Annotated[dict[str, Positive], Field(min_length=1)], ...], Field(min_length=1)]
+    ) = DEFAULT_STARTS
+    """How many scattered points the search starts from, or the points themselves; a law that no point is of
+    starts from as many scattered ones as by default."""
     most_evaluations: Annotated[int, Field(ge=1, le=10**9)] = MOST_EVALUATIONS
     """Of the model, after which the search adds no further starts."""
     seed: Annotated[int, Field(ge=0)] = 0
@@ -86,6 +111,7 @@ class UpdateSettings(Schema):
     priors: dict[str, LognormalPrior] = {}
     """By parameter name; the others are flat in ln θ."""
     weighting: Literal["auto", "relative", "covariance"] = "auto"
+    weights: Weights | None = None
     modes: tuple[Annotated[int, Field(ge=1)], ...] = USUAL_MODES
     damping_of: Literal["fore_aft", "all", "none"] | tuple[str, ...] = "fore_aft"
     model_errors: Annotated[tuple[ModelError, ...], Field(alias="model_error")] = ()
@@ -105,6 +131,12 @@ class UpdateSettings(Schema):
     """Other parameters to update as well, of those that installed packages add."""
     steel_damping: Literal["fixed", "free"] = "fixed"
     """Whether ratio and frequency of the steel's least damping are updated as well."""
+
+    def starts_for(self, problem: Problem) -> int | tuple[Mapping[str, float], ...]:
+        """Return what the search of one law starts from."""
+        if isinstance(self.starts, int):
+            return self.starts
+        return points_of(problem, self.starts) or DEFAULT_STARTS
 
     def fits_damping(self, label: str) -> bool:
         """Return whether the damping of a mode takes part in the fit."""

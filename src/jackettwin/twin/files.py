@@ -295,6 +295,7 @@ def _check_update(update: UpdateSettings, given_modes: Container[int | None]) ->
         for name in given:
             if not any(name.startswith(f"{k}_") for k in known):
                 look_up(dict.fromkeys(sorted(known)), name, "parameter of a law", field=f"{field}.{name}")
+    _check_starts(update)
     for name, (low, high) in update.bounds.items():
         Parameter(name, low, high, "")
     beyond = [mode for mode in update.modes if mode > PAIRED_MODES and mode not in given_modes]
@@ -306,6 +307,27 @@ def _check_update(update: UpdateSettings, given_modes: Container[int | None]) ->
         allowed=f"1 to {PAIRED_MODES}",
         remedy="give higher ones as targets: {mode, frequency_hz, …}",
     )
+
+
+def _check_starts(update: UpdateSettings) -> None:
+    """Refuse points to start from that are of no law which is fitted."""
+    beside = {p.name for p in NuisanceParameters(_dashpots(update), rayleigh=True).parameters}
+    beside |= {*update.water, *update.parameters}
+    laws = {law: tuple(p.name for p in family(law).parameters) for law in (*DEFAULT_LAWS, *update.laws)}
+    for i, point in enumerate(() if isinstance(update.starts, int) else update.starts):
+        require(
+            any(
+                all(
+                    name in beside or name in own or name.startswith(tuple(f"{p}_" for p in own))
+                    for name in point
+                )
+                for own in laws.values()
+            ),
+            "a start names parameters of no one law",
+            field=f"starts[{i}]",
+            value=", ".join(point),
+            allowed="; ".join(f"{law}: {', '.join(own)}" for law, own in laws.items()),
+        )
 
 
 def _dashpots(update: UpdateSettings) -> tuple[str, ...]:

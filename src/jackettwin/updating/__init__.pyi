@@ -26,8 +26,10 @@ from .explore.paths import SearchPath as SearchPath, search_paths as search_path
 from .explore.sensitivity import ModeSensitivity as ModeSensitivity, sensitivity as sensitivity
 from .joint import Growth as Growth, joint as joint, single as single
 from .law_choice import (
+    LawRank as LawRank,
     approximate_probability as approximate_probability,
     likely as likely,
+    ranked as ranked,
     recommended as recommended,
 )
 from .model import SupportModel as SupportModel
@@ -54,6 +56,7 @@ from .search.solutions import (
     SearchMethod as SearchMethod,
     starting_points as starting_points,
 )
+from .search.start_points import points_of as points_of
 from .steel import Stage as Stage, only_parts as only_parts, stages as stages
 from .tie_groups import SIDES as SIDES, SPLIT_LEGS as SPLIT_LEGS
 from .update import (

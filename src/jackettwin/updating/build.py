@@ -31,7 +31,7 @@ def support_model(
     fastest_rate: float = 0.0,
     nuisance: NuisanceParameters | None = None,
     heads: Support | None = None,
-    head_priors: bool = False,
+    informed: bool = False,
 ) -> SupportModel:
     """Return the model with one law on the feet: their three translations, or what pile heads hold.
 
@@ -51,8 +51,8 @@ def support_model(
         Nacelle dashpots and steel damping to update as well.
     heads : Support, optional
         Pile heads whose 6×6 stiffness the laws scale (:func:`jackettwin.updating.tie_groups.tie_groups`).
-    head_priors : bool
-        Whether the heads give priors to the parameters that have none.
+    informed : bool
+        Whether the law and the heads give priors to the parameters that have none.
 
     Raises
     ------
@@ -68,7 +68,9 @@ def support_model(
         bounds or {},
         priors or {},
     )
-    derived = priors_of(groups, first_hz) if head_priors else {}
+    own = family.priors(first_hz) if informed else {}
+    derived = {name + suffix: prior for name, prior in own.items() for suffix in suffixes}
+    derived |= priors_of(groups, first_hz) if informed else {}
     parameters = tuple(
         _informed(replace(p, name=p.name + suffix), (p.name + side, p.name), bounds, priors, derived)
         for suffix, side in zip(suffixes, groups.sides, strict=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import logsumexp
@@ -13,6 +14,57 @@ from jackettwin.updating.update import Update
 PREFERRED = 0.1
 """The first law of the file is kept unless another is ten times as probable: weaker evidence is no reason to
 overrule the engineer who knows the ground (Kass & Raftery 1995, section 3.2)."""
+
+
+@dataclass(frozen=True)
+class LawRank:
+    """Where a law stands among those that were fitted.
+
+    Attributes
+    ----------
+    place : int
+        1 is the best; laws whose costs differ by no more than counts as the same share a place.
+    law : str
+    parameters : int
+        How many are free: a law with more never fits worse than one that it contains.
+    cost : float
+        Of its best solution, thesis (8.4); χ² with standard deviations.
+    solutions : int
+    locked : bool
+        Whether its best solution locks a damper: such laws come last.
+    """
+
+    place: int
+    law: str
+    parameters: int
+    cost: float
+    solutions: int
+    locked: bool
+
+
+def ranked(updates: Sequence[Update]) -> tuple[LawRank, ...]:
+    """Return the laws by the cost of their best solutions, those without a locked damper first.
+
+    Of equal costs the law with fewer parameters comes first.
+    """
+    order = sorted(updates, key=lambda u: (u.best.locked_damper, u.best.cost))
+    ranks: list[tuple[int, Update]] = []
+    for i, u in enumerate(order, start=1):
+        place, first = (i, u) if not ranks else (ranks[-1][0], _head(ranks))
+        same = u.best.locked_damper == first.best.locked_damper
+        if not same or u.best.cost > first.best.cost + u.problem.allowance(first.best.cost):
+            place = i
+        ranks.append((place, u))
+    ranks.sort(key=lambda pair: (pair[0], len(pair[1].problem.parameters)))
+    return tuple(
+        LawRank(place, u.law, len(u.problem.parameters), u.best.cost, len(u.solutions), u.best.locked_damper)
+        for place, u in ranks
+    )
+
+
+def _head(ranks: Sequence[tuple[int, Update]]) -> Update:
+    """Return the first law of the last place."""
+    return next(u for place, u in ranks if place == ranks[-1][0])
 
 
 def recommended(updates: Sequence[Update]) -> Update | None:

@@ -118,12 +118,18 @@ class Problem:
     @property
     def negligible(self) -> float:
         """Cost that does not matter: χ² by one, or each relative residual by 1e-4."""
-        return self.n_data * 1e-8 if self.relative else 1.0
+        return self._total_weight * 1e-8 if self.relative else 1.0
 
     @property
     def hopeless(self) -> float:
         """Cost above the best from which a minimum explains nothing: χ² by 50, relative residuals of 10 %."""
-        return self.n_data * 1e-2 if self.relative else 50.0
+        return self._total_weight * 1e-2 if self.relative else 50.0
+
+    @property
+    def _total_weight(self) -> float:
+        """Sum of the weights of the data: their number if none is weighed."""
+        poles = sum(state.residuals.total_weight - state.residuals.count for state in self.states)
+        return self.n_data + poles
 
     def allowance(self, cost: float) -> float:
         """Return by how much a cost may rise and still count as the same: solutions apart by less are one."""

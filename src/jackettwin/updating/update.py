@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -187,7 +187,7 @@ def update(
     *,
     modes: tuple[int, ...] | None = None,
     method: SearchMethod = "least-squares",
-    starts: int = 32,
+    starts: int | Sequence[Mapping[str, float]] = 32,
     particles: int = 150,
     sampler: Sampler = "smc",
     seed: int = 0,
@@ -201,6 +201,8 @@ def update(
     ----------
     modes : mode numbers, optional
         To show the full model's; default: those of the first operating state's data.
+    starts : int or sequence of {parameter: value}
+        Number of scattered starts of the search, or the points that it starts from.
     particles : int
         Of each of the posterior's four islands, or live points of each nested run; doubled once if they do
         not agree.

@@ -85,6 +85,8 @@ def ranged(span: Span | None, unit: str) -> str:
 
 def laws_table(a: Answers) -> Table:
     """Return every law that was fitted, its probability and its misfit."""
+    # without probabilities the laws stand by cost, those that lock a damper last
+    laws = a.laws if a.probability_from else tuple(sorted(a.laws, key=lambda one: (one.locked, one.misfit)))
     rows = tuple(
         (
             law.law,
@@ -92,15 +94,15 @@ def laws_table(a: Answers) -> Table:
             UNKNOWN if law.probability is None else fixed(100.0 * law.probability, 0),
             f"{law.misfit:.3g}",
         )
-        for law in a.laws
+        for law in laws
     )
     source = {
         "evidence": "from the evidence that was sampled for each",
         "approximation": "by Laplace's approximation; --all-laws samples it",
-        "": "not known: the data carry no standard deviations",
+        "": "not known: the data carry no standard deviations; ranked by cost",
     }[a.probability_from]
     caption = f"Which law? Probability of each, all equally likely before: {source}."
-    marked = frozenset(i for i, law in enumerate(a.laws) if law.locked)
+    marked = frozenset(i for i, law in enumerate(laws) if law.locked)
     return Table(caption, ("law", "", "probability [%]", "misfit, χ² or relative [-]"), rows, 2, marked)
 
 

@@ -23,7 +23,9 @@ from jackettwin.soil.laws.parameter import Parameter
 from jackettwin.soil.laws.viscoelastic import (
     MAXWELL_3_BRANCHES,
     MAXWELL_3_TILT,
+    MAXWELL_3_WEIGHTS,
     Law,
+    Prony,
     Springpot,
     kelvin_voigt,
     maxwell_3,
@@ -87,6 +89,13 @@ class Family(ABC):
         -------
         (n, width) as in :mod:`jackettwin.soil.laws.coefficients`, and (n, width, n_parameters)
         """
+
+    def priors(self, reference_hz: float) -> Mapping[str, tuple[float, float]]:
+        """Return the lognormal priors that regularise it: median and standard deviation of ln θ by name.
+
+        Laws whose parameters data of a few modes determine need none.
+        """
+        return {}
 
     def __reduce__(self) -> tuple[Callable[[str], Family], tuple[str]]:
         """A law crosses processes by its name: every process has the same laws."""
@@ -200,13 +209,99 @@ class FractionalElement(Family):
         return rows, slopes
 
 
+class FreeBranches(Family):
+    r"""Free Maxwell branches beside a spring: a Prony series, generalised Maxwell, thesis chapter 10.
+
+    .. math:: D = k_0 \left(1 + \sum_j \frac{g_j τ_j s}{1 + τ_j s}\right), \quad τ_j = τ_{j-1}/r_j
+
+    Relative stiffnesses g and ratios of times r (``spacing2``, …) are its parameters, so that each series has
+    one set of numbers: with free times the N! orders of the branches would be as many equal solutions.
+    Branches nearer than a factor of two cannot be told apart. The priors are centred on the three branches
+    that give a constant loss factor, and wide.
+    """
+
+    def build(self, values: FloatArray, reference_hz: float) -> Law:
+        """Return the law."""
+        row = self.rows(np.asarray(values, dtype=float)[None], reference_hz)[0][0]
+        k, tau = row[BRANCHES::2], row[BRANCHES + 1 :: 2]
+        return Prony(float(row[K0]), 0.0, tuple(map(float, k)), tuple(map(float, tau)))
+
+    def rows(self, values: FloatArray, reference_hz: float) -> tuple[FloatArray, FloatArray]:
+        """Return rows and slopes, as the base class says."""
+        n = len(self.parameters) // 2
+        rows, slopes = _empty(values, branches=n)
+        k0, g = values[:, 0], values[:, 1::2]
+        tau = values[:, 2, None] / np.cumprod(
+            np.column_stack([np.ones(len(values)), values[:, 4::2]]), axis=1
+        )
+        rows[:, K0], rows[:, BRANCHES::2], rows[:, BRANCHES + 1 :: 2] = k0, k0[:, None] * g, tau
+        slopes[:, K0, 0], slopes[:, BRANCHES::2, 0] = k0, rows[:, BRANCHES::2]
+        for j in range(n):
+            k_place = BRANCHES + 2 * j
+            slopes[:, k_place, 1 + 2 * j] = rows[:, k_place]
+            slopes[:, k_place + 1, 2] = tau[:, j]
+            slopes[:, k_place + 1, 4 : 3 + 2 * j : 2] = -tau[:, j, None]
+        return rows, slopes
+
+    def priors(self, reference_hz: float) -> Mapping[str, tuple[float, float]]:
+        """Return priors about a loss factor of 0.1 that frequency hardly changes."""
+        times, g = maxwell_3_times(reference_hz), float(np.mean(MAXWELL_3_WEIGHTS))
+        about = {"g": (g, 1.0), "tau": (float(times[0]), 1.0), "spacing": (float(times[0] / times[1]), 0.7)}
+        return {name: about[name.rstrip("0123456789")] for name in self.names[1:]}
+
+
+def _free_branches(n: int) -> tuple[Parameter, ...]:
+    parameters = [Parameter("k0", *_K, words="static stiffness")]
+    for j in range(1, n + 1):
+        words = f"relative stiffness of branch {j}"
+        parameters.append(Parameter(f"g{j}", 1e-3, 10.0, "-", words=words))
+        if j == 1:
+            parameters.append(Parameter("tau1", 1e-2, 1e2, "s", words="relaxation time of branch 1"))
+        else:
+            words = f"times by which branch {j} relaxes faster than branch {j - 1}"
+            parameters.append(Parameter(f"spacing{j}", 2.0, 200.0, "-", words=words))
+    return tuple(parameters)
+
+
+class PronyTwo(FreeBranches):
+    """Two free branches."""
+
+    name = "prony-2"
+    words = "a spring beside two free Maxwell branches"
+    parameters = _free_branches(2)
+
+
+class PronyThree(FreeBranches):
+    """Three free branches."""
+
+    name = "prony-3"
+    words = "a spring beside three free Maxwell branches"
+    parameters = _free_branches(3)
+
+
+class PronyFour(FreeBranches):
+    """Four free branches."""
+
+    name = "prony-4"
+    words = "a spring beside four free Maxwell branches"
+    parameters = _free_branches(4)
+
+
 def _empty(values: FloatArray, *, branches: int) -> tuple[FloatArray, FloatArray]:
     rows = np.zeros((len(values), BRANCHES + 2 * branches))
     rows[:, OMEGA0] = 1.0
     return rows, np.zeros((*rows.shape, values.shape[1]))
 
 
-LAWS = (KelvinVoigt(), Zener(), ThreeBranches(), FractionalElement())
+LAWS = (
+    KelvinVoigt(),
+    Zener(),
+    ThreeBranches(),
+    FractionalElement(),
+    PronyTwo(),
+    PronyThree(),
+    PronyFour(),
+)
 PLUGINS = "jackettwin.support_laws"
 """Group of entry points, each an instance of a :class:`Family`, entered by its name."""
 DEFAULT_LAWS = ("maxwell-3", "kelvin-voigt", "zener", "springpot")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import log, pi
+from math import inf, log, pi
 
 import numpy as np
 
@@ -20,7 +20,8 @@ class Target:
     """A mode known from elsewhere; ``mode`` counts from 1 on pinned supports.
 
     A value that is None takes no part in the fit. The standard deviations weigh the residuals; with None
-    the residual is relative, as in thesis (8.4). ``correlation`` is that of ln f and ln ζ.
+    the residual is relative, as in thesis (8.4), and its square counts with a weight, w_ω or w_ζ there.
+    ``correlation`` is that of ln f and ln ζ.
     """
 
     mode: int
@@ -29,6 +30,8 @@ class Target:
     damping_ratio: float | None = None
     damping_ratio_std: float | None = None
     correlation: float = 0.0
+    frequency_weight: float = 1.0
+    damping_weight: float = 1.0
 
     @property
     def log_stds(self) -> tuple[float | None, float | None]:
@@ -47,8 +50,8 @@ def _ratio(std: float | None, value: float | None) -> float | None:
 class Residuals:
     r"""Residuals of a set of targets, differentiable in the poles.
 
-    ``relative`` is the thesis's cost (8.4), each residual relative to its measured value. Otherwise they are
-    logarithms, whitened by their covariance,
+    ``relative`` is the thesis's cost (8.4), each residual relative to its measured value and multiplied by
+    the root of its weight. Otherwise they are logarithms, whitened by their covariance,
 
     .. math:: r = L^{-1} \ln(y_\mathrm{model}/y), \quad L L^T = Σ,
 
@@ -72,6 +75,15 @@ class Residuals:
             if not -1.0 < t.correlation < 1.0:
                 raise InputError(
                     "a correlation lies between −1 and 1", field="targets.correlation", value=t.correlation
+                )
+            for weight in (t.frequency_weight, t.damping_weight):
+                require(
+                    0.0 < weight < inf,
+                    "a weight is positive",
+                    field="update.weights",
+                    value=weight,
+                    allowed="> 0",
+                    remedy="leave out a value that is not to count",
                 )
 
     @cached_property
@@ -124,13 +136,24 @@ class Residuals:
         return np.array(pairs)[self._places]
 
     @cached_property
+    def _weight(self) -> FloatArray:
+        """Weight of every squared residual; those with a standard deviation are weighed by that."""
+        pairs = [weight for t in self.used for weight in (t.frequency_weight, t.damping_weight)]
+        return np.where(self._logarithmic, 1.0, np.array(pairs)[self._places])
+
+    @property
+    def total_weight(self) -> float:
+        """Sum of the weights: the number of residuals if none is weighed."""
+        return float(self._weight.sum())
+
+    @cached_property
     def _logarithmic(self) -> BoolArray:
         return np.logical_and(not self.relative, ~np.isnan(self._log_std))
 
     @cached_property
     def _whitener(self) -> FloatArray:
-        """L⁻¹ (count, count); one for relative residuals."""
-        std = np.where(self._logarithmic, self._log_std, 1.0)
+        """L⁻¹ (count, count); the roots of the weights for relative residuals."""
+        std = np.where(self._logarithmic, self._log_std, 1.0 / np.sqrt(self._weight))
         correlation = np.eye(self.count)
         first = {int(place): i for i, place in enumerate(self._places)}
         for m, t in enumerate(self.used):

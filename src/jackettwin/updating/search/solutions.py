@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -14,6 +15,7 @@ from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.search.clusters import extent, gather
 from jackettwin.updating.search.descent import End, descend, descend_simplex, settle
+from jackettwin.updating.search.start_points import given_points
 
 SearchMethod = Literal["least-squares", "nelder-mead"]
 METHODS = ("least-squares", "nelder-mead")
@@ -70,6 +72,25 @@ class Solution:
 
 
 @dataclass(frozen=True)
+class Begun:
+    """A search from a given point.
+
+    Attributes
+    ----------
+    start, end : (n_parameters,)
+    cost : float
+        At its end.
+    settled : bool
+        Whether the end is a minimum; a simplex may stall in a valley before it.
+    """
+
+    start: FloatArray
+    end: FloatArray
+    cost: float
+    settled: bool
+
+
+@dataclass(frozen=True)
 class Search:
     """Every solution that was found, cheapest first, and how sure it is that these are all.
 
@@ -79,23 +100,26 @@ class Search:
         Searches from scattered points.
     deflated : int
         Further searches, kept away from the known solutions by deflating them (Farrell et al. 2015).
-    missed_share_95 : float
+    missed_share_95 : float or None
         If there is a solution that was missed, fewer than this share of random starts lead to it, with 95 %
-        confidence.
+        confidence. None if it started from given points: what others lead to is not known.
     spent : int or None
         Evaluations after which the search stopped, although some solution had been found only once; None if
         it ended by itself.
     stalled : int
         Searches of both kinds that ended above every solution: on the way, on a shoulder, or on a plateau
         where the model is far from the data.
+    begun : tuple of Begun
+        Where the searches from given points ended.
     """
 
     solutions: tuple[Solution, ...]
     starts: int
     deflated: int
-    missed_share_95: float
+    missed_share_95: float | None
     spent: int | None = None
     stalled: int = 0
+    begun: tuple[Begun, ...] = ()
 
     @property
     def statement(self) -> str:
@@ -108,12 +132,19 @@ class Search:
             often = ", more of which may be one"
         else:
             often = f", {once} of them found only once" if once else ", each found more than once"
-        many, share = f"{n} distinct solution{'s' if n > 1 else ''}{often}", 100 * self.missed_share_95
+        many = f"{n} distinct solution{'s' if n > 1 else ''}{often}"
         stalled = (
             f"; {self.stalled} of these searches stalled above, on the way or on a plateau"
             if self.stalled
             else ""
         )
+        if self.missed_share_95 is None:
+            points = f"{self.starts} given point{'s' if self.starts > 1 else ''}"
+            return (
+                f"{unsettled}Searches from {points} ended in {many}{stalled}. "
+                "What other starts lead to is not known."
+            )
+        share = 100 * self.missed_share_95
         return (
             f"{unsettled}{self.starts} starts and {self.deflated} searches away from known solutions ended "
             f"in {many}{stalled}. If one was missed, fewer than {share:.2g} % of random starts lead to it "
@@ -125,7 +156,7 @@ def search(
     problem: Problem,
     *,
     method: SearchMethod = "least-squares",
-    starts: int = 32,
+    starts: int | Sequence[Mapping[str, float]] = 32,
     seed: int = 0,
     most_evaluations: int = MOST_EVALUATIONS,
     progress: Progress = SILENT,
@@ -133,12 +164,16 @@ def search(
     """Return the distinct solutions, best first.
 
     Starts are scrambled Sobol points in the logarithms between the bounds, doubled in number while a solution
-    has been found only once. Further searches are then kept away from the known solutions.
+    has been found only once. Further searches are then kept away from the known solutions. Given points are
+    taken as they are, one search each and no others, as the thesis does.
 
     Parameters
     ----------
     method : {"least-squares", "nelder-mead"}
         Gradient least squares, or the thesis's simplex (section 8.2), which starts only ``starts`` times.
+    starts : int or sequence of {parameter: value}
+        Number of scattered starts, or the points to start from
+        (:func:`jackettwin.updating.search.start_points.given_points`).
     most_evaluations : int
         Of the model, after which no further starts are added to the first ones.
     progress : Progress
@@ -147,13 +182,16 @@ def search(
     Raises
     ------
     InputError
-        If the method is unknown, there is no start, or none ends anywhere: the data are out of reach.
+        If the method is unknown, there is no start, a point is none of the problem's, or no search ends
+        anywhere: the data are out of reach.
     """
     if method not in METHODS:
         raise InputError("unknown method", field="update.method", value=method, allowed=", ".join(METHODS))
+    run = descend if method == "least-squares" else descend_simplex
+    if not isinstance(starts, int):
+        return _from_points(problem, run, given_points(problem, starts), progress)
     require(starts >= 1, "at least one start", field="update.starts", value=starts, allowed="≥ 1")
     deflated = min(_DEFLATED, max(2, starts // 4)) if method == "least-squares" else 0
-    run = descend if method == "least-squares" else descend_simplex
     points = _scatter(problem, starts * (_MOST if method == "least-squares" else 1), seed)
     clusters: list[tuple[End, int]] = []
     ends: list[End] = []
@@ -175,26 +213,56 @@ def search(
         n *= 2
     if deflated:
         clusters = _deflate(problem, clusters, points[:deflated], ends, progress)
-    if not clusters:
-        raise _out_of_reach(problem)
-    kept = [v for v in clusters if v[0].cost <= clusters[0][0].cost + problem.hopeless]
-    stalled = sum(not _ended_in(problem, end, kept) for end in ends)
-    # two ends of one cluster may only be seen to be one from its middle
-    clusters, _ = gather(problem, [(settle(problem, end), count) for end, count in kept])
+    kept = _kept(problem, clusters)
     return Search(
-        tuple(_solution(problem, end, count) for end, count in clusters),
+        _solutions(problem, kept),
         tried,
         deflated,
         1.0 - (1.0 - _CONFIDENCE) ** (1.0 / tried),
         spent if not compared or (spent >= most_evaluations and not enough) else None,
-        stalled,
+        _stalled(problem, ends, kept),
     )
+
+
+def _kept(problem: Problem, clusters: list[tuple[End, int]]) -> list[tuple[End, int]]:
+    """Return the clusters that explain something; refuse data that none does."""
+    if not clusters:
+        raise _out_of_reach(problem)
+    return [v for v in clusters if v[0].cost <= clusters[0][0].cost + problem.hopeless]
+
+
+def _solutions(problem: Problem, kept: list[tuple[End, int]]) -> tuple[Solution, ...]:
+    """Return the solutions that clusters of end points are."""
+    # two ends of one cluster may only be seen to be one from its middle
+    clusters, _ = gather(problem, [(settle(problem, end), count) for end, count in kept])
+    return tuple(_solution(problem, end, count) for end, count in clusters)
+
+
+def _stalled(problem: Problem, ends: list[End], kept: list[tuple[End, int]]) -> int:
+    return sum(not _ended_in(problem, end, kept) for end in ends)
 
 
 def _ended_in(problem: Problem, end: End, clusters: list[tuple[End, int]]) -> bool:
     """Return whether an end is as low as some solution: many that are higher are counted among its starts."""
     low = (cluster.cost for cluster, _ in clusters)
     return end.settled and any(abs(end.cost - cost) <= problem.allowance(cost) for cost in low)
+
+
+def _from_points(
+    problem: Problem, run: Callable[[Problem, FloatArray], End], points: FloatArray, progress: Progress
+) -> Search:
+    """Return what searches from given points (n, d) end in."""
+    ends: list[End] = []
+    for i, point in enumerate(points, start=1):
+        ends.append(run(problem, point))
+        progress.within(f"given point {i} of {len(points)}")
+    clusters, compared = gather(problem, [(end, 1) for end in ends if end.settled])
+    begun = tuple(
+        Begun(np.exp(z), np.exp(end.z), end.cost, end.settled) for z, end in zip(points, ends, strict=True)
+    )
+    spent, kept = None if compared else sum(end.evaluations for end in ends), _kept(problem, clusters)
+    stalled = _stalled(problem, ends, kept)
+    return Search(_solutions(problem, kept), len(points), 0, None, spent, stalled, begun)
 
 
 def _out_of_reach(problem: Problem) -> InputError:
