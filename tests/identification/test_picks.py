@@ -57,6 +57,19 @@ def test_a_pick_of_another_order_is_that_pole(record: Record) -> None:
     assert mode.damping_ratio == table.damping_ratio[k]
 
 
+@pytest.mark.parametrize("order", [7, 35, 41])
+def test_any_order_can_be_picked(record: Record, order: int) -> None:
+    """Order 35 of the thesis's Table 6.1 among them, though high orders are computed four apart."""
+    lenient = PLAIN.model_copy(update={"max_damping_cov": 100.0})
+    dense = lenient.model_copy(update={"order_step": 1})
+    assert order not in set(identify(record, lenient).stabilisation.order.tolist())
+    (mode,) = identify(record, lenient, picks=[Pick(1.2, order=order)]).modes
+    # the same pole as the method gives that is told to compute every order
+    table = identify(record, dense, picks=[Pick(1.2, order=order)]).stabilisation
+    at = table.frequency_hz[table.order == order]
+    assert mode.frequency_hz == pytest.approx(at[np.argmin(np.abs(at - 1.2))], rel=1e-9)
+
+
 def test_what_was_rejected_can_be_picked(record: Record) -> None:
     lenient = PLAIN.model_copy(update={"max_damping_cov": 100.0})
     rejected = next(r for r in identify(record, lenient).rejected if "orders" in r.reason)
@@ -73,7 +86,8 @@ def test_picks_of_another_record_change_nothing(record: Record, found: Identific
     ("picks", "message"),
     [
         ([Pick(0.5)], "no pole near the pick"),
-        ([Pick(1.2, order=7)], "no pole near the pick in order 7"),
+        ([Pick(1.2, order=1)], r"in order 1 .*the nearest order with one is 2: 1\.19"),
+        ([Pick(1.2, order=301)], r"in order 301 .*orders 2 to \d+; the nearest order with one is \d+: 1\."),
         ([Pick(1.2), Pick(1.2001)], "two picks mean one pole"),
     ],
 )

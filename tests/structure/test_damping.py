@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.structure.damping import Rayleigh
+from jackettwin.structure.damping import Rayleigh, RayleighSchema
 
 
 def test_minimum_is_at_the_frequency_asked_for() -> None:
@@ -41,3 +41,36 @@ def test_none_is_none() -> None:
 def test_bad_damping_is_refused(ratio: float, f: float, message: str) -> None:
     with pytest.raises(InputError, match=message):
         Rayleigh.minimum(ratio, f)
+
+
+@pytest.mark.parametrize(
+    ("zeta", "f", "message"),
+    [
+        ((0.001, 0.1), (0.18, 0.75), "feed energy in .*0.24 to 4.17"),
+        ((0.1, 0.001), (0.18, 0.75), "feed energy in"),
+        ((0.01, 0.01), (0.2, 0.2), "two points"),
+        ((0.01, float("nan")), (0.2, 0.7), "two points"),
+        ((0.01, 0.02), (0.0, 0.7), "two points"),
+        ((-0.01, 0.02), (0.2, 0.7), "two points"),
+    ],
+)
+def test_two_points_that_are_no_damping(
+    zeta: tuple[float, float], f: tuple[float, float], message: str
+) -> None:
+    with pytest.raises(InputError, match=message):
+        Rayleigh.two_points(zeta, f)
+
+
+def test_two_points_on_the_edge_are_mass_or_stiffness_alone() -> None:
+    """ζ ∝ f is stiffness damping alone, ζ ∝ 1/f mass damping alone."""
+    assert Rayleigh.two_points((0.01, 0.03), (0.2, 0.6)).alpha == pytest.approx(0.0, abs=1e-15)
+    assert Rayleigh.two_points((0.03, 0.01), (0.2, 0.6)).beta == pytest.approx(0.0, abs=1e-15)
+
+
+def test_a_file_takes_one_point_or_two() -> None:
+    two = RayleighSchema(ratio=(0.01, 0.02), frequency_hz=(0.18, 0.75))
+    assert two.build() == Rayleigh.two_points((0.01, 0.02), (0.18, 0.75))
+    assert two.least == pytest.approx(min(two.build().ratio(np.linspace(0.02, 1.0, 20001))), rel=1e-6)
+    assert RayleighSchema(ratio=0.01, frequency_hz=0.2).least == pytest.approx(0.01)
+    with pytest.raises(InputError, match="one ratio at one frequency, or two at two"):
+        RayleighSchema(ratio=(0.01, 0.02), frequency_hz=0.2).build()

@@ -14,7 +14,7 @@ import numpy as np
 from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.cli.comparison import comparison_of, show_comparison
 from jackettwin.cli.console import PageFile, Reply, answers, numbers_of, say, say_all, show_table
-from jackettwin.errors import located, require
+from jackettwin.errors import InputError, located, require
 from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
@@ -49,7 +49,12 @@ _OVERDAMPED = 0.3
     "--subdivide", type=click.IntRange(1, 1000), help="Elements a member; default: the structure's own."
 )
 @click.option(
-    "--rayleigh", metavar="ZETA,F_HZ", help="Rayleigh damping of the steel: least ratio and its frequency."
+    "--rayleigh",
+    metavar="ZETA,F_HZ",
+    help="Rayleigh damping of the steel: least ratio and its frequency, or ZETA,F_HZ,ZETA,F_HZ.",
+)
+@click.option(
+    "--mode-damping", metavar="MODE=ZETA,…", help="Damping ratios of the structure's own modes, e.g. 1=0.005."
 )
 @click.option(
     "--blades",
@@ -83,6 +88,7 @@ def modes_command(
     rotary_inertia: bool | None,
     subdivide: int | None,
     rayleigh: str | None,
+    mode_damping: str | None,
     blades: str | None,
     shapes: Path | None,
     against: Path | None,
@@ -94,7 +100,8 @@ def modes_command(
     STRUCTURE is a shipped name, a YAML file, or a SubDyn .dat file.
     """
     from jackettwin.decks import read_structure
-    from jackettwin.response import build_system, own_damping
+    from jackettwin.response import build_system, modal_damping, own_damping
+    from jackettwin.soil import Prony
     from jackettwin.soil.support import described
     from jackettwin.structure import assemble
 
@@ -108,7 +115,12 @@ def modes_command(
     standing, held = supported_option(support, bare, pile_model)
     assembly = bare if standing is bare.structure else assemble(standing, **options)
     steel = rayleigh_option(rayleigh)
-    system = build_system(assembly, held, rayleigh=steel, spread=own_damping(assembly, steel))
+    spread = own_damping(assembly, steel)
+    if mode_damping is not None:
+        with located(field="--mode-damping"):
+            own_modes = modal_damping(assembly, _by_mode(mode_damping), steel)
+        spread = (*spread, (own_modes, Prony(c=1.0)))
+    system = build_system(assembly, held, rayleigh=steel, spread=spread)
     own = f"the structure's own: {described(held)}"
     document = {**_document(system, number, bare), "support": own if support is None else support}
     document["warnings"] = [*document["warnings"], *held.notes]
@@ -189,15 +201,28 @@ def rayleigh_option(text: str | None) -> Rayleigh:
     Raises
     ------
     InputError
-        If the text is not two numbers in range.
+        If the text is not two or four numbers in range.
     """
     from jackettwin.structure import Rayleigh
 
     if text is None:
         return Rayleigh()
-    numbers = numbers_of(text, "--rayleigh", "ZETA,F_HZ", (2,))
+    numbers = numbers_of(text, "--rayleigh", "ZETA,F_HZ", (2, 4))
     with located(field="--rayleigh"):
+        if len(numbers) == 4:
+            return Rayleigh.two_points((numbers[0], numbers[2]), (numbers[1], numbers[3]))
         return Rayleigh.minimum(*numbers)
+
+
+def _by_mode(text: str) -> dict[int, float]:
+    """Return the ratios of ``--mode-damping MODE=ZETA,…``."""
+    ratios = {}
+    for part in text.split(","):
+        mode, _, value = part.partition("=")
+        if not mode.strip().isdigit():
+            raise InputError("not MODE=ZETA,…", value=text, allowed="e.g. 1=0.005,2=0.005,4=0.01")
+        (ratios[int(mode)],) = numbers_of(value, "--mode-damping", "MODE=ZETA,…", (1,), given=text)
+    return ratios
 
 
 def _document(system: System, number: int, bare: Assembly) -> dict[str, Any]:

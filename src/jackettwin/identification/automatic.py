@@ -15,6 +15,7 @@ from jackettwin.identification.picks import Pick, of_record
 from jackettwin.identification.pole_methods import relaxations, uncertain
 from jackettwin.identification.preparation.components import components, expand_to_all_channels
 from jackettwin.identification.preparation.prepared import prepare
+from jackettwin.identification.preparation.resolve import with_orders
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.preparation.whitening import as_measured
 from jackettwin.identification.quiet_bands import candidates_of, searched, with_quiet_bands
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from jackettwin.identification.decays.free_decay import Transient
+    from jackettwin.identification.preparation.prepared import Prepared
     from jackettwin.identification.selection.candidates import Candidate
     from jackettwin.records import Record
 
@@ -96,7 +98,7 @@ def identify(
         settings = settings.model_copy(update={"refine": False, "min_order_share": share})
     say = progress or (lambda text: None)
     say("preparing")
-    whole = prepare(record, settings)
+    whole = _with_picked_orders(prepare(record, settings), wanted)
     ready, basis = components(whole, settings)
     y, scale, resolved = ready.y, ready.scale, ready.settings
     say("poles")
@@ -158,6 +160,12 @@ def _decay(
     finding = Finding("beside_knock", params={"fall": decay.fall, "used_s": decay.beside.duration_s})
     found = replace(found, findings=(finding, *found.findings), warnings=(str(finding), *found.warnings))
     return replace(decay, identified=found)
+
+
+def _with_picked_orders(ready: Prepared, picks: Sequence[Pick]) -> Prepared:
+    """Return a prepared record whose model orders hold those of the picks."""
+    orders = [pick.order for pick in picks if pick.order is not None]
+    return replace(ready, settings=with_orders(ready.settings, orders)) if orders else ready
 
 
 def _pick(poles: Stabilisation, chosen: Candidate, record: str) -> Pick:

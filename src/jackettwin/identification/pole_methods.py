@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pkgutil import resolve_name
 from typing import TYPE_CHECKING, cast
 
@@ -11,7 +12,7 @@ import numpy as np
 from jackettwin.errors import InputError, look_up
 from jackettwin.identification.frequency_domain.plscf import plscf_poles
 from jackettwin.identification.methods import PLUGINS, POLE_METHODS
-from jackettwin.identification.preparation.resolve import guarded_band_hz
+from jackettwin.identification.preparation.resolve import dense_orders, guarded_band_hz
 from jackettwin.identification.subspace.covariances import block_covariances, covariances
 from jackettwin.identification.subspace.real_poles import real_poles
 from jackettwin.identification.subspace.ssi_cov import OrderPoles, Subspace, order_poles, ssi_cov
@@ -112,8 +113,10 @@ def relaxations(ready: Prepared, settings: IdentificationSettings) -> tuple[Real
             allowed=f"method ssi-cov, weighting br, state_matrix shift, blocks ≥ {FEWEST_BLOCKS}",
             remedy="leave these settings at their defaults",
         )
-    resolved, subspace = ready.settings, _subspace(ready, settings)
-    shared = _propagation(ready, subspace, settings)
+    # more orders and every instrument: for these alone, so that no mode depends on whether they are sought
+    ready = replace(ready, settings=dense_orders(ready.settings, settings.order_step))
+    resolved, subspace = ready.settings, _subspace(ready, settings, every=1)
+    shared = _propagation(ready, subspace, settings, every=1)
     return real_poles(
         order_poles_with_uncertainty(shared, subspace.orders(resolved.orders), real=True),
         settings,
@@ -129,7 +132,7 @@ def uncertain(settings: IdentificationSettings) -> bool:
     return settings.blocks >= FEWEST_BLOCKS and variant == ("ssi-cov", "br", "shift")
 
 
-def _subspace(ready: Prepared, settings: IdentificationSettings) -> Subspace:
+def _subspace(ready: Prepared, settings: IdentificationSettings, every: int | None = None) -> Subspace:
     resolved = ready.settings
     return ssi_cov(
         covariances(ready.y, 2 * resolved.block_rows)[:, :, ready.references],
@@ -138,18 +141,25 @@ def _subspace(ready: Prepared, settings: IdentificationSettings) -> Subspace:
         weighting=settings.weighting,
         state_matrix=settings.state_matrix,
         factors=uncertain(settings),
-        every=_every(ready, settings),
+        every=_every(ready) if every is None else every,
     )
 
 
-def _every(ready: Prepared, settings: IdentificationSettings) -> int:
-    """Return the samples between instruments: one if relaxations are sought or few would be left."""
+def _every(ready: Prepared) -> int:
+    """Return the samples between instruments: one if few would be left.
+
+    One, too, where the record tells displacements: relaxations are strong there, and modes beside them are
+    lost with half the instruments.
+    """
     enough = ENOUGH_INSTRUMENTS * max(ready.settings.orders, default=1)
     many = ready.settings.block_rows * len(ready.references) >= EVERY * enough
-    return EVERY if many and not settings.real_poles else 1
+    relaxing = any(c.quantity == "displacement" for c in ready.channels)
+    return EVERY if many and not relaxing else 1
 
 
-def _propagation(ready: Prepared, subspace: Subspace, settings: IdentificationSettings) -> Propagation:
-    rows, every = ready.settings.block_rows, _every(ready, settings)
+def _propagation(
+    ready: Prepared, subspace: Subspace, settings: IdentificationSettings, every: int | None = None
+) -> Propagation:
+    rows, every = ready.settings.block_rows, _every(ready) if every is None else every
     blocks = block_covariances(ready.y, 2 * rows, settings.blocks)[..., ready.references]
     return propagation(subspace, block_deviations(blocks.astype(np.float32), rows, every), np.float32)

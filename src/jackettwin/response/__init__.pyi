@@ -28,6 +28,7 @@ from .modes.modal import (
     damped_modes as damped_modes,
     undamped_modes as undamped_modes,
 )
+from .modes.modal_damping import modal_damping as modal_damping
 from .modes.multiple import aligned as aligned, aligned_coordinates as aligned_coordinates
 from .modes.own_damping import own_damping as own_damping
 from .modes.tracking import near_degenerate as near_degenerate, track_modes as track_modes

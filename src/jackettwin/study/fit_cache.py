@@ -75,14 +75,14 @@ def fit_key(problem: Problem, shown: tuple[int, ...], how: UpdateSettings, *, sa
     """
     model = problem.model
     steel = {name: getattr(model.assembly, name) for name in ("mass", "stiffness")}
-    matrices = {**steel, **model.nuisance.matrices}
+    matrices = {**steel, **model.nuisance.matrices, **model.nuisance.given}
     plain = [
         getattr(model, f.name) for f in fields(model) if f.name not in ("assembly", "family", "nuisance")
     ]
     return digest(
         [
             [problem.states, problem.parameters, problem.prior],
-            [model.family.name, plain, replace(model.nuisance, matrices={})],
+            [model.family.name, plain, replace(model.nuisance, matrices={}, given={})],
             {name: [m.tocsc().data, m.tocsc().indices, m.tocsc().indptr] for name, m in matrices.items()},
             [shown, how.method, how.starts, how.seed, how.most_evaluations],
             [how.particles, how.sampler] if sampled else None,

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from math import hypot
 from typing import Any
 
+from jackettwin.structure import Rayleigh
 from jackettwin.study.measure import Measured
 from jackettwin.study.result import MeasuredMode, MeasuredRelaxation, unpaired_finding
 from jackettwin.twin import TwinConfig, stated_model
@@ -27,9 +28,7 @@ def assumptions(
         f"{theory} beams, {'with' if rotary else 'without'} rotary inertia; "
         + ("gravity's P-Δ stiffness is on" if config.gravity else "no gravity stiffness")
         + (f"; {', '.join(config.of_records)}: as the records state it." if config.of_records else "."),
-        f"Steel damping: Rayleigh, {100 * config.rayleigh_ratio:.3g} % at its minimum, on the structure only."
-        if config.rayleigh_ratio
-        else "The steel is undamped.",
+        _steel(config),
         f"The support law {_acts_on(config)} of {len(s.reactions)} reaction nodes (tie: {config.tie}).",
         "Modes are numbered by their order on pinned feet and followed by mass-weighted MAC.",
         f"Fitted: {', '.join(filter(None, [*map(_fitted, measured), *map(_relaxed, relaxations)]))}.",
@@ -58,6 +57,17 @@ def assumptions(
             "scatter."
         )
     return tuple(lines)
+
+
+def _steel(config: TwinConfig) -> str:
+    """Say how the steel is damped."""
+    said = []
+    if config.rayleigh != Rayleigh():
+        said.append(f"Rayleigh, {100 * config.rayleigh_ratio:.3g} % at its minimum")
+    if config.mode_damping:
+        ratios = sorted(config.mode_damping.items())
+        said.append("by mode, " + ", ".join(f"ζ{mode} {100 * ratio:.3g} %" for mode, ratio in ratios))
+    return f"Steel damping: {'; '.join(said)}; on the structure only." if said else "The steel is undamped."
 
 
 def _acts_on(config: TwinConfig) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.errors import InputError, located
+from jackettwin.response import modal_damping
 from jackettwin.soil import Support, family, read_support
 from jackettwin.structure import Assembly
 from jackettwin.study.relaxations import placed, relaxation_targets
@@ -113,8 +114,10 @@ def law_model(config: TwinConfig, evidence: UpdateEvidence, law: str) -> Support
         waves = None if evidence.state is None else evidence.state.totals[ALL].conditions.waves
         water = water_effects(in_the_records_sea(config.water, waves), evidence.assembly, given.water)
         others = {name: matrix_of(name)(evidence.assembly) for name in given.parameters}
+        by_mode = config.mode_damping
+        own_steel = {"modes": modal_damping(evidence.assembly, by_mode, config.rayleigh)} if by_mode else {}
     nuisance = NuisanceParameters(
-        given.dashpots, given.steel_damping == "free", evidence.rotor.patterns, {**water, **others}
+        given.dashpots, given.steel_damping == "free", evidence.rotor.patterns, {**water, **others}, own_steel
     )
     own = {p.name for p in (*chosen.parameters, *nuisance.parameters)}
     relative = any(residuals.relative for residuals, _ in states.values())

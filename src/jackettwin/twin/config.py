@@ -211,6 +211,8 @@ class TwinConfig:
     """How its days are watched for change."""
     rotor_speed_rpm: tuple[float, float] | None = None
     """Lowest and highest speed of the rotor in operation; None leaves it to ``update.rotor``."""
+    mode_damping: Mapping[int, float] = field(default_factory=dict)
+    """Damping ratios of the structure's own modes on pinned feet, by number."""
     assigned: tuple[int, ...] = ()
     """Modes that were found for targets that give a frequency and no mode."""
     of_records: tuple[str, ...] = ()

@@ -26,7 +26,7 @@ from jackettwin.twin.config import (
     UpdateSettings,
     assembled,
 )
-from jackettwin.twin.schema import SupportSchema, TwinSchema
+from jackettwin.twin.schema import DampingSchema, SupportSchema, TwinSchema
 from jackettwin.twin.stated_model import model_of_records
 from jackettwin.twin.targets_table import assigned_modes, read_targets_table
 from jackettwin.twin.water import WaterConfig
@@ -162,7 +162,15 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         allowed="[lowest, highest]",
     )
     targets, relaxations = _targets(schema)
-    steel = RayleighSchema(ratio=0.0, frequency_hz=1.0) if schema.damping is None else schema.damping.rayleigh
+    damping = schema.damping or DampingSchema()
+    steel = damping.rayleigh or RayleighSchema(ratio=0.0, frequency_hz=1.0)
+    require(
+        not damping.modes or schema.update.steel_damping == "fixed",
+        "the steel's damping is given by mode or free",
+        field="damping.modes",
+        value=list(damping.modes),
+        remedy="leave one of damping.modes and update.steel_damping: free out",
+    )
     structure = _structure(schema, folder)
     return TwinConfig(
         name=path.stem,
@@ -173,7 +181,8 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         subdivide=schema.subdivide,
         gravity=schema.gravity,
         rayleigh=steel.build(),
-        rayleigh_ratio=steel.ratio,
+        rayleigh_ratio=steel.least,
+        mode_damping=damping.modes,
         water=_water(schema, structure, folder),
         tie=support.tie,
         shared=tuple(dict.fromkeys(support.shared)),

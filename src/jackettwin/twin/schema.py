@@ -37,7 +37,9 @@ StructureOrName = Annotated[
 class DampingSchema(Schema):
     """``damping``."""
 
-    rayleigh: RayleighSchema
+    rayleigh: RayleighSchema | None = None
+    modes: dict[Annotated[int, Field(ge=1, le=50)], Annotated[float, Field(ge=0.0, lt=1.0)]] = {}
+    """Ratios of the structure's own modes on pinned feet, by number."""
 
 
 class SupportSchema(Schema):

@@ -65,7 +65,7 @@ def condensed_for(
     )
     below_hz = max(_ROOM * float(pinned_hz[-1]), _BEYOND * fastest_rate / (2.0 * pi))
     _check_band(rayleigh, pinned_hz, highest_mode, fastest_rate)
-    return condense(system, below_hz=below_hz, spread=tuple(nuisance.matrices.values()))
+    return condense(system, below_hz=below_hz, spread=(*nuisance.matrices.values(), *nuisance.given.values()))
 
 
 def _check_band(rayleigh: Rayleigh, pinned_hz: FloatArray, highest_mode: int, fastest_rate: float) -> None:

@@ -116,7 +116,8 @@ def _ratios(model: SupportModel, points: Points, found: NumberedModes) -> FloatA
         D = law_stiffness(points.rows[:, g, None], pole)
         groups[..., g] = D.imag / pole.imag * np.einsum("kmi,kmi->km", x.conj() @ group.S, x).real
     soil, rotor = groups[..., :n_soil].sum(axis=-1), groups[..., n_soil:n_rotor].sum(axis=-1)
-    of_matrices = dict(zip(model.nuisance.matrices, np.moveaxis(groups[..., n_rotor:], -1, 0), strict=True))
+    spread = (*model.nuisance.matrices, *model.nuisance.given)
+    of_matrices = dict(zip(spread, np.moveaxis(groups[..., n_rotor:], -1, 0), strict=True))
     drag = of_matrices.pop("water_damping", None)
     steel = a * m + b * k + sum(of_matrices.values())
     lost = np.stack([steel, soil, rotor, *([] if drag is None else [drag])], axis=-1)

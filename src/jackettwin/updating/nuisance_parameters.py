@@ -100,12 +100,15 @@ class NuisanceParameters:
     matrices : {parameter: (assembly.n_dof, assembly.n_dof)}
         What the other parameters of :func:`nuisance_parameters` are at a value of one: mass of water and
         growth that the assembly holds, damping of its drag.
+    given : {name: (assembly.n_dof, assembly.n_dof)}
+        Damping that is not free: the structure's by mode.
     """
 
     dashpots: tuple[str, ...] = ()
     rayleigh: bool = False
     patterns: Mapping[str, FloatArray] = field(default_factory=dict)
     matrices: Mapping[str, Matrix] = field(default_factory=dict)
+    given: Mapping[str, Matrix] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name in self.dashpots:
@@ -143,6 +146,7 @@ class NuisanceParameters:
                 mass = added if mass is None else mass + added
             else:
                 spread.append((added, Prony(c=1.0) if kind.acts_as == "damping" else Prony(k0=1.0)))
+        spread += [(matrix, Prony(c=1.0)) for matrix in self.given.values()]
         return mass, tuple(spread)
 
     def rows(self, values: FloatArray, width: int) -> tuple[FloatArray, FloatArray]:
@@ -154,8 +158,9 @@ class NuisanceParameters:
         """
         n_sets, n_extra = values.shape
         table, names = nuisance_parameters(), (*self.dashpots, *self.matrices)
-        rows = np.zeros((n_sets, len(names), width))
+        rows = np.zeros((n_sets, len(names) + len(self.given), width))
         rows[..., OMEGA0] = 1.0
+        rows[:, len(names) :, C] = 1.0
         jacobian = np.zeros((*rows.shape, n_extra))
         for j, name in enumerate(names):
             place = _PLACES[table[name].acts_as]

@@ -54,6 +54,21 @@ def test_modes_alone_have_none() -> None:
     assert identify(displacements(relaxing=False), SETTINGS).real_poles == ()
 
 
+def test_no_mode_depends_on_whether_relaxations_are_sought() -> None:
+    """Same poles, same modes with the same status; only the relaxations are more."""
+    record = displacements(relaxing=True)
+    plain, asked = (
+        identify(record, SETTINGS.model_copy(update={"real_poles": wanted})) for wanted in (False, True)
+    )
+    assert plain.real_poles == () and len(asked.real_poles) == 1
+    assert plain.settings == asked.settings
+    for one, other in zip(plain.modes, asked.modes, strict=True):
+        assert (one.frequency_hz, one.damping_ratio, one.status) == (
+            other.frequency_hz, other.damping_ratio, other.status,
+        )  # fmt: skip
+    assert_allclose(plain.stabilisation.frequency_hz, asked.stabilisation.frequency_hz, rtol=0.0)
+
+
 def test_only_when_asked() -> None:
     assert not IdentificationSettings().real_poles
     with pytest.raises(InputError, match="real poles need the uncertainty of ssi-cov"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +17,8 @@ from jackettwin.records.quality.repeats import duplicate_channels
 from jackettwin.records.record import SMALLEST
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from jackettwin.identification.estimate import Spectrum
     from jackettwin.identification.settings import IdentificationSettings
 
@@ -105,7 +108,7 @@ def resolve(record: Record, settings: IdentificationSettings) -> tuple[ResolvedS
     _check_duration(record, low, 2.0 * window / rate)
     reduced = decimate(record, sample_rate_hz=rate) if rate < record.sample_rate_hz else record
     top = min(settings.max_order or MAX_ORDER, (window - 1) * n_channels)
-    orders = _orders(settings.order_step, top, top if settings.real_poles else DENSE_ORDERS)
+    orders = _orders(settings.order_step, top)
     return ResolvedSettings(low, high, reduced.sample_rate_hz, window, orders, 2.0 * window / rate), reduced
 
 
@@ -127,6 +130,18 @@ def _block_rows(samples_a_cycle: float, n_channels: int, n_samples: float) -> in
             int(min(np.ceil(SINGLE_CHANNEL_CYCLES * samples_a_cycle), SINGLE_CHANNEL_SHARE * n_samples)),
         )
     return max(cycles, min(wanted, int(0.5 * WINDOW_SHARE * n_samples)))
+
+
+def with_orders(resolved: ResolvedSettings, wanted: Iterable[int]) -> ResolvedSettings:
+    """Return the settings with further model orders, those beyond the highest left out."""
+    top = resolved.orders[-1] if resolved.orders else 0
+    more = {order for order in wanted if 1 <= order <= top}
+    return replace(resolved, orders=tuple(sorted({*resolved.orders, *more})))
+
+
+def dense_orders(resolved: ResolvedSettings, step: int) -> ResolvedSettings:
+    """Return the settings with high model orders as dense as low ones: relaxations are in few of them."""
+    return replace(resolved, orders=_orders(step, resolved.orders[-1], resolved.orders[-1]))
 
 
 def _orders(step: int, top: int, dense: int = DENSE_ORDERS) -> tuple[int, ...]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from jackettwin.arrays import Int64Array
 from jackettwin.errors import InputError
 
 if TYPE_CHECKING:
@@ -90,8 +91,21 @@ def _pole(poles: Stabilisation, found: Sequence[Cluster], pick: Pick) -> int:
             allowed=f"within {MAX_PICK_DISTANCE:.0%} of a pole; orders {orders[0]} to {orders[-1]}"
             if orders
             else "none",
-            remedy=f"the nearest is at {poles.frequency_hz[among[np.argmin(away)]]:.6g} Hz"
-            if len(away)
-            else "use the settings the picks were made with",
+            remedy=_nearest(poles, among, pick),
         )
     return int(among[np.argmin(away)])
+
+
+def _nearest(poles: Stabilisation, among: Int64Array, pick: Pick) -> str:
+    """Say where the nearest pole is: in the order picked, and the nearest order that has one."""
+    said = []
+    if len(among):
+        k = among[np.argmin(np.abs(poles.frequency_hz[among] - pick.frequency_hz))]
+        said.append(f"the nearest is at {poles.frequency_hz[k]:.6g} Hz")
+    near = np.abs(poles.frequency_hz / pick.frequency_hz - 1.0) <= MAX_PICK_DISTANCE
+    if pick.order is not None and near.any():
+        order = min(set(poles.order[near].tolist()), key=lambda n: (abs(n - (pick.order or 0)), n))
+        of_it = poles.frequency_hz[near & (poles.order == order)]
+        best = of_it[np.argmin(np.abs(of_it - pick.frequency_hz))]
+        said.append(f"the nearest order with one is {order}: {best:.6g} Hz")
+    return "; ".join(said) or "use the settings the picks were made with"

@@ -165,7 +165,7 @@ def constrained(problem: Problem, z: FloatArray, parameter: int, value: float) -
         np.clip(z[free], low, high),
         jac=jacobian,
         bounds=(low, high),
-        x_scale="jac",
+        method="dogbox",
         xtol=1e-6,
         ftol=1e-4,
         max_nfev=40,
@@ -192,7 +192,8 @@ def _least_squares(
         start,
         jac=jacobian,
         bounds=(prior.low, prior.high),
-        x_scale="jac",
+        # a third of the steps of the default in the curved valleys of laws with several branches
+        method="dogbox",
         xtol=tolerance,
         ftol=max(1e-2 * tolerance, 1e-14),
         gtol=1e-14,
