@@ -371,3 +371,18 @@ def test_more_requests_at_once_than_threads_are_all_answered(client: TestClient,
 
     with ThreadPoolExecutor(120) as pool:
         assert set(pool.map(send, range(240))) == {200}
+
+
+def test_a_description_may_be_a_file(client: TestClient) -> None:
+    """As many clients send what has a type of its own; it is the same record as with a field."""
+    record = ("r1.parquet", record_file(1))
+    beside = ("r1.json", description(hour(1)).encode(), "application/json")
+    as_file = client.post("/api/v1/assets/wtg/records", files={"file": record, "description": beside})
+    as_field = upload(client, 1)
+    assert (as_file.status_code, as_field.status_code) == (202, 200)
+    assert as_file.json()["record_id"] == as_field.json()["record_id"]
+    for wrong, status in ((b"\xff\xfe", 422), (b"[]", 422), (b" " * 2_000_000, 413)):
+        files = {"file": record, "description": ("r1.json", wrong)}
+        answer = client.post("/api/v1/assets/wtg/records", files=files)
+        assert answer.status_code == status
+        assert "UploadFile" not in answer.text

@@ -75,7 +75,7 @@ def create_app(service: Service) -> FastAPI:
     app.openapi = lambda: described(app)  # type: ignore[method-assign]
     app.add_middleware(Guard, service=service)
     app.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=1)
-    app.add_middleware(Peer, service=service)
+    app.add_middleware(BelievedProxies, service=service)
     return app
 
 
@@ -96,7 +96,7 @@ def described(app: FastAPI) -> dict[str, Any]:
     return document
 
 
-class Peer:
+class BelievedProxies:
     """Note who is at the other end of the connection, then take a trusted proxy's word on who asks."""
 
     def __init__(self, app: ASGIApp, service: Service) -> None:

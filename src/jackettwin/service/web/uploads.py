@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING, BinaryIO
 
+from fastapi import UploadFile
 from sqlalchemy import Connection
 
 from jackettwin.errors import InputError
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
     from jackettwin.service.context import Service
 
 _PIECE = 1 << 20
+_DESCRIPTION_BYTES = 2**20
+"""As much as a form takes in a field."""
 _ROOM_BYTES = 256 * 2**20
 """Room that must be left on the disk after an upload: the database needs it to finish what it began."""
 
@@ -53,6 +56,22 @@ def take(service: Service, asset: str, name: str, stream: BinaryIO, description:
     if taken.problem is not None:
         raise ApiError(422, **taken.problem)
     return taken
+
+
+def text_of(description: UploadFile | str | None) -> str | None:
+    """Return a description that came as a field or as a file.
+
+    Raises
+    ------
+    ApiError
+        422 if it is no text, 413 if it is larger than what comes beside a file may be.
+    """
+    if description is None or isinstance(description, str):
+        return description
+    try:
+        return b"".join(_limited(description.file, _DESCRIPTION_BYTES)).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise ApiError(422, "the description is not UTF-8 text", field="description") from None
 
 
 def pick(

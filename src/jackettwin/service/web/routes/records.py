@@ -54,11 +54,13 @@ def add_record(
     parts: Parts,
     response: Response,
     file: Annotated[UploadFile, File(description="A record in any format that is read.")],
-    description: Annotated[str | None, Form(description="What would lie beside it, as JSON.")] = None,
+    description: Annotated[
+        UploadFile | str | None, Form(description="What would lie beside it, as JSON: a field, or a file.")
+    ] = None,
 ) -> RecordAccepted:
     """Take a record: it is read now and observed soon."""
     uploads.refuse_unfit(parts, asset)
-    taken = uploads.take(parts, asset, file.filename or "record", file.file, description)
+    taken = uploads.take(parts, asset, file.filename or "record", file.file, uploads.text_of(description))
     if not taken.new:
         response.status_code = 200
     parts.wake()
