@@ -15,6 +15,7 @@ from jackettwin.simulate import read_scenario
 from jackettwin.soil import clamped, own_support
 from jackettwin.structure import RigidLink, Structure, assemble, at_interface, check
 from jackettwin.twin import read_twin
+from jackettwin.updating import stages
 
 DECK = Path(__file__).parents[1] / "data" / "subdyn" / "IEA-15-240-RWT-Jacket_SubDyn.dat"
 TOWER = """
@@ -48,6 +49,7 @@ def test_a_tower_on_a_jackets_six_interface_joints(tmp_path: Path) -> None:
     # ∫ πρ(D − t)t of diameter and wall that go straight; twelve pieces of their means leave 1e-4
     assert tubes == pytest.approx(7850.0 * np.pi * 120.0 * (7.2125 * 0.0375 + 1.475 * 0.025 / 12.0), rel=1e-3)
     assert check(assemble(whole)).mass_kg == pytest.approx(check(assemble(deck)).mass_kg + tubes + 9.5e5)
+    assert [s.parts for s in stages(whole, 1)] == [("foundation",), ("foundation", "tower")]
     modes = frequencies(whole)
     assert 0.15 < modes[0] < modes[1] < 0.25
 

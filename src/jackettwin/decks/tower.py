@@ -27,7 +27,7 @@ from jackettwin.structure import (
 )
 from jackettwin.structure.jacket import MaterialInFile, Tower, tower_tubes
 
-TOWER, BASE = "tower", "tower_base"
+TOWER, FOUNDATION, BASE = "tower", "foundation", "tower_base"
 _SAME_M = 1e-6
 """Levels closer than this are one."""
 Station = tuple[float, float, float]
@@ -134,12 +134,11 @@ def _standing(
         name: (x, y, z + float(height)) for name, height in zip(names[1:], levels[1:], strict=True)
     }
     members, beams = bars(names)
-    return replace(
-        based,
-        nodes=dict(based.nodes) | above,
-        members=(*based.members, *members),
-        beams=(*based.beams, *beams),
-    )
+    # a deck names no parts: what it has is the tower's foundation
+    below = [replace(m, part=m.part or FOUNDATION) for m in based.members]
+    under = [replace(b, part=b.part or FOUNDATION) for b in based.beams]
+    nodes = dict(based.nodes) | above
+    return replace(based, nodes=nodes, members=(*below, *members), beams=(*under, *beams))
 
 
 def with_base(foundation: Structure, base_z_m: float | None = None) -> tuple[Structure, str]:
