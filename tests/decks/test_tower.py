@@ -9,11 +9,11 @@ import pytest
 from jackettwin.decks import read_structure
 from jackettwin.decks.tower import _members, _standing, read_elastodyn_tower, with_base
 from jackettwin.errors import InputError
-from jackettwin.response import build_system, undamped_modes
+from jackettwin.response import build_system, static_displacement, undamped_modes
 from jackettwin.response.superelement.craig_bampton import superelement
 from jackettwin.simulate import read_scenario
 from jackettwin.soil import clamped, own_support
-from jackettwin.structure import RigidLink, Structure, assemble, at_interface, check
+from jackettwin.structure import Reaction, RigidLink, Structure, assemble, at_interface, check
 from jackettwin.twin import read_twin
 from jackettwin.updating import stages
 
@@ -152,6 +152,27 @@ def test_elastodyns_tower_is_its_tube(tmp_path: Path) -> None:
     )
     assert {b.part for b in by_file.beams} == {"tower"}
     np.testing.assert_allclose(frequencies(by_file, 2), frequencies(by_tube, 2), rtol=1e-4)
+
+
+def test_elastodyns_stiffness_keeps_its_direction(tmp_path: Path) -> None:
+    """Stiffer side to side, a tower is as soft fore and aft: upright, a section's y is the global x."""
+    elastodyn(tmp_path)
+    before = read_structure(written(tmp_path, "tower: {elastodyn: ElastoDyn.dat}\n"))
+    file = tmp_path / "tower.dat"
+    file.write_text(file.read_text().replace("1.0 AdjSSSt", "1.5 AdjSSSt"))
+    after = read_structure(written(tmp_path, "tower: {elastodyn: ElastoDyn.dat}\n"))
+    for axis, ratio in ((0, 1.0), (1, 1.5)):
+        moved = []
+        for structure in (before, after):
+            # the tower alone: what it bends beyond its base
+            _, tower = at_interface(structure)
+            assert tower is not None
+            footed = replace(tower, reactions=(Reaction("tower_base"),))
+            assembly = assemble(footed, beam_theory="euler-bernoulli")
+            top, force = assembly.dofs("tower_top")[axis], np.zeros(assembly.n_dof)
+            force[top] = 1e5
+            moved.append(static_displacement(build_system(assembly, clamped(footed)), force)[top])
+        assert moved[0] / moved[1] == pytest.approx(ratio, rel=1e-6)
 
 
 def test_twins_and_scenarios_take_it_inline(tmp_path: Path) -> None:

@@ -18,7 +18,12 @@ from jackettwin.report.view.page import (
     view_document,
     write_view,
 )
-from jackettwin.report.view.quantities import damping_quantity, material_quantities, thickness_quantities
+from jackettwin.report.view.quantities import (
+    damping_quantity,
+    dissipation,
+    material_quantities,
+    thickness_quantities,
+)
 from jackettwin.response.modes.modal import damped_modes, undamped_modes
 from jackettwin.response.motion.passage import wave_passage
 from jackettwin.response.motion.playback import Playback
@@ -196,6 +201,12 @@ def test_colours_of_material_mass_and_damping() -> None:
         assert found.values @ L == pytest.approx(100.0)
         own = np.array([members[k].part == where for k in system.assembly.mesh.member])
         if where is not None:
+            # by energy, the mode's own damping ratio
+            modes = damped_modes(system, below_hz=0.3)
+            pole, x = modes.eigenvalues[0], modes.shapes[:, 0]
+            lost = dissipation(system, pole, x).sum()
+            m = float((x.conj() @ (system.assembly.mass @ x)).real)
+            assert lost / (2.0 * abs(pole) * m) == pytest.approx(modes.damping_ratio[0], rel=1e-6)
             # all in the ground: what is not at piles is at the members that meet their heads
             assert 50.0 < found.values[own] @ L[own] < 100.0
         else:

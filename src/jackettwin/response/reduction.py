@@ -71,6 +71,8 @@ def reduced(
     buried = [dof for node in system.assembly.structure.buried_nodes for dof in system.assembly.dofs(node)]
     along = np.isin(system.free, np.array(buried, dtype=np.intp))
     touched = [group.dofs[~along[group.dofs]] for group in full.groups]
+    heads = system.assembly.structure.reaction_nodes if buried else ()
+    keep = (*keep, *(int(dof) for node in heads for dof in system.assembly.dofs(node)))
     kept = np.searchsorted(system.free, np.intersect1d(system.free, np.array(keep, dtype=np.intp)))
     b = np.unique(np.concatenate([*touched, kept]).astype(np.intp))
     i = np.setdiff1d(np.arange(full.n), b)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from jackettwin.arrays import FloatArray
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.report.view.page import ColouredQuantity, diameters
 from jackettwin.response import DampedModes, System
 from jackettwin.structure import Assembly, beam
@@ -37,18 +37,36 @@ def material_quantities(assembly: Assembly) -> tuple[ColouredQuantity, ...]:
 
 
 def damping_quantity(system: System, modes: DampedModes, name: str = "") -> ColouredQuantity | None:
-    """Return where the first of some modes loses its energy: each element's share a metre; None if nowhere.
-
-    An element has its part of the steel's Rayleigh damping αM + βK; what the springs and dashpots at a node
-    dissipate is divided among the elements that meet there.
-    """
+    """Return where the first of some modes loses its energy: its share by element; None if nowhere."""
     lively = np.flatnonzero(modes.damping_ratio < _LIVELY)
     if lively.size == 0:
         return None
-    assembly, pole = system.assembly, complex(modes.eigenvalues[lively[0]])
-    mesh, shape = assembly.mesh, modes.shapes[:, lively[0]]
-    u = np.asarray(assembly.expand @ shape)
-    power = _of_steel(system, u)
+    pole, shape = complex(modes.eigenvalues[lively[0]]), modes.shapes[:, lively[0]]
+    power = dissipation(system, pole, shape)
+    total = float(power.sum())
+    if not total > 0.0:
+        return None
+    return ColouredQuantity(
+        f"damping: share of {name or 'the first mode'}",
+        "%/m",
+        100.0 * power / total / system.assembly.mesh.properties.L,
+        from_zero=True,
+    )
+
+
+def dissipation(system: System, pole: complex, shape: ComplexArray) -> FloatArray:
+    """Return each element's part of xᴴ C(λ) x of a mode, (n_elements,): 2ζ|λ| xᴴMx in all.
+
+    An element has its part of the steel's Rayleigh damping αM + βK, without what αM takes of bodies; what
+    springs and dashpots at a node dissipate is divided among the elements that meet there.
+
+    Parameters
+    ----------
+    pole : λ [rad/s]
+    shape : (assembly.n_dof,)
+    """
+    mesh = system.assembly.mesh
+    u = np.asarray(system.assembly.expand @ shape)
     met = np.bincount(np.concatenate([mesh.start, mesh.end]), minlength=len(mesh.node_names))
     place = {node: k for k, node in enumerate(mesh.node_names)}
     at_node = np.zeros(len(mesh.node_names))
@@ -57,19 +75,10 @@ def damping_quantity(system: System, modes: DampedModes, name: str = "") -> Colo
         loss = complex(spring.law.stiffness(pole)).imag / pole.imag
         at_node[place[spring.node]] += loss * float((moved.conj() @ spring.matrix @ moved).real)
     share = at_node / np.maximum(met, 1)
-    power += share[mesh.start] + share[mesh.end]
-    total = float(power.sum())
-    if not total > 0.0:
-        return None
-    return ColouredQuantity(
-        f"damping: share of {name or 'the first mode'}",
-        "%/m",
-        100.0 * power / total / mesh.properties.L,
-        from_zero=True,
-    )
+    return np.asarray(_of_steel(system, u) + share[mesh.start] + share[mesh.end])
 
 
-def _of_steel(system: System, u: FloatArray) -> FloatArray:
+def _of_steel(system: System, u: ComplexArray) -> FloatArray:
     """Return uᴴ(αM + βK)u of every element for motions u of the mesh's DOFs."""
     mesh, rayleigh = system.assembly.mesh, system.pencil.rayleigh
     ends = u[mesh.element_dofs()].reshape(-1, 4, 3)
