@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from jackettwin.change.modal_table import read_modal_table
-from jackettwin.change.table_watch import watch_table
+from jackettwin.change.table_monitoring import watch_table
 from jackettwin.cli import main
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from observations import BEGUN, observation, seen
 
 from jackettwin.change.modal_table import read_modal_table
-from jackettwin.change.table_watch import watch_table
+from jackettwin.change.table_monitoring import watch_table
 from jackettwin.cli import main
 from jackettwin.study.modes_in_time import rows_of_days, rows_of_records, write_modes_in_time
 from jackettwin.twin import TwinModel, TwinState, advance_all

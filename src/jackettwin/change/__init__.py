@@ -1,4 +1,4 @@
-"""What changed: its causes as directions, tables of modes and days of a state watched through time."""
+"""Change of a structure: causes as directions, and monitoring of tables of modes and of a twin's state."""
 
 import lazy_loader
 

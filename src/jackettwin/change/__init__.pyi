@@ -9,5 +9,5 @@ from .judge import (
     history_of as history_of,
     judge as judge,
 )
-from .table_watch import Alarm as Alarm, Watched as Watched
+from .table_monitoring import Alarm as Alarm, Watched as Watched
 from .watch_document import next_sentence as next_sentence, statement as statement

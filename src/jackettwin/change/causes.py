@@ -1,8 +1,8 @@
-"""The causes of a change as directions, from a structure that stands on ground of uncertain stiffness.
+"""Causes of a change as directions, from a structure on ground of uncertain stiffness.
 
-The feet's stiffness is drawn from the posterior of the twin's supports where a run knows one; else it is
-fitted to the frequencies of the baseline. What is left open, and what the model misses, makes the draws of
-every direction.
+The feet's stiffness is drawn from the posterior of the twin's supports if a run provides one;
+otherwise it is fitted to the frequencies of the baseline. The remaining uncertainty and the model error give
+the draws of every direction.
 """
 
 from __future__ import annotations
@@ -44,47 +44,46 @@ from jackettwin.watching import (
 from jackettwin.watching.causes import MISFIT
 
 MODES = 8
-"""Modes of the model that are computed."""
+"""Number of modes of the model."""
 _DRAWS = 6
 _TYPICAL_STIFFNESS = 2.5e9
-"""Of a foot [N/m], before anything is known: give or take a factor e."""
+"""Prior stiffness of a foot [N/m], within about a factor of e."""
 _FEET_APART = 0.15
-"""Standard deviation of ln stiffness from foot to foot: no site is the same at all of them, and in a nearly
-round structure that turns the axes of a pair."""
+"""Standard deviation of ln stiffness between feet: no site is uniform,
+and in a nearly round structure that rotates the axes of a pair."""
 _MODEL_ERROR = 0.01
-"""Relative standard deviation by which a model misses frequencies, before its own are compared: worth as much
-as one mode."""
+"""Prior relative error of a model's frequencies, with the weight of one mode."""
 _MISSES = 5.0
-"""A model that misses frequencies by a share misses the directions of causes by so many times as much:
-docs/verification/directions.md."""
+"""Ratio of a model's error of directions to its error of frequencies: docs/verification/directions.md."""
 _LOSS = (0.08, 0.4)
 """Loss factor of the ground: median and spread in ln."""
 _ALIKE = 0.995
-"""Cosine between directions of one family from which they are one cause."""
+"""Cosine between directions of one family above which they are one cause."""
 _ONE_SIZE = 0.1
-"""Spread of ln size below which a cause is there or not."""
+"""Spread of ln size below which a cause is either present or absent."""
 _SHOWS = 3e-4
-"""A change of all ln f below this, at its usual size, is not worth a bet: it takes years to be found."""
+"""Change of all ln f, at the usual size, below which a cause is not bet on: it would take years to detect."""
 _SOLVED = (3, 5)
-"""So many times an event over, as one, its change is solved anew: sizes reach up to five. Between, cubics
-miss the change of a brace or of the splash zone, whose walls are half gone by then, by some per cent."""
+"""Multiples of an event for which its change is computed; sizes reach up to five. Between them,
+cubics have errors of some per cent for a brace or for the splash zone, whose walls are half gone by then."""
 _KEPT = 0.7
-"""A mode's shape has to stay by this share, in kinetic energy, among those of the whole structure."""
+"""Smallest share of a mode's kinetic energy among the modes of the whole structure."""
 _SEA_LEVEL = re.compile(r"^(sea|water)_?level(_m)?$|^tide(_m)?$", re.IGNORECASE)
 """Names of a sea level in metres."""
 _LEAST_PER_M, _UNKNOWN_PER_M = 1e-4, 0.01
-"""Of d ln f per metre: what else than added water may make it, and of a mode that the model has not."""
+"""Standard deviation of d ln f per metre of sea level from other effects than added mass,
+and for a mode that the model lacks."""
 _MISREAD = 0.05
-"""Median size of a yaw that is read wrong, sin² of the angle: 13°."""
+"""Median size of a yaw error, sin² of the angle: 13°."""
 _OF_KIND = {"frequency": 0, "damping": MODES, "angle": 2 * MODES}
-"""Where quantities of a kind begin among those of a model."""
+"""First index of each kind among the quantities of a model."""
 _TRACE = 1e-5
-"""A change of all logarithms below this leaves no trace."""
+"""Change of all logarithms below which a cause has no effect."""
 
 
 @dataclass(frozen=True)
 class ModelCauses:
-    """Causes and what each does to all modes of a model.
+    """Causes and their effects on all modes of a model.
 
     Attributes
     ----------
@@ -107,9 +106,10 @@ class ModelCauses:
     seen_best: tuple[str, ...] = ("",) * MODES
 
     def slopes(self, labels: Sequence[str], conditions: Sequence[str]) -> tuple[Slope, ...]:
-        """Return what the model knows of conditions by their names: the sea level, by its added water.
+        """Return the model's prior effects of conditions by name: that of sea level, from added mass.
 
-        How much water a structure carries along is known to a factor of two: coefficients, growth, flooding.
+        The mass of water that a structure carries is known within a factor of two: coefficients, growth,
+        flooding.
         """
         at = [self.labels.index(n) if n in self.labels else -1 for n in labels]
         per_m = np.array([self.level_per_m[i] if i >= 0 else 0.0 for i in at])
@@ -117,11 +117,11 @@ class ModelCauses:
         return tuple(Slope(name, per_m, unsure) for name in conditions if _SEA_LEVEL.search(name))
 
     def tells(self, label: str) -> bool:
-        """Return whether a mode of this label tells of causes."""
+        """Tell whether a mode of this label informs on causes."""
         return label in self.labels and label not in self.mixed
 
     def patterns(self, labels: Sequence[str]) -> tuple[Pattern, ...]:
-        """Return what the causes do to frequencies, of those that would show, over modes by label."""
+        """Return the visible effects of causes on frequencies, over modes by label."""
         found = []
         for cause in self.causes:
             once = cause.draws.mean(axis=0)
@@ -141,7 +141,7 @@ def model_causes(
     seed: int = 0,
     ground: Ground = UNDESCRIBED,
 ) -> ModelCauses:
-    """Return what may have happened to a structure whose modes are known by label.
+    """Return the possible causes for a structure whose modes are known by label.
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ def model_causes(
 
 
 def _seen_best(assembly: Assembly, shapes: FloatArray) -> tuple[str, ...]:
-    """Return for each mode where above the sea and along which horizontal axis it shows most, others less."""
+    """Return the place and horizontal axis above the sea of each mode's largest relative motion."""
     stands = assembly.structure
     named = [name for name in assembly.mesh.node_names if name in stands.nodes]
     names = [name for name in named if stands.nodes[name][2] >= stands.sea_level_z_m] or named
@@ -223,7 +223,7 @@ def _seen_best(assembly: Assembly, shapes: FloatArray) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Modes:
-    """Modes of a standing structure, in the order of another's.
+    """Modes of a structure, in the order of another's.
 
     ``soil_share`` is the share of the strain energy in the ground, ``kept`` that of the kinetic energy in the
     other's modes of the whole structure; ``direction`` is the horizontal one of most motion [rad], from x
@@ -289,9 +289,9 @@ def pairs_of(labels: Sequence[str]) -> list[tuple[int, int]]:
 
 
 def turned(base: Modes, after: Modes) -> FloatArray:
-    """Return by how much the lower mode of each bending pair has turned [rad], from x towards y.
+    """Return the rotation of the lower mode of each bending pair [rad], from x towards y.
 
-    At both modes of the pair, (MODES,); a direction is as good as its opposite.
+    It is given at both modes of the pair, (MODES,); opposite directions are equivalent.
     """
     out = np.zeros(MODES)
     for i, j in pairs_of(base.labels):
@@ -301,7 +301,7 @@ def turned(base: Modes, after: Modes) -> FloatArray:
 
 
 def repeated(event: Happening, times: int) -> Happening:
-    """Return an event that happens so many times over, as one; its effect is per event still."""
+    """Return an event repeated several times; its effect is still that of one."""
 
     def apply(standing: Standing) -> Standing:
         for _ in range(times):
@@ -320,7 +320,7 @@ def _bend(
     zeta: FloatArray,
     once: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return sizes, and how the change by a unit differs there from that of the event, if it has sizes.
+    """Return sizes, and the deviation of the change per unit from that of a single event.
 
     Solved at ``_SOLVED`` times the event; towards zero it goes on as between the event and the next of these.
     """
@@ -337,7 +337,7 @@ def _bend(
 
 
 def drawn_standings(typical: Standing, stiffness: FloatArray) -> tuple[list[Standing], Standing]:
-    """Return draws of the feet's stiffness from those of a posterior, (n, 2, n_feet), and their median."""
+    """Return draws of the feet's stiffness from a posterior, (n, 2, n_feet), and their median."""
     chosen = stiffness[np.linspace(0, len(stiffness) - 1, _DRAWS).astype(int)]
     stands = [replace(typical, horizontal=h, vertical=v) for h, v in chosen]
     horizontal, vertical = np.median(stiffness, axis=0)
@@ -345,7 +345,7 @@ def drawn_standings(typical: Standing, stiffness: FloatArray) -> tuple[list[Stan
 
 
 def _model_error(fit: Modes, places: Sequence[int], frequency_hz: FloatArray) -> float:
-    """Return by how much a model misses frequencies, with one mode's worth of what is usual."""
+    """Return the relative error of a model's frequencies, combined with the prior of one mode's weight."""
     known = [(place, f) for place, f in zip(places, frequency_hz, strict=True) if place >= 0]
     off = np.array([np.log(fit.modes.frequency_hz[place] / f) for place, f in known])
     return float(np.sqrt((off @ off + _MODEL_ERROR**2) / (len(known) + 1)))
@@ -396,7 +396,7 @@ def standings(
 
 
 def _families(found: list[tuple[str, Cause]]) -> tuple[Cause, ...]:
-    """Return the causes, those of one family and direction as one; a family has one prior weight."""
+    """Return the causes, merged within one family and direction; each family has one prior weight."""
     out: list[Cause] = []
     for family in dict.fromkeys(name for name, _ in found):
         members = [cause for name, cause in found if name == family]
@@ -424,16 +424,16 @@ def _cosine(one: Cause, other: Cause) -> float:
 
 
 def _clock() -> Cause:
-    """Return a clock that runs wrong: all frequencies alike, no damping."""
+    """Return the cause of a wrong clock: all frequencies change alike, damping does not."""
     sizes, weights = sizes_about(1e-3, 1.2, both_ways=True)
     direction = np.repeat([1.0, 0.0, 0.0], MODES)[None]
     return Cause("sensor: clock", direction, sizes, weights, "-", prior=0.5)
 
 
 def _yaw(frequency_hz: FloatArray, labels: Sequence[str], zeta: FloatArray) -> tuple[Cause, ...]:
-    """Return a yaw that is read wrong: it mixes frequencies and damping of bending pairs, and turns them.
+    """Return the cause of a wrong yaw, which mixes and rotates bending pairs.
 
-    Which way it turns them is not known: there are two draws.
+    The sense of rotation is unknown, hence two draws.
     """
     direction = np.zeros(3 * MODES)
     for i, j in pairs_of(labels)[:2]:
@@ -451,7 +451,7 @@ def _yaw(frequency_hz: FloatArray, labels: Sequence[str], zeta: FloatArray) -> t
 
 @dataclass(frozen=True)
 class SeenCauses:
-    """Causes over the quantities that are watched.
+    """Causes over the monitored quantities.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What may happen to a jacket, each as the structure and the ground after it."""
+"""Possible changes of a jacket, each as the changed structure and ground."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from jackettwin.plugins import plugins
 from jackettwin.structure import Material, Member, PointMass, Section, Structure
 
 _LEG = 0.9
-"""A member of the jacket that climbs by more of its length is a leg."""
+"""Smallest rise of a leg over its length; other members are braces."""
 _SEA_WATER, _GROWTH = 1025.0, 1325.0
-"""Densities [kg/m³]; of marine growth after DNV-RP-C205 (2021), section 6.7.4."""
+"""Densities of sea water and of marine growth [kg/m³], the latter after DNV-RP-C205 (2021), section 6.7.4."""
 _SPLASH = (-3.0, 6.0)
 """Splash zone about mean sea level [m]."""
 _WEAKENED = "× 30 % off"
-"""Unit of a brace's loss: what 30 % less of its stiffness does. Twice the effect is no 60 %: what a brace
-carries goes over to its neighbours the faster, the less is left of it."""
+"""Unit of a brace's loss: the effect of 30 % less stiffness. Twice the effect is not 60 %,
+since load shifts to the neighbours faster the less stiffness is left."""
 _GONE = 1e-3
-"""Share of a lost member's stiffness that is kept, so that no node hangs loose."""
+"""Share of a lost member's stiffness that is kept, so that every node remains supported."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Standing:
 
 @dataclass(frozen=True)
 class Happening:
-    """Something that may happen.
+    """A possible change.
 
     Attributes
     ----------
@@ -72,11 +72,11 @@ class Happening:
 
 
 PLUGINS = "jackettwin.causes"
-"""Group of entry points, each a function from a :class:`Standing` to what else may happen to it."""
+"""Group of entry points, each a function from a :class:`Standing` to further possible changes."""
 
 
 def happenings(standing: Standing) -> tuple[Happening, ...]:
-    """Return all that may happen to a structure, what installed packages know of included."""
+    """Return all possible changes of a structure, including those of installed packages."""
     structure = standing.structure
     added = cast("Iterable[Callable[[Standing], Iterable[Happening]]]", plugins(PLUGINS).values())
     return (
@@ -182,7 +182,8 @@ def _grown(standing: Standing) -> Standing:
     def more(member: Member) -> float:
         outer = member.section_start.outer_diameter_m
         ring = 0.25 * pi * ((outer + 2.0 * thickness) ** 2 - outer**2)
-        return ring * (_GROWTH + _SEA_WATER)  # the growth, and the water moved aside by it: C_a = 1
+        return ring * (_GROWTH + _SEA_WATER)  # marine growth, and the added mass of the water it displaces:
+        # C_a = 1
 
     return with_mass(standing, standing.structure.members, more)
 
@@ -192,8 +193,8 @@ def with_mass(
 ) -> Standing:
     """Return the structure with mass on the submerged length of some members, half at either end.
 
-    A mass below zero is a loss, as of anodes: it is taken from the bodies on the node, and what they do not
-    have from the steel of the member.
+    A negative mass is a loss, e.g. of anodes: it is taken from the bodies on the node,
+    and the rest from the steel of the member.
 
     Parameters
     ----------
@@ -223,7 +224,7 @@ def with_mass(
 
 
 def _taken(masses: list[PointMass], node: str, loss: float) -> float:
-    """Take a mass [kg] from the bodies on a node, the first ones first, and return what they do not have."""
+    """Take a mass [kg] from the bodies on a node in order, and return the remainder."""
     for i, body in enumerate(masses):
         if body.node == node and loss > 0.0:
             part = min(loss, body.mass_kg)
@@ -232,7 +233,7 @@ def _taken(masses: list[PointMass], node: str, loss: float) -> float:
 
 
 def _lighter(member: Member, loss: float, length_m: float) -> Member:
-    """Return a member whose steel is so many kilograms lighter."""
+    """Return a member with its steel lighter by some kilograms."""
     ends = member.section_start, member.section_end
     area = 0.5 * pi * sum((end.outer_diameter_m - end.thickness_m) * end.thickness_m for end in ends)
     steel = area * length_m * member.material.density_kg_m3

@@ -1,4 +1,4 @@
-"""What is known of the ground under a structure's feet: how stiff it is, and what scour takes of it."""
+"""Ground under a structure's feet: its stiffness, and the loss of stiffness by scour."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from jackettwin.twin import TwinConfig
 from jackettwin.updating import Update
 
 REFERENCE = "jacket15"
-"""The shipped foundation whose piles stand for those that nobody describes: 60 m long, 3.5 m wide, in ten
-metres of stiff clay over dense sand. A metre of scour takes 21 % of their lateral stiffness, and 1 % of the
-axial one, which comes from deeper down."""
+"""Shipped foundation that represents undescribed piles: 60 m long, 3.5 m wide, in ten metres of stiff
+clay over dense sand. A metre of scour takes 21 % of their lateral stiffness and 1 % of the axial one,
+which acts deeper."""
 
 Loss = tuple[float, float]
 """ln of the horizontal and of the vertical stiffness that a pile head loses by a metre of scour."""
@@ -26,12 +26,12 @@ Loss = tuple[float, float]
 
 @dataclass(frozen=True)
 class Ground:
-    """What is known of the ground.
+    """Stiffness of the ground and its dependence on scour.
 
     Attributes
     ----------
     piles : Foundation or None
-        Layered ground with a pile in it; without, scour takes what it takes of the piles of ``REFERENCE``.
+        Layered ground with a pile; if None, scour acts as on the piles of ``REFERENCE``.
     stiffness : (n_draws, 2, n_feet) or None
         Horizontal and vertical stiffness of the feet [N/m], drawn from the posterior of an update; without,
         it is fitted to the frequencies of the baseline.
@@ -42,22 +42,22 @@ class Ground:
 
     @classmethod
     def of(cls, config: TwinConfig, update: Update | None = None) -> Ground:
-        """Return what a twin file says of the ground, and what an update of its supports found."""
+        """Return the ground from a twin file and the update of its supports."""
         sampled = None if update is None or update.uncertainty is None else _feet_stiffness(update)
         return cls(_piles(config), sampled)
 
     @property
     def scour_loss(self) -> Loss:
-        """What a metre of scour takes, by the soil's own curves."""
+        """Loss of ln stiffness per metre of scour, by the soil's own curves."""
         return _reference_loss() if self.piles is None else scour_loss(self.piles)
 
 
 UNDESCRIBED = Ground()
-"""Ground of which nothing is known but what stands on it."""
+"""Undescribed ground."""
 
 
 def scour_loss(piles: Foundation) -> Loss:
-    """Return ln of the stiffness that a pile head loses by a metre of scour: sideways, upright; and axially.
+    """Return the loss of ln stiffness of a pile head per metre of scour, horizontal and vertical.
 
     Raises
     ------

@@ -1,9 +1,9 @@
-"""The third of the pair: the days of a state, watched.
+"""Monitoring of the days of a twin's state.
 
-What is said of a day depends on the days up to it and nothing else: whatever order records came in, however
-the work was split, the same state gives the same judgement, bit for bit. What is kept between two calls only
-saves time: a day that a late record has changed since is judged anew, from the end of the baseline on. What
-days hold is asked for only where it is needed: after a quiet day, of that day alone, however many there are.
+The judgement of a day depends only on the days up to it: whatever the order in which records arrived
+or the division of the work, equal states give equal judgements, bit for bit. What is stored between two
+calls only saves time: if a late record changes a day, judgement is repeated from the end of the baseline.
+The content of a day is loaded only when needed: after a quiet day, only that day.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 
 from jackettwin.change.causes import ModelCauses, seen_causes
 from jackettwin.change.ground import UNDESCRIBED, Ground
-from jackettwin.change.table_watch import begun, explained_alarm, structure_causes
+from jackettwin.change.table_monitoring import explained_alarm, structure_causes, watch_after_baseline
 from jackettwin.change.watch_document import alarm_document
 from jackettwin.errors import InputError
 from jackettwin.files import StoredSchema, digest
@@ -36,7 +36,7 @@ _USUAL = WatchSettings()
 
 @dataclass(frozen=True)
 class Judged:
-    """What is kept of a watch from one day to the next.
+    """Stored monitoring results from one call to the next.
 
     Attributes
     ----------
@@ -61,12 +61,12 @@ class Judged:
 
     @property
     def promise(self) -> tuple[float, float, str]:
-        """What must not differ if it is to go on."""
+        """Settings that must be unchanged to continue."""
         return self.baseline_days, self.arl_years, self.relearn
 
 
 JUDGED = StoredSchema("twin_judged", Judged)
-"""How judgements are kept."""
+"""Stored form of judgements."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ class Days:
 
     @classmethod
     def of(cls, state: TwinState) -> Days:
-        """Return the days of a state that is here as a whole."""
+        """Return the days of a state held completely in memory."""
         return cls(_Identities(state.days), state.days.__getitem__)
 
 
@@ -113,9 +113,9 @@ def judge(
     settings: WatchSettings = _USUAL,
     ground: Ground = UNDESCRIBED,
 ) -> tuple[Judged, tuple[Finding, ...]]:
-    """Return what the days of a state say of a change, and what is worth saying that was not said before.
+    """Return the judgement of the days of a state, and new findings.
 
-    The last day is left out until a later one has begun: it may not be whole.
+    The last day is omitted until a later one has begun, since it may be incomplete.
 
     Parameters
     ----------
@@ -137,10 +137,10 @@ def judge(
     known = _known(kept, fresh, every, before, after)
     findings = []
     columns = known.columns or Columns.of(model, every, before)
-    baseline = cache(lambda: history_of(columns, every, before))  # a year of days, needed rarely
-    causes = cache(lambda: _causes(model, baseline(), ground))  # seconds, needed rarely
+    baseline = cache(lambda: history_of(columns, every, before))  # a year of days, rarely needed
+    causes = cache(lambda: _causes(model, baseline(), ground))  # takes seconds, rarely needed
     if known.learnt is None:
-        watch = begun(baseline(), settings.arl_years, causes())
+        watch = watch_after_baseline(baseline(), settings.arl_years, causes())
         known = replace(
             known, baseline=_fingerprint(every, before), learnt=watch, watch=watch, columns=columns
         )
@@ -153,7 +153,7 @@ def judge(
 
 
 def _known(kept: Judged, fresh: Judged, every: Days, before: Sequence[str], after: Sequence[str]) -> Judged:
-    """Return what still holds of what is kept."""
+    """Return the stored results that are still valid."""
     if kept.promise != fresh.promise:
         return fresh
     if kept.learnt is None or kept.baseline != _fingerprint(every, before):
@@ -164,7 +164,7 @@ def _known(kept: Judged, fresh: Judged, every: Days, before: Sequence[str], afte
 
 
 def _causes(model: TwinModel, baseline: History, ground: Ground) -> ModelCauses | None:
-    """Return what may happen to the structure; None if there is none, or its modes were not seen."""
+    """Return the possible causes; None without a structure or if its modes were not seen."""
     if model.assembly is None:
         return None
     try:
@@ -180,7 +180,7 @@ def _day(
     name: str,
     causes: Callable[[], ModelCauses | None],
 ) -> Judged:
-    """Return what is known after one more day."""
+    """Return the results after one more day."""
     if known.watch is None or not day.days.size:
         return replace(known, through=name)
     watch, look = step(known.watch, day)
@@ -194,7 +194,7 @@ def _day(
 
 
 def finding_of(alarm: Mapping[str, Any]) -> Finding:
-    """Return what is said of an alarm."""
+    """Return the finding on an alarm."""
     best = alarm["causes"][0]
     low, high = alarm["size_interval_90"]
     began_low, began_high = (text[:10] for text in alarm["began_interval_90"])
@@ -223,7 +223,7 @@ def _time(day: float) -> datetime:
 
 @dataclass(frozen=True)
 class Columns:
-    """What the rows of a history are made of: as the baseline has it, so that days go on in the same way.
+    """Columns of a history as in the baseline, so that later days are arranged alike.
 
     ``numbers`` are those of the modes that were seen, in the order of ``labels``.
     """

@@ -1,4 +1,4 @@
-"""Tables of modes through time, as anybody writes them: one row a mode and time, or one column a mode."""
+"""Reading of tables of modes through time, with one row per mode and time or one column per mode."""
 
 from __future__ import annotations
 
@@ -30,12 +30,13 @@ QUANTITIES = {
     "damping_ratio": "damping", "damping_ratio_std": "damping_std",
     "pair_angle_deg": "angle", "pair_angle_std_deg": "angle_std",
 }  # fmt: skip
-"""Column of a table of one row a mode, and what a history calls it."""
+"""Columns of a table with one row per mode, and their names in a history."""
 _MODAL = re.compile(
     r"^f_?\d|freq|zeta|damp|^mode|mac|_std$|interval|phase|complex|seed|^id$|_id$|^index$|^unnamed|^row|order|_hz$",
     re.I,
 )
-"""Names of columns that tell of modes or of the table: explaining modes by them would explain damage away."""
+"""Names of columns that depend on modes or describe the table;
+as conditions they would explain damage away."""
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 
@@ -286,7 +287,7 @@ def _label(word: Any) -> str:
 
 
 def _checked(history: History) -> tuple[History, tuple[str, ...]]:
-    """Return the history with what cannot be as missing, and remarks."""
+    """Return the history with impossible values missing, and remarks."""
     remarks = []
     arrays: dict[str, Any] = {}
     for what, column in QUANTITIES.items():

@@ -1,7 +1,7 @@
-"""What to measure or look at next, so that the causes of a change are told apart.
+"""Ranking of further measurements and inspections that would distinguish the causes of a change.
 
-Every frequency and damping ratio of the model's modes, watched already or not, in every operating state that
-the table knows, and a look at every place where a cause shows: ranked by the information to be expected.
+All frequencies and damping ratios of the model's modes, monitored or not, in every known operating state,
+and inspections wherever a cause is visible, are ranked by expected information.
 """
 
 from __future__ import annotations
@@ -28,15 +28,16 @@ from jackettwin.watching import (
 )
 
 _RECORDS, _RECORD_S, _SHOWN = 144, 600.0, 5
-"""Ten-minute records of a further measurement, spread over a month, and how many measurements are named."""
+"""Ten-minute records of a further measurement over a month, their length [s],
+and the number of measurements named."""
 _INDEPENDENT = 7.5
-"""Independent values that a month holds of what is unexplained, if it lasts two days."""
+"""Independent values per month of unexplained variation that lasts two days."""
 _USUAL_ZETA, _TELLING, _LIKELY, _LOOK_STD = 0.01, 0.01, 0.01, 0.3
-"""Damping ratio of a mode that is not watched; nats below which nothing is worth measuring; probability from
-which a cause counts; and by how much of what there is to be seen a look may err: one in twenty does not
-tell."""
+"""Damping ratio of a mode that is not monitored; information [nats] below which nothing is suggested;
+smallest probability of a cause that counts; and error of an inspection relative to what there is to be seen,
+of which one in twenty is inconclusive."""
 _UNEXPLAINED = {"frequency": 1e-3, "damping": 0.05}
-"""Where no quantity of the kind is watched."""
+"""Unexplained standard deviations if no quantity of the kind is monitored."""
 LOOKS = (
     (r"^scour", "a survey of the seabed at the feet"),
     (r" (lost|weakened)( |$)", "a look at {0} and those alike"),
@@ -49,12 +50,12 @@ LOOKS = (
     (r"^sensor: yaw", "the yaw reading beside the nacelle's position"),
     (r"^sensor: more scatter", "a second accelerometer beside the one in doubt"),
 )
-"""Where causes show to who looks, by their names; what is in the ground does not."""
+"""Places where causes are visible on inspection, by their names; those in the ground are not."""
 
 
 @dataclass(frozen=True)
 class Measurement:
-    """What could be measured or looked at, and the information [nats] to expect on which cause it is.
+    """A possible measurement or inspection, and its expected information on the cause [nats].
 
     Attributes
     ----------
@@ -72,7 +73,7 @@ class Measurement:
 
 @dataclass(frozen=True)
 class Circumstances:
-    """What a further measurement would be made in.
+    """Conditions of a further measurement.
 
     Attributes
     ----------
@@ -87,7 +88,7 @@ class Circumstances:
 
     @classmethod
     def of(cls, watch: Watch, baseline: History, labels: Sequence[str]) -> Circumstances:
-        """Return the circumstances of a baseline; a mode that is not watched is damped as the others are."""
+        """Return the conditions of a baseline; other modes are given the damping of monitored ones."""
         damping = np.full((len(watch.design.states), MODES), _USUAL_ZETA)
         for row, state in zip(damping, watch.design.states, strict=True):
             zeta = typical(baseline.damping[baseline.states == state])
@@ -102,9 +103,9 @@ class Circumstances:
         return cls(names, damping, np.array([usual["frequency"], usual["damping"]]))
 
     def noise(self, frequency_hz: FloatArray) -> FloatArray:
-        """Return how well a month's records tell a change of ln f and ln ζ, (n_states, 2, n_modes).
+        """Return the accuracy of a change of ln f and ln ζ from a month's records, (n_states, 2, n_modes).
 
-        No method beats the limits of long data (Au 2014); what is unexplained comes on top.
+        It is the long-data limit (Au 2014) plus unexplained variation.
         """
         limits = np.array([long_data_limits(frequency_hz, z, _RECORDS * _RECORD_S) for z in self.damping])
         slow = self.unexplained[None, :, None] ** 2 / _INDEPENDENT
@@ -114,10 +115,10 @@ class Circumstances:
 def next_measurements(
     seen: SeenCauses, diagnosis: Diagnosis, around: Circumstances
 ) -> tuple[Measurement, ...]:
-    """Return what could be measured or looked at to tell likely causes apart, the most telling first.
+    """Return measurements and inspections that distinguish likely causes, the most informative first.
 
-    A quantity is known as a month's records before and after tell it; each stands there once, in the state
-    that tells most. A look at a place tells whether the causes that show there are it.
+    A quantity is measured for a month before and after; it appears once, in its most informative state.
+    An inspection shows whether the causes visible there are present.
     """
     by_name = {v.cause: v for v in diagnosis.verdicts}
     likely = [c for c in seen.model.causes if by_name[c.name].probability > _LIKELY]
@@ -133,7 +134,7 @@ def next_measurements(
 
 
 def _telling(seen: SeenCauses) -> list[int]:
-    """Return the quantities that tell of causes, as indices among the model's."""
+    """Return the informative quantities, as indices among the model's."""
     labels = seen.model.labels
     modes = [i for i, label in enumerate(labels) if seen.model.tells(label) and not label.startswith(LOCAL)]
     return [i + shift for shift in (0, MODES) for i in modes]
@@ -153,15 +154,15 @@ def _named(seen: SeenCauses, column: int, state: str, gain: float) -> Measuremen
 
 
 def _gain(likely: Sequence[Cause], verdicts: dict[str, CauseVerdict], column: int, noise: float) -> float:
-    """Return what one quantity, known so well, would tell of likely causes [nats]."""
+    """Return the expected information of one quantity of given accuracy on likely causes [nats]."""
     share = np.array([verdicts[c.name].probability for c in likely])
     mean, std = np.array([_predicted(c, verdicts[c.name], column, noise) for c in likely]).T
-    # what is left for other causes is not told by it
+    # the remaining probability of other causes is not affected
     return float(share.sum() * expected_information(share / share.sum(), mean, std))
 
 
 def _looks(verdicts: Sequence[CauseVerdict]) -> list[Measurement]:
-    """Return what looking somewhere tells: the entropy of whether the causes that show there are it."""
+    """Return the information of an inspection, the entropy of its outcome."""
     share = np.array([v.probability for v in verdicts])
     places: dict[str, list[float]] = {}
     for i, verdict in enumerate(verdicts):

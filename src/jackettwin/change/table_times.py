@@ -1,4 +1,4 @@
-"""When the rows of a table are of: times as people write them, in one column or several."""
+"""Times of the rows of a table, in common notations and in one column or several."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Stamps = npt.NDArray[np.datetime64]
 Stored = dict[str, npt.NDArray[Any]]
 
 _TIMES = ("timeutc", "time", "timestamp", "datetime", "datetimeutc", "utc", "date", "datum", "zeit")
-"""Names of columns of times, in letters alone, the likeliest first; others are found by what they hold."""
+"""Names of columns of times, in letters only, the likeliest first; others are recognised by content."""
 _NUMBERED = ("t", "days", "day")
 _PARTS = ("year", "month", "day", "hour", "minute", "second")
 _DATES = ("%d.%m.%Y", "%Y/%m/%d", "%d/%m/%Y", "%m/%d/%Y", "%d-%m-%Y", "%d-%b-%Y", "%d %b %Y", "%Y%m%d")
@@ -26,7 +26,7 @@ _CLOCKS = ("", " %H:%M", " %H:%M:%S", " %H:%M:%S.%f", " %I:%M %p", " %I:%M:%S %p
 _CLOCK = re.compile(r"\d\d?:\d\d(:\d\d([.,]\d+)?)?( ?[AP]M)?", re.IGNORECASE)
 _ZONED = re.compile(r":\d\d.*(Z|[+-]\d\d:?\d\d)$")
 _SERIAL = ((2e4, 8e4, datetime(1899, 12, 30), 0.0), (6.9e5, 8e5, datetime(1, 1, 1), 367.0))
-"""Serial days of Excel and of MATLAB: range, what day zero is, and what to take off."""
+"""Serial days of Excel and of MATLAB: range, date of day zero, and offset."""
 _UNIX = ((1e8, 1e11, 1e3), (1e11, 1e14, 1.0), (1e14, 1e17, 1e-3), (1e17, 1e20, 1e-6))
 """Unix seconds, milli-, micro- and nanoseconds: range, and milliseconds in one."""
 _ALLOWED = "ISO 8601: 2025-01-01T13:00:00Z"
@@ -119,13 +119,13 @@ def _is_time(text: str) -> bool:
 
 
 def _ways(text: str) -> list[str]:
-    """Return the ways of writing times that may be meant by one."""
+    """Return the formats that a description of a time may mean."""
     ways = ("".join(parts) for parts in product(_DATES, _CLOCKS))
     return [way for way in ways if _under(way, [text]) is not None]
 
 
 def _under(way: str, texts: list[str]) -> Stamps | None:
-    """Return texts as times written in one way; None if one of them is not."""
+    """Return texts as times in one format; None if one does not fit."""
     try:
         return np.array([datetime.strptime(text, way) for text in texts], "datetime64[ms]")
     except ValueError:
@@ -133,7 +133,7 @@ def _under(way: str, texts: list[str]) -> Stamps | None:
 
 
 def _formatted(texts: list[str]) -> Stamps:
-    """Return times that are all written in one way and ascend in it; of two such ways neither is taken."""
+    """Return times that all have one format and ascend in it; None if two such formats fit."""
     ways = _ways(texts[0])
     found = [stamps for way in ways if (stamps := _under(way, texts)) is not None]
     if not found:

@@ -1,4 +1,4 @@
-"""What ``jackettwin watch`` prints as JSON."""
+"""JSON output of ``jackettwin watch``."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from jackettwin.change.table_watch import Alarm, Watched
+from jackettwin.change.table_monitoring import Alarm, Watched
 from jackettwin.watching import CauseVerdict, Watch
 
 _Z90 = 1.645
 _NAMED, _LIKELY = 3, 0.001
-"""Causes that a sentence names where none is clear, and the probability below which none is listed."""
+"""Number of causes in a sentence if none is clear, and the smallest probability of a listed cause."""
 
 
 def watched_document(watched: Watched) -> dict[str, Any]:
@@ -80,13 +80,13 @@ def alarm_document(watch: Watch, time: Callable[[float], datetime], alarm: Alarm
 
 
 def _doubt(alarm: Alarm) -> float:
-    """Return the entropy of which cause it was [nats]."""
+    """Return the entropy of the causes [nats]."""
     p = np.array([v.probability for v in alarm.diagnosis.verdicts if v.probability > 0.0])
     return max(float(-p @ np.log(p)), 1e-12)
 
 
 def next_sentence(alarm: dict[str, Any]) -> str:
-    """Return what an alarm's document says to measure next, or nothing."""
+    """Return the sentence on the next measurement of an alarm's document, empty if there is none."""
     told = [f"{m['what']} ({100.0 * m['share_of_doubt']:.0f} %)" for m in alarm["next_measurements"]]
     if not told:
         return ""
@@ -94,7 +94,7 @@ def next_sentence(alarm: dict[str, Any]) -> str:
 
 
 def _unit(change: str, kind: str) -> str:
-    """Return the unit of the change of a quantity: pairs turn by degrees, all else changes by a share."""
+    """Return the unit of the change of a quantity: degrees for pairs, a relative change for others."""
     return "deg" if kind == "angle" and change != "scatter" else "-"
 
 
@@ -117,7 +117,7 @@ def _cause(verdict: CauseVerdict) -> dict[str, Any]:
 
 
 def quantity_name(watch: Watch, key: tuple[str, int]) -> str:
-    """Return what a watched quantity is called."""
+    """Return the name of a monitored quantity."""
     kind, mode = key
     return watch.labels[mode] + {"frequency": "", "damping": " damping", "angle": " direction"}[kind]
 

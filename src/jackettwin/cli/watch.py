@@ -64,7 +64,7 @@ def watch_command(
     """
     from jackettwin.change import next_sentence, statement
     from jackettwin.change.modal_table import read_modal_table
-    from jackettwin.change.table_watch import watch_table
+    from jackettwin.change.table_monitoring import watch_table
     from jackettwin.change.watch_document import watched_document
     from jackettwin.decks import read_structure
     from jackettwin.files import atomic_folder, write_json

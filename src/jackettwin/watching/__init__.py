@@ -1,4 +1,4 @@
-"""Watching: has a structure changed, since when, by how much and why; of any structure, on arrays."""
+"""Monitoring of modes through time, for any structure: change, onset, size and cause."""
 
 import lazy_loader
 

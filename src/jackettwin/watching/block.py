@@ -1,4 +1,4 @@
-"""One kind of quantity, ln f, ln ζ or directions of pairs: from a day's records to what the day says."""
+"""Monitoring state of one kind of quantity (ln f, ln ζ or directions of pairs), updated day by day."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from jackettwin.watching.memory import Bank, Belief, Filtered, Memory, empty_ban
 from jackettwin.watching.scatter import log_ratios, steadiness
 
 WINDOW_DAYS = 1.0 / 24.0
-"""Records are averaged over an hour of the clock."""
+"""Averaging window: one hour of the clock [days]."""
 _LEAST_STD, _MOST_STD = 0.3, 5.0
-"""Stated standard deviations are believed within these factors of their median."""
+"""Limits of stated standard deviations, as factors of their median."""
 BROAD = {"frequency": 0.03, "damping": 0.5, "angle": 0.5}
-"""Prior standard deviation of a change once it is certain that there is one."""
+"""Prior standard deviation of a change, given that there is one."""
 _MAD = 1.4826
 _NEGLIGIBLE = -20.0
-"""Ln of the weight below which a model is not asked."""
+"""Logarithm of the weight below which a model is not evaluated."""
 _FEWEST, _STILL = 30, 1e-9
-"""Values of a quantity in the baseline from which it is watched, and their relative range: what always reads
-the same is no measurement."""
+"""Fewest values of a quantity in the baseline for it to be monitored, and their smallest relative range:
+a constant is no measurement."""
 
 
 @dataclass(frozen=True)
 class Block:
-    """What is known of one kind of quantity.
+    """Monitoring state of one kind of quantity.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class Block:
 
 @dataclass(frozen=True)
 class Spoken:
-    """What a day says of one kind of quantity.
+    """Result of one day for one kind of quantity.
 
     Attributes
     ----------
@@ -89,7 +89,7 @@ class Spoken:
 
 
 def watched(baseline: History, kind: Kind) -> IntArray:
-    """Return which columns have enough values to be watched, and do not stand still."""
+    """Tell which columns have enough values to be monitored and are not constant."""
     columns = [x[np.isfinite(x) & ((x > 0.0) | (kind == "angle"))] for x in baseline.seen(kind)[0].T]
     alive = [x.size >= _FEWEST and np.ptp(x) > _STILL * np.max(np.abs(x)) for x in columns]
     return np.flatnonzero(np.array(alive, dtype=np.bool_))
@@ -104,9 +104,9 @@ def begin(
     kept: IntArray,
     slopes: Sequence[Slope] = (),
 ) -> tuple[Block, Hours]:
-    """Return what a baseline teaches of one kind of quantity, and its hours; ``slopes`` are of those kept."""
+    """Return the state learnt from a baseline, and its hours; ``slopes`` are of the monitored columns."""
     middle = middles(baseline, kind, kept)
-    # a frequency's noise is far too small for its power to matter
+    # the noise of a frequency is too small for its power to matter
     power = std_power(baseline, kind, kept) if kind == "damping" else np.ones(len(kept))
     y, relative = deviations(baseline, kind, kept, middle, power)
     y[~np.isfinite(rows).all(axis=1)] = np.nan
@@ -117,7 +117,7 @@ def begin(
     y[apart] = np.nan
     hours = by_hour(baseline.days, baseline.states, x, y, variance * doubt, WINDOW_DAYS)
     day = np.floor(baseline.days)
-    beside = np.stack([_told(apart[day == d], rest[day == d]) for d in np.unique(day)])
+    beside = np.stack([_rejected_by_others(apart[day == d], rest[day == d]) for d in np.unique(day)])
     spread = np.maximum(np.nanstd(hours.values, axis=0), 0.1 * usual_std)
     learnt = learn(hours, design.coefficients(spread, slopes), hidden=design.hidden)
     m, p = len(kept), rows.shape[1]
@@ -157,20 +157,22 @@ def _by_day(hours: Hours, memory: Memory) -> tuple[FloatArray, FloatArray]:
 
 
 def _with_outliers(chi2: FloatArray, freedom: FloatArray, apart: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return scatter with what was set aside, each as far out as is just tolerated."""
+    """Return scatter including rejected outliers, each counted at the rejection limit."""
     return chi2 + OUTLIER**2 * apart, freedom + apart
 
 
 def _usual_std(
     days: FloatArray, x: FloatArray, y: FloatArray, relative: FloatArray, design: Design
 ) -> tuple[FloatArray, FloatArray]:
-    """Return (m,) the usual standard deviation, stated or from neighbours' differences, and remainders."""
+    """Return the usual standard deviation (m,), stated or from differences of neighbours,
+    and the residuals.
+    """
     m = y.shape[1]
     usual, rest = np.empty(m), np.full(y.shape, np.nan)
     for q in range(m):
         seen = np.flatnonzero(np.isfinite(y[:, q]))
         weight = np.ones(seen.size)
-        for _ in range(4):  # weights of Huber: outliers do not bend the line
+        for _ in range(4):  # Huber weights limit the influence of outliers on the line
             prior = np.diag((design.priors * max(float(np.std(y[seen, q])), 1e-12)) ** -2.0)
             left = (x[seen].T * weight) @ x[seen] / _robust(y[seen, q]) ** 2
             right = (x[seen].T * weight) @ y[seen, q] / _robust(y[seen, q]) ** 2
@@ -197,7 +199,7 @@ def _variance(relative: FloatArray, usual: FloatArray) -> FloatArray:
 def _set_apart(
     baseline: History, rest: FloatArray, variance: FloatArray
 ) -> tuple[BoolArray, FloatArray, FloatArray]:
-    """Return the outliers of a baseline, day by day, doubts of the others, and the last values."""
+    """Return the outliers of a baseline, doubt factors of the other values, and the last values."""
     m = rest.shape[1]
     scale = np.array([_robust(r[np.isfinite(r)] / np.sqrt(v[np.isfinite(r)]))
                       for r, v in zip(rest.T, variance.T, strict=True)])  # fmt: skip
@@ -212,7 +214,7 @@ def _set_apart(
 
 
 def hours_of(block: Block, history: History, rows: FloatArray) -> tuple[Hours, FloatArray, Block]:
-    """Return the hours of a day, how many values were set aside (m,), and the block with its last values."""
+    """Return a day's hours, the count of rejected values (m,), and the updated block."""
     y, relative = deviations(history, block.kind, block.kept, block.typical, block.std_power)
     y[~np.isfinite(rows).all(axis=1)] = np.nan
     x = np.nan_to_num(rows)
@@ -222,14 +224,14 @@ def hours_of(block: Block, history: History, rows: FloatArray) -> tuple[Hours, F
     mean, cov = _coefficients(block)
     moving = variance * memory.scale**2 + memory.std**2 + _unsure(cov, x - x.mean(axis=0))
     apart, doubt, tail = outliers(y - x @ mean.T, moving, block.tail)
-    told = _told(apart, y)
+    told = _rejected_by_others(apart, y)
     y[apart] = np.nan
     hours = by_hour(history.days, history.states, x, y, variance * doubt, WINDOW_DAYS)
     return hours, told, replace(block, tail=tail)
 
 
 def _coefficients(block: Block) -> tuple[FloatArray, FloatArray]:
-    """Return the coefficients as they are known by now, (m, p), and their covariances (m, p, p)."""
+    """Return the current coefficients (m, p) and their covariances (m, p, p)."""
     m, p = block.reference.shape
     belief = block.beliefs[0]
     own = np.stack([belief.cov[q * p : (q + 1) * p, q * p : (q + 1) * p] for q in range(m)])
@@ -237,18 +239,18 @@ def _coefficients(block: Block) -> tuple[FloatArray, FloatArray]:
 
 
 def _unsure(cov: FloatArray, x: FloatArray) -> FloatArray:
-    """Return the variances of what conditions explain, (n, m): unknown beyond those of the baseline."""
+    """Return the variances of what conditions explain, (n, m), in excess of those of the baseline."""
     return np.asarray(np.einsum("np,qpr,nr->nq", x, cov, x))
 
 
-def _told(apart: BoolArray, values: FloatArray) -> FloatArray:
-    """Return how many values a day's others tell to be apart, (m,)."""
+def _rejected_by_others(apart: BoolArray, values: FloatArray) -> FloatArray:
+    """Return the number of rejected values that a day's other values identify, (m,)."""
     enough = np.isfinite(values).sum(axis=0) >= ENOUGH
     return np.where(enough, apart.sum(axis=0), 0).astype(np.float64)
 
 
-def taken(block: Block, hours: Hours, apart: FloatArray, last_day: float) -> tuple[Block, Spoken]:
-    """Return the block after some hours and what they say; its banks have grown by one begin."""
+def with_hours(block: Block, hours: Hours, apart: FloatArray, last_day: float) -> tuple[Block, Spoken]:
+    """Return the block after some hours and their result; its banks have one more possible onset."""
     beliefs, banks, likelihoods, spoken = [], [], [], None
     for memory, belief, bank in zip(block.memories, block.beliefs, block.banks, strict=True):
         done = filtered(memory, belief, bank.with_begin(), hours, last_day)
@@ -274,8 +276,8 @@ def _spoken(block: Block, hours: Hours, apart: FloatArray, done: Filtered) -> Sp
         mean = np.where(total > 0.0, np.nansum(weight * np.nan_to_num(rest), axis=0) / total, np.nan)
         std = np.sqrt(1.0 / total + memory.std**2 + _unsure(_coefficients(block)[1], hours.rows).mean(axis=0))
     z = done.innovation / np.sqrt(done.spread)
-    # hours' means tell of the noise, too, by its share of what was not foreseen, but for what all of a day
-    # share: a step is no scatter
+    # hourly means also inform on the noise, through their unpredicted part except what all hours of a day
+    # share, since a step is not scatter
     share = np.nan_to_num(noise / done.spread)
     pull, nu = share / np.nan_to_num(done.spread, nan=1.0), np.nan_to_num(done.innovation)
     shared = np.sum(pull * nu, axis=0) / np.maximum(pull.sum(axis=0), 1e-300)
@@ -285,18 +287,18 @@ def _spoken(block: Block, hours: Hours, apart: FloatArray, done: Filtered) -> Sp
     return Spoken(mean, std, *_with_outliers(chi2, freedom, apart), z)
 
 
-def reconsidered(block: Block, share: float) -> Block:
-    """Return the block with a share of the models' weights as they were at the end of the baseline.
+def with_weights_reset(block: Block, share: float) -> Block:
+    """Return the block with part of the models' weights reset to those at the end of the baseline.
 
-    What is unexplained need not go on as it did: a model that was out of favour may be right again (fixed
-    share, Herbster & Warmuth 1998).
+    The unexplained variation may change its character, so that a model of low weight may become right again
+    (fixed share, Herbster & Warmuth 1998).
     """
     weights = np.logaddexp(block.log_weights + np.log1p(-share), block.log_prior + np.log(share))
     return replace(block, log_weights=weights)
 
 
 def log_evidence(block: Block) -> FloatArray:
-    """Return ln of the Bayes factors of begins and directions over all models, (n_begins, n_directions)."""
+    """Return ln of the Bayes factors of onsets and directions over all models, (n_begins, n_directions)."""
     live = [(w, bank) for w, bank in zip(block.log_weights, block.banks, strict=True) if w > _NEGLIGIBLE]
     info = np.concatenate([bank.info for _, bank in live])
     score = np.concatenate([bank.score for _, bank in live])
@@ -305,25 +307,24 @@ def log_evidence(block: Block) -> FloatArray:
 
 
 def log_scatter(block: Block, spoken: Spoken) -> FloatArray:
-    """Return ln of the likelihood ratios of a louder noise, (m, n_factors)."""
+    """Return ln of the likelihood ratios of increased noise, (m, n_factors)."""
     return log_ratios(spoken.chi2, spoken.freedom, block.steadiness)
 
 
 def thinned(block: Block, keep: BoolArray) -> Block:
-    """Return the block with some of the begins only."""
+    """Return the block with only some of the onsets."""
     return replace(block, banks=tuple(bank.thinned(keep) for bank in block.banks))
 
 
-def adopted(block: Block, begun: int, size: FloatArray, states: int) -> Block:
-    """Return the block with a change taken over, its size as uncertain as it is, and no begins left.
+def with_change_accepted(block: Block, onset: int, size: FloatArray, states: int) -> Block:
+    """Return the block with a change accepted, its size as uncertain as estimated, and without onsets.
 
-    The filter believed that nothing happened. If y jumped by δ, its state is off by response·δ, and the
-    intercepts of all operating states have moved by δ. What other changes have to be measured against is the
-    changed structure.
+    The filter assumed no change. If y jumped by δ, its state is off by response·δ, and the intercepts of all
+    operating states moved by δ. Further changes are measured relative to the changed structure.
 
     Parameters
     ----------
-    begun : number of the begin
+    onset : number of the onset
     size : (m,) which quantities move at all
     states : number of intercepts
     """
@@ -331,13 +332,13 @@ def adopted(block: Block, begun: int, size: FloatArray, states: int) -> Block:
     beliefs, weights = [], []
     prior = np.where(size, BROAD[block.kind] ** -2.0, 1e12)
     for belief, bank in zip(block.beliefs, block.banks, strict=True):
-        covariance = np.linalg.inv(bank.info[begun] + np.diag(prior))
-        delta = covariance @ bank.score[begun]
-        moves = -bank.response[begun].T.copy()
+        covariance = np.linalg.inv(bank.info[onset] + np.diag(prior))
+        delta = covariance @ bank.score[onset]
+        moves = -bank.response[onset].T.copy()
         for q in range(m):
             moves[q * p : q * p + states, q] += 1.0
         beliefs.append(Belief(belief.mean + moves @ delta, belief.cov + moves @ covariance @ moves.T))
-        fit = bank.score[begun] @ delta
+        fit = bank.score[onset] @ delta
         weights.append(0.5 * (fit + np.linalg.slogdet(covariance)[1] + np.log(prior).sum()))
     log_weights = block.log_weights + np.array(weights)
     return replace(
@@ -349,10 +350,10 @@ def adopted(block: Block, begun: int, size: FloatArray, states: int) -> Block:
 
 
 def cleared(block: Block) -> Block:
-    """Return the block without begins."""
+    """Return the block without onsets."""
     return replace(block, banks=no_begins(len(block.kept), block.beliefs))
 
 
 def no_begins(m: int, beliefs: Sequence[Belief]) -> tuple[Bank, ...]:
-    """Return a bank for each model; ramps are judged by the first alone."""
+    """Return a bank for each model; ramps are evaluated by the first only."""
     return tuple(empty_bank(m, belief.mean.size, ramps=i == 0) for i, belief in enumerate(beliefs))

@@ -1,4 +1,4 @@
-"""Causes as directions: what each would do to all quantities, and how large it usually is."""
+"""Causes of change as directions: their effect on all quantities, and their usual size."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from jackettwin.watching.directions import PAIR, SIZES
 
 SOMETHING_ELSE = "something else"
 SENSOR = "sensor"
-"""What the names of sensors' causes begin with."""
+"""Prefix of the names of sensors' causes."""
 _SENSOR_SHIFT = 0.002
-"""Standard deviation by which the modes of a failing sensor move besides scattering, in ln f; two hundred
-times as much in ln ζ."""
+"""Standard deviation by which modes shift at a failing sensor, besides scattering, in ln f;
+two hundred times as much in ln ζ."""
 _DAMPING_OVER_FREQUENCY = 200.0
 REACH = 2.0
-"""Spreads of ln size that are thought of, both ways: a factor of 5 for what may be of any size."""
+"""Range of ln size considered, in spreads on either side; a factor of 5 for an arbitrary size."""
 _STEP = 0.025
-"""Of ln size: a third of what a size is known by if a direction misses as little as any model's."""
+"""Step of ln size: a third of the accuracy of a size if a direction is as exact as that of the best model."""
 MISFIT = 0.12
-"""By how much of its length a direction misses in any quantity, if nothing says how good its model is."""
+"""Error of a direction in any quantity, relative to its length, if its model's accuracy is unknown."""
 _SENSOR_PRIOR = 5.0
-"""Sensors and their cables fail some times as often as anything in the structure."""
+"""Prior weight of sensor and cable failures relative to that of a structural cause."""
 
 
 @dataclass(frozen=True)
@@ -62,9 +62,9 @@ class Cause:
     misfit: float = MISFIT
 
     def steps(self, sizes: FloatArray) -> FloatArray:
-        """Return the mean change of all quantities, (n_sizes, m); beyond the last size the bend stays.
+        """Return the mean change of all quantities, (n_sizes, m); beyond the last size the bend is constant.
 
-        The bend of a negative size is that of a positive one, mirrored at zero.
+        The bend of a negative size is the mirror image of that of a positive one.
         """
         sizes, J = np.asarray(sizes, dtype=np.float64), self.draws.mean(axis=0)
         if self.bent_at.size:
@@ -75,10 +75,10 @@ class Cause:
 
 
 def sizes_about(middle: float, spread: float, *, both_ways: bool = False) -> tuple[FloatArray, FloatArray]:
-    """Return sizes within ``REACH`` spreads of ln size about a middle, and ln weights: all alike.
+    """Return sizes within ``REACH`` spreads of ln size about a middle, and equal ln weights.
 
-    Of a size no more is known than its order of magnitude; equal odds of each factor favour no cause whose
-    usual size happens to explain a change (Jeffreys 1961, section 3.1).
+    Only the order of magnitude of a size is known. Equal odds for each factor favour no cause whose usual
+    size happens to explain a change (Jeffreys 1961, section 3.1).
     """
     reach = REACH * spread
     sizes = middle * np.exp(np.linspace(-reach, reach, 2 * int(np.ceil(reach / _STEP)) + 1))
@@ -89,7 +89,7 @@ def sizes_about(middle: float, spread: float, *, both_ways: bool = False) -> tup
 def general_causes(
     quantities: Sequence[tuple[str, int]], labels: Sequence[str], frequency_hz: FloatArray
 ) -> tuple[Cause, ...]:
-    """Return what can be told apart without a model: patterns over modes, damping, and failing sensors.
+    """Return the causes distinguishable without a model: patterns over modes, damping, and failing sensors.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def general_causes(
 
 
 def sensor_noise(quantities: Sequence[tuple[str, int]]) -> Cause:
-    """Return a failing sensor: any of the modes scatter more, and move a little."""
+    """Return the cause of a failing sensor: some of the modes scatter more and shift a little."""
     kinds = np.array([kind for kind, _ in quantities])
     modes = np.array([mode for _, mode in quantities], dtype=np.intp)
     spread = np.where(kinds == "frequency", _SENSOR_SHIFT, _DAMPING_OVER_FREQUENCY * _SENSOR_SHIFT)

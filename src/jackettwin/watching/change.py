@@ -1,4 +1,4 @@
-"""The change that the evidence is sufficient for: of which kind, since when, and by how much."""
+"""The change for which evidence is sufficient: its kind, onset and size."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from jackettwin.watching.scatter import STRONGER
 from jackettwin.watching.state import Watch
 
 _LOOSE = 1.0
-"""Precision of what other quantities do while some are judged: they may change by anything."""
+"""Precision of the other quantities while some are evaluated: they may change by any amount."""
 
 
 @dataclass(frozen=True)
 class Change:
-    """A change that the evidence is sufficient for.
+    """A change for which evidence is sufficient.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class Change:
     by_mode: FloatArray
 
     def restricted(self, chosen: BoolArray) -> Change:
-        """Return what is known of some quantities whatever the others do."""
+        """Return the information on some quantities, whatever the others do."""
         if chosen.all():
             return self
         other = ~chosen
@@ -71,16 +71,16 @@ class Change:
 
 
 def change_of(watch: Watch, worth: FloatArray, log_r: float) -> tuple[Change, int]:
-    """Return the change that there is, and the begin that it has if it is a step."""
+    """Return the most likely change, and its onset if it is a step."""
     begins = watch.begins
     posterior = np.exp(begins.log_stake[:, None] + worth - log_r)
     bet = int(np.argmax(posterior.sum(axis=0)))
     kind, direction, members = _bet(watch, bet)
-    # when it began: by all bets that agree with the likeliest on its kind
+    # the onset follows from all bets that agree with the likeliest on the kind
     same = [b for b in range(worth.shape[1]) if _bet(watch, b)[0] == kind]
     by_begin = posterior[:, same].sum(axis=1)
     low, mid, high = _quantiles(_gradual(watch, kind, direction, by_begin))
-    until = np.append(begins.since[1:], watch.last_day)  # a begin stands for those merged with it
+    until = np.append(begins.since[1:], watch.last_day)  # an onset represents those merged with it
     info, score = _all_info(watch)
     size, std = (
         _louder(watch, by_begin)
@@ -102,9 +102,9 @@ def _quantiles(by_begin: FloatArray) -> tuple[int, ...]:
 
 
 def _gradual(watch: Watch, kind: str, direction: str, by_begin: FloatArray) -> FloatArray:
-    """Return the weights of begins if the change was a step or, as likely, a ramp that goes on."""
+    """Return the weights of onsets for a step or, equally likely, a continuing ramp."""
     block = next((b for b in watch.blocks if b.kind == kind), None)
-    if block is None or block.banks[0].cross is None:  # a bank kept by an earlier version has none
+    if block is None or block.banks[0].cross is None:  # a bank stored by an earlier version has none
         return by_begin
     u, begins = _along(block, direction, int(np.argmax(by_begin))), watch.begins
     logs = log_ramps(block.directions, u, block.banks[0], begins.days, watch.last_day) + begins.log_stake
@@ -114,7 +114,7 @@ def _gradual(watch: Watch, kind: str, direction: str, by_begin: FloatArray) -> F
 
 
 def _along(block: Block, direction: str, begun: int) -> FloatArray:
-    """Return the vector of a direction; of "any", that of the step that was seen."""
+    """Return the vector of a direction; for "any", that of the observed step."""
     place = block.directions.names.index(direction)
     if place < len(block.directions.vectors):
         return np.asarray(block.directions.vectors[place])
@@ -160,7 +160,7 @@ def _prior_precision(watch: Watch) -> FloatArray:
 def _sizes(
     info: FloatArray, score: FloatArray, by_begin: FloatArray, prior: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return mean and standard deviation of the change of each quantity, over begins."""
+    """Return mean and standard deviation of the change of each quantity, over onsets."""
     share = by_begin / by_begin.sum()
     covariance = np.linalg.inv(info + np.diag(prior))
     each = np.einsum("tij,tj->ti", covariance, score)
@@ -170,7 +170,7 @@ def _sizes(
 
 
 def _louder(watch: Watch, by_begin: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return ln of the factor on each quantity's noise: mean over the factors bet on, none among them."""
+    """Return ln of the mean noise factor of each quantity, over the factors bet on, which include 1."""
     share = by_begin / by_begin.sum()
     m = watch.begins.log_scatter.shape[1]
     logs = np.concatenate(

@@ -1,4 +1,4 @@
-"""Regressors: what conditions do to a mode, with the steel's lag behind the air, for each operating state."""
+"""Regressors: effects of conditions on modes, with the thermal lag of the steel, for each operating state."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.watching.history import History
 
 LAGS_DAYS = (0.25, 1.5)
-"""Time constants with which steel and ground follow the air: between none, a quarter day and some days the
-weights of three regressors make any lag; the weights are estimated."""
+"""Time constants with which steel and ground follow the air.
+The estimated weights of three regressors represent any lag between none, a quarter day and some days."""
 _TEMPERATURE = re.compile(r"temp|^t_?air|^t_?steel|°c|_c$|deg_?c", re.IGNORECASE)
 _FEWEST_COLD = 0.02
-"""Share of the baseline below freezing from which ice in soil or asphalt gets a slope of its own."""
+"""Share of the baseline below freezing from which frozen soil or asphalt is given its own slope."""
 _FEWEST_OF_STATE = 50
-"""Rows of an operating state from which it has slopes of its own, and an intercept at all."""
+"""Fewest rows of an operating state for its own slopes, and for an intercept."""
 YEAR_DAYS, WHOLE_YEAR_DAYS = 365.25, 330.0
-"""A baseline this long has seen a season's round, which stands for a temperature that is not told."""
+"""Length of a year, and of a baseline that covers the seasons, which then replace a missing temperature
+[days]."""
 _CURVED, _LINEAR, _LEVEL = 0.5, 1.0, 20.0
-"""Prior standard deviations of coefficients, in standard deviations of the quantity over the baseline: a
-line may
-explain all of it, a curve half; where the level lies is not known."""
+"""Prior standard deviations of coefficients, in standard deviations of the quantity over the baseline.
+A linear term may explain all of it, a curved one half; the level is unknown."""
 
 
 @dataclass(frozen=True)
 class Slope:
-    """What a model knows of a condition: d ln f per unit of it, and its standard deviation, (m,) each."""
+    """Prior effect of a condition: d ln f per unit of it, and its standard deviation, (m,) each."""
 
     condition: str
     per_unit: FloatArray
@@ -38,7 +38,7 @@ class Slope:
 
 
 class RegressionPrior(NamedTuple):
-    """What is known of coefficients before the first row, (m, p): means and standard deviations."""
+    """Prior of coefficients, (m, p): means and standard deviations."""
 
     mean: FloatArray
     std: FloatArray
@@ -50,7 +50,7 @@ class RegressionPrior(NamedTuple):
 
 @dataclass(frozen=True)
 class Column:
-    """One regressor: a condition, perhaps late or bent, in standard units.
+    """One regressor: a condition, possibly lagged or nonlinear, in standard units.
 
     Attributes
     ----------
@@ -89,7 +89,7 @@ class Design:
 
     @property
     def hidden(self) -> bool:
-        """Whether no conditions are given: what they do is then part of the unexplained."""
+        """Whether no conditions are given, so that their effects are part of the unexplained variation."""
         return all(column.source < 0 for column in self.columns)
 
     @property
@@ -109,7 +109,7 @@ class Design:
         return np.array([_LEVEL] * len(self.states) + slopes)
 
     def coefficients(self, spread: FloatArray, slopes: Sequence[Slope] = ()) -> RegressionPrior:
-        """Return what is known of the coefficients of quantities that vary so much, (m,) each.
+        """Return the prior of the coefficients of quantities of given standard deviations, (m,) each.
 
         A model's slope is that of the line in its condition.
         """
@@ -125,14 +125,14 @@ class Design:
 
 @dataclass(frozen=True)
 class Lagged:
-    """What the late regressors remember: ``values`` by column of a design, at ``day``."""
+    """Memory of lagged regressors: ``values`` by column of a design, at ``day``."""
 
     day: float
     values: FloatArray
 
 
 def design_of(baseline: History) -> Design:
-    """Return the regressors that a baseline can carry; constant conditions are left out."""
+    """Return the regressors that a baseline supports; constant conditions are left out."""
     columns: list[Column] = []
     warm = False
     for k, name in enumerate(baseline.condition_names):
@@ -175,7 +175,7 @@ def with_time_of_year(design: Design) -> Design:
 
 
 def _whole_days(baseline: History) -> bool:
-    """Return whether the rows cover the hours of the day."""
+    """Tell whether the rows cover all hours of the day."""
     return bool(np.ptp(np.histogram(baseline.days % 1.0, 8, (0.0, 1.0))[0]) < 0.5 * baseline.days.size)
 
 
@@ -185,10 +185,10 @@ def fresh(design: Design) -> Lagged:
 
 
 def regressors(design: Design, history: History, lagged: Lagged) -> tuple[FloatArray, Lagged]:
-    """Return the regressors (n, p) of some rows and what late ones remember after them.
+    """Return the regressors (n, p) of some rows and the memory of lagged ones after them.
 
-    A missing condition counts as its mean over the baseline, and leaves the memory as it is. A row in an
-    operating state without a baseline is NaN.
+    A missing condition counts as its mean over the baseline and does not change the memory.
+    A row in an operating state without a baseline is NaN.
     """
     standard = [_standard(column, history) for column in design.columns]
     values, day = lagged.values.copy(), lagged.day
@@ -209,7 +209,7 @@ def regressors(design: Design, history: History, lagged: Lagged) -> tuple[FloatA
 
 
 def _standard(column: Column, history: History) -> FloatArray:
-    """Return a condition in standard units, bent but not yet late."""
+    """Return a condition in standard units, nonlinear but without lag."""
     if column.shape in ("sine", "cosine"):
         turn = 2.0 * np.pi * history.days / column.scale
         return np.asarray(np.sin(turn) if column.shape == "sine" else np.cos(turn))

@@ -1,13 +1,13 @@
-r"""What a change was: probability and size of each cause, and what it cannot be told from.
+r"""Diagnosis of a change: probability and size of each cause, and causes that cannot be distinguished.
 
-The innovations since a begin hold all that the data say of a step δ of all quantities: A = Σ hhᵀ/s and
-b = Σ hν/s. A cause with direction J and size θ has the likelihood ratio
+The innovations since an onset contain all information on a step δ of all quantities:
+A = Σ hhᵀ/s and b = Σ hν/s. A cause with direction J and size θ has the likelihood ratio
 
 .. math:: Λ = \exp(θ J^T b - \tfrac12 θ^2 J^T A J)
 
-against no change, and its evidence is the mean over its sizes, over the draws of J and over when it began.
-"Something else" is a step in no particular direction. Which further measurement would tell causes apart is
-a matter of the information that a value of it is expected to give.
+relative to no change. Its evidence is the mean over its sizes, over the draws of J and over onsets.
+"Something else" is a step in an arbitrary direction. Further measurements are ranked by the information that
+their values are expected to give on the cause.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ from jackettwin.watching.directions import SIZES
 from jackettwin.watching.scatter import STRONGER
 
 INSEPARABLE = 2.0
-"""Causes that differ by fewer than so many standard deviations of data and model are not told apart."""
+"""Distance in standard deviations of data and model below which causes cannot be distinguished."""
 _OTHER_PRIOR = 1.0
 TAIL = {1.0: 0.68, 3.0: 0.22, 9.0: 0.1}
-"""How many times as much as usual a direction may miss, and how often: of some five hundred measured ones
-68 % miss by less than the usual, 90 % by less than three times as much (docs/verification/directions.md)."""
+"""Errors of directions, as multiples of the usual one, and their probabilities: of some five hundred measured
+ones 68 % are within the usual error, 90 % within three times it (docs/verification/directions.md)."""
 SHIFTS = (0.1, 0.3, 1.0)
 """What moves beside louder noise, as shares of the most: how much of it there is depends on the sensor."""
 
 
 @dataclass(frozen=True)
 class CauseVerdict:
-    """One cause and what is to be thought of it.
+    """One cause, its probability and size.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class CauseVerdict:
 
     @property
     def is_clear(self) -> bool:
-        """Whether it is as likely as all others together."""
+        """Whether it is at least as likely as all others together."""
         return self.probability >= 0.5
 
 
@@ -112,7 +112,7 @@ def _judge(change: Change, cause: Cause, kinds: Sequence[str]) -> tuple[float, f
 def _likelihood(
     info: FloatArray, score: FloatArray, cause: Cause, kinds: Sequence[str], times: float = 1.0
 ) -> FloatArray:
-    r"""Return ln Λ by begin and size, (n_begins, n_sizes); the direction is as uncertain as the structure.
+    r"""Return ln Λ by onset and size, (n_begins, n_sizes), with the uncertainty of the direction.
 
     With δ = θ(J(θ) + Rε), ε ~ N(0, I) and RᵀAR = QΛQᵀ, c = QᵀRᵀ(b − θAJ):
 
@@ -130,10 +130,10 @@ def _likelihood(
 
 
 def _misfit(cause: Cause, kinds: Sequence[str], times: float = 1.0) -> FloatArray:
-    """Return R, (m, r), by which a unit of a cause may miss its mean direction: RRᵀ is the covariance.
+    """Return R, (m, r), with RRᵀ the covariance of a cause's direction per unit of size.
 
-    Draws of the structure's state tell how quantities miss together; what no state explains is independent,
-    and ``times`` what is usual.
+    Draws of the structure's state give correlated errors of quantities;
+    the error that no state explains is independent, and ``times`` the usual one.
     """
     draws = cause.draws
     kind, J = np.array(kinds), draws.mean(axis=0)
@@ -144,9 +144,9 @@ def _misfit(cause: Cause, kinds: Sequence[str], times: float = 1.0) -> FloatArra
 
 
 def _noisy(change: Change, cause: Cause, begins: FloatArray) -> float:
-    """Return ln of the evidence of louder noise: each mode is louder or not, by any factor, and one is.
+    """Return ln of the evidence of increased noise of at least one mode, by any factor.
 
-    What moves besides is judged by the scatter that each begin makes likely.
+    The accompanying shift is evaluated with the noise that is likely for each onset.
     """
     total = np.zeros(len(begins))
     louder = np.ones((len(begins), change.info.shape[-1]))
@@ -158,7 +158,7 @@ def _noisy(change: Change, cause: Cause, begins: FloatArray) -> float:
         mass = np.logaddexp.reduce(logs, axis=1)
         total += mass - np.log(2.0)
         louder[:, of_mode] = np.exp(np.exp(logs - mass[:, None]) @ ln_g)[:, None]
-    # that none is louder is no failing sensor
+    # increased noise of no mode is not a failing sensor
     none = -np.log(2.0) * len(np.unique(cause.louder))
     total += np.log(np.maximum(-np.expm1(np.minimum(none - total, 0.0)), 1e-12)) - np.log(-np.expm1(none))
     shift = np.logaddexp.reduce([_moved(change, louder, g * np.diag(cause.draws)) for g in SHIFTS], axis=0)
@@ -166,10 +166,10 @@ def _noisy(change: Change, cause: Cause, begins: FloatArray) -> float:
 
 
 def _moved(change: Change, louder: FloatArray, std: FloatArray) -> FloatArray:
-    """Return ln of the evidence of δ ~ N(0, std²) in noise so much louder, (n_begins,), over quiet noise.
+    """Return ln of the evidence of δ ~ N(0, std²) in increased noise, relative to normal noise, (n_begins,).
 
-    What the data say of a step, A⁻¹b, has the covariance A⁻¹ if nothing happened, and GA⁻¹G + std² here: the
-    mean of louder noise lies further off, and is a sign of it by that.
+    The estimate of a step from the data, A⁻¹b, has the covariance A⁻¹ if nothing happened,
+    and GA⁻¹G + std² here: under increased noise the mean deviates more, which is evidence of it.
     """
     known = change.info + 1e-9 * np.trace(change.info, axis1=1, axis2=2)[:, None, None] * np.eye(len(std))
     unsure = np.linalg.inv(known)
@@ -189,7 +189,7 @@ def _free(info: FloatArray, score: FloatArray, std: FloatArray) -> FloatArray:
 
 
 def _something(change: Change, kinds: Sequence[str]) -> float:
-    """Return ln of the evidence of a step of any size in any direction, of one kind of quantity or all."""
+    """Return ln of the evidence of a step of any size and direction, of one kind of quantity or all."""
     begins = change.log_stake - np.logaddexp.reduce(change.log_stake)
     spans = []
     alone = tuple((kind,) for kind in SIZES if kind in kinds)
@@ -203,9 +203,9 @@ def _something(change: Change, kinds: Sequence[str]) -> float:
 def _groups(
     change: Change, causes: Sequence[Cause], verdicts: dict[str, CauseVerdict], kinds: Sequence[str]
 ) -> tuple[tuple[str, ...], ...]:
-    """Return groups of causes that data and model cannot tell apart, each at the size it would have.
+    """Return groups of causes that data and model cannot distinguish, each at its likely size.
 
-    The covariance of what they differ by is that of the data and of what a direction may miss: A⁻¹ + D².
+    The covariance of their difference is that of the data plus that of the directions: A⁻¹ + D².
     """
     with_size = [c for c in causes if not c.louder.size]
     best = change.info[_best(change)]
@@ -227,7 +227,7 @@ def _groups(
 
 
 def _best(change: Change) -> int:
-    """Return the begin that fits a free step best."""
+    """Return the onset that best fits a free step."""
     m = change.info.shape[-1]
     scale = 1e-6 * np.trace(change.info, axis1=1, axis2=2).max() * np.eye(m)
     solved = np.linalg.solve(change.info + scale, change.score[..., None])[..., 0]
@@ -235,13 +235,13 @@ def _best(change: Change) -> int:
 
 
 _POINTS = 401
-"""Of the grid that a predicted value is integrated on."""
+"""Number of points of the grid over which a predicted value is integrated."""
 _REACH = 6.0
-"""Standard deviations beyond the outermost prediction that the grid goes to."""
+"""Extent of that grid beyond the outermost prediction, in standard deviations."""
 
 
 def expected_information(probability: FloatArray, mean: FloatArray, std: FloatArray) -> float:
-    r"""Return what one value is expected to tell of which cause it was [nats].
+    r"""Return the expected information of one value on the cause [nats].
 
     .. math:: I = Σ_c p_c \int p(y|c) \ln \frac{p(y|c)}{p(y)} dy
 
@@ -259,7 +259,8 @@ def expected_information(probability: FloatArray, mean: FloatArray, std: FloatAr
     0.0
     """
     low, high = np.min(mean - _REACH * std), np.max(mean + _REACH * std)
-    # a grid that is fine where predictions are sharp: the quantiles of the mixture's parts, put together
+    # the grid combines the quantiles of the mixture's components, so that it is fine where predictions are
+    # sharp
     z = np.linspace(-_REACH, _REACH, _POINTS)
     y = np.unique(np.concatenate([(mean[:, None] + std[:, None] * z).ravel(), [low, high]]))
     log_each = -0.5 * ((y - mean[:, None]) / std[:, None]) ** 2 - np.log(np.sqrt(2.0 * np.pi) * std[:, None])

@@ -1,6 +1,9 @@
-r"""What a change may look like before anybody has seen one: directions over quantities and sizes.
+r"""Directions and sizes of possible changes, chosen before any is seen.
 
-The weights of all directions of both kinds and of the scatter add up to one: they are the stakes of one bet.
+The weights of all directions, of both kinds and of the scatter, add up to one: they are the stakes of one
+bet. A ramp that began at τ and continues is a sum of small steps at the onsets kept since. With increments w,
+:math:`a = \sum_{jk} w_j w_k u^T A_{jk} u` and :math:`c = \sum_j w_j u^T b_j` of a ramp along u take the place
+of a and c of a step. If it were dated as a step, a ramp would seem to begin in its middle.
 
 A ramp that began at τ and goes on is a sum of small steps at the begins that are kept since: with increments
 w, :math:`a = \sum_{jk} w_j w_k u^T A_{jk} u` and :math:`c = \sum_j w_j u^T b_j` of a ramp along u are what a
@@ -19,34 +22,34 @@ from jackettwin.watching.kernels import log_any, log_mixed
 from jackettwin.watching.memory import Bank
 
 PAIR = 0.08
-"""Two modes whose frequencies differ by less are a pair: the two bending modes of a nearly round
-structure."""
+"""Relative difference of frequencies below which two modes are a pair:
+the two bending modes of a nearly round structure."""
 SIZES = {
     "frequency": (0.0007, 0.0014, 0.0028, 0.0056, 0.0112, 0.0225, 0.045),
     "damping": (0.12, 0.24, 0.48, 0.96),
     "angle": (0.04, 0.08, 0.16, 0.32),
 }
-"""Sizes of a step in the logarithm, or of a turn [rad], that are bet on, each give or take a third: below the
-first nothing is worth an alarm, beyond the last one any prior finds it."""
+"""Sizes of steps in the logarithm, or of rotations [rad], that are bet on, each within about a third.
+Smaller steps are not worth an alarm; larger ones are found with any prior."""
 SIZE_WEIGHTS = {
     "frequency": (0.12, 0.26, 0.24, 0.16, 0.1, 0.07, 0.05),
     "damping": (0.3, 0.4, 0.2, 0.1),
     "angle": (0.3, 0.3, 0.2, 0.2),
 }
-"""Small steps take the longest: most of the stake is on them."""
+"""Weights of the sizes; small steps take longest to detect and have most of the stake."""
 _WIDTH = 1.0 / 3.0
 SHARES = {"frequency": 0.7, "damping": 0.2, "angle": 0.1, "scatter": 0.1}
-"""Stakes of the kinds of change, relative to those of the kinds that are watched."""
+"""Stakes of the kinds of change, relative to those of the kinds that are monitored."""
 _FALLING = {"frequency": 0.7, "damping": 0.4, "angle": 0.5}
-"""Share of the stake on falling values: what breaks or is washed out is softer, and damps more."""
+"""Share of the stake on falling values: damage and scour soften a structure and raise its damping."""
 _ANY = 0.1
-"""Share of a kind's stake on a change in no particular direction."""
+"""Share of a kind's stake on a change in an arbitrary direction."""
 _PATTERNED = 0.4
-"""Share of the rest on a model's causes, if there is one."""
+"""Share of the rest on a model's causes, if given."""
 _ALIKE = 0.9
-"""Cosine from which patterns are one direction: its Bayes factor loses little by the difference."""
+"""Cosine above which patterns count as one direction; the Bayes factor hardly suffers."""
 _MOVES = 0.1
-"""Of the largest change of a pattern: what moves by less does not count as moving."""
+"""Share of the largest change in a pattern below which a quantity does not count as moving."""
 
 
 @dataclass(frozen=True)
@@ -76,9 +79,9 @@ class Directions:
 
 @dataclass(frozen=True)
 class Pattern:
-    """Changes of the logarithms of all modes' frequencies (m,) that a model expects of a cause.
+    """Changes of the logarithms of all modes' frequencies (m,) that a model expects from a cause.
 
-    Only their direction counts; ``weight`` is before the data, relative to other patterns.
+    Only their direction counts; ``weight`` is the prior weight relative to other patterns.
     """
 
     name: str
@@ -89,7 +92,7 @@ class Pattern:
 def directions_of(
     kind: str, labels: tuple[str, ...], typical_hz: FloatArray, patterns: Sequence[Pattern] = ()
 ) -> Directions:
-    """Return each mode alone, each close pair, all modes alike, patterns that differ, and any.
+    """Return single modes, close pairs, all modes together, distinct patterns, and an arbitrary direction.
 
     Parameters
     ----------
@@ -126,9 +129,9 @@ def directions_of(
 
 
 def _joined(patterns: Sequence[Pattern]) -> tuple[Pattern, ...]:
-    """Return the patterns that differ, of largest change one, with the weight of all that are alike.
+    """Return distinct patterns, scaled to a largest change of one, with the weights of similar ones added.
 
-    They point upwards, as the directions of modes do: that values fall is in the odds of the sizes.
+    They point upwards, as the directions of modes do; the odds of the sizes account for falling values.
     """
     groups: list[list[Pattern]] = []
     for one in sorted(patterns, key=lambda p: -p.weight):
@@ -151,7 +154,7 @@ def _cosine(one: FloatArray, other: FloatArray) -> float:
 
 
 def log_bayes_factors(directions: Directions, info: FloatArray, score: FloatArray) -> FloatArray:
-    r"""Return ln of the Bayes factors of every begin and direction against no change, (n_begins, n).
+    r"""Return ln of the Bayes factors of every onset and direction against no change, (n_begins, n).
 
     With a = uᵀAu and c = uᵀb of a direction u, and δ ~ N(μ, v²),
 
@@ -180,7 +183,7 @@ def log_along(directions: Directions, a: FloatArray, c: FloatArray) -> FloatArra
 
 
 def increments(days: FloatArray, now: float) -> FloatArray:
-    """Return the steps that make a ramp from each begin to one now, (n, n): w[i, j] at j, of a ramp from i.
+    """Return the steps that form a ramp from each onset until now, (n, n): w[i, j] at j, of a ramp from i.
 
     Examples
     --------
@@ -194,7 +197,7 @@ def increments(days: FloatArray, now: float) -> FloatArray:
 
 
 def log_ramps(directions: Directions, u: FloatArray, bank: Bank, days: FloatArray, now: float) -> FloatArray:
-    """Return ln of the Bayes factors, over no change, of ramps and of steps along u by begin, (2, n)."""
+    """Return ln of the Bayes factors of ramps and of steps along u by onset, (2, n)."""
     if bank.cross is None:
         raise ValueError("a bank without what ramps are judged by")
     lower = np.einsum("i,tbij,j->tb", u, bank.cross, u)

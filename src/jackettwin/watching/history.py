@@ -1,4 +1,4 @@
-"""What is watched: modes through time and the conditions they were seen in, as arrays."""
+"""Data to be monitored: modes through time with their conditions, as arrays."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jackettwin.arrays import BoolArray, FloatArray, IntArray
 Kind = Literal["frequency", "damping", "angle"]
 
 _NEAR_DAYS = 0.25
-"""Records closer together saw the same structure."""
+"""Records closer in time than this saw the same structure [days]."""
 _FEWEST_PAIRS = 30
 
 
@@ -79,7 +79,7 @@ class History:
 
 
 def middles(history: History, kind: Kind, kept: IntArray) -> FloatArray:
-    """Return the typical values of some columns, (m,); of directions, the mean of the axes they lie on."""
+    """Return the typical values of some columns, (m,); for directions, the mean axis."""
     value = history.seen(kind)[0][:, kept]
     if kind == "angle":
         return np.asarray(0.5 * np.angle(np.nansum(np.exp(2j * value), axis=0)))
@@ -91,11 +91,11 @@ def deviations(
 ) -> tuple[FloatArray, FloatArray]:
     """Return ln of the values over typical ones, and relative standard deviations, both (n, m).
 
-    Of directions it is the turn from the typical one [rad], at most a right angle.
+    For directions it is the rotation from the typical one [rad], at most a right angle.
 
-    A stated standard deviation may follow the value that it belongs to: that of ζ goes with √ζ by Au's law
-    (2014), with ζ if a coefficient of variation was stated. A record whose ζ happens to be low must not
-    claim to be sharp by that: what follows the value is taken at the typical one.
+    A stated standard deviation may depend on its value: that of ζ is proportional to √ζ by Au's law (2014),
+    or to ζ if a coefficient of variation was stated. A record whose ζ happens to be low must not gain weight
+    from that, so that this part is evaluated at the typical value.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def deviations(
 
 
 def std_power(history: History, kind: Kind, kept: IntArray) -> FloatArray:
-    """Return the power by which stated standard deviations follow values, (m,), from neighbouring records."""
+    """Return the power of the value to which stated standard deviations are proportional, (m,)."""
     out = np.ones(len(kept))
     near = np.diff(history.days) < _NEAR_DAYS
     for k, q in enumerate(kept):

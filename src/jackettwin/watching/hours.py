@@ -1,7 +1,7 @@
-"""Rows by the hour: outliers set aside, the rest averaged, and how they scatter inside the hour.
+"""Hourly averages of rows without outliers, and the scatter within each hour.
 
-Nothing that is modelled moves within an hour, so that mean and scatter of its records are independent: the
-means tell of level, the scatter of the noise.
+Nothing that is modelled varies within an hour, so that mean and scatter of its records are independent:
+means inform on the level, scatter on the noise.
 """
 
 from __future__ import annotations
@@ -13,15 +13,16 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 
 OUTLIER = 4.5
-"""Standard deviations from its neighbours beyond which a value is set aside: one in 150,000 of a normal
-noise."""
+"""Distance from its neighbours, in standard deviations, above which a value is rejected:
+one in 150,000 of normal noise."""
 DOUBTED = 2.2
-"""Standard deviations beyond which a value is doubted: one in 36 of a normal noise."""
+"""Distance in standard deviations above which a value is down-weighted: one in 36 of normal noise."""
 NEIGHBOURS = 9
-"""Values around whose median one is judged."""
+"""Number of values around whose median one is assessed."""
 ENOUGH = 3
-"""Values of a day that suffice to judge each other. Fewer are judged by days before, from which a step lies
-far as well: what is set aside then is no sign of scatter, and is in five values the neighbourhood itself."""
+"""Fewest values of a day that are compared with each other. Fewer are compared with earlier days,
+from which a step is also distant; rejection then does not count as scatter,
+and after five values the neighbourhood is replaced."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ class Hours:
     freedom: FloatArray
 
     def of(self, chosen: list[int]) -> Hours:
-        """Return the hours in which any of some quantities was seen."""
+        """Return the hours in which any of some quantities was observed."""
         seen = np.isfinite(self.values[:, chosen]).any(axis=1)
         rest = (a[seen][:, chosen] for a in (self.values, self.noise, self.chi2, self.freedom))
         return Hours(self.days[seen], self.rows[seen], *rest)
@@ -54,11 +55,11 @@ class Hours:
 def outliers(
     rest: FloatArray, variance: FloatArray, tail: FloatArray
 ) -> tuple[BoolArray, FloatArray, FloatArray]:
-    """Return which values of a day lie apart from their neighbours, doubts, and tomorrow's neighbours.
+    """Return which values of a day are outliers, doubt factors, and the neighbours of the next day.
 
-    A step of all neighbours alike leaves the choice as it is, so that setting aside cannot hide a change.
-    What lies far out but not apart is doubted: the factor on its variance keeps what it weighs as it would
-    be at ``DOUBTED`` (Huber 1964).
+    A common step of all neighbours does not affect rejection, so that no change is hidden.
+    A distant value that is not rejected is down-weighted: the factor on its variance limits its influence to
+    that at ``DOUBTED`` (Huber 1964).
 
     Parameters
     ----------
@@ -86,7 +87,7 @@ def outliers(
 
 
 def _running_median(x: FloatArray) -> FloatArray:
-    """Return the median of the values nearest in the row to each: a storm's drift sets none of them apart."""
+    """Return the median of the nearest values of each; slow variation in a storm rejects none of them."""
     width = min(NEIGHBOURS, x.size)
     medians = np.median(np.lib.stride_tricks.sliding_window_view(x, width), axis=1)
     return np.asarray(medians[np.clip(np.arange(x.size) - width // 2, 0, medians.size - 1)])

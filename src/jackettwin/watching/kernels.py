@@ -1,4 +1,4 @@
-"""The filter that removes what conditions and slow processes explain, and the bets on its steps, compiled.
+"""Compiled filter that removes the effects of conditions and slow processes, and evaluates bets on steps.
 
 The state of m quantities with p regressors each is
 
@@ -21,7 +21,7 @@ compiled = njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"
 
 @compiled
 def _age(mean, cov, response, first, keep, drive):
-    """Let one process of all quantities, from state ``first`` on, grow older: x ← keep·x + noise."""
+    """Advance one process of all quantities, from state ``first`` on, in time: x ← keep·x + noise."""
     m, n = drive.shape[0], mean.size
     for i in range(first, first + m):
         mean[i] *= keep
@@ -60,7 +60,7 @@ def _covariance_with(cov, x, q, m, g):
 
 @compiled
 def _follow(response, info, score, cross, x, q, m, g, nu, s, steps):
-    """Let every step that may have begun see one value: add what it says, and how the state follows it."""
+    """Update every possible step with one value: its information, and the response of the state."""
     for t in range(response.shape[0]):
         h = steps[t]
         for d in range(m):
@@ -81,7 +81,7 @@ def _follow(response, info, score, cross, x, q, m, g, nu, s, steps):
 
 @compiled
 def learn_value(mean, cov, g, nu, s):
-    """Let the state learn from one value."""
+    """Update the state with one value."""
     for i in range(g.size):
         mean[i] += g[i] * nu / s
         part = g[i] / s
@@ -94,7 +94,7 @@ def learn_value(mean, cov, g, nu, s):
 def filter_rows(
     mean, cov, response, info, score, cross, rows, values, noise, gaps, rates, slow, innovation, spread
 ):
-    """Take some rows; change the state in place and return the log likelihood of the rows.
+    """Filter some rows; the state is changed in place and the log likelihood of the rows returned.
 
     Parameters
     ----------

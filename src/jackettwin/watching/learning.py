@@ -1,9 +1,8 @@
-"""The models of what no condition explains that a baseline makes likely, with their uncertainty.
+"""Models of unexplained variation that a baseline makes likely, with their uncertainty.
 
-Time constants and shares of the Ornstein-Uhlenbeck processes are one of a family of spectra, from a single
-process of hours to 1/f from hours to a season; no one of them is believed. Several, weighted by how well they
-predicted the baseline and whatever came after, predict together: a plugged-in estimate would be too sure of
-itself.
+Time constants and shares of the Ornstein-Uhlenbeck processes come from a family of spectra, from a single
+process of hours to 1/f noise from hours to a season. No single one is certain. Several are combined,
+weighted by how well they predicted the baseline and later data; a single estimate would be overconfident.
 """
 
 from __future__ import annotations
@@ -25,54 +24,56 @@ Spectrum = tuple[tuple[float, ...], tuple[float, ...]]
 SHORT_DAYS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 """Time constants of a single short process."""
 LONG_DAYS = (12.0, 90.0)
-"""Those of the two parts of a long process beside it: weeks, and a season, of which a baseline of a year
-holds few independent values."""
+"""Time constants of the two parts of an additional long process: weeks, and a season,
+of which a year's baseline contains few independent values."""
 LONG_SHARES = (0.02, 0.003, 0.06, 0.2)
 """Shares of the long process in the variance; the first is tried with every short one."""
 OCTAVES = (0.1, 0.4, 1.6, 6.4, 25.6, 100.0)
 """Time constants of a power law's processes."""
 SLOPES = (-0.35, 0.0, 0.35)
-"""Powers of the time constant by which shares grow: 0 is 1/f over these times."""
+"""Exponents of the shares over the time constant; 0 is 1/f noise over these times."""
 _SCALE_STD, _SLOW_STD = 0.5, 1.5
 """Prior spread in ln of the factor on stated standard deviations, and of the slow processes' size."""
 _LEAST = 1e-3
-"""The least standard deviation of a process, in those of the quantity."""
+"""Smallest standard deviation of a process, in those of the quantity."""
 SLOW_DAYS = 1.0
-"""From this time constant on processes have a correlation of their own where no conditions are given: the
-weather is then among them, which modes share, while what moves within a day is each one's own."""
+"""Time constant [days] from which processes have their own correlation if no conditions are given:
+they then include the weather, which all modes share, whereas variation within a day is independent."""
 AGREEMENT = (1.0, 0.7)
 """Shares of the estimated correlation between quantities that are tried."""
 CORRELATIONS = np.array([-0.8, -0.5, -0.2, 0.1, 0.35, 0.6, 0.75, 0.85, 0.93, 0.98])
 """Correlations between two quantities that are tried."""
 SHARED = np.append(CORRELATIONS, 0.995)
-"""The same of slow processes where modes share hidden weather."""
+"""Correlations tried for slow processes if all modes share unmeasured weather."""
 _LEAST_OWN, _LEAST_OWN_SHARED = 0.02, 0.005
-"""The least eigenvalue of a correlation that is believed, and where modes share hidden weather."""
+"""Smallest eigenvalue of a correlation, and the one if modes share unmeasured weather."""
 MOST_SPECTRA, MOST_TRIED = 3, 10
 _HANDICAP = 1.5
-"""In ln of the likelihood: models should differ in what they expect."""
+"""Handicap, in log likelihood, of a model with the same time constants,
+so that models differ in what they predict."""
 LARGER = (1.0, 1.3, 1.7)
-"""Factors on the slow processes' standard deviations, of all quantities alike, that a baseline may miss."""
+"""Factors on the standard deviations of all slow processes, which a baseline may underestimate."""
 STORMY = (1.0, 1.7, 3.0)
-"""The same where no conditions are given: storms are rare and far larger than what is usual."""
+"""The same if no conditions are given: storms are rare and exceed the usual variation by far."""
 _LEAST_FREEDOM = 4.0
 ONE_LARGER = (2.0, 0.1)
-"""Standard deviations of its ln by which one quantity's slow processes may be larger, and its chance."""
+"""Number of standard deviations of ln size by which the slow processes of one quantity may be larger,
+and its probability."""
 _LEAST_APART = 0.25
-"""The least of that difference: a model that predicts the same is of no use."""
+"""Smallest such difference; a smaller one would predict the same."""
 _MOST_APART = 4
-"""Quantities that have such a model, the least certain first."""
+"""Number of quantities with such a model, the most uncertain first."""
 _USUAL_APART = 0.2
-"""Standard deviation of ln size from quantity to quantity that is granted; more, if they show it."""
+"""Assumed standard deviation of ln size between quantities; a larger one is estimated."""
 _APART = 0.3
 _LIKELY = 7.0
-"""Spectra whose likelihood falls short of the best one's by more than so much in ln are not followed up."""
+"""Log likelihood below that of the best spectrum beyond which spectra are dropped."""
 _FIRST_STEPS, _MORE_STEPS = 40, 16
 
 
 @dataclass(frozen=True)
 class Learnt:
-    """Models, the likeliest first, and what each knows at the end of the baseline.
+    """Models, the most likely first, and the state of each at the end of the baseline.
 
     Attributes
     ----------
@@ -99,8 +100,8 @@ def learn(
 ) -> Learnt:
     """Return the models that a baseline makes likely.
 
-    Each quantity alone finds its scale and size under every spectrum; the spectrum is one for all. Then all
-    quantities together weigh the models.
+    Scale and size of each quantity are estimated alone under every spectrum, which is common to all.
+    The models are then weighted by all quantities together.
 
     Parameters
     ----------
@@ -137,7 +138,7 @@ def learn(
 
 
 def _weighed(bases: list[Memory], hours: Hours, prior: RegressionPrior, hidden: bool) -> Learnt:
-    """Return models with the quantities' correlation, weighed by all quantities together."""
+    """Return models with the correlation between quantities, weighted by all quantities together."""
     m = len(prior.std)
     fast, slow = _correlations(hours, bases[0], prior, hidden)
     scored: list[tuple[float, Memory]] = []
@@ -170,10 +171,10 @@ def _weighed(bases: list[Memory], hours: Hours, prior: RegressionPrior, hidden: 
 
 
 def _pooled(log_std: FloatArray, variance: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return by how much ln size of each quantity moves towards that of all, and how uncertain it stays.
+    """Return the shift of ln size of each quantity towards the common one, and its remaining uncertainty.
 
-    Sizes are taken as drawn about a common one; how far they differ is estimated by moments (DerSimonian &
-    Laird 1986), so that a quantity whose size the baseline hardly tells leans on the others.
+    Sizes are assumed to scatter about a common one, by moments (DerSimonian & Laird 1986),
+    so that a quantity whose size the baseline hardly determines takes that of the others.
     """
     weight = 1.0 / variance
     middle = weight @ log_std / weight.sum()
@@ -193,7 +194,7 @@ def _one_larger(memory: Memory, q: int, spread: float) -> Memory:
 
 
 def _different(scored: list[tuple[float, Memory]]) -> list[tuple[float, Memory]]:
-    """Return the likeliest models, each further one of the same time constants at a handicap."""
+    """Return the most likely models; those of equal time constants have a handicap."""
     left = list(scored)
     kept: list[tuple[float, Memory]] = []
     while left and len(kept) < MOST_SPECTRA:
@@ -205,10 +206,10 @@ def _different(scored: list[tuple[float, Memory]]) -> list[tuple[float, Memory]]
 
 
 def _larger(freedom: float, factors: tuple[float, ...]) -> FloatArray:
-    """Return the probabilities that slow processes are larger by these factors than estimated.
+    """Return the probabilities that slow processes are larger than estimated by these factors.
 
-    An excursion of processes whose covariance is known by ν independent values is one of Student's t with ν
-    degrees of freedom: the estimated covariance times ν/χ²_ν, one factor for all quantities.
+    If the covariance of processes is known from ν independent values, their excursions follow Student's t
+    with ν degrees of freedom: the estimated covariance times ν/χ²_ν, with one factor for all quantities.
     """
     between = np.sqrt(np.array(factors[1:]) * np.array(factors[:-1]))
     above = np.append(chdtr(freedom, freedom / between**2), 0.0)
@@ -217,9 +218,9 @@ def _larger(freedom: float, factors: tuple[float, ...]) -> FloatArray:
 
 
 def _freedom(hours: Hours, q: int, memory: Memory, prior: RegressionPrior) -> float:
-    """Return how many independent values of the slow processes of a quantity the baseline holds.
+    """Return the number of independent values of a quantity's slow processes in the baseline.
 
-    ln of a standard deviation that is known by ν values has the variance 1/(2ν).
+    The logarithm of a standard deviation from ν values has the variance 1/(2ν).
     """
     own, of = hours.of([q]), memory.of([q])
     at = [
@@ -230,7 +231,7 @@ def _freedom(hours: Hours, q: int, memory: Memory, prior: RegressionPrior) -> fl
 
 
 def _end(memory: Memory, prior: RegressionPrior, hours: Hours) -> Filtered:
-    """Return what a model knows after the baseline."""
+    """Return the state of a model after the baseline."""
     belief = prior_belief(memory, prior)
     return filtered(memory, belief, empty_bank(len(prior.std), belief.mean.size), hours, -np.inf)
 
@@ -275,9 +276,9 @@ def _alone(own: Hours, prior: RegressionPrior, spectrum: Spectrum, near: _Fit | 
 def _correlations(
     hours: Hours, memory: Memory, prior: RegressionPrior, hidden: bool
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the correlation between quantities of fast and of slow processes, alike unless ``hidden``.
+    """Return the correlations of fast and of slow processes, equal unless ``hidden``.
 
-    Two by two, the posterior's mean; fast and slow ones in turn, twice, the others as they are known by then.
+    Each is the posterior mean of a pair; fast and slow ones alternate twice, with the others held.
     """
     m = len(memory.scale)
     slow = memory.days >= SLOW_DAYS
@@ -299,8 +300,8 @@ def _pair_mean(
 ) -> FloatArray:  # fmt: skip
     """Return the correlations of two quantities' processes, (k,): for chosen ones the posterior's mean.
 
-    The prior falls with 1 − ρ² (Lewandowski, Kurowicka & Joe 2009): quantities whose processes drown in noise
-    are taken as nearly independent.
+    The prior falls with 1 − ρ² (Lewandowski, Kurowicka & Joe 2009):
+    quantities dominated by noise count as nearly independent.
     """
     if not chosen.any():
         return correlation

@@ -1,4 +1,4 @@
-"""One model of what no condition explains, noise and Ornstein-Uhlenbeck processes, and its filter."""
+"""Model of unexplained variation, noise and Ornstein-Uhlenbeck processes, and its filter."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from jackettwin.watching.kernels import filter_rows
 
 @dataclass(frozen=True)
 class Memory:
-    """One model of what is unexplained in m quantities.
+    """Model of the unexplained variation of m quantities.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class Memory:
 
 @dataclass(frozen=True)
 class Belief:
-    """What a model knows after some rows: the state of :mod:`jackettwin.watching.kernels`."""
+    """State of a model after some rows, as in :mod:`jackettwin.watching.kernels`."""
 
     mean: FloatArray
     cov: FloatArray
@@ -69,7 +69,7 @@ def prior_belief(memory: Memory, prior: RegressionPrior) -> Belief:
 
 @dataclass(frozen=True)
 class Bank:
-    """Steps that may have begun: how the state follows each, and what the innovations say of them.
+    """Possible steps: the response of the state to each, and the information of the innovations on them.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ class Bank:
     cross: FloatArray | None = None
 
     def with_begin(self) -> Bank:
-        """Return the bank with one more begin, of which nothing is known."""
+        """Return the bank with one more onset, without information on it."""
 
         def grown(x: FloatArray, axes: int = 1) -> FloatArray:
             more = np.zeros((*(n + 1 for n in x.shape[:axes]), *x.shape[axes:]))
@@ -95,20 +95,20 @@ class Bank:
         return Bank(grown(self.response), grown(self.info), grown(self.score), cross)
 
     def thinned(self, keep: BoolArray) -> Bank:
-        """Return the bank with some of its begins only."""
+        """Return the bank with only some of its onsets."""
         cross = None if self.cross is None else self.cross[keep][:, keep]
         return Bank(self.response[keep], self.info[keep], self.score[keep], cross)
 
 
 def empty_bank(m: int, n: int, *, ramps: bool = False) -> Bank:
-    """Return a bank without begins."""
+    """Return a bank without onsets."""
     cross = np.zeros((0, 0, m, m)) if ramps else None
     return Bank(np.zeros((0, m, n)), np.zeros((0, m, m)), np.zeros((0, m)), cross)
 
 
 @dataclass(frozen=True)
 class Filtered:
-    """What came of some rows.
+    """Result of filtering some rows.
 
     Attributes
     ----------
@@ -124,7 +124,7 @@ class Filtered:
 
 
 def filtered(memory: Memory, belief: Belief, bank: Bank, hours: Hours, last_day: float) -> Filtered:
-    """Return belief and bank after some hours; ``last_day`` is when the belief was reached."""
+    """Return state and bank after some hours; ``last_day`` is the time of the previous state."""
     m = hours.values.shape[1]
     if bank.response.shape[1:] != (m, belief.mean.size) or memory.slow.shape != (len(memory.days), m, m):
         raise ValueError("bank, belief and memory are not of one model")  # compiled code does not look
@@ -148,6 +148,6 @@ def filtered(memory: Memory, belief: Belief, bank: Bank, hours: Hours, last_day:
 
 
 def _scatter(memory: Memory, hours: Hours) -> float:
-    """Return the log likelihood of the scatter inside hours, up to what no model changes."""
+    """Return the log likelihood of the scatter within hours, up to terms common to all models."""
     chi2, freedom = hours.chi2.sum(axis=0), hours.freedom.sum(axis=0)
     return float(-0.5 * np.sum(chi2 / memory.scale**2 + freedom * np.log(memory.scale**2)))

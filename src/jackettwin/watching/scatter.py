@@ -1,8 +1,8 @@
-r"""Scatter alone: a sensor that fails makes its modes scatter before it moves them.
+r"""Increased scatter: a failing sensor scatters its modes before it shifts them.
 
-The scatter inside hours is χ² of the noise's variance. From day to day that variance moves a little, as the
-baseline shows: with a factor distributed as the inverse of χ²_ν/ν, a day's χ²/n over n degrees of freedom is
-Fisher's F(n, ν), and noise g times as strong has the likelihood ratio
+The scatter within hours is χ² times the noise variance, which varies a little from day to day,
+as the baseline shows. With a factor distributed as the inverse of χ²_ν/ν, a day's χ²/n over n degrees of
+freedom has Fisher's distribution F(n, ν), and noise increased by g has the likelihood ratio
 
 .. math:: \ln L = -\tfrac{n}{2} \ln g^2 - \tfrac{n + ν}{2} \ln \frac{1 + χ^2/(ν g^2)}{1 + χ^2/ν}
 """
@@ -19,11 +19,11 @@ STRONGER = (1.6, 2.5, 4.0)
 _STEADINESS = np.array([4.0, 6.0, 10.0, 16.0, 30.0, 60.0, 200.0])
 """Degrees of freedom ν that are tried."""
 _DOUBT = 1.0
-"""Steadiness is taken as low as costs this much log likelihood over the baseline."""
+"""Log likelihood over the baseline that may be lost for a lower ν."""
 
 
 def steadiness(chi2: FloatArray, freedom: FloatArray) -> float:
-    """Return ν from the days of a baseline; as low as the days allow.
+    """Return ν from the days of a baseline, the lowest one they allow.
 
     Parameters
     ----------

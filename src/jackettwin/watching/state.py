@@ -1,4 +1,4 @@
-"""What a watch keeps from one day to the next."""
+"""State of the monitoring from one day to the next."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from jackettwin.watching.history import Kind
 
 @dataclass(frozen=True)
 class Begins:
-    """When a change may have begun.
+    """Possible onsets of a change.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class Begins:
 
 @dataclass(frozen=True)
 class Watch:
-    """All that has to be kept from one day to the next; it does not grow.
+    """State of the monitoring from one day to the next; its size is constant.
 
     Attributes
     ----------

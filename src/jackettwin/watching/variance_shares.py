@@ -1,4 +1,4 @@
-"""How much of what a mode did over the baseline each condition explains, and what is left."""
+"""Shares of the variance of a mode over the baseline explained by each condition."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ def shares(
 ) -> tuple[dict[str, float], ...]:
     """Return for each quantity the share of its variance over the baseline by condition.
 
-    The share of a condition is the covariance of its part with the whole (its parts add up to what all
-    explain together); "slow" is that of the processes no condition explains, "noise" that of identification.
+    The share of a condition is the covariance of its part with the whole (the parts add up to what all
+    explain together). "slow" is the share of unexplained slow processes, "noise" that of identification.
 
     Parameters
     ----------
@@ -43,9 +43,9 @@ def shares(
 
 
 def slopes(block: Block, design: Design) -> tuple[dict[str, float], ...]:
-    """Return for each quantity what a lasting unit of each condition does to it, about the baseline's mean.
+    """Return the lasting effect of a unit of each condition on each quantity, about the baseline's mean.
 
-    Of logarithms, or of directions [rad], in the operating state seen most; late parts count as arrived.
+    The effects are on logarithms, or directions [rad], in the most frequent operating state, after all lags.
     """
     first = len(design.states)
     out: tuple[dict[str, float], ...] = tuple({} for _ in block.kept)

@@ -1,13 +1,13 @@
-r"""The watch: a state that each day with records carries on, and what the day says.
+r"""Sequential monitoring: a state that is updated by each day with records, and the result of the day.
 
 The statistic is that of Shiryaev and Roberts as an e-detector (Shin, Ramdas & Rinaldo 2024),
 
 .. math:: R_t = \sum_{τ \le t} w_τ \, BF(τ, t)
 
-with w_τ the days since the last begin, so that R_t − t is a martingale while nothing changes, and the mean
-time to R_t ≥ A is at least A days, whatever is bet on and however often one looks. BF is the mean over
-models, directions and sizes. Old begins are merged: what one was worth is staked on its neighbour, and R
-stays what it was.
+with w_τ the days since the previous onset, so that R_t − t is a martingale while nothing changes.
+The mean time to R_t ≥ A is then at least A days, whatever is bet on and however often it is evaluated.
+BF is the mean over models, directions and sizes. Old onsets are merged:
+the value of one is added to its neighbour's, and R is unchanged.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.watching.block import (
     Spoken,
-    adopted,
     begin,
     cleared,
     hours_of,
     log_evidence,
     log_scatter,
-    reconsidered,
-    taken,
     thinned,
     watched,
+    with_change_accepted,
+    with_hours,
+    with_weights_reset,
 )
 from jackettwin.watching.change import Change, change_of
 from jackettwin.watching.design import WHOLE_YEAR_DAYS, Slope, design_of, fresh, regressors
@@ -40,27 +40,29 @@ from jackettwin.watching.scatter import STRONGER
 from jackettwin.watching.state import Begins, Watch
 
 MOST_BEGINS = 26
-"""Begins that are kept; the day's cost grows with them."""
+"""Number of onsets kept; the work per day grows with it."""
 _RECENT = 8
-"""The last begins, which are never merged."""
+"""Number of latest onsets that are never merged."""
 RECONSIDERED_DAYS, STEADY_DAYS = 10.0, 90.0
-"""How often the models' weights are reconsidered, and for how long what is unexplained stays as it is."""
+"""Interval at which the models' weights are partly reset, and the time scale of unexplained variation
+[days]."""
 FEWEST_DAYS = 7
-"""Days with records that a baseline needs."""
+"""Fewest days with records in a baseline."""
 PATIENCE, MOST_PATIENCE_DAYS = 1.0 / 36.0, 10.0
-"""Share of the baseline that a change has to last where no conditions are given, and the most of it: what is
-shorter may be storms that follow each other. Leaving later begins out can only lower R, so that the promise
-is kept."""
+"""Time that a change must last if no conditions are given, as a share of the baseline, and its limit in days:
+shorter deviations may be successive storms. Omitting later onsets only lowers R,
+so that the promised rate of false alarms is kept."""
 GUARDED = 0.8
-"""Power to which evidence counts where no conditions are given and a baseline of a year makes models sure of
-what weather does, which has a longer tail than any normal process. The mean of no Bayes factor rises by that
-(Jensen), so that the promise is kept. After a shorter baseline models are unsure enough by themselves."""
+"""Power applied to the evidence if no conditions are given after a baseline of a year,
+when the models are sure of the effects of weather, whose tail is longer than that of any normal process.
+The mean of a Bayes factor does not rise by that (Jensen), so that the promise is kept.
+After a shorter baseline the models are uncertain enough."""
 KINDS: tuple[Kind, ...] = ("frequency", "damping", "angle")
 
 
 @dataclass(frozen=True)
 class Look:
-    """What one day says.
+    """Result of one day.
 
     Attributes
     ----------
@@ -80,7 +82,7 @@ class Look:
 
 
 def columns_to_watch(baseline: History) -> dict[Kind, IntArray]:
-    """Return the columns of each kind of quantity that the baseline tells enough of to watch.
+    """Return the columns of each kind of quantity with enough baseline values to be monitored.
 
     Raises
     ------
@@ -170,7 +172,7 @@ def step(watch: Watch, day: History) -> tuple[Watch, Look]:
     blocks, spoken = [], []
     for block in watch.blocks:
         hours, apart, block = hours_of(block, day, rows)
-        block, said = taken(block, hours, apart, watch.last_day)
+        block, said = with_hours(block, hours, apart, watch.last_day)
         blocks.append(block)
         spoken.append(said)
     scatter = np.concatenate([log_scatter(b, s) for b, s in zip(blocks, spoken, strict=True)])
@@ -186,8 +188,8 @@ def step(watch: Watch, day: History) -> tuple[Watch, Look]:
     )
     change = None
     if log_r >= after.log_threshold:
-        change, begun = change_of(after, worth, log_r)
-        after = _without(after, change, begun)
+        change, onset = change_of(after, worth, log_r)
+        after = _without(after, change, onset)
     else:
         after = _reconsidered(_merged(after, worth))
     rest, std = (np.concatenate([getattr(s, name) for s in spoken]) for name in ("rest", "rest_std"))
@@ -206,7 +208,7 @@ def _with_today(watch: Watch, today: float, scatter: FloatArray) -> Begins:
 
 
 def _worth(watch: Watch) -> FloatArray:
-    """Return ln of what a unit stake on each begin has become, by bet, (n_begins, n_bets).
+    """Return ln of the value of a unit stake on each onset, by bet, (n_begins, n_bets).
 
     The bets are the directions of each block, then the scatter of each quantity by its factor.
     """
@@ -220,7 +222,7 @@ def _worth(watch: Watch) -> FloatArray:
 
 
 def _merged(watch: Watch, worth: FloatArray) -> Watch:
-    """Return the watch with at most so many begins: the one closest to its neighbours for its age goes."""
+    """Return the state with limited onsets; those closest to a neighbour relative to their age are merged."""
     begins = watch.begins
     if begins.days.size <= MOST_BEGINS:
         return watch
@@ -237,14 +239,14 @@ def _merged(watch: Watch, worth: FloatArray) -> Watch:
 
 
 def _reconsidered(watch: Watch) -> Watch:
-    """Return the watch with its models' weights reconsidered now and then; what begins are worth stays."""
+    """Return the state with the models' weights partly reset at intervals; values of onsets are kept."""
     elapsed = watch.last_day - watch.considered
     if elapsed < RECONSIDERED_DAYS:
         return watch
     share = -np.expm1(-elapsed / STEADY_DAYS)
     after = replace(
         watch,
-        blocks=tuple(reconsidered(block, float(share)) for block in watch.blocks),
+        blocks=tuple(with_weights_reset(block, float(share)) for block in watch.blocks),
         considered=watch.last_day,
     )
     before, now = (np.logaddexp.reduce(_worth(one), axis=1) for one in (watch, after))
@@ -252,8 +254,8 @@ def _reconsidered(watch: Watch) -> Watch:
     return replace(after, begins=begins)
 
 
-def _without(watch: Watch, change: Change, begun: int) -> Watch:
-    """Return the watch without bets that looks for what changes next; a change is taken over as a step."""
+def _without(watch: Watch, change: Change, onset: int) -> Watch:
+    """Return the state without bets, ready for the next change; a change is accepted as a step."""
     blocks, first = [], 0
     for block in watch.blocks:
         m = len(block.kept)
@@ -262,7 +264,9 @@ def _without(watch: Watch, change: Change, begun: int) -> Watch:
             louder = np.exp(change.size[first : first + m])
             blocks.append(replace(cleared(block), louder=block.louder * np.where(louder > 1.2, louder, 1.0)))
         elif members.any():
-            blocks.append(adopted(block, begun, np.ones(m, dtype=np.bool_), len(watch.design.states)))
+            blocks.append(
+                with_change_accepted(block, onset, np.ones(m, dtype=np.bool_), len(watch.design.states))
+            )
         else:
             blocks.append(cleared(block))
         first += m

@@ -1,4 +1,4 @@
-"""A table of modes watched: baseline, then day by day, what changed, and what it was."""
+"""Monitoring of a table of modes: baseline, daily evaluation, changes and their causes."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ from jackettwin.watching.variance_shares import shares, slopes
 from jackettwin.watching.watch import columns_to_watch
 
 _PATTERNS, _UNLIKELY = 3, 0.001
-"""Causes whose patterns are kept, and the probability below which none is."""
+"""Number of causes whose patterns are kept, and their smallest probability."""
 _MISSING = 0.1
-"""Share of missing values of a condition from which it is said."""
+"""Share of missing values of a condition above which a remark is given."""
 
 
 @dataclass(frozen=True)
 class Alarm:
-    """A change and what it was.
+    """A change and its causes.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class Alarm:
 
 @dataclass(frozen=True)
 class Watched:
-    """A table of modes, judged.
+    """A monitored table of modes.
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ def watch_table(
     ground: Ground = UNDESCRIBED,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Watched:
-    """Return what a table says: nothing of it is looked at before its day.
+    """Monitor a table of modes; no row is used before its day.
 
     Parameters
     ----------
@@ -126,12 +126,12 @@ def watch_table(
             f"all {history.days[-1] - first:.0f} days lie in the baseline of {baseline_days:g}: "
             "nothing is watched yet"
         )
-    columns_to_watch(baseline)  # refused before a model is asked for causes, which takes a while
+    columns_to_watch(baseline)  # refuse before the causes are computed, which takes a while
     if structure is not None:
         progress("causes")
     causes = None if structure is None else structure_causes(structure, gravity, baseline, ground)
     progress("baseline")
-    watch = begun(baseline, arl_years, causes)
+    watch = watch_after_baseline(baseline, arl_years, causes)
     limits += _limits(watch, baseline, rest)
     explained, unexplained = _explained(watch, baseline)
     seen = None if causes is None else seen_causes(causes, watch.quantities, watch.labels)
@@ -159,7 +159,7 @@ def watch_table(
 
 
 def explained_alarm(change: Change, watch: Watch, baseline: History, seen: SeenCauses | None) -> Alarm:
-    """Return a change with its causes: the structure's own, or patterns over modes."""
+    """Return a change with its causes, from the structure or from patterns over modes."""
     kinds = [kind for kind, _ in watch.quantities]
     if seen is None:
         general = general_causes(watch.quantities, watch.labels, typical(baseline.frequency))
@@ -175,7 +175,7 @@ def explained_alarm(change: Change, watch: Watch, baseline: History, seen: SeenC
 
 
 def _patterns(diagnosis: Diagnosis, causes: Sequence[Cause], known: BoolArray) -> dict[str, FloatArray]:
-    """Return what the likely causes would have done to all quantities, of which some are known."""
+    """Return the effects of likely causes on all quantities, NaN where unknown."""
     by_name = {cause.name: cause for cause in causes}
     found: dict[str, FloatArray] = {}
     for verdict in diagnosis.verdicts[:_PATTERNS]:
@@ -187,13 +187,13 @@ def _patterns(diagnosis: Diagnosis, causes: Sequence[Cause], known: BoolArray) -
 
 
 def structure_causes(structure: Structure, gravity: bool, baseline: History, ground: Ground) -> ModelCauses:
-    """Return what may happen to a structure that had these modes."""
+    """Return the possible causes for a structure with these modes."""
     f, zeta = typical(baseline.frequency), typical(baseline.damping)
     return model_causes(structure, baseline.labels, f, zeta, gravity=gravity, ground=ground)
 
 
-def begun(baseline: History, arl_years: float, causes: ModelCauses | None) -> Watch:
-    """Return the watch at the end of a baseline; a structure's causes are among what it looks for."""
+def watch_after_baseline(baseline: History, arl_years: float, causes: ModelCauses | None) -> Watch:
+    """Return the state at the end of a baseline, which also looks for a structure's causes."""
     if causes is None:
         return start(baseline, arl_years=arl_years)
     return start(
@@ -227,7 +227,7 @@ def _limits(watch: Watch, baseline: History, rest: History) -> list[str]:
 
 
 def _unseen(causes: ModelCauses, labels: Sequence[str]) -> list[str]:
-    """Return what of a structure's causes these modes do not show."""
+    """Return the causes of a structure that these modes do not show."""
     said = [f"leaves no trace in these quantities: {', '.join(causes.traceless)}"]
     strange = [label for label in labels if label not in causes.labels]
     if strange:
@@ -239,7 +239,7 @@ def _unseen(causes: ModelCauses, labels: Sequence[str]) -> list[str]:
 
 
 def _gaps(watch: Watch, rest: History) -> list[str]:
-    """Return what is not known of the rows that are watched."""
+    """Return remarks on missing data of monitored rows."""
     if not rest.days.size:
         return []
     share = {c.name: np.mean(~np.isfinite(rest.conditions[:, c.source])) for c in watch.design.columns
