@@ -164,9 +164,7 @@ def _with_outliers(chi2: FloatArray, freedom: FloatArray, apart: FloatArray) -> 
 def _usual_std(
     days: FloatArray, x: FloatArray, y: FloatArray, relative: FloatArray, design: Design
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the usual standard deviation (m,), stated or from differences of neighbours,
-    and the residuals.
-    """
+    """Return the usual standard deviation (m,), stated or by differences, and the residuals."""
     m = y.shape[1]
     usual, rest = np.empty(m), np.full(y.shape, np.nan)
     for q in range(m):
