@@ -19,6 +19,7 @@ from .laws.coefficients import (
     MASS as MASS,
     OMEGA0 as OMEGA0,
     C as C,
+    law_slope as law_slope,
     law_stiffness as law_stiffness,
     static_rows as static_rows,
 )

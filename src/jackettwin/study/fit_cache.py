@@ -6,8 +6,9 @@ from dataclasses import fields, replace
 
 from jackettwin.files import NOT_KEPT, Keep, StoredSchema, digest, kept
 from jackettwin.progress import SILENT, Progress
+from jackettwin.response import Matrix
 from jackettwin.twin.config import UpdateSettings
-from jackettwin.updating import Fit, Problem, Update, update, with_posterior
+from jackettwin.updating import ErrorModel, Fit, Problem, Update, update, with_posterior
 from jackettwin.version import __version__
 
 FIT = StoredSchema("fit", Fit)
@@ -76,16 +77,32 @@ def fit_key(problem: Problem, shown: tuple[int, ...], how: UpdateSettings, *, sa
     model = problem.model
     steel = {name: getattr(model.assembly, name) for name in ("mass", "stiffness")}
     matrices = {**steel, **model.nuisance.matrices, **model.nuisance.given}
-    plain = [
-        getattr(model, f.name) for f in fields(model) if f.name not in ("assembly", "family", "nuisance")
-    ]
+    apart = ("assembly", "family", "nuisance", "directions")
+    plain = [getattr(model, f.name) for f in fields(model) if f.name not in apart]
     return digest(
         [
             [problem.states, problem.parameters, problem.prior],
             [model.family.name, plain, replace(model.nuisance, matrices={}, given={})],
-            {name: [m.tocsc().data, m.tocsc().indices, m.tocsc().indptr] for name, m in matrices.items()},
+            {name: _numbers(matrix) for name, matrix in matrices.items()},
+            _errors(problem.error_model),
             [shown, how.method, how.starts, how.seed, how.most_evaluations],
             [how.particles, how.sampler] if sampled else None,
             __version__,
         ]
     )
+
+
+def _numbers(matrix: Matrix | None) -> list[object]:
+    """Return every number of a sparse matrix."""
+    return [] if matrix is None else [matrix.tocsc().data, matrix.tocsc().indices, matrix.tocsc().indptr]
+
+
+def _errors(model: ErrorModel | None) -> list[object]:
+    """Return every number of what a model may miss."""
+    if model is None:
+        return []
+    each = [
+        [one.tolerance.name, one.tolerance.std, _numbers(one.mass), _numbers(one.stiffness), one.feet]
+        for one in model.directions.each
+    ]
+    return [each, dict(model.remainder), model.usual_frequency, model.usual_damping]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from math import hypot, pi
+from math import pi
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean, located, require
@@ -279,13 +279,11 @@ def _weighed(target: Target, weights: Weights | None) -> Target:
 
 
 def _target(m: MeasuredMode, error: ModelError, relative: bool) -> Target:
-    """Return what is fitted of a mode; the model's error adds to the variances, not to the covariance."""
+    """Return what is fitted of a mode; a stated error of the model stands in for an unknown deviation."""
     f = m.frequency_hz if m.fits_frequency else None
     zeta = m.damping_ratio if m.fits_damping else None
     if relative:
         return Target(m.mode, f, None, zeta, None)
-    own_f, own_zeta = m.frequency_std_hz or 0.0, m.damping_ratio_std or 0.0
-    f_std = None if f is None else hypot(own_f, error.frequency * f)
-    zeta_std = None if zeta is None else hypot(own_zeta, error.damping * zeta)
-    correlation = m.correlation * own_f * own_zeta / (f_std * zeta_std) if f_std and zeta_std else 0.0
-    return Target(m.mode, f, f_std, zeta, zeta_std, correlation)
+    f_std = None if f is None else m.frequency_std_hz or error.frequency * f
+    zeta_std = None if zeta is None else m.damping_ratio_std or error.damping * zeta
+    return Target(m.mode, f, f_std, zeta, zeta_std, m.correlation if f_std and zeta_std else 0.0)

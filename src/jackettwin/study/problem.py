@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,8 +15,11 @@ from jackettwin.study.relaxations import placed, relaxation_targets
 from jackettwin.study.result import MeasuredRelaxation
 from jackettwin.study.rotor import RotorDamping, States
 from jackettwin.twin import ALL, TwinConfig, TwinState
+from jackettwin.twin.tolerances.registry import REMAINDERS, directions
 from jackettwin.twin.water import in_the_records_sea, water_effects
 from jackettwin.updating import (
+    Directions,
+    ErrorModel,
     Growth,
     NuisanceParameters,
     Problem,
@@ -72,7 +75,30 @@ def model_problem(config: TwinConfig, evidence: UpdateEvidence, model: SupportMo
         relative=any(residuals.relative for residuals, _ in evidence.states.values()),
     )
     shapes = measured_shapes(config, model, evidence)
-    return tied_problem(config, model, evidence.states, shapes=shapes, relaxations=relaxations)
+    return tied_problem(
+        config,
+        model,
+        evidence.states,
+        shapes=shapes,
+        relaxations=relaxations,
+        error_model=error_model(config, model),
+    )
+
+
+def error_model(config: TwinConfig, model: SupportModel) -> ErrorModel | None:
+    """Return what a twin's model may miss: its tolerances and remainders; None if the twin closes them all.
+
+    ``update.model_error`` takes the place of the remainder of the modes that it names.
+    """
+    usual = {name: config.tolerances.std(name, std) for name, std in REMAINDERS.items()}
+    stated: dict[str, float] = {}
+    for mode in sorted({mode for error in config.update.model_errors for mode in error.modes}):
+        error = config.update.model_error(mode)
+        stated |= {f"f{mode}": error.frequency} if error.frequency > 0.0 else {}
+        stated |= {f"ζ{mode}": error.damping} if error.damping > 0.0 else {}
+    if model.directions is None or not (model.directions.each or stated or any(usual.values())):
+        return None
+    return ErrorModel(model.directions, stated, *usual.values())
 
 
 def tied_problem(
@@ -84,6 +110,7 @@ def tied_problem(
     relaxations: tuple[RelaxationTarget, ...] = (),
     errors: Mapping[str, float] | None = None,
     growth: Growth | None = None,
+    error_model: ErrorModel | None = None,
 ) -> Problem:
     """Return the problem of a model in some states, its legs tied as the twin says."""
     law = {p.name + side for p in model.family.parameters for side in ("", *model.tie_groups.sides)}
@@ -97,6 +124,7 @@ def tied_problem(
             scatter={name: scale for name, scale in config.scatter.items() if name in law},
             errors=errors,
             growth=growth,
+            error_model=error_model,
         )
 
 
@@ -122,7 +150,7 @@ def law_model(config: TwinConfig, evidence: UpdateEvidence, law: str) -> Support
     own = {p.name for p in (*chosen.parameters, *nuisance.parameters)}
     relative = any(residuals.relative for residuals, _ in states.values())
     try:
-        return support_model(
+        model = support_model(
             evidence.assembly,
             family=chosen,
             rayleigh=config.rayleigh,
@@ -137,6 +165,8 @@ def law_model(config: TwinConfig, evidence: UpdateEvidence, law: str) -> Support
         )
     except InputError as error:
         raise error.at(file=config.path, field=_place(error)) from None
+    each = () if relative else directions(config, evidence.assembly)
+    return replace(model, directions=Directions(evidence.assembly, model.condensed, each))
 
 
 def _place(error: InputError) -> str | None:

@@ -42,6 +42,33 @@ class ModelError(Schema):
     rate: Ratio = 0.0
 
 
+class ToleranceSchema(Schema):
+    """A tolerance of ``tolerances``: its standard deviation, or that it was weighed or inspected."""
+
+    std: Annotated[float, Field(ge=0.0)] | None = None
+    weighed: bool = False
+
+
+@dataclass(frozen=True)
+class TwinTolerances:
+    """``tolerances`` of a twin file.
+
+    Attributes
+    ----------
+    given : {name: standard deviation}
+        Of the tolerances that the twin sizes; 0 closes one.
+    others : bool
+        Whether the tolerances that it does not name are open.
+    """
+
+    given: Mapping[str, float] = field(default_factory=dict)
+    others: bool = True
+
+    def std(self, name: str, usual: float) -> float:
+        """Return the standard deviation of a tolerance."""
+        return self.given.get(name, usual if self.others else 0.0)
+
+
 class LognormalPrior(Schema):
     """What is known of a parameter beforehand; the standard deviation is that of its logarithm."""
 
@@ -209,6 +236,8 @@ class TwinConfig:
     """Which state of operation a record was in, and whether it may update the supports."""
     watch: WatchSettings = WatchSettings()
     """How its days are watched for change."""
+    tolerances: TwinTolerances = TwinTolerances()
+    """What drawings and sea leave open."""
     rotor_speed_rpm: tuple[float, float] | None = None
     """Lowest and highest speed of the rotor in operation; None leaves it to ``update.rotor``."""
     mode_damping: Mapping[int, float] = field(default_factory=dict)

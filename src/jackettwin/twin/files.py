@@ -22,13 +22,16 @@ from jackettwin.twin.config import (
     PAIRED_MODES,
     USUAL_MODES,
     GivenRelaxation,
+    ToleranceSchema,
     TwinConfig,
+    TwinTolerances,
     UpdateSettings,
     assembled,
 )
 from jackettwin.twin.schema import DampingSchema, SupportSchema, TwinSchema
 from jackettwin.twin.stated_model import model_of_records
 from jackettwin.twin.targets_table import assigned_modes, read_targets_table
+from jackettwin.twin.tolerances.registry import REMAINDERS, tolerances
 from jackettwin.twin.water import WaterConfig
 from jackettwin.updating import (
     DASHPOTS,
@@ -201,7 +204,26 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         picks=_picks(schema.identification, folder, [Path(record).stem for record in schema.records]),
         update=_update_settings(schema, folder),
         rotor_speed_rpm=schema.rotor_speed_rpm,
+        tolerances=_tolerances(schema),
     )
+
+
+def _tolerances(schema: TwinSchema) -> TwinTolerances:
+    """Return what the twin says of tolerances, all of which are known ones."""
+    if schema.tolerances == "none":
+        return TwinTolerances(others=False)
+    known, given = {**tolerances(), **REMAINDERS}, {}
+    for name, said in schema.tolerances.items():
+        look_up(known, name, "tolerance", field=f"tolerances.{name}")
+        own = said if isinstance(said, ToleranceSchema) else ToleranceSchema(std=said)
+        require(
+            own.weighed or own.std is not None,
+            "neither a standard deviation nor weighed",
+            field=f"tolerances.{name}",
+            remedy="give std: 0.01, weighed: true, or a number",
+        )
+        given[name] = 0.0 if own.weighed and own.std is None else own.std or 0.0
+    return TwinTolerances(given)
 
 
 def _numbered(field: str, names: Iterable[str]) -> Iterator[tuple[str, str]]:

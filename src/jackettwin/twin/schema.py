@@ -18,7 +18,13 @@ from jackettwin.records import Unsaid, read_zone
 from jackettwin.response import Sensor, sensor_kinds
 from jackettwin.structure import RayleighSchema
 from jackettwin.twin.calibration import Calibration, Calibrations
-from jackettwin.twin.config import GivenRelaxation, Positive, UpdateSettings, WatchSettings
+from jackettwin.twin.config import (
+    GivenRelaxation,
+    Positive,
+    ToleranceSchema,
+    UpdateSettings,
+    WatchSettings,
+)
 from jackettwin.twin.operation import OperationRule
 from jackettwin.updating import Target
 
@@ -237,5 +243,6 @@ class TwinSchema(Schema):
     rotor_speed_rpm: tuple[Positive, Positive] | None = None
     identification: dict[str, Any] = {}
     update: UpdateSettings = UpdateSettings()
+    tolerances: Literal["none"] | dict[str, Annotated[float, Field(ge=0.0)] | ToleranceSchema] = {}
     operation: OperationRule = OperationRule()
     watch: WatchSettings = WatchSettings()

@@ -33,6 +33,12 @@ from .law_choice import (
     recommended as recommended,
 )
 from .model import SupportModel as SupportModel
+from .model_error.directions import (
+    Direction as Direction,
+    Directions as Directions,
+    Tolerance as Tolerance,
+)
+from .model_error.error_model import ErrorModel as ErrorModel
 from .nuisance_parameters import (
     DASHPOTS as DASHPOTS,
     NuisanceParameter as NuisanceParameter,

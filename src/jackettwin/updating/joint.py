@@ -15,6 +15,7 @@ from jackettwin.updating.data.relaxations import RelaxationTarget
 from jackettwin.updating.data.shapes import ShapeTarget
 from jackettwin.updating.data.targets import Residuals
 from jackettwin.updating.model import SupportModel
+from jackettwin.updating.model_error.error_model import ErrorModel
 from jackettwin.updating.posterior.scatter import Legs, ScatteredPrior
 from jackettwin.updating.prior import BoxPrior, Prior
 from jackettwin.updating.problem import Problem, State
@@ -65,6 +66,7 @@ def joint(
     scatter: Mapping[str, float] | None = None,
     errors: Mapping[str, float] | None = None,
     growth: Growth | None = None,
+    error_model: ErrorModel | None = None,
 ) -> Problem:
     """Return the problem of several operating states that share their parameters.
 
@@ -89,6 +91,8 @@ def joint(
         the model's value, lognormal around one. More states do not average them out.
     growth : Growth, optional
         Adds the parameter ``growth_per_day``.
+    error_model : ErrorModel, optional
+        What the model may miss beside that; without standard deviations of the data it has no place.
 
     Raises
     ------
@@ -122,6 +126,8 @@ def joint(
         beside = ((), ()) if i else (shapes, relaxations)
         built.append(State(state, residuals, weights, shifts, common, *beside))
     problem = Problem(model, tuple(built), parameters, _prior(model, parameters, scatter or {}))
+    if problem.weighted:
+        problem = replace(problem, error_model=error_model)
     _no_priors_without_deviations(problem)
     return problem
 

@@ -26,6 +26,7 @@ from jackettwin.response import (
 from jackettwin.soil import Family, Law, Parameter
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating.band import condensed_for, numbered_modes
+from jackettwin.updating.model_error.directions import Directions
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.tie_groups import TieGroups
 
@@ -70,6 +71,8 @@ class SupportModel:
         Free parameters beside those of the law: they follow them in ``parameters``.
     fastest_rate : float
         Relaxations up to this rate [rad/s] are well inside the band, too.
+    directions : Directions, optional
+        What the structure's tolerances do to it, on the condensed model.
     """
 
     assembly: Assembly
@@ -82,6 +85,7 @@ class SupportModel:
     highest_mode: int
     nuisance: NuisanceParameters = NuisanceParameters()
     fastest_rate: float = 0.0
+    directions: Directions | None = None
 
     def reaching(self, mode: int) -> SupportModel:
         """Return the model with a band up to a numbered mode; itself if it reaches there."""
@@ -91,7 +95,8 @@ class SupportModel:
         condensed = condensed_for(
             self.assembly, self.tie_groups, self.rayleigh, self.nuisance, pinned_hz, mode, self.fastest_rate
         )
-        return replace(self, condensed=condensed, highest_mode=mode)
+        own = None if self.directions is None else replace(self.directions, condensed=condensed)
+        return replace(self, condensed=condensed, highest_mode=mode, directions=own)
 
     def laws(self, theta: FloatArray) -> list[Law]:
         """Return the law of each tie group."""

@@ -13,6 +13,8 @@ from jackettwin.updating.data.relaxations import RelaxationTarget
 from jackettwin.updating.data.shapes import ShapeTarget
 from jackettwin.updating.data.targets import Residuals
 from jackettwin.updating.model import SupportModel
+from jackettwin.updating.model_error.error_model import ErrorModel
+from jackettwin.updating.model_error.marginal import errors_given, inverse_root, log_density
 from jackettwin.updating.prior import Prior
 
 NEVER = -1e30
@@ -98,12 +100,15 @@ class Problem:
         The model's, and for a state-dependent one a copy for each state.
     prior : Prior
         Of their logarithms z.
+    error_model : ErrorModel, optional
+        What the model may miss, marginalised at every point; None of a model that is taken for true.
     """
 
     model: SupportModel
     states: tuple[State, ...]
     parameters: tuple[Parameter, ...]
     prior: Prior
+    error_model: ErrorModel | None = None
 
     @property
     def relative(self) -> bool:
@@ -170,11 +175,52 @@ class Problem:
                 lost = True
             values.append(value)
             rows.append(jacobian)
+        if self.error_model is not None and not lost:
+            # how the errors' weights change with z is left out of the slopes: nothing, where the data are met
+            root = inverse_root(self.gains(found)[0])
+            values, rows = [root @ np.concatenate(values)], [root @ np.concatenate(rows)]
         if not self.relative:
             value, jacobian = self.prior.rows(z)
             values.append(value)
             rows.append(jacobian)
         return np.concatenate(values), np.concatenate(rows), None if lost else found
+
+    def gains(self, found: Found) -> FloatArray:
+        """Return the derivatives Γ (n, n_data, n_errors) of the residuals by the errors of the model.
+
+        Shapes and relaxations have their own standard deviations, which hold the model's error.
+
+        Parameters
+        ----------
+        found : modes at n points, where none is lost
+        """
+        if self.error_model is None:
+            return np.zeros((len(found[0].poles), self.n_data, 0))
+        parts = []
+        for state, modes in zip(self.states, found, strict=True):
+            own = self.error_model.gains(state.residuals, modes, self.error_data)
+            beside = len(state.names) - state.residuals.count
+            parts.append(np.concatenate([own, np.zeros((len(own), beside, own.shape[2]))], axis=1))
+        return np.concatenate(parts, axis=1)
+
+    @property
+    def error_data(self) -> tuple[str, ...]:
+        """Names of the data that have a remainder of the model's error, each once."""
+        return tuple(dict.fromkeys(name for state in self.states for name in state.residuals.names))
+
+    def errors(self, z: FloatArray, near: Found | None) -> tuple[FloatArray, FloatArray, BoolArray]:
+        """Return what the data say of the model's errors at points (n, d).
+
+        Returns
+        -------
+        mean : (n_known, n_errors) in standard deviations: tolerances, then the remainders of ``error_data``
+        covariance : (n_known, n_errors, n_errors)
+        known : (n,) where no mode is lost
+        """
+        found = self._modes(z, near, slopes=False)
+        r, known = self._all_residuals(z, found)
+        mean, covariance = errors_given(r, self.gains(tuple(modes.some(known) for modes in found)))
+        return mean, covariance, known
 
     def anchor(self, z: FloatArray) -> Found | None:
         """Return the modes at one point (d,), for many others to start from; None if a mode is lost there."""
@@ -183,13 +229,16 @@ class Problem:
 
     def log_likelihood(self, z: FloatArray, near: Found | None) -> tuple[FloatArray, Found]:
         """Return ln L (n,) at points (n, d) and the modes there; ``NEVER`` where a mode does not exist."""
-        log_l, found = np.zeros(len(z)), self._modes(z, near, slopes=False)
-        for state, modes in zip(self.states, found, strict=True):
-            known, r = self._known_residuals(state, z, modes)
-            log_l[known] += -0.5 * (r * r).sum(axis=1) - state.log_normalisation
-            log_l[~known] = NEVER
+        log_l, found = np.full(len(z), NEVER), self._modes(z, near, slopes=False)
+        r, known = self._all_residuals(z, found)
+        if self.error_model is None:
+            log_l[known] = -0.5 * (r * r).sum(axis=1)
+        elif known.any():
+            log_l[known] = log_density(r, self.gains(tuple(modes.some(known) for modes in found)))
+        log_l[known] -= sum(state.log_normalisation for state in self.states)
         return log_l, found
 
+<<<<<<< HEAD
     def costs(self, z: FloatArray, near: Found | None) -> FloatArray:
         """Return the cost (n,) of points (n, d): squares of all residuals, NaN where a mode does not exist.
 
@@ -203,6 +252,19 @@ class Problem:
         if not self.relative:
             cost += [row @ row for row, _ in map(self.prior.rows, z)]
         return cost
+=======
+    def _all_residuals(self, z: FloatArray, found: Found) -> tuple[FloatArray, BoolArray]:
+        """Return the residuals (n_known, n_data) of the points that have everything, and which these are."""
+        relaxed = [self.relaxed(z, state) for state in self.states]
+        known = np.ones(len(z), dtype=np.bool_)
+        for modes, rates in zip(found, relaxed, strict=True):
+            known &= _complete(modes, rates)
+        columns = [
+            state.values(z[known], modes.some(known), tuple(rate.some(known) for rate in rates))
+            for state, modes, rates in zip(self.states, found, relaxed, strict=True)
+        ]
+        return np.concatenate(columns, axis=1), known
+>>>>>>> ae6542e (Marginalise tolerances of drawings and sea at each point of the posterior)
 
     def _modes(self, z: FloatArray, near: Found | None, *, slopes: bool) -> Found:
         """Return the modes of every state at points (n, d).
@@ -229,14 +291,6 @@ class Problem:
             return ()
         vectors = self.vectors(z, state)
         return tuple(r.nearest(self.model, vectors, slopes=slopes) for r in state.relaxations)
-
-    def _known_residuals(
-        self, state: State, z: FloatArray, modes: NumberedModes
-    ) -> tuple[BoolArray, FloatArray]:
-        """Return which points have every mode and relaxation, (n,), and the residuals of these."""
-        relaxed = self.relaxed(z, state)
-        known = _complete(modes, relaxed)
-        return known, state.values(z[known], modes.some(known), tuple(found.some(known) for found in relaxed))
 
 
 def _complete(modes: NumberedModes, relaxed: tuple[Relaxation, ...]) -> BoolArray:

@@ -185,12 +185,37 @@ class Residuals:
         poles : (n_modes,) λ of ``modes``
         slopes : (n_modes, n_parameters) dλ/d ln θ
         """
+<<<<<<< HEAD
         size, zeta, radial, turned = polar(poles, slopes)
         pairs = np.stack([radial / (2.0 * pi), turned], axis=1)
         model = np.stack([size / (2.0 * pi), zeta], axis=1).reshape(-1)[self._places]
+=======
+        pairs, model = self._pairs(poles, slopes)
+>>>>>>> ae6542e (Marginalise tolerances of drawings and sea at each point of the posterior)
         scale = np.where(self._logarithmic, np.maximum(model, _LEAST), self._measured)
-        rows = pairs.reshape(-1, slopes.shape[1])[self._places] / scale[:, None]
-        return np.asarray(self._whitener @ rows)
+        return np.asarray(self._whitener @ (pairs / scale[:, None]))
+
+    def gains(self, poles: ComplexArray, slopes: ComplexArray) -> FloatArray:
+        """Return the residuals' derivatives (n_sets, count, n) by what moves the poles of many sets.
+
+        Parameters
+        ----------
+        poles : (n_sets, n_modes) λ of ``modes``
+        slopes : (n_sets, n_modes, n) dλ/dφ
+        """
+        pairs, model = self._pairs(poles, slopes)
+        return np.asarray(self._whitener @ (pairs / np.maximum(model, _LEAST)[..., None]))
+
+    def _pairs(self, poles: ComplexArray, slopes: ComplexArray) -> tuple[FloatArray, FloatArray]:
+        """Return derivatives (..., count, n) of frequencies and damping ratios, and these (..., count)."""
+        size = np.abs(poles)[..., None]
+        zeta = -poles.real[..., None] / size
+        radial = (np.conj(poles)[..., None] * slopes).real / size  # d|λ|
+        pairs = np.stack([radial / (2.0 * pi), -slopes.real / size - zeta * radial / size], axis=-2)
+        model = np.concatenate([size / (2.0 * pi), zeta], axis=-1)
+        shape = (*poles.shape[:-1], 2 * len(self.used))
+        pairs, model = pairs.reshape(*shape, slopes.shape[-1]), model.reshape(shape)
+        return pairs[..., self._places, :], model[..., self._places]
 
     def shift_jacobian(self, rows: FloatArray) -> FloatArray:
         """Return the residuals' derivatives from those of the ``shift``, (count, n)."""

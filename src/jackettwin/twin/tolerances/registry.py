@@ -1,0 +1,271 @@
+"""The table of tolerances: what each is called, how large it is, why, and what it changes.
+
+Another package adds one by an entry point in ``jackettwin.tolerances`` that is a :class:`KnownTolerance`;
+twin files size and close each by its name under ``tolerances:``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from jackettwin.plugins import plugins_of_type
+from jackettwin.response import Matrix
+from jackettwin.structure import Assembly, PointMass, Structure
+from jackettwin.twin.config import TwinConfig, assembled
+from jackettwin.twin.tolerances.parts import (
+    JACKET,
+    PIECE,
+    TOWER,
+    heavier,
+    stiffer,
+    thicker,
+    with_part,
+    with_top_bodies,
+)
+from jackettwin.twin.tolerances.sea import (
+    Change,
+    changed_mass,
+    denser_growth,
+    flooded_legs,
+    leg_share,
+    level_mass,
+    more_added_mass,
+    thicker_growth,
+    unstated_growth,
+)
+from jackettwin.updating import Direction, Tolerance
+
+Effect = Callable[[TwinConfig, Assembly, Tolerance], tuple[Direction, ...]]
+PLUGINS = "jackettwin.tolerances"
+"""Entry points of packages that add tolerances: each is a :class:`KnownTolerance`."""
+
+
+@dataclass(frozen=True)
+class KnownTolerance:
+    """A tolerance and what one standard deviation of it does to a twin.
+
+    Attributes
+    ----------
+    tolerance : Tolerance
+    effect : function of the twin, its assembly and the tolerance as the twin sizes it
+        Returns one direction, several where several unknowns are alike (every foot its own), or none where
+        the twin has nothing that it touches.
+    """
+
+    tolerance: Tolerance
+    effect: Effect
+
+
+def _drawn(change: Callable[[TwinConfig, float], TwinConfig | None]) -> Effect:
+    """Return the effect of drawings that change: the twin is assembled again with them."""
+
+    def effect(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple[Direction, ...]:
+        changed = change(config, tolerance.std)
+        if changed is None:
+            return ()
+        other = assembled(changed)
+        mass, stiffness = other.mass - assembly.mass, other.stiffness - assembly.stiffness
+        return (Direction(tolerance, _or_none(mass), _or_none(stiffness)),)
+
+    return effect
+
+
+def _or_none(matrix: Matrix) -> Matrix | None:
+    return matrix if matrix.nnz and abs(matrix).max() > 0.0 else None
+
+
+def _steel(change: Callable[[Structure, float], Structure | None]) -> Effect:
+    """Return the effect of another structure."""
+
+    def changed(config: TwinConfig, size: float) -> TwinConfig | None:
+        structure = change(config.structure, size)
+        return None if structure is None else replace(config, structure=structure)
+
+    return _drawn(changed)
+
+
+def _heavier_body(body: PointMass, factor: float) -> PointMass:
+    return replace(_turning_body(body, factor), mass_kg=factor * body.mass_kg)
+
+
+def _raised_body(body: PointMass, by_m: float) -> PointMass:
+    x, y, z = body.cg_offset_m
+    return replace(body, cg_offset_m=(x, y, z + by_m))
+
+
+def _overhanging_body(body: PointMass, by_m: float) -> PointMass:
+    x, y, z = body.cg_offset_m
+    return replace(body, cg_offset_m=(x - by_m, y, z))
+
+
+def _turning_body(body: PointMass, factor: float) -> PointMass:
+    xx, yy, zz, xy, xz, yz = (factor * value for value in body.inertia_kg_m2)
+    return replace(body, inertia_kg_m2=(xx, yy, zz, xy, xz, yz))
+
+
+def _wet(change: Change) -> Effect:
+    """Return the effect of other water, whether the structure's mass holds it or the twin adds it."""
+
+    def effect(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple[Direction, ...]:
+        mass = changed_mass(config.water, assembly, tolerance.std, change)
+        return () if mass is None else (Direction(tolerance, mass=mass),)
+
+    return effect
+
+
+def _flooding(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple[Direction, ...]:
+    """Return what the water in some of the legs weighs."""
+    mass = changed_mass(config.water, assembly, 1.0, flooded_legs)
+    size = tolerance.std * leg_share(config.structure)
+    return () if mass is None else (Direction(tolerance, mass=size * mass),)
+
+
+def _level(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple[Direction, ...]:
+    mass = level_mass(config.water, assembly, tolerance.std)
+    return () if mass is None else (Direction(tolerance, mass=mass),)
+
+
+def _feet(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple[Direction, ...]:
+    """Return each foot's share beside the mean of all, unless each has parameters of its own."""
+    n = len(config.structure.reaction_nodes)
+    if n < 2 or config.tie.startswith("per-leg"):
+        return ()
+    shares = tolerance.std * (np.eye(n) - 1.0 / n)
+    return tuple(Direction(tolerance, feet=row) for row in shares)
+
+
+def _table() -> tuple[KnownTolerance, ...]:
+    """Return our own tolerances."""
+    return (
+        KnownTolerance(
+            Tolerance("rna_mass", "mass of the rotor–nacelle assembly", 0.015, "-",
+                      "ISO 19901-5 (2016): estimates by item, before weighing",
+                      "weigh nacelle, hub and blades"),
+            _steel(lambda s, x: with_top_bodies(s, lambda b: _heavier_body(b, 1.0 + x))),
+        ),
+        KnownTolerance(
+            Tolerance("rna_height", "height of its centre of gravity", 0.2, "m",
+                      "assumed: drawings of the nacelle without fittings",
+                      "take it from the weighing report"),
+            _steel(lambda s, x: with_top_bodies(s, lambda b: _raised_body(b, x))),
+        ),
+        KnownTolerance(
+            Tolerance("rna_overhang", "overhang of its centre of gravity", 0.2, "m",
+                      "assumed: drawings of the nacelle without fittings",
+                      "take it from the weighing report"),
+            _steel(lambda s, x: with_top_bodies(s, lambda b: _overhanging_body(b, x))),
+        ),
+        KnownTolerance(
+            Tolerance("rna_inertia", "inertia of the rotor–nacelle assembly", 0.03, "-",
+                      "assumed: twice the mass's", "ask the maker for the inertia of blades and nacelle"),
+            _steel(lambda s, x: with_top_bodies(s, lambda b: _turning_body(b, 1.0 + x))),
+        ),
+        KnownTolerance(
+            Tolerance("tower_stiffness", "bending stiffness of the tower", 0.015, "-",
+                      "JCSS Probabilistic Model Code 3.02 (2001): E by 3 % a plate, less in the mean of many",
+                      "measure walls and diameters of the cans; take E from the mill's certificates"),
+            _steel(lambda s, x: with_part(s, TOWER, stiffer(1.0 + x))),
+        ),
+        KnownTolerance(
+            Tolerance("tower_mass", "mass of the tower", 0.01, "-",
+                      "JCSS Probabilistic Model Code 2.1 (2001): steel by 1 %; flanges and internals",
+                      "weigh the sections when they are lifted"),
+            _steel(lambda s, x: with_part(s, TOWER, heavier(1.0 + x))),
+        ),
+        KnownTolerance(
+            Tolerance("jacket_stiffness", "stiffness of the jacket's steel", 0.01, "-",
+                      "JCSS Probabilistic Model Code 3.02 (2001): E by 3 % a plate, less in the mean of many",
+                      "take E from the mill's certificates"),
+            _steel(lambda s, x: with_part(s, JACKET, stiffer(1.0 + x))),
+        ),
+        KnownTolerance(
+            Tolerance("jacket_mass", "mass of the jacket", 0.02, "-",
+                      "ISO 19901-5 (2016): anodes, appurtenances and weld before weighing",
+                      "take it from the weighing at load-out"),
+            _steel(lambda s, x: with_part(s, JACKET, heavier(1.0 + x))),
+        ),
+        KnownTolerance(
+            Tolerance("jacket_wall", "walls of the jacket's tubes", 0.01, "-",
+                      "EN 10029 (2010): plates of 20 to 50 mm by 1 to 2 %, less in the mean of many",
+                      "measure walls by ultrasound"),
+            _steel(lambda s, x: with_part(s, JACKET, thicker(1.0 + x))),
+        ),
+        KnownTolerance(
+            Tolerance("transition_stiffness", "stiffness of transition piece and grout", 0.1, "-",
+                      "JCSS Probabilistic Model Code 3.01 (2001): E of concrete by 15 %; a shell as beams",
+                      "compute it by shell elements"),
+            _steel(lambda s, x: with_part(s, PIECE, stiffer(1.0 + x))),
+        ),
+        KnownTolerance(
+            Tolerance("growth", "marine growth that the twin does not state", 0.04, "m",
+                      "DNV-RP-C205 (2021) 6.7.4: 50 to 100 mm after some years",
+                      "inspect the growth by diver or ROV, and state it (water.marine_growth)"),
+            _wet(unstated_growth),
+        ),
+        KnownTolerance(
+            Tolerance("growth_thickness", "thickness of the stated growth", 0.47, "-",
+                      "assumed: ×/÷ 1.6 about a design profile (DNV-RP-C205 (2021) 6.7.4)",
+                      "inspect the growth by diver or ROV"),
+            _wet(thicker_growth),
+        ),
+        KnownTolerance(
+            Tolerance("growth_density", "density of the stated growth", 115.0, "kg/m³",
+                      "DNV-RP-C205 (2021) 6.7.4: 1,325 kg/m³; soft growth little more than water",
+                      "weigh samples of it"),
+            _wet(denser_growth),
+        ),
+        KnownTolerance(
+            Tolerance("added_mass", "added mass of the water", 0.1, "-",
+                      "DNV-RP-C205 (2021) 6.9: C_A of cylinders by roughness and motion",
+                      "nothing short of a test in water"),
+            _wet(more_added_mass),
+        ),
+        KnownTolerance(
+            Tolerance("flooding", "water in each leg as drawn or not", 0.22, "-",
+                      "assumed: one leg in twenty is not as drawn",
+                      "look for water in the legs by ultrasound"),
+            _flooding,
+        ),
+        KnownTolerance(
+            Tolerance("water_level", "mean level of the sea", 0.3, "m",
+                      "assumed: surge and datum, beside the tide", "take the level of the days from a gauge"),
+            _level,
+        ),
+        KnownTolerance(
+            Tolerance("feet_unlike", "feet unlike each other", 0.15, "-",
+                      "Phoon & Kulhawy 1999: ground by 10 to 30 %, less in the mean along a pile",
+                      "fit each leg (support.tie: per-leg) with sensors at the feet"),
+            _feet,
+        ),
+    )  # fmt: skip
+
+
+REMAINDERS = {"remainder_frequency": 0.003, "remainder_damping": 0.05}
+"""What beams, joints and laws miss of each mode by itself, as shares: 0.2 to 0.5 % of a frequency that a
+finer mesh or a shell model moves, and what laws of other forms differ by in damping between modes."""
+TOLERANCES = {known.tolerance.name: known for known in _table()}
+
+
+def tolerances() -> dict[str, KnownTolerance]:
+    """Return every tolerance by its name, those of installed packages included."""
+    added = plugins_of_type(PLUGINS, KnownTolerance).values()
+    return {**TOLERANCES, **{known.tolerance.name: known for known in added}}
+
+
+def directions(config: TwinConfig, assembly: Assembly) -> tuple[Direction, ...]:
+    """Return what each tolerance that a twin leaves open does to its structure.
+
+    Parameters
+    ----------
+    assembly : Assembly
+        Of this twin, water included.
+    """
+    found: list[Direction] = []
+    for name, known in tolerances().items():
+        std = config.tolerances.std(name, known.tolerance.std)
+        if std > 0.0:
+            found += known.effect(config, assembly, replace(known.tolerance, std=std))
+    return tuple(found)

@@ -1,0 +1,129 @@
+"""How the mass of the water changes with growth, flooding, added mass and the level of the sea."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from math import sqrt
+
+import scipy.sparse as sp
+
+from jackettwin.loads import Coefficients, GrowthBand, Water, mass_per_level
+from jackettwin.structure import Assembly, Structure
+from jackettwin.twin.tolerances.parts import legs
+from jackettwin.twin.water import WaterConfig, moving_mass
+
+_LEAST_DEPTH_M = 1.0
+_SPLASH_M = 2.0
+"""Growth that nobody states reaches so far above still water (DNV-RP-C205, 6.7.4)."""
+
+Change = Callable[[WaterConfig, Structure, float], WaterConfig | None]
+
+
+def water_of(water: WaterConfig | None, structure: Structure) -> WaterConfig | None:
+    """Return the stated water, else plain water down to the feet; None of a structure on land."""
+    if water is not None:
+        return water
+    feet = [structure.nodes[node][2] for node in structure.reaction_nodes]
+    depth = structure.sea_level_z_m - min(feet, default=structure.sea_level_z_m)
+    if depth < _LEAST_DEPTH_M:
+        return None
+    return WaterConfig(depth, Coefficients(), Water(), adds_mass=False, sea=None)
+
+
+def changed_mass(
+    water: WaterConfig | None, assembly: Assembly, size: float, change: Change
+) -> sp.csc_array | None:
+    """Return what a change of the water adds to the mass, whether the structure's own holds it or not."""
+    before = water_of(water, assembly.structure)
+    after = None if before is None else change(before, assembly.structure, size)
+    if before is None or after is None:
+        return None
+    return sp.csc_array(moving_mass(after, assembly) - moving_mass(before, assembly))
+
+
+def level_mass(water: WaterConfig | None, assembly: Assembly, size: float) -> sp.csc_array | None:
+    """Return what a sea that stands higher by ``size`` [m] adds to the mass."""
+    stated = water_of(water, assembly.structure)
+    if stated is None:
+        return None
+    return sp.csc_array(size * mass_per_level(assembly, stated.coefficients, stated.carried))
+
+
+def unstated_growth(water: WaterConfig, structure: Structure, size: float) -> WaterConfig | None:
+    """Return the water with growth of ``size`` [m] down to the bed, where the twin states none."""
+    if any(_thickest(band) > 0.0 for band in water.coefficients.growth):
+        return None
+    return _grown(water, (GrowthBand(_SPLASH_M, -water.depth_m, size),))
+
+
+def thicker_growth(water: WaterConfig, structure: Structure, size: float) -> WaterConfig | None:
+    """Return the water with the stated growth thicker by a share."""
+    factor, bands = 1.0 + size, water.coefficients.growth
+
+    def thicker(band: GrowthBand) -> GrowthBand:
+        bottom = band.bottom_thickness_m
+        return replace(
+            band,
+            thickness_m=factor * band.thickness_m,
+            bottom_thickness_m=None if bottom is None else factor * bottom,
+        )
+
+    return _grown(water, tuple(map(thicker, bands))) if bands else None
+
+
+def denser_growth(water: WaterConfig, structure: Structure, size: float) -> WaterConfig | None:
+    """Return the water with the stated growth denser by ``size`` [kg/m³]."""
+
+    def denser(band: GrowthBand) -> GrowthBand:
+        bottom = band.bottom_density_kg_m3
+        return replace(
+            band,
+            density_kg_m3=band.density_kg_m3 + size,
+            bottom_density_kg_m3=None if bottom is None else bottom + size,
+        )
+
+    bands = water.coefficients.growth
+    return _grown(water, tuple(map(denser, bands))) if bands else None
+
+
+def more_added_mass(water: WaterConfig, structure: Structure, size: float) -> WaterConfig:
+    """Return the water with C_a larger by a share everywhere."""
+    given, factor = water.coefficients, 1.0 + size
+
+    def more(strip: object) -> object:
+        return replace(strip, added_mass=factor * strip.added_mass)  # type: ignore[attr-defined,type-var]
+
+    tables = tuple(
+        replace(t, bare=tuple(map(more, t.bare)), grown=tuple(map(more, t.grown)))  # type: ignore[arg-type]
+        for t in given.tables
+    )
+    grown = None if given.grown is None else more(given.grown)
+    coefficients = replace(given, added_mass=factor * given.added_mass, grown=grown, tables=tables)  # type: ignore[arg-type]
+    return replace(water, coefficients=coefficients)
+
+
+def flooded_legs(water: WaterConfig, structure: Structure, size: float) -> WaterConfig | None:
+    """Return the water with all legs flooded if they are dry, and dry if any is drawn as flooded."""
+    names, flooded = legs(structure), set(water.carried.flooded)
+    if not names:
+        return None
+    parts = {member.name: member.part for member in structure.members}
+    wet = {name for name in names if name in flooded or parts[name] in flooded}
+    if wet:
+        members = {m.name for m in structure.members if m.name in flooded or m.part in flooded}
+        return replace(water, carried=Water(tuple(sorted(members - wet))))
+    return replace(water, carried=Water((*water.carried.flooded, *names)))
+
+
+def leg_share(structure: Structure) -> float:
+    """Return how a share of every leg's own water counts in that of all: independent legs add by squares."""
+    return 1.0 / sqrt(max(len(structure.reaction_nodes), 1))
+
+
+def _grown(water: WaterConfig, bands: tuple[GrowthBand, ...]) -> WaterConfig:
+    return replace(water, coefficients=replace(water.coefficients, growth=bands))
+
+
+def _thickest(band: GrowthBand) -> float:
+    return max(band.thickness_m, band.bottom_thickness_m or 0.0)

@@ -1,0 +1,150 @@
+r"""How poles move with what drawings do not fix, to first order.
+
+A tolerance φ changes the mass and the stiffness of the structure by φ∂M and φ∂K, and a pole by
+
+.. math:: \frac{∂λ}{∂φ} = -\frac{x^T [(λ^2 + aλ)\,∂M + (1 + bλ)\,∂K]\, x}{x^T F'(λ)\, x},
+
+F symmetric (Adhikari 2001): the slope that :func:`jackettwin.response.numbered_poles` has for the parameters
+of the supports, here from the shapes that it returns, for matrices that are spread over the whole structure.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from jackettwin.arrays import ComplexArray, FloatArray, IntArray
+from jackettwin.response import Condensed, Matrix, NumberedModes
+from jackettwin.soil import law_slope, law_stiffness
+from jackettwin.structure import Assembly
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """Something that drawings, weighing or the sea leave open.
+
+    Attributes
+    ----------
+    name : str
+        As a twin file calls it, ``rna_mass``.
+    words : str
+        As a sentence calls it, "mass of the rotor–nacelle assembly".
+    std : float
+        Standard deviation about what the twin states.
+    unit : str
+        Of ``std``; ``-`` for a share of what is stated.
+    source : str
+        Where the size comes from.
+    settled_by : str
+        What would settle it, as an imperative.
+    """
+
+    name: str
+    words: str
+    std: float
+    unit: str
+    source: str
+    settled_by: str
+
+
+@dataclass(frozen=True)
+class Direction:
+    """What one standard deviation of a tolerance does to a structure.
+
+    Attributes
+    ----------
+    mass, stiffness : (assembly.n_dof, assembly.n_dof), or None where nothing changes
+    feet : (n_feet,), optional
+        Share by which the stiffness of each foot changes, in the order of the structure's reaction nodes.
+    """
+
+    tolerance: Tolerance
+    mass: Matrix | None = None
+    stiffness: Matrix | None = None
+    feet: FloatArray | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Directions:
+    """Directions on a condensed structure.
+
+    Attributes
+    ----------
+    assembly : Assembly
+    condensed : Condensed
+        Of that assembly.
+    each : tuple of Direction
+    """
+
+    assembly: Assembly
+    condensed: Condensed
+    each: tuple[Direction, ...]
+
+    @cached_property
+    def _patterns(self) -> dict[int, FloatArray]:
+        """Columns of :meth:`_columns` by mode number."""
+        return {}
+
+    @cached_property
+    def _upper(self) -> tuple[IntArray, IntArray, FloatArray]:
+        """Rows and columns of an upper triangle, and how often each entry counts in a quadratic form."""
+        i, j = np.triu_indices(self.condensed.n)
+        return i, j, np.where(i == j, 1.0, 2.0)
+
+    def _columns(self, mode: int) -> FloatArray:
+        """Return M, the supports' patterns, then ∂M, ∂K and the feet's patterns on a mode's coordinates.
+
+        The coordinates' shapes are those at the mode's frequency on pinned feet, which is near all of its
+        poles, so that the truncated modes move along; (n(n + 1)/2, n_columns).
+        """
+        if mode not in self._patterns:
+            condensed = self.condensed
+            shapes = condensed.expansion(1j * condensed.pinned.omega[mode - 1]).real
+            n, (i, j, weight) = condensed.n, self._upper
+
+            def packed(matrix: FloatArray) -> FloatArray:
+                return np.asarray(weight * matrix[i, j])
+
+            def spread(matrix: Matrix | None) -> FloatArray:
+                return packed(np.zeros((n, n)) if matrix is None else shapes.T @ (matrix @ shapes))
+
+            columns = [spread(self.assembly.mass), packed(condensed.pencil.K)]
+            columns += [packed(group.S) for group in condensed.pencil.groups]
+            columns += [spread(one.mass) for one in self.each]
+            columns += [spread(one.stiffness) for one in self.each]
+            shares = [one.feet for one in self.each if one.feet is not None]
+            columns += [packed(S) for share in shares for S in self._on_feet(share)]
+            self._patterns[mode] = np.array(columns).T
+        return self._patterns[mode]
+
+    def _on_feet(self, shares: FloatArray) -> list[FloatArray]:
+        """Return by how much feet that change by these shares change the patterns of the support's groups."""
+        condensed, factor = self.condensed, np.zeros(self.condensed.n)
+        for node, share in zip(self.assembly.structure.reaction_nodes, shares, strict=True):
+            factor[np.flatnonzero(np.isin(condensed.boundary, self.assembly.dofs(node)))] = share
+        # a foot's pattern touches its own DOFs alone
+        return [group.S * 0.5 * (factor[:, None] + factor[None, :]) for group in condensed.pencil.groups]
+
+    def slopes(self, found: NumberedModes) -> ComplexArray:
+        """Return dλ/dφ (n_sets, n_modes, n_directions), each φ in its standard deviations."""
+        i, j, _ = self._upper
+        n_groups, n = len(self.condensed.pencil.groups), len(self.each)
+        on_feet = [place for place, one in enumerate(self.each) if one.feet is not None]
+        pole, x = found.poles, found.shapes
+        columns = 2 + n_groups + 2 * n + n_groups * len(on_feet)
+        forms = np.empty((*pole.shape, columns), dtype=np.complex128)
+        for m, mode in enumerate(found.modes):
+            products, patterns = x[:, m, i] * x[:, m, j], self._columns(mode)
+            forms[:, m].real, forms[:, m].imag = products.real @ patterns, products.imag @ patterns
+        a, b = found.rayleigh[:, :1], found.rayleigh[:, 1:]
+        below = (2.0 * pole + a) * forms[..., 0] + b * forms[..., 1]
+        by_mass, by_stiffness, by_feet = np.split(forms[..., 2 + n_groups :], [n, 2 * n], axis=-1)
+        above = (pole**2 + a * pole)[..., None] * by_mass + (1.0 + b * pole)[..., None] * by_stiffness
+        by_feet = by_feet.reshape(*pole.shape, len(on_feet), n_groups)
+        for g in range(n_groups):
+            rows = found.rows[:, g, None]
+            below = below + law_slope(rows, pole) * forms[..., 2 + g]
+            above[..., on_feet] += law_stiffness(rows, pole)[..., None] * by_feet[..., g]
+        return np.asarray(-above / below[..., None])

@@ -1,0 +1,80 @@
+"""What a model may miss: tolerances that all modes feel together, and a small remainder of each mode."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.response import Condensed, NumberedModes
+from jackettwin.updating.data.targets import Residuals
+from jackettwin.updating.model_error.directions import Directions, Tolerance
+
+
+@dataclass(frozen=True, eq=False)
+class ErrorModel:
+    """Errors of a model, all independent and counted in their standard deviations.
+
+    The first are the tolerances of ``directions``, the others a remainder of each datum by its name, ``f1``
+    or ``ζ4``. Operating states share them all: more records do not average them out. So may turbines of one
+    design: what is drawn wrong is one unknown of all of them, by the tolerance's name.
+
+    Attributes
+    ----------
+    directions : Directions
+    remainder : {datum: standard deviation of its logarithm}
+        Of data whose remainder differs from the usual one.
+    usual_frequency, usual_damping : float
+        Standard deviation of the logarithm of any other mode's frequency and damping ratio.
+    """
+
+    directions: Directions
+    remainder: Mapping[str, float] = field(default_factory=dict)
+    usual_frequency: float = 0.0
+    usual_damping: float = 0.0
+
+    @property
+    def tolerances(self) -> tuple[Tolerance, ...]:
+        """What the directions are of, in their order."""
+        return tuple(one.tolerance for one in self.directions.each)
+
+    def on(self, condensed: Condensed) -> ErrorModel:
+        """Return the same errors on another condensed model of the structure: one that reaches higher."""
+        if condensed is self.directions.condensed:
+            return self
+        return replace(self, directions=replace(self.directions, condensed=condensed))
+
+    def own(self, datum: str) -> float:
+        """Return the standard deviation of the remainder of a datum."""
+        usual = {"f": self.usual_frequency, "ζ": self.usual_damping}.get(datum[:1], 0.0)
+        return self.remainder.get(datum, usual)
+
+    def gains(self, residuals: Residuals, found: NumberedModes, data: tuple[str, ...]) -> FloatArray:
+        """Return Γ (n_sets, count, n): tolerances, then remainders of ``data``.
+
+        Parameters
+        ----------
+        found : of the residuals' modes
+        data : names that have a remainder of their own, those of other operating states among them
+        """
+        common = residuals.gains(found.poles, self.directions.slopes(found))
+        own = np.zeros((residuals.count, len(data)))
+        for row, name in enumerate(residuals.names):
+            own[row, data.index(name)] = self.own(name)
+        remainder = residuals.shift_jacobian(own)
+        return np.concatenate([common, np.broadcast_to(remainder, (len(common), *remainder.shape))], axis=2)
+
+    def shifts(self, found: NumberedModes) -> FloatArray:
+        """Return d ln f and d ln ζ of any modes by the tolerances, (2, n_sets, n_modes, n_tolerances)."""
+        pole, slopes = found.poles[..., None], self.directions.slopes(found)
+        size = np.abs(pole)
+        radial = (np.conj(pole) * slopes).real / size**2
+        return np.stack([radial, slopes.real / pole.real - radial])
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Names of the tolerances."""
+        return tuple(tolerance.name for tolerance in self.tolerances)
