@@ -166,7 +166,8 @@ def law_model(config: TwinConfig, evidence: UpdateEvidence, law: str) -> Support
     except InputError as error:
         raise error.at(file=config.path, field=_place(error)) from None
     each = () if relative else directions(config, evidence.assembly)
-    return replace(model, directions=Directions(evidence.assembly, model.condensed, each))
+    n_soil = len(model.tie_groups.suffixes)
+    return replace(model, directions=Directions(evidence.assembly, model.condensed, each, n_soil))
 
 
 def _place(error: InputError) -> str | None:

@@ -46,6 +46,16 @@ def legs(structure: Structure) -> tuple[str, ...]:
     return tuple(m.name for m in structure.members if parts[m.name] == JACKET and climbs(m))
 
 
+def with_braces(structure: Structure, change: Callable[[Member], Member]) -> Structure | None:
+    """Return the structure with every member of the jacket changed that does not climb; None without any."""
+    parts, climbing = part_of(structure), set(legs(structure))
+    chosen = {m.name for m in structure.members if parts[m.name] == JACKET} - climbing
+    if not chosen:
+        return None
+    members = tuple(change(m) if m.name in chosen else m for m in structure.members)
+    return replace(structure, members=members)
+
+
 def with_part(structure: Structure, part: str, change: Callable[[Member], Member]) -> Structure | None:
     """Return the structure with every member of a part changed; None if no member is of it."""
     parts = part_of(structure)
@@ -87,6 +97,17 @@ def thicker(factor: float) -> Callable[[Member], Member]:
         return replace(member, section_start=wall(member.section_start), section_end=wall(member.section_end))
 
     return change
+
+
+def with_lower_feet(structure: Structure, by_m: float) -> Structure | None:
+    """Return the structure with its feet, and the ends of members there, lower; None without feet."""
+    if not structure.reaction_nodes:
+        return None
+    nodes = dict(structure.nodes)
+    for node in structure.reaction_nodes:
+        x, y, z = nodes[node]
+        nodes[node] = (x, y, z - by_m)
+    return replace(structure, nodes=nodes)
 
 
 def with_top_bodies(structure: Structure, change: Callable[[PointMass], PointMass]) -> Structure | None:

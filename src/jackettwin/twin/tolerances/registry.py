@@ -22,6 +22,8 @@ from jackettwin.twin.tolerances.parts import (
     heavier,
     stiffer,
     thicker,
+    with_braces,
+    with_lower_feet,
     with_part,
     with_top_bodies,
 )
@@ -49,6 +51,8 @@ class KnownTolerance:
 
     Attributes
     ----------
+    suspected : bool
+        Whether it is no tolerance that every twin has, but a suspect when a twin cannot meet its data.
     tolerance : Tolerance
     effect : function of the twin, its assembly and the tolerance as the twin sizes it
         Returns one direction, several where several unknowns are alike (every foot its own), or none where
@@ -57,6 +61,7 @@ class KnownTolerance:
 
     tolerance: Tolerance
     effect: Effect
+    suspected: bool = False
 
 
 def _drawn(change: Callable[[TwinConfig, float], TwinConfig | None]) -> Effect:
@@ -134,7 +139,26 @@ def _feet(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple
     if n < 2 or config.tie.startswith("per-leg"):
         return ()
     shares = tolerance.std * (np.eye(n) - 1.0 / n)
-    return tuple(Direction(tolerance, feet=row) for row in shares)
+    return tuple(Direction(tolerance, feet=np.tile(row[:, None], 6)) for row in shares)
+
+
+def _loss_growth(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple[Direction, ...]:
+    """Return loss that grows with frequency by another power than the law's."""
+    return (Direction(tolerance, loss_growth=tolerance.std),)
+
+
+def _softer_sideways(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple[Direction, ...]:
+    """Return feet softer sideways alone, unless the twin tells sideways from lengthwise."""
+    if config.tie not in ("all", "per-leg"):
+        return ()
+    share = np.array([-tolerance.std] * 2 + [0.0] + [-tolerance.std] * 3)
+    return (Direction(tolerance, feet=np.tile(share, (len(config.structure.reaction_nodes), 1))),)
+
+
+def _softer_foot(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple[Direction, ...]:
+    """Return one foot softer than the others, each in turn."""
+    n = len(config.structure.reaction_nodes)
+    return tuple(Direction(tolerance, feet=np.tile(row[:, None], 6)) for row in -tolerance.std * np.eye(n))
 
 
 def _table() -> tuple[KnownTolerance, ...]:
@@ -200,6 +224,12 @@ def _table() -> tuple[KnownTolerance, ...]:
             _steel(lambda s, x: with_part(s, PIECE, stiffer(1.0 + x))),
         ),
         KnownTolerance(
+            Tolerance("foot_level", "level of the feet", 0.5, "m",
+                      "assumed: bed and stabbing depth as surveyed before installation",
+                      "survey the bed and the feet after installation"),
+            _steel(with_lower_feet),
+        ),
+        KnownTolerance(
             Tolerance("growth", "marine growth that the twin does not state", 0.04, "m",
                       "DNV-RP-C205 (2021) 6.7.4: 50 to 100 mm after some years",
                       "inspect the growth by diver or ROV, and state it (water.marine_growth)"),
@@ -240,6 +270,28 @@ def _table() -> tuple[KnownTolerance, ...]:
                       "fit each leg (support.tie: per-leg) with sensors at the feet"),
             _feet,
         ),
+        KnownTolerance(
+            Tolerance("loss_growth", "growth of the ground's loss with frequency", 0.5, "power",
+                      "assumed: between hysteretic ground (0) and a dashpot (1)",
+                      "fit the other laws (update.laws), and damping of more modes"),
+            _loss_growth,
+        ),
+        KnownTolerance(
+            Tolerance("soft_sideways", "feet softer sideways than lengthwise", 0.3, "-",
+                      "piles are two to ten times softer sideways", "support.tie: horizontal-vertical"),
+            _softer_sideways, suspected=True,
+        ),
+        KnownTolerance(
+            Tolerance("weak_leg", "one foot softer than the others", 0.3, "-",
+                      "scour or a pile that was not driven home",
+                      "look at the pair's directions, put a sensor on each leg"),
+            _softer_foot, suspected=True,
+        ),
+        KnownTolerance(
+            Tolerance("joints", "softness of the brace joints", 0.1, "-",
+                      "flexible joint cans (Buitrago et al. 1993)", "model the joints' local flexibility"),
+            _steel(lambda s, x: with_braces(s, stiffer(1.0 - x))), suspected=True,
+        ),
     )  # fmt: skip
 
 
@@ -266,6 +318,15 @@ def directions(config: TwinConfig, assembly: Assembly) -> tuple[Direction, ...]:
     found: list[Direction] = []
     for name, known in tolerances().items():
         std = config.tolerances.std(name, known.tolerance.std)
-        if std > 0.0:
+        if std > 0.0 and (not known.suspected or name in config.tolerances.given):
             found += known.effect(config, assembly, replace(known.tolerance, std=std))
+    return tuple(found)
+
+
+def suspects(config: TwinConfig, assembly: Assembly) -> tuple[Direction, ...]:
+    """Return what else may be wrong with a twin that cannot meet its data, each at a size worth a look."""
+    found: list[Direction] = []
+    for name, known in tolerances().items():
+        if known.suspected and name not in config.tolerances.given:
+            found += known.effect(config, assembly, known.tolerance)
     return tuple(found)

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import pi
 
 import numpy as np
 
@@ -56,14 +57,19 @@ class Direction:
     Attributes
     ----------
     mass, stiffness : (assembly.n_dof, assembly.n_dof), or None where nothing changes
-    feet : (n_feet,), optional
-        Share by which the stiffness of each foot changes, in the order of the structure's reaction nodes.
+    feet : (n_feet, 6), optional
+        Share by which the stiffness of each foot's DOFs changes, in the order of the reaction nodes.
+    loss_growth : float
+        Power p of the frequency by which the ground's loss grows faster than its law says. What is not lost
+        at the frequencies below stiffens the less (Kramers and Kronig, for slow changes: d ln Re D/d ln ω =
+        2/π · Im D/Re D), so that ∂D = p (i − 2/π) Im D ln(ω/ω₁), ω₁ the first pinned frequency.
     """
 
     tolerance: Tolerance
     mass: Matrix | None = None
     stiffness: Matrix | None = None
     feet: FloatArray | None = None
+    loss_growth: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,11 +82,14 @@ class Directions:
     condensed : Condensed
         Of that assembly.
     each : tuple of Direction
+    n_soil : int
+        How many of the condensed model's groups, the first ones, are the ground's.
     """
 
     assembly: Assembly
     condensed: Condensed
     each: tuple[Direction, ...]
+    n_soil: int = 0
 
     @cached_property
     def _patterns(self) -> dict[int, FloatArray]:
@@ -123,7 +132,8 @@ class Directions:
         """Return by how much feet that change by these shares change the patterns of the support's groups."""
         condensed, factor = self.condensed, np.zeros(self.condensed.n)
         for node, share in zip(self.assembly.structure.reaction_nodes, shares, strict=True):
-            factor[np.flatnonzero(np.isin(condensed.boundary, self.assembly.dofs(node)))] = share
+            for dof, own in zip(self.assembly.dofs(node), share, strict=True):
+                factor[np.flatnonzero(condensed.boundary == dof)] = own
         # a foot's pattern touches its own DOFs alone
         return [group.S * 0.5 * (factor[:, None] + factor[None, :]) for group in condensed.pencil.groups]
 
@@ -143,8 +153,13 @@ class Directions:
         by_mass, by_stiffness, by_feet = np.split(forms[..., 2 + n_groups :], [n, 2 * n], axis=-1)
         above = (pole**2 + a * pole)[..., None] * by_mass + (1.0 + b * pole)[..., None] * by_stiffness
         by_feet = by_feet.reshape(*pole.shape, len(on_feet), n_groups)
+        powers = np.array([one.loss_growth for one in self.each])
+        growth = powers * np.log(np.abs(pole) / self.condensed.pinned.omega[0])[..., None]
         for g in range(n_groups):
             rows = found.rows[:, g, None]
             below = below + law_slope(rows, pole) * forms[..., 2 + g]
-            above[..., on_feet] += law_stiffness(rows, pole)[..., None] * by_feet[..., g]
+            D = law_stiffness(rows, pole)[..., None]
+            above[..., on_feet] += D * by_feet[..., g]
+            if g < self.n_soil:
+                above += (1j - 2.0 / pi) * D.imag * growth * forms[..., 2 + g, None]
         return np.asarray(-above / below[..., None])

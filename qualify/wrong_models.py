@@ -1,0 +1,272 @@
+"""Twins whose model is wrong: do their intervals hold the truth, are they narrow, and do they object?
+
+Each twin is of a jacket that was built other than drawn (``common.wrong_worlds``): the poles of four to seven
+of its modes, with the errors of some records, are fitted with the drawing, whose file states no tolerance.
+Beside it, from the same data: the error model that was shipped before (none), plain least squares, and an
+oracle whose structure is the asset's.
+
+Usage: python qualify/wrong_models.py [n_twins]
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+import time
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+from common.cases import Result, cases
+from common.wrong_worlds import (
+    HIGHEST,
+    KINDS,
+    SITES,
+    STEEL,
+    World,
+    assembly_of,
+    drawn,
+    drawn_water,
+    true_modes,
+)
+
+from jackettwin.arrays import FloatArray
+from jackettwin.errors import NumericalError
+from jackettwin.soil import family
+from jackettwin.structure import Assembly, Rayleigh
+from jackettwin.study.problem import error_model
+from jackettwin.twin import TwinConfig, read_twin
+from jackettwin.twin.config import assembled
+from jackettwin.twin.tolerances.registry import directions, suspects
+from jackettwin.updating import (
+    Direction,
+    Directions,
+    Problem,
+    Residuals,
+    SupportModel,
+    Target,
+    joint,
+    laplace_draws,
+    misfit,
+    objection,
+    support_model,
+)
+from jackettwin.updating.posterior.identifiability import identifiability
+from jackettwin.updating.posterior.smc import sample_posterior
+from jackettwin.updating.search.descent import bottom
+
+MODES = ((1, 2, 3, 4), (1, 2, 3, 4, 5), (1, 2, 4, 5), (1, 2, 3, 4, 5, 6, 7))
+BOUNDS = {"k": (2e7, 5e10), "loss_factor": (0.003, 0.6)}
+PARTICLES = 50
+WIDE = 1.5
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A twin file of a jacket and what is built of it once."""
+
+    config: TwinConfig
+    model: SupportModel
+    suspects: tuple[Direction, ...]
+
+
+@cache
+def drawing(site: int, tie: str) -> Drawing:
+    """Return the twin of a drawn jacket: it states its steel, clean water and nothing else."""
+    one = SITES[site]
+    structure = drawn(one)
+    document: dict[str, Any] = {
+        "structure": one.source,
+        "gravity": True,
+        "damping": {"rayleigh": STEEL},
+        "support": {"tie": tie},
+        "targets": [{"mode": 1, "frequency_hz": 0.2, "frequency_std_hz": 0.01}],
+    }
+    if not one.holds_water:
+        document["water"] = {"added_mass": 1.0, "adds_mass": True}
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "twin.yaml"
+        path.write_text(yaml.safe_dump(document), encoding="utf-8")
+        config = replace(read_twin(path), structure=structure)
+    model = _model(assembled(config), tie)
+    n_soil = len(model.tie_groups.suffixes)
+    each, others = directions(config, model.assembly), suspects(config, model.assembly)
+    own = Directions(model.assembly, model.condensed, each, n_soil)
+    return Drawing(config, replace(model, directions=own), others)
+
+
+def _model(assembly: Assembly, tie: str) -> SupportModel:
+    return support_model(
+        assembly,
+        family=family("maxwell-3"),
+        rayleigh=Rayleigh.minimum(STEEL["ratio"], STEEL["frequency_hz"]),
+        tie=tie,
+        bounds=BOUNDS,
+        highest_mode=HIGHEST,
+    )
+
+
+def asset(case: int) -> tuple[World, str, str, float, tuple[int, ...], np.random.Generator]:
+    """Return the asset of a case: world, kind, tie of its twin, scale of sizes and modes measured."""
+    rng = np.random.default_rng((31, case))
+    kind = list(KINDS)[case % len(KINDS)]
+    site = int(rng.integers(len(SITES)))
+    scale = WIDE if rng.random() < 0.5 else 1.0
+    tie = str(rng.choice(["all", "horizontal-vertical"], p=[0.8, 0.2]))
+    structure = drawn(SITES[site])
+    n = len(structure.reaction_nodes)
+    stiffness = np.exp(rng.uniform(np.log(0.5e9), np.log(8e9)))
+    ratio = 1.0 if tie == "all" else rng.uniform(0.2, 1.0)
+    world = World(
+        SITES[site],
+        structure,
+        drawn_water(structure),
+        np.full(n, ratio * stiffness),
+        np.full(n, stiffness),
+        float(np.exp(rng.uniform(np.log(0.03), np.log(0.2)))),
+    )
+    # the smallest jacket's sixth and seventh are of single braces
+    modes = MODES[int(rng.integers(len(MODES) - (site == 0)))]
+    return KINDS[kind](world, rng, scale), kind, tie, scale, modes, rng
+
+
+def measured(poles: np.ndarray, modes: tuple[int, ...], rng: np.random.Generator) -> Residuals:
+    """Return poles with the errors of some records: 0.1 to 0.2 % in frequency, 8 to 12 % in damping."""
+    targets = []
+    for mode, pole in zip(modes, poles, strict=True):
+        own_f, own_zeta = rng.uniform(0.001, 0.002), rng.uniform(0.08, 0.12)
+        f, zeta = abs(pole) / (2.0 * np.pi), -pole.real / abs(pole)
+        f, zeta = np.exp(rng.normal(np.log([f, zeta]), [own_f, own_zeta]))
+        targets.append(Target(mode, f, own_f * f, zeta, own_zeta * zeta))
+    return Residuals(tuple(targets), relative=False)
+
+
+def truth(world: World, tie: str) -> FloatArray:
+    """Return ln of the parameters that the twin is asked for: of feet that differ, their mean.
+
+    Of feet that are softer sideways than the twin's tie knows, its one stiffness is that along the legs.
+    """
+    sides = [world.vertical] if tie == "all" else [world.horizontal, world.vertical]
+    return np.log([value for side in sides for value in (side.mean(), world.loss)])
+
+
+def twin(case: int) -> Result:
+    """Return what each way of estimating says of one asset."""
+    start = time.process_time()
+    world, kind, tie, scale, modes, rng = asset(case)
+    poles, numbers = true_modes(world, modes)
+    data = measured(poles, modes, rng)
+    as_built = Residuals(
+        tuple(replace(t, mode=own) for t, own in zip(data.targets, numbers, strict=True)), relative=False
+    )
+    site = SITES.index(world.site)
+    known, z = drawing(site, tie), truth(world, tie)
+    problem = joint(known.model, {"": (data, {})}, error_model=error_model(known.config, known.model))
+    bare, shipped = joint(known.model, {"": (data, {})}), joint(known.model, {"": (widened(data), {})})
+    oracle = joint(_model(assembly_of(world), tie), {"": (as_built, {})})
+    found: Result = {"kind": kind, "site": world.site.name, "tie": tie, "scale": scale, "modes": len(modes)}
+    for name, asked, sampled in (
+        ("product", problem, True), ("before", shipped, False), ("plain", bare, False), ("oracle", oracle, False),
+    ):  # fmt: skip
+        found[name] = _estimated(asked, z, case, known.suspects, sampled=sampled)
+    return found | {"cpu_s": time.process_time() - start}
+
+
+def widened(data: Residuals) -> Residuals:
+    """Return the data with the error model of the shipped demonstration, independent by mode."""
+
+    def own(t: Target) -> Target:
+        e, d = (0.005, 0.0) if t.mode <= 2 else (0.03, 0.2)
+        assert t.frequency_hz and t.frequency_std_hz and t.damping_ratio and t.damping_ratio_std
+        return replace(
+            t,
+            frequency_std_hz=float(np.hypot(t.frequency_std_hz, e * t.frequency_hz)),
+            damping_ratio_std=float(np.hypot(t.damping_ratio_std, d * t.damping_ratio)),
+        )
+
+    return Residuals(tuple(map(own, data.targets)), relative=False)
+
+
+def _estimated(
+    problem: Problem, z: FloatArray, case: int, others: tuple[Direction, ...], *, sampled: bool
+) -> Result:
+    """Return which parameters the 90 % intervals hold, their lengths in ln θ, verdicts and objections."""
+    start = time.process_time()
+    inside = np.clip(z, problem.prior.low + 1e-6, problem.prior.high - 1e-6)
+    near = problem.anchor(inside)
+    best = inside if near is None else bottom(problem, inside, near)
+    posterior, status = None, "Laplace"
+    if sampled:
+        try:
+            posterior, status = sample_posterior(problem, particles=PARTICLES, islands=2, seed=case), "ok"
+        except NumericalError as error:
+            status = str(error)
+    draws = laplace_draws(problem, np.exp(best)) if posterior is None else posterior.log_theta
+    low, middle, high = np.quantile(draws, [0.05, 0.5, 0.95], axis=0)
+    away = misfit(problem, np.exp(best))
+    result: Result = {
+        "inside": ((low <= z) & (z <= high)).tolist(),
+        "length": (high - low).tolist(),
+        "off": (middle - z).tolist(),
+        "status": status,
+        "objects": away is not None and not away.fits,
+    }
+    if sampled:
+        said = objection(problem, best, suspects=others)
+        assert said is not None
+        result["objects"] = said.objects
+        result["named"] = [[e.tolerance.name, e.size, e.gain] for e in said.explanations]
+        result["checks"] = [[c.datum, c.miss, c.std, c.objects] for c in said.checks]
+        result["unseen"] = [t.name for t in said.unseen]
+        verdicts = identifiability(problem, draws, converged=posterior is not None, misfit=away)
+        result["verdicts"] = [v.verdict for v in verdicts]
+    return result | {"cpu_s": time.process_time() - start}
+
+
+def main() -> None:
+    number = int(sys.argv[1]) if len(sys.argv) > 1 else 1140
+    found = cases("wrong_models", number, twin)
+    sys.stdout.write(summary(found))
+
+
+def summary(found: list[Result]) -> str:
+    lines = []
+    for ways in ("product", "before", "plain", "oracle"):
+        inside = np.array([i for r in found for i in r[ways]["inside"]])
+        k = np.array([r[ways]["inside"][j] for r in found for j in range(0, len(r[ways]["inside"]), 2)])
+        length = np.median([r[ways]["length"][-2] / r["oracle"]["length"][-2] for r in found])
+        lines.append(
+            f"{ways:8s} all {inside.mean():.3f} stiffness {k.mean():.3f} n {inside.size}"
+            f" length/oracle {length:.2f} factor {np.exp(np.median([r[ways]['length'][-2] for r in found])):.2f}"
+            f" objects {np.mean([r[ways]['objects'] for r in found]):.2f} cpu {np.mean([r[ways]['cpu_s'] for r in found]):.2f}"
+        )
+        if ways in ("product",):
+            v = [(x, i) for r in found for x, i in zip(r[ways]["verdicts"], r[ways]["inside"])]
+            ident = [i for x, i in v if x == "identified"]
+            lines.append(
+                f"   identified {len(ident)} wrong {ident.count(False)}  not ok {sum(r[ways]['status'] != 'ok' for r in found)}"
+            )
+    for kind in KINDS:
+        own = [r for r in found if r["kind"] == kind]
+        if not own:
+            continue
+        row = [f"{kind:28s} {len(own):3d}"]
+        for ways in ("product", "before"):
+            inside = [i for r in own for i in r[ways]["inside"]]
+            miss = [r for r in own if not all(r[ways]["inside"])]
+            row.append(
+                f"{ways} {np.mean(inside):.2f} obj {np.mean([r[ways]['objects'] for r in own]):.2f} of failures {sum(r[ways]['objects'] for r in miss)}/{len(miss)}"
+            )
+        row.append(
+            f"width {np.exp(np.median([r['product']['length'][-2] for r in own])):.2f} oracle {np.exp(np.median([r['oracle']['length'][-2] for r in own])):.2f}"
+        )
+        lines.append(" | ".join(row))
+    lines.append(f"cpu {np.mean([r['cpu_s'] for r in found]):.2f}")
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    main()
