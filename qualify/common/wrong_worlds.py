@@ -285,7 +285,7 @@ KINDS = {**COVERED, **OUTSIDE}
 
 
 def true_modes(world: World, wanted: tuple[int, ...]) -> tuple[np.ndarray, tuple[int, ...]]:
-    """Return the poles (n,) of the asset's modes, named as on the drawing by their shapes, and own numbers."""
+    """Return the poles (n,) of the asset's modes, named as drawn by their shapes, and their own numbers."""
     assembly = assembly_of(world)
     poles, own = _shapes(world, assembly)
     n = world.vertical.size

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from jackettwin.updating.data.shapes import ShapeTarget
 from jackettwin.updating.data.targets import Residuals
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.model_error.error_model import ErrorModel
-from jackettwin.updating.model_error.marginal import errors_given, inverse_root, log_density
+from jackettwin.updating.model_error.marginal import drawn, errors_given, inverse_root, log_density
 from jackettwin.updating.prior import Prior
 
 NEVER = -1e30
@@ -204,23 +204,26 @@ class Problem:
         return np.concatenate(parts, axis=1)
 
     @property
+    def plain(self) -> Problem:
+        """The problem of a model that is taken for true."""
+        return replace(self, error_model=None)
+
+    @property
     def error_data(self) -> tuple[str, ...]:
         """Names of the data that have a remainder of the model's error, each once."""
         return tuple(dict.fromkeys(name for state in self.states for name in state.residuals.names))
 
-    def errors(self, z: FloatArray, near: Found | None) -> tuple[FloatArray, FloatArray, BoolArray]:
-        """Return what the data say of the model's errors at points (n, d).
+    def drawn_errors(self, z: FloatArray, rng: np.random.Generator) -> FloatArray:
+        """Return the model's errors (n, n_errors) drawn with the data at points (n, d), in their deviations.
 
-        Returns
-        -------
-        mean : (n_known, n_errors) in standard deviations: tolerances, then the remainders of ``error_data``
-        covariance : (n_known, n_errors, n_errors)
-        known : (n,) where no mode is lost
+        Tolerances come first, then the remainders of ``error_data``; NaN where a mode is lost.
         """
-        found = self._modes(z, near, slopes=False)
+        found = self._modes(z, self.anchor(z[0]), slopes=False)
         r, known = self._all_residuals(z, found)
-        mean, covariance = errors_given(r, self.gains(tuple(modes.some(known) for modes in found)))
-        return mean, covariance, known
+        gains = self.gains(tuple(modes.some(known) for modes in found))
+        errors = np.full((len(z), gains.shape[2]), np.nan)
+        errors[known] = drawn(*errors_given(r, gains), rng)
+        return errors
 
     def anchor(self, z: FloatArray) -> Found | None:
         """Return the modes at one point (d,), for many others to start from; None if a mode is lost there."""

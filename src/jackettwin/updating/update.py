@@ -20,7 +20,7 @@ from jackettwin.updating.model import ExactModes, SupportModel
 from jackettwin.updating.posterior.identifiability import Verdict, identifiability
 from jackettwin.updating.posterior.laplace import laplace_draws, log_covariance
 from jackettwin.updating.posterior.nested import sample_nested
-from jackettwin.updating.posterior.predictive import Predictive, predict_quantities
+from jackettwin.updating.posterior.predictive import Missed, Predictive, predict_quantities
 from jackettwin.updating.posterior.smc import Posterior, sample_posterior
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.search.profile import Profile, profile
@@ -291,6 +291,7 @@ def _uncertainty(
     seed: int,
 ) -> Uncertainty:
     z = laplace_draws(problem, best.theta, seed=seed) if posterior is None else posterior.log_theta
+    some = _thinned(z)
     beyond = [m for m in shown if m not in _PREDICTED]
     known = tuple(m for m in _PREDICTED if m <= model.highest_mode)
     return Uncertainty(
@@ -302,10 +303,23 @@ def _uncertainty(
             problem, z, seed=seed, converged=posterior is not None, misfit=misfit(problem, best.theta)
         ),
         predictive=predict_quantities(
-            model, _first(problem, _thinned(z)), (*known, *beyond), problem.states[0].relaxations
+            model,
+            _first(problem, some),
+            (*known, *beyond),
+            problem.states[0].relaxations,
+            _missed(problem, model, some, seed),
         ),
         profiles=tuple(profile(problem, best.theta, j) for j in range(len(problem.parameters))),
     )
+
+
+def _missed(problem: Problem, model: SupportModel, z: FloatArray, seed: int) -> Missed | None:
+    """Return what tells the asset's modes from the model's at draws (n, d): the errors that were fitted with."""
+    if problem.error_model is None:
+        return None
+    rng = np.random.default_rng(seed)
+    errors, own = problem.drawn_errors(z, rng), problem.error_model.on(model.condensed)
+    return lambda found: own.factors(found, errors, problem.error_data, rng)
 
 
 def posterior_or_status(

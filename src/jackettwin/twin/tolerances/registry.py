@@ -295,7 +295,7 @@ def _table() -> tuple[KnownTolerance, ...]:
     )  # fmt: skip
 
 
-REMAINDERS = {"remainder_frequency": 0.003, "remainder_damping": 0.05}
+REMAINDERS = {"remainder_frequency": 0.003, "remainder_damping": 0.07}
 """What beams, joints and laws miss of each mode by itself, as shares: 0.2 to 0.5 % of a frequency that a
 finer mesh or a shell model moves, and what laws of other forms differ by in damping between modes."""
 TOLERANCES = {known.tolerance.name: known for known in _table()}

@@ -185,7 +185,7 @@ def _with_beside(problem: Problem, beside: Sequence[Target]) -> Problem:
 
 def _own(problem: Problem, z: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return residuals and Jacobian of the data alone, whitened by what is measured alone."""
-    r, J, _ = replace(problem, error_model=None).evaluate(z, None)
+    r, J, _ = problem.plain.evaluate(z, None)
     return r[: problem.n_data], J[: problem.n_data]
 
 

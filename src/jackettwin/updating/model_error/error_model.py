@@ -67,6 +67,27 @@ class ErrorModel:
         remainder = residuals.shift_jacobian(own)
         return np.concatenate([common, np.broadcast_to(remainder, (len(common), *remainder.shape))], axis=2)
 
+    def factors(
+        self, found: NumberedModes, errors: FloatArray, data: tuple[str, ...], rng: np.random.Generator
+    ) -> FloatArray:
+        """Return what drawn errors multiply frequencies and damping ratios by, (2, n_sets, n_modes).
+
+        Parameters
+        ----------
+        found : of any modes; one without data draws its remainder anew
+        errors : (n_sets, n) of :meth:`jackettwin.updating.Problem.drawn_errors`
+        data : whose remainders follow the tolerances
+        """
+        n = len(self.tolerances)
+        shift = np.einsum("vkmn,kn->vkm", self.shifts(found), errors[:, :n])
+        for v, letter in enumerate(("f", "ζ")):
+            for m, mode in enumerate(found.modes):
+                name = f"{letter}{mode}"
+                fresh = rng.standard_normal(len(errors))
+                own = errors[:, n + data.index(name)] if name in data else fresh
+                shift[v, :, m] += self.own(name) * own
+        return np.asarray(np.exp(shift))
+
     def shifts(self, found: NumberedModes) -> FloatArray:
         """Return d ln f and d ln ζ of any modes by the tolerances, (2, n_sets, n_modes, n_tolerances)."""
         pole, slopes = found.poles[..., None], self.directions.slopes(found)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import pi
 
@@ -14,6 +14,7 @@ from jackettwin.soil import law_stiffness, static_rows
 from jackettwin.updating.data.relaxations import RelaxationTarget
 from jackettwin.updating.model import SupportModel
 
+Missed = Callable[[NumberedModes], FloatArray]
 _FIRST, _FOURTH = 1, 4
 """The modes whose frequencies a support's stiffness and loss factor are stated at."""
 
@@ -46,16 +47,25 @@ def predict_quantities(
     theta: FloatArray,
     modes: tuple[int, ...],
     relaxations: tuple[RelaxationTarget, ...] = (),
+    missed: Missed | None = None,
 ) -> Predictive:
-    """Return the quantities at draws θ (n_draws, n_parameters) of the model's parameters."""
+    """Return the quantities at draws θ (n_draws, n_parameters) of the model's parameters.
+
+    Parameters
+    ----------
+    missed : function of the modes at the draws, optional
+        Returns by what the asset's frequencies and damping ratios differ from the model's, (2, n_draws,
+        n_modes).
+    """
     damped = _from_first(model, theta, modes, undamped=False)
     undamped = _from_first(model, theta, modes, undamped=True)
     size = np.abs(damped.poles)
+    by_f, by_zeta = (1.0, 1.0) if missed is None else missed(damped)
     return Predictive(
         modes,
-        size / (2.0 * pi),
-        -damped.poles.real / size,
-        np.abs(undamped.poles) / (2.0 * pi),
+        by_f * size / (2.0 * pi),
+        by_zeta * -damped.poles.real / size,
+        by_f * np.abs(undamped.poles) / (2.0 * pi),
         support_quantities(model, theta),
         {r.name: r.nearest(model, theta).rate for r in relaxations},
     )
