@@ -20,7 +20,7 @@ from jackettwin.answers.result import (
 from jackettwin.arrays import FloatArray
 from jackettwin.intervals import NORMAL_90, interval_90
 from jackettwin.soil import Parameter, families, law_parameter
-from jackettwin.study import MeasuredMode, TwinResult
+from jackettwin.study import MeasuredMode, Scrutiny, TwinResult
 from jackettwin.updating import SOURCES, USABLE, Update, approximate_probability, law_probability, recommended
 
 PRECISION = 0.2
@@ -58,9 +58,17 @@ def answer(result: TwinResult) -> Answers:
         minutes=days * 1440.0,
         records_for=records_for(result.measured, number, PRECISION),
         precision=PRECISION,
+        scrutiny=_scrutiny(result, u),
         usable=USABLE,
         fit=fit,
     )
+
+
+def _scrutiny(result: TwinResult, u: Update | None) -> Scrutiny | None:
+    """Return what stands behind the fit of a law."""
+    if u is None or not result.scrutiny:
+        return None
+    return result.scrutiny[[other is u for other in result.updates].index(True)]
 
 
 def _laws(updates: Sequence[Update]) -> tuple[tuple[LawAnswer, ...], str]:
@@ -85,6 +93,7 @@ def _modes(result: TwinResult, u: Update | None) -> tuple[ModeAnswer, ...]:
     return tuple(
         ModeAnswer(
             label=m.label,
+            number=m.mode,
             measured_hz=Span.of(m.frequency_hz, m.frequency_std_hz),
             measured_damping=Span.of(m.damping_ratio, m.damping_ratio_std),
             fits_frequency=m.fits_frequency,
@@ -101,12 +110,16 @@ def _modes(result: TwinResult, u: Update | None) -> tuple[ModeAnswer, ...]:
 
 
 def _model_error(u: Update, m: MeasuredMode) -> float:
-    """Return by how much, relative, the model may miss a frequency: what a target has beyond its own."""
-    target = next((t for t in u.problem.states[0].residuals.targets if t.mode == m.mode), None)
-    if target is None or not target.frequency_hz or target.frequency_std_hz is None:
+    """Return by how much, relative, the model may miss a frequency: all its tolerances and its remainder."""
+    errors = u.problem.error_model
+    if errors is None:
         return 0.0
-    own = m.frequency_std_hz or 0.0
-    return float(np.sqrt(max(target.frequency_std_hz**2 - own**2, 0.0)) / target.frequency_hz)
+    theta = u.problem.vectors(np.log(u.best.theta)[None], u.problem.states[0])
+    found = u.model.predict_many(theta, (m.mode,), slopes=False)
+    if np.isnan(found.poles).any():
+        return 0.0
+    shift = errors.on(u.model.condensed).shifts(found)[0, 0, 0]
+    return float(np.hypot(np.linalg.norm(shift), errors.own(f"f{m.mode}")))
 
 
 def _model_hz(u: Update, i: int, m: MeasuredMode) -> Span | None:

@@ -155,7 +155,8 @@ def _ratio(m: MeasuredMode) -> float:
 
 
 def _same(a: Problem, b: Problem) -> bool:
-    return all(s.residuals == t.residuals for s, t in zip(a.states, b.states, strict=True))
+    same = all(s.residuals == t.residuals for s, t in zip(a.states, b.states, strict=True))
+    return same and a.error_model is b.error_model
 
 
 def _with_state(problem: Problem, targets: tuple[Target, ...], rotor: list[int]) -> Problem:
@@ -169,7 +170,7 @@ def _with_state(problem: Problem, targets: tuple[Target, ...], rotor: list[int])
 
 
 def _without_model_error(problem: Problem, own: Mapping[int, MeasuredMode]) -> Problem:
-    return _changed(problem, own, records=1.0, error=0.0)
+    return _changed(problem, own, records=1.0, error=0.0).plain
 
 
 def _repeated(problem: Problem, own: Mapping[int, MeasuredMode], times: float) -> Problem:

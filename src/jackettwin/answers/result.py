@@ -8,6 +8,7 @@ from math import exp, log
 from typing import Literal
 
 from jackettwin.intervals import NORMAL_90
+from jackettwin.study import Scrutiny
 
 LEAST_MODEL_ERROR = 0.01
 """Standard deviation by which a model of beams misses frequencies, where the twin states less."""
@@ -67,6 +68,8 @@ class ModeAnswer:
         Damping ratio that steel, ground, rotor and water give the mode, as far as they are modelled.
     model_error : float
         Relative standard deviation by which the twin says that the model misses the frequency.
+    number : int
+        On pinned supports, from 1.
     """
 
     label: str
@@ -80,6 +83,7 @@ class ModeAnswer:
     model_damping: Span | None
     sources: Mapping[str, Span]
     model_error: float = 0.0
+    number: int = 0
 
     @property
     def as_designed(self) -> bool | None:
@@ -207,6 +211,8 @@ class Answers:
     usable : float
         Longest interval, as a factor, of a parameter that counts as identified.
     records, minutes : of measurements
+    scrutiny : Scrutiny or None
+        What the recommended law's fit does not explain, and what its answers hang on.
     records_for : {mode: number}
         Records like these after which the mode's damping ratio is known to ± ``precision`` (90 %).
     """
@@ -226,6 +232,7 @@ class Answers:
     precision: float
     usable: float
     fit: FitAnswer | None = None
+    scrutiny: Scrutiny | None = None
 
     @property
     def fits(self) -> bool:

@@ -11,6 +11,7 @@ from jackettwin.identification import Comparison, identification_document
 from jackettwin.identification.document import mode_document, shape_document
 from jackettwin.intervals import interval_90
 from jackettwin.study.result import MeasuredMode, MeasuredRelaxation, TwinResult, held_document
+from jackettwin.study.scrutiny import scrutiny_document
 from jackettwin.study.truth import truth_document
 from jackettwin.twin import Observation
 from jackettwin.updating import (
@@ -112,6 +113,7 @@ def update_document(result: TwinResult, index: int) -> dict[str, Any]:
         "damping_budget": _budget(result.measured, u),
         "real_poles_rad_s": u.modes.damped.real_poles,
         "reference_frequency_hz": u.model.reference_hz,
+        "model_error": scrutiny_document(result.scrutiny[index], names) if result.scrutiny else None,
         "unexplained_damping": [
             {
                 **named(e, "label", "excess", "explained"),

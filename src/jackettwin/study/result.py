@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from jackettwin.arrays import ComplexArray
 from jackettwin.findings import Finding
@@ -13,6 +13,9 @@ from jackettwin.response import Sensor, UndampedModes
 from jackettwin.structure import Assembly
 from jackettwin.twin import Observation
 from jackettwin.updating import LEAST_MAC, Counterpart, Update
+
+if TYPE_CHECKING:
+    from jackettwin.study.scrutiny import Scrutiny
 
 
 @dataclass(frozen=True)
@@ -137,6 +140,8 @@ class TwinResult:
     blades : int
     in_all : (number, seconds), optional
         Of all records that were measured and of their durations, if ``observations`` are some of them.
+    scrutiny : tuple of Scrutiny
+        What stands behind each of ``updates``.
     """
 
     name: str
@@ -155,6 +160,7 @@ class TwinResult:
     rotor_speed_hz: tuple[float, float] | None = None
     blades: int = 3
     in_all: tuple[int, float] | None = None
+    scrutiny: tuple[Scrutiny, ...] = ()
 
     def __repr__(self) -> str:
         modes = ", ".join(f"{m.label} {m.frequency_hz or float('nan'):.4g} Hz" for m in self.measured)

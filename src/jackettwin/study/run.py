@@ -20,7 +20,9 @@ from jackettwin.study.problem import UpdateEvidence, law_problem
 from jackettwin.study.relaxations import measured_relaxations, relaxing
 from jackettwin.study.result import DampingExcess, MeasuredMode, TwinResult
 from jackettwin.study.rotor import mean_wind, operating_states, rotor_damping, rotor_speed_hz
+from jackettwin.study.scrutiny import scrutiny
 from jackettwin.twin import TwinConfig, TwinModel, TwinState, twin_model
+from jackettwin.twin.tolerances.registry import suspects
 from jackettwin.updating import Update, likely
 
 Posteriors = Literal["all", "likely", "none"]
@@ -122,6 +124,7 @@ def updated_twin(
     if posteriors == "likely":
         updates = _with_one_posterior(config, updates, progress, keep)
     speed, blades = rotor_speed_hz(config)
+    others = suspects(config, assembly) if any(u.problem.weighted for u in updates) else ()
     left_out = tuple(law for law in wanted if law not in [u.law for u in updates])
     return TwinResult(
         name=config.name,
@@ -140,6 +143,7 @@ def updated_twin(
         rotor_speed_hz=speed,
         blades=blades,
         in_all=None if found is None else found.in_all,
+        scrutiny=tuple(scrutiny(u, measured, others) for u in updates),
     )
 
 

@@ -40,6 +40,7 @@ from .model_error.directions import (
     Tolerance as Tolerance,
 )
 from .model_error.error_model import ErrorModel as ErrorModel
+from .model_error.influence import Influence as Influence, influences as influences
 from .nuisance_parameters import (
     DASHPOTS as DASHPOTS,
     NuisanceParameter as NuisanceParameter,

@@ -10,6 +10,11 @@ from jackettwin.answers import Answers, GroundAnswer, ModeAnswer, Span
 from jackettwin.answers.result import Clearance, NextStep
 from jackettwin.report.tables.numbers import UNKNOWN, between, count, factor, listed, words
 from jackettwin.report.tables.sentences_fit import fit_sentence, mend, misfit_headline, value_words
+from jackettwin.report.tables.sentences_model import (
+    condition_headline,
+    objection_sentences,
+    unseen_sentence,
+)
 from jackettwin.soil import family, parameter_words
 
 MARGIN = 0.10
@@ -78,8 +83,9 @@ def sentences(a: Answers) -> Said:
 def _headline(a: Answers) -> list[str]:
     """Return the headline; what prevents an answer (misfit, unknown ground) comes first."""
     if misfit := misfit_headline(a):
-        return [misfit[0], *_stiff_enough(a), *misfit[1:]]
-    lead = [*_stiff_enough(a), *(ground := _ground_headline(a))]
+        return [misfit[0], *_stiff_enough(a), *objection_sentences(a)[1:], *misfit[1:]]
+    ground = [*_ground_headline(a), condition_headline(a)]
+    lead = [*objection_sentences(a), *_stiff_enough(a), *ground]
     if a.ground and all(g.verdict == "unidentified" for g in a.ground):
         lead = [*ground, *_stiff_enough(a)]
     return [*lead, _owner_headline(a), _next_headline(a)]
@@ -299,6 +305,8 @@ def _model(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
         short.append(f"The twin states no design foundation (update.priors). Measured: {listed(beside)}.")
     short += [] if a.fit is None else [fit_sentence(a.fit)]
     short += _off_unfitted(a)
+    short += [*filter(None, objection_sentences(a))]
+    more += [*filter(None, [unseen_sentence(a)])]
     short += _margins(a)
     misses = [
         (abs(m.model_hz.value / m.measured_hz.value - 1.0), m.label)
@@ -463,14 +471,19 @@ def _trust(a: Answers) -> list[str]:
             f"Identifiability: {len(known)} of {count(len(judged), 'ground parameter')} known to a factor of "
             f"{a.usable:g} or better."
         )
-    errors = {f"{100 * m.model_error:.2g} %" for m in a.modes if m.fits_frequency and m.model_error > 0.0}
-    stated = sorted(errors)
+    stated = sorted(m.model_error for m in a.modes if m.fits_frequency and m.model_error > 0.0)
     said.append(
-        f"Model error: {listed(stated)} on frequencies, as the twin states."
+        f"Model error: {_errors(stated)} on frequencies, from the tolerances of drawings and sea."
         if stated
-        else "Model error: none is stated (update.model_error); intervals are those of a perfect model."
+        else "Model error: the twin closes every tolerance; intervals are those of a perfect model."
     )
     return [*said, *_if_off(a)]
+
+
+def _errors(stated: list[float]) -> str:
+    """Return the least and the largest error in per cent."""
+    low, high = (f"{100 * error:.2g}" for error in (stated[0], stated[-1]))
+    return f"{low} %" if low == high else f"{low} to {high} %"
 
 
 def _if_off(a: Answers) -> list[str]:
