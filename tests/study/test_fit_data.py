@@ -7,7 +7,11 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.study.fit_data import residuals, target_modes
+from jackettwin.study.problem import UpdateEvidence, law_problem
+from jackettwin.study.rotor import RotorDamping
 from jackettwin.twin import read_twin
+from jackettwin.twin.config import assembled
+from jackettwin.updating.model_error.marginal import covariance
 
 ERROR = """update:
   damping_of: all
@@ -25,17 +29,29 @@ def given(folder: Path, mode: int, frequency_hz: float) -> tuple[str, ...]:
 
 
 def test_the_models_error_adds_to_that_of_the_data(tmp_path: Path) -> None:
-    """Variances add; the covariance of frequency and damping stays."""
+    """Variances add; the covariance of frequency and damping stays.
+
+    What is fitted carries the measurement's own deviations; the model's stand beside, for all records once.
+    """
     own = "{mode: 1, frequency_hz: 0.18, frequency_std_hz: 0.00072, damping_ratio: 0.012, "
     own += "damping_ratio_std: 0.0018, correlation: 0.5}"
     path = tmp_path / "twin.yaml"
-    path.write_text(f"structure: jacket15\ntargets:\n  - {own}\n{ERROR}")
+    path.write_text(f"structure: jacket15\ntolerances: none\ntargets:\n  - {own}\n{ERROR}")
     config = read_twin(path)
-    (target,) = residuals(config, target_modes(config, LABELS, pinned_hz=PINNED_HZ)).targets
-    f_std, zeta_std = np.hypot(0.00072, 0.003 * 0.18), np.hypot(0.0018, 0.2 * 0.012)
-    assert target.frequency_std_hz == pytest.approx(f_std, rel=1e-12)
-    assert target.damping_ratio_std == pytest.approx(zeta_std, rel=1e-12)
-    assert target.correlation * f_std * zeta_std == pytest.approx(0.5 * 0.00072 * 0.0018, rel=1e-12)
+    data = residuals(config, target_modes(config, LABELS, pinned_hz=PINNED_HZ))
+    (target,) = data.targets
+    assert (target.frequency_std_hz, target.damping_ratio_std) == (0.00072, 0.0018)
+    assembly = assembled(config)
+    problem = law_problem(
+        config, UpdateEvidence(assembly, None, {"": (data, {})}, RotorDamping({}, {})), "kelvin-voigt"
+    )
+    found = problem.anchor(np.log([2e9, 1e7]))
+    assert found is not None
+    own_root = np.linalg.inv(data.shift_jacobian(np.eye(2)))
+    total = own_root @ covariance(problem.gains(found)[0]) @ own_root.T
+    f_std, zeta_std = np.hypot(0.00072 / 0.18, 0.003), np.hypot(0.0018 / 0.012, 0.2)
+    assert np.sqrt(np.diag(total)) == pytest.approx([f_std, zeta_std], rel=1e-9)
+    assert total[0, 1] == pytest.approx(0.5 * 0.00072 / 0.18 * 0.0018 / 0.012, rel=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from jackettwin.updating.data.shapes import ShapeTarget
 from jackettwin.updating.data.targets import Residuals
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.model_error.error_model import ErrorModel
-from jackettwin.updating.model_error.marginal import drawn, errors_given, inverse_root, log_density
+from jackettwin.updating.model_error.marginal import drawn, errors_given, inverse_root, log_density, squares
 from jackettwin.updating.prior import Prior
 
 NEVER = -1e30
@@ -241,21 +241,19 @@ class Problem:
         log_l[known] -= sum(state.log_normalisation for state in self.states)
         return log_l, found
 
-<<<<<<< HEAD
     def costs(self, z: FloatArray, near: Found | None) -> FloatArray:
         """Return the cost (n,) of points (n, d): squares of all residuals, NaN where a mode does not exist.
 
         Of one point it is the square of what ``evaluate`` returns: priors that are not flat count.
         """
-        cost = np.zeros(len(z))
-        for state, modes in zip(self.states, self._modes(z, near, slopes=False), strict=True):
-            known, r = self._known_residuals(state, z, modes)
-            cost[known] += (r * r).sum(axis=1)
-            cost[~known] = np.nan
+        cost, found = np.full(len(z), np.nan), self._modes(z, near, slopes=False)
+        r, known = self._all_residuals(z, found)
+        if known.any():
+            cost[known] = squares(r, self.gains(tuple(modes.some(known) for modes in found)))
         if not self.relative:
             cost += [row @ row for row, _ in map(self.prior.rows, z)]
         return cost
-=======
+
     def _all_residuals(self, z: FloatArray, found: Found) -> tuple[FloatArray, BoolArray]:
         """Return the residuals (n_known, n_data) of the points that have everything, and which these are."""
         relaxed = [self.relaxed(z, state) for state in self.states]
@@ -267,7 +265,6 @@ class Problem:
             for state, modes, rates in zip(self.states, found, relaxed, strict=True)
         ]
         return np.concatenate(columns, axis=1), known
->>>>>>> ae6542e (Marginalise tolerances of drawings and sea at each point of the posterior)
 
     def _modes(self, z: FloatArray, near: Found | None, *, slopes: bool) -> Found:
         """Return the modes of every state at points (n, d).

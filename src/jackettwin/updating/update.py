@@ -314,7 +314,7 @@ def _uncertainty(
 
 
 def _missed(problem: Problem, model: SupportModel, z: FloatArray, seed: int) -> Missed | None:
-    """Return what tells the asset's modes from the model's at draws (n, d): the errors that were fitted with."""
+    """Return what tells the asset's modes from the model's at draws (n, d): the errors of the fit."""
     if problem.error_model is None:
         return None
     rng = np.random.default_rng(seed)

@@ -185,13 +185,7 @@ class Residuals:
         poles : (n_modes,) λ of ``modes``
         slopes : (n_modes, n_parameters) dλ/d ln θ
         """
-<<<<<<< HEAD
-        size, zeta, radial, turned = polar(poles, slopes)
-        pairs = np.stack([radial / (2.0 * pi), turned], axis=1)
-        model = np.stack([size / (2.0 * pi), zeta], axis=1).reshape(-1)[self._places]
-=======
         pairs, model = self._pairs(poles, slopes)
->>>>>>> ae6542e (Marginalise tolerances of drawings and sea at each point of the posterior)
         scale = np.where(self._logarithmic, np.maximum(model, _LEAST), self._measured)
         return np.asarray(self._whitener @ (pairs / scale[:, None]))
 
@@ -208,11 +202,9 @@ class Residuals:
 
     def _pairs(self, poles: ComplexArray, slopes: ComplexArray) -> tuple[FloatArray, FloatArray]:
         """Return derivatives (..., count, n) of frequencies and damping ratios, and these (..., count)."""
-        size = np.abs(poles)[..., None]
-        zeta = -poles.real[..., None] / size
-        radial = (np.conj(poles)[..., None] * slopes).real / size  # d|λ|
-        pairs = np.stack([radial / (2.0 * pi), -slopes.real / size - zeta * radial / size], axis=-2)
-        model = np.concatenate([size / (2.0 * pi), zeta], axis=-1)
+        size, zeta, radial, turned = polar(poles, slopes)
+        pairs = np.stack([radial / (2.0 * pi), turned], axis=-2)
+        model = np.stack([size / (2.0 * pi), zeta], axis=-1)
         shape = (*poles.shape[:-1], 2 * len(self.used))
         pairs, model = pairs.reshape(*shape, slopes.shape[-1]), model.reshape(shape)
         return pairs[..., self._places, :], model[..., self._places]
@@ -223,14 +215,14 @@ class Residuals:
 
 
 def polar(poles: ComplexArray, slopes: ComplexArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return |λ| and ζ = −Re λ/|λ| of poles, (n,) each, and the derivatives of both, (n, n_parameters) each.
+    """Return |λ| and ζ = −Re λ/|λ| of poles, (..., n) each, and the derivatives of both, (..., n, n_z) each.
 
     Parameters
     ----------
-    poles : (n,) λ
-    slopes : (n, n_parameters) dλ
+    poles : (..., n) λ
+    slopes : (..., n, n_z) dλ
     """
     size = np.abs(poles)
-    zeta, column = -poles.real / size, size[:, None]
-    radial = (np.conj(poles)[:, None] * slopes).real / column
-    return size, zeta, radial, -slopes.real / column - zeta[:, None] * radial / column
+    zeta, column = -poles.real / size, size[..., None]
+    radial = (np.conj(poles)[..., None] * slopes).real / column
+    return size, zeta, radial, -slopes.real / column - zeta[..., None] * radial / column

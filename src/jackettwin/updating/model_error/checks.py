@@ -30,6 +30,8 @@ _LARGEST = 8.0
 """Standard deviations of a tolerance beyond which it is no explanation: nor does the first order hold."""
 _WORTH = 4.0
 """χ² that an explanation takes off to be one: two standard deviations."""
+_TOLD = 1e-9
+"""Precision, in that of the measurement, below which the others say nothing of a datum."""
 _SEEN = 1.0
 """Standard deviations of the data by which a suspect at its size must move them to be seen."""
 
@@ -142,7 +144,7 @@ def objection(
     chi2 = float(r @ Wr)
     used = int((np.linalg.svd(J * problem.prior.std, compute_uv=False) > 0.5).sum())
     freedom = max(r.size - used, 1)
-    checks = _checks(problem, whole, Wr, np.diag(W))
+    checks = _checks(problem, whole, W, Wr)
     result = Objection(checks, chi2, freedom, float(chdtrc(freedom, max(chi2, 0.0))))
     columns = _columns(whole, found, suspects, pulls.size)
     unseen = {c.tolerance.name: c.tolerance for c, _ in columns[1]}
@@ -189,27 +191,42 @@ def _own(problem: Problem, z: FloatArray) -> tuple[FloatArray, FloatArray]:
     return r[: problem.n_data], J[: problem.n_data]
 
 
-def _checks(problem: Problem, whole: Problem, Wr: FloatArray, own: FloatArray) -> tuple[DatumCheck, ...]:
+def _checks(problem: Problem, whole: Problem, W: FloatArray, Wr: FloatArray) -> tuple[DatumCheck, ...]:
     """Return each datum beside what all the others say of it."""
     names, fitted = whole.data_names, set(problem.data_names)
     limit = -float(ndtri(0.5 * UNLIKELY / max(len(names), 1)))
     scale = np.concatenate([_log_std(state) for state in whole.states])
-    checks = []
-    for i, name in enumerate(names):
-        if own[i] < 1e-9 or not np.isfinite(scale[i]):
-            continue
-        # residuals are of the model over the measured
-        away, std = -Wr[i] / own[i], 1.0 / np.sqrt(own[i])
-        checks.append(
-            DatumCheck(
-                name,
-                exp(min(away * scale[i], 50.0)) - 1.0,
-                float(std * scale[i]),
-                name in fitted,
-                bool(abs(away) > limit * std),
-            )
+    own = np.diag(W)
+    judged = [i for i in range(len(names)) if own[i] > _TOLD and np.isfinite(scale[i])]
+    stray = _strays(W, Wr, judged, limit)
+    # residuals are of the model over the measured
+    return tuple(
+        DatumCheck(
+            names[i],
+            exp(min(-Wr[i] / own[i] * scale[i], 50.0)) - 1.0,
+            float(scale[i] / np.sqrt(own[i])),
+            names[i] in fitted,
+            i in stray,
         )
-    return tuple(checks)
+        for i in judged
+    )
+
+
+def _strays(W: FloatArray, Wr: FloatArray, judged: Sequence[int], limit: float) -> set[int]:
+    """Return the data that the others do not allow: the worst first, without it the next.
+
+    One datum far off makes others look wrong that were fitted together with it.
+    """
+    stray: set[int] = set()
+    while left := [i for i in judged if i not in stray and W[i, i] > _TOLD]:
+        worst = max(left, key=lambda i: abs(Wr[i]) / np.sqrt(W[i, i]))
+        if abs(Wr[worst]) <= limit * np.sqrt(W[worst, worst]):
+            break
+        stray.add(worst)
+        column, size = W[:, worst].copy(), W[worst, worst]
+        Wr = Wr - column * (Wr[worst] / size)
+        W = W - np.outer(column, column) / size
+    return stray
 
 
 def _log_std(state: State) -> FloatArray:

@@ -28,8 +28,14 @@ def inverse_root(gains: FloatArray) -> FloatArray:
 def log_density(r: FloatArray, gains: FloatArray) -> FloatArray:
     """Return ln N(r; 0, A) + n_data/2 ln 2π (n_sets,) of residuals (n_sets, n_data) and Γ."""
     root = np.linalg.cholesky(covariance(gains))
-    x = np.linalg.solve(root, r[..., None])[..., 0]
-    return np.asarray(-0.5 * (x * x).sum(axis=-1) - np.log(np.einsum("kii->ki", root)).sum(axis=-1))
+    log_det = np.log(np.einsum("kii->ki", root)).sum(axis=-1)
+    return np.asarray(-0.5 * squares(r, gains) - log_det)
+
+
+def squares(r: FloatArray, gains: FloatArray) -> FloatArray:
+    """Return χ² = rᵀA⁻¹r (n_sets,) of residuals r (n_sets, n_data) and Γ."""
+    x = np.linalg.solve(covariance(gains), r[..., None])[..., 0]
+    return np.asarray((r * x).sum(axis=-1))
 
 
 def errors_given(r: FloatArray, gains: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -1,0 +1,215 @@
+"""What a model may miss: directions against models built anew, marginals against densities, objections."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import multivariate_normal
+
+from jackettwin.decks import read_structure
+from jackettwin.soil import family
+from jackettwin.structure import Rayleigh, assemble
+from jackettwin.updating import (
+    Direction,
+    Directions,
+    ErrorModel,
+    Problem,
+    Residuals,
+    SupportModel,
+    Target,
+    Tolerance,
+    influences,
+    joint,
+    misfit,
+    objection,
+    support_model,
+)
+from jackettwin.updating.model_error.marginal import errors_given, inverse_root, log_density, squares
+from jackettwin.updating.search.descent import bottom
+
+THETA = np.array([2e9, 0.1])
+MODES = (1, 2, 3, 4, 5)
+SIGMA_F, SIGMA_ZETA = 0.001, 0.08
+
+
+def tolerance(name: str, std: float = 0.01) -> Tolerance:
+    return Tolerance(name, name, std, "-", "a test", "look")
+
+
+def model_of(**scales: float) -> SupportModel:
+    """Return jacket15 on springs, its tower's stiffness and the whole jacket's density scaled."""
+    structure = read_structure("jacket15")
+    structure = structure.with_material("tower", youngs_modulus=scales.get("tower", 1.0))
+    structure = structure.with_material("jacket", density=scales.get("jacket", 1.0))
+    return support_model(
+        assemble(structure),
+        family=family("maxwell-3"),
+        rayleigh=Rayleigh.minimum(0.0055, 0.1832),
+        bounds={"k": (1e8, 5e10), "loss_factor": (0.005, 0.5)},
+        highest_mode=7,
+    )
+
+
+@pytest.fixture(scope="module")
+def model() -> SupportModel:
+    return model_of()
+
+
+@pytest.fixture(scope="module")
+def errors(model: SupportModel) -> ErrorModel:
+    """Return one per cent of the tower's stiffness and of the jacket's mass, and remainders."""
+    stiff, heavy = model_of(tower=1.01).assembly, model_of(jacket=1.01).assembly
+    each = (
+        Direction(tolerance("tower"), stiffness=stiff.stiffness - model.assembly.stiffness),
+        Direction(tolerance("jacket"), mass=heavy.mass - model.assembly.mass),
+    )
+    return ErrorModel(Directions(model.assembly, model.condensed, each, 1), {}, 0.003, 0.05)
+
+
+def targets(poles: np.ndarray, modes: tuple[int, ...] = MODES) -> Residuals:
+    f, zeta = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
+    return Residuals(
+        tuple(
+            Target(mode, f[i], SIGMA_F * f[i], zeta[i], SIGMA_ZETA * zeta[i]) for i, mode in enumerate(modes)
+        ),
+        relative=False,
+    )
+
+
+def problem_of(model: SupportModel, data: Residuals, errors: ErrorModel | None) -> Problem:
+    return joint(model, {"": (data, {})}, error_model=errors)
+
+
+@pytest.mark.parametrize(("column", "name"), [(0, "tower"), (1, "jacket")])
+def test_a_direction_moves_poles_as_a_structure_built_anew(
+    model: SupportModel, errors: ErrorModel, column: int, name: str
+) -> None:
+    """A tenth of the direction beside a model of steel that differs by so much."""
+    before = model.predict_many(THETA[None], MODES)
+    after = model_of(**{name: 1.001}).predict_many(THETA[None], MODES)
+    ratio = [np.log(np.abs(after.poles) / np.abs(before.poles))[0]]
+    damping = [-found.poles.real / np.abs(found.poles) for found in (before, after)]
+    ratio.append(np.log(damping[1] / damping[0])[0])
+    shifts = errors.shifts(before)[:, 0, :, column]
+    # the second order of a step of 0.1 %: 7 % of the shift at ten times the step
+    np.testing.assert_allclose(0.1 * shifts, ratio, rtol=0.01, atol=1e-6)
+
+
+def test_softer_feet_move_poles_as_the_springs_parameter_does(model: SupportModel) -> None:
+    """All feet stiffer by a share is k by a share: the slopes of two formulas, equal to rounding."""
+    all_feet = Direction(tolerance("feet"), feet=np.full((4, 6), 0.01))
+    found = model.predict_many(THETA[None], MODES)
+    slopes = Directions(model.assembly, model.condensed, (all_feet,), 1).slopes(found)[0, :, 0]
+    # 1e-4: the mass of the coordinates leaves out what truncated modes move
+    np.testing.assert_allclose(slopes, 0.01 * found.slopes[0, :, 0], rtol=1e-3)
+
+
+def test_marginals_are_those_of_the_joint_normal(rng: np.random.Generator) -> None:
+    gains, r = rng.normal(size=(3, 6, 4)), rng.normal(size=(3, 6))
+    for k in range(3):
+        A = np.eye(6) + gains[k] @ gains[k].T
+        density = multivariate_normal(np.zeros(6), A).logpdf(r[k]) + 3.0 * np.log(2 * np.pi)
+        assert log_density(r, gains)[k] == pytest.approx(density, rel=1e-10)
+        root = inverse_root(gains[k])
+        assert np.sum((root @ r[k]) ** 2) == pytest.approx(squares(r, gains)[k], rel=1e-10)
+        # the joint precision of φ and r, conditioned on r
+        mean, covariance = errors_given(r[k], gains[k])
+        precision = np.eye(4) + gains[k].T @ gains[k]
+        np.testing.assert_allclose(covariance, np.linalg.inv(precision), atol=1e-10)
+        np.testing.assert_allclose(mean, -np.linalg.solve(precision, gains[k].T @ r[k]), atol=1e-10)
+
+
+def test_a_remainder_is_a_wider_standard_deviation(model: SupportModel) -> None:
+    """Without tolerances, errors by mode are what variances that add say: the same likelihood and cost."""
+    true = model.predict(THETA, MODES).poles
+    data = targets(true)
+    wider = Residuals(
+        tuple(
+            replace(
+                t,
+                frequency_std_hz=(t.frequency_hz or 0.0) * np.hypot(SIGMA_F, 0.003),
+                damping_ratio_std=(t.damping_ratio or 0.0) * np.hypot(SIGMA_ZETA, 0.05),
+            )
+            for t in data.targets
+        ),
+        relative=False,
+    )
+    none = ErrorModel(Directions(model.assembly, model.condensed, (), 1), {}, 0.003, 0.05)
+    z = np.log([[1.5e9, 0.12], [3e9, 0.08]])
+    by_errors, by_std = problem_of(model, data, none), problem_of(model, wider, None)
+    np.testing.assert_allclose(
+        by_errors.log_likelihood(z, None)[0], by_std.log_likelihood(z, None)[0], rtol=1e-9
+    )
+    assert by_errors.costs(z, None) == pytest.approx(by_std.costs(z, None))
+    ours, theirs = by_errors.evaluate(z[0], None), by_std.evaluate(z[0], None)
+    np.testing.assert_allclose(np.abs(ours[0]), np.abs(theirs[0]), rtol=1e-9)
+    np.testing.assert_allclose(ours[1].T @ ours[1], theirs[1].T @ theirs[1], rtol=1e-9)
+
+
+def test_what_a_tolerance_does_costs_no_misfit(model: SupportModel, errors: ErrorModel) -> None:
+    """A tower 2 % stiffer than drawn: the plain model cannot meet its modes, the one with tolerances can."""
+    true = model_of(tower=1.02).predict(THETA, MODES).poles
+    with_errors, without = (problem_of(model, targets(true), e) for e in (errors, None))
+    ends = []
+    for problem in (with_errors, without):
+        near = problem.anchor(np.log(THETA))
+        assert near is not None
+        ends.append(misfit(problem, np.exp(bottom(problem, np.log(THETA), near))))
+    assert ends[0] is not None and ends[1] is not None
+    assert ends[0].fits and not ends[1].fits
+
+
+def test_a_mode_that_was_not_fitted_objects_and_is_named(model: SupportModel, errors: ErrorModel) -> None:
+    """Mode 3 measured 5 % off, and not fitted: it alone objects; as the model says, nothing does."""
+    fitted = (1, 2, 4, 5)
+    poles = model.predict(THETA, MODES).poles
+    data = targets(poles[[0, 1, 3, 4]], fitted)
+    f3 = float(np.abs(poles[2]) / (2 * np.pi))
+    problem = problem_of(model, data, errors)
+    for factor, objects in ((1.0, False), (0.95, True)):
+        beside = Target(3, factor * f3, SIGMA_F * f3)
+        found = objection(problem, np.log(THETA), [beside])
+        assert found is not None and found.objects is objects
+        checks = {check.datum: check for check in found.checks}
+        assert not checks["f3"].fitted and checks["f1"].fitted
+        assert checks["f3"].miss == pytest.approx(factor - 1.0, abs=0.002)
+        assert [name for name, check in checks.items() if check.objects] == (["f3"] if objects else [])
+
+
+def test_the_explanation_is_what_was_planted(model: SupportModel, errors: ErrorModel) -> None:
+    """A tower 6 % stiffer, six of its tolerances, is named with its sign and about its size."""
+    true = model_of(tower=1.06).predict(THETA, MODES).poles
+    own = replace(errors, usual_frequency=0.0005)
+    problem = problem_of(model, targets(true), own)
+    near = problem.anchor(np.log(THETA))
+    assert near is not None
+    found = objection(problem, bottom(problem, np.log(THETA), near))
+    assert found is not None and found.objects
+    best = found.explanations[0]
+    assert best.tolerance.name == "tower"
+    assert best.size == pytest.approx(0.06, rel=0.35)
+
+
+def test_influences_say_which_way_and_how_far(model: SupportModel, errors: ErrorModel) -> None:
+    """A stiffer tower than drawn leaves less to the ground: k falls; a heavier jacket, k rises.
+
+    The change of k is that of a fit to the modes of a structure built anew.
+    """
+    poles = model.predict(THETA, MODES).poles
+    problem = problem_of(model, targets(poles), errors)
+    found = {one.tolerance.name: one for one in influences(problem, np.log(THETA))}
+    assert found["tower"].effect[0] < 0.0 < found["jacket"].effect[0]
+    assert all(0.0 < one.settled[0] <= 1.0 + 1e-9 for one in found.values())
+    assert all(0.0 < one.std <= 1.0 + 1e-9 for one in found.values())
+    # twins fitted with the stiffer tower drawn: what one per cent of it does, the other errors still open
+    stiff = model_of(tower=1.01)
+    rest = replace(
+        errors, directions=Directions(stiff.assembly, stiff.condensed, errors.directions.each[1:], 1)
+    )
+    other = problem_of(stiff, targets(poles), rest)
+    near = other.anchor(np.log(THETA))
+    assert near is not None
+    moved = bottom(other, np.log(THETA), near)[0] - np.log(THETA[0])
+    assert found["tower"].effect[0] == pytest.approx(moved, rel=0.1)
