@@ -121,12 +121,14 @@ def test_more_records_than_are_read_are_listed_all_the_same(tmp_path: Path) -> N
     assert [path.name for path in read_twin(out).records] == [f"r{i:02d}.csv" for i in range(22)]
 
 
-def test_the_draft_states_an_error_of_the_model_and_asks_for_the_rotors_speeds(tmp_path: Path) -> None:
-    """Without one a run calls a foundation known to a few per cent from a model that misses by as much."""
+def test_the_draft_leaves_tolerances_open_and_asks_for_the_rotors_speeds(tmp_path: Path) -> None:
+    """Without any a run calls a foundation known to a few per cent from a model that misses by as much."""
     record = written(tmp_path / "A1.csv", "ACC_088m_E [g]")
     out = tmp_path / "twin.yaml"
     text = run(str(record), "--out", str(out))[1]
-    assert read_twin(out).update.model_error(1).frequency == 0.02
+    stated = read_twin(out).tolerances
+    assert stated.std("rna_mass", 1.0) == 0.015 and stated.std("growth", 1.0) == 0.04
+    assert stated.std("tower_stiffness", 0.015) == 0.015
     assert "missing: rotor_speed_rpm: [lowest, highest]" in text
     asked = out.read_text().replace("# rotor_speed_rpm", "rotor_speed_rpm").replace("  # priors", "  priors")
     out.write_text(asked)  # what stands there as a comment reads as it stands

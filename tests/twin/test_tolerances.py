@@ -12,7 +12,13 @@ from jackettwin.errors import InputError
 from jackettwin.twin import TwinConfig, read_twin
 from jackettwin.twin.config import assembled
 from jackettwin.twin.tolerances.parts import legs, part_of
-from jackettwin.twin.tolerances.registry import directions, suspects, tolerances
+from jackettwin.twin.tolerances.registry import (
+    REMAINDERS,
+    TOLERANCES,
+    directions,
+    suspects,
+    tolerances,
+)
 
 DECKS = Path(__file__).parents[2] / "qualify" / "decks"
 TARGET = "targets: [{mode: 1, frequency_hz: 0.18, frequency_std_hz: 0.001}]\n"
@@ -116,3 +122,11 @@ def test_a_structure_on_land_has_no_sea(tmp_path: Path) -> None:
     found = names(twin(tmp_path, structure="land.yaml"))
     assert not {"growth", "added_mass", "flooding", "water_level"} & set(found)
     assert "rna_mass" in found
+
+
+def test_the_page_is_the_registry() -> None:
+    page = Path(__file__).parents[2] / "docs" / "reference" / "tolerances.md"
+    rows = [line for line in page.read_text("utf-8").splitlines() if line.startswith("| `")]
+    stated = {row.split("`")[1]: row.split("|")[3].strip() for row in rows}
+    known = {name: f"{one.tolerance.std:g}" for name, one in TOLERANCES.items()}
+    assert stated == known | {name: f"{std:g}" for name, std in REMAINDERS.items()}

@@ -93,8 +93,10 @@ def test_a_direction_moves_poles_as_a_structure_built_anew(
     damping = [-found.poles.real / np.abs(found.poles) for found in (before, after)]
     ratio.append(np.log(damping[1] / damping[0])[0])
     shifts = errors.shifts(before)[:, 0, :, column]
-    # the second order of a step of 0.1 %: 7 % of the shift at ten times the step
-    np.testing.assert_allclose(0.1 * shifts, ratio, rtol=0.01, atol=1e-6)
+    # the truncated modes move along as at the pinned frequency, not at the pole: 1 % of the shift of ln f,
+    # 1e-5 of ln ζ, where a damping ratio is measured to some per cent
+    np.testing.assert_allclose(0.1 * shifts[0], ratio[0], rtol=0.012, atol=1e-7)
+    np.testing.assert_allclose(0.1 * shifts[1], ratio[1], atol=1e-5)
 
 
 def test_softer_feet_move_poles_as_the_springs_parameter_does(model: SupportModel) -> None:

@@ -67,6 +67,7 @@ def report_sections(
         ("Structure", the_structure),
         ("Every law", appendix.every_law),
         ("Posterior", appendix.posterior),
+        ("Tolerances", appendix.tolerances),
         ("Solutions", appendix.every_solution),
         ("Identification", further_records),
         ("Provenance", partial(_provenance, given=provenance)),
@@ -103,7 +104,11 @@ def _modes(result: TwinResult, *, a: Answers, said: Said) -> list[Block]:
 def _ground(result: TwinResult, *, a: Answers, said: Said) -> list[Block]:
     if not a.ground:
         return []
-    blocks: list[Block] = [*_more(said, first.GROUND), *first.ground_drawing(a)]
+    blocks: list[Block] = [
+        *_more(said, first.GROUND),
+        *first.ground_drawing(a),
+        *first.tornado_drawing(a),
+    ]
     blocks += [tables.ground_table(a), tables.laws_table(a)]
     parameters = true_parameters(result)
     return [*blocks, true_parameters_table(parameters)] if parameters else blocks

@@ -20,15 +20,16 @@ from jackettwin.version import __version__
 STEEL_DAMPING = 0.005
 """Ratio of critical at the first frequency: what welded steel towers and jackets are usually given."""
 _UPDATE = (
+    "tolerances:                         # what drawings leave open; other tolerances have defaults: CHECK",
+    "  rna_mass: 0.015                   # {weighed: true} where the nacelle was weighed",
+    "  growth: 0.04                      # metres; {weighed: true} where divers found none",
     "update:",
-    "  model_error:                      # by how much drawings and beams miss the modes: CHECK",
-    "    - {modes: [1, 2], frequency: 0.02}",
-    "    - {modes: [3, 4, 5], frequency: 0.03, damping: 0.2}",
+    "  damping_of: fore_aft              # whose damping the ground must explain",
     "  # priors: {k: {median: 1.0e9, log_std: 0.7}}   # what the design says of a foot [N/m]",
     "  # rotor: turbine.yaml             # windIO file: what a parked rotor damps in the wind",
     "# rotor_speed_rpm: [5.0, 7.6]       # lowest and highest in operation: margins to 1P and 3P",
 )
-"""What no file says: the model's own error as models of beams have it, the rest for the user to fill in."""
+"""What no file says: the tolerances that move the ground most, the rest for the user to fill in."""
 _PLAIN = re.compile(r"^[A-Za-z_][\w./\-]*$")
 
 

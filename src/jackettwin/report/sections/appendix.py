@@ -14,6 +14,9 @@ from jackettwin.report.tables.numbers import UNKNOWN, fixed, words
 from jackettwin.study import TwinResult
 from jackettwin.updating import Uncertainty, Update, recommended
 
+_SHOWN = 4
+"""Parameters that the table of tolerances has columns for."""
+
 
 def every_law(result: TwinResult) -> list[Block]:
     """Return modes and parameters of every law at its best fit, damped beside undamped."""
@@ -55,6 +58,37 @@ def posterior(result: TwinResult) -> list[Block]:
         ),
         _predictions(shown, k, result),
     ]
+
+
+def tolerances(result: TwinResult) -> list[Block]:
+    """Return what drawings and sea leave open: before, after, and what it does to the ground."""
+    u = recommended(result.updates)
+    place = [other is u for other in result.updates]
+    s = result.scrutiny[place.index(True)] if u is not None and result.scrutiny else None
+    if u is None or s is None or not s.influences:
+        return []
+    names = [p.name for p in u.problem.parameters][:_SHOWN]
+    rows = [
+        (
+            one.tolerance.words,
+            f"{one.tolerance.std:.3g} {'' if one.tolerance.unit == '-' else one.tolerance.unit}".strip(),
+            f"{one.mean * one.tolerance.std:+.2g} ± {one.std * one.tolerance.std:.2g}".replace("-", "−"),
+            *(
+                f"{100.0 * np.expm1(e):+.2g} ({r:.2f})".replace("-", "−")
+                for e, r in zip(one.effect[:_SHOWN], one.settled[:_SHOWN], strict=True)
+            ),
+            one.tolerance.settled_by,
+            ", ".join(one.alike) or UNKNOWN,
+        )
+        for one in s.influences
+    ]
+    columns = ("tolerance", "σ before", "after", *(f"{name} [%]" for name in names), "settle it", "like")
+    caption = (
+        f"{u.law}: what do drawings, weighing and sea leave open? By parameter, its change with one σ more, "
+        "and in brackets its own σ, times so much, were that settled; like: not told apart by these data."
+    )
+    text = "Checks of every measured value, and what would explain those that stray, are in result.json."
+    return [Text((text,)), Table(caption, columns, tuple(rows), text_columns=1)]
 
 
 def every_solution(result: TwinResult) -> list[Block]:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from jackettwin.answers import Answers
 from jackettwin.report.figures.drawings import campbell, damping_bars, ground_intervals
 from jackettwin.report.figures.drawings_shapes import shape_drawings
+from jackettwin.report.figures.tornado import tornado
 from jackettwin.report.pages.page import Block, Drawing, FirstPage
 from jackettwin.report.tables.sentences import MARGIN, Said
+from jackettwin.soil import parameter_words
 from jackettwin.study import TwinResult
 from jackettwin.updating import recommended
 
@@ -45,6 +47,19 @@ def ground_drawing(a: Answers) -> list[Drawing]:
         return []
     caption = "What did the data add? Each parameter of a foot before and after, 90 %, on a logarithmic axis."
     return [Drawing("ground", caption, (drawn,))]
+
+
+def tornado_drawing(a: Answers) -> list[Drawing]:
+    """Return what moves the best known stiffness of the ground."""
+    stiff = [(i, g) for i, g in enumerate(a.ground) if g.kind == "stiffness" and g.factor is not None]
+    if a.scrutiny is None or not a.scrutiny.influences or not stiff:
+        return []
+    i, g = min(stiff, key=lambda one: one[1].factor or 0.0)
+    drawn = tornado(a.scrutiny, i, parameter_words(g.name))
+    if drawn is None:
+        return []
+    caption = "What does that hang on? The fit again, with one tolerance at a time a standard deviation off."
+    return [Drawing("tornado", caption, (drawn,))]
 
 
 def shapes(result: TwinResult) -> list[Block]:
