@@ -47,11 +47,11 @@ from jackettwin.twin.config import assembled
 from jackettwin.twin.tolerances.registry import directions, suspects
 from jackettwin.updating import (
     Direction,
-    Directions,
     Problem,
     Residuals,
     SupportModel,
     Target,
+    ToleranceDirections,
     joint,
     laplace_draws,
     misfit,
@@ -104,7 +104,7 @@ def drawing(site: int, tie: str) -> Drawing:
     model = _model(assembled(config), tie)
     n_soil = len(model.tie_groups.suffixes)
     each, others = directions(config, model.assembly), suspects(config, model.assembly)
-    own = Directions(model.assembly, model.condensed, each, n_soil)
+    own = ToleranceDirections(model.assembly, model.condensed, each, n_soil)
     return Drawing(config, replace(model, directions=own), others)
 
 
@@ -415,8 +415,9 @@ def page(found: list[Result]) -> list[str]:
         f"{len(KINDS)} kinds; {', '.join(site.name for site in SITES)}; sizes drawn with the",
         "tolerances' standard deviations and, in every second, with 1.5 times these; poles of four to",
         "seven modes (σ 0.1 to 0.2 % of frequencies, 8 to 12 % of damping ratios); the ground 0.5 to",
-        "8 GN/m, loss 0.03 to 0.2. The asset's poles are of a model of its own, in which every foot has its own springs. The",
-        "twin's file states steel and clean water, and no tolerance; its law is maxwell-3.",
+        "8 GN/m, loss 0.03 to 0.2. The asset's poles are of a model of its own, in which every foot has",
+        "its own springs. The twin's file states steel and clean water, and no tolerance;",
+        "its law is maxwell-3.",
         f"{np.mean([r['product']['cpu_s'] for r in found]):.2f} CPU-s an estimate, "
         f"{np.mean([r['cpu_s'] for r in found]):.2f} with the asset and what stands beside.",
         "",
@@ -429,10 +430,10 @@ def page(found: list[Result]) -> list[str]:
         *(way_row(found, way) for way in WAYS),
         "",
         "Width is the median factor between the ends of the stiffness's interval; the next columns are",
-        "that over the oracle's, and the median ratio of the logarithms. The oracle knows the structure, not the",
-        "ground's law nor that feet differ; its intervals, as those of least squares, are of a normal around the",
-        f"best fit. Of assets with nothing wrong {sum(r['product']['objects'] for r in true)} of {len(true)} "
-        "were objected to.",
+        "that over the oracle's, and the median ratio of the logarithms. The oracle knows the structure, not",
+        "the ground's law nor that feet differ; its intervals, as those of least squares, are of a normal",
+        "around the best fit. Of assets with nothing wrong",
+        f"{sum(r['product']['objects'] for r in true)} of {len(true)} were objected to.",
         "",
         "| kind | twins | hold | before | plain | width | oracle's | some fail | objected | said unseen |",
         "|---|---|---|---|---|---|---|---|---|---|",

@@ -9,8 +9,9 @@ from jackettwin.twin.tolerances.registry import REMAINDERS, TOLERANCES
 PAGE = Path(__file__).parents[1] / "docs" / "reference" / "tolerances.md"
 TOP = """# Tolerances
 
-What drawings, weighing and the sea leave open. Each is one unknown of all modes and records, normal about what the twin states with the
-standard deviation below, and part of every fit whose data carry standard deviations ([theory](../theory/updating.md)). A twin sizes them:
+What drawings, weighing and the sea leave open. Each is one unknown of all modes and records, normal about
+what the twin states with the standard deviation below, and part of every fit whose data carry standard
+deviations ([theory](../theory/updating.md)). A twin sizes them:
 
 ```yaml
 tolerances:
@@ -25,8 +26,8 @@ tolerances:
 |---|---|---|---|---|---|
 """
 SUSPECTS = """
-Suspects widen no interval. They are tried when a twin cannot meet its data, and named where the data would not show them; a twin that sizes
-one makes a tolerance of it.
+Suspects widen no interval. They are tried when a twin cannot meet its data, and named where the data would
+not show them; a twin that sizes one makes a tolerance of it.
 
 | name | of what | tried at | unit | source | what settles it |
 |---|---|---|---|---|---|
@@ -41,7 +42,7 @@ def page() -> str:
         row = f"| `{t.name}` | {t.words} | {t.std:g} | {t.unit} | {t.source} | {t.settled_by} |"
         rows[known.suspected].append(row)
     remainders = [
-        f"| `{name}` | of each mode by itself | {std:g} | - | assumed: a finer mesh, a shell model, other laws | |"
+        f"| `{name}` | of each mode by itself | {std:g} | - | assumed: finer meshes, shells, other laws | |"
         for name, std in REMAINDERS.items()
     ]
     return TOP + "\n".join([*rows[False], *remainders]) + "\n" + SUSPECTS + "\n".join(rows[True]) + "\n"

@@ -132,8 +132,8 @@ FAULTS = (
         ("scatter widens variances twice", "own_f * sqrt(f.widened), own_z * sqrt(z.widened)", "own_f * f.widened, own_z * z.widened"),
     )),
     *_of("study", rows=(
-        ("the model's error replaces the data's", "hypot(own_f, error.frequency * f)", "error.frequency * f"),
-        ("the model's error of damping replaces the data's", "hypot(own_zeta, error.damping * zeta)", "error.damping * zeta"),
+        ("the model's error replaces the data's", "m.frequency_std_hz or error.frequency * f", "error.frequency * f"),
+        ("the model's error of damping replaces the data's", "m.damping_ratio_std or error.damping * zeta", "error.damping * zeta"),
     )),
     *_of("change", rows=(
         ("scour stiffens the feet", "(np.exp(-loss * chosen) for loss", "(np.exp(loss * chosen) for loss"),

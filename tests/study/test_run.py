@@ -227,13 +227,17 @@ def test_records_without_a_standard_deviation_take_the_information_limit() -> No
     assert mean.log_stds == pytest.approx((0.0043, 0.34), rel=0.015)
 
 
-def test_the_models_error_adds_to_variances_and_not_to_the_covariance() -> None:
+def test_the_models_error_stands_in_for_deviations_that_are_not_known() -> None:
+    """A measured one stays as measured: the model's is added once, for all records (test_fit_data)."""
     mode = MeasuredMode(1, "fore_aft_1", 0.2, 0.002, 0.01, 0.002, None, None, True, True, correlation=0.5)
     settings = UpdateSettings(model_errors=(ModelError(modes=(1,), frequency=0.01, damping=0.2),))
     config = replace(read_twin("thesis_table_6_1"), update=settings)
     target = residuals(config, (mode,)).targets[0]
-    assert target.log_stds == pytest.approx((0.01 * np.sqrt(2.0), 0.2 * np.sqrt(2.0)))
-    assert target.correlation == pytest.approx(0.25)
+    assert target.log_stds == pytest.approx((0.01, 0.2))
+    assert target.correlation == pytest.approx(0.5)
+    bare = replace(mode, frequency_std_hz=None, damping_ratio_std=None, frequency_hz=0.3)
+    target = residuals(config, (bare,)).targets[0]
+    assert target.log_stds == pytest.approx((0.01, 0.2)) and target.correlation == 0.0
 
 
 def test_nacelle_dashpots_explain_what_feet_cannot() -> None:

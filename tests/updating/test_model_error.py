@@ -13,13 +13,13 @@ from jackettwin.soil import family
 from jackettwin.structure import Rayleigh, assemble
 from jackettwin.updating import (
     Direction,
-    Directions,
     ErrorModel,
     Problem,
     Residuals,
     SupportModel,
     Target,
     Tolerance,
+    ToleranceDirections,
     influences,
     joint,
     misfit,
@@ -65,7 +65,7 @@ def errors(model: SupportModel) -> ErrorModel:
         Direction(tolerance("tower"), stiffness=stiff.stiffness - model.assembly.stiffness),
         Direction(tolerance("jacket"), mass=heavy.mass - model.assembly.mass),
     )
-    return ErrorModel(Directions(model.assembly, model.condensed, each, 1), {}, 0.003, 0.05)
+    return ErrorModel(ToleranceDirections(model.assembly, model.condensed, each, 1), {}, 0.003, 0.05)
 
 
 def targets(poles: np.ndarray, modes: tuple[int, ...] = MODES) -> Residuals:
@@ -103,7 +103,7 @@ def test_softer_feet_move_poles_as_the_springs_parameter_does(model: SupportMode
     """All feet stiffer by a share is k by a share: the slopes of two formulas, equal to rounding."""
     all_feet = Direction(tolerance("feet"), feet=np.full((4, 6), 0.01))
     found = model.predict_many(THETA[None], MODES)
-    slopes = Directions(model.assembly, model.condensed, (all_feet,), 1).slopes(found)[0, :, 0]
+    slopes = ToleranceDirections(model.assembly, model.condensed, (all_feet,), 1).slopes(found)[0, :, 0]
     # 1e-4: the mass of the coordinates leaves out what truncated modes move
     np.testing.assert_allclose(slopes, 0.01 * found.slopes[0, :, 0], rtol=1e-3)
 
@@ -138,7 +138,7 @@ def test_a_remainder_is_a_wider_standard_deviation(model: SupportModel) -> None:
         ),
         relative=False,
     )
-    none = ErrorModel(Directions(model.assembly, model.condensed, (), 1), {}, 0.003, 0.05)
+    none = ErrorModel(ToleranceDirections(model.assembly, model.condensed, (), 1), {}, 0.003, 0.05)
     z = np.log([[1.5e9, 0.12], [3e9, 0.08]])
     by_errors, by_std = problem_of(model, data, none), problem_of(model, wider, None)
     np.testing.assert_allclose(
@@ -208,7 +208,7 @@ def test_influences_say_which_way_and_how_far(model: SupportModel, errors: Error
     # twins fitted with the stiffer tower drawn: what one per cent of it does, the other errors still open
     stiff = model_of(tower=1.01)
     rest = replace(
-        errors, directions=Directions(stiff.assembly, stiff.condensed, errors.directions.each[1:], 1)
+        errors, directions=ToleranceDirections(stiff.assembly, stiff.condensed, errors.directions.each[1:], 1)
     )
     other = problem_of(stiff, targets(poles), rest)
     near = other.anchor(np.log(THETA))

@@ -18,7 +18,6 @@ from jackettwin.twin import ALL, TwinConfig, TwinState
 from jackettwin.twin.tolerances.registry import REMAINDERS, directions
 from jackettwin.twin.water import in_the_records_sea, water_effects
 from jackettwin.updating import (
-    Directions,
     ErrorModel,
     Growth,
     NuisanceParameters,
@@ -27,6 +26,7 @@ from jackettwin.updating import (
     Residuals,
     ShapeTarget,
     SupportModel,
+    ToleranceDirections,
     joint,
     matrix_of,
     support_model,
@@ -167,7 +167,7 @@ def law_model(config: TwinConfig, evidence: UpdateEvidence, law: str) -> Support
         raise error.at(file=config.path, field=_place(error)) from None
     each = () if relative else directions(config, evidence.assembly)
     n_soil = len(model.tie_groups.suffixes)
-    return replace(model, directions=Directions(evidence.assembly, model.condensed, each, n_soil))
+    return replace(model, directions=ToleranceDirections(evidence.assembly, model.condensed, each, n_soil))
 
 
 def _place(error: InputError) -> str | None:

@@ -36,8 +36,8 @@ from .model import SupportModel as SupportModel
 from .model_error.checks import Objection as Objection, objection as objection
 from .model_error.directions import (
     Direction as Direction,
-    Directions as Directions,
     Tolerance as Tolerance,
+    ToleranceDirections as ToleranceDirections,
 )
 from .model_error.error_model import ErrorModel as ErrorModel
 from .model_error.influence import Influence as Influence, influences as influences

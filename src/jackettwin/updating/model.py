@@ -26,7 +26,7 @@ from jackettwin.response import (
 from jackettwin.soil import Family, Law, Parameter
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating.band import condensed_for, numbered_modes
-from jackettwin.updating.model_error.directions import Directions
+from jackettwin.updating.model_error.directions import ToleranceDirections
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.tie_groups import TieGroups
 
@@ -71,7 +71,7 @@ class SupportModel:
         Free parameters beside those of the law: they follow them in ``parameters``.
     fastest_rate : float
         Relaxations up to this rate [rad/s] are well inside the band, too.
-    directions : Directions, optional
+    directions : ToleranceDirections, optional
         What the structure's tolerances do to it, on the condensed model.
     """
 
@@ -85,7 +85,7 @@ class SupportModel:
     highest_mode: int
     nuisance: NuisanceParameters = NuisanceParameters()
     fastest_rate: float = 0.0
-    directions: Directions | None = None
+    directions: ToleranceDirections | None = None
 
     def reaching(self, mode: int) -> SupportModel:
         """Return the model with a band up to a numbered mode; itself if it reaches there."""

@@ -20,7 +20,7 @@ from scipy.special import chdtrc, ndtri
 from jackettwin.arrays import FloatArray
 from jackettwin.updating.data.misfit import UNLIKELY
 from jackettwin.updating.data.targets import Residuals, Target
-from jackettwin.updating.model_error.directions import Direction, Directions, Tolerance
+from jackettwin.updating.model_error.directions import Direction, Tolerance, ToleranceDirections
 from jackettwin.updating.model_error.marginal import covariance
 from jackettwin.updating.problem import Problem, State
 
@@ -250,7 +250,7 @@ def _columns(
     both = (errors.directions.each, tuple(suspects))
     result: list[list[_Column]] = []
     for each in both:
-        directions = Directions(
+        directions = ToleranceDirections(
             errors.directions.assembly, whole.model.condensed, each, errors.directions.n_soil
         )
         model = replace(errors, directions=directions)

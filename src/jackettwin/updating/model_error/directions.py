@@ -73,8 +73,8 @@ class Direction:
 
 
 @dataclass(frozen=True, eq=False)
-class Directions:
-    """Directions on a condensed structure.
+class ToleranceDirections:
+    """ToleranceDirections on a condensed structure.
 
     Attributes
     ----------

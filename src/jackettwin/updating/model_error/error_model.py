@@ -11,7 +11,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.response import Condensed, NumberedModes
 from jackettwin.updating.data.targets import Residuals
-from jackettwin.updating.model_error.directions import Directions, Tolerance
+from jackettwin.updating.model_error.directions import Tolerance, ToleranceDirections
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,14 +24,14 @@ class ErrorModel:
 
     Attributes
     ----------
-    directions : Directions
+    directions : ToleranceDirections
     remainder : {datum: standard deviation of its logarithm}
         Of data whose remainder differs from the usual one.
     usual_frequency, usual_damping : float
         Standard deviation of the logarithm of any other mode's frequency and damping ratio.
     """
 
-    directions: Directions
+    directions: ToleranceDirections
     remainder: Mapping[str, float] = field(default_factory=dict)
     usual_frequency: float = 0.0
     usual_damping: float = 0.0
