@@ -286,4 +286,5 @@ def _target(m: MeasuredMode, error: ModelError, relative: bool) -> Target:
         return Target(m.mode, f, None, zeta, None)
     f_std = None if f is None else m.frequency_std_hz or error.frequency * f
     zeta_std = None if zeta is None else m.damping_ratio_std or error.damping * zeta
-    return Target(m.mode, f, f_std, zeta, zeta_std, m.correlation if f_std and zeta_std else 0.0)
+    both = m.frequency_std_hz and m.damping_ratio_std and f_std and zeta_std
+    return Target(m.mode, f, f_std, zeta, zeta_std, m.correlation if both else 0.0)
