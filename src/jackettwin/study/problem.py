@@ -14,8 +14,7 @@ from jackettwin.structure import Assembly
 from jackettwin.study.relaxations import placed, relaxation_targets
 from jackettwin.study.result import MeasuredRelaxation
 from jackettwin.study.rotor import RotorDamping, States
-from jackettwin.twin import ALL, TwinConfig, TwinState
-from jackettwin.twin.tolerances.registry import REMAINDERS, directions
+from jackettwin.twin import ALL, REMAINDERS, TwinConfig, TwinState, directions
 from jackettwin.twin.water import in_the_records_sea, water_effects
 from jackettwin.updating import (
     ErrorModel,

@@ -21,8 +21,7 @@ from jackettwin.study.relaxations import measured_relaxations, relaxing
 from jackettwin.study.result import DampingExcess, MeasuredMode, TwinResult
 from jackettwin.study.rotor import mean_wind, operating_states, rotor_damping, rotor_speed_hz
 from jackettwin.study.scrutiny import scrutiny
-from jackettwin.twin import TwinConfig, TwinModel, TwinState, twin_model
-from jackettwin.twin.tolerances.registry import suspects
+from jackettwin.twin import TwinConfig, TwinModel, TwinState, suspects, twin_model
 from jackettwin.updating import Update, likely
 
 Posteriors = Literal["all", "likely", "none"]

@@ -16,3 +16,9 @@ from .state import (
     empty_state as empty_state,
 )
 from .stated_model import model_of_records as model_of_records, stated_model as stated_model
+from .tolerances.registry import (
+    REMAINDERS as REMAINDERS,
+    KnownTolerance as KnownTolerance,
+    directions as directions,
+    suspects as suspects,
+)
