@@ -67,8 +67,10 @@ def stiffness_in_time(followed: Followed) -> go.Figure:
         marker={"size": 4, "color": style.GREY},
         name="known on the day, 90 %",
     )  # fmt: skip
-    ahead = [known[-1].time_utc + timedelta(days=days) for days in followed.ahead]
-    expected = np.array([then[-1], *(level.relative for level in followed.ahead.values())])
+    most = max(min(followed.ahead), followed.days_since_first[-1])  # no further than has been seen
+    shown = {days: level for days, level in followed.ahead.items() if days <= most}
+    ahead = [known[-1].time_utc + timedelta(days=days) for days in shown]
+    expected = np.array([then[-1], *(level.relative for level in shown.values())])
     _band(figure, [known[-1].time_utc, *ahead], expected, style.GREY, "expected", dash="dot")
     figure.update_yaxes(title="stiffness over that of the first day")
     figure.update_xaxes(type="date", title="time (UTC)")
