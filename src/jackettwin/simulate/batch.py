@@ -1,4 +1,4 @@
-"""Run a set on all cores; what is finished is not run again."""
+"""Simulate a set of cases on all cores, skipping finished ones."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def run_case(case: Case, folder: Path) -> None:
 
 
 def record_path(case: Case, folder: Path) -> Path:
-    """Return where a case's record lies."""
+    """Return the path of a case's record."""
     return folder / f"{case.name}.parquet"
 
 
@@ -45,7 +45,7 @@ def _finished(case: Case, folder: Path) -> bool:
         return False
     try:
         return read_description(path.with_suffix(".json")).metadata.get("case_key") == case.key
-    except InputError:  # half a record, or another's
+    except InputError:  # incomplete, or of another case
         return False
 
 
@@ -63,7 +63,7 @@ def run_set(
     workers : int, optional
         Processes; default one a core, and none but this one for a single case.
     step : callable
-        Told the name of each case that is done.
+        Called with the name of each finished case.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def run_set(
         If the scenario of the first case is wrong: then nothing is simulated.
     """
     first = chosen.cases[0]
-    scenario_from(first.data, first.path)  # refuse before the first of many minutes
+    scenario_from(first.data, first.path)  # refuse before the long computation starts
     folder.mkdir(parents=True, exist_ok=True)
     todo = pending_cases(chosen, folder)
     n = min(workers or os.cpu_count() or 1, len(todo))
@@ -100,7 +100,7 @@ def _in_parallel(todo: tuple[Case, ...], folder: Path, workers: int) -> Iterator
 
 
 def _manifest(chosen: ScenarioSet, folder: Path) -> dict[str, Any]:
-    """Return what every record of the set holds, its truth included."""
+    """Return the content of every record of the set, including its truth."""
     cases = []
     for case in chosen.cases:
         path = record_path(case, folder)

@@ -1,7 +1,7 @@
-r"""Which level of response to expect of OpenFAST in wind of the same class, and how sure that is.
+r"""Expected level of response of OpenFAST in wind of the same class, and its scatter.
 
-The root mean square of ten minutes of a lightly damped mode scatters from seed to seed: of a stationary
-Gaussian signal with spectrum G the mean square over a time T has the relative variance
+The rms of ten minutes of a lightly damped mode scatters between seeds:
+for a stationary Gaussian signal with spectrum G the mean square over a time T has the relative variance
 
 .. math:: \frac{\operatorname{var}\,\overline{x^2}}{σ^4} = \frac{\int G^2 df}{T (\int G df)^2}
 
@@ -43,7 +43,7 @@ BESIDE_OPENFAST = {
     (BETWEEN, "fore_aft"): Ratio(1.00, 0.02),
     (BETWEEN, "side_side"): Ratio(0.97, 0.02),
 }
-"""As docs/verification/response_level.md found them over seven OpenFAST records."""
+"""From docs/verification/response_level.md, over seven OpenFAST records."""
 SPEEDS_M_S = (8.0, 16.0)
 """Mean winds of those records."""
 
@@ -110,7 +110,7 @@ def band_rms(x: FloatArray, step_s: float, limits_hz: tuple[float, float]) -> fl
 
 
 def beyond_comparison(scenario: Scenario) -> list[str]:
-    """Return in what the scenario leaves the records whose levels were compared."""
+    """Return the respects in which the scenario is outside the compared records."""
     air, turbine = scenario.air, scenario.turbine
     if air is None:
         return []

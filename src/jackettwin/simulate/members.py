@@ -1,4 +1,4 @@
-"""What a scenario demands of every member."""
+"""Utilisation of members in a scenario."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from jackettwin.simulate.scenario.scenario import Scenario
 from jackettwin.structure import Assembly, assemble, element_weight
 
 _BLOCK = 2000
-"""Instants at a time: records are long, and every element has twelve loads."""
+"""Number of instants per block: records are long, and every element has twelve loads."""
 _SPACING_M = 2.0
-"""Longest piece of a member: what it carries itself is the matter."""
+"""Longest piece of a member, as its own loads matter here."""
 
 
 def scenario_uses(scenario: Scenario, basis: DesignBasis | None = None) -> FrameUse:
     """Return the worst use of every member and joint over a scenario, weight in air and water included.
 
     Joints move with the modes up to the simulation's band; between them members also bend under their weight
-    and under the waves along them. What the members' own acceleration adds in between is left out.
+    and the waves along them. The inertia of members between joints is neglected.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def scenario_uses(scenario: Scenario, basis: DesignBasis | None = None) -> Frame
 
 
 def _pressure(scenario: Scenario, assembly: Assembly) -> FloatArray | None:
-    """Return what water presses on the elements' ends, (n_elements, 2) [Pa]; None if not known inside."""
+    """Return the water pressure on the elements' ends, (n_elements, 2) [Pa]; None if unknown inside."""
     sea = scenario.sea
     if sea is None or sea.water is None:
         return None
@@ -68,7 +68,7 @@ def _pressure(scenario: Scenario, assembly: Assembly) -> FloatArray | None:
 
 
 def water_notes(scenario: Scenario) -> list[str]:
-    """Return what a check of the scenario leaves out of the water's static part."""
+    """Return notes on effects of still water that a check of the scenario omits."""
     if scenario.sea is None or scenario.sea.water is not None:
         return []
     return [
@@ -117,7 +117,7 @@ def _waves_along(scenario: Scenario, assembly: Assembly) -> Callable[[FloatArray
 
 
 def _dry(scenario: Scenario, assembly: Assembly) -> Assembly:
-    """Return the assembly without the water that moves with it: added mass weighs nothing."""
+    """Return the assembly without the added mass of water, which has no weight."""
     asset = scenario.asset
     return assemble(
         assembly.structure,

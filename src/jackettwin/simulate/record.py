@@ -1,4 +1,4 @@
-"""A simulated motion as a record, its truth beside it."""
+"""Simulated records with their truth."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _START = datetime(2025, 1, 1, tzinfo=UTC)
 
 @dataclass(frozen=True)
 class Simulation:
-    """A record and what it took."""
+    """A simulated record and its computing effort."""
 
     record: Record
     seconds_simulated: float

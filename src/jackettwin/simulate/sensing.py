@@ -1,4 +1,4 @@
-"""What the sensors make of a motion: readings at the sample rate, with their flaws."""
+"""Sensor readings of a motion at the sample rate, with sensor errors."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def flawed(clean: FloatArray, instruments: tuple[Instrument, ...], *, step_s: fl
 
 
 def _drop(row: FloatArray, instrument: Instrument, rng: np.random.Generator, step_s: float) -> None:
-    """Take readings away: a Poisson process of gaps of exponential length."""
+    """Remove readings: a Poisson process of gaps of exponential length."""
     hours = row.size * step_s / 3600.0
     for _ in range(rng.poisson(instrument.dropouts_per_hour * hours)):
         start = int(rng.integers(row.size))

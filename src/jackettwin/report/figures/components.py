@@ -1,4 +1,4 @@
-"""Mode shapes of sensors whose places are not known: one bar a channel, no tower."""
+"""Mode shapes of sensors of unknown place: one bar per channel."""
 
 from __future__ import annotations
 
@@ -18,10 +18,9 @@ _COLUMNS = 3
 
 
 def components(shape: ComplexArray) -> FloatArray:
-    """Return a shape's channels at the moment when they move most: real, largest entry 1.
+    """Return a shape's channels at the phase of largest motion: real, largest entry 1.
 
-    The phase is turned so that the sum of squares of the real parts is greatest: by half the argument of
-    Σφ².
+    The phase maximises the sum of squares of the real parts: half the argument of Σφ².
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The drawings of the first page: Campbell's, whose damping it is, what is known of the ground."""
+"""Drawings of the first page: Campbell diagram, damping by source, posterior of the ground."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _WIDTH = 560.0
 
 
 def ticks(low: float, high: float, most: int) -> list[float]:
-    """Return round numbers between two, at most so many.
+    """Return at most a given number of round values between two limits.
 
     >>> ticks(0.0, 0.42, 5)
     [0.0, 0.1, 0.2, 0.3, 0.4]
@@ -99,7 +99,7 @@ def campbell(a: Answers) -> Markup | None:
 
 
 def damping_bars(modes: Sequence[ModeAnswer]) -> Markup | None:
-    """Draw one bar a mode: what steel, ground, rotor and water give it, above what was measured."""
+    """Draw one bar per mode: the damping from steel, ground, rotor and water, above the measured one."""
     shown = [m for m in modes if m.sources]
     if not shown:
         return None
@@ -154,7 +154,7 @@ def _whisker(c: Canvas, span: Span | None, x: Callable[[float], float], y: float
 
 
 def ground_intervals(ground: Sequence[GroundAnswer], law: str, *, fits: bool = True) -> Markup | None:
-    """Draw what was thought of each parameter and what is known now, each on its own logarithmic axis."""
+    """Draw the prior and posterior interval of each parameter, each on its own logarithmic axis."""
     if not ground:
         return None
     row, head = 56.0, 24.0
@@ -190,7 +190,7 @@ def ground_intervals(ground: Sequence[GroundAnswer], law: str, *, fits: bool = T
 
 
 def _ends(c: Canvas, g: GroundAnswer, x: Callable[[float], float], y: float) -> None:
-    """Write the ends of the present interval beneath it, apart from each other."""
+    """Label the ends of the posterior interval below it, without overlap."""
     v = g.value
     values = [v.value] if v.low is None or v.high is None else [v.low, v.value, v.high]
     places = spread([x(value) for value in values], 84.0, 40.0, _WIDTH - 40.0)

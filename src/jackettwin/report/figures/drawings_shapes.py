@@ -1,4 +1,4 @@
-"""Mode shapes as small drawings: the updated model, from above for torsion, and what was measured."""
+"""Small drawings of mode shapes: the updated model, torsion seen from above, and the measured motion."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _SWAY = 0.11
 
 
 def shape_drawings(result: TwinResult, u: Update) -> list[Markup]:
-    """Return one drawing a measured mode; nothing for a mode that the model lost."""
+    """Return one drawing per measured mode, none for a mode that the model lacks."""
     drawn = []
     for i, m in enumerate(result.measured):
         shape = u.modes.shapes[:, i]
@@ -79,7 +79,7 @@ def _drawing(
 
 
 def _axes(label: str, moved: FloatArray) -> list[int]:
-    """Return the plane to draw: from above for torsion, else the elevation it moves in."""
+    """Return the plane of the drawing: plan for torsion, else the elevation of the motion."""
     if label.startswith("torsion"):
         return [0, 1]
     if label.startswith(("fore_aft", "side_side")):
@@ -88,7 +88,7 @@ def _axes(label: str, moved: FloatArray) -> list[int]:
 
 
 def _strokes(at: FloatArray, start: npt.NDArray[np.intp], end: npt.NDArray[np.intp]) -> str:
-    """Return the elements as one path; whole tenths of a pixel do."""
+    """Return the elements as one path, rounded to tenths of a pixel."""
     return "".join(
         f"M{at[a, 0]:.1f} {at[a, 1]:.1f}L{at[b, 0]:.1f} {at[b, 1]:.1f}"
         for a, b in zip(start, end, strict=True)
@@ -99,7 +99,7 @@ def _arrows(
     c: Canvas, assembly: Assembly, seen: Seen, shape: ComplexArray, axes: list[int], sway: float,
     place: Callable[[FloatArray], FloatArray],
 ) -> None:  # fmt: skip
-    """Draw the measured motion at the sensors, scaled and turned to the model's by least squares."""
+    """Draw the measured motion at the sensors, scaled and rotated to the model's by least squares."""
     sensors, measured = seen
     model = np.asarray(observation_matrix(assembly, sensors) @ shape)
     fitted = np.real(measured * (measured.conj() @ model) / (measured.conj() @ measured))

@@ -1,4 +1,4 @@
-"""Parameters through time: what was known after each day, and the slope through all days."""
+"""Parameters through time: their values after each day, and the slope over all days."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from jackettwin.study import Followed
 _DAY_MS = 86_400_000
 """A day on a time axis [ms]."""
 _FEW_DAYS = 10
-"""Days up to which each has its own tick: an axis in hours says nothing of days."""
+"""Number of days up to which each has its own tick."""
 
 
 def parameters_through_time(followed: Followed, names: Sequence[str]) -> go.Figure:

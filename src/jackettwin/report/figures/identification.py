@@ -1,4 +1,4 @@
-"""What identification found: stabilisation diagrams, intervals."""
+"""Figures of an identification: stabilisation diagrams, intervals."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _FEWEST_LINES = 20
 
 
 class _PoleClass(NamedTuple):
-    """How poles of one kind are drawn."""
+    """Appearance of one class of poles."""
 
     name: str
     colour: str
@@ -66,7 +66,7 @@ def stabilisation(
 def stabilisation_damping(found: Identification, names: Sequence[str]) -> go.Figure:
     """Draw poles of every model order against damping, those of each mode in its colour.
 
-    The intervals of the modes overlap: they are bars above the poles, where the modes' lines end.
+    As the intervals of the modes overlap, they are bars above the poles, at the ends of the modes' lines.
     """
     s = found.stabilisation
     limits = (0.0, _damping_limit(found))

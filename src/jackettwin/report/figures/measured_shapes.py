@@ -1,4 +1,4 @@
-"""Mode shapes as they were measured, moving: sensors alone, no model."""
+"""Animated mode shapes at the sensors, without a model."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ _SWAY = 0.16
 """Largest drawn displacement, as a share of the height of the sensors."""
 _COLUMNS = 3
 _LEAST_SIZE = 0.1
-"""Drawn height of sensors that all sit at one."""
+"""Drawn height if all sensors are at one height."""
 
 
 @dataclass(frozen=True)
 class SensorLayout:
-    """Where the sensors sit: places from the lowest up, and the channels of each.
+    """Places of the sensors in ascending order, and the channels of each.
 
     Attributes
     ----------
@@ -147,7 +147,7 @@ def _lay_out(
 
 
 def animated(figure: go.Figure, *, height: int, **layout: Any) -> go.Figure:
-    """Give a figure with frames, one a phase in degrees, its button and slider, and the house style."""
+    """Add frames (one per phase in degrees), button, slider and house style to a figure."""
     turning = {"frame": {"duration": 60, "redraw": True}, "transition": {"duration": 0}, "fromcurrent": True}
     still = {"frame": {"duration": 0, "redraw": True}, "transition": {"duration": 0}, "mode": "immediate"}
     slider = {

@@ -1,4 +1,4 @@
-"""What the data leave open: posteriors and profiles."""
+"""Figures of posteriors and profiles."""
 
 from __future__ import annotations
 

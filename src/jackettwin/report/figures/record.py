@@ -17,7 +17,7 @@ from jackettwin.report.figures import style
 from jackettwin.report.tables.numbers import words
 
 _BINS = 900
-"""Pairs of least and largest sample that are drawn of a channel: more than a screen has columns."""
+"""Number of minimum-maximum pairs drawn per channel, more than the columns of a screen."""
 
 
 def time_series(record: Record, *, channels: Sequence[str] | None = None) -> go.Figure:
@@ -192,7 +192,7 @@ def _mark(figure: go.Figure, modes: Sequence[tuple[str, ModalEstimate]], limits:
 
 
 def place(channel: Channel) -> str:
-    """Return what a channel is called on a figure: name and place."""
+    """Return the label of a channel: name and place."""
     where = (
         f", {channel.height_m:g} m"
         if channel.height_m is not None

@@ -1,4 +1,4 @@
-"""How every figure looks: colours, markers, axis titles. The only place that knows."""
+"""Common style of all figures: colours, markers, axis titles."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, s
 
 
 class Appearance(NamedTuple):
-    """Colour, marker and dash of one thing: any one of them tells it apart."""
+    """Colour, marker and dash of one item, each sufficient to distinguish it."""
 
     colour: str
     symbol: str
@@ -28,7 +28,7 @@ _LAWS = {
     "maxwell-3": Appearance(PURPLE, "triangle-up", "solid"),
     "springpot": Appearance(GREEN, "cross", "dashdot"),
 }
-"""Of the support laws; one of another package is grey."""
+"""Appearance of support laws; one of another package is grey."""
 _KINDS = {
     "fore_aft": (BLUE, "circle"),
     "side_side": (VERMILLION, "square"),
@@ -42,7 +42,7 @@ _UNNAMED = tuple(
         strict=True,
     )
 )
-"""Modes of no known kind, by number."""
+"""Appearance of modes of unknown kind, by number."""
 _DASHES = ("solid", "dash", "dot", "dashdot")
 _VARIANTS = ("", "-open", "-open-dot", "-dot")
 
@@ -55,7 +55,7 @@ def law_look(law: str) -> Appearance:
 def mode_look(label: str) -> Appearance:
     """Return the look of a mode from its label ``kind_number``: colour by kind, fill and dash by number.
 
-    ``mode_3``, whose kind is not known, has its colour by number; what has no number is grey.
+    ``mode_3``, of unknown kind, is coloured by number; a label without number is grey.
     """
     kind, _, number = label.rpartition("_")
     order = int(number) if number.isdigit() else 1

@@ -1,4 +1,4 @@
-"""How the identified shapes compare with each other and with real shapes, and what more records buy."""
+"""MAC between identified shapes, their complexity, and intervals as records are added."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from jackettwin.report.tables.numbers import words
 
 _COLUMNS = 4
 _LABEL_FROM = 0.05
-"""MAC values below are not written into their cells."""
+"""Smallest MAC that is printed in its cell."""
 
 
 def mac_matrix(found: Identification, names: Sequence[str]) -> go.Figure:
-    """Draw the MAC between all identified modes: off the diagonal, what the sensors cannot tell apart."""
+    """Draw the MAC between all modes; off the diagonal it shows what the sensors cannot separate."""
     labels = [_label(name, mode) for name, mode in zip(names, found.modes, strict=True)]
     shapes = np.array([mode.mode_shape for mode in found.modes])
     values = mac(shapes, shapes)

@@ -1,4 +1,4 @@
-"""Small drawings that need no script: they scale with the page and print as they are."""
+"""Small scalable drawings without scripts, for page and print."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from jackettwin.report.figures import style
 
 
 class Canvas:
-    """Collects what is drawn, in pixels from the upper left."""
+    """Canvas in pixels from the upper left."""
 
     def __init__(self, width: float, height: float, title: str) -> None:
         self.width, self.height, self.title = width, height, title

@@ -1,4 +1,4 @@
-"""Modes followed over records: every record beside what all of them say together."""
+"""Modes tracked over records: each record beside the fused estimate."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from jackettwin.report.figures import style
 from jackettwin.report.tables.numbers import words
 
 MOST_POINTS = 1000
-"""More records than these are drawn as medians of neighbours: nobody can tell them apart."""
+"""Number of records above which medians of neighbours are drawn."""
 _ROW = 170
 
 

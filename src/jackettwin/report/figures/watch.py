@@ -1,4 +1,4 @@
-"""Modes watched: what is unexplained, the evidence, and the pattern of a change against causes."""
+"""Figures of monitored modes: unexplained variation, evidence, and the pattern of a change by cause."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ _BAND = 1.645
 _CAUSE_WIDTH = 18
 """Letters a line of a cause's name beside its alarm."""
 _SHOWN_IN = {"frequency": (100.0, "%"), "damping": (100.0, "%"), "angle": (180.0 / np.pi, "°")}
-"""What changes of each kind are drawn in."""
+"""Display units of changes of each kind."""
 _SYMBOLS = ("diamond-open", "square-open", "triangle-up-open")
 _COLOURS = (style.BLUE, style.GREEN, style.ORANGE)
 
 
 def leading(watched: Watched) -> int:
-    """Return the quantity that the first alarm shows most clearly in, or the first one."""
+    """Return the quantity in which the first alarm is clearest, or the first quantity."""
     if not watched.alarms:
         return 0
     change = watched.alarms[0].change
@@ -38,7 +38,7 @@ def frequencies(watched: Watched) -> tuple[int, ...]:
 
 
 def unexplained_through_time(watched: Watched, chosen: Sequence[int]) -> go.Figure:
-    """Draw the day's mean of some quantities less what conditions explain, with band and alarms."""
+    """Draw daily means of some quantities without the effects of conditions, with band and alarms."""
     figure = make_subplots(rows=len(chosen), cols=1, shared_xaxes=True, vertical_spacing=0.03)
     for row, i in enumerate(chosen, start=1):
         _line(figure, watched, i, row)
@@ -53,7 +53,7 @@ def unexplained_through_time(watched: Watched, chosen: Sequence[int]) -> go.Figu
 
 
 def _named(watched: Watched, i: int) -> str:
-    """Return what a quantity is called in figures."""
+    """Return the label of a quantity in figures."""
     kind, mode = watched.watch.quantities[i]
     return (
         words(watched.watch.labels[mode])
@@ -123,7 +123,7 @@ def evidence_through_time(watched: Watched) -> go.Figure:
 
 
 def explained_shares(watched: Watched) -> go.Figure:
-    """Draw what explains how much of each quantity over the baseline."""
+    """Draw the shares of each quantity's variance over the baseline by condition."""
     keys = watched.watch.quantities
     labels = [_named(watched, i) for i in range(len(keys))]
     names = list(dict.fromkeys(name for key in keys for name in watched.explained[key]))
@@ -137,7 +137,7 @@ def explained_shares(watched: Watched) -> go.Figure:
 
 
 def change_pattern(watched: Watched, alarm: Alarm) -> go.Figure:
-    """Draw the change of each quantity with its 90 % interval, and what the likely causes would have done."""
+    """Draw the change of each quantity with its 90 % interval, and the predictions of likely causes."""
     keys = watched.watch.quantities
     change = alarm.change
     kinds = [kind for kind in _SHOWN_IN if any(key[0] == kind for key in keys)]

@@ -1,1 +1,1 @@
-"""A structure to turn, colour and set in motion."""
+"""Interactive, animated view of a structure."""

@@ -1,4 +1,4 @@
-"""What is measured out on a structure's picture: levels, widths between legs, diameters of single tubes."""
+"""Dimensions in a structure's view: levels, widths between legs, diameters of single tubes."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from jackettwin.arrays import FloatArray
 from jackettwin.structure import Assembly, Structure
 
 _SAME_M = 0.05
-"""Levels nearer than this are one: joints of a storey are rarely drawn to the millimetre."""
+"""Distance below which levels are one; the joints of a storey rarely agree to the millimetre."""
 _OUTER = 0.8
-"""Share of the largest distance from the middle from which a point of a level is one of its legs."""
+"""Share of the largest distance from the axis above which a point of a level is on a leg."""
 
 
 def dimensions(assembly: Assembly) -> dict[str, list[Any]]:
@@ -88,7 +88,7 @@ def _part(structure: Structure, part: str) -> tuple[FloatArray, FloatArray]:
 
 
 def _apart(levels: list[float]) -> list[float]:
-    """Return levels in ascending order, those that are one once."""
+    """Return levels in ascending order, merging equal ones."""
     found: list[float] = []
     for z in sorted(levels):
         if not found or z - found[-1] > _SAME_M:

@@ -20,7 +20,7 @@ class DrawnMotion:
     ----------
     name, note : str
     group : str
-        Under which heading the page lists it.
+        Heading under which the page lists it.
     shapes : (n_shapes, 3·n_nodes) translations, any scale
     q : (n_frames, n_shapes)
     step_s : float
@@ -28,7 +28,7 @@ class DrawnMotion:
     start_s : float
         Time of the first.
     cyclic : bool
-        Frames go round; a record stops and starts again.
+        Whether frames repeat; a record stops and starts again.
     wave : dict, optional
         ``height_m``, ``length_m``, ``direction_rad``: the surface, with its crest at the origin in frame 0.
     load_kn_m : (n_frames, n_elements), optional
@@ -102,7 +102,7 @@ def damped_motion(assembly: Assembly, name: str, eigenvalue: complex, shape: Com
 def wave_motion(assembly: Assembly, passage: Passage) -> DrawnMotion:
     """Return a wave passing, with the structure at rest under it at every instant."""
     rest = _translations(assembly, passage.displacement)
-    # few shapes carry all phases
+    # a few shapes represent all phases
     u, s, vt = np.linalg.svd(rest, full_matrices=False)
     kept = s > 1e-4 * s[0] if s[0] > 0.0 else np.arange(s.size) < 1
     return DrawnMotion(

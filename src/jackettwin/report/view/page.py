@@ -1,7 +1,7 @@
-"""A structure to turn, colour and set in motion: one self-contained page.
+"""Interactive view of a structure as one self-contained page.
 
-Python says what there is to draw; the page's own script projects and draws it on a canvas. z is counted from
-the mean sea level throughout.
+Python provides the data; the page's own script projects and draws them on a canvas.
+z is relative to mean sea level throughout.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class ColouredQuantity:
 
 @dataclass(frozen=True)
 class View:
-    """What is on the page.
+    """Content of the page.
 
     Attributes
     ----------
@@ -151,7 +151,7 @@ def _growth(assembly: Assembly, points: FloatArray, coefficients: Coefficients |
 
 
 def _others(assembly: Assembly) -> list[dict[str, Any]]:
-    """Return what is no tube but joins nodes: cables, springs, beams of any section, rigid links."""
+    """Return elements between nodes that are not tubes: cables, springs, other beams, rigid links."""
     structure, place = assembly.structure, assembly.mesh.node_names.index
     joins = [(e.kind, e.start, e.end) for e in assembly.mesh.others if e.kind in _LINES]
     joins += [("rigid link", link.leader, link.follower) for link in structure.rigid_links]
@@ -174,7 +174,7 @@ def _sensors(assembly: Assembly, sensors: Sequence[Sensor]) -> list[dict[str, An
 
 
 def _rounded(values: FloatArray, decimals: int) -> list[Any]:
-    """Return values as short decimals: a page need not carry sixteen digits."""
+    """Return values with few decimals, to keep the page small."""
     return np.round(values, decimals).ravel().tolist()
 
 
@@ -183,7 +183,7 @@ def _digits(values: FloatArray) -> list[float]:
 
 
 def member_text(assembly: Assembly) -> list[str]:
-    """Return what is said of each element on hovering: name, section, material."""
+    """Return the text of each element's tooltip: name, section, material."""
     p = assembly.mesh.properties
     texts = []
     for e, member in enumerate(assembly.mesh.member):

@@ -1,4 +1,4 @@
-"""What drives the model of a scenario: forces known beforehand, and forces that depend on its motion."""
+"""Loads on the model of a scenario: prescribed forces, and forces that depend on its motion."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ from jackettwin.simulate.scenario.sea import Sea
 
 @dataclass(frozen=True)
 class Loads:
-    """What drives the model: forces known beforehand, and the rotor's forces that depend on the motion."""
+    """Loads on the model: prescribed forces, and the rotor's forces that depend on its motion."""
 
     model: Model
     repeating: FloatArray
     """(n_steps + 1, n) forces that repeat after the simulated time."""
     before: FloatArray
-    """The same as they were before the record: a nacelle that yaws still stands at its first heading."""
+    """The same before the record, with the nacelle at its first heading."""
     wave: WaterLoads | None
     """Regular waves, which repeat after their own period."""
     rotor: RotorLoads | None
@@ -52,7 +52,7 @@ class Loads:
 
 @dataclass(frozen=True)
 class _Part:
-    """What water or air does to the model.
+    """Effect of water or air on the model.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Stepping of a model under a rotor that answers its motion, compiled.
+"""Compiled time stepping of a model with rotor feedback.
 
 The scheme is that of ``march_with_feedback``: the rotor is the feedback that every asset in wind has, and
 twelve thousand calls of it in ten minutes cost more than what they compute. Numba keeps the compiled march
