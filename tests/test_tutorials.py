@@ -14,7 +14,10 @@ from jackettwin.cli import main
 ROOT = Path(__file__).parents[1]
 TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
 NOTEBOOKS = sorted((ROOT / "examples" / "notebooks").glob("*.ipynb"))
-BLOCK = re.compile(r"^```(python|console)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+BLOCK = re.compile(r"^```(python|console|yaml)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+
+FILE = re.compile(r"# ([\w-]+\.yaml)\n")
+"""First line of a block that is a file of the tutorial."""
 
 
 def blocks(path: Path) -> list[tuple[str, str]]:
@@ -32,6 +35,11 @@ def test_it_runs(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     found = blocks(path)
     assert found
     for kind, code in found:
+        if kind == "yaml":
+            name = FILE.match(code)
+            if name:
+                (tmp_path / name[1]).write_text(code, encoding="utf-8")
+            continue
         if kind == "python":
             exec(compile(code, str(path), "exec"), namespace)
             continue
@@ -41,5 +49,5 @@ def test_it_runs(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
             assert result.exit_code == 0, (line, result.output)
 
 
-def test_there_are_five_tutorials_and_two_notebooks() -> None:
-    assert (len(TUTORIALS), len(NOTEBOOKS)) == (5, 2)
+def test_there_are_six_tutorials_and_two_notebooks() -> None:
+    assert (len(TUTORIALS), len(NOTEBOOKS)) == (6, 2)

@@ -63,3 +63,10 @@ def test_a_springpot_has_none() -> None:
     support = read_support("springpot:k=1e9,alpha=0.1,f0=0.18", assembly.structure)
     with pytest.raises(InputError, match="springpot has no finite state"):
         state_model(build_system(assembly, support))
+
+
+def test_a_massless_node_is_named() -> None:
+    massless = read_structure("jacket15").with_material("transition_piece", density=0.0)
+    assembly = assemble(massless, subdivide=2)
+    with pytest.raises(InputError, match="a motion without mass has no state"):
+        state_model(build_system(assembly, read_support("pinned", massless)))

@@ -48,7 +48,8 @@ def state_model(system: System) -> StateModel:
     Raises
     ------
     InputError
-        If a support's law has no finite number of states, or there are too many states for a dense matrix.
+        If a support's law has no finite number of states, a node has no mass, or the states are too many
+        for a dense matrix.
     """
     pencil, assembly = system.pencil, system.assembly
     branches = maxwell_branches(pencil)
@@ -64,6 +65,14 @@ def state_model(system: System) -> StateModel:
     free = assembly.independent[system.free]
     nodes = [assembly.mesh.node_names[dof // DOFS_PER_NODE] for dof in free]
     kinds = [int(dof % DOFS_PER_NODE) for dof in free]
+    massless = np.flatnonzero(~(pencil.M.diagonal() > 0.0))
+    require(
+        massless.size == 0,
+        "a motion without mass has no state",
+        field="structure",
+        value=", ".join(dict.fromkeys(nodes[dof] for dof in massless)),
+        remedy="give its members a density or the node a body, or subdivide massless members less",
+    )
     moved = [f"{node}.{DISPLACEMENTS[kind]}" for node, kind in zip(nodes, kinds, strict=True)]
     inner = [f"{moved[dof]}~{k}" for k, branch in enumerate(branches, start=1) for dof in branch.dofs]
     space = state_space(pencil)

@@ -89,6 +89,14 @@ def parse_description(text: str, *, file: Path | str | None = None) -> Descripti
     InputError
         If it is not JSON, a known key has a wrong value, or a key is a near miss of a known one.
     """
+    if not text.strip():
+        raise InputError(
+            "is empty, and it is the file that describes the record of this name",
+            file=file,
+            allowed="a JSON object",
+            remedy="restore it; a shell empties NAME.json before a command that ends in > NAME.json begins: "
+            "write the answer to another name",
+        )
     try:
         data = json.loads(text, parse_constant=_refuse_constant, object_pairs_hook=_refuse_repeats)
     except (ValueError, RecursionError) as error:
