@@ -97,3 +97,38 @@ def test_free_motions_are_no_modes(tmp_path: Path) -> None:
     f = (4.73004 / 100.0) ** 2 * ei_over_m**0.5 / (2 * 3.141592653589793)
     for mode in result["modes"]:
         assert abs(mode["frequency_hz"] / f - 1.0) < 1e-4  # sixteen elements
+
+
+def test_damping_by_mode_and_at_two_frequencies() -> None:
+    """On pinned feet the named modes have their ratios, the others those of the two points."""
+    options = (
+        "--support",
+        "pinned",
+        "--rayleigh",
+        "0.003,0.18,0.004,0.75",
+        "--mode-damping",
+        "1=0.005,4=0.01",
+    )
+    found = document("jacket15", "--support", "pinned", *steel, "--number", "5")["modes"]
+    modes = {m["mode"]: m for m in found}
+    assert abs(modes[1]["damping_ratio"] / 0.005 - 1.0) < 1e-6
+    assert abs(modes[4]["damping_ratio"] / 0.01 - 1.0) < 1e-6
+    # α, β of the two points by hand
+    w = [2 * 3.141592653589793 * f for f in (0.18, 0.75, modes[2]["undamped_frequency_hz"])]
+    beta = 2 * (0.004 * w[1] - 0.003 * w[0]) / (w[1] ** 2 - w[0] ** 2)
+    alpha = 2 * 0.003 * w[0] - beta * w[0] ** 2
+    assert abs(modes[2]["damping_ratio"] / (0.5 * (alpha / w[2] + beta * w[2])) - 1.0) < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("1=x", "--mode-damping: not MODE=ZETA"),
+        ("one=0.01", "--mode-damping: not MODE=ZETA"),
+        ("1=1.5", "out of range"),
+    ],
+)
+def test_wrong_damping_by_mode_is_refused(text: str, message: str) -> None:
+    result = CliRunner().invoke(main, ["modes", "jacket15", "--mode-damping", text])
+    assert result.exit_code == 2, result.output
+    assert message in " ".join(result.stderr.split())

@@ -117,8 +117,9 @@ def modes_command(
     steel = rayleigh_option(rayleigh)
     spread = own_damping(assembly, steel)
     if mode_damping is not None:
+        ratios = _by_mode(mode_damping)
         with located(field="--mode-damping"):
-            own_modes = modal_damping(assembly, _by_mode(mode_damping), steel)
+            own_modes = modal_damping(assembly, ratios, steel)
         spread = (*spread, (own_modes, Prony(c=1.0)))
     system = build_system(assembly, held, rayleigh=steel, spread=spread)
     own = f"the structure's own: {described(held)}"
@@ -220,7 +221,9 @@ def _by_mode(text: str) -> dict[int, float]:
     for part in text.split(","):
         mode, _, value = part.partition("=")
         if not mode.strip().isdigit():
-            raise InputError("not MODE=ZETA,…", value=text, allowed="e.g. 1=0.005,2=0.005,4=0.01")
+            raise InputError(
+                "not MODE=ZETA,…", field="--mode-damping", value=text, allowed="e.g. 1=0.005,2=0.005,4=0.01"
+            )
         (ratios[int(mode)],) = numbers_of(value, "--mode-damping", "MODE=ZETA,…", (1,), given=text)
     return ratios
 
