@@ -101,14 +101,7 @@ def test_free_motions_are_no_modes(tmp_path: Path) -> None:
 
 def test_damping_by_mode_and_at_two_frequencies() -> None:
     """On pinned feet the named modes have their ratios, the others those of the two points."""
-    options = (
-        "--support",
-        "pinned",
-        "--rayleigh",
-        "0.003,0.18,0.004,0.75",
-        "--mode-damping",
-        "1=0.005,4=0.01",
-    )
+    steel = ("--rayleigh", "0.003,0.18,0.004,0.75", "--mode-damping", "1=0.005,4=0.01")
     found = document("jacket15", "--support", "pinned", *steel, "--number", "5")["modes"]
     modes = {m["mode"]: m for m in found}
     assert abs(modes[1]["damping_ratio"] / 0.005 - 1.0) < 1e-6
