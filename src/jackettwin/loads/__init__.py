@@ -1,4 +1,4 @@
-"""What the environment does."""
+"""Environmental loads: sea, wind and rotor on members."""
 
 import lazy_loader
 

@@ -1,4 +1,4 @@
-"""Where the blades of a rotor that stands take their wind from: pieces of their own, or nodes of a grid."""
+"""Wind on the blades of a standing rotor: averaged over pieces, or from the nodes of a grid."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-r"""How fast a random sea moves past the members, without simulating it: what their linear drag takes.
+r"""Linearised drag damping of members in a random sea, without simulating it.
 
 .. math:: σ^2 = \tfrac{1}{2} \operatorname{tr}(P Σ), \qquad
           Σ = \int S_η ω^2 (h^2\, d d^T + v^2\, e_z e_z^T)\, df

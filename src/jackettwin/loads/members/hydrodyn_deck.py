@@ -1,4 +1,4 @@
-"""What an OpenFAST HydroDyn input file says of members: coefficients, marine growth, ends, filled members.
+"""Reading of an OpenFAST HydroDyn file: coefficients, marine growth, ends and filled members.
 
 Members are known by where their joints stand, so that the file may be that of any deck with the same members
 as the structure. Geometry, waves and everything of floating platforms are not read.
