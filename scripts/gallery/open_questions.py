@@ -17,8 +17,8 @@ _WISHES = (
     ),
     (
         "a Prony model, regularised",
-        "maxwell-3: three branches, two parameters; lognormal priors regularise any law",
-        "jackettwin update TWIN --law maxwell-3",
+        "free branches, their number chosen by evidence; lognormal priors regularise any law",
+        "jackettwin update TWIN --law prony-2",
     ),
     (
         "data of a real jacket",
