@@ -171,13 +171,13 @@ def _table() -> tuple[KnownTolerance, ...]:
             _steel(lambda s, x: with_top_bodies(s, lambda b: _heavier_body(b, 1.0 + x))),
         ),
         KnownTolerance(
-            Tolerance("rna_height", "height of its centre of gravity", 0.2, "m",
+            Tolerance("rna_height", "height of the nacelle's mass", 0.2, "m",
                       "assumed: drawings of the nacelle without fittings",
                       "take it from the weighing report"),
             _steel(lambda s, x: with_top_bodies(s, lambda b: _raised_body(b, x))),
         ),
         KnownTolerance(
-            Tolerance("rna_overhang", "overhang of its centre of gravity", 0.2, "m",
+            Tolerance("rna_overhang", "overhang of the nacelle's mass", 0.2, "m",
                       "assumed: drawings of the nacelle without fittings",
                       "take it from the weighing report"),
             _steel(lambda s, x: with_top_bodies(s, lambda b: _overhanging_body(b, x))),
@@ -230,7 +230,7 @@ def _table() -> tuple[KnownTolerance, ...]:
             _steel(with_lower_feet),
         ),
         KnownTolerance(
-            Tolerance("growth", "marine growth that the twin does not state", 0.04, "m",
+            Tolerance("growth", "marine growth, unstated", 0.04, "m",
                       "DNV-RP-C205 (2021) 6.7.4: 50 to 100 mm after some years",
                       "inspect the growth by diver or ROV, and state it (water.marine_growth)"),
             _wet(unstated_growth),
