@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import json
 import os
 import stat
 import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 from fastapi.testclient import TestClient
-from tests.service.conftest import HERE, NOON, make_service
+from tests.service.conftest import HERE, NOON, PASSWORD, make_service, upload
 
+from jackettwin.cli.main import main
 from jackettwin.errors import InputError
 from jackettwin.service import ServiceSettings
 from jackettwin.service.context import Service
@@ -217,3 +221,61 @@ def test_a_certificate_for_the_broker_that_is_none_is_said(service: Service, tmp
         with pytest.raises(InputError) as error:
             MqttIntake(service, "mqtts://broker")
         assert error.value.field == field.replace("_", "-")
+
+
+@pytest.fixture
+def engineer(users: Service) -> Iterator[TestClient]:
+    with TestClient(create_app(users), base_url=ADDRESS, client=HERE) as client:
+        logged_in(client, "engineer", PASSWORD)
+        yield client
+
+
+def logged_in(client: TestClient, name: str, password: str) -> None:
+    answer = client.post("/api/v1/login", json={"name": name, "password": password})
+    assert answer.status_code == 200
+    client.headers["X-CSRF-Token"] = answer.json()["csrf_token"]
+
+
+def test_who_knows_the_old_password_changes_it_and_other_sessions_end(
+    engineer: TestClient, users: Service
+) -> None:
+    with TestClient(create_app(users), base_url=ADDRESS, client=HERE) as other:
+        logged_in(other, "engineer", PASSWORD)
+        wrong = {"old": "no such password", "new": "four rather small words"}
+        assert engineer.post("/api/v1/me/password", json=wrong).status_code == 403
+        assert engineer.post("/api/v1/me/password", json={"old": PASSWORD, "new": "short"}).status_code == 422
+        right = {"old": PASSWORD, "new": "four rather small words"}
+        assert engineer.post("/api/v1/me/password", json=right).status_code == 204
+        assert engineer.get("/api/v1/me").status_code == 200
+        assert other.get("/api/v1/me").status_code == 401
+        del other.headers["X-CSRF-Token"]
+        other.cookies.clear()
+        logged_in(other, "engineer", right["new"])
+
+
+def test_a_session_alone_does_not_guess_the_password(engineer: TestClient) -> None:
+    wrong = {"old": "no such password", "new": "four rather small words"}
+    tried = [engineer.post("/api/v1/me/password", json=wrong).status_code for _ in range(6)]
+    assert tried == [403] * 5 + [429]
+
+
+def test_the_audit_log_says_who_did_what(engineer: TestClient, users: Service) -> None:
+    upload(engineer, 1)
+    upload(engineer, 1)
+    body = {"time_utc": [NOON.isoformat()], "values": {"mean_wind_speed_m_s": [8.0]}}
+    engineer.post("/api/v1/assets/wtg/conditions", json=body)
+    table = {"file": ("t.csv", b"time_utc,mean_wind_speed_m_s\n2025-03-01T12:10:00Z,8.5\n")}
+    engineer.post("/api/v1/assets/wtg/conditions.csv", files=table)
+    assert engineer.get("/api/v1/audit").status_code == 403
+    engineer.post("/api/v1/logout")
+    engineer.cookies.clear()
+    logged_in(engineer, "admin", PASSWORD)
+    page = engineer.get("/api/v1/audit", params={"limit": 4}).json()
+    rest = engineer.get("/api/v1/audit", params={"cursor": page["next_cursor"]}).json()
+    lines = [(line["who"], line["action"], line["outcome"]) for line in (*page["items"], *rest["items"])]
+    sent = [("record", "ok"), ("record", "known"), ("conditions", "ok"), ("conditions", "ok")]
+    done = [("login", "ok"), *sent, ("logout", "ok")]
+    assert [(action, outcome) for who, action, outcome in reversed(lines) if who == "engineer"] == done
+    assert lines[0] == ("admin", "login", "ok") and rest["next_cursor"] is None
+    ran = CliRunner().invoke(main, ["audit", "--store", str(users.settings.store), "--limit", "1", "--json"])
+    assert json.loads(ran.stdout)["audit"][0]["who"] == "admin"

@@ -44,6 +44,7 @@ GROUPS = {
         "restore": "Fill the empty STORE from a backup FILE.",
         "user": "Manage the users of a server.",
         "token": "Manage the tokens with which machines log in.",
+        "audit": "List who did what in a store, newest first.",
     },
     "To other programs": {
         "superelement": "Reduce the foundation of STRUCTURE to 6 + N coordinates.",

@@ -84,7 +84,7 @@ def take_here(database: Engine, store: Path, asset: str, path: Path) -> Accepted
     """
     with reading(database) as connection:
         _refuse_archived(connection, asset)
-    return take_file(_opened(database, store), read_file, asset, path, path.name)
+    return take_file(_opened(database, store), read_file, asset, path, path.name, "command line")
 
 
 def _refuse_archived(connection: Connection, asset: str) -> None:
@@ -110,7 +110,7 @@ def add_conditions(database: Engine, store: Path, asset: str, table: Path, **how
         _refuse_archived(connection, asset)
     values = read_table(table, **how)
     with writing(database) as connection:
-        return keep_conditions(connection, _opened(database, store), asset, values)
+        return keep_conditions(connection, _opened(database, store), asset, values, "command line")
 
 
 def rebuild(

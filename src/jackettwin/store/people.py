@@ -6,7 +6,7 @@ import hashlib
 from dataclasses import dataclass
 from datetime import datetime
 
-from sqlalchemy import Connection, delete, func, insert, select
+from sqlalchemy import Connection, delete, func, insert, select, update
 
 from jackettwin.errors import InputError
 from jackettwin.store.tables import audit, tokens, users
@@ -195,3 +195,30 @@ def note_down(
         "outcome": outcome[:64],
     }
     connection.execute(insert(audit).values(**row))
+
+
+@dataclass(frozen=True)
+class AuditLine:
+    """Who did what to whom or what, and what came of it."""
+
+    id: int
+    time_utc: datetime
+    who: str
+    action: str
+    subject: str
+    outcome: str
+
+
+def read_audit(connection: Connection, limit: int, before: int | None = None) -> list[AuditLine]:
+    """Return lines of the audit log, newest first: those before a line, or the last ones."""
+    query = select(audit).order_by(audit.c.id.desc()).limit(limit)
+    if before is not None:
+        query = query.where(audit.c.id < before)
+    return [AuditLine(**row._mapping) for row in connection.execute(query)]
+
+
+def change_password(connection: Connection, name: str, password_hash: str, but: str) -> None:
+    """Give a user another password; sessions of the old one end, but for the one that asks."""
+    connection.execute(update(users).where(users.c.name == name).values(password_hash=password_hash))
+    others = (tokens.c.user == name, tokens.c.kind == "session", tokens.c.hash != secret_hash(but))
+    connection.execute(delete(tokens).where(*others))

@@ -14,7 +14,7 @@ from sqlalchemy import Connection
 
 from jackettwin.service.workers.failures import DISK_FULL, LOST_WORKER, NoWorker
 from jackettwin.service.workers.tasks import File, Parsed, read_file
-from jackettwin.store import assets, journal, reading, records, work, writing
+from jackettwin.store import assets, journal, people, reading, records, work, writing
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -144,8 +144,13 @@ def living(connection: Connection, asset: str, adopted: assets.Version) -> list[
     return [v for v in assets.all_versions(connection, asset) if v.version >= adopted.version]
 
 
-def take_file(place: Place, parse: Reader, asset: str, path: Path, source_name: str) -> Accepted:
-    """Read a file and keep its record, or those that a long one is cut into: all or none."""
+def take_file(
+    place: Place, parse: Reader, asset: str, path: Path, source_name: str, by: str = ""
+) -> Accepted:
+    """Read a file and keep its record, or those that a long one is cut into: all or none.
+
+    The audit log says ``by`` whom, if that is known.
+    """
     from jackettwin.service.intake.examination import profile  # which discards what was spooled
 
     settings = place.settings
@@ -157,4 +162,7 @@ def take_file(place: Place, parse: Reader, asset: str, path: Path, source_name: 
         return Accepted(parsed[0].record_id, None, False, parsed[0].problem)
     with writing(place.database) as connection:
         taken = [accept(place.now(), connection, asset, one, source_name) for one in parsed]
+        if by:
+            subject, outcome = f"{asset}/{taken[-1].record_id}", "ok" if taken[-1].new else "known"
+            people.note_down(connection, by, "record", subject, outcome, place.now())
     return replace(taken[-1], new=any(one.new for one in taken), records=len(taken))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from functools import cache
 from math import ceil
+from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
 from argon2 import PasswordHasher
@@ -20,6 +21,9 @@ from jackettwin.service.login_attempts import LoginAttempts
 from jackettwin.service.settings import ServiceSettings, is_loopback
 from jackettwin.service.web.problems import ApiError
 from jackettwin.store import people, reading, writing
+
+if TYPE_CHECKING:
+    from jackettwin.service.context import Service
 
 COOKIE = "jackettwin_session"
 SESSION = timedelta(hours=12)
@@ -98,11 +102,7 @@ def opened_session(
     ApiError
         401 if it is nobody's, 429 after too many tries.
     """
-    peer = attempts.place(place)
-    limits = {f"from {peer}": ATTEMPTS_FROM, f"{name} from {peer}": ATTEMPTS, f"{name}": ATTEMPTS_OF}
-    wait = attempts.wait_s(limits)
-    if wait > 0.0:
-        raise ApiError(429, "too many failed logins; wait", headers={"Retry-After": str(ceil(wait))})
+    limits = _counted(attempts, name, place)
     with reading(database) as connection:  # it takes its time, and guesses must not hold up those who write
         user = checked_login(connection, name, password)
     with writing(database) as connection:
@@ -112,6 +112,43 @@ def opened_session(
         raise ApiError(401, "name or password is wrong")
     attempts.succeeded(limits)
     return user, *grant
+
+
+def _counted(attempts: LoginAttempts, name: str, place: str) -> dict[str, int]:
+    """Count an attempt, and return as what; refuse it with 429 after too many."""
+    peer = attempts.place(place)
+    limits = {f"from {peer}": ATTEMPTS_FROM, f"{name} from {peer}": ATTEMPTS, name: ATTEMPTS_OF}
+    wait = attempts.wait_s(limits)
+    if wait > 0.0:
+        raise ApiError(429, "too many failed logins; wait", headers={"Retry-After": str(ceil(wait))})
+    return limits
+
+
+def change_password(service: Service, name: str, old: str, new: str, place: str, secret: str) -> None:
+    """Change a user's password on the word of the old one; who holds a session alone does not know it.
+
+    Raises
+    ------
+    ApiError
+        403 if the old one is wrong, 429 after too many tries.
+    """
+    limits, now = _counted(service.login_attempts, name, place), service.now()
+    with reading(service.database) as connection:
+        right = checked_login(connection, name, old) is not None
+    replacement = hashed(new) if right else ""
+    with writing(service.database) as connection:
+        people.note_down(connection, name, "password", place, "ok" if right else "refused", now)
+        if right:
+            people.change_password(connection, name, replacement, secret)
+    if not right:
+        raise ApiError(403, "the old password is wrong", field="old")
+    service.login_attempts.succeeded(limits)
+
+
+def secret_of(request: Request) -> str:
+    """Return the secret of the session or token that a request came with."""
+    scheme, _, token = request.headers.get("authorization", "").partition(" ")
+    return token.strip() if scheme.lower() == "bearer" else request.cookies.get(COOKIE, "")
 
 
 def new_grant(

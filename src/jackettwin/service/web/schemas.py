@@ -51,6 +51,24 @@ class UserOut(BaseModel):
     disabled: bool
 
 
+class NewPassword(BaseModel):
+    """One's own password, and the one to have instead."""
+
+    old: str = Field(max_length=1024)
+    new: str = Field(min_length=12, max_length=1024)
+
+
+class AuditOut(BaseModel):
+    """Who did what, when, and what came of it."""
+
+    id: int
+    time_utc: datetime
+    who: str
+    action: str
+    subject: str
+    outcome: str
+
+
 class NewToken(BaseModel):
     """A token to make for a machine."""
 

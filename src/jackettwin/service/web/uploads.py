@@ -37,7 +37,9 @@ def refuse_unfit(service: Service, asset: str) -> None:
         living_asset(connection, asset)
 
 
-def take(service: Service, asset: str, name: str, stream: BinaryIO, description: str | None) -> Accepted:
+def take(
+    service: Service, asset: str, name: str, stream: BinaryIO, description: str | None, by: str
+) -> Accepted:
     """Read an upload and keep its record; nothing of it is left behind if that fails."""
     if description is not None:
         _check(description)
@@ -50,7 +52,7 @@ def take(service: Service, asset: str, name: str, stream: BinaryIO, description:
         None if description is None else description.encode(),
     )
     try:
-        taken = take_file(service, parse_here(service), asset, path, name[:255])
+        taken = take_file(service, parse_here(service), asset, path, name[:255], by)
     finally:
         discard(path)
     if taken.problem is not None:
@@ -90,7 +92,9 @@ def pick(
     return number
 
 
-def take_conditions(service: Service, asset: str, stream: BinaryIO, zone: str, end_stamped: bool) -> Taken:
+def take_conditions(
+    service: Service, asset: str, stream: BinaryIO, zone: str, end_stamped: bool, by: str
+) -> Taken:
     """Read a table of conditions in a worker and keep it."""
     path = spooled(
         service.settings.spool, "table.csv", _limited(stream, service.settings.upload_limit_bytes), None
@@ -106,7 +110,7 @@ def take_conditions(service: Service, asset: str, stream: BinaryIO, zone: str, e
     if isinstance(values, InputError):
         raise values
     with writing(service.database) as connection:
-        count, again = add_conditions(connection, service, asset, values)
+        count, again = add_conditions(connection, service, asset, values, by)
     service.wake()
     return Taken(count=count, observed_again=again)
 

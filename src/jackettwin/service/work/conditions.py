@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from sqlalchemy import Connection
 
-from jackettwin.store import assets, records, streams, work
+from jackettwin.store import assets, people, records, streams, work
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Place
@@ -22,11 +22,13 @@ def add_conditions(
     place: Place,
     asset: str,
     values: Mapping[str, Values],
+    by: str,
 ) -> tuple[int, int]:
     """Keep conditions; return how many are new or changed, and how many records are observed again with them.
 
     Only what changed matters: the same table again observes nothing again.
     """
+    people.note_down(connection, by, "conditions", f"{asset}: {', '.join(values)}", "ok", place.now())
     changed: set[datetime] = set()
     count = 0
     for name, given in values.items():

@@ -136,14 +136,16 @@ def adopt(
     dependencies=[auth.ENGINEER],
     responses=answers(400, 401, 403, 404, 409, 422),
 )
-def add_conditions(asset: AssetName, body: ConditionsIn, parts: Parts, connection: Writes) -> Taken:
+def add_conditions(
+    asset: AssetName, body: ConditionsIn, who: Asker, parts: Parts, connection: Writes
+) -> Taken:
     """Add conditions of the site through time; records that they belong to are observed again with them."""
     living_asset(connection, asset)
     for name, values in body.values.items():
         if len(values) != len(body.time_utc):
             raise ApiError(422, "times and values differ in number", field=f"values.{name}")
     given = {name: dict(zip(body.time_utc, values, strict=True)) for name, values in body.values.items()}
-    count, again = conditions.add_conditions(connection, parts, asset, given)
+    count, again = conditions.add_conditions(connection, parts, asset, given, who.name)
     return Taken(count=count, observed_again=again)
 
 
@@ -154,6 +156,7 @@ def add_conditions(asset: AssetName, body: ConditionsIn, parts: Parts, connectio
 )
 def add_table(
     asset: AssetName,
+    who: Asker,
     parts: Parts,
     file: Annotated[
         UploadFile, File(description="Ten-minute statistics: a line of names, a column of times.")
@@ -163,4 +166,4 @@ def add_table(
 ) -> Taken:
     """Add a table of conditions as a SCADA system exports it."""
     uploads.refuse_unfit(parts, asset)
-    return uploads.take_conditions(parts, asset, file.file, zone, end_stamped)
+    return uploads.take_conditions(parts, asset, file.file, zone, end_stamped, who.name)

@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 from datetime import timedelta
+from typing import Annotated
 
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Query, Request, Response
 
 from jackettwin.service.web import auth
 from jackettwin.service.web.dependencies import CONNECTED, Asker, Parts, Reads, Route, Writes
 from jackettwin.service.web.problems import ApiError, answers
-from jackettwin.service.web.schemas import Login, Me, NewToken, NewUser, Page, Token, UserOut
+from jackettwin.service.web.schemas import (
+    AuditOut,
+    Login,
+    Me,
+    NewPassword,
+    NewToken,
+    NewUser,
+    Page,
+    Token,
+    UserOut,
+)
 from jackettwin.store import people
 
 router = APIRouter(tags=["people"], route_class=Route)
@@ -28,10 +39,10 @@ def login(body: Login, request: Request, response: Response, parts: Parts) -> Me
 
 
 @router.post("/logout", status_code=204, dependencies=[auth.VIEWER], responses=answers(401, 403))
-def logout(request: Request, response: Response, connection: Writes) -> None:
+def logout(request: Request, response: Response, who: Asker, parts: Parts, connection: Writes) -> None:
     """End the session or token that asks."""
-    secret = request.cookies.get(auth.COOKIE) or request.headers.get("authorization", "").partition(" ")[2]
-    people.revoke(connection, secret)
+    people.revoke(connection, auth.secret_of(request))
+    people.note_down(connection, who.name, "logout", who.kind, "ok", parts.now())
     response.delete_cookie(auth.COOKIE)
 
 
@@ -39,6 +50,33 @@ def logout(request: Request, response: Response, connection: Writes) -> None:
 def me(who: Asker) -> Me:
     """Tell who asks."""
     return Me(name=who.name, role=who.role, csrf_token=who.csrf or None)  # type: ignore[arg-type]
+
+
+@router.post(
+    "/me/password",
+    status_code=204,
+    dependencies=[auth.VIEWER, CONNECTED],
+    responses=answers(400, 401, 403, 409, 422, 429),
+)
+def change_password(body: NewPassword, request: Request, who: Asker, parts: Parts) -> None:
+    """Change one's own password; other sessions end, tokens do not."""
+    if who.kind in ("open", "proxy"):
+        raise ApiError(409, "nobody is logged in here by a password")
+    place = request.client.host if request.client else "?"
+    auth.change_password(parts, who.name, body.old, body.new, place, auth.secret_of(request))
+
+
+@router.get("/audit", dependencies=[auth.ADMIN], responses=answers(401, 403, 422))
+def audit(
+    connection: Reads,
+    cursor: Annotated[int | None, Query(ge=1, le=2**62)] = None,
+    limit: Annotated[int, Query(ge=1, le=1000)] = 100,
+) -> Page[AuditOut]:
+    """List who did what, newest first."""
+    found = people.read_audit(connection, limit + 1, cursor)
+    more = str(found[limit - 1].id) if len(found) > limit else None
+    items = [AuditOut.model_validate(line, from_attributes=True) for line in found[:limit]]
+    return Page(items=items, next_cursor=more)
 
 
 @router.get("/users", dependencies=[auth.ADMIN], responses=answers(401, 403))

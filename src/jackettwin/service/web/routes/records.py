@@ -51,6 +51,7 @@ Limit = Annotated[int, Query(ge=1, le=1000)]
 )
 def add_record(
     asset: AssetName,
+    who: Asker,
     parts: Parts,
     response: Response,
     file: Annotated[UploadFile, File(description="A record in any format that is read.")],
@@ -60,7 +61,9 @@ def add_record(
 ) -> RecordAccepted:
     """Take a record: it is read now and observed soon."""
     uploads.refuse_unfit(parts, asset)
-    taken = uploads.take(parts, asset, file.filename or "record", file.file, uploads.text_of(description))
+    taken = uploads.take(
+        parts, asset, file.filename or "record", file.file, uploads.text_of(description), who.name
+    )
     if not taken.new:
         response.status_code = 200
     parts.wake()
