@@ -7,7 +7,7 @@ from dataclasses import replace
 from jackettwin.answers import Answers, Span
 from jackettwin.answers.result import Clearance, FitAnswer, GroundAnswer, LawAnswer, ModeAnswer, NextStep
 from jackettwin.report.tables.answers import ground_table
-from jackettwin.report.tables.sentences import percent_words, sentences, span_words
+from jackettwin.report.tables.sentences import _model, percent_words, sentences, span_words
 
 MODE = ModeAnswer(
     "fore_aft_1", Span(0.2, 0.199, 0.201), Span(0.012, 0.01, 0.014), True, True, Span(0.201, 0.195, 0.204),
@@ -131,6 +131,8 @@ def test_a_mode_within_the_rotors_range_is_the_first_thing_said() -> None:
 def test_a_frequency_off_the_design_is_the_first_thing_said() -> None:
     off = replace(ANSWERS, modes=(replace(MODE, design_hz=Span(0.25, 0.24, 0.26)),))
     assert "20.0 % below the design's 0.25 Hz" in sentences(off).headline[0]
+    told = [text for text in _model(off)[0] if "below the design" in text]
+    assert told and all(text.startswith("Fore-aft 1 at ") and "hz" not in text for text in told)
 
 
 def test_every_question_is_answered_without_nats() -> None:

@@ -294,7 +294,8 @@ def _model(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
         first = listed([_beside_design(m) for m in _firsts(a)])
         lie = "lies" if len(judged) == 1 else "lie"
         short.append(f"{good} of {count(len(judged), 'measured mode')} {lie} where the design says: {first}.")
-        short += [f"{_against_design(m).capitalize()}." for m in judged if not m.as_designed]
+        told = (_against_design(m) for m in judged if not m.as_designed)
+        short += [f"{text[0].upper()}{text[1:]}." for text in told]
         more.append(
             "The design is the model on the foundation that the twin's priors state, within their 90 %."
         )
