@@ -20,7 +20,7 @@ from jackettwin.soil import family
 from jackettwin.structure import Rayleigh, assemble
 from jackettwin.study import TwinResult
 from jackettwin.study.document import update_document
-from jackettwin.study.result import MeasuredMode
+from jackettwin.study.measurements import MeasuredMode
 from jackettwin.updating import (
     Residuals,
     Target,

@@ -24,7 +24,8 @@ from jackettwin.response.sensors import Sensor
 from jackettwin.soil import family
 from jackettwin.structure import Rayleigh, assemble
 from jackettwin.study import TwinResult
-from jackettwin.study.result import DampingExcess, MeasuredMode
+from jackettwin.study.measurements import MeasuredMode
+from jackettwin.study.result import DampingExcess
 from jackettwin.twin.observation import Observation, Recognised
 from jackettwin.updating import Residuals, Target, numbered_modes, single, support_model, update
 

@@ -10,7 +10,7 @@ from observations import estimate, observation
 from jackettwin.response.condensation.numbered_modes import Status
 from jackettwin.soil import family
 from jackettwin.structure import assemble
-from jackettwin.study.result import MeasuredMode
+from jackettwin.study.measurements import MeasuredMode
 from jackettwin.study.rotor import mean_wind, operating_states, rotor_damping
 from jackettwin.twin import TwinState, advance_all, read_twin
 from jackettwin.twin.config import TwinConfig

@@ -19,9 +19,9 @@ from jackettwin.response.modes.labels import mode_kinds, mode_labels
 from jackettwin.study import TwinResult, count_steps, run_document, run_twin
 from jackettwin.study.fit_data import residuals, target_modes
 from jackettwin.study.measure import Measured, mean_target
+from jackettwin.study.measurements import MeasuredMode
 from jackettwin.study.narrative import cautions
 from jackettwin.study.problem import UpdateEvidence, law_problem
-from jackettwin.study.result import MeasuredMode
 from jackettwin.study.rotor import RotorDamping
 from jackettwin.study.truth import true_modes
 from jackettwin.twin import TwinState, read_twin

@@ -112,17 +112,17 @@ def test_a_step_is_followed_within_twenty_records(
     levels: list = []  # type: ignore[type-arg]
     tracked(model, state, about, levels)
     low, high = (
-        levels[h.watch_after_baseline + 19].relative[0],
-        levels[h.watch_after_baseline + 19].relative[2],
+        levels[h.begun + 19].relative[0],
+        levels[h.begun + 19].relative[2],
     )
-    assert low < h.stiffness[h.watch_after_baseline + 19] < high < 1.0
+    assert low < h.stiffness[h.begun + 19] < high < 1.0
     (change,) = [] if track.kept is None else track.kept.changes
     assert change.factor[0] < 0.85 < change.factor[2]
-    start = state.days[list(state.days)[h.watch_after_baseline]].time_utc
+    start = state.days[list(state.days)[h.begun]].time_utc
     assert start is not None and change.days[0] - 1.0 <= start.timestamp() / 86400.0 <= change.days[2] + 1.0
     # the past is known better now: 15 % less from the day on, at once
     now = track.levels(REFERENCE)
-    before, after = (now[list(state.days)[h.watch_after_baseline + i]].relative for i in (-5, 5))
+    before, after = (now[list(state.days)[h.begun + i]].relative for i in (-5, 5))
     assert before[0] < 1.0 < before[2] and after[0] < 0.85 < after[2]
 
 

@@ -16,14 +16,14 @@ GROUPS = {
     },
     "Measured": {
         "identify": "Identify the modes of RECORDS: files, or folders of files.",
-        "update": "Update the supports of TWIN under one law; writes nothing.",
+        "update": "Update TWIN's supports under one law or all; writes nothing.",
         "explore": "Show what the parameters of TWIN's law do to modes and cost.",
         "follow": "Update the supports of TWIN day after day, and find drift.",
         "watch": "Say whether the modes in TABLE have changed, and why.",
     },
     "Modelled": {
         "modes": "Compute undamped and damped modes of STRUCTURE.",
-        "refine": "Scale E and ρ of the steel to known frequencies.",
+        "refine": "Fit steel, masses and springs to known frequencies.",
         "stages": "Compute frequencies of STRUCTURE as its parts are added.",
         "view": "Draw STRUCTURE on a page to turn, colour and animate.",
         "soil": "Compute curves, stiffness, capacity of a pile of FOUNDATION.",

@@ -36,7 +36,7 @@ DEFAULT_TWIN = "openfast_pile"
 @click.option("--fresh", is_flag=True, help="Identify and fit again what an earlier run kept.")
 @answers
 def update_command(twin: str, law: str | None, all_laws: bool, points: tuple[str, ...], fresh: bool) -> Reply:
-    """Update the supports of TWIN under one law, or under all; writes nothing."""
+    """Update TWIN's supports under one law or all; writes nothing."""
     from jackettwin.soil import family
     from jackettwin.study import count_steps, ranking_document, run_twin, update_document
     from jackettwin.twin import read_twin

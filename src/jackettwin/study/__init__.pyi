@@ -16,8 +16,9 @@ from .follow import follow as follow
 from .follow_result import Followed as Followed
 from .many_records.export import WRITERS as WRITERS, export_modes as export_modes
 from .many_records.long_records import LONG as LONG, PIECE_S as PIECE_S
+from .measurements import MeasuredMode as MeasuredMode
 from .modes_in_time import MODES_IN_TIME as MODES_IN_TIME, write_modes_in_time as write_modes_in_time
-from .result import DampingExcess as DampingExcess, MeasuredMode as MeasuredMode, TwinResult as TwinResult
+from .result import DampingExcess as DampingExcess, TwinResult as TwinResult
 from .run import count_steps as count_steps, run_twin as run_twin
 from .scrutiny import Condition as Condition, Scrutiny as Scrutiny
 from .truth import true_parameters as true_parameters

@@ -10,7 +10,8 @@ from jackettwin.files import named
 from jackettwin.identification import Comparison, identification_document
 from jackettwin.identification.document import mode_document, shape_document
 from jackettwin.intervals import interval_90
-from jackettwin.study.result import MeasuredMode, MeasuredRelaxation, TwinResult, held_document
+from jackettwin.study.measurements import MeasuredMode, MeasuredRelaxation
+from jackettwin.study.result import TwinResult, held_document
 from jackettwin.study.scrutiny import scrutiny_document
 from jackettwin.study.truth import truth_document
 from jackettwin.twin import Observation

@@ -10,7 +10,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean, located, require
 from jackettwin.identification import ModalEstimate
 from jackettwin.study.measure import mean_target
-from jackettwin.study.result import MeasuredMode, MeasuredRelaxation
+from jackettwin.study.measurements import MeasuredMode, MeasuredRelaxation
 from jackettwin.twin import ALL, TwinConfig, TwinState
 from jackettwin.twin.config import ModelError, Weights
 from jackettwin.twin.targets_table import LEAST_SHARE, MOST_SHARE

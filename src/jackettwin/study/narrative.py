@@ -8,7 +8,8 @@ from typing import Any
 
 from jackettwin.structure import Rayleigh
 from jackettwin.study.measure import Measured
-from jackettwin.study.result import MeasuredMode, MeasuredRelaxation, unpaired_finding
+from jackettwin.study.measurements import MeasuredMode, MeasuredRelaxation
+from jackettwin.study.result import unpaired_finding
 from jackettwin.twin import TwinConfig, stated_model
 from jackettwin.updating import Update
 

@@ -11,8 +11,8 @@ from jackettwin.errors import InputError, located
 from jackettwin.response import modal_damping
 from jackettwin.soil import Support, family, read_support
 from jackettwin.structure import Assembly
+from jackettwin.study.measurements import MeasuredRelaxation
 from jackettwin.study.relaxations import placed, relaxation_targets
-from jackettwin.study.result import MeasuredRelaxation
 from jackettwin.study.rotor import RotorDamping, States
 from jackettwin.twin import ALL, REMAINDERS, TwinConfig, TwinState, directions
 from jackettwin.twin.water import in_the_records_sea, water_effects

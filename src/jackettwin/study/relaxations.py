@@ -13,7 +13,7 @@ from jackettwin.identification import mac
 from jackettwin.identification.subspace.real_poles import JOINED
 from jackettwin.response import Sensor
 from jackettwin.soil import family
-from jackettwin.study.result import MeasuredRelaxation
+from jackettwin.study.measurements import MeasuredRelaxation
 from jackettwin.twin import ALL, UNIT, OperationTotal, TwinConfig, TwinState
 from jackettwin.twin.config import GivenRelaxation
 from jackettwin.twin.exact_sums import plus

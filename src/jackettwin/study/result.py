@@ -3,76 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from jackettwin.arrays import ComplexArray
 from jackettwin.findings import Finding
 from jackettwin.identification import Examination, Identification, ModalEstimate
 from jackettwin.records import Record
 from jackettwin.response import Sensor, UndampedModes
 from jackettwin.structure import Assembly
+from jackettwin.study.measurements import MeasuredMode, MeasuredRelaxation
+from jackettwin.study.scrutiny import Scrutiny
 from jackettwin.twin import Observation
 from jackettwin.updating import LEAST_MAC, Counterpart, Update
-
-if TYPE_CHECKING:
-    from jackettwin.study.scrutiny import Scrutiny
-
-
-@dataclass(frozen=True)
-class MeasuredMode:
-    """A measured mode paired with a mode of the model.
-
-    Attributes
-    ----------
-    mode : int
-        Number on pinned supports, from 1.
-    label : str
-        ``fore_aft_1``, ``side_side_2``, ``torsion_1`` …
-    estimate : ModalEstimate or None
-        What was identified; None if the value was given as a target.
-    mac : float or None
-        Between the measured shape and the model's at the sensors.
-    fits_frequency, fits_damping : bool
-        Whether the value took part in the update.
-    correlation : float
-        Of the logarithms of frequency and damping ratio.
-    """
-
-    mode: int
-    label: str
-    frequency_hz: float | None
-    frequency_std_hz: float | None
-    damping_ratio: float | None
-    damping_ratio_std: float | None
-    estimate: ModalEstimate | None
-    mac: float | None
-    fits_frequency: bool
-    fits_damping: bool
-    correlation: float = 0.0
-
-
-@dataclass(frozen=True)
-class MeasuredRelaxation:
-    """A measured real pole, exp(−at).
-
-    Attributes
-    ----------
-    name : str
-        ``a1``, ``a2``, … by rate.
-    rate_rad_s : float
-    rate_std_rad_s : float or None
-    channels : at which its shape is known
-    shape : (n_channels,) complex, empty if it is not known
-    records : int
-        In how many records it was found; 0 if it was given as a target.
-    """
-
-    name: str
-    rate_rad_s: float
-    rate_std_rad_s: float | None
-    channels: tuple[str, ...]
-    shape: ComplexArray
-    records: int
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from jackettwin.loads import Rotor, linearise, read_rotor
 from jackettwin.response import UndampedModes
 from jackettwin.structure import Assembly
 from jackettwin.study.measure import mean_target
-from jackettwin.study.result import MeasuredMode
+from jackettwin.study.measurements import MeasuredMode
 from jackettwin.twin import ALL, OperationTotal, TwinConfig, TwinState
 from jackettwin.updating import DASHPOTS, Residuals, Target
 

@@ -15,10 +15,11 @@ from jackettwin.progress import SILENT, Progress
 from jackettwin.study.fit_cache import fitted, with_kept_posterior
 from jackettwin.study.fit_data import recorded_modes, residuals, target_modes, updating
 from jackettwin.study.measure import Measured, measure
+from jackettwin.study.measurements import MeasuredMode
 from jackettwin.study.narrative import assumptions, cautions, without_relaxation
 from jackettwin.study.problem import UpdateEvidence, law_problem
 from jackettwin.study.relaxations import measured_relaxations, relaxing
-from jackettwin.study.result import DampingExcess, MeasuredMode, TwinResult
+from jackettwin.study.result import DampingExcess, TwinResult
 from jackettwin.study.rotor import mean_wind, operating_states, rotor_damping, rotor_speed_hz
 from jackettwin.study.scrutiny import scrutiny
 from jackettwin.twin import TwinConfig, TwinModel, TwinState, suspects, twin_model

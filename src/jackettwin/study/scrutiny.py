@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from jackettwin.study.result import MeasuredMode
+from jackettwin.study.measurements import MeasuredMode
 from jackettwin.updating import (
     USABLE,
     Direction,

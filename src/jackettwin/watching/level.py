@@ -176,8 +176,8 @@ def mixture_quantiles(
 ) -> FloatArray:
     """Return quantiles of a mixture of normal distributions, by halving intervals.
 
-    >>> mixture_quantiles(np.ones(1), np.zeros(1), np.ones(1), (0.05, 0.5)).round(3)
-    array([-1.645,  0.   ])
+    >>> mixture_quantiles(np.ones(1), np.zeros(1), np.ones(1), (0.05, 0.975)).round(3)
+    array([-1.645,  1.96 ])
     """
     from scipy.special import ndtr
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import secrets
+import shutil
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
@@ -13,7 +14,6 @@ from sqlalchemy import Connection
 from jackettwin.errors import InputError
 from jackettwin.service import workers
 from jackettwin.service.intake.bundles import twin_folder
-from jackettwin.service.intake.files import discard
 from jackettwin.service.workers.failures import NoWorker
 from jackettwin.service.workers.tasks import examine_twin
 
@@ -39,7 +39,7 @@ def examined(place: Place, contents: Mapping[str, bytes]) -> workers.engine.Twin
             (folder / path).write_bytes(content)
         return _asked(place, folder)
     finally:
-        discard(folder / workers.engine.TWIN_FILE)
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def profile(

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import Connection
 
+from jackettwin.service.intake.examination import profile
 from jackettwin.service.workers.failures import DISK_FULL, LOST_WORKER, NoWorker
 from jackettwin.service.workers.tasks import File, Parsed, read_file
 from jackettwin.store import assets, journal, people, reading, records, work, writing
@@ -151,8 +152,6 @@ def take_file(
 
     The audit log says ``by`` whom, if that is known.
     """
-    from jackettwin.service.intake.examination import profile  # which discards what was spooled
-
     settings = place.settings
     with reading(place.database) as connection:
         unsaid = profile(connection, place, asset).unsaid
