@@ -44,7 +44,7 @@ def test_an_archived_turbine_takes_nothing_and_keeps_what_is_known(
     assert upload(client, 2).status_code == 202
     with reading(service.database) as connection:
         said = connection.scalars(select(tables.audit.c.action).order_by(tables.audit.c.id)).all()
-    assert said[-2:] == ["archive", "unarchive"]
+    assert said[-4:] == ["record", "archive", "unarchive", "record"]
 
 
 def test_files_and_the_command_line_are_refused_too(

@@ -47,7 +47,7 @@ def send(service: Service, k: int) -> None:
 
     # hours 18 to 30: two UTC days
     start = hour(6 + 2 * k)
-    uploads.take(service, "wtg", f"r{k}.parquet", io.BytesIO(record_file(k)), description(start))
+    uploads.take(service, "wtg", f"r{k}.parquet", io.BytesIO(record_file(k)), description(start), by="agent")
 
 
 def hashes(service: Service) -> dict[str, str]:
