@@ -85,6 +85,18 @@ def test_a_clock_off_the_grid_is_interpolated() -> None:
     np.testing.assert_allclose(found[inside], expected[inside], atol=1e-3)
 
 
+def test_one_lost_sample_of_a_clock_off_the_grid_is_not_bridged() -> None:
+    """The two grid points beside a lost sample have a measurement on one side only: they stay empty."""
+    sent = packets()
+    cut = sent[100]  # 195 to 197 s
+    sent[100] = Packet(cut.asset, cut.channel, cut.t0_utc, cut.rate_hz, cut.samples[:-1])
+    late = timedelta(milliseconds=20)
+    shifted = [Packet(p.asset, p.channel, p.t0_utc + late, p.rate_hz, p.samples) for p in sent]
+    found = on_grid(shifted, START, RATE, N)
+    lost = 197 * 20 - 1
+    np.testing.assert_array_equal(np.flatnonzero(np.isnan(found[10:-10])) + 10, [lost, lost + 1])
+
+
 def test_channels_of_their_own_share_the_window() -> None:
     found = assembled([*packets("a"), *packets("b", first_s=100.0)], START, {}, "x")
     assert found is not None
