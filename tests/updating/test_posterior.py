@@ -16,6 +16,7 @@ from jackettwin.updating import (
     Residuals,
     SupportModel,
     Target,
+    Uncertainty,
     law_probability,
     single,
     support_model,
@@ -118,6 +119,13 @@ def test_an_interval_holds_the_share_of_draws_that_it_says(posterior: Posterior,
     inside = (posterior.log_theta > low) & (posterior.log_theta < high)
     # quantiles between draws: one draw of each side may fall either way
     np.testing.assert_allclose(inside.mean(axis=0), level, atol=2.0 / len(inside))
+
+
+def test_an_update_gives_the_posterior_of_90_percent(posterior: Posterior) -> None:
+    """An update's own draws, from the posterior or from Laplace, are cut at the same quantiles."""
+    of_update = SimpleNamespace(log_theta=posterior.log_theta)
+    interval = Uncertainty.interval_90.fget(of_update)
+    np.testing.assert_allclose(interval, posterior.interval(0.9), rtol=1e-12)
 
 
 def test_the_truth_lies_inside_the_intervals(posterior: Posterior) -> None:
