@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
-from jackettwin.updating.posterior.evidence import bridged_evidence
+from jackettwin.updating.posterior.evidence import bridge, bridged_evidence
 from jackettwin.updating.prior import BoxPrior
 
 FloatArray = np.ndarray
@@ -126,3 +126,14 @@ def test_data_precise_to_a_millionth(rng: np.random.Generator) -> None:
     found, _ = evidence(sharp, box(2), z, rng)
     exact = np.log(scale).sum() - 2.0 * np.log(2.0 * HALF)
     assert found == pytest.approx(exact, abs=WITHIN)
+
+
+def test_a_bridge_to_few_independent_draws_is_importance_sampling() -> None:
+    """With s₁ → 0 the bridge rests on the trial draws alone, with s₂ → 0 on the reciprocals of the others."""
+    rng = np.random.default_rng(8)
+    at_draws, at_trial = rng.normal(-2.0, 0.5, 300), rng.normal(-2.3, 0.7, 200)
+    by_trial = np.log(np.exp(at_trial).mean())
+    by_draws = -np.log(np.exp(-at_draws).mean())
+    assert bridge(at_draws, at_trial, independent=1e-9) == pytest.approx(by_trial, abs=1e-6)
+    assert bridge(at_draws, at_trial, independent=1e12) == pytest.approx(by_draws, abs=1e-6)
+    assert abs(by_trial - by_draws) > 0.01
