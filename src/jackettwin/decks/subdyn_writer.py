@@ -269,7 +269,7 @@ def _spin_deg(structure: Structure, b: Beam) -> float:
 
 def _masses(structure: Structure, joints: dict[str, int]) -> list[str]:
     """Return one concentrated mass a joint: several bodies on one become one."""
-    by_joint = sorted((m for m in structure.masses if m.mass_kg > 0.0), key=lambda m: joints[m.node])
+    by_joint = sorted((m for m in structure.masses if rigid_body_mass(m).any()), key=lambda m: joints[m.node])
     rows = []
     for node, bodies in groupby(by_joint, key=lambda m: m.node):
         body = _joined(list(bodies))

@@ -123,7 +123,7 @@ def with_static_reactions(structure: Structure, support: Support) -> Structure:
     """
     nodes = structure.reaction_nodes
     stiffness = {node: np.zeros((6, 6)) for node in nodes}
-    mass = {node: np.zeros((6, 6)) for node in nodes}
+    mass = {r.node: np.zeros((6, 6)) if r.mass is None else np.array(r.mass) for r in structure.reactions}
     fixed = dict.fromkeys(nodes, (False,) * 6)
     touched = (
         [s.node for s in support.springs] + [n for n, _ in support.fixed] + [n for n, _ in support.masses]
