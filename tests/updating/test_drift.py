@@ -81,6 +81,10 @@ def test_days_that_scatter_more_than_they_say_widen_the_interval(models: dict[st
         for day, v in zip(days, wild, strict=True)
     }
     found = find_drift(joint(model, states, growth=Growth(("k",), days, 0.4)), np.log(TRUTH))
+    steady = {day: (Residuals((Target(1, f, F_STD * f),), relative=False), {}) for day in days}
+    calm = find_drift(joint(model, steady, growth=Growth(("k",), days, 0.4)), np.log(TRUTH))
+    # the same sensitivities but for a fraction of a per cent of stiffness
+    assert found.std_per_day == pytest.approx(found.scatter * calm.std_per_day, rel=0.05)
     # χ² of six residuals of ten deviations, on 6 − 3 degrees of freedom, less what the slope takes
     assert found.scatter == pytest.approx(np.sqrt(600 / 3), rel=0.1)
     assert not found.detected
