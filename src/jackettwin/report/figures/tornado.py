@@ -13,6 +13,8 @@ from jackettwin.study import Scrutiny
 _WIDTH = 620.0
 _MOST = 8
 """Tolerances drawn: the table has all."""
+_LETTER = 7.4
+"""Width of a letter of the page's font, at most on average [px]."""
 _FELT = 0.002
 """Changes of a logarithm below this are not drawn."""
 
@@ -30,7 +32,8 @@ def tornado(s: Scrutiny, parameter: int, words: str) -> Markup | None:
     shown = [m for m in s.movers(parameter)[:_MOST] if abs(float(m.effect[parameter])) > _FELT]
     if not shown:
         return None
-    row, head, left, right = 26.0, 24.0, 270.0, _WIDTH - 64.0
+    row, head, right = 26.0, 24.0, _WIDTH - 64.0
+    left = 16.0 + _LETTER * max(len(m.tolerance.words) for m in shown)
     bottom = head + row * len(shown)
     c = Canvas(_WIDTH, bottom + 44.0, f"What moves the {words}")
     most = 1.1 * max(abs(expm1(abs(float(m.effect[parameter])))) for m in shown)
