@@ -6,7 +6,7 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.response.modes.modal import undamped_modes
 from jackettwin.response.system import build_system
-from jackettwin.soil import family
+from jackettwin.soil import MUDLINE, family, moved_to_mudline, tied_at_mudline
 from jackettwin.soil.foundation import read_foundation
 from jackettwin.soil.laws.viscoelastic import Prony
 from jackettwin.soil.support import Spring, Support, pinned
@@ -35,7 +35,7 @@ def on_heads(jacket15: Assembly, heads: Support, tie: str, **options: object) ->
     )
 
 
-@pytest.mark.parametrize("tie", TIES)
+@pytest.mark.parametrize("tie", [tie for tie in TIES if tie != MUDLINE])
 def test_at_their_own_stiffness_the_heads_are_themselves(
     jacket15: Assembly, heads: Support, tie: str
 ) -> None:
@@ -44,6 +44,20 @@ def test_at_their_own_stiffness_the_heads_are_themselves(
     exact = undamped_modes(build_system(jacket15, heads), 5).frequency_hz
     # a loss factor of 1e-4 and the heads' own 2 % move frequencies by less than 1e-5; with one law for both
     # sides the parts keep their proportion
+    np.testing.assert_allclose(np.abs(model.predict(theta, (1, 2)).poles) / (2 * np.pi), exact[:2], rtol=2e-5)
+    np.testing.assert_allclose(
+        model.exact_modes(theta, (1, 2)).poles, model.predict(theta, (1, 2)).poles, rtol=1e-8
+    )
+
+
+def test_piles_summed_at_the_mudline_are_themselves_at_their_own_stiffness(jacket15: Assembly) -> None:
+    tied = assemble(tied_at_mudline(jacket15.structure))
+    heads = read_foundation("jacket15_records").heads(tied.structure)
+    model = on_heads(tied, heads, MUDLINE)
+    assert [p.name for p in model.parameters] == ["k_u", "k_theta", "loss_factor"]
+    theta = np.array([*model.tie_groups.stiffness, 1e-4])
+    exact = undamped_modes(build_system(tied, moved_to_mudline(tied.structure, heads)), 5).frequency_hz
+    # as above, and sway and rocking have one loss where the heads' differ
     np.testing.assert_allclose(np.abs(model.predict(theta, (1, 2)).poles) / (2 * np.pi), exact[:2], rtol=2e-5)
     np.testing.assert_allclose(
         model.exact_modes(theta, (1, 2)).poles, model.predict(theta, (1, 2)).poles, rtol=1e-8

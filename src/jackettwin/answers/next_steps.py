@@ -82,7 +82,8 @@ def _at_the_feet(u: Update, names: Sequence[str], now: Mapping[str, float]) -> d
     for j, p in enumerate(u.problem.parameters):
         if p.name not in names or known is None:
             continue
-        suffix = next((s for s in u.model.tie_groups.suffixes if s and p.name.endswith(s)), "")
+        suffixes = u.model.tie_groups.suffixes
+        suffix = next((s for s in suffixes if s and p.name.endswith(s)), suffixes[0])
         loss = known.predictive.support.get(f"loss_factor{suffix}", np.ones(1))
         stiff = p.name.startswith("k") and not p.name.startswith("k1")
         std = _FOOT_AMPLITUDE if stiff else _FOOT_PHASE_RAD / float(np.median(loss))

@@ -144,17 +144,19 @@ def _of_structure(
 ) -> tuple[Exploration, Path]:
     from jackettwin.cli.modes import rayleigh_option
     from jackettwin.decks import read_structure
-    from jackettwin.soil import read_family
+    from jackettwin.soil import MUDLINE, read_family, tied_at_mudline
     from jackettwin.structure import assemble
     from jackettwin.study import explore_model
     from jackettwin.updating import support_model
 
-    family, theta = read_family(support)
+    family, theta, at_mudline = read_family(support)
     steel = rayleigh_option(rayleigh)
     with progress(_OWN_STEPS, name) as step:
         step("assemble the structure")
-        assembly = assemble(read_structure(name))
-        model = support_model(assembly, family=family, rayleigh=steel, highest_mode=5)
+        structure = read_structure(name)
+        assembly = assemble(tied_at_mudline(structure) if at_mudline else structure)
+        tie = MUDLINE if at_mudline else "all"
+        model = support_model(assembly, family=family, rayleigh=steel, tie=tie, highest_mode=5)
         step("modes along the parameters")
         found = explore_model(assembly.structure.name, model, theta, settings)
         return found, _page(found, out, step)

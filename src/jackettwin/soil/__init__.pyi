@@ -40,6 +40,17 @@ from .laws.viscoelastic import (
     one_branch as one_branch,
     prony_fit as prony_fit,
 )
+from .mudline import (
+    MUDLINE as MUDLINE,
+    MUDLINE_PATTERNS as MUDLINE_PATTERNS,
+    MUDLINE_SUFFIXES as MUDLINE_SUFFIXES,
+    moved_to_mudline as moved_to_mudline,
+    mudline_exponents as mudline_exponents,
+    mudline_parameters as mudline_parameters,
+    on_mudline as on_mudline,
+    sway_and_rocking as sway_and_rocking,
+    tied_at_mudline as tied_at_mudline,
+)
 from .piles.piles import Pile as Pile
 from .piles.radiation import Radiation as Radiation
 from .piles.soil_curves import (

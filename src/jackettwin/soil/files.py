@@ -22,6 +22,7 @@ from jackettwin.soil.foundation import (
 from jackettwin.soil.laws.families import Family, families
 from jackettwin.soil.laws.files import ElasticLaw, LawSchema
 from jackettwin.soil.laws.viscoelastic import Law, Prony, require_positive
+from jackettwin.soil.mudline import MUDLINE, mudline_parameters, mudline_support, tied_at_mudline
 from jackettwin.soil.support import Spring, Support, clamped, on_translations, own_support, pinned
 from jackettwin.structure import Structure
 
@@ -93,6 +94,8 @@ def read_support(
         return pinned(structure) if word == "pinned" else clamped(structure)
     name, colon, arguments = word.partition(":")
     forms = short_forms()
+    if colon and name == MUDLINE:
+        return _mudline(arguments, structure, first_frequency_hz)
     if colon and name in forms:
         return on_translations(structure, parse_law(name, arguments, first_frequency_hz))
     foundation = _foundation(text, folder)
@@ -101,7 +104,8 @@ def read_support(
     path = Path(word) if folder is None else folder / word
     if path.suffix.lower() in (".yaml", ".yml"):
         return _read_support_file(path, structure)
-    known = ["pinned", "clamped", *shipped_foundations(), *forms]
+    known = ["pinned", "clamped", *shipped_foundations(), *forms, MUDLINE]
+    forms = {**forms, MUDLINE: "LAW:k_u=,k_theta=,…"}
     raise InputError(
         "unknown support or law",
         field="support",
@@ -120,6 +124,8 @@ def read_supported(
     folder: Path | None = None,
 ) -> tuple[Structure, Support]:
     """Return the structure and the support that a user asked for, with its piles as members if so asked.
+
+    Under one matrix at the mudline the feet are tied to one node.
 
     Parameters
     ----------
@@ -143,7 +149,36 @@ def read_supported(
         allowed="members, with a foundation as the support",
         remedy=f"give a foundation file or {', '.join(shipped_foundations())} as the support",
     )
+    if text is not None and str(text).startswith(f"{MUDLINE}:"):
+        structure = tied_at_mudline(structure)
     return structure, read_support(text, structure, first_frequency_hz=first_frequency_hz, folder=folder)
+
+
+def _mudline(text: str, structure: Structure, first_frequency_hz: Callable[[], float]) -> Support:
+    """Return the support of ``LAW:k_u=…,k_theta=…,…`` behind ``mudline:``, under the one foot."""
+    feet = structure.reaction_nodes
+    require(
+        len(feet) == 1,
+        "the feet are not tied to one node",
+        field="reaction_nodes",
+        value=list(feet),
+        remedy="jackettwin.soil.read_supported ties them, and returns the structure, too",
+    )
+    with located(field=f"support.{MUDLINE}"):
+        law, given = _mudline_values(text)
+        for p in mudline_parameters(law)[:2]:
+            require_positive(p.name, given[p.name])
+        at = given.get("f0")
+        return mudline_support(structure, law, given, first_frequency_hz if at is None else lambda: at)
+
+
+def _mudline_values(text: str) -> tuple[Family, dict[str, float]]:
+    """Return the law of ``LAW:k_u=…,k_theta=…,…``, Kelvin–Voigt if none is named, and its numbers."""
+    name, colon, arguments = text.partition(":")
+    law = look_up(families(), name if colon else "kelvin-voigt", "law")
+    names = [p.name for p in mudline_parameters(law)] + (["f0"] if law.needs_frequency else [])
+    given = _arguments(",".join(f"{key}=" for key in names), arguments if colon else text)
+    return law, {key: _number(key, value) for key, value in given.items()}
 
 
 def _foundation(text: str | Path | None, folder: Path | None) -> Foundation | None:
@@ -204,8 +239,12 @@ def read_law(text: str) -> Law:
     return parse_law(name, arguments, _unknown_frequency)
 
 
-def read_family(text: str) -> tuple[Family, FloatArray]:
-    """Return the law of a short form ``name:k=…`` that can be updated, and the values of its parameters.
+def read_family(text: str) -> tuple[Family, FloatArray, bool]:
+    """Return the law of a short form that can be updated, its values, and whether it is at the mudline.
+
+    Parameters
+    ----------
+    text : ``name:k=…``, or ``mudline:name:k_u=…,k_theta=…``
 
     Raises
     ------
@@ -213,13 +252,21 @@ def read_family(text: str) -> tuple[Family, FloatArray]:
         If there is no such law, or a value is missing, unknown or out of its bounds.
     """
     name, _, arguments = text.partition(":")
-    law = look_up(families(), name, "law", field="support")
+    at_mudline = name == MUDLINE
     with located(field=f"support.{name}"):
-        given = _arguments(short_forms()[name], arguments)
-        values = [_number(p.name, given[p.name]) for p in law.parameters]
-        for p, value in zip(law.parameters, values, strict=True):
-            require_between(p.name, value, p.low, p.high, "" if p.unit == "-" else p.unit)
-    return law, np.array(values)
+        if at_mudline:
+            law, given = _mudline_values(arguments)
+            parameters = mudline_parameters(law)
+        else:
+            law = look_up(families(), name, "law", field="support")
+            read = _arguments(short_forms()[name], arguments)
+            parameters, given = (
+                law.parameters,
+                {p.name: _number(p.name, read[p.name]) for p in law.parameters},
+            )
+        for p in parameters:
+            require_between(p.name, given[p.name], p.low, p.high, "" if p.unit == "-" else p.unit)
+    return law, np.array([given[p.name] for p in parameters]), at_mudline
 
 
 def _arguments(form: str, text: str) -> dict[str, str]:

@@ -200,8 +200,9 @@ def _with_modes(
 
 def _all(model: SupportModel) -> tuple[str, ...]:
     """Return the names to follow: the law's own where all tie groups have them, and what is free beside."""
-    grouped = len(model.tie_groups.suffixes) * len(model.family.names)
-    return (*model.family.names, *(p.name for p in model.parameters[grouped:]))
+    one_loss = model.tie_groups.one_loss
+    names = [p.name for p in model.parameters[: model.n_of_law]] if one_loss else model.family.names
+    return (*names, *(p.name for p in model.parameters[model.n_of_law :]))
 
 
 def _landscape(

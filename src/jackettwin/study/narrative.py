@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from math import hypot
 from typing import Any
 
+from jackettwin.soil import MUDLINE
 from jackettwin.structure import Rayleigh
 from jackettwin.study.measure import Measured
 from jackettwin.study.measurements import MeasuredMode, MeasuredRelaxation
@@ -21,7 +22,6 @@ def assumptions(
     wind: float | None,
 ) -> tuple[str, ...]:
     """Return what the run took for granted; dashpots are stated at the wind [m/s]."""
-    s = config.structure
     how = config.modelling()
     theory = {"euler-bernoulli": "Euler–Bernoulli", "timoshenko": "Timoshenko"}[str(how["beam"])]
     rotary = how["rotary_inertia"] or theory == "Timoshenko"
@@ -30,7 +30,7 @@ def assumptions(
         + ("gravity's P-Δ stiffness is on" if config.gravity else "no gravity stiffness")
         + (f"; {', '.join(config.of_records)}: as the records state it." if config.of_records else "."),
         _steel(config),
-        f"The support law {_acts_on(config)} of {len(s.reactions)} reaction nodes (tie: {config.tie}).",
+        f"The support law {_acts_on(config)} (tie: {config.tie}).",
         "Modes are numbered by their order on pinned feet and followed by mass-weighted MAC.",
         f"Fitted: {', '.join(filter(None, [*map(_fitted, measured), *map(_relaxed, relaxations)]))}.",
     ]
@@ -72,7 +72,15 @@ def _steel(config: TwinConfig) -> str:
 
 
 def _acts_on(config: TwinConfig) -> str:
-    return "acts on the three translations" if config.heads is None else "scales the 6×6 pile heads"
+    nodes = config.structure.reaction_nodes
+    of = f"of {len(nodes)} reaction nodes"
+    if config.tie == MUDLINE:
+        tied = f"{nodes[0]}, which all feet follow rigidly" if nodes == (MUDLINE,) else f"foot {nodes[0]}"
+        what = "sway and rocking" if config.heads is None else "the 6×6 stiffness"
+        return f"acts on {what} of {tied}"
+    return (
+        f"acts on the three translations {of}" if config.heads is None else f"scales the 6×6 pile heads {of}"
+    )
 
 
 def _fitted(m: MeasuredMode) -> str:

@@ -16,7 +16,7 @@ from jackettwin.identification import IdentificationSettings, Pick, parse_picks,
 from jackettwin.loads import SeaState, WaterSchema, depth_of, water_members
 from jackettwin.records.readers import formats
 from jackettwin.response import mode_kinds, mode_labels, read_mode_label
-from jackettwin.soil import DEFAULT_LAWS, Parameter, family
+from jackettwin.soil import DEFAULT_LAWS, MUDLINE, Parameter, family, tied_at_mudline
 from jackettwin.structure import RayleighSchema, Structure
 from jackettwin.twin.config import (
     PAIRED_MODES,
@@ -305,7 +305,7 @@ def _check_ties(support: SupportSchema, update: UpdateSettings) -> None:
         for name in names:
             look_up(known, name, "parameter of a law", field=field)
         require(
-            not names or support.tie != "all",
+            not names or support.tie not in ("all", MUDLINE),
             "all supports share all parameters already",
             field=field,
             value=names,
@@ -369,7 +369,8 @@ def _dashpots(update: UpdateSettings) -> tuple[str, ...]:
 def _structure(schema: TwinSchema, folder: Path) -> Structure:
     structure = schema.structure.read(folder)
     rna = schema.rna or schema.structure.rna
-    return structure if rna is None else rna.stand_on(structure, folder=folder)
+    structure = structure if rna is None else rna.stand_on(structure, folder=folder)
+    return tied_at_mudline(structure) if schema.support.tie == MUDLINE else structure
 
 
 def _water(schema: TwinSchema, structure: Structure, folder: Path) -> WaterConfig | None:

@@ -56,7 +56,7 @@ class SupportSchema(Schema):
     """
 
     law: str | None = None
-    tie: Literal["all", "horizontal-vertical", "per-leg", "per-leg-horizontal-vertical"] = "all"
+    tie: Literal["all", "horizontal-vertical", "per-leg", "per-leg-horizontal-vertical", "mudline"] = "all"
     stiffness: str | None = None
     shared: list[str] = []
     scatter: dict[str, Annotated[float, Field(gt=0.0, le=3.0)]] = {}

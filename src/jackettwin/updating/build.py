@@ -62,21 +62,18 @@ def support_model(
     pinned_hz = numbered_modes(assembly, highest_mode).frequency_hz
     first_hz = float(pinned_hz[0])
     groups = tie_groups(assembly.structure, tie, heads=heads, reference_hz=first_hz)
-    suffixes, nuisance, bounds, priors = (
-        groups.suffixes,
-        nuisance or NuisanceParameters(),
-        bounds or {},
-        priors or {},
-    )
+    nuisance, bounds, priors = nuisance or NuisanceParameters(), bounds or {}, priors or {}
+    suffixes = ("", *groups.suffixes) if groups.one_loss else groups.suffixes
     own = family.priors(first_hz) if informed else {}
     derived = {name + suffix: prior for name, prior in own.items() for suffix in suffixes}
     derived |= priors_of(groups, first_hz) if informed else {}
+    of_law = groups.parameters(family)
     parameters = tuple(
-        _informed(replace(p, name=p.name + suffix), (p.name + side, p.name), bounds, priors, derived)
-        for suffix, side in zip(suffixes, groups.sides, strict=True)
-        for p in family.parameters
+        _informed(p, (own_name + side, own_name), bounds, priors, derived)
+        for p, (own_name, side) in of_law.items()
     ) + tuple(_informed(p, (), bounds, priors, {}) for p in nuisance.parameters)
-    known = {p.name + suffix for p in family.parameters for suffix in ("", *groups.sides, *suffixes)}
+    known = {p.name + side for p in family.parameters for side in ("", *groups.sides)}
+    known |= {p.name for p in of_law}
     known |= {p.name for p in nuisance.parameters}
     for field, names in (("bounds", bounds), ("priors", priors)):
         _no_unknown(field, names, known, family)
@@ -84,7 +81,9 @@ def support_model(
     if nuisance.rayleigh:
         parameters = _inside_band(parameters, bounds, strongest_beta(condensed.radius))
     low = next((p.low for p in parameters if p.name == "water_mass"), 1.0)
-    nuisance.check_mass(condensed.pencil.M, [g.S for g in condensed.pencil.groups[len(suffixes) :]], low)
+    nuisance.check_mass(
+        condensed.pencil.M, [g.S for g in condensed.pencil.groups[len(groups.suffixes) :]], low
+    )
     return SupportModel(
         assembly,
         rayleigh,

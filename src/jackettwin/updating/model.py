@@ -100,25 +100,38 @@ class SupportModel:
 
     def laws(self, theta: FloatArray) -> list[Law]:
         """Return the law of each tie group."""
-        per_group = np.reshape(self._split(theta)[0], (len(self.tie_groups.suffixes), -1))
+        numbers = self._numbers(self._split(theta)[0])
+        per_group = np.reshape(numbers, (len(self.tie_groups.suffixes), -1))
         return [self.family.build(values, self.reference_hz) for values in per_group]
+
+    @property
+    def n_of_law(self) -> int:
+        """How many of the parameters are the law's, on all tie groups."""
+        return len(self.tie_groups.parameters(self.family))
+
+    def _numbers(self, own: FloatArray) -> FloatArray:
+        """Return the laws' numbers, group by group, from the parameters of the laws (..., n_of_law)."""
+        if not self.tie_groups.one_loss:
+            return own
+        return np.asarray(np.exp(np.log(own) @ self.tie_groups.exponents(self.family).T))
 
     def _split(self, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the parameters of the laws and the extra ones of one vector or many."""
-        n = len(self.tie_groups.suffixes) * len(self.family.parameters)
+        n = self.n_of_law
         return theta[..., :n], theta[..., n:]
 
     def points(self, theta: FloatArray) -> Points:
         """Return parameter vectors (n_sets, n_parameters) as what the condensed model takes."""
         own, extra = self._split(theta)
         n_sets, n_groups, p = len(theta), len(self.tie_groups.suffixes), len(self.family.parameters)
-        rows, slopes = self.family.rows(np.reshape(own, (-1, p)), self.reference_hz)
+        numbers, powers = self._numbers(own), self.tie_groups.exponents(self.family)
+        rows, slopes = self.family.rows(np.reshape(numbers, (-1, p)), self.reference_hz)
         soil, slopes = rows.reshape(n_sets, n_groups, -1), slopes.reshape(n_sets, n_groups, -1, p)
         rotor, rotor_slopes = self.nuisance.rows(extra, soil.shape[2])
         rows = np.concatenate([soil, rotor], axis=1)
         jacobian = np.zeros((*rows.shape, theta.shape[1]))
         for g in range(n_groups):
-            jacobian[:, g, :, g * p : (g + 1) * p] = slopes[:, g]
+            jacobian[:, g, :, : own.shape[1]] = slopes[:, g] @ powers[g * p : (g + 1) * p]
         jacobian[:, n_groups:, :, own.shape[1] :] = rotor_slopes
         ab, ab_slopes = self.nuisance.rayleigh_rows(self.rayleigh, extra)
         by_all = np.zeros((n_sets, 2, theta.shape[1]))

@@ -9,14 +9,30 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError, require
-from jackettwin.soil import Law, Spring, Support, pinned, standing
+from jackettwin.soil import (
+    MUDLINE,
+    MUDLINE_PATTERNS,
+    MUDLINE_SUFFIXES,
+    Family,
+    Law,
+    Parameter,
+    Spring,
+    Support,
+    moved_to_mudline,
+    mudline_exponents,
+    mudline_parameters,
+    on_mudline,
+    pinned,
+    standing,
+    sway_and_rocking,
+)
 from jackettwin.structure import Structure
 
 Group = tuple[tuple[int, ...], tuple[str, ...]]
 """The DOFs and the feet that share parameters."""
 
 SPLIT_LEGS = "per-leg-horizontal-vertical"
-TIES = ("all", "horizontal-vertical", "per-leg", SPLIT_LEGS)
+TIES = ("all", "horizontal-vertical", "per-leg", SPLIT_LEGS, MUDLINE)
 _HORIZONTAL, _VERTICAL = (0, 1, 3, 4, 5), (2,)
 """A pile's sway and rotation are one spring; its axis is another."""
 SIDES = {"_horizontal": _HORIZONTAL, "_vertical": _VERTICAL}
@@ -41,6 +57,8 @@ class TieGroups:
         None: then they are plain translations
     loss_factor : of that support at the reference frequency
     masses : (node, 6×6) of what moves with the feet
+    one_loss : whether the groups have a stiffness each and share the law's other parameters: the two at the
+        mudline, its sway and its rocking
     """
 
     suffixes: tuple[str, ...]
@@ -49,9 +67,32 @@ class TieGroups:
     stiffness: tuple[float, ...] | None = None
     loss_factor: tuple[float, ...] | None = None
     masses: tuple[tuple[str, FloatArray], ...] = ()
+    one_loss: bool = False
+
+    def parameters(self, family: Family) -> dict[Parameter, tuple[str, str]]:
+        """Return the parameters of a law on all groups, with the law's own name of each and the side."""
+        if self.one_loss:
+            sway, rocking, *others = mudline_parameters(family)
+            return {p: (family.names[0], "") for p in (sway, rocking)} | {p: (p.name, "") for p in others}
+        pairs = zip(self.suffixes, self.sides, strict=True)
+        return {
+            replace(p, name=p.name + suffix): (p.name, side)
+            for suffix, side in pairs
+            for p in family.parameters
+        }
+
+    def exponents(self, family: Family) -> FloatArray:
+        """Return by which powers of the parameters the laws' numbers are, (n_groups · p, n_parameters)."""
+        return (
+            mudline_exponents(family)
+            if self.one_loss
+            else np.eye(len(self.suffixes) * len(family.parameters))
+        )
 
     def support(self, laws: list[Law]) -> Support:
         """Return the support with one law a group."""
+        if self.one_loss and self.stiffness is None:
+            return on_mudline(self.patterns[0][1], laws)
         springs = tuple(Spring(node, pattern, laws[g]) for g, node, pattern in self.patterns)
         return Support(springs=springs, masses=self.masses)
 
@@ -77,6 +118,8 @@ def tie_groups(
     """
     require(tie in TIES, "unknown tie", field="support.tie", value=tie, allowed=", ".join(TIES))
     require(structure.reactions, "no reaction nodes to support", field="structure.reaction_nodes", value=[])
+    if tie == MUDLINE:
+        return _at_mudline(structure, heads, reference_hz or 1.0)
     if heads is None and standing(structure) != pinned(structure):
         raise InputError(
             "a structure on one foot, or on feet in a line, turns over on springs that do not hold rotations",
@@ -114,12 +157,61 @@ def priors_of(groups: TieGroups, reference_hz: float) -> dict[str, tuple[float, 
         return priors
     for suffix, k, loss in zip(groups.suffixes, groups.stiffness, groups.loss_factor, strict=True):
         priors |= {f"{name}{suffix}": (k, _STIFFNESS_LOG_STD) for name in ("k", "k0")}
+        if groups.one_loss and suffix:
+            if suffix != groups.suffixes[0]:
+                continue  # the sway's loss stands for both
+            suffix = ""
         if loss > 0.0:
             alpha = 2.0 / pi * float(np.arctan(loss))
             c = loss * k / (2.0 * pi * reference_hz)
             lossy = {"loss_factor": loss, "alpha": alpha, "c": c}
             priors |= {f"{name}{suffix}": (value, _LOSS_LOG_STD) for name, value in lossy.items()}
     return priors
+
+
+def _at_mudline(structure: Structure, heads: Support | None, reference_hz: float) -> TieGroups:
+    """Return sway and rocking of the one node that holds the foundation.
+
+    Raises
+    ------
+    InputError
+        If the structure has several feet, or the heads do not hold the node.
+    """
+    nodes = structure.reaction_nodes
+    require(
+        len(nodes) == 1,
+        "one matrix at the mudline holds one node",
+        field="structure.reaction_nodes",
+        value=list(nodes),
+        remedy="jackettwin.soil.tied_at_mudline ties the feet to one",
+    )
+    plain = TieGroups(
+        MUDLINE_SUFFIXES,
+        tuple((g, nodes[0], pattern) for g, pattern in enumerate(MUDLINE_PATTERNS)),
+        sides=("", ""),
+        one_loss=True,
+    )
+    if heads is None:
+        return plain
+    heads = moved_to_mudline(structure, heads)
+    parts = sway_and_rocking(_impedance(plain, heads, reference_hz)[nodes[0]])
+    sizes = [complex(np.mean(np.diag(part)[i : i + 2])) for part, i in zip(parts, (0, 3), strict=True)]
+    require(
+        sizes[1].real > 0.0,
+        "this support does not hold the mudline against turning",
+        field="support.stiffness",
+        value=sizes[1].real,
+        allowed="a rocking stiffness above 0",
+        remedy="a foundation, or a support file with 6×6 stiffness",
+    )
+    real = (part.real / size.real for part, size in zip(parts, sizes, strict=True))
+    return replace(
+        plain,
+        patterns=tuple((g, nodes[0], pattern) for g, pattern in enumerate(real)),
+        stiffness=tuple(size.real for size in sizes),
+        loss_factor=tuple(size.imag / size.real for size in sizes),
+        masses=heads.masses,
+    )
 
 
 def _on_heads(plain: TieGroups, groups: list[Group], heads: Support, reference_hz: float) -> TieGroups:

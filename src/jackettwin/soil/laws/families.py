@@ -328,6 +328,9 @@ def family(name: str, *, field: str | None = None) -> Family:
 
 _ROTORS = {f"c_{axis}": f"rotor's {axis.replace('_', '-')} dashpot" for axis in ("fore_aft", "side_side")}
 
+_AT_THE_MUDLINE = {"u": "sway", "theta": "rocking"}
+"""Words for what stands behind k in one matrix for the whole foundation."""
+
 
 def law_parameter(name: str) -> str:
     """Return which parameter of a law a name of the ground's is of, empty if of none.
@@ -346,6 +349,8 @@ def parameter_words(name: str) -> str:
 
     >>> parameter_words("loss_factor_vertical"), parameter_words("k0_foot_1_vertical"), parameter_words("c")
     ('vertical loss factor', 'static stiffness of foot 1 vertical', 'dashpot')
+    >>> parameter_words("k_u"), parameter_words("k_theta")
+    ('sway stiffness', 'rocking stiffness')
     >>> parameter_words("c_fore_aft")
     "rotor's fore-aft dashpot"
     """
@@ -356,5 +361,7 @@ def parameter_words(name: str) -> str:
     base = law_parameter(name)
     rest = name[len(base) + 1 :].replace("_", " ") if base else ""
     said = known.get(base, name.replace("_", " "))
-    said = f"{rest} {said}" if rest in ("horizontal", "vertical") else f"{said} of {rest}" if rest else said
+    rest = _AT_THE_MUDLINE.get(rest, rest)
+    before = rest in ("horizontal", "vertical", *_AT_THE_MUDLINE.values())
+    said = f"{rest} {said}" if before else f"{said} of {rest}" if rest else said
     return f"{said} ({state})" if state else said

@@ -11,6 +11,7 @@ import scipy.sparse.linalg as spla
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError
 from jackettwin.soil.laws.viscoelastic import Law, Prony
+from jackettwin.soil.mudline import feet_of
 from jackettwin.soil.piles.piles import Pile, PileSprings, pile_beams
 from jackettwin.soil.support import ELASTIC, Spring, Support
 from jackettwin.structure import Structure, assemble
@@ -107,7 +108,7 @@ def lumped_head(
 
 
 def on_pile_heads(structure: Structure, head: PileHead) -> Support:
-    """Return a lumped pile under every reaction node: springs, law and mass at the feet.
+    """Return a lumped pile under every foot: springs, law and mass there.
 
     Raises
     ------
@@ -116,11 +117,9 @@ def on_pile_heads(structure: Structure, head: PileHead) -> Support:
     """
     if not structure.reactions:
         raise InputError("the structure has no reaction nodes to put piles under", field="reaction_nodes")
-    springs = []
-    for foot in structure.reaction_nodes:
+    springs, feet = [], feet_of(structure)
+    for foot in feet:
         springs += [Spring(foot, head.steel), Spring(foot, head.soil, head.law)]
         if head.dashpots.any():
             springs.append(Spring(foot, head.dashpots, Prony(c=1.0)))
-    return Support(
-        springs=tuple(springs), masses=tuple((foot, head.mass) for foot in structure.reaction_nodes)
-    )
+    return Support(springs=tuple(springs), masses=tuple((foot, head.mass) for foot in feet))
