@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -207,3 +208,26 @@ def test_a_card_out_of_its_columns_names_line_and_columns(deck: Path) -> None:
     deck.write_text(DECK.replace("MEMBER  101 201 LG1", "MEMBER  101 999 LG1"))
     with pytest.raises(InputError, match="no joint"):
         read_structure(deck)
+
+
+def test_a_superelement_of_a_deck_whose_interface_is_named(deck: Path, tmp_path: Path) -> None:
+    """A SACS deck does not say where the tower stands: the option does, and a SubDyn deck keeps it."""
+
+    def stiffness(*arguments: str) -> list[list[float]]:
+        out = str(tmp_path / "se.npz")
+        answer = CliRunner().invoke(
+            main, ["superelement", *arguments, "--modes", "4", "--out", out, "--json"]
+        )
+        assert answer.exit_code == 0, answer.stderr
+        return json.loads(answer.stdout)["interface_stiffness"]
+
+    named = ("--interface", "201", "--feet", "101, 301", "--support", "clamped")
+    subdyn = tmp_path / "deck.dat"
+    answer = CliRunner().invoke(main, ["export", str(deck), *named, "--out", str(subdyn), "--json"])
+    assert answer.exit_code == 0, answer.stderr
+    own = np.array(stiffness(str(deck), *named))
+    # the deck carries the fixed feet itself
+    np.testing.assert_allclose(own, stiffness(str(subdyn)), rtol=1e-9, atol=1e-9 * abs(own).max())
+    wrong = CliRunner().invoke(main, ["superelement", str(deck), "--interface", "202"])
+    assert wrong.exit_code == 2
+    assert "--interface" in wrong.stderr and "201" in wrong.stderr

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from jackettwin.cli.console import Reply, answers, messages, say
+from jackettwin.cli.joints import joint_options, with_joints
 from jackettwin.cli.modes import pile_model_option, supported_option
 from jackettwin.errors import InputError
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     help="pinned, clamped, LAW:arguments, a foundation or a YAML file; default: the structure's own.",
 )
 @pile_model_option
+@joint_options
 @click.option(
     "--out",
     type=click.Path(dir_okay=False, path_type=Path),
@@ -30,7 +32,12 @@ if TYPE_CHECKING:
 )
 @answers
 def export_command(
-    structure: str, support: str | None, pile_model: PileModel | None, out: Path | None
+    structure: str,
+    support: str | None,
+    pile_model: PileModel | None,
+    interface: str | None,
+    feet: str | None,
+    out: Path | None,
 ) -> Reply:
     """Write the foundation of STRUCTURE as a SubDyn input file.
 
@@ -43,7 +50,8 @@ def export_command(
 
     if out is not None and out.suffix.lower() != ".dat":
         raise InputError("unknown format of a deck", field="--out", value=out.name, allowed=".dat")
-    whole, held = supported_option(support, assemble(read_structure(structure)), pile_model)
+    named = with_joints(read_structure(structure), interface, feet)
+    whole, held = supported_option(support, assemble(named), pile_model)
     whole = held_where_sprung(whole, held)
     foundation, _ = at_interface(whole)
     path = out or Path("out") / f"{whole.name}_SubDyn.dat"

@@ -9,6 +9,7 @@ import click
 import numpy as np
 
 from jackettwin.cli.console import FiniteFloat, Reply, answers, messages, numbers_of, say, show_table
+from jackettwin.cli.joints import joint_options, with_joints
 from jackettwin.cli.modes import rayleigh_option, support_option
 from jackettwin.errors import InputError
 from jackettwin.report import Table, TableColumn
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 @click.option(
     "--support", help="pinned, clamped, LAW:arguments, or a YAML file; default: the structure's own."
 )
+@joint_options
 @click.option(
     "--modes",
     "number",
@@ -80,6 +82,8 @@ if TYPE_CHECKING:
 def superelement_command(
     structure: str,
     support: str | None,
+    interface: str | None,
+    feet: str | None,
     number: int,
     reference: str | None,
     rayleigh: str | None,
@@ -116,7 +120,7 @@ def superelement_command(
     require_format(out)
     if is_superelement(Path(structure)):
         return _answer(_rewritten(Path(structure), out, layout))
-    whole = read_structure(structure)
+    whole = with_joints(read_structure(structure), interface, feet)
     foundation, rest = at_interface(whole)
     point = _point(reference)
 
