@@ -118,3 +118,24 @@ def test_what_floats_is_reduced_and_missing_modes_are_said(tmp_path: Path) -> No
     assert not found["warnings"]
     # forty fixed-interface modes of a jacket whose first five free ones are asked for
     assert found["largest_frequency_error"] < 0.01
+
+
+@pytest.mark.parametrize(
+    ("name", "layout", "warned"),
+    [("a.npz", "openfast5", False), ("a.dat", "openfast5", False), ("a.dat", "openfast4", True)],
+)
+def test_only_who_integrates_explicitly_is_warned_of_fast_poles(
+    name: str, layout: str, warned: bool, tmp_path: Path
+) -> None:
+    """Version 5 couples implicitly and is stable at 0.01 s (docs/verification/openfast.md)."""
+    arguments = [
+        "--support",
+        "kelvin-voigt:k=2.5e9,c=7.6e8",
+        "--layout",
+        layout,
+        "--out",
+        str(tmp_path / name),
+    ]
+    answer = CliRunner().invoke(main, ["superelement", "jacket15", *arguments, "--json"])
+    assert answer.exit_code == 0, answer.stderr
+    assert any("explicitly" in warning for warning in json.loads(answer.stdout)["warnings"]) is warned

@@ -147,6 +147,7 @@ def superelement_command(
         reduced_modes(element, full, top, band_hz=band),
         reduced_modes(plain, full, top, band_hz=band),
         band,
+        explicit=out.suffix.lower() == ".dat" and layout != DEFAULT,
     )
     document |= {"structure": whole.name, "files": [str(path) for path in files]}
     return _answer(document)
@@ -215,6 +216,8 @@ def _document(
     error: ReducedModes,
     plain: ReducedModes,
     band_hz: float,
+    *,
+    explicit: bool,
 ) -> dict[str, Any]:
     from jackettwin.response import damping_ratio, hertz
 
@@ -235,11 +238,18 @@ def _document(
         ],
         "largest_frequency_error": float(np.abs(error.frequency_error).max(initial=0.0)),
         "largest_damping_error": float(np.abs(error.damping_error).max(initial=0.0)),
-        "warnings": _warnings(error, matrices["largest_explicit_step_s"]),
+        "warnings": _warnings(error, matrices["largest_explicit_step_s"] if explicit else None),
     }
 
 
 def _warnings(error: ReducedModes, step_s: float | None) -> list[str]:
+    """Return what the user should know.
+
+    Parameters
+    ----------
+    step_s : float or None
+        The longest step of an explicit integrator, if one reads this file.
+    """
     from jackettwin.response import damping_ratio
 
     found = []
@@ -254,7 +264,10 @@ def _warnings(error: ReducedModes, step_s: float | None) -> list[str]:
             f"a damping ratio is {100 * worst:.0f} % off: keep more coordinates, or a shorter --time-step"
         )
     if step_s is not None and step_s < 1e-3:
-        found.append(f"explicit integrators need steps below {step_s:.2g} s; --time-step slows fast poles")
+        found.append(
+            f"OpenFAST before version 5 integrates this explicitly, in steps below {step_s:.2g} s; "
+            "--time-step slows fast poles"
+        )
     return found
 
 
