@@ -38,7 +38,7 @@ def test_strong_dashpots_beside_plain_craig_bampton(tmp_path: Path) -> None:
     second = found["modes"][3]
     assert second["reduced_damping_ratio"] == pytest.approx(second["damping_ratio"], rel=0.01)
     assert second["plain_craig_bampton_damping_ratio"] > 2.0 * second["damping_ratio"]
-    assert "--time-step" in found["warnings"][0]
+    assert found["warnings"] == []  # version 5 couples implicitly
     assert (tmp_path / "se_ExtPtfm.dat").exists()
 
 
