@@ -28,8 +28,8 @@ NEXT = """
 import sqlalchemy as sa
 from alembic import op
 
-revision = "0101"
-down_revision = "0100"
+revision = "0102"
+down_revision = "0101"
 
 
 def upgrade() -> None:
@@ -61,10 +61,10 @@ def old(url: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[s
 
 def with_next_migration(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shutil.copytree(MIGRATIONS, folder / "migrations", ignore=shutil.ignore_patterns("__pycache__"))
-    (folder / "migrations" / "versions" / "0101_next.py").write_text(NEXT)
+    (folder / "migrations" / "versions" / "0102_next.py").write_text(NEXT)
     monkeypatch.setattr(module, "_MIGRATIONS", folder / "migrations")
     for user in (module, backup):
-        monkeypatch.setattr(user, "SCHEMA_VERSION", "0101")
+        monkeypatch.setattr(user, "SCHEMA_VERSION", "0102")
 
 
 def windows(engine: Engine, schema: str | None = None) -> list[str]:
@@ -97,9 +97,9 @@ def test_it_is_migrated_and_a_copy_is_kept(old: str, tmp_path: Path) -> None:
         with reading(engine) as connection:
             assert [row.name for row in connection.execute(tables.assets.select())] == ["wtg"]
     if old.startswith("sqlite"):
-        copy, schema = f"sqlite:///{tmp_path / 'twin.schema-0100.sqlite'}", None
+        copy, schema = f"sqlite:///{tmp_path / 'twin.schema-0101.sqlite'}", None
     else:
-        copy, schema = old, "schema_0100"
+        copy, schema = old, "schema_0101"
     engine = open_database(copy, migrate=False)
     assert "n_late" not in windows(engine, schema)
     with reading(engine) as connection:

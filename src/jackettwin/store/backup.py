@@ -9,18 +9,32 @@ import base64
 import io
 import json
 import tarfile
+import tempfile
 from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
+from itertools import islice
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from sqlalchemy import Connection, DateTime, Engine, LargeBinary, MetaData, Table, func, insert, select, text
+from sqlalchemy import (
+    Connection,
+    DateTime,
+    Engine,
+    LargeBinary,
+    MetaData,
+    Table,
+    func,
+    insert,
+    select,
+    text,
+    type_coerce,
+)
 
 from jackettwin.errors import InputError
 from jackettwin.files import atomic_path
 from jackettwin.store import tables
 from jackettwin.store.database import bring_to, check_schema, writing
-from jackettwin.store.tables import SCHEMA_VERSION
+from jackettwin.store.tables import SCHEMA_VERSION, Packed
 
 _LEFT_OUT = ("servers",)
 """Who serves is not part of what is kept; leases are given back when a restored store is opened."""
@@ -43,10 +57,8 @@ def backup(database: Engine, store: Path, target: Path) -> dict[str, int]:
         if connection.dialect.name == "postgresql":
             connection.execution_options(isolation_level="REPEATABLE READ")
         for table in _tables():
-            rows = b"".join(_lines(connection, table))
-            counts[table.name] = rows.count(b"\n")
-            _add(out, f"tables/{table.name}.jsonl", rows)
-        for (place,) in connection.execute(select(tables.records.c.waveform)).all():
+            counts[table.name] = _add_table(out, connection, table)
+        for place in connection.scalars(select(tables.records.c.waveform).execution_options(yield_per=_ROWS)):
             if place is not None and (store / place).exists():
                 out.add(store / place, arcname=place, recursive=False)
         manifest = {"schema_version": SCHEMA_VERSION, "tables": counts}
@@ -90,9 +102,24 @@ def _tables() -> list[Table]:
     return [table for table in tables.metadata.sorted_tables if table.name not in _LEFT_OUT]
 
 
+def _add_table(archive: tarfile.TarFile, connection: Connection, table: Table) -> int:
+    """Write the rows of a table by way of a file of their own: no table is in memory as a whole."""
+    count = 0
+    with tempfile.TemporaryFile() as lines:
+        for line in _lines(connection, table):
+            lines.write(line)
+            count += 1
+        member = tarfile.TarInfo(f"tables/{table.name}.jsonl")
+        member.size = lines.tell()
+        lines.seek(0)
+        archive.addfile(member, lines)
+    return count
+
+
 def _lines(connection: Connection, table: Table) -> Iterator[bytes]:
-    order = list(table.primary_key.columns)
-    for row in connection.execute(select(table).order_by(*order)):
+    stored = [type_coerce(c, LargeBinary).label(c.name) if isinstance(c.type, Packed) else c for c in table.c]
+    rows = select(*stored).order_by(*table.primary_key.columns).execution_options(yield_per=_ROWS)
+    for row in connection.execute(rows):
         plain = {name: _plain(value) for name, value in row._mapping.items()}
         yield json.dumps(plain, ensure_ascii=False).encode() + b"\n"
 
@@ -134,11 +161,11 @@ def _tables_of(connection: Connection) -> list[Table]:
 
 def _insert(connection: Connection, table: Table, archive: tarfile.TarFile) -> int:
     stream = archive.extractfile(f"tables/{table.name}.jsonl")
-    rows = [json.loads(line) for line in stream] if stream is not None else []
-    for i in range(0, len(rows), _ROWS):
-        part = [{k: _value(table, k, v) for k, v in row.items()} for row in rows[i : i + _ROWS]]
+    rows, count = (json.loads(line) for line in stream or ()), 0
+    while part := [{k: _value(table, k, v) for k, v in row.items()} for row in islice(rows, _ROWS)]:
         connection.execute(insert(table), part)
-    return len(rows)
+        count += len(part)
+    return count
 
 
 def _extract(archive: tarfile.TarFile, member: tarfile.TarInfo, store: Path) -> None:

@@ -24,6 +24,9 @@ class User:
     password_hash: str
     created_utc: datetime
     disabled: bool = False
+    scope: list[str] | None = None
+    expires_utc: datetime | None = None
+    password_utc: datetime | None = None
 
 
 @dataclass(frozen=True)

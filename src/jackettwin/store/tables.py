@@ -29,7 +29,9 @@ from sqlalchemy import (
 from sqlalchemy.engine import Dialect
 from sqlalchemy.types import TypeDecorator
 
-FIRST_SCHEMA, SCHEMA_VERSION = "0100", "0100"
+from jackettwin.store import columns
+
+FIRST_SCHEMA, SCHEMA_VERSION = "0100", "0101"
 """Migrations of 0.1.0 and of this version: a database between them is migrated when it is opened."""
 
 
@@ -50,6 +52,21 @@ class Utc(TypeDecorator[datetime]):
     def process_result_value(self, value: Any, dialect: Dialect) -> datetime | None:
         """Return the time with its zone."""
         return None if value is None else value.replace(tzinfo=UTC)
+
+
+class Packed(TypeDecorator[str]):
+    """A document of which the database keeps few bytes, and everybody else sees the text."""
+
+    impl = LargeBinary
+    cache_ok = True
+
+    def process_bind_param(self, value: str | None, dialect: Dialect) -> bytes | None:
+        """Return the bytes that the database keeps."""
+        return None if value is None else columns.pack(value)
+
+    def process_result_value(self, value: Any, dialect: Dialect) -> str | None:
+        """Return the text."""
+        return None if value is None else columns.unpack(bytes(value))
 
 
 BigId = BigInteger().with_variant(Integer, "sqlite")
@@ -147,6 +164,14 @@ servers = Table(
 )
 """Who leases work. A server whose beat stands still is dead, whatever the clocks say."""
 
+posts = Table(
+    "posts",
+    metadata,
+    Column("name", String(32), primary_key=True),
+    Column("server", String(64), nullable=False),
+)
+"""What one server of several does for all: it keeps a post until it leaves, or is found to be dead."""
+
 observations = Table(
     "observations",
     metadata,
@@ -156,7 +181,7 @@ observations = Table(
     Column("record_id", String(64), primary_key=True),
     Column("start_utc", Utc, nullable=False),
     Column("code_version", String(32), nullable=False),
-    Column("document", Text, nullable=False),
+    Column("document", Packed, nullable=False),
     Index("ix_observations_time", "asset", "model_hash", "start_utc", "record_id"),
 )
 
@@ -240,6 +265,24 @@ acknowledgements = Table(
 )
 """Who took note of an alarm; an alarm is a finding of severity alarm, known by its content."""
 
+handling = Table(
+    "handling",
+    metadata,
+    Column("id", BigId, primary_key=True, autoincrement=True),
+    Column("asset", ForeignKey("assets.name"), nullable=False),
+    Column("alarm_key", String(255), nullable=False),
+    Column("action", String(16), nullable=False),
+    Column("by", String(64), nullable=False),
+    Column("time_utc", Utc, nullable=False),
+    Column("comment", Text, nullable=False),
+    Column("to", String(64)),
+    Column("until_utc", Utc),
+    Index("ix_handling_finding", "asset", "alarm_key", "id"),
+)
+"""What people did with a finding, which is known by its content: assigned, commented, muted, closed, reopened.
+
+Nothing of it is ever changed: how a finding stands is its last actions."""
+
 conditions = Table(
     "conditions",
     metadata,
@@ -284,6 +327,17 @@ users = Table(
     Column("password_hash", String(255), nullable=False),
     Column("created_utc", Utc, nullable=False),
     Column("disabled", Boolean, nullable=False, default=False),
+    Column("scope", JSON(none_as_null=True)),
+    Column("expires_utc", Utc),
+    Column("password_utc", Utc),
+)
+"""``scope``: the assets and, after an ``@``, the groups of assets that a user may see; NULL for all."""
+
+asset_groups = Table(
+    "asset_groups",
+    metadata,
+    Column("name", String(64), primary_key=True),
+    Column("asset", ForeignKey("assets.name"), primary_key=True),
 )
 
 tokens = Table(
@@ -329,3 +383,22 @@ settings = Table(
     Column("name", String(64), primary_key=True),
     Column("value", JSON, nullable=False),
 )
+
+alerts = Table(
+    "alerts",
+    metadata,
+    Column("id", BigId, primary_key=True, autoincrement=True),
+    Column("channel", String(64), nullable=False),
+    Column("key", String(255), nullable=False),
+    Column("asset", String(64), nullable=False),
+    Column("message", JSON, nullable=False),
+    Column("state", String(16), nullable=False),
+    Column("tries", Integer, nullable=False, default=0),
+    Column("created_utc", Utc, nullable=False),
+    Column("due_utc", Utc, nullable=False),
+    Column("ended_utc", Utc),
+    Column("problem", Text),
+    UniqueConstraint("channel", "key"),
+    Index("ix_alerts_due", "state", "due_utc"),
+)
+"""What is to be told to people, once for each channel and key. ``state``: waiting, sent or given_up."""

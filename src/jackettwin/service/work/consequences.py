@@ -29,6 +29,7 @@ from jackettwin.store import (
     tables,
     work,
 )
+from jackettwin.store.columns import rounded
 from jackettwin.store.results import StoredState
 
 if TYPE_CHECKING:
@@ -145,7 +146,7 @@ def keep(connection: Connection, service: Service, job: work.Job, outcome: Outco
         settings_hash=job.settings_hash,
         start_utc=record.start_utc,
         code_version=job.code_version,
-        document=outcome.document,
+        document=rounded(outcome.document),  # as it is read again: a day summed anew is the same day
         **key,
     )
     day = f"{record.start_utc:%Y-%m-%d}"

@@ -1,0 +1,78 @@
+"""Rights by asset, findings that people deal with, alerts, shared posts of servers, observations in columns."""
+
+import sqlalchemy as sa
+from alembic import op
+
+revision = "0101"
+down_revision = "0100"
+
+ROW_NUMBER = sa.BigInteger().with_variant(sa.Integer(), "sqlite")
+
+
+def upgrade() -> None:
+    """Add columns and tables; observations become bytes, those that are there as the text they were."""
+    with op.batch_alter_table("users") as users:
+        users.add_column(sa.Column("scope", sa.JSON()))
+        users.add_column(sa.Column("expires_utc", sa.DateTime()))
+        users.add_column(sa.Column("password_utc", sa.DateTime()))
+    op.create_table(
+        "asset_groups",
+        sa.Column("name", sa.String(64), primary_key=True),
+        sa.Column("asset", sa.String(64), sa.ForeignKey("assets.name"), primary_key=True),
+    )
+    op.create_table(
+        "posts",
+        sa.Column("name", sa.String(32), primary_key=True),
+        sa.Column("server", sa.String(64), nullable=False),
+    )
+    op.create_table(
+        "handling",
+        sa.Column("id", ROW_NUMBER, primary_key=True),
+        sa.Column("asset", sa.String(64), sa.ForeignKey("assets.name"), nullable=False),
+        sa.Column("alarm_key", sa.String(255), nullable=False),
+        sa.Column("action", sa.String(16), nullable=False),
+        sa.Column("by", sa.String(64), nullable=False),
+        sa.Column("time_utc", sa.DateTime(), nullable=False),
+        sa.Column("comment", sa.Text(), nullable=False),
+        sa.Column("to", sa.String(64)),
+        sa.Column("until_utc", sa.DateTime()),
+    )
+    op.create_index("ix_handling_finding", "handling", ["asset", "alarm_key", "id"])
+    op.create_table(
+        "alerts",
+        sa.Column("id", ROW_NUMBER, primary_key=True),
+        sa.Column("channel", sa.String(64), nullable=False),
+        sa.Column("key", sa.String(255), nullable=False),
+        sa.Column("asset", sa.String(64), nullable=False),
+        sa.Column("message", sa.JSON(), nullable=False),
+        sa.Column("state", sa.String(16), nullable=False),
+        sa.Column("tries", sa.Integer(), nullable=False),
+        sa.Column("created_utc", sa.DateTime(), nullable=False),
+        sa.Column("due_utc", sa.DateTime(), nullable=False),
+        sa.Column("ended_utc", sa.DateTime()),
+        sa.Column("problem", sa.Text()),
+        sa.UniqueConstraint("channel", "key"),
+    )
+    op.create_index("ix_alerts_due", "alerts", ["state", "due_utc"])
+    if op.get_bind().dialect.name == "postgresql":
+        op.execute("alter table observations alter document type bytea using convert_to(document, 'UTF8')")
+    else:
+        with op.batch_alter_table("observations") as observations:
+            observations.alter_column("document", type_=sa.LargeBinary(), existing_nullable=False)
+        op.execute("update observations set document = cast(document as blob)")
+
+
+def downgrade() -> None:
+    """Take an empty database back, into which a backup of the version before is to be restored."""
+    if op.get_bind().scalar(sa.text("select count(*) from observations")):
+        raise NotImplementedError("put back the copy that was made before the upgrade")
+    for table in ("alerts", "handling", "posts", "asset_groups"):
+        op.drop_table(table)
+    with op.batch_alter_table("users") as users:
+        for column in ("scope", "expires_utc", "password_utc"):
+            users.drop_column(column)
+    if op.get_bind().dialect.name == "postgresql":
+        op.execute("alter table observations alter document type text using ''")
+    else:
+        with op.batch_alter_table("observations") as observations:
+            observations.alter_column("document", type_=sa.Text(), existing_nullable=False)
