@@ -213,10 +213,12 @@ def stranger(users: Service) -> Iterator[TestClient]:
         yield client
 
 
-def upload(client: TestClient, k: int = 0, *, start: datetime | None = None, **more: Any) -> Any:
+def upload(
+    client: TestClient, k: int = 0, *, start: datetime | None = None, asset: str = "wtg", **more: Any
+) -> Any:
     """Send a record; ``k`` chooses its samples and its hour."""
     return client.post(
-        "/api/v1/assets/wtg/records",
+        f"/api/v1/assets/{asset}/records",
         files={"file": (f"r{k}.parquet", record_file(k))},
         data={"description": description(start or hour(k), **more)},
     )

@@ -1,4 +1,4 @@
-"""Stores as released versions left them: a turbine with two records, observations, an alarm, users, a token."""
+"""Stores as released versions left them: a turbine with two records, an alarm, users, a token."""
 
 import gzip
 import sqlite3

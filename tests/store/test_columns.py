@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 
 import pytest
-from hypothesis import given, strategies as st
+from hypothesis import given, settings, strategies as st
 from tests.store.old_stores import documents
 
 from jackettwin.store import columns
@@ -18,6 +18,7 @@ values = st.recursive(
 )
 
 
+@settings(max_examples=40)
 @given(st.dictionaries(words, values, max_size=6))
 def test_what_is_rounded_is_packed_without_loss(document: dict) -> None:
     once = columns.rounded(json.dumps(document))
@@ -25,6 +26,7 @@ def test_what_is_rounded_is_packed_without_loss(document: dict) -> None:
     assert json.loads(columns.unpack(columns.pack(once))) == json.loads(once)
 
 
+@settings(max_examples=40)
 @given(st.dictionaries(words, values, max_size=6))
 def test_what_is_not_rounded_is_not_packed_with_loss(document: dict) -> None:
     text = json.dumps(document)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -107,6 +108,26 @@ def adopt(name: str, version: int, at: StorePlace) -> Reply:
     return Reply(
         {"asset": name, "adopted_version": version}, lambda: say(f"{name}: version {version} is adopted")
     )
+
+
+@asset_command.command("group")
+@click.argument("group")
+@click.argument("assets", nargs=-1)
+@answers
+@store_options
+def group(group: str, assets: tuple[str, ...], at: StorePlace) -> Reply:
+    """Say which ASSETS the group GROUP has, by which users are given rights (`user add --assets @GROUP`).
+
+    Without any the group is gone.
+    """
+    engine = at.open()
+    from jackettwin.store import note_down, rights, writing
+
+    with writing(engine) as connection:
+        members = rights.put_group(connection, group, assets)
+        by, subject = "command line", f"{group}: {', '.join(members)}"
+        note_down(connection, by, "group", subject, "ok", datetime.now(UTC))
+    return Reply({"group": group, "assets": members}, lambda: say(subject))
 
 
 @asset_command.command("archive")

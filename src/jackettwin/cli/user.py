@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 
 import click
 
-from jackettwin.cli.console import CommandGroup, Reply, answers, say
+from jackettwin.cli.console import CommandGroup, Reply, answers, say, say_all
 from jackettwin.cli.store_options import StorePlace, store_options
 from jackettwin.errors import require
 
@@ -24,33 +24,78 @@ def user_command() -> None:
 @click.argument("name")
 @click.option("--role", required=True, type=click.Choice(["viewer", "engineer", "admin"]))
 @click.option("--password-stdin", is_flag=True, help="Read the password from standard input.")
+@click.option("--no-password", is_flag=True, help="Logs in by OIDC or a proxy alone.")
+@click.option(
+    "--assets", help="Those that the user may see, by comma, a group as @NAME; default: all, now and later."
+)
+@click.option("--until", type=click.DateTime(["%Y-%m-%d"]), help="UTC day from which the user is nobody.")
 @answers
 @store_options
-def add_user(name: str, role: str, password_stdin: bool, at: StorePlace) -> Reply:
-    """Add the user NAME, or give one another role and password."""
+def add_user(
+    name: str,
+    role: str,
+    password_stdin: bool,
+    no_password: bool,
+    assets: str | None,
+    until: datetime | None,
+    at: StorePlace,
+) -> Reply:
+    """Add the user NAME, or give one another role, password and rights."""
     require(
-        password_stdin or sys.stdin.isatty(),
+        password_stdin or no_password or sys.stdin.isatty(),
         "there is no terminal to ask for it on",
         field="password",
         remedy="give it on standard input, with --password-stdin",
     )
     engine = at.open(make=True)
-    from jackettwin.service.web.auth import hashed
-    from jackettwin.store import note_down, writing
+    from jackettwin.service.web.auth import in_words
+    from jackettwin.store import note_down, rights, writing
     from jackettwin.store.people import User, add_user as keep
 
-    password = (
-        sys.stdin.readline().rstrip("\n")
-        if password_stdin
-        else click.prompt("password", hide_input=True, confirmation_prompt=True)
-    )
-    user = User(name, role, hashed(password), datetime.now(UTC))
+    ends, now = None if until is None else until.replace(tzinfo=UTC), datetime.now(UTC)
+    password = "" if no_password else _asked_hash(password_stdin)
     with writing(engine) as connection:
+        scope = None if assets is None else rights.checked_scope(connection, _listed(assets))
+        user = User(name, role, password, now, scope=scope, expires_utc=ends, password_utc=now)
         keep(connection, user)
-        note_down(connection, "command line", "user add", name, role, user.created_utc)
-    return Reply(
-        {"user": name, "role": role}, lambda: say(f"{name} is {role}; from now on everybody logs in")
-    )
+        note_down(connection, "command line", "user add", name, in_words(user), now)
+    said = {"user": name, "role": role, "assets": scope, "expires_utc": ends and ends.isoformat()}
+    return Reply(said, lambda: say(f"{name} is {in_words(user)}; from now on everybody logs in"))
+
+
+def _asked_hash(password_stdin: bool) -> str:
+    from jackettwin.service.web.auth import hashed
+
+    if password_stdin:
+        return hashed(sys.stdin.readline().rstrip("\n"))
+    return hashed(click.prompt("password", hide_input=True, confirmation_prompt=True))
+
+
+def _listed(names: str) -> list[str]:
+    return [name.strip() for name in names.split(",") if name.strip()]
+
+
+@user_command.command("list")
+@answers
+@store_options
+def list_users(at: StorePlace) -> Reply:
+    """List the users, what they may, and until when."""
+    engine = at.open()
+    from jackettwin.service.web.auth import in_words
+    from jackettwin.store import people, reading
+
+    with reading(engine) as connection:
+        found = people.list_users(connection)
+    rows = [
+        {
+            "user": u.name,
+            "role": u.role,
+            "assets": u.scope,
+            "expires_utc": u.expires_utc and u.expires_utc.isoformat(),
+        }
+        for u in found
+    ]
+    return Reply({"users": rows}, lambda: say_all([f"{u.name}  {in_words(u)}" for u in found]))
 
 
 @user_command.command("remove")

@@ -66,6 +66,8 @@ class ServiceSettings(BaseSettings):
     """Addresses and networks of the proxies whose word on who asks is taken; nobody else's is."""
     trusted_header: str | None = None
     """Header in which the proxy names the user it has authenticated, as OIDC proxies do."""
+    password_days: float | None = Field(default=None, gt=0.0)
+    """Days after which a password must be replaced by another one; None for never."""
     raw_days: float | None = None
     """Days for which the samples of observed records are kept, 0 for ever; None leaves the store's policy."""
     upload_limit_bytes: int = 512 * 2**20

@@ -11,10 +11,10 @@ import json
 import zlib
 from functools import cache
 from importlib.resources import files
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from jackettwin.arrays import FloatArray
+if TYPE_CHECKING:
+    from jackettwin.arrays import FloatArray
 
 _PLAIN, _COLUMNS = b"{", b"\x01"
 """First bytes of a document as text, and of one in columns whose words are those of ``words_1.txt``."""
@@ -25,17 +25,21 @@ _SMALL, _LARGE = 1e-30, 1e30
 
 
 def rounded(document: str) -> str:
-    """Return a document whose numbers have the digits that 32 bits hold: what is done twice changes nothing."""
+    """Return a document whose numbers have the digits that 32 bits hold: twice is as once."""
     return json.dumps(json.loads(document, parse_float=_rounded), ensure_ascii=False, separators=(",", ":"))
 
 
 def _rounded(text: str) -> float:
+    import numpy as np
+
     exact = float(text)
     return float(str(np.float32(exact))) if _SMALL < abs(exact) < _LARGE else exact
 
 
 def pack(document: str) -> bytes:
     """Return the bytes that are kept of a document: as text, if columns would lose a digit of it."""
+    import numpy as np
+
     numbers: list[float] = []
 
     def placed(text: str) -> str | float:
@@ -63,6 +67,8 @@ def unpack(packed: bytes) -> str:
         return packed.decode()
     if packed[:1] != _COLUMNS:
         raise ValueError("packed by a newer version")
+    import numpy as np
+
     body = zlib.decompressobj(-15, zdict=_words()).decompress(packed[1:])
     end = 4 + int.from_bytes(body[:4], "little")
     column = np.frombuffer(body[end:], dtype=np.uint8).reshape(4, -1).T.copy().view("<f4").ravel()
@@ -72,6 +78,8 @@ def unpack(packed: bytes) -> str:
 
 def _planes(column: FloatArray) -> bytes:
     """Return first bytes, then second bytes, ... of numbers: their exponents are alike."""
+    import numpy as np
+
     return column.view(np.uint8).reshape(-1, 4).T.tobytes()
 
 

@@ -17,7 +17,15 @@ ROLES = ("viewer", "engineer", "admin")
 
 @dataclass(frozen=True)
 class User:
-    """Who somebody is, and the hash of the password."""
+    """Who somebody is, and the hash of the password.
+
+    Attributes
+    ----------
+    password_hash : empty for somebody who logs in elsewhere, by OIDC or a proxy
+    scope : the assets, and groups as ``@NAME``, that the user may see; None for all
+    expires_utc : after which the user is nobody; None for never
+    password_utc : when the password was set; None if it is not known, as of 0.1.0
+    """
 
     name: str
     role: str
@@ -27,6 +35,10 @@ class User:
     scope: list[str] | None = None
     expires_utc: datetime | None = None
     password_utc: datetime | None = None
+
+    def may_enter(self, now: datetime) -> bool:
+        """Tell whether the user is neither disabled nor expired."""
+        return not self.disabled and (self.expires_utc is None or self.expires_utc > now)
 
 
 @dataclass(frozen=True)
@@ -38,6 +50,7 @@ class Grant:
     kind: str
     csrf: str
     expires_utc: datetime
+    scope: list[str] | None = None
 
 
 def secret_hash(secret: str) -> str:
@@ -56,9 +69,13 @@ def add_user(connection: Connection, user: User) -> None:
     Raises
     ------
     InputError
-        If the last admin would become something less.
+        If the last admin would become something less, or an admin is to see some assets only.
     """
-    if user.role != "admin" or user.disabled:
+    if user.role == "admin" and user.scope is not None:
+        raise InputError(
+            "an admin sees every asset", field="assets", value=user.name, allowed="viewer, engineer"
+        )
+    if user.role != "admin" or user.disabled or user.expires_utc is not None:
         _refuse_last(connection, user.name)
     _remove(connection, user.name)
     connection.execute(insert(users).values(**vars(user)))
@@ -119,9 +136,10 @@ def grant(
 def find_grant(connection: Connection, secret: str, now: datetime) -> Grant | None:
     """Return whose session or token a secret is; None if it is nobody's, expired, or its user is disabled."""
     query = (
-        select(tokens.c.user, users.c.role, tokens.c.kind, tokens.c.csrf, tokens.c.expires_utc)
+        select(tokens.c.user, users.c.role, tokens.c.kind, tokens.c.csrf, tokens.c.expires_utc, users.c.scope)
         .join(users, users.c.name == tokens.c.user)
         .where(tokens.c.hash == secret_hash(secret), users.c.disabled.is_(False))
+        .where(users.c.expires_utc.is_(None) | (users.c.expires_utc > now))
     )
     row = connection.execute(query).one_or_none()
     found = None if row is None else Grant(**row._mapping)
@@ -173,7 +191,7 @@ def remove_user(connection: Connection, name: str) -> bool:
 
 
 def _refuse_last(connection: Connection, name: str) -> None:
-    enabled = (users.c.role == "admin", users.c.disabled.is_(False))
+    enabled = (users.c.role == "admin", users.c.disabled.is_(False), users.c.expires_utc.is_(None))
     admins = connection.scalars(select(users.c.name).where(*enabled).with_for_update()).all()
     if admins == [name]:
         raise InputError(
@@ -220,8 +238,11 @@ def read_audit(connection: Connection, limit: int, before: int | None = None) ->
     return [AuditLine(**row._mapping) for row in connection.execute(query)]
 
 
-def change_password(connection: Connection, name: str, password_hash: str, but: str) -> None:
+def change_password(
+    connection: Connection, name: str, password_hash: str, now: datetime, but: str = ""
+) -> None:
     """Give a user another password; sessions of the old one end, but for the one that asks."""
-    connection.execute(update(users).where(users.c.name == name).values(password_hash=password_hash))
+    new = {"password_hash": password_hash, "password_utc": now}
+    connection.execute(update(users).where(users.c.name == name).values(**new))
     others = (tokens.c.user == name, tokens.c.kind == "session", tokens.c.hash != secret_hash(but))
     connection.execute(delete(tokens).where(*others))

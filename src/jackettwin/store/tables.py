@@ -279,9 +279,7 @@ handling = Table(
     Column("until_utc", Utc),
     Index("ix_handling_finding", "asset", "alarm_key", "id"),
 )
-"""What people did with a finding, which is known by its content: assigned, commented, muted, closed, reopened.
-
-Nothing of it is ever changed: how a finding stands is its last actions."""
+"""What people did with a finding, which is known by its content; how it stands is its last actions."""
 
 conditions = Table(
     "conditions",

@@ -16,6 +16,7 @@ from sqlalchemy import Connection, Update, delete, func, insert, select, update
 
 from jackettwin.store.assets import Version
 from jackettwin.store.database import insert_new
+from jackettwin.store.rights import Assets, among
 from jackettwin.store.tables import servers, work
 from jackettwin.version import __version__
 
@@ -181,10 +182,15 @@ def find_job(connection: Connection, job_id: int) -> Job | None:
 
 
 def list_jobs(
-    connection: Connection, *, state: str | None = None, before: int | None = None, limit: int = 100
+    connection: Connection,
+    *,
+    state: str | None = None,
+    before: int | None = None,
+    limit: int = 100,
+    seen: Assets = None,
 ) -> list[Job]:
-    """Return work, newest first."""
-    query = select(work).order_by(work.c.id.desc()).limit(limit)
+    """Return work of the assets that somebody may see, newest first."""
+    query = select(work).where(among(work.c.asset, seen)).order_by(work.c.id.desc()).limit(limit)
     if state is not None:
         query = query.where(work.c.state == state)
     if before is not None:
@@ -205,9 +211,9 @@ def any_queued(connection: Connection, kind: str, *, gone: bool = False) -> bool
     return connection.scalar(query) is not None
 
 
-def queue_sizes(connection: Connection) -> dict[str, int]:
-    """Return how much work is in each state."""
-    query = select(work.c.state, func.count()).group_by(work.c.state)
+def queue_sizes(connection: Connection, seen: Assets = None) -> dict[str, int]:
+    """Return how much work of the assets that somebody may see is in each state."""
+    query = select(work.c.state, func.count()).where(among(work.c.asset, seen)).group_by(work.c.state)
     return {state: n for state, n in connection.execute(query)}
 
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import io
-import json
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 from math import log
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from fastapi import Path
-from sqlalchemy import Connection, select
+from sqlalchemy import Connection
 
 from jackettwin.errors import InputError
 from jackettwin.service import workers
@@ -24,7 +22,7 @@ from jackettwin.service.web.schemas import (
     Page,
     TwinOut,
 )
-from jackettwin.store import assets, results, tables
+from jackettwin.store import assets, results
 from jackettwin.store.records import read_cursor, write_cursor
 from jackettwin.version import __version__
 
@@ -188,22 +186,3 @@ def _change(
         difference=difference,
         in_standard_deviations=difference / sure if sure else None,
     )
-
-
-def as_parquet(connection: Connection, name: str) -> bytes:
-    """Return a table as a Parquet file; times are UTC, nested values JSON."""
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    table = tables.metadata.tables[name]
-    rows = [dict(row._mapping) for row in connection.execute(select(table))]
-    columns = {
-        column.name: [
-            json.dumps(row[column.name]) if isinstance(row[column.name], dict | list) else row[column.name]
-            for row in rows
-        ]
-        for column in table.columns
-    }
-    buffer = io.BytesIO()
-    pq.write_table(pa.table(columns), buffer)
-    return buffer.getvalue()

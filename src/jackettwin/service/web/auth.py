@@ -20,7 +20,7 @@ from jackettwin.errors import InputError
 from jackettwin.service.login_attempts import LoginAttempts
 from jackettwin.service.settings import ServiceSettings, is_loopback
 from jackettwin.service.web.problems import ApiError
-from jackettwin.store import people, reading, writing
+from jackettwin.store import people, reading, rights, writing
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Service
@@ -58,10 +58,20 @@ class Who:
     role: str
     kind: str
     csrf: str = ""
+    assets: rights.Assets = None
 
     def may(self, role: str) -> bool:
         """Tell whether this role includes another one."""
         return people.ROLES.index(self.role) >= people.ROLES.index(role)
+
+    def sees(self, asset: str) -> bool:
+        """Tell whether an asset is one of those that this one may see."""
+        return self.assets is None or asset in self.assets
+
+    @property
+    def view(self) -> str:
+        """What tells this one's answers from those of somebody who sees other assets; empty who sees all."""
+        return "" if self.assets is None else people.secret_hash(repr(sorted(self.assets)))[:16]
 
 
 def hashed(password: str) -> str:
@@ -82,36 +92,68 @@ def hashed(password: str) -> str:
     return _hasher.hash(password)
 
 
-def checked_login(connection: Connection, name: str, password: str) -> people.User | None:
+def checked_login(connection: Connection, name: str, password: str, now: datetime) -> people.User | None:
     """Return the user whose password this is, or None; it takes as long for unknown names."""
     user = people.find_user(connection, name)
     try:
-        _hasher.verify(nobodys_hash() if user is None else user.password_hash, password)
+        _hasher.verify((user and user.password_hash) or nobodys_hash(), password)
     except (VerificationError, InvalidHashError):
         return None
-    return None if user is None or user.disabled else user
+    return None if user is None or not user.may_enter(now) else user
 
 
 def opened_session(
-    database: Engine, attempts: LoginAttempts, name: str, password: str, place: str, now: datetime
+    service: Service, name: str, password: str, new: str | None, place: str
 ) -> tuple[people.User, str, str]:
     """Return the user whose password this is, a session's secret and CSRF token; who tried is noted down.
+
+    A password that is older than the settings allow opens nothing but the way to another one.
 
     Raises
     ------
     ApiError
-        401 if it is nobody's, 429 after too many tries.
+        401 if it is nobody's, 403 if it is too old and none comes in its place, 429 after too many tries.
     """
-    limits = _counted(attempts, name, place)
+    limits, now, database = _counted(service.login_attempts, name, place), service.now(), service.database
     with reading(database) as connection:  # it takes its time, and guesses must not hold up those who write
-        user = checked_login(connection, name, password)
+        user = checked_login(connection, name, password, now)
+    old = user is not None and _is_old(user, service.settings.password_days, now)
+    replacement = hashed(_another(password, new)) if user is not None and new is not None else None
+    entered = user is not None and (not old or replacement is not None)
+    outcome = "ok" if entered else "expired" if old else "refused"
     with writing(database) as connection:
-        people.note_down(connection, name, "login", place, "ok" if user else "refused", now)
-        grant = ("", "") if user is None else new_grant(connection, name, "session", "browser", now, SESSION)
+        people.note_down(connection, name, "login", place, outcome, now)
+        if entered and replacement is not None:
+            people.change_password(connection, name, replacement, now)
+            people.note_down(connection, name, "password", place, "ok", now)
+        grant = new_grant(connection, name, "session", "browser", now, SESSION) if entered else ("", "")
     if user is None:
         raise ApiError(401, "name or password is wrong")
-    attempts.succeeded(limits)
+    service.login_attempts.succeeded(limits)
+    if not entered:
+        remedy = "log in with `new`, the password to have instead"
+        raise ApiError(403, "the password has expired", field="new", remedy=remedy)
     return user, *grant
+
+
+def _is_old(user: people.User, days: float | None, now: datetime) -> bool:
+    """Tell whether a password was set longer ago than it may be used; of an unknown time it counts as old."""
+    if days is None:
+        return False
+    return user.password_utc is None or user.password_utc < now - timedelta(days=days)
+
+
+def in_words(user: people.User) -> str:
+    """Return what a user may, as the audit log says it."""
+    scope = "" if user.scope is None else f" of {', '.join(user.scope)}"
+    until = "" if user.expires_utc is None else f" until {user.expires_utc:%Y-%m-%d}"
+    return f"{user.role}{scope}{until}"
+
+
+def _another(old: str, new: str) -> str:
+    if new == old:
+        raise ApiError(422, "this is the old password again", field="new", allowed="another one")
+    return new
 
 
 def _counted(attempts: LoginAttempts, name: str, place: str) -> dict[str, int]:
@@ -134,12 +176,12 @@ def change_password(service: Service, name: str, old: str, new: str, place: str,
     """
     limits, now = _counted(service.login_attempts, name, place), service.now()
     with reading(service.database) as connection:
-        right = checked_login(connection, name, old) is not None
-    replacement = hashed(new) if right else ""
+        right = checked_login(connection, name, old, now) is not None
+    replacement = hashed(_another(old, new)) if right else ""
     with writing(service.database) as connection:
         people.note_down(connection, name, "password", place, "ok" if right else "refused", now)
         if right:
-            people.change_password(connection, name, replacement, secret)
+            people.change_password(connection, name, replacement, now, but=secret)
     if not right:
         raise ApiError(403, "the old password is wrong", field="old")
     service.login_attempts.succeeded(limits)
@@ -179,10 +221,12 @@ def who_asks(request: Request, database: Engine, settings: ServiceSettings, now:
             found = people.find_grant(connection, secret or "", now)
             if found is None or found.kind != kind:
                 return None
-            return Who(found.user, found.role, kind, found.csrf if kind == "session" else "")
+            seen = rights.visible(connection, found.scope)
+            return Who(found.user, found.role, kind, found.csrf if kind == "session" else "", seen)
         if settings.trusted_header and settings.trusts(request.state.peer):
             user = people.find_user(connection, request.headers.get(settings.trusted_header, ""))
-            return Who(user.name, user.role, "proxy") if user and not user.disabled else None
+            if user is not None and user.may_enter(now):
+                return Who(user.name, user.role, "proxy", assets=rights.visible(connection, user.scope))
     return None
 
 
@@ -202,7 +246,11 @@ def too_little(who: Who, role: str) -> ApiError:
 
 
 def allowed(role: str) -> Callable[..., Awaitable[Who]]:
-    """Return the dependency of a route that asks for a role."""
+    """Return the dependency of a route that asks for a role.
+
+    If its path names an asset, it asks for the right to see that one, too: one that may not be seen is not
+    told from one that there is not.
+    """
 
     async def check(request: Request) -> Who:
         who: Who | None = request.state.who
@@ -210,6 +258,9 @@ def allowed(role: str) -> Callable[..., Awaitable[Who]]:
             raise unknown()
         if not who.may(role):
             raise too_little(who, role)
+        asset = request.path_params.get("asset")
+        if asset is not None and not who.sees(asset):
+            raise ApiError(404, "no such asset or version", field="asset", value=asset)
         return who
 
     check.role = role  # type: ignore[attr-defined]  # read by the test that walks over all routes

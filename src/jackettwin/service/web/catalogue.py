@@ -13,7 +13,7 @@ from jackettwin.service import workers
 from jackettwin.service.intake.examination import examined
 from jackettwin.service.web.schemas import AssetOut, VersionOut
 from jackettwin.service.work.consequences import ask_known
-from jackettwin.store import assets, journal, people, reading, records, results, work, writing
+from jackettwin.store import assets, journal, people, reading, records, results, rights, work, writing
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Place
@@ -138,13 +138,23 @@ def archive(connection: Connection, service: Place, name: str, by: str, *, undo:
     journal.tell(connection, "asset", name, {"archived": not undo}, service.now())
 
 
-def overview(connection: Connection, name: str | None = None, *, archived: bool = False) -> list[AssetOut]:
-    """Return the assets, the archived ones, or one, with status, by the same few queries however many."""
+def overview(
+    connection: Connection,
+    name: str | None = None,
+    *,
+    archived: bool = False,
+    seen: rights.Assets = None,
+) -> list[AssetOut]:
+    """Return the assets that somebody may see, the archived ones, or one, with status.
+
+    It takes the same few queries however many there are.
+    """
     counts, said = records.count_by_status(connection, name), results.count_findings(connection, name)
     unseen = results.unacknowledged_alarms(connection, name)
     return [
         _asset_out(row, counts.get(row.name, {}), said.get(row.name, {}), unseen.get(row.name, 0))
         for row in assets.summaries(connection, name, archived=archived)
+        if seen is None or row.name in seen
     ]
 
 

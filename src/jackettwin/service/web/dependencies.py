@@ -93,7 +93,8 @@ def read_version(request: Request, service: Parts, connection: Reads) -> Connect
     before the answer: an event between the two makes a new version, and the next answer is made anew.
     """
     version = journal.last_event(connection, request.path_params.get("asset"))
-    headers = _tagged(f'W/"{service.server_id}-{version}"')
+    who: Who = request.state.who
+    headers = _tagged(f'W/"{service.server_id}-{version}{who.view and "-" + who.view}"')
     if has_tag(request.headers.get("if-none-match"), headers["ETag"]):
         raise HTTPException(304, headers=headers)
     known = service.answers.find(_question(request), version)
@@ -157,7 +158,7 @@ def _by_content(request: Request, response: Response) -> Response:
 
 
 def _question(request: Request) -> str:
-    return f"{request.url.path}?{request.url.query}"
+    return f"{request.url.path}?{request.url.query} {request.state.who.view}"
 
 
 def _tagged(tag: str) -> dict[str, str]:
@@ -186,9 +187,9 @@ def known_version(connection: Connection, name: str, version: int | None) -> ass
         raise ApiError(404, error.problem, field=error.field, value=str(error.value)) from None
 
 
-def known_record(connection: Connection, record_id: str) -> records.StoredRecord:
-    """Return a record by its number; answers 404 if there is none."""
-    found = records.records_with_id(connection, record_id)
+def known_record(connection: Connection, record_id: str, who: Who) -> records.StoredRecord:
+    """Return a record by its number, of an asset that may be seen; answers 404 if there is none."""
+    found = [record for record in records.records_with_id(connection, record_id) if who.sees(record.asset)]
     if not found:
         raise ApiError(404, "no such record", field="record_id", value=record_id)
     return found[0]

@@ -8,7 +8,7 @@ from prometheus_client import CollectorRegistry, Gauge, generate_latest
 from sqlalchemy.exc import SQLAlchemyError
 
 from jackettwin.service.web.schemas import Ready
-from jackettwin.store import assets, reading, records, results, work
+from jackettwin.store import assets, reading, records, results, rights, work
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Service
@@ -28,8 +28,8 @@ def readiness(service: Service) -> Ready:
     return Ready(ready=ready, database=database, workers=workers, broker=broker, free_bytes=free)
 
 
-def exposition(service: Service) -> bytes:
-    """Return all measures as text."""
+def exposition(service: Service, seen: rights.Assets = None) -> bytes:
+    """Return all measures of the server, and of the assets that somebody may see, as text."""
     registry, now = CollectorRegistry(), service.now()
 
     def gauge(name: str, text: str, value: float, **labels: str) -> None:
@@ -39,17 +39,17 @@ def exposition(service: Service) -> bytes:
         (made.labels(**labels) if labels else made).set(value)
 
     with reading(service.database) as connection:
-        for state, n in work.queue_sizes(connection).items():
+        for state, n in work.queue_sizes(connection, seen).items():
             gauge("work", "Pieces of work by state", n, state=state)
         oldest = work.oldest_queued(connection)
-        for name, counts in records.count_by_status(connection).items():
+        for name, counts in _seen(records.count_by_status(connection), seen):
             for status, n in counts.items():
                 gauge("records", "Records by asset and status", n, asset=name, status=status)
-        for name, said in results.count_findings(connection).items():
+        for name, said in _seen(results.count_findings(connection), seen):
             for severity, n in said.items():
                 gauge("findings", "Findings by asset and severity", n, asset=name, severity=severity)
         for asset in assets.summaries(connection):
-            if asset.last_record_utc is not None:
+            if asset.last_record_utc is not None and (seen is None or asset.name in seen):
                 age = (now - asset.last_record_utc).total_seconds()
                 gauge("last_record_age_seconds", "Time since the latest record began", age, asset=asset.name)
     waited = 0.0 if oldest is None else max((now - oldest).total_seconds(), 0.0)
@@ -66,3 +66,7 @@ def exposition(service: Service) -> bytes:
         gauge("broker_connected", "Whether the MQTT broker answers", float(broker))
         gauge("packets_refused_total", "Packets that could not be kept", service.packets_refused())
     return generate_latest(registry)
+
+
+def _seen(counts: dict[str, dict[str, int]], seen: rights.Assets) -> list[tuple[str, dict[str, int]]]:
+    return [(name, of) for name, of in counts.items() if seen is None or name in seen]

@@ -11,9 +11,17 @@ from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from jackettwin.service.web import auth, catalogue
-from jackettwin.service.web.dependencies import AssetName, Reads, Route, known_asset, known_version
+from jackettwin.service.web.dependencies import (
+    Asker,
+    AssetName,
+    Parts,
+    Reads,
+    Route,
+    known_asset,
+    known_version,
+)
 from jackettwin.service.web.problems import ApiError, answers
-from jackettwin.store import results
+from jackettwin.store import people, results, writing
 
 router = APIRouter(include_in_schema=False, route_class=Route)
 
@@ -37,7 +45,7 @@ def home(request: Request, connection: Reads) -> Response:
         return RedirectResponse("/login")
     page = _templates.get_template("home.html.j2")
     who = request.state.who
-    return HTMLResponse(page.render(assets=catalogue.overview(connection), who=who))
+    return HTMLResponse(page.render(assets=catalogue.overview(connection, seen=who.assets), who=who))
 
 
 @router.get("/login")
@@ -55,7 +63,9 @@ def asset_page(asset: AssetName, connection: Reads) -> HTMLResponse:
 
 
 @router.get("/assets/{asset}/report", dependencies=[auth.VIEWER], responses=answers(401, 404))
-def report(asset: AssetName, connection: Reads, version: int | None = None) -> Response:
+def report(
+    asset: AssetName, who: Asker, parts: Parts, connection: Reads, version: int | None = None
+) -> Response:
     """The newest report on a turbine, as ``jackettwin run`` writes it, of all records in the store.
 
     It brings its own scripts; in a sandbox they can reach nothing of ours, whatever a twin file is called.
@@ -64,6 +74,10 @@ def report(asset: AssetName, connection: Reads, version: int | None = None) -> R
     page = results.find_report(connection, asset, known.version)
     if page is None:
         raise ApiError(404, "no report yet: it is written when no record waits", field="asset", value=asset)
+    with writing(parts.database) as noting:
+        people.note_down(
+            noting, who.name, "download", f"report of {asset}/{known.version}", "ok", parts.now()
+        )
     return HTMLResponse(gzip.decompress(page), headers=_SANDBOX)
 
 

@@ -24,6 +24,12 @@ class Login(BaseModel):
 
     name: str = Field(max_length=64)
     password: str = Field(max_length=1024)
+    new: str | None = Field(
+        default=None,
+        min_length=12,
+        max_length=1024,
+        description="The password to have instead, asked for once this one has expired.",
+    )
 
 
 class Me(BaseModel):
@@ -39,7 +45,26 @@ class NewUser(BaseModel):
 
     name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._@-]{0,63}$")
     role: Literal["viewer", "engineer", "admin"]
-    password: str = Field(min_length=12, max_length=1024)
+    password: str | None = Field(
+        default=None, min_length=12, max_length=1024, description="Without one the user logs in by OIDC."
+    )
+    assets: list[str] | None = Field(
+        default=None, max_length=10_000, description="Those it may see, groups as @NAME; null for all."
+    )
+    expires_utc: AwareDatetime | None = Field(default=None, ge=_FIRST, le=_LAST)
+
+
+class GroupIn(BaseModel):
+    """The assets of a group."""
+
+    assets: list[str] = Field(max_length=10_000)
+
+
+class GroupOut(BaseModel):
+    """A group of assets."""
+
+    name: str
+    assets: list[str]
 
 
 class UserOut(BaseModel):
@@ -49,6 +74,8 @@ class UserOut(BaseModel):
     role: Literal["viewer", "engineer", "admin"]
     created_utc: datetime
     disabled: bool
+    assets: list[str] | None = None
+    expires_utc: datetime | None = None
 
 
 class NewPassword(BaseModel):

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from jackettwin.arrays import FloatArray
     from jackettwin.records import Record
     from jackettwin.service.context import Service
+    from jackettwin.service.web.auth import Who
 
 _SEGMENT_S = 60.0
 """Length of a segment of the spectra: 1/60 Hz shows a mode of 0.2 Hz."""
@@ -46,12 +47,12 @@ def record_out(record: StoredRecord) -> RecordOut:
     return RecordOut(**known, raw_kept=record.waveform is not None)
 
 
-def samples(service: Service, record_id: str) -> Record:
+def samples(service: Service, record_id: str, who: Who) -> Record:
     """Return the samples of a record; answers 404 if they are not kept any more."""
     from jackettwin.store import read_waveform
 
     with reading(service.database) as connection:
-        record = known_record(connection, record_id)
+        record = known_record(connection, record_id, who)
     path = None if record.waveform is None else service.settings.store / record.waveform
     if path is None or not path.exists():
         raise ApiError(404, "the samples of this record are not kept any more", field="record_id")

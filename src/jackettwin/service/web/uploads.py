@@ -23,6 +23,7 @@ from jackettwin.store import assets, journal, people, reading, records, work, wr
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Service
+    from jackettwin.service.web.auth import Who
 
 _PIECE = 1 << 20
 _DESCRIPTION_BYTES = 2**20
@@ -115,10 +116,10 @@ def take_conditions(
     return Taken(count=count, observed_again=again)
 
 
-def stabilisation(service: Service, record_id: str) -> StabilisationOut:
+def stabilisation(service: Service, record_id: str, who: Who) -> StabilisationOut:
     """Return the poles of every model order of a record."""
     with reading(service.database) as connection:
-        record = known_record(connection, record_id)
+        record = known_record(connection, record_id, who)
         if record.waveform is None:
             raise ApiError(404, "the samples of this record are not kept any more", field="record_id")
         folder = twin_folder(connection, service, record.asset)

@@ -38,9 +38,9 @@ router = APIRouter(tags=["assets"], route_class=Route)
 
 
 @router.get("/assets", dependencies=[auth.VIEWER], responses=answers(401, 422))
-def list_assets(connection: Told, archived: bool = False) -> Page[AssetOut]:
+def list_assets(who: Asker, connection: Told, archived: bool = False) -> Page[AssetOut]:
     """List the assets, or the archived ones, with their status, last data and findings."""
-    return Page(items=catalogue.overview(connection, archived=archived))
+    return Page(items=catalogue.overview(connection, archived=archived, seen=who.assets))
 
 
 @router.post(
@@ -51,6 +51,8 @@ def list_assets(connection: Told, archived: bool = False) -> Page[AssetOut]:
 )
 def add_asset(body: NewAsset, who: Asker, parts: Parts) -> AssetOut:
     """Add an asset with its twin file and the files that this one names; a worker evaluates it."""
+    if who.assets is not None:
+        raise ApiError(403, f"{who.name} sees some assets only, and a new one is none of them")
 
     def is_new(connection: Connection) -> None:
         if body.name in assets.asset_names(connection):

@@ -12,7 +12,7 @@ from prometheus_client import CONTENT_TYPE_LATEST
 from sse_starlette import EventSourceResponse, ServerSentEvent
 
 from jackettwin.service.web import auth, metrics
-from jackettwin.service.web.dependencies import Parts, Route
+from jackettwin.service.web.dependencies import Asker, Parts, Route
 from jackettwin.service.web.problems import answers
 from jackettwin.service.web.schemas import Health, Ready
 from jackettwin.version import __version__
@@ -43,9 +43,9 @@ def ready(parts: Parts, response: Response) -> Ready:
     response_class=Response,
     responses={200: {"content": {"text/plain": {}}}, **answers(401)},
 )
-def prometheus(parts: Parts) -> Response:
+def prometheus(who: Asker, parts: Parts) -> Response:
     """Return what an operator can alarm on: queue age, records late, restarts of workers, disk."""
-    return Response(metrics.exposition(parts), media_type=CONTENT_TYPE_LATEST)
+    return Response(metrics.exposition(parts, who.assets), media_type=CONTENT_TYPE_LATEST)
 
 
 @router.get(
@@ -55,9 +55,12 @@ def prometheus(parts: Parts) -> Response:
     responses={200: {"content": {"text/event-stream": {}}}, **answers(401, 422)},
 )
 async def events(
-    request: Request, parts: Parts, last_event_id: Annotated[str | None, Header(max_length=20)] = None
+    request: Request,
+    who: Asker,
+    parts: Parts,
+    last_event_id: Annotated[str | None, Header(max_length=20)] = None,
 ) -> EventSourceResponse:
-    """Stream what happens: record, observation, state, finding, job.
+    """Stream what happens to the assets that may be seen: record, observation, state, finding, job.
 
     A reader that comes back with the last number misses nothing. It must, now and then: the stream ends, so
     that somebody whose session or token has ended is not told for ever.
@@ -67,6 +70,8 @@ async def events(
     async def stream() -> AsyncIterator[ServerSentEvent]:
         yield ServerSentEvent(id=str(start))
         async for event in parts.feed.follow(start, _TOLD_S):
+            if not who.sees(event.asset):
+                continue
             payload = {"asset": event.asset, "time_utc": event.time_utc.isoformat(), **event.payload}
             yield ServerSentEvent(json.dumps(payload), event=event.kind, id=str(event.id))
             if await request.is_disconnected():

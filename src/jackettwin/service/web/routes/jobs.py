@@ -5,8 +5,10 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Path, Query
+from sqlalchemy import Connection
 
 from jackettwin.service.web import auth
+from jackettwin.service.web.auth import Who
 from jackettwin.service.web.dependencies import Asker, Parts, Reads, Route, Writes
 from jackettwin.service.web.problems import ApiError, answers
 from jackettwin.service.web.schemas import JobOut, Page
@@ -21,21 +23,22 @@ State = Literal["queued", "leased", "done", "failed", "set_aside", "cancelled"]
 
 @router.get("/jobs", dependencies=[auth.VIEWER], responses=answers(401, 422))
 def list_jobs(
+    who: Asker,
     connection: Reads,
     state: State | None = None,
     cursor: Annotated[int | None, Query(ge=1, le=2**53)] = None,
     limit: Annotated[int, Query(ge=1, le=1000)] = 100,
 ) -> Page[JobOut]:
     """List work, newest first."""
-    found = work.list_jobs(connection, state=state, before=cursor, limit=limit + 1)
+    found = work.list_jobs(connection, state=state, before=cursor, limit=limit + 1, seen=who.assets)
     more = str(found[limit - 1].id) if len(found) > limit else None
     return Page(items=[_out(job) for job in found[:limit]], next_cursor=more)
 
 
 @router.get("/jobs/{job_id}", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def get_job(job_id: JobId, connection: Reads) -> JobOut:
+def get_job(job_id: JobId, who: Asker, connection: Reads) -> JobOut:
     """Return a piece of work."""
-    return _out(_found(work.find_job(connection, job_id), job_id))
+    return _out(_found(connection, job_id, who))
 
 
 @router.post(
@@ -43,27 +46,28 @@ def get_job(job_id: JobId, connection: Reads) -> JobOut:
 )
 def cancel(job_id: JobId, who: Asker, parts: Parts, connection: Writes) -> JobOut:
     """Cancel work that is not done; its record is set aside until it is tried again."""
-    job = _found(work.find_job(connection, job_id), job_id)
+    job = _found(connection, job_id, who)
     if not consequences.cancel(connection, parts, job, who.name):
         raise ApiError(409, f"this work is {job.state} already")
-    return _out(_found(work.find_job(connection, job_id), job_id))
+    return _out(_found(connection, job_id, who))
 
 
 @router.post("/jobs/{job_id}/retry", dependencies=[auth.ENGINEER], responses=answers(401, 403, 404, 409, 422))
 def retry(job_id: JobId, who: Asker, parts: Parts, connection: Writes) -> JobOut:
     """Try work again that was set aside, failed or was cancelled."""
-    job = _found(work.find_job(connection, job_id), job_id)
+    job = _found(connection, job_id, who)
     if not work.try_again(connection, job_id, parts.now()):
         raise ApiError(409, f"this work is {job.state} already")
     records.set_status(connection, job.asset, job.record_id, "received")
     people.note_down(connection, who.name, "retry", str(job_id), "ok", parts.now())
     journal.tell(connection, "job", job.asset, {"job_id": job_id, "state": "queued"}, parts.now())
     parts.wake()
-    return _out(_found(work.find_job(connection, job_id), job_id))
+    return _out(_found(connection, job_id, who))
 
 
-def _found(job: work.Job | None, job_id: int) -> work.Job:
-    if job is None:
+def _found(connection: Connection, job_id: int, who: Who) -> work.Job:
+    job = work.find_job(connection, job_id)
+    if job is None or not who.sees(job.asset):
         raise ApiError(404, "no such job", field="job_id", value=str(job_id))
     return job
 

@@ -6,9 +6,13 @@ from datetime import datetime
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query, Response
+from fastapi.responses import StreamingResponse
 
+from jackettwin.service.context import Service
 from jackettwin.service.web import answers as said, auth, signals
+from jackettwin.service.web.auth import Who
 from jackettwin.service.web.dependencies import (
+    WAITING,
     Asker,
     AssetName,
     Parts,
@@ -30,13 +34,29 @@ from jackettwin.service.web.schemas import (
     SensitivityOut,
     TwinOut,
 )
-from jackettwin.store import journal, people, results
+from jackettwin.store import journal, people, results, writing
+from jackettwin.store.export import exported
 
 router = APIRouter(tags=["answers"], route_class=Route)
 
 Cursor = Annotated[str | None, Query(max_length=500)]
 Limit = Annotated[int, Query(ge=1, le=10_000)]
 AnyVersion = Annotated[int | None, Query(ge=1, le=1_000_000, description="Default: the adopted one.")]
+Exported = Literal[
+    "modes",
+    "findings",
+    "records",
+    "observations",
+    "states",
+    "conditions",
+    "knowledge",
+    "versions",
+    "assets",
+    "work",
+    "handling",
+    "acknowledgements",
+]
+_PARQUET, _ARROW = "application/vnd.apache.parquet", "application/vnd.apache.arrow.stream"
 When = Annotated[datetime | None, Query(description="The state as it was then; default: now.")]
 
 
@@ -134,7 +154,7 @@ def acknowledge(
 ) -> AlarmOut:
     """Note that somebody took note of an alarm."""
     row = results.find_finding(connection, alarm_id)
-    if row is None or row["severity"] != "alarm":
+    if row is None or row["severity"] != "alarm" or not who.sees(row["asset"]):
         raise ApiError(404, "no such alarm", field="alarm_id", value=str(alarm_id))
     results.acknowledge(connection, row, who.name, body.comment, parts.now())
     people.note_down(connection, who.name, "acknowledge", results.alarm_key(row), "ok", parts.now())
@@ -146,11 +166,28 @@ def acknowledge(
 
 @router.get(
     "/export.parquet",
-    tags=["answers"],
-    dependencies=[auth.VIEWER],
+    dependencies=[auth.VIEWER, WAITING],
     response_class=Response,
-    responses={200: {"content": {"application/vnd.apache.parquet": {}}}, **answers(401, 422)},
+    responses={200: {"content": {_PARQUET: {}}}, **answers(401, 422)},
 )
-def export(connection: Told, table: Literal["modes", "findings", "records"] = "modes") -> Response:
-    """Return a whole table as Parquet."""
-    return Response(said.as_parquet(connection, table), media_type="application/vnd.apache.parquet")
+def export(who: Asker, parts: Parts, table: Exported = "modes") -> StreamingResponse:
+    """Return a whole table, of the assets that may be seen, as Parquet."""
+    return _exported(who, parts, table, _PARQUET)
+
+
+@router.get(
+    "/export.arrow",
+    dependencies=[auth.VIEWER, WAITING],
+    response_class=Response,
+    responses={200: {"content": {_ARROW: {}}}, **answers(401, 422)},
+)
+def export_arrow(who: Asker, parts: Parts, table: Exported = "modes") -> StreamingResponse:
+    """Return a whole table, of the assets that may be seen, as a stream of Arrow."""
+    return _exported(who, parts, table, _ARROW)
+
+
+def _exported(who: Who, parts: Service, table: str, form: str) -> StreamingResponse:
+    with writing(parts.database) as connection:
+        people.note_down(connection, who.name, "download", f"table {table}", "ok", parts.now())
+    pieces = exported(parts.database, table, who.assets, arrow=form == _ARROW)
+    return StreamingResponse(pieces, media_type=form)

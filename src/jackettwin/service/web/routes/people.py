@@ -8,10 +8,12 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request, Response
 
 from jackettwin.service.web import auth
-from jackettwin.service.web.dependencies import CONNECTED, Asker, Parts, Reads, Route, Writes
+from jackettwin.service.web.dependencies import CONNECTED, Asker, AssetName, Parts, Reads, Route, Writes
 from jackettwin.service.web.problems import ApiError, answers
 from jackettwin.service.web.schemas import (
     AuditOut,
+    GroupIn,
+    GroupOut,
     Login,
     Me,
     NewPassword,
@@ -21,7 +23,7 @@ from jackettwin.service.web.schemas import (
     Token,
     UserOut,
 )
-from jackettwin.store import people
+from jackettwin.store import people, rights
 
 router = APIRouter(tags=["people"], route_class=Route)
 
@@ -30,8 +32,7 @@ router = APIRouter(tags=["people"], route_class=Route)
 def login(body: Login, request: Request, response: Response, parts: Parts) -> Me:
     """Open a session: its cookie is set, and the CSRF token of what it changes is answered."""
     place = request.client.host if request.client else "?"
-    attempts, now = parts.login_attempts, parts.now()
-    user, secret, csrf = auth.opened_session(parts.database, attempts, body.name, body.password, place, now)
+    user, secret, csrf = auth.opened_session(parts, body.name, body.password, body.new, place)
     lasts = int(auth.SESSION.total_seconds())
     secure = parts.settings.secure
     response.set_cookie(auth.COOKIE, secret, max_age=lasts, httponly=True, samesite="strict", secure=secure)
@@ -82,17 +83,36 @@ def audit(
 @router.get("/users", dependencies=[auth.ADMIN], responses=answers(401, 403))
 def users(connection: Reads) -> Page[UserOut]:
     """List the users."""
-    items = [UserOut.model_validate(user, from_attributes=True) for user in people.list_users(connection)]
-    return Page(items=items)
+    return Page(items=[_out(user) for user in people.list_users(connection)])
 
 
 @router.post("/users", status_code=201, dependencies=[auth.ADMIN], responses=answers(400, 401, 403, 422))
 def add_user(body: NewUser, who: Asker, parts: Parts, connection: Writes) -> UserOut:
     """Add a user, or give one another role and password."""
-    user = people.User(body.name, body.role, auth.hashed(body.password), parts.now())
+    now = parts.now()
+    scope = None if body.assets is None else rights.checked_scope(connection, body.assets)
+    password = "" if body.password is None else auth.hashed(body.password)
+    user = people.User(
+        body.name, body.role, password, now, scope=scope, expires_utc=body.expires_utc, password_utc=now
+    )
     people.add_user(connection, user)
-    people.note_down(connection, who.name, "user add", body.name, body.role, parts.now())
-    return UserOut.model_validate(user, from_attributes=True)
+    people.note_down(connection, who.name, "user add", body.name, auth.in_words(user), now)
+    return _out(user)
+
+
+@router.get("/groups", dependencies=[auth.ADMIN], responses=answers(401, 403))
+def groups(connection: Reads) -> Page[GroupOut]:
+    """List the groups of assets by which users are given rights."""
+    found = rights.groups(connection).items()
+    return Page(items=[GroupOut(name=name, assets=members) for name, members in found])
+
+
+@router.put("/groups/{group}", dependencies=[auth.ADMIN], responses=answers(400, 401, 403, 422))
+def put_group(group: AssetName, body: GroupIn, who: Asker, parts: Parts, connection: Writes) -> GroupOut:
+    """Say which assets a group has; without any it is gone."""
+    members = rights.put_group(connection, group, body.assets)
+    people.note_down(connection, who.name, "group", f"{group}: {', '.join(members)}", "ok", parts.now())
+    return GroupOut(name=group, assets=members)
 
 
 @router.post(
@@ -106,3 +126,14 @@ def add_token(body: NewToken, who: Asker, parts: Parts, connection: Writes) -> T
     secret, _ = auth.new_grant(connection, who.name, "token", body.label, parts.now(), lasts)
     people.note_down(connection, who.name, "token add", body.label, "ok", parts.now())
     return Token(token=secret, expires_utc=parts.now() + lasts)
+
+
+def _out(user: people.User) -> UserOut:
+    return UserOut(
+        name=user.name,
+        role=user.role,  # type: ignore[arg-type]
+        created_utc=user.created_utc,
+        disabled=user.disabled,
+        assets=user.scope,
+        expires_utc=user.expires_utc,
+    )

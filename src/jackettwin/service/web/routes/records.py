@@ -32,7 +32,7 @@ from jackettwin.service.web.schemas import (
     StabilisationOut,
 )
 from jackettwin.service.work import consequences
-from jackettwin.store import people, records
+from jackettwin.store import people, records, writing
 
 router = APIRouter(tags=["records"], route_class=Route)
 
@@ -95,9 +95,9 @@ def list_records(
 
 
 @router.get("/records/{record_id}", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def get_record(record_id: RecordId, connection: Told) -> RecordOut:
+def get_record(record_id: RecordId, who: Asker, connection: Told) -> RecordOut:
     """Return a record and how far it got."""
-    return signals.record_out(known_record(connection, record_id))
+    return signals.record_out(known_record(connection, record_id, who))
 
 
 @router.get(
@@ -111,6 +111,7 @@ def get_record(record_id: RecordId, connection: Told) -> RecordOut:
 )
 def signal(
     record_id: RecordId,
+    who: Asker,
     parts: Parts,
     channels: Annotated[list[str] | None, Query(max_length=100)] = None,
     since: Annotated[float, Query(alias="from", ge=0.0, le=1e9)] = 0.0,
@@ -119,8 +120,10 @@ def signal(
     accept: Annotated[str, Header()] = "application/json",
 ) -> Any:
     """Return the extremes of each bin of time [s after the start], as JSON or Arrow."""
-    found = signals.extremes(signals.samples(parts, record_id), channels, since, until, points)
+    found = signals.extremes(signals.samples(parts, record_id, who), channels, since, until, points)
     if "application/vnd.apache.arrow.stream" in accept:
+        with writing(parts.database) as connection:
+            people.note_down(connection, who.name, "download", f"samples of {record_id}", "ok", parts.now())
         return Response(signals.as_arrow(found), media_type="application/vnd.apache.arrow.stream")
     return found
 
@@ -128,9 +131,9 @@ def signal(
 @router.get(
     "/records/{record_id}/spectrum", dependencies=[auth.VIEWER, WAITING], responses=answers(401, 404, 422)
 )
-def spectrum(record_id: RecordId, parts: Parts) -> Spectra:
+def spectrum(record_id: RecordId, who: Asker, parts: Parts) -> Spectra:
     """Return the power spectral densities of a record's channels."""
-    return signals.spectra(signals.samples(parts, record_id))
+    return signals.spectra(signals.samples(parts, record_id, who))
 
 
 @router.get(
@@ -138,9 +141,9 @@ def spectrum(record_id: RecordId, parts: Parts) -> Spectra:
     dependencies=[auth.VIEWER, WAITING],
     responses=answers(401, 404, 422, 503),
 )
-def stabilisation(record_id: RecordId, parts: Parts) -> StabilisationOut:
+def stabilisation(record_id: RecordId, who: Asker, parts: Parts) -> StabilisationOut:
     """Return the poles of every model order, computed anew by a worker."""
-    return uploads.stabilisation(parts, record_id)
+    return uploads.stabilisation(parts, record_id, who)
 
 
 @router.put(
@@ -151,7 +154,7 @@ def stabilisation(record_id: RecordId, parts: Parts) -> StabilisationOut:
 )
 def picks(record_id: RecordId, body: PicksIn, who: Asker, parts: Parts, connection: Writes) -> RecordAccepted:
     """Choose the poles of a record by hand; it is identified again, and who chose when is kept."""
-    record = known_record(connection, record_id)
+    record = known_record(connection, record_id, who)
     if record.waveform is None:
         raise ApiError(404, "the samples of this record are not kept any more", field="record_id")
     job_id = uploads.pick(connection, parts, record, body, who.name)
@@ -167,7 +170,7 @@ def set_aside(
     record_id: RecordId, body: Acknowledgement, who: Asker, parts: Parts, connection: Writes
 ) -> RecordOut:
     """Take back what a record gave rise to, on a person's word; trying its job again brings it back."""
-    asset = known_record(connection, record_id).asset
+    asset = known_record(connection, record_id, who).asset
     consequences.set_aside(connection, parts, asset, record_id, f"{body.comment} ({who.name})")
     people.note_down(connection, who.name, "set aside", f"{asset}/{record_id}", "ok", parts.now())
-    return signals.record_out(known_record(connection, record_id))
+    return signals.record_out(known_record(connection, record_id, who))

@@ -1,0 +1,115 @@
+"""Tables of a store for other programs, as Parquet or an Arrow stream, some rows at a time."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from sqlalchemy import JSON, BigInteger, Boolean, Column, Engine, Float, Integer, LargeBinary, Table, select
+
+from jackettwin.store import tables
+from jackettwin.store.database import reading
+from jackettwin.store.rights import Assets, among
+from jackettwin.store.tables import Packed, Utc
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+EXPORTED = (
+    "modes",
+    "findings",
+    "records",
+    "observations",
+    "states",
+    "conditions",
+    "knowledge",
+    "versions",
+    "assets",
+    "work",
+    "handling",
+    "acknowledgements",
+)
+"""Tables of whose every row it is known which asset it is of; the first is what is asked for most."""
+_ROWS = 5000
+"""Rows in memory at once, and in a group of rows of the file."""
+
+
+def exported(database: Engine, name: str, seen: Assets, *, arrow: bool = False) -> Iterator[bytes]:
+    """Yield a table of the assets that somebody may see, piece by piece.
+
+    Parameters
+    ----------
+    name : of :data:`EXPORTED`; times are UTC, nested values JSON, and bundles and pages are left out
+    arrow : as a stream of Arrow (IPC) instead of a Parquet file
+    """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    table = tables.metadata.tables[name]
+    columns = [c for c in table.columns if not isinstance(c.type, LargeBinary)]
+    schema = pa.schema([(c.name, _arrow_type(c)) for c in columns])
+    sink = _Pieces()
+    make = pa.ipc.new_stream if arrow else pq.ParquetWriter
+    with reading(database) as connection, make(sink, schema) as writer:
+        order = table.primary_key.columns
+        query = select(*columns).where(among(_asset_of(table), seen)).order_by(*order)
+        found = connection.execute(query.execution_options(yield_per=_ROWS))
+        for part in found.partitions():
+            rows = [{k: _plain(v) for k, v in row._mapping.items()} for row in part]
+            writer.write_table(pa.Table.from_pylist(rows, schema=schema))
+            yield sink.taken()
+    yield sink.taken()
+
+
+class _Pieces(io.RawIOBase):
+    """A file that is written from its beginning to its end, and handed on piece by piece."""
+
+    def __init__(self) -> None:
+        self._pieces: list[bytes] = []
+        self._at = 0
+
+    def writable(self) -> bool:
+        """Tell that it can be written."""
+        return True
+
+    def write(self, piece: Any) -> int:
+        """Take a piece."""
+        self._pieces.append(bytes(piece))
+        self._at += len(self._pieces[-1])
+        return len(self._pieces[-1])
+
+    def tell(self) -> int:
+        """Return how much was written."""
+        return self._at
+
+    def taken(self) -> bytes:
+        """Return what was written since the last time."""
+        pieces, self._pieces = self._pieces, []
+        return b"".join(pieces)
+
+
+def _asset_of(table: Table) -> Column[str]:
+    return table.c.name if table.name == "assets" else table.c.asset
+
+
+def _plain(value: Any) -> Any:
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, dict | list) else value
+
+
+def _arrow_type(column: Column[Any]) -> pa.DataType:
+    """Return what a column is in Arrow, whatever its rows hold, so that an empty table has types, too."""
+    import pyarrow as pa
+
+    kind = column.type
+    if isinstance(kind, Utc):
+        return pa.timestamp("us", tz="UTC")
+    if isinstance(kind, Float):
+        return pa.float64()
+    if isinstance(kind, Boolean):
+        return pa.bool_()
+    if isinstance(kind, BigInteger | Integer):
+        return pa.int64()
+    assert isinstance(kind, JSON | Packed) or kind.python_type is str
+    return pa.string()
