@@ -61,7 +61,13 @@ CATALOGUE: dict[str, Kind] = {
     "another_time": Kind(
         "alarm",
         "{channels}: the spectrum has the peaks of the other channels, but the samples match theirs at no "
-        "delay: not of the same minutes; left out if they are fewer than the others",
+        "delay: not of the same minutes{unless}; left out if they are fewer than the others",
+    ),
+    "direction_unknown": Kind(
+        "warning",
+        "{channels}: the spectrum has the peaks of the other channels, but the samples do not move with "
+        'theirs, and directions are not stated: do they point across? State "direction" of each channel in '
+        "the JSON beside the file; parallel channels would not be of the same minutes",
     ),
     "stored_backwards": Kind(
         "alarm", "{channels}: matches the other channels only if read from the end to the beginning; turned"

@@ -83,6 +83,8 @@ QUANTITIES: dict[str, Quantity] = {
     "other": Quantity("-", "other", "?"),
 }
 
+SILENT = ("velocity",)
+"""Vibrations that a unit alone tells although wind and current share it, if the name names neither."""
 VIBRATIONS = ("acceleration", "velocity", "displacement", "strain", "inclination")
 """Quantities of a structure's motion; the others describe its surroundings and operation."""
 
@@ -159,7 +161,7 @@ _WORDS = (
     ("rotor speed", ("rotspeed", "rotor_speed", "rotorspeed", "rotor speed")),
     ("pitch", ("bldpitch", "blpitch", "blade_pitch", "blade pitch")),
     ("wind direction", ("wind_dir", "winddir", "wind dir")),
-    ("wind speed", ("wind",)),
+    ("wind speed", ("wind", "anemo", "gust")),
     ("water level", ("level", "tide")),
     ("current speed", ("current",)),
     ("azimuth", ("azimuth",)),
@@ -178,7 +180,8 @@ def guess_quantity(name: str, unit: str) -> str:
     """Return the quantity that a channel's name and unit both allow, else ``"other"``.
 
     A unit that only one quantity has is enough; an unstated unit leaves vibrations to the name, and
-    so does a wrong one behind a name in ``acc…``, lest a typo hide an accelerometer.
+    so does a wrong one behind a name in ``acc…``, lest a typo hide an accelerometer. A speed is that of the
+    structure unless the name says otherwise.
 
     >>> guess_quantity("YawBrTAxp", "m/s^2"), guess_quantity("Wind1VelX", "m/s")
     ('acceleration', 'wind speed')
@@ -191,7 +194,12 @@ def guess_quantity(name: str, unit: str) -> str:
     both = [kind for kind in named if kind in allowed]
     if both:
         return both[0]
-    return allowed[0] if len(allowed) == 1 and unit != "1" else "other"
+    if unit == "1":
+        return "other"
+    if len(allowed) == 1:
+        return allowed[0]
+    moving = [kind for kind in allowed if kind in SILENT]
+    return moving[0] if moving and not named else "other"
 
 
 def unit_in_name(name: str, kind: str) -> str:

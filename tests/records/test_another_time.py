@@ -59,6 +59,39 @@ def test_a_channel_stored_backwards_is_named(row: int, tower: SimpleNamespace) -
     assert alarms(replace(record, data=data)) == [("stored_backwards", record.channel_names[row])]
 
 
+def test_directions_are_asked_for_before_a_clock_is_blamed(tower: SimpleNamespace) -> None:
+    """Crosswise channels of which nobody states the direction are named once, used, and not doubted."""
+    for seed in range(4):
+        record = without_directions(tower.record(seed))
+        quality = assess(record)
+        assert alarms(record) == []
+        (asked,) = [f for f in quality.findings if f.code == "direction_unknown"]
+        assert asked.severity == "warning"
+        assert sorted(str(asked.params["channels"]).split(", ")) in (
+            sorted(record.channel_names[:4]),
+            sorted(record.channel_names[4:]),
+        )
+        assert repair(record, quality).channel_names == record.channel_names
+
+
+def test_more_groups_than_directions_are_of_other_days(tower: SimpleNamespace) -> None:
+    """Three levels in four days: three directions explain three of them at most."""
+    days = [tower.record(seed) for seed in range(4)]
+    levels = [replace(c, direction=(0.0, 0.0, 0.0)) for c in days[0].channels[:3]]
+    channels = tuple(replace(c, name=f"{c.name}_{day}") for day in range(4) for c in levels)
+    mixed = replace(days[0], data=np.vstack([day.data[:3] for day in days]), channels=channels)
+    assert [code for code, _ in alarms(mixed)] == ["another_time"]
+    of_three = replace(mixed, data=mixed.data[:9], channels=channels[:9])
+    assert alarms(of_three) == []
+
+
+def test_channels_of_no_stated_place_are_blamed_with_the_remedy(tower: SimpleNamespace) -> None:
+    record = without_directions(tower.record(1))
+    nowhere = replace(record, channels=tuple(replace(c, height_m=None) for c in record.channels))
+    (blamed,) = [f for f in assess(nowhere).findings if f.code == "another_time"]
+    assert "state their directions" in blamed.text
+
+
 def test_a_channel_of_noise_is_no_stranger(tower: SimpleNamespace) -> None:
     """It has nothing in common with the others, nor their peaks."""
     rng = np.random.default_rng(5)

@@ -322,19 +322,30 @@ def _refuse_format(out: Path | None) -> None:
 def _print_one(document: Mapping[str, Any]) -> None:
     columns = (*_NUMBERS, TableColumn("MPC", "mpc", ".3f"), TableColumn("status", "status"))
     show_table(Table(", ".join(document["records"]), columns, document["modes"]))
-    for m in document["modes"]:
-        if m["status_reason"] is not None:
-            say(f"{m['frequency_hz']:.4f} Hz is {m['status']}: {m['status_reason']}")
+    _print_reasons(document["modes"])
     if "methods" in document:
         _print_methods(document)
     for pole in document["real_poles"]:
         low, high = pole["rate_interval_95"]
         say(f"real pole: −{pole['rate_rad_s']:.3g} 1/s ({low:.3g} to {high:.3g} in 95 %)")
     _print_rejected(document["rejected"])
-    for finding in document["quality"]["findings"]:
+    quality = document["quality"]["findings"]
+    for finding in quality:
         say(f"quality: {finding['subject'] or 'record'}: {finding['text']}")
+    told = {finding["text"] for finding in quality}
     say_all(document["notes"], "note")
-    say_all(document["warnings"], "warning")
+    say_all((text for text in document["warnings"] if text not in told), "warning")
+
+
+def _print_reasons(modes: Iterable[Mapping[str, Any]]) -> None:
+    """Print why modes are not ok, each reason once with all frequencies that it concerns."""
+    alike: dict[tuple[str, str], list[str]] = {}
+    for m in modes:
+        if m["status_reason"] is not None:
+            about = (m["status"], m["status_reason"])
+            alike.setdefault(about, []).append(f"{m['frequency_hz']:.4f}")
+    for (status, reason), f in alike.items():
+        say(f"{', '.join(f)} Hz {'is' if len(f) == 1 else 'are'} {status}: {reason}")
 
 
 def _print_methods(document: Mapping[str, Any]) -> None:

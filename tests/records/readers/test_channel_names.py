@@ -34,6 +34,10 @@ X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
         ("TP_ACC_LAT19_315deg_X", (-0.707107, 0.707107, 0.0), 19.0, "transition piece"),
         ("TP_ACC_LAT19_315deg_Y", (-0.707107, -0.707107, 0.0), 19.0, "transition piece"),
         ("TP_ACC_LAT19_315deg_Z", Z, 19.0, "transition piece"),
+        ("B_Turm_E_65m", X, 65.0, ""),
+        ("B_Turm_N_65m", Y, 65.0, ""),
+        ("B_Turm_S-12.5m", (0.0, -1.0, 0.0), 12.5, ""),
+        ("acc W 088m", (-1.0, 0.0, 0.0), 88.0, ""),
         ("Sensor 3 West", (-1.0, 0.0, 0.0), None, ""),
     ],
 )
@@ -57,6 +61,10 @@ def test_what_names_say(
         "x_ss",
         "acc_-x",
         "a_10m_s2",
+        "S_12",
+        "N_65mm",
+        "w_10m/s2",
+        "Turm_65m_W_3",
     ],
 )
 def test_names_that_say_no_direction(name: str) -> None:

@@ -30,6 +30,8 @@ MIN_PARALLEL_COSINE = 0.5
 MIN_SPECTRAL_CORRELATION = 0.5
 """Correlation of the logarithms of two spectra, without their polynomial trend,
 above which their peaks agree; noise beside modes reaches 0.3."""
+DIRECTIONS = 3
+"""Most groups of channels that are incoherent because they measure different directions."""
 TREND_DEGREE = 3
 """Degree of the polynomial trend of a logarithmic spectrum."""
 
@@ -59,9 +61,18 @@ def comparable_channels(directions: Sequence[Sequence[float]], n: int) -> BoolAr
 
 
 def strangers(
-    y: FloatArray, sample_rate_hz: float, seen: Phases, tree: IntArray, compared: BoolArray
+    y: FloatArray,
+    sample_rate_hz: float,
+    seen: Phases,
+    tree: IntArray,
+    compared: BoolArray,
+    known: Sequence[bool],
+    places: Sequence[object],
 ) -> tuple[Strangers, ...]:
     """Return channels that resemble the others but are not coherent with most of them.
+
+    Where each shares its place with one of the others, no two of them are stated to be parallel, and there
+    are no more groups than directions in space, they may as well measure across.
 
     Parameters
     ----------
@@ -70,6 +81,10 @@ def strangers(
         Pairs that connect all channels.
     compared : (n_channels, n_channels)
         Which channels must be coherent.
+    known : (n_channels,) bool
+        Channels of which the direction is stated.
+    places : (n_channels,)
+        Place of each channel, None if unknown.
     """
     looks = _record_and_halves(y, sample_rate_hz)
     common = _common(looks, tree)
@@ -80,7 +95,7 @@ def strangers(
     groups = sorted(
         _groups(looks, len(y), tree[common > MIN_COHERENCE_SUM]), key=lambda rows: (-len(rows), rows)
     )
-    alike = _alike(seen)
+    alike, stated = _alike(seen), np.asarray(known, dtype=bool)
     out: list[Strangers] = []
     for k, rows in enumerate(groups):
         larger = [i for group in groups[:k] for i in group]
@@ -95,9 +110,16 @@ def strangers(
             continue
         turned = _record_and_halves(np.concatenate([y, y[:, ::-1]]), sample_rate_hz)
         backwards = _common(turned, np.asarray(pairs + [0, len(y)], dtype=np.intp))
-        out.append(
-            Strangers(tuple(rows), bool(np.any(backwards > MIN_COHERENCE_SUM)), len(rows) < len(groups[0]))
+        turns = bool(np.any(backwards > MIN_COHERENCE_SUM))
+        parallel = pairs[stated[pairs].all(axis=1)]
+        theirs = {places[i] for i in larger} - {None}
+        blamed = (
+            turns
+            or not theirs.issuperset(places[j] for j in rows)
+            or len(groups) > DIRECTIONS
+            or bool(np.any(alike[parallel[:, 0], parallel[:, 1]] >= MIN_SPECTRAL_CORRELATION))
         )
+        out.append(Strangers(tuple(rows), turns, len(rows) < len(groups[0]), not blamed))
     return tuple(out)
 
 

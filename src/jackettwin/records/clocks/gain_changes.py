@@ -18,6 +18,8 @@ JUMP_SHARE = 0.2
 """Share of a jump above which a window no longer has the previous sensitivity."""
 MIN_EARLIER_SHARE = 0.9
 """Share of the record before a jump from which the earlier sensitivity is taken as correct."""
+MAX_UNKNOWN_SHARE = 0.5
+"""Largest share of the windows that may have neither the old nor the new sensitivity: a jump is short."""
 MARGIN = 0.15
 """Share of a window next to a jump that may have the other sensitivity unnoticed."""
 MIN_INFORMATIVE_WINDOWS = 2
@@ -78,6 +80,8 @@ def _jumps(
     passed = np.median((series[:, jumping] - level) / jump.by[jumping], axis=1)
     before = int(np.argmax(passed > JUMP_SHARE))
     after = len(series) - int(np.argmax(passed[::-1] < 1.0 - JUMP_SHARE))
+    if after == len(series) or after - before > MAX_UNKNOWN_SHARE * len(series):
+        return ()
     out = []
     for group in without_gaps(jump.by[jumping], 0.5 * network.reach_s):
         rows = [jump.rows[i] for i in group]

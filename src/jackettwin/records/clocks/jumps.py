@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from jackettwin.arrays import FloatArray
+from jackettwin.arrays import BoolArray, FloatArray
 
 SIGMAS = 6.0
 """Change in standard deviations of the scatter between windows above which it is a jump."""
@@ -76,21 +76,37 @@ def runs(series: FloatArray, reach: float) -> list[tuple[int, int]]:
 def series_jumps(series: FloatArray, between: list[tuple[int, int]], reach: float) -> list[SeriesJump]:
     """Return the jumps between runs; a run of one window is the window of a jump.
 
-    A clock does not jump back after one window. A series that does has two delays that explain the phases
-    equally well, and no jump is reported.
+    A clock does not jump back. A series that does, after one window or a whole run, has two delays that
+    explain the phases equally well, and neither jump is reported.
     """
     tolerance = _tolerance(series, reach)
     kept = [run for run in between if run[1] - run[0] > 1] or between
     single = np.array([run[0] for run in between if run not in kept], dtype=np.intp)
+    level = np.array([np.median(series[slice(*run)], axis=0) for run in kept])
+    returning = _returning(np.diff(level, axis=0), tolerance)
     out = []
-    for before, after in pairwise(kept):
-        old, new = (np.median(series[slice(*run)], axis=0) for run in (before, after))
+    for k, (before, after) in enumerate(pairwise(kept)):
+        old, new = level[k], level[k + 1]
         by = new - old
         other = np.where(single[:, None] < after[0], new, old)
         back = (np.abs(series[single] - other) < tolerance).any(axis=0)
-        rows = tuple(int(i) for i in np.flatnonzero((np.abs(by) > tolerance) & ~back))
+        rows = tuple(int(i) for i in np.flatnonzero((np.abs(by) > tolerance) & ~back & ~returning[k]))
         if rows:
             out.append(SeriesJump(rows, by, before[1], after[0]))
+    return out
+
+
+def _returning(by: FloatArray, tolerance: FloatArray) -> BoolArray:
+    """Return which jumps the next one of the same series undoes, or undo the last, (n_jumps, n_series).
+
+    >>> _returning(np.array([[0.02], [-0.021], [0.3]]), np.array([0.005])).ravel()
+    array([ True,  True, False])
+    """
+    clear = np.abs(by) > tolerance
+    undone = clear[1:] & clear[:-1] & (np.abs(by[1:] + by[:-1]) < tolerance)
+    out = np.zeros(by.shape, dtype=bool)
+    out[:-1] |= undone
+    out[1:] |= undone
     return out
 
 

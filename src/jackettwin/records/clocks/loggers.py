@@ -139,9 +139,12 @@ def logger_clocks(
     tree = spanning_pairs(first_look)
     compared = comparable_channels(directions, len(y))
     again = partial(logger_clocks, sample_rate_hz=sample_rate_hz)
-    apart = strangers(y, sample_rate_hz, first_look, tree, compared)
+    known = np.any(np.asarray(directions, dtype=float), axis=1) if len(directions) else np.zeros(len(y), bool)
+    found_apart = strangers(y, sample_rate_hz, first_look, tree, compared, known.tolist(), places)
+    apart = tuple(one for one in found_apart if not one.perhaps_across)
     if apart:
         return _without_strangers(y, apart, again, velocity, places, directions)
+    whole = replace(whole, strangers=found_apart)
     lost, parted = lost_time(y, sample_rate_hz, first_look, same_place)
     if parted and (lost is None or not losses):
         return replace(whole, judged=False)

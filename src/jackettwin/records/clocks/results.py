@@ -89,11 +89,14 @@ class Strangers:
         Whether they are coherent once reversed in time.
     fewer : bool
         Whether they are fewer than the others, and therefore the ones at fault.
+    perhaps_across : bool
+        Whether they may as well measure another direction, since directions are not stated.
     """
 
     rows: tuple[int, ...]
     backwards: bool
     fewer: bool = True
+    perhaps_across: bool = False
 
 
 @dataclass(frozen=True)
@@ -113,6 +116,7 @@ class LoggerClocks:
     growing : tuple of GrowingGain
     strangers : tuple of Strangers
         Channels of another time; the rest is judged without them, or after they are reversed.
+        Those perhaps across are judged with the rest.
     lost : tuple of LostTime
         Losses to be corrected before any other error.
     """
@@ -139,9 +143,12 @@ class LoggerClocks:
 def clock_findings(record: Record, clocks: LoggerClocks) -> Iterator[Finding]:
     """Yield findings on the clocks."""
     rate = record.sample_rate_hz
-    for stranger in clocks.strangers:
-        code = "stored_backwards" if stranger.backwards else "another_time"
-        yield _said(code, stranger.fewer, channels=_names(record, stranger.rows))
+    alike: dict[tuple[bool, bool, bool], tuple[int, ...]] = {}
+    for one in clocks.strangers:
+        kind = (one.perhaps_across, one.backwards, one.fewer and not one.perhaps_across)
+        alike[kind] = (*alike.get(kind, ()), *one.rows)
+    for (across, backwards, fewer), rows in alike.items():
+        yield _strangers(record, rows, across=across, backwards=backwards, fewer=fewer)
     for lost in clocks.lost:
         yield _said(
             "time_lost",
@@ -157,26 +164,7 @@ def clock_findings(record: Record, clocks: LoggerClocks) -> Iterator[Finding]:
             "gain_grows", True, channels=_names(record, growing.rows), factor=float(np.exp(growing.rate))
         )
     for gain in clocks.gains:
-        if min(gain.factor) < 0.0:
-            yield _said(
-                "sign_turns",
-                True,
-                channels=_names(record, gain.rows),
-                from_s=gain.start / rate,
-                to_s=gain.stop / rate,
-            )
-            continue
-        at, factor = ("from", gain.factor[1]) if gain.factor[0] == 1.0 else ("until", gain.factor[0])
-        yield _said(
-            "gain_jump",
-            True,
-            channels=_names(record, gain.rows),
-            factor=factor,
-            at=at,
-            time_s=(gain.stop if at == "from" else gain.start) / rate,
-            from_s=gain.start / rate,
-            to_s=gain.stop / rate,
-        )
+        yield _gain(record, gain)
     for jump in clocks.jumps:
         yield _said(
             "clock_jump",
@@ -192,6 +180,30 @@ def clock_findings(record: Record, clocks: LoggerClocks) -> Iterator[Finding]:
         yield _said("clock_cut", True, from_s=clocks.start / rate, to_s=clocks.stop / rate)
     for late in clocks.late:
         yield _late(record, late)
+
+
+def _gain(record: Record, gain: GainJump) -> Finding:
+    rate = record.sample_rate_hz
+    times = {"from_s": gain.start / rate, "to_s": gain.stop / rate}
+    if min(gain.factor) < 0.0:
+        return _said("sign_turns", True, channels=_names(record, gain.rows), **times)
+    at, factor = ("from", gain.factor[1]) if gain.factor[0] == 1.0 else ("until", gain.factor[0])
+    time_s = times["to_s" if at == "from" else "from_s"]
+    names = _names(record, gain.rows)
+    return _said("gain_jump", True, channels=names, factor=factor, at=at, time_s=time_s, **times)
+
+
+def _strangers(
+    record: Record, rows: tuple[int, ...], *, across: bool, backwards: bool, fewer: bool
+) -> Finding:
+    names = _names(record, rows)
+    if across:
+        return _said("direction_unknown", channels=names)
+    if backwards:
+        return _said("stored_backwards", fewer, channels=names)
+    stated = all(any(record.channels[i].direction) for i in rows)
+    unless = "" if stated else " (unless they point across: state their directions)"
+    return _said("another_time", fewer, channels=names, unless=unless)
 
 
 def _late(record: Record, late: LateClock) -> Finding:

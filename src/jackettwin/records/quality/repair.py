@@ -44,7 +44,8 @@ def repair(record: Record, quality: Quality) -> Record:
         if (name, "sign_turned") in fixed:
             data[i] = -data[i]
     data = in_step(data, quality.clocks, record.sample_rate_hz)
-    apart = {i for one in quality.clocks.strangers if one.fewer and not one.backwards for i in one.rows}
+    strangers = (one for one in quality.clocks.strangers if not one.perhaps_across)
+    apart = {i for one in strangers if one.fewer and not one.backwards for i in one.rows}
     alive = [i for i, channel in enumerate(quality.channels) if not channel.dead and i not in apart]
     if not alive:
         raise InputError(

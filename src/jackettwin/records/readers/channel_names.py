@@ -20,6 +20,11 @@ _ALONE = r"(?<![a-z0-9])(?<![_\s(]-)(?:{})(?![a-z0-9])"
 """Pattern of a separate word. A minus before an axis (``acc_-x``) is not read,
 since it may be a sign or a separator."""
 _LETTERS = r"(?<![a-z])(?:{})(?![a-z])"
+_BESIDE_HEIGHT = (
+    r"(?<![a-z0-9])(?:{})[\s_\-](?=(?:h|z|lat)?[\s_]?[+\-]?\d{{1,3}}(?:[.,p]\d+)?\s?m(?:sl)?(?![a-z0-9/^²]))"
+)
+"""Pattern of a single letter that stands before a height: ``B_Turm_E_65m``. Anywhere else in a name it may
+stand for anything."""
 
 DIRECTIONS: tuple[tuple[str, Vector, str], ...] = (
     (_ALONE.format("(?:acc|a|vel|v|disp|u)?x"), (1.0, 0.0, 0.0), "x"),
@@ -32,6 +37,15 @@ DIRECTIONS: tuple[tuple[str, Vector, str], ...] = (
     (r"(?<![a-z])(?:(?:north|nord)(?![a-z])|n$)", (0.0, 1.0, 0.0), "north"),
     (_LETTERS.format("west"), (-1.0, 0.0, 0.0), "west"),
     (_LETTERS.format("south|s[uü]e?d"), (0.0, -1.0, 0.0), "south"),
+    *(
+        (_BESIDE_HEIGHT.format(letters), vector, word)
+        for letters, vector, word in (
+            ("[eo]", (1.0, 0.0, 0.0), "east"),
+            ("n", (0.0, 1.0, 0.0), "north"),
+            ("w", (-1.0, 0.0, 0.0), "west"),
+            ("s", (0.0, -1.0, 0.0), "south"),
+        )
+    ),
 )
 """Pattern, unit vector in global axes (x east where a name speaks of compass points), what it is called."""
 

@@ -66,6 +66,8 @@ class Described:
     channel: Channel
     factor: float
     from_name: Reading
+    by_unit: bool = False
+    """Whether only the unit says that it is a velocity."""
 
 
 def merged(own: ChannelEntry | None, given: ChannelEntry | None) -> dict[str, Any]:
@@ -100,7 +102,8 @@ def described_channel(name: str, entry: Mapping[str, Any], unsaid: Unsaid) -> De
         direction=direction,
         frame=entry.get("frame") or "global",
     )
-    return Described(channel, factor * gain, read)
+    said = entry.get("quantity") or unsaid.unit or guess_quantity(name, "") == kind
+    return Described(channel, factor * gain, read, by_unit=kind == "velocity" and not said)
 
 
 def _measures(name: str, entry: Mapping[str, Any], unsaid: Unsaid) -> tuple[str, str, float]:
@@ -179,6 +182,38 @@ def _unit_vector(direction: tuple[float, float, float]) -> tuple[float, float, f
     length = float(np.linalg.norm(np.array(direction) / largest))
     x, y, z = (float(part) / largest / length for part in direction)
     return (x, y, z)
+
+
+FLOW_RATIO = 2.0
+"""Ratio of the mean of a speed to its standard deviation above which it is that of wind or water: a structure
+stays where it is, and wind of such turbulence is not measured."""
+
+
+def without_flows(
+    described: tuple[Described, ...], data: FloatArray
+) -> tuple[tuple[Described, ...], tuple[str, ...]]:
+    """Return the channels, those no velocities that stand for a flow, and a remark on each of them.
+
+    Only channels are judged that are velocities for their unit alone.
+
+    Parameters
+    ----------
+    data : (n_channels, n_samples)
+        Stored numbers; NaN marks a missing sample.
+    """
+    out, remarks = [], []
+    for one, y in zip(described, data, strict=True):
+        there = y[np.isfinite(y)]
+        mean, size = (float(np.abs(there.mean())), float(there.std())) if there.size else (0.0, 0.0)
+        if one.by_unit and mean > FLOW_RATIO * size > 0.0:
+            channel = replace(one.channel, quantity="other")
+            one = replace(one, channel=channel, from_name=Reading())
+            remarks.append(
+                f"{channel.name}: a speed whose mean is {mean / size:.2g} times its deviation, so not of the "
+                'structure; "quantity" in the JSON beside the file overrules this'
+            )
+        out.append(one)
+    return tuple(out), tuple(remarks)
 
 
 SENTINELS = np.array(

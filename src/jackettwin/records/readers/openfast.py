@@ -14,6 +14,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
+from jackettwin.quantities import guess_quantity, plain_unit
 from jackettwin.records.readers.description import ChannelEntry
 from jackettwin.records.readers.source import Source
 from jackettwin.records.readers.table import ReadTable
@@ -26,6 +27,7 @@ DEFAULT_NAME_LENGTH = 10
 MOST_HEADER_LINES = 50
 # ElastoDyn's accelerations end in the axis and the letter of their frame: YawBrTAxp, TwHt1ALxt, and
 # NcIMUTAxs, which turns with the nacelle.
+_MOTION = re.compile(r"(?:TV|vel)", re.IGNORECASE)
 _AXIS = re.compile(r"(?:TA|AL)([xyz])([a-z]?)$")
 
 
@@ -109,7 +111,10 @@ def _entry(name: str, unit: str) -> ChannelEntry:
     axis = "xyz".index(match[1]) if match else None
     direction = None if axis is None else (float(axis == 0), float(axis == 1), float(axis == 2))
     turns = match is not None and match[2] == "s"
-    return ChannelEntry(unit=unit, direction=direction, frame="nacelle" if turns else None)
+    # most speeds among the outputs are those of air and water
+    foreign = plain_unit(unit) == "m/s" and not _MOTION.search(name)
+    quantity = "other" if foreign and guess_quantity(name, plain_unit(unit)) == "velocity" else None
+    return ChannelEntry(quantity=quantity, unit=unit, direction=direction, frame="nacelle" if turns else None)
 
 
 def _number(cell: str) -> float:

@@ -21,6 +21,7 @@ from jackettwin.records.readers.channels import (
     Unsaid,
     described_channel,
     merged,
+    without_flows,
     without_sentinels,
 )
 from jackettwin.records.readers.description import ChannelEntry, Description
@@ -266,6 +267,8 @@ def to_record(
     start_utc, unzoned = _start(table, said, unsaid)
     metadata["remarks"] = [*metadata.get("remarks", ()), *unzoned]
     described = _described(names, table, said, unsaid)
+    described, flows = without_flows(described, data)
+    metadata["remarks"] += flows
     metadata["remarks"] += told({one.channel.name: one.from_name for one in described})
     if not metadata["remarks"]:
         del metadata["remarks"]
