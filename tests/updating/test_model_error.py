@@ -26,7 +26,13 @@ from jackettwin.updating import (
     objection,
     support_model,
 )
-from jackettwin.updating.model_error.marginal import errors_given, inverse_root, log_density, squares
+from jackettwin.updating.model_error.marginal import (
+    drawn_scales,
+    errors_given,
+    inverse_root,
+    log_density,
+    squares,
+)
 from jackettwin.updating.search.descent import bottom
 
 THETA = np.array([2e9, 0.1])
@@ -121,6 +127,39 @@ def test_marginals_are_those_of_the_joint_normal(rng: np.random.Generator) -> No
         precision = np.eye(4) + gains[k].T @ gains[k]
         np.testing.assert_allclose(covariance, np.linalg.inv(precision), atol=1e-10)
         np.testing.assert_allclose(mean, -np.linalg.solve(precision, gains[k].T @ r[k]), atol=1e-10)
+
+
+def test_scales_make_a_mixture_of_normals(rng: np.random.Generator) -> None:
+    """The density is the mean of two normals'; each is drawn as often as it is likely."""
+    gains, r = rng.normal(size=(1, 6, 4)), 2.0 * rng.normal(size=(1, 6))
+    scales = (1.0, 3.0)
+    each = [
+        multivariate_normal(np.zeros(6), np.eye(6) + s**2 * gains[0] @ gains[0].T).pdf(r[0]) for s in scales
+    ]
+    density = np.log(np.mean(each)) + 3.0 * np.log(2.0 * np.pi)
+    assert log_density(r, gains, scales)[0] == pytest.approx(density, rel=1e-10)
+    n, share = 4000, each[1] / sum(each)
+    drawn = drawn_scales(np.repeat(r, n, axis=0), np.repeat(gains, n, axis=0), scales, rng)
+    # four standard deviations of a binomial share
+    assert np.mean(drawn == 3.0) == pytest.approx(share, abs=4.0 * np.sqrt(share * (1.0 - share) / n))
+
+
+def test_larger_errors_widen_where_the_data_pull(model: SupportModel, errors: ErrorModel) -> None:
+    """A tower 4 % stiffer than drawn, four of its tolerances: drawn errors reach it if scales let them.
+
+    With the tolerance as said the mean stays short of it, and of the true model little is drawn larger.
+    """
+    rng = np.random.default_rng(1)
+    z = np.repeat(np.log(THETA)[None], 400, axis=0)
+    means, scales = [], []
+    for tower, own in ((1.04, (1.0,)), (1.04, (1.0, 4.0)), (1.0, (1.0, 4.0))):
+        poles = model_of(tower=tower).predict(THETA, MODES).poles
+        problem = problem_of(model, targets(poles), replace(errors, usual_frequency=0.0, usual_damping=0.0, scales=own))
+        drawn = problem.drawn_errors(z, rng)
+        means.append(drawn.errors[:, 0].mean())
+        scales.append(drawn.scale.mean())
+    assert means[0] < means[1] < 4.6
+    assert scales[0] == 1.0 and scales[1] > 3.5 and scales[2] < 1.5
 
 
 def test_a_remainder_is_a_wider_standard_deviation(model: SupportModel) -> None:

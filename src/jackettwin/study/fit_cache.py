@@ -105,4 +105,4 @@ def _errors(model: ErrorModel | None) -> list[object]:
         [one.tolerance.name, one.tolerance.std, _numbers(one.mass), _numbers(one.stiffness), one.feet]
         for one in model.directions.each
     ]
-    return [each, dict(model.remainder), model.usual_frequency, model.usual_damping]
+    return [each, dict(model.remainder), model.usual_frequency, model.usual_damping, model.scales]

@@ -14,7 +14,7 @@ from jackettwin.structure import Assembly
 from jackettwin.study.measurements import MeasuredRelaxation
 from jackettwin.study.relaxations import placed, relaxation_targets
 from jackettwin.study.rotor import RotorDamping, States
-from jackettwin.twin import ALL, REMAINDERS, TwinConfig, TwinState, directions
+from jackettwin.twin import ALL, REMAINDERS, SCALES, TwinConfig, TwinState, directions
 from jackettwin.twin.water import in_the_records_sea, water_effects
 from jackettwin.updating import (
     ErrorModel,
@@ -97,7 +97,8 @@ def error_model(config: TwinConfig, model: SupportModel) -> ErrorModel | None:
         stated |= {f"ζ{mode}": error.damping} if error.damping > 0.0 else {}
     if model.directions is None or not (model.directions.each or stated or any(usual.values())):
         return None
-    return ErrorModel(model.directions, stated, *usual.values())
+    f, zeta = usual["remainder_frequency"], usual["remainder_damping"]
+    return ErrorModel(model.directions, stated, f, zeta, SCALES)
 
 
 def tied_problem(

@@ -18,6 +18,7 @@ from .state import (
 from .stated_model import model_of_records as model_of_records, stated_model as stated_model
 from .tolerances.registry import (
     REMAINDERS as REMAINDERS,
+    SCALES as SCALES,
     KnownTolerance as KnownTolerance,
     directions as directions,
     suspects as suspects,

@@ -13,8 +13,15 @@ from jackettwin.updating.data.relaxations import RelaxationTarget
 from jackettwin.updating.data.shapes import ShapeTarget
 from jackettwin.updating.data.targets import Residuals
 from jackettwin.updating.model import SupportModel
-from jackettwin.updating.model_error.error_model import ErrorModel
-from jackettwin.updating.model_error.marginal import drawn, errors_given, inverse_root, log_density, squares
+from jackettwin.updating.model_error.error_model import DrawnErrors, ErrorModel
+from jackettwin.updating.model_error.marginal import (
+    drawn,
+    drawn_scales,
+    errors_given,
+    inverse_root,
+    log_density,
+    squares,
+)
 from jackettwin.updating.prior import Prior
 
 NEVER = -1e30
@@ -213,17 +220,24 @@ class Problem:
         """Names of the data that have a remainder of the model's error, each once."""
         return tuple(dict.fromkeys(name for state in self.states for name in state.residuals.names))
 
-    def drawn_errors(self, z: FloatArray, rng: np.random.Generator) -> FloatArray:
-        """Return the model's errors (n, n_errors) drawn with the data at points (n, d), in their deviations.
+    def drawn_errors(self, z: FloatArray, rng: np.random.Generator) -> DrawnErrors:
+        """Return the model's errors drawn with the data at points (n, d): tolerances, then ``error_data``.
 
-        Tolerances come first, then the remainders of ``error_data``; NaN where a mode is lost.
+        Raises
+        ------
+        ValueError
+            Of a model that is taken for true.
         """
+        if self.error_model is None:
+            raise ValueError("a model that is taken for true has no errors")
         found = self._modes(z, self.anchor(z[0]), slopes=False)
         r, known = self._all_residuals(z, found)
         gains = self.gains(tuple(modes.some(known) for modes in found))
-        errors = np.full((len(z), gains.shape[2]), np.nan)
-        errors[known] = drawn(*errors_given(r, gains), rng)
-        return errors
+        errors, scale = np.full((len(z), gains.shape[2]), np.nan), np.ones(len(z))
+        scale[known] = own = drawn_scales(r, gains, self.error_model.scales, rng)
+        mean, variance = errors_given(r, own[:, None, None] * gains)
+        errors[known] = own[:, None] * drawn(mean, variance, rng)
+        return DrawnErrors(errors, scale)
 
     def anchor(self, z: FloatArray) -> Found | None:
         """Return the modes at one point (d,), for many others to start from; None if a mode is lost there."""
@@ -237,7 +251,8 @@ class Problem:
         if self.error_model is None:
             log_l[known] = -0.5 * (r * r).sum(axis=1)
         elif known.any():
-            log_l[known] = log_density(r, self.gains(tuple(modes.some(known) for modes in found)))
+            gains = self.gains(tuple(modes.some(known) for modes in found))
+            log_l[known] = log_density(r, gains, self.error_model.scales)
         log_l[known] -= sum(state.log_normalisation for state in self.states)
         return log_l, found
 

@@ -15,6 +15,21 @@ from jackettwin.updating.model_error.directions import Tolerance, ToleranceDirec
 
 
 @dataclass(frozen=True, eq=False)
+class DrawnErrors:
+    """Errors of a model drawn with the data.
+
+    Attributes
+    ----------
+    errors : (n_sets, n) in their standard deviations as they are said to be; NaN where a mode is lost
+        Tolerances first, then the remainders of the data.
+    scale : (n_sets,) by how much all of them are larger
+    """
+
+    errors: FloatArray
+    scale: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
 class ErrorModel:
     """Errors of a model, all independent and counted in their standard deviations.
 
@@ -29,12 +44,17 @@ class ErrorModel:
         Of data whose remainder differs from the usual one.
     usual_frequency, usual_damping : float
         Standard deviation of the logarithm of any other mode's frequency and damping ratio.
+    scales : tuple of float
+        By how much all of these may be larger together than they are said to be, each equally likely: the
+        sizes are judgements themselves. The posterior and the predictions weigh them by the data; χ², the
+        search and the objections take the sizes as they are said.
     """
 
     directions: ToleranceDirections
     remainder: Mapping[str, float] = field(default_factory=dict)
     usual_frequency: float = 0.0
     usual_damping: float = 0.0
+    scales: tuple[float, ...] = (1.0,)
 
     @property
     def tolerances(self) -> tuple[Tolerance, ...]:
@@ -68,22 +88,22 @@ class ErrorModel:
         return np.concatenate([common, np.broadcast_to(remainder, (len(common), *remainder.shape))], axis=2)
 
     def factors(
-        self, found: NumberedModes, errors: FloatArray, data: tuple[str, ...], rng: np.random.Generator
+        self, found: NumberedModes, drawn: DrawnErrors, data: tuple[str, ...], rng: np.random.Generator
     ) -> FloatArray:
         """Return what drawn errors multiply frequencies and damping ratios by, (2, n_sets, n_modes).
 
         Parameters
         ----------
         found : of any modes; one without data draws its remainder anew
-        errors : (n_sets, n) of :meth:`jackettwin.updating.Problem.drawn_errors`
+        drawn : n_sets of :meth:`jackettwin.updating.Problem.drawn_errors`
         data : whose remainders follow the tolerances
         """
-        n = len(self.tolerances)
+        n, errors = len(self.tolerances), drawn.errors
         shift = np.einsum("vkmn,kn->vkm", self.shifts(found), errors[:, :n])
         for v, letter in enumerate(("f", "ζ")):
             for m, mode in enumerate(found.modes):
                 name = f"{letter}{mode}"
-                fresh = rng.standard_normal(len(errors))
+                fresh = drawn.scale * rng.standard_normal(len(errors))
                 own = errors[:, n + data.index(name)] if name in data else fresh
                 shift[v, :, m] += self.own(name) * own
         return np.asarray(np.exp(shift))

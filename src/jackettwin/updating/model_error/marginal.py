@@ -5,11 +5,17 @@ With residuals r whitened by what is measured, and their derivatives Γ by indep
 .. math:: r + Γφ \sim N(0, I) \quad\Rightarrow\quad r \sim N(0, A), \qquad A = I + ΓΓ^T,
 
 .. math:: φ \mid r \sim N(-Γ^T A^{-1} r,\; I - Γ^T A^{-1} Γ).
+
+How large the errors are is itself a judgement: with scales s that are equally likely, r is a mixture of
+N(0, I + s²ΓΓᵀ), and data that pull the errors to their ends make the larger scale likely.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
+from scipy.special import logsumexp
 
 from jackettwin.arrays import FloatArray
 
@@ -25,11 +31,25 @@ def inverse_root(gains: FloatArray) -> FloatArray:
     return np.asarray((v / np.sqrt(w)) @ v.T)
 
 
-def log_density(r: FloatArray, gains: FloatArray) -> FloatArray:
-    """Return ln N(r; 0, A) + n_data/2 ln 2π (n_sets,) of residuals (n_sets, n_data) and Γ."""
-    root = np.linalg.cholesky(covariance(gains))
-    log_det = np.log(np.einsum("kii->ki", root)).sum(axis=-1)
-    return np.asarray(-0.5 * squares(r, gains) - log_det)
+def log_density(r: FloatArray, gains: FloatArray, scales: Sequence[float] = (1.0,)) -> FloatArray:
+    """Return ln of r's density + n_data/2 ln 2π (n_sets,) of residuals (n_sets, n_data) and Γ.
+
+    Parameters
+    ----------
+    scales : of all errors together, equally likely
+    """
+    each = _log_densities(r, gains, scales)
+    return np.asarray(logsumexp(each, axis=0) - np.log(len(scales)))
+
+
+def _log_densities(r: FloatArray, gains: FloatArray, scales: Sequence[float]) -> FloatArray:
+    """Return ln N(r; 0, I + s²ΓΓᵀ) + n_data/2 ln 2π of every scale, (n_scales, n_sets)."""
+    found = []
+    for scale in scales:
+        root = np.linalg.cholesky(covariance(scale * gains))
+        log_det = np.log(np.einsum("kii->ki", root)).sum(axis=-1)
+        found.append(-0.5 * squares(r, scale * gains) - log_det)
+    return np.array(found)
 
 
 def squares(r: FloatArray, gains: FloatArray) -> FloatArray:
@@ -43,6 +63,16 @@ def errors_given(r: FloatArray, gains: FloatArray) -> tuple[FloatArray, FloatArr
     weights = np.linalg.solve(covariance(gains), gains)  # A⁻¹Γ
     mean = -np.einsum("...ij,...i->...j", weights, r)
     return mean, np.asarray(np.eye(gains.shape[-1]) - np.swapaxes(weights, -1, -2) @ gains)
+
+
+def drawn_scales(
+    r: FloatArray, gains: FloatArray, scales: Sequence[float], rng: np.random.Generator
+) -> FloatArray:
+    """Return one scale (n_sets,) for each of many residuals (n_sets, n_data), as likely as these make it."""
+    log_p = _log_densities(r, gains, scales)
+    share = np.cumsum(np.exp(log_p - logsumexp(log_p, axis=0)), axis=0)
+    which = (rng.random(len(r)) > share[:-1]).sum(axis=0)
+    return np.asarray(np.array(scales)[which])
 
 
 def drawn(mean: FloatArray, variance: FloatArray, rng: np.random.Generator) -> FloatArray:
