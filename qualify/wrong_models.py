@@ -39,6 +39,7 @@ from scipy.stats import binomtest
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import NumericalError
+from jackettwin.response import principal_direction
 from jackettwin.soil import family
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.study.problem import error_model
@@ -47,6 +48,7 @@ from jackettwin.twin.config import assembled
 from jackettwin.twin.tolerances.registry import directions, suspects
 from jackettwin.updating import (
     Direction,
+    PairDirection,
     Problem,
     Residuals,
     SupportModel,
@@ -154,6 +156,23 @@ def measured(poles: np.ndarray, modes: tuple[int, ...], rng: np.random.Generator
     return Residuals(tuple(targets), relative=False)
 
 
+def direction(
+    data: Residuals, assembly: Assembly, shapes: np.ndarray, rng: np.random.Generator
+) -> PairDirection:
+    """Return how the tower's top moves in the lower of the first two modes, as some records show it.
+
+    Its error is that of frequencies over their distance, as :func:`jackettwin.twin.pair_angles` has it.
+    """
+    f = np.array([t.frequency_hz or 0.0 for t in data.targets[:2]])
+    apart = abs(f[1] - f[0]) / f.mean()
+    std = float(np.hypot(*(t.log_stds[0] or 0.0 for t in data.targets[:2])) / apart)
+    motion = np.zeros((1, 2, assembly.n_dof))
+    for axis, dof in enumerate(assembly.dofs(assembly.structure.top_node)[:2]):
+        motion[0, axis, dof] = 1.0
+    angle, _ = principal_direction(motion @ shapes[int(np.argmin(f))])
+    return PairDirection((1, 2), angle + rng.normal(0.0, std), std, apart, motion)
+
+
 def truth(world: World, tie: str) -> FloatArray:
     """Return ln of the parameters that the twin is asked for: of feet that differ, their mean.
 
@@ -168,7 +187,7 @@ def twin(case: int) -> Result:
     start = time.process_time()
     world, kind, tie, scale, modes, rng = asset(case)
     left_out = tuple(mode for mode in range(1, 6) if mode not in modes)
-    all_poles, all_numbers = true_modes(world, (*modes, *left_out))
+    all_poles, all_numbers, shapes = true_modes(world, (*modes, *left_out))
     poles, numbers = all_poles[: len(modes)], all_numbers[: len(modes)]
     data = measured(poles, modes, rng)
     as_built = Residuals(
@@ -177,6 +196,7 @@ def twin(case: int) -> Result:
     site = SITES.index(world.site)
     known, z = drawing(site, tie), truth(world, tie)
     problem = joint(known.model, {"": (data, {})}, error_model=error_model(known.config, known.model))
+    pair = direction(data, known.model.assembly, shapes[:2], rng)
     bare, shipped = joint(known.model, {"": (data, {})}), joint(known.model, {"": (widened(data), {})})
     oracle = joint(_model(assembly_of(world), tie), {"": (as_built, {})})
     about = {"kind": kind, "site": world.site.name, "tie": tie, "scale": scale, "modes": len(modes)}
@@ -185,7 +205,7 @@ def twin(case: int) -> Result:
         ("product", problem, True), ("before", shipped, False),
         ("plain", bare, False), ("oracle", oracle, False),
     ):  # fmt: skip
-        found[name] = _estimated(asked, z, case, known.suspects, sampled=sampled)
+        found[name] = _estimated(asked, z, case, known.suspects, pair, sampled=sampled)
         if name in ("product", "plain"):
             draws = found[name].pop("draws")
             found[name]["predicted"] = predicted(asked, draws, left_out, np.abs(all_poles[len(modes) :]))
@@ -229,7 +249,13 @@ def widened(data: Residuals) -> Residuals:
 
 
 def _estimated(
-    problem: Problem, z: FloatArray, case: int, others: tuple[Direction, ...], *, sampled: bool
+    problem: Problem,
+    z: FloatArray,
+    case: int,
+    others: tuple[Direction, ...],
+    pair: PairDirection,
+    *,
+    sampled: bool,
 ) -> Result:
     """Return which parameters the 90 % intervals hold, their lengths in ln θ, verdicts and objections."""
     start = time.process_time()
@@ -251,12 +277,13 @@ def _estimated(
         "objects": away is not None and not away.fits,
     }
     if sampled:
-        said = objection(problem, best, suspects=others)
+        said = objection(problem, best, suspects=others, pairs=(pair,))
         assert said is not None
         result["objects"] = said.objects
         result["named"] = [[e.tolerance.name, e.size, e.gain] for e in said.explanations]
         result["checks"] = [[c.datum, c.miss, c.std, c.objects] for c in said.checks]
         result["unseen"] = [t.name for t in said.unseen]
+        result["suspected"] = [t.name for t in said.suspected]
         verdicts = identifiability(problem, draws, converged=status in ("ok", "weighted"), misfit=away)
         result["verdicts"] = [v.verdict for v in verdicts]
     return result | {"cpu_s": time.process_time() - start}

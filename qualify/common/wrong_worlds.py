@@ -284,8 +284,11 @@ OUTSIDE: dict[str, Plant] = {
 KINDS = {**COVERED, **OUTSIDE}
 
 
-def true_modes(world: World, wanted: tuple[int, ...]) -> tuple[np.ndarray, tuple[int, ...]]:
-    """Return the poles (n,) of the asset's modes, named as drawn by their shapes, and their own numbers."""
+def true_modes(world: World, wanted: tuple[int, ...]) -> tuple[np.ndarray, tuple[int, ...], np.ndarray]:
+    """Return the poles (n,) of the asset's modes, named as drawn by their shapes, and their own numbers.
+
+    Also their shapes (n, n_dof).
+    """
     assembly = assembly_of(world)
     poles, own = _shapes(world, assembly)
     n = world.vertical.size
@@ -301,7 +304,7 @@ def true_modes(world: World, wanted: tuple[int, ...]) -> tuple[np.ndarray, tuple
     sizes = (np.einsum("mi,im->m", one.conj(), assembly.mass @ one.T).real for one in (plan, own))
     _, match = linear_sum_assignment(-like / np.outer(*sizes))
     own_numbers = [int(match[m - 1]) for m in wanted]
-    return poles[own_numbers], tuple(number + 1 for number in own_numbers)
+    return poles[own_numbers], tuple(number + 1 for number in own_numbers), own[own_numbers]
 
 
 def _shapes(world: World, assembly: Assembly) -> tuple[np.ndarray, np.ndarray]:

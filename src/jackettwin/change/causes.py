@@ -27,13 +27,13 @@ from jackettwin.response import (
     build_system,
     mode_kinds,
     mode_labels,
+    principal_direction,
     tide_slopes,
     track_modes,
     undamped_modes,
 )
 from jackettwin.soil import Spring, Support
 from jackettwin.structure import Assembly, Structure, assemble
-from jackettwin.twin.pair_angles import principal_direction
 from jackettwin.watching import (
     Cause,
     Pattern,

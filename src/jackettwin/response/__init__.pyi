@@ -16,6 +16,7 @@ from .modes.comparison import (
     expanded as expanded,
     nodal_modes as nodal_modes,
 )
+from .modes.direction import principal_direction as principal_direction
 from .modes.labels import (
     LOCAL as LOCAL,
     mode_kinds as mode_kinds,

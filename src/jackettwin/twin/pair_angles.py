@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.arrays import FloatArray
 from jackettwin.identification import ModalEstimate
+from jackettwin.response import principal_direction
 from jackettwin.twin.observation import Observation
 
 MOST_STD_RAD = float(np.radians(20.0))
@@ -71,16 +72,3 @@ def _direction(lower: ModalEstimate, upper: ModalEstimate, places: Stations) -> 
     apart = upper.frequency_hz - lower.frequency_hz
     mixed = np.hypot(lower.frequency_std_hz, upper.frequency_std_hz) / max(apart, 1e-12)
     return angle, float(np.sqrt(mixed**2 + own))
-
-
-def principal_direction(moved: ComplexArray) -> tuple[float, float]:
-    """Return the horizontal direction of most motion [rad] of some places (n, 2), and the sum of its squares.
-
-    Examples
-    --------
-    >>> angle, square = principal_direction(np.array([[3.0, 3.0], [-1j, -1j]]))
-    >>> round(float(np.degrees(angle)), 6), round(square, 6)
-    (45.0, 20.0)
-    """
-    xx, xy, yy = (float(np.sum((moved[:, i] * moved[:, j].conj()).real)) for i, j in ((0, 0), (0, 1), (1, 1)))
-    return 0.5 * float(np.arctan2(2.0 * xy, xx - yy)), 0.5 * (xx + yy + float(np.hypot(2.0 * xy, xx - yy)))

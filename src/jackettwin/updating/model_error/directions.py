@@ -140,14 +140,44 @@ class ToleranceDirections:
     def slopes(self, found: NumberedModes) -> ComplexArray:
         """Return dλ/dφ (n_sets, n_modes, n_directions), each φ in its standard deviations."""
         i, j, _ = self._upper
+        x = found.shapes
+        forms = self._forms(found.modes, x[:, :, i] * x[:, :, j])
+        above, below = self._changes(found, found.poles, forms)
+        return np.asarray(-above / below[..., None])
+
+    def coupling(self, found: NumberedModes) -> ComplexArray:
+        """Return what each φ adds to the rate between two modes, x₂ᵀ∂F x₁/x₂ᵀF′x₂ (n_sets, n_directions).
+
+        Both forms are taken at the mean of the two poles: the modes of a pair are close.
+
+        Parameters
+        ----------
+        found : of two modes, x₁ and x₂
+        """
+        i, j, _ = self._upper
+        first, second = found.shapes[:, 0], found.shapes[:, 1]
+        between = 0.5 * (first[:, i] * second[:, j] + second[:, i] * first[:, j])
+        pole = np.repeat(found.poles.mean(axis=1, keepdims=True), 2, axis=1)
+        products = np.stack([between, second[:, i] * second[:, j]], axis=1)
+        forms = self._forms((found.modes[0],) * 2, products)
+        above, below = self._changes(found, pole, forms)
+        return np.asarray(above[:, 0] / below[:, 1, None])
+
+    def _forms(self, modes: tuple[int, ...], products: ComplexArray) -> ComplexArray:
+        """Return xᵀSy of every column S of :meth:`_columns` from the packed xyᵀ (n_sets, n_modes, ...)."""
+        patterns = [self._columns(mode) for mode in modes]
+        forms = np.empty((*products.shape[:2], patterns[0].shape[1]), dtype=np.complex128)
+        for m, pattern in enumerate(patterns):
+            forms[:, m].real = products[:, m].real @ pattern
+            forms[:, m].imag = products[:, m].imag @ pattern
+        return forms
+
+    def _changes(
+        self, found: NumberedModes, pole: ComplexArray, forms: ComplexArray
+    ) -> tuple[ComplexArray, ComplexArray]:
+        """Return the forms of ∂F (n_sets, n_modes, n_directions) and of F′ (n_sets, n_modes) at poles."""
         n_groups, n = len(self.condensed.pencil.groups), len(self.each)
         on_feet = [place for place, one in enumerate(self.each) if one.feet is not None]
-        pole, x = found.poles, found.shapes
-        columns = 2 + n_groups + 2 * n + n_groups * len(on_feet)
-        forms = np.empty((*pole.shape, columns), dtype=np.complex128)
-        for m, mode in enumerate(found.modes):
-            products, patterns = x[:, m, i] * x[:, m, j], self._columns(mode)
-            forms[:, m].real, forms[:, m].imag = products.real @ patterns, products.imag @ patterns
         a, b = found.rayleigh[:, :1], found.rayleigh[:, 1:]
         below = (2.0 * pole + a) * forms[..., 0] + b * forms[..., 1]
         by_mass, by_stiffness, by_feet = np.split(forms[..., 2 + n_groups :], [n, 2 * n], axis=-1)
@@ -162,4 +192,4 @@ class ToleranceDirections:
             above[..., on_feet] += D * by_feet[..., g]
             if g < self.n_soil:
                 above += (1j - 2.0 / pi) * D.imag * growth * forms[..., 2 + g, None]
-        return np.asarray(-above / below[..., None])
+        return above, below

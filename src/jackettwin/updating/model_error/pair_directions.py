@@ -1,0 +1,137 @@
+r"""In which direction the lower mode of a bending pair moves, beside where the model has it.
+
+Two close modes are the axes of a symmetric 2 × 2 matrix of frequencies. In the model's axes its entry off the
+diagonal is
+
+.. math:: e = \tfrac12 \frac{f_2 - f_1}{f} \sin 2(α - α_0),
+
+linear in what disturbs the structure however close the two frequencies are, unlike the angle α itself: to
+first order :math:`e = g\,\mathrm{Re}(κ/λ)`, κ of :meth:`ToleranceDirections.coupling` and g the turn of the
+lower mode with the upper one added. One foot softer than the others turns a pair; what is alike in all
+directions does not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.response import NumberedModes, principal_direction
+from jackettwin.updating.model_error.directions import ToleranceDirections
+from jackettwin.updating.problem import Problem
+
+CLOSE = 0.03
+"""Modes farther apart than this are no pair: other modes turn them as much as each other. Second pairs of
+jackets lie 5 to 20 % apart, first ones 0.5 to 2 %."""
+_STEP = 0.01
+"""Of ln θ, for the derivative of e: the turn of a symmetric jacket's pairs with its ground is nothing."""
+
+
+@dataclass(frozen=True, eq=False)
+class PairDirection:
+    """A measured direction of the lower mode of a pair.
+
+    Attributes
+    ----------
+    modes : (int, int)
+        Their numbers in the model, in any order.
+    angle_rad, std_rad : float
+        From x towards y, and its standard deviation.
+    apart : float
+        Difference of the two measured frequencies over their mean.
+    motion : (n_places, 2, assembly.n_dof) horizontal motion of the places that show it
+    """
+
+    modes: tuple[int, int]
+    angle_rad: float
+    std_rad: float
+    apart: float
+    motion: FloatArray
+
+    @property
+    def datum(self) -> str:
+        """``α1``: by the lower of the two numbers."""
+        return f"α{min(self.modes)}"
+
+
+@dataclass(frozen=True, eq=False)
+class DirectionRow:
+    """A pair's direction as one more residual: e of the model less e measured, over its deviation.
+
+    Attributes
+    ----------
+    residual : float
+    slopes : (n_parameters,) by ln θ
+    scale : float
+        Angle [rad] for one of the residual.
+    """
+
+    residual: float
+    slopes: FloatArray
+    scale: float
+
+
+def direction_row(problem: Problem, z: FloatArray, pair: PairDirection) -> DirectionRow | None:
+    """Return the residual of a pair's direction at a point (d,) of ln θ.
+
+    None where a mode is lost, and of modes that are no pair, measured or modelled.
+    """
+    std = _std(problem, pair)
+    at = np.concatenate([z[None], z + _STEP * np.eye(z.size)])
+    found = problem.model.predict_many(problem.vectors(at, problem.states[0]), pair.modes, slopes=False)
+    if np.isnan(found.poles).any():
+        return None
+    angle = np.array([_lower(problem, pair, x, y)[0] for x, y in zip(*_ordered(found), strict=True)])
+    size = np.sort(np.abs(found.poles), axis=1)
+    apart = (size[:, 1] - size[:, 0]) / size.mean(axis=1)
+    if max(pair.apart, apart[0]) > CLOSE:
+        return None
+    measured = 0.5 * pair.apart * np.sin(2.0 * (pair.angle_rad - angle[0]))
+    turned = 0.5 * apart * np.sin(2.0 * (angle - angle[0]))
+    return DirectionRow(float(-measured / std), turned[1:] / _STEP / std, std / pair.apart)
+
+
+def direction_gains(
+    problem: Problem, z: FloatArray, pair: PairDirection, directions: ToleranceDirections
+) -> FloatArray:
+    """Return the derivatives (n,) of the residual of :func:`direction_row` by errors of the structure."""
+    vectors = problem.vectors(z[None], problem.states[0])
+    found = problem.model.predict_many(vectors, pair.modes, slopes=False)
+    poles, shapes = _ordered(found)
+    ordered = replace(found, poles=poles, shapes=shapes)
+    turn = _lower(problem, pair, poles[0], shapes[0])[1]
+    relative = (directions.coupling(ordered)[0] / poles[0].mean()).real
+    return np.asarray(turn * relative / _std(problem, pair))
+
+
+def _std(problem: Problem, pair: PairDirection) -> float:
+    """Return the standard deviation of e: of what is measured, and of a remainder of the model.
+
+    A remainder that is as large in f₁ and f₂ and prefers no direction is as large off the diagonal as half
+    of their difference: over √2.
+    """
+    errors = problem.error_model
+    remainder = 0.0 if errors is None else errors.own(f"f{pair.modes[0]}")
+    return float(np.hypot(pair.apart * pair.std_rad, remainder / np.sqrt(2.0)))
+
+
+def _ordered(found: NumberedModes) -> tuple[ComplexArray, ComplexArray]:
+    """Return poles (n_sets, 2) and shapes (n_sets, 2, n) of two modes, the lower first."""
+    order = np.argsort(np.abs(found.poles), axis=1)
+    shapes = np.take_along_axis(found.shapes, order[..., None], axis=1)
+    return np.take_along_axis(found.poles, order, axis=1), shapes
+
+
+def _lower(
+    problem: Problem, pair: PairDirection, poles: ComplexArray, shapes: ComplexArray
+) -> tuple[float, float]:
+    """Return the direction of the lower of two modes [rad], and how far the upper one turns it."""
+    expand = problem.model.condensed.expand
+    low, high = (pair.motion @ expand(pole, x) for pole, x in zip(poles, shapes, strict=True))
+    angle, _ = principal_direction(low)
+    along = np.array([np.cos(angle), np.sin(angle)])
+    across, amplitude = high @ np.array([-along[1], along[0]]), low @ along
+    size = float(np.vdot(amplitude, amplitude).real)
+    return angle, float(np.vdot(amplitude, across).real) / size
