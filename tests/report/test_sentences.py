@@ -8,6 +8,8 @@ from jackettwin.answers import Answers, Span
 from jackettwin.answers.result import Clearance, FitAnswer, GroundAnswer, LawAnswer, ModeAnswer, NextStep
 from jackettwin.report.tables.answers import ground_table
 from jackettwin.report.tables.sentences import _model, percent_words, sentences, span_words
+from jackettwin.study.scrutiny import Scrutiny
+from jackettwin.updating import DatumCheck, Objection, Tolerance
 
 MODE = ModeAnswer(
     "fore_aft_1", Span(0.2, 0.199, 0.201), Span(0.012, 0.01, 0.014), True, True, Span(0.201, 0.195, 0.204),
@@ -208,3 +210,35 @@ def test_what_does_not_overlap_is_not_where_the_design_says() -> None:
     near = replace(MODE, measured_hz=Span(0.2, 0.199, 0.201), design_hz=Span(0.203, 0.202, 0.204))
     assert near.as_designed is False and near.near_design is True
     assert "nearly as designed" in sentences(replace(ANSWERS, modes=(near,))).headline[0]
+
+
+SOFT = Tolerance("soft_sideways", "feet softer sideways than lengthwise", 0.3, "-", "a test", "look")
+
+
+def objected_answers(*checks: DatumCheck, suspected: tuple[Tolerance, ...] = ()) -> Answers:
+    """Return answers with an unfitted third mode and what a fit does not explain."""
+    third = replace(
+        MODE, label="fore_aft_3", number=10, fits_frequency=False, measured_hz=Span(2.0, 1.995, 2.005),
+        model_hz=Span(2.024, 2.02, 2.03),
+    )  # fmt: skip
+    found = Objection(checks, 12.0, 8, 0.2, suspected=suspected)
+    return replace(ANSWERS, modes=(replace(MODE, number=1), third), scrutiny=Scrutiny(found))
+
+
+def test_what_the_objections_name_is_not_said_twice() -> None:
+    shorts = sentences(objected_answers(DatumCheck("f10", -0.012, 0.003, False, True))).questions[0].short
+    about = [text for text in shorts if "ore-aft 3" in text]
+    assert about == [
+        "Not explained: fore-aft 3's frequency is 1.2 % below what the other modes allow (± 0.3 %)."
+    ]
+    # damping of that mode is another matter
+    shorts = sentences(objected_answers(DatumCheck("ζ10", 0.8, 0.2, False, True))).questions[0].short
+    assert any("it was not fitted" in text for text in shorts)
+
+
+def test_a_turned_pair_and_a_suspect_have_sentences() -> None:
+    turned = DatumCheck("α1", -0.35, 0.07, False, True)
+    text = " ".join(sentences(objected_answers(turned)).questions[0].short)
+    assert "the pair of fore-aft 1 is turned by 20° from where the model has it (± 4°)" in text
+    text = " ".join(sentences(objected_answers(suspected=(SOFT,))).questions[0].short)
+    assert "lie as feet softer sideways than lengthwise would move them" in text

@@ -17,6 +17,7 @@ from jackettwin.study.fit_data import recorded_modes, residuals, target_modes, u
 from jackettwin.study.measure import Measured, measure
 from jackettwin.study.measurements import MeasuredMode
 from jackettwin.study.narrative import assumptions, cautions, without_relaxation
+from jackettwin.study.pair_directions import measured_directions
 from jackettwin.study.problem import UpdateEvidence, law_problem
 from jackettwin.study.relaxations import measured_relaxations, relaxing
 from jackettwin.study.result import DampingExcess, TwinResult
@@ -125,11 +126,13 @@ def updated_twin(
         updates = _with_one_posterior(config, updates, progress, keep)
     speed, blades = rotor_speed_hz(config)
     others = suspects(config, assembly) if any(u.problem.weighted for u in updates) else ()
+    sensors = () if found is None else found.sensors
+    pairs = measured_directions(state, sensors, assembly, measured)
     left_out = tuple(law for law in wanted if law not in [u.law for u in updates])
     return TwinResult(
         name=config.name,
         assembly=assembly,
-        sensors=() if found is None else found.sensors,
+        sensors=sensors,
         numbered=numbered,
         labels=labels,
         observations=() if found is None else found.observations,
@@ -143,7 +146,7 @@ def updated_twin(
         rotor_speed_hz=speed,
         blades=blades,
         in_all=None if found is None else found.in_all,
-        scrutiny=tuple(scrutiny(u, measured, others) for u in updates),
+        scrutiny=tuple(scrutiny(u, measured, others, pairs) for u in updates),
     )
 
 

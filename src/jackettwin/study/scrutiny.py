@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import exp, log
+from math import degrees, exp, log
 from typing import Any
 
 import numpy as np
@@ -12,9 +12,11 @@ import numpy as np
 from jackettwin.study.measurements import MeasuredMode
 from jackettwin.updating import (
     USABLE,
+    DatumCheck,
     Direction,
     Influence,
     Objection,
+    PairDirection,
     Target,
     Tolerance,
     Update,
@@ -71,12 +73,18 @@ class Scrutiny:
         return tuple(sorted(self.influences, key=lambda one: -abs(float(one.effect[parameter]))))
 
 
-def scrutiny(u: Update, measured: Sequence[MeasuredMode], suspects: Sequence[Direction]) -> Scrutiny:
+def scrutiny(
+    u: Update,
+    measured: Sequence[MeasuredMode],
+    suspects: Sequence[Direction],
+    pairs: Sequence[PairDirection] = (),
+) -> Scrutiny:
     """Return what stands behind a fit.
 
     Parameters
     ----------
     suspects : what else may be wrong with the structure, to explain what the tolerances do not
+    pairs : measured directions of bending pairs
     """
     beside = [
         Target(m.mode, m.frequency_hz, m.frequency_std_hz)
@@ -86,7 +94,7 @@ def scrutiny(u: Update, measured: Sequence[MeasuredMode], suspects: Sequence[Dir
     z = np.log(u.best.theta)
     known = u.uncertainty
     found = () if known is None else influences(u.problem, np.median(known.log_theta, axis=0))
-    return Scrutiny(objection(u.problem, z, beside, suspects), found, _conditions(u, found))
+    return Scrutiny(objection(u.problem, z, beside, suspects, pairs), found, _conditions(u, found))
 
 
 def _conditions(u: Update, found: tuple[Influence, ...]) -> tuple[Condition, ...]:
@@ -141,8 +149,7 @@ def _objection_document(o: Objection) -> dict[str, Any]:
         "checks": [
             {
                 "datum": check.datum,
-                "measured_over_predicted_less_one": check.miss,
-                "std": check.std,
+                **_miss(check),
                 "fitted": check.fitted,
                 "objects": check.objects,
             }
@@ -151,8 +158,16 @@ def _objection_document(o: Objection) -> dict[str, Any]:
         "explanations": [
             {**_tolerance_document(e.tolerance), "size": e.size, "chi2_less": e.gain} for e in o.explanations
         ],
+        "asked_for_by_these_data": [tolerance.name for tolerance in o.suspected],
         "not_seen_by_these_data": [tolerance.name for tolerance in o.unseen],
     }
+
+
+def _miss(check: DatumCheck) -> dict[str, float]:
+    """Return by how much a datum is missed, directions in degrees."""
+    if check.is_direction:
+        return {"measured_less_predicted_deg": degrees(check.miss), "std_deg": degrees(check.std)}
+    return {"measured_over_predicted_less_one": check.miss, "std": check.std}
 
 
 def _tolerance_document(t: Tolerance) -> dict[str, Any]:

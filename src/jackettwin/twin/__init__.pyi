@@ -1,15 +1,17 @@
 from .advance import advance as advance, advance_all as advance_all
 from .config import TwinConfig as TwinConfig
-from .exact_sums import UNIT as UNIT, average as average
+from .exact_sums import UNIT as UNIT, average as average, plus as plus
 from .files import read_twin as read_twin, shipped_twins as shipped_twins
 from .model import TwinModel as TwinModel, twin_model as twin_model
 from .observation import OBSERVATION as OBSERVATION, Observation as Observation
 from .observe import examined as examined, observe as observe
 from .observe_files import Failed as Failed, observe_files as observe_files, sorted_out as sorted_out
+from .pair_angles import stations as stations
 from .state import (
     ALL as ALL,
     STATE as STATE,
     UNDATED as UNDATED,
+    AngleSums as AngleSums,
     Day as Day,
     OperationTotal as OperationTotal,
     TwinState as TwinState,

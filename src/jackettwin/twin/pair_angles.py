@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.identification import ModalEstimate
-from jackettwin.response import principal_direction
+from jackettwin.response import Sensor, principal_direction
 from jackettwin.twin.observation import Observation
 
 MOST_STD_RAD = float(np.radians(20.0))
@@ -24,7 +26,9 @@ def pair_angles(seen: Observation) -> dict[str, tuple[float, float]]:
     differ by no more than they are unsure by has no direction of its own, and is left out; so is one that no
     place with two horizontal sensors shows.
     """
-    modes, places = seen.named_modes, _stations(seen)
+    sensors = {sensor.channel: sensor for sensor in seen.sensors}
+    places = stations([sensors.get(channel.name) for channel in seen.identification.channels])
+    modes = seen.named_modes
     found = {}
     for label in modes if places else ():
         partner = label.replace("fore_aft_", "side_side_")
@@ -37,12 +41,15 @@ def pair_angles(seen: Observation) -> dict[str, tuple[float, float]]:
     return found
 
 
-def _stations(seen: Observation) -> Stations:
-    """Return places with sensors along two horizontal directions: their channels, and directions (n, 2)."""
-    sensors = {sensor.channel: sensor for sensor in seen.sensors}
+def stations(sensors: Sequence[Sensor | None]) -> Stations:
+    """Return the places with sensors along two horizontal directions: their channels, and directions (n, 2).
+
+    Parameters
+    ----------
+    sensors : of each channel; None of one that has no place
+    """
     places: dict[object, list[tuple[int, FloatArray]]] = {}
-    for row, channel in enumerate(seen.identification.channels):
-        sensor = sensors.get(channel.name)
+    for row, sensor in enumerate(sensors):
         if sensor is None or sensor.quantity != "motion":
             continue
         along = np.array(sensor.direction) / np.linalg.norm(sensor.direction)

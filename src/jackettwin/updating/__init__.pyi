@@ -33,7 +33,7 @@ from .law_choice import (
     recommended as recommended,
 )
 from .model import SupportModel as SupportModel
-from .model_error.checks import Objection as Objection, objection as objection
+from .model_error.checks import DatumCheck as DatumCheck, Objection as Objection, objection as objection
 from .model_error.directions import (
     Direction as Direction,
     Tolerance as Tolerance,

@@ -12,6 +12,8 @@ from jackettwin.report.tables.numbers import UNKNOWN, between, count, factor, li
 from jackettwin.report.tables.sentences_fit import fit_sentence, mend, misfit_headline, value_words
 from jackettwin.report.tables.sentences_model import (
     condition_headline,
+    mode_of,
+    objected,
     objection_sentences,
     unseen_sentence,
 )
@@ -322,10 +324,13 @@ def _model(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
 
 
 def _off_unfitted(a: Answers) -> list[str]:
-    """Name the modes that were measured, not fitted, and that the updated model does not meet."""
-    found = []
+    """Name the modes that were measured, not fitted, and that the updated model does not meet.
+
+    What the objections name is not said twice.
+    """
+    found, named = [], {mode_of(check) for check in objected(a) if check.datum.startswith("f")}
     for m in a.modes:
-        if m.fits_frequency or m.model_hz is None or m.measured_hz is None:
+        if m.fits_frequency or m.model_hz is None or m.measured_hz is None or m.number in named:
             continue
         off = m.model_hz.value / m.measured_hz.value - 1.0
         if abs(off) > _NOTHING and not m.measured_hz.meets(m.model_hz):

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from math import expm1
+from collections.abc import Mapping
+from math import degrees, expm1
 
 from jackettwin.answers import Answers, GroundAnswer
 from jackettwin.report.tables.numbers import listed, words
 from jackettwin.soil import parameter_words
-from jackettwin.updating import Tolerance
+from jackettwin.updating import DatumCheck, Tolerance
 
 _NAMED = 3
 """Values and tolerances that a sentence names: the table has all."""
@@ -42,26 +43,50 @@ def moved_words(tolerance: Tolerance, effect: float) -> str:
     return f"each {text} {'raises' if change > 0.0 else 'lowers'} it by {abs(change):.2g} %"
 
 
+def objected(a: Answers) -> list[DatumCheck]:
+    """Return the measured values that the first screen names because the model does not allow them."""
+    if a.scrutiny is None or a.scrutiny.objection is None:
+        return []
+    strays = [check for check in a.scrutiny.objection.checks if check.objects]
+    return sorted(strays, key=lambda check: -abs(check.miss) / check.std)[:_NAMED]
+
+
+def mode_of(check: DatumCheck) -> int | None:
+    """Return the number of the mode that a value is of; None of a shape or a relaxation."""
+    number = check.datum[1:].partition(" ")[0]
+    return int(number) if number.isdigit() else None
+
+
 def objection_sentences(a: Answers) -> list[str]:
     """Return what the model does not explain, and what would explain it; nothing where chance does."""
     if a.scrutiny is None or a.scrutiny.objection is None or not a.scrutiny.objects:
         return []
     o, labels = a.scrutiny.objection, {m.number: m.label for m in a.modes}
-    worst = sorted((c for c in o.checks if c.objects), key=lambda c: -abs(c.miss) / c.std)[:_NAMED]
-    said = []
-    for check in worst:
-        letter, number = check.datum[0], check.datum[1:].partition(" ")[0]
-        label = labels.get(int(number), f"mode {number}") if number.isdigit() else check.datum
-        what = "damping" if letter == "ζ" else "frequency"
-        side = "above" if check.miss > 0.0 else "below"
-        said.append(
-            f"{words(label)}'s {what} is {100 * abs(check.miss):.2g} % {side} what the other modes allow "
-            f"(± {100 * check.std:.2g} %)"
-        )
+    said = [_stray(check, labels) for check in objected(a)]
+    if not said and o.suspected:
+        said = [f"the measured modes lie as {listed([t.words for t in o.suspected])} would move them"]
     together = "the measured modes together are farther from any model within the tolerances than chance goes"
-    lead = f"Not explained: {listed(said) if said else together}"
     by = [f"{e.tolerance.words} {size_words(e.tolerance, e.size)}" for e in o.explanations]
-    return [f"{lead}.", f"What would explain most of it: {', or '.join(by)}." if by else ""]
+    return [
+        f"Not explained: {listed(said) if said else together}.",
+        f"What would explain most of it: {', or '.join(by)}." if by else "",
+    ]
+
+
+def _stray(check: DatumCheck, labels: Mapping[int, str]) -> str:
+    """Return what is said of a value that the model does not allow."""
+    mode = mode_of(check)
+    label = check.datum if mode is None else words(labels.get(mode, f"mode {mode}"))
+    if check.is_direction:
+        return (
+            f"the pair of {label} is turned by {abs(degrees(check.miss)):.0f}° from where the model has it "
+            f"(± {degrees(check.std):.0f}°)"
+        )
+    what, side = "damping" if check.datum[0] == "ζ" else "frequency", "above" if check.miss > 0.0 else "below"
+    return (
+        f"{label}'s {what} is {100 * abs(check.miss):.2g} % {side} what the other modes allow "
+        f"(± {100 * check.std:.2g} %)"
+    )
 
 
 def condition_headline(a: Answers) -> str:

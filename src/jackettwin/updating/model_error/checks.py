@@ -60,6 +60,11 @@ class DatumCheck:
     fitted: bool
     objects: bool
 
+    @property
+    def is_direction(self) -> bool:
+        """Whether it is an angle, not a share."""
+        return self.datum.startswith("α")
+
 
 @dataclass(frozen=True)
 class Explanation:
