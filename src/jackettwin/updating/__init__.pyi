@@ -42,6 +42,11 @@ from .model_error.directions import (
 from .model_error.error_model import ErrorModel as ErrorModel
 from .model_error.influence import Influence as Influence, influences as influences
 from .model_error.pair_directions import PairDirection as PairDirection
+from .model_error.turbines import (
+    StackedErrors as StackedErrors,
+    shared_errors as shared_errors,
+    stacked as stacked,
+)
 from .nuisance_parameters import (
     DASHPOTS as DASHPOTS,
     NuisanceParameter as NuisanceParameter,

@@ -60,7 +60,7 @@ def influences(problem: Problem, z: FloatArray) -> tuple[Influence, ...]:
     for place, tolerance in enumerate(tolerances):
         columns.setdefault(tolerance.name, []).append(place)
     now = _deviation(gains, J, precision)
-    mean, std = _after(gains, J, precision, r)
+    mean, std = errors_after(gains, J, precision, r)
     seen = _seen(gains[:, : len(tolerances)], J, precision)
     result = []
     for name, own in columns.items():
@@ -88,10 +88,20 @@ def _deviation(gains: FloatArray, J: FloatArray, precision: FloatArray) -> Float
     return np.asarray(np.sqrt(np.diag(np.linalg.inv(information))))
 
 
-def _after(
+def errors_after(
     gains: FloatArray, J: FloatArray, precision: FloatArray, r: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return mean and standard deviation of every error after the data, parameters and errors together."""
+    """Return mean and standard deviation of every error after the data, parameters and errors together.
+
+    To first order: residuals r + J δz + Γφ are standard normal, δz has a precision before, φ variance one.
+
+    Parameters
+    ----------
+    gains : (n_data, n_errors) Γ
+    J : (n_data, d)
+    precision : (d, d)
+    r : (n_data,)
+    """
     both = np.concatenate([J, gains], axis=1)
     d = J.shape[1]
     prior = np.eye(both.shape[1])
