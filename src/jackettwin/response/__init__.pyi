@@ -4,6 +4,7 @@ from .condensation.condensed import (
     strongest_beta as strongest_beta,
     widest_band_hz as widest_band_hz,
 )
+from .condensation.newton import law_response as law_response
 from .condensation.numbered_modes import (
     NumberedModes as NumberedModes,
     Points as Points,

@@ -19,6 +19,7 @@ from jackettwin.response import (
     System,
     build_system,
     damped_modes,
+    law_response,
     numbered_poles,
     track_modes,
     undamped_modes,
@@ -137,6 +138,27 @@ class SupportModel:
         by_all = np.zeros((n_sets, 2, theta.shape[1]))
         by_all[:, :, own.shape[1] :] = ab_slopes
         return Points(rows, ab, jacobian, by_all)
+
+    def law_response(self, theta: FloatArray, s: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Return the laws' complex stiffness at one vector, and its derivatives by ln θ of their parameters.
+
+        Parameters
+        ----------
+        theta : (n_parameters,)
+        s : (n_s,) where [rad/s]
+
+        Returns
+        -------
+        (n_groups · n_s,) D [N/m], group after group, and (n_groups · n_s, n_law_parameters)
+        """
+        p = len(self.family.parameters)
+        own = self._split(theta)[0].reshape(-1, p)
+        D, dD = law_response(*self.family.rows(own, self.reference_hz), s)
+        if len(own) == 1:
+            return D[0], dD[0]
+        each = np.zeros((len(own), s.size, len(own), p), np.complex128)
+        each[np.arange(len(own)), :, np.arange(len(own))] = dD
+        return D.ravel(), each.reshape(D.size, own.size)
 
     def predict_many(
         self,

@@ -184,7 +184,7 @@ class Problem:
             rows.append(jacobian)
         if self.error_model is not None and not lost:
             # how the errors' weights change with z is left out of the slopes: nothing, where the data are met
-            root = inverse_root(self.gains(found)[0])
+            root = self.whitening(found)
             values, rows = [root @ np.concatenate(values)], [root @ np.concatenate(rows)]
         if not self.relative:
             value, jacobian = self.prior.rows(z)
@@ -209,6 +209,13 @@ class Problem:
             beside = len(state.names) - state.residuals.count
             parts.append(np.concatenate([own, np.zeros((len(own), beside, own.shape[2]))], axis=1))
         return np.concatenate(parts, axis=1)
+
+    def whitening(self, found: Found) -> FloatArray:
+        """Return what the residuals of all states are multiplied by where the modes are these, (n_data, n_data).
+
+        Without an error model it is one.
+        """
+        return np.eye(self.n_data) if self.error_model is None else inverse_root(self.gains(found)[0])
 
     @property
     def plain(self) -> Problem:

@@ -56,7 +56,7 @@ EQUAL = 1e-9
 def compiled_before() -> bool:
     """Tell whether what is compiled for this file lies on disk, so that nothing is compiled again."""
     written = Path(__file__).stat().st_mtime
-    kept = Path(refine.stats.cache_path).glob("condensed_kernels.refine-*.nbi")
+    kept = Path(refine.stats.cache_path).glob("kernels.refine-*.nbi")
     return any(file.stat().st_mtime >= written for file in kept)
 
 
@@ -95,6 +95,21 @@ def law_derivatives(row, s, out):
         u = 1.0 / (1.0 + row[j + 1] * s)
         out[j] = row[j + 1] * s * u
         out[j + 1] = row[j] * s * u * u
+
+
+@compiled
+def law_response(rows, jacobian, s, D, dD):
+    """Fill D(s) (n_groups, n_s) of law rows (n_groups, width), and dD/dz (n_groups, n_s, n_z) from d rows/dz."""
+    law = np.empty(rows.shape[1], np.complex128)
+    for g in range(rows.shape[0]):
+        for m in range(s.size):
+            D[g, m], _ = _law(rows[g], s[m])
+            law_derivatives(rows[g], s[m], law)
+            for z in range(dD.shape[2]):
+                total = 0.0j
+                for w in range(law.size):
+                    total += law[w] * jacobian[g, w, z]
+                dD[g, m, z] = total
 
 
 @inner

@@ -121,3 +121,26 @@ def _block(
         if number > 0 and abs(step) <= tolerance * abs(s):
             return True
     return False
+
+
+def law_response(
+    rows: FloatArray, jacobian: FloatArray, s: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return the complex stiffness of laws and how it depends on their parameters.
+
+    Parameters
+    ----------
+    rows : (n_groups, width) as in :mod:`jackettwin.soil.laws.coefficients`
+    jacobian : (n_groups, width, n_z) d rows/dz
+    s : (n_s,) where [rad/s]
+
+    Returns
+    -------
+    (n_groups, n_s) D(s) [N/m], and (n_groups, n_s, n_z) dD/dz
+    """
+    D = np.empty((len(rows), s.size), np.complex128)
+    dD = np.empty((*D.shape, jacobian.shape[2]), np.complex128)
+    kernels().law_response(
+        np.ascontiguousarray(rows), np.ascontiguousarray(jacobian), np.ascontiguousarray(s), D, dD
+    )
+    return D, dD

@@ -12,7 +12,8 @@ from jackettwin.arrays import FloatArray
 from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.search.clusters import linked
-from jackettwin.updating.search.descent import End, Trail, descend, descend_simplex
+from jackettwin.updating.search.descent import End, descend, descend_simplex
+from jackettwin.updating.search.path import Trail
 from jackettwin.updating.search.solutions import SearchMethod, Solution
 
 Fate = Literal["solution", "plateau", "stalled"]

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.updating.problem import Problem
-from jackettwin.updating.search.descent import End, constrained
+from jackettwin.updating.search.descent import End
+from jackettwin.updating.search.path import Path, constrained, held_minimum
 
 _SAME = 0.02
 """End points closer than this in every ln θ are one."""
@@ -16,6 +19,8 @@ _MOST_STEPS = 10_000
 """Most steps of all walks between end points: about a minute. Those not compared by then are listed apart."""
 _JUMP = 4.0
 """If the other parameters move by more than so many steps at once, they may have jumped over a ridge."""
+_LOOSE = 0.1
+"""Where a surrogate leads, the cost may be higher by this share of what may be neglected."""
 _NARROW = 0.05
 """A solution whose ln θ the cost fixes better than this is a point, not a cluster."""
 
@@ -74,28 +79,24 @@ def linked(problem: Problem, low: End, high: End) -> tuple[bool, int]:
 
 def _walks(problem: Problem, high: End, low: End, j: int) -> tuple[bool, int]:
     allowance = problem.allowance(high.cost)
-    here, step = high.z, abs(high.z[j] - low.z[j]) / _STAGES
+    path, here, step = Path(problem), high.z, abs(high.z[j] - low.z[j]) / _STAGES
+    near, ceiling = path.surrogate(here), high.cost + allowance
     for steps, value in enumerate(np.linspace(high.z[j], low.z[j], _STAGES + 1)[1:], start=1):
-        there, cost = constrained(problem, here, j, float(value))
+        there, cost = constrained(path, here, j, float(value), near=near, enough=ceiling)
         jumped = np.abs(there - here).max() > _JUMP * step
-        if cost > high.cost + allowance or (
-            jumped and not _level(problem, here, there, high.cost + allowance)
-        ):
+        if cost > ceiling or (jumped and not _level(path, here, there, ceiling)):
             return False, steps
         if cost < high.cost - allowance:
             return True, steps
         here = there
-    return _level(problem, here, low.z, high.cost + allowance), _STAGES
+    return _level(path, here, low.z, ceiling), _STAGES
 
 
-def _level(problem: Problem, start: FloatArray, end: FloatArray, ceiling: float) -> bool:
+def _level(path: Path, start: FloatArray, end: FloatArray, ceiling: float) -> bool:
     """Return whether the cost stays below a ceiling on the straight line between two points."""
-    near = None
-    for t in np.linspace(0.0, 1.0, _STAGES)[1:-1]:
-        r, _, near = problem.evaluate(start + t * (end - start), near)
-        if near is None or float(r @ r) > ceiling:
-            return False
-    return True
+    between = np.linspace(0.0, 1.0, _STAGES)[1:-1]
+    costs = path.problem.costs(start + between[:, None] * (end - start), path.last)
+    return bool((costs <= ceiling).all())
 
 
 def extent(problem: Problem, end: End) -> tuple[FloatArray, list[FloatArray]]:
@@ -104,8 +105,8 @@ def extent(problem: Problem, end: End) -> tuple[FloatArray, list[FloatArray]]:
     The second value holds the points reached, for parameters with a wide range.
     """
     points = []
-    _, J, _ = problem.evaluate(end.z, None)
-    allowance = problem.allowance(end.cost)
+    path = Path(problem)
+    J, allowance = path(end.z)[1], problem.allowance(end.cost)
     curvature = J.T @ J
     spread = np.full(end.z.size, np.inf)
     if np.linalg.cond(curvature) < 1e12:
@@ -114,22 +115,44 @@ def extent(problem: Problem, end: End) -> tuple[FloatArray, list[FloatArray]]:
     # with a likelihood the posterior says how far, and better
     for j in np.flatnonzero(spread > _NARROW) if problem.relative else ():
         for side, limit in enumerate((problem.prior.low[j], problem.prior.high[j])):
-            point = _reach(problem, end, int(j), float(limit), allowance)
+            point = _reach(path, end, int(j), float(limit), allowance)
             points.append(point)
             sides[j, side] = point[j]
     return np.clip(sides, problem.prior.low[:, None], problem.prior.high[:, None]), points
 
 
-def _reach(problem: Problem, end: End, j: int, limit: float, allowance: float) -> FloatArray:
-    """Return the point with the farthest value of one ln θ that keeps the cost: walk, halve the step."""
-    here, last = end.z, float(end.z[j])
+def _reach(path: Path, end: End, j: int, limit: float, allowance: float) -> FloatArray:
+    """Return the point with the farthest value of one ln θ that keeps the cost.
+
+    It is sought on the surrogate at the end, for poles stay there where the cost does; if the cost is not
+    kept where that leads, by asking the structure at every step.
+    """
+    near, ceiling = path.surrogate(end.z), end.cost + allowance
+    if near is not None:
+        far = _farthest(lambda z: held_minimum(path.problem, near, z, j, ceiling), end.z, j, limit, ceiling)
+        if path.total(far) <= ceiling + _LOOSE * allowance:
+            return far
+    return _farthest(lambda z: constrained(path, z, j, float(z[j])), end.z, j, limit, ceiling)
+
+
+def _farthest(
+    refitted: Callable[[FloatArray], tuple[FloatArray, float]],
+    here: FloatArray,
+    j: int,
+    limit: float,
+    ceiling: float,
+) -> FloatArray:
+    """Return the farthest point below a ceiling: walk towards the limit of one ln θ, halve the step."""
+    last = float(here[j])
     step = (limit - last) / _STAGES
     for _ in range(3 * _STAGES):
         if abs(step) < 1e-2 or abs(limit - last) < 1e-9:
             break
         value = last + step if abs(step) < abs(limit - last) else limit
-        there, cost = constrained(problem, here, j, value)
-        if cost <= end.cost + allowance:
+        start = here.copy()
+        start[j] = value
+        there, cost = refitted(start)
+        if cost <= ceiling:
             here, last = there, value
         else:
             step *= 0.5

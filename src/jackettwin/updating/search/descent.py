@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import least_squares, minimize
+from scipy.optimize import minimize
 
 from jackettwin.arrays import FloatArray
 from jackettwin.updating.problem import Found, Problem
+from jackettwin.updating.search.damped import Rows
+from jackettwin.updating.search.path import Path, Trail, creep, minimum
 
-_EVALUATIONS = 200
-_RIDGE = 1e-2
-"""Weight of the pull towards the middle of the bounds, as a share of a negligible cost."""
 _POINT = 0.02
 """A well-determined minimum moves by less than this in ln θ when the pull is taken away. In a flat valley of
 the cost the point moves further, and the one with the pull is kept."""
+_EXACT = 1e-8
+"""Poles are right to this (relative): the condensed model against the full one."""
 
 
 @dataclass(frozen=True)
@@ -40,49 +40,6 @@ class End:
     evaluations: int = 0
 
 
-Trail = list[tuple[FloatArray, float]]
-"""Points ln θ (d,) that a search came by and the cost at each, in their order."""
-
-
-class Path:
-    """Residuals and Jacobian along one search path: each prediction starts from the one before.
-
-    Attributes
-    ----------
-    trail : list, optional
-        Takes every point that is evaluated, and its cost.
-    """
-
-    def __init__(self, problem: Problem, trail: Trail | None = None) -> None:
-        self.problem = problem
-        self.trail = trail
-        self.last: Found | None = None
-        self.at: FloatArray | None = None
-        self.answer: tuple[FloatArray, FloatArray] = (np.zeros(0), np.zeros(0))
-
-    def __call__(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return residuals and Jacobian; the last ones are kept."""
-        if self.at is None or not np.array_equal(z, self.at):
-            r, J, self.last = self.problem.evaluate(z, self.last)
-            self.answer, self.at = (r, J), z.copy()
-            if self.trail is not None:
-                self.trail.append((self.at, float(r @ r)))
-        return self.answer
-
-    def values(self, z: FloatArray) -> FloatArray:
-        """Return the residuals."""
-        return self(z)[0]
-
-    def jacobian(self, z: FloatArray) -> FloatArray:
-        """Return their Jacobian."""
-        return self(z)[1]
-
-    def total(self, z: FloatArray) -> float:
-        """Return the sum of squares."""
-        r = self.values(z)
-        return float(r @ r)
-
-
 def descend(
     problem: Problem, start: FloatArray, *, known: tuple[FloatArray, ...] = (), trail: Trail | None = None
 ) -> End:
@@ -92,41 +49,68 @@ def descend(
     lowest point. To keep away from known solutions, the residuals are first multiplied by
     :math:`\prod_i (1 + σ²/\|z - z_i\|²)` (deflation, Farrell et al. 2015); the last steps go without.
     """
-    taken, path = 0, Path(problem, trail)
+    path = Path(problem, trail)
     if known:
-        start, taken = _least_squares(path, start, *_deflated(path, known), tolerance=1e-3, evaluations=60)
+        start = creep(path, start, _deflated(path, known), tolerance=1e-3, most=60)
     z = start
     for tolerance in (1e-3, 1e-8):
-        here = path.total(z)
-        z, n = _least_squares(path, z, *_pulled(path, here), tolerance=tolerance)
-        taken += n
-    free, n = _least_squares(path, z, path.values, path.jacobian, tolerance=1e-10)
-    taken += n
-    back = z
-    if np.abs(free - z).max() >= _POINT:
-        # in a flat valley the pull leads back; a minimum that the pulled search was too slow to reach stays
-        back, n = _least_squares(path, free, *_pulled(path, path.total(free)), tolerance=1e-8)
-        taken += n
-    return replace(_judged(problem, free if np.abs(free - back).max() < _POINT else z), evaluations=taken)
+        z = creep(path, z, path.pull(path.total(z))(path), tolerance=tolerance)
+        if path.total(z) <= problem.hopeless:
+            break
+    else:
+        z = creep(path, z, path, tolerance=1e-10)  # off a plateau
+    z, arrived = minimum(path, z, path.pull(path.total(z)))
+    if arrived and _flat(path, z):
+        return replace(_judged(problem, z), evaluations=path.evaluations)
+    free, _ = minimum(path, z)
+    if not arrived and np.abs(free - z).max() >= _POINT:
+        # a minimum that the pulled search was too slow to reach stays
+        z, _ = minimum(path, free, path.pull(path.total(free)))
+    moved = np.abs(free - z).max() >= _POINT
+    return replace(_judged(problem, z if moved else free), evaluations=path.evaluations)
 
 
 def bottom(problem: Problem, start: FloatArray, near: Found) -> FloatArray:
     """Return the nearest minimum roughly, from a start whose modes are known."""
     path = Path(problem)
     path.last = near
-    return _least_squares(path, start, path.values, path.jacobian, tolerance=1e-3, evaluations=30)[0]
+    return creep(path, start, path, tolerance=1e-3, most=30)
 
 
 def settle(problem: Problem, end: End) -> End:
-    """Return the point of a flat valley nearest the middle of the bounds, or the minimum as it is."""
-    _, J, _ = problem.evaluate(end.z, None)
-    width = problem.prior.high - problem.prior.low
-    weakest = float(np.linalg.svd(J * width, compute_uv=False)[-1]) if len(J) >= end.z.size else 0.0
-    if weakest**2 > problem.negligible:
-        return end
+    """Return the minimum as it is, or the point of a flat valley nearest the middle of the bounds.
+
+    Data without standard deviations count as right to 1e-4. Where they are met far better, and so know more
+    than that of every parameter, the point is theirs and not the pull's.
+    """
     path = Path(problem)
-    z, _ = _least_squares(path, end.z, *_pulled(path, end.cost), tolerance=1e-12, evaluations=1000)
-    return _judged(problem, z)
+    if not _flat(path, end.z):
+        return end
+    z, _ = minimum(path, end.z, path.pull(end.cost))
+    free, _ = minimum(path, z)
+    return _judged(problem, free if _resolved(path, free) else z)
+
+
+def _flat(path: Path, z: FloatArray) -> bool:
+    """Return whether some direction from bound to bound hardly changes the cost: a valley."""
+    J, prior = path(z)[1], path.problem.prior
+    if len(J) < z.size:
+        return True
+    weakest = float(np.linalg.svd(J * (prior.high - prior.low), compute_uv=False)[-1])
+    return weakest**2 <= path.problem.negligible
+
+
+def _resolved(path: Path, z: FloatArray) -> bool:
+    """Return whether data determine every parameter as exactly as they are met, by Fisher's information."""
+    (r, J), prior = path(z), path.problem.prior
+    inside = ((z - prior.low > _POINT) & (prior.high - z > _POINT)).all()
+    if not inside or len(r) <= z.size:
+        return False
+    noise = max(float(np.sqrt(r @ r / (len(r) - z.size))), _EXACT)
+    _, s, Vt = np.linalg.svd(J, full_matrices=False)
+    with np.errstate(divide="ignore"):
+        std = noise * np.sqrt(((Vt / s[:, None]) ** 2).sum(axis=0))
+    return bool((std < _POINT).all())
 
 
 def descend_simplex(problem: Problem, start: FloatArray, *, trail: Trail | None = None) -> End:
@@ -141,79 +125,7 @@ def descend_simplex(problem: Problem, start: FloatArray, *, trail: Trail | None 
     return replace(_judged(problem, np.asarray(fit.x)), evaluations=int(fit.nfev))
 
 
-def constrained(problem: Problem, z: FloatArray, parameter: int, value: float) -> tuple[FloatArray, float]:
-    """Return the point of least cost with one ln θ held, and its cost."""
-    path, held = Path(problem), z.copy()
-    held[parameter] = value
-    free = np.flatnonzero(np.arange(z.size) != parameter)
-    if free.size == 0:
-        return held, path.total(held)
-
-    def full(y: FloatArray) -> FloatArray:
-        held[free] = y
-        return held
-
-    def values(y: FloatArray) -> FloatArray:
-        return path.values(full(y))
-
-    def jacobian(y: FloatArray) -> FloatArray:
-        return path.jacobian(full(y))[:, free]
-
-    low, high = problem.prior.low[free], problem.prior.high[free]
-    fit = least_squares(
-        values,
-        np.clip(z[free], low, high),
-        jac=jacobian,
-        bounds=(low, high),
-        method="dogbox",
-        xtol=1e-6,
-        ftol=1e-4,
-        max_nfev=40,
-    )
-    return full(fit.x).copy(), float(2.0 * fit.cost)
-
-
-Rows = Callable[[FloatArray], FloatArray]
-
-
-def _least_squares(
-    path: Path,
-    start: FloatArray,
-    values: Rows,
-    jacobian: Rows,
-    *,
-    tolerance: float,
-    evaluations: int = _EVALUATIONS,
-) -> tuple[FloatArray, int]:
-    """Return where least squares end, and how many evaluations that took."""
-    prior = path.problem.prior
-    fit = least_squares(
-        values,
-        start,
-        jac=jacobian,
-        bounds=(prior.low, prior.high),
-        # a third of the steps of the default in the curved valleys of laws with several branches
-        method="dogbox",
-        xtol=tolerance,
-        ftol=max(1e-2 * tolerance, 1e-14),
-        gtol=1e-14,
-        max_nfev=evaluations,
-    )
-    return np.asarray(fit.x), int(fit.nfev)
-
-
-def _pulled(path: Path, cost: float) -> tuple[Rows, Rows]:
-    """Return residuals and Jacobian with a pull to the middle of the bounds, weak beside a cost."""
-    low, high = path.problem.prior.low, path.problem.prior.high
-    weight = np.sqrt(_RIDGE * path.problem.allowance(cost)) / (high - low)
-    middle = 0.5 * (low + high)
-    return (
-        lambda z: np.concatenate([path.values(z), weight * (z - middle)]),
-        lambda z: np.concatenate([path.jacobian(z), np.diag(weight)]),
-    )
-
-
-def _deflated(path: Path, known: tuple[FloatArray, ...]) -> tuple[Rows, Rows]:
+def _deflated(path: Path, known: tuple[FloatArray, ...]) -> Rows:
     """Return residuals and Jacobian multiplied by a factor m that grows without bound at known solutions."""
     width = 0.1 * (path.problem.prior.high - path.problem.prior.low)
 
@@ -227,11 +139,11 @@ def _deflated(path: Path, known: tuple[FloatArray, ...]) -> tuple[Rows, Rows]:
             slope -= 2.0 * u / width / (square * (1.0 + square))
         return float(np.exp(log_m)), slope
 
-    def jacobian(z: FloatArray) -> FloatArray:
-        m, slope = factor(z)
-        return np.asarray(m * (path.jacobian(z) + np.outer(path.values(z), slope)))
+    def rows(z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        (m, slope), (r, J) = factor(z), path(z)
+        return m * r, np.asarray(m * (J + np.outer(r, slope)))
 
-    return lambda z: factor(z)[0] * path.values(z), jacobian
+    return rows
 
 
 def _judged(problem: Problem, z: FloatArray) -> End:

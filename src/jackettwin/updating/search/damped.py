@@ -1,0 +1,110 @@
+r"""Least squares in narrow curved valleys: Levenberg–Marquardt with geodesic acceleration.
+
+A step v of
+
+.. math:: (J^T J + λ S^{-2})\, v = -J^T r
+
+is bent by a/2 along the valley, a the solution for the second derivative of the residuals along v
+(Transtrum & Sethna 2012, *Improvements to the Levenberg–Marquardt algorithm*, eqs. (13)–(15)); a step that would be bent too sharply
+is shortened. For functions that are cheap: it evaluates twice a step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+
+Rows = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
+"""Residuals (n,) and their Jacobian (n, d) at a point (d,)."""
+
+_MOST_BENT = 0.75
+"""A step is shortened where the bend a is a larger share of the step v."""
+_PROBE = 0.1
+"""Share of the step over which the second derivative is taken."""
+_LONGER, _SHORTER = 5.0, 3.0
+"""Damping is divided by the first after a step and multiplied by the second where one fails."""
+_FIRST, _LAST = 1e-4, 1e14
+"""Damping to begin with, and where no step is short enough: the point is a minimum to rounding."""
+
+
+def damped_least_squares(
+    rows: Rows,
+    start: FloatArray,
+    low: FloatArray,
+    high: FloatArray,
+    *,
+    held: int | None = None,
+    tolerance: float = 1e-9,
+    enough: float = 0.0,
+    most: int = 60,
+) -> FloatArray:
+    """Return a point of least squares between bounds.
+
+    Parameters
+    ----------
+    rows : residuals and Jacobian at a point
+    start, low, high : (d,)
+    held : int, optional
+        A coordinate that does not move.
+    tolerance : float
+        It ends where a step moves no coordinate by so much, or lowers the cost by less than this share of it.
+    enough : float
+        It ends, too, where the cost is no higher.
+    most : int
+        Steps.
+    """
+    z, damping, width = start, _FIRST, high - low
+    movable = np.arange(z.size) != held
+    r, J = rows(z)
+    cost = float(r @ r)
+    for _ in range(most):
+        if cost <= enough:
+            break
+        gradient = r @ J
+        free = movable & ~(((z <= low) & (gradient > 0.0)) | ((z >= high) & (gradient < 0.0)))
+        U, s, Vt = np.linalg.svd(J * (width * free), full_matrices=False)
+        while damping < _LAST:
+            u = _bent_step(rows, z, r, J, U * (s / (s * s + damping)), Vt, width, low, high)
+            if u is not None:
+                after = np.minimum(np.maximum(z + width * u, low), high)
+                r_after, J_after = rows(after)
+                cost_after = float(r_after @ r_after)
+                if cost_after < cost:
+                    break
+            damping *= _SHORTER
+        else:
+            break
+        moved, gained = np.abs(after - z).max(), cost - cost_after
+        z, r, J, cost, damping = after, r_after, J_after, cost_after, damping / _LONGER
+        if moved < tolerance or gained < tolerance * cost:
+            break
+    return z
+
+
+def _bent_step(
+    rows: Rows,
+    z: FloatArray,
+    r: FloatArray,
+    J: FloatArray,
+    left: FloatArray,
+    right: FloatArray,
+    width: FloatArray,
+    low: FloatArray,
+    high: FloatArray,
+) -> FloatArray | None:
+    """Return the step (d,) as a share of the bounds' width, None if it would be bent too sharply.
+
+    Parameters
+    ----------
+    left, right : (n, k), (k, d) whose product, transposed, solves for a residual
+    """
+    v = -(r @ left) @ right
+    there = z + (_PROBE * width) * v
+    if (there < low).any() or (there > high).any():
+        return v  # there is nothing to ask beyond the bounds
+    bend = (2.0 / _PROBE) * ((rows(there)[0] - r) / _PROBE - J @ (width * v))
+    a = -0.5 * ((bend @ left) @ right)
+    return v + a if 2.0 * np.linalg.norm(a) <= _MOST_BENT * np.linalg.norm(v) else None

@@ -1,0 +1,220 @@
+"""One way of a search: residuals along it, and the nearest minimum.
+
+Two descents stand side by side. From afar the structure is asked at every step (``creep``). Near the data its
+poles are as good as linear in the supports' stiffness, and each round goes to the minimum of a surrogate
+(``minimum``): three or four evaluations of the structure, where a curved valley took two hundred.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from jackettwin.arrays import FloatArray
+from jackettwin.updating.problem import Found, Problem
+from jackettwin.updating.search.damped import Rows, damped_least_squares
+from jackettwin.updating.search.surrogate import Surrogate
+
+_RIDGE = 1e-2
+"""Weight of the pull towards the middle of the bounds, as a share of a negligible cost."""
+_ROUNDS = 8
+"""Most surrogates on the way to one minimum."""
+_STILL = 1e-7
+"""A round that moves every ln θ by less has arrived."""
+_NEAR = 0.01
+"""And so has one that moves them by less, if the cost is as it was."""
+_ROUGH = 1e-3
+"""Share of the cost that matters with one parameter held."""
+_HONEST = 0.25
+"""A surrogate is believed while the cost falls by at least this share of what it promises."""
+_STEPS = 200
+
+Trail = list[tuple[FloatArray, float]]
+"""Points ln θ (d,) that a search came by and the cost at each, in their order."""
+
+
+class Path:
+    """Residuals and Jacobian along one search path: each prediction starts from the one before.
+
+    Attributes
+    ----------
+    last : Found or None
+        The modes at the point that was evaluated last; None if one was lost.
+    evaluations : int
+        Of the model, so far.
+    trail : list, optional
+        Takes every point that is evaluated, and its cost.
+    """
+
+    def __init__(self, problem: Problem, trail: Trail | None = None) -> None:
+        self.problem = problem
+        self.trail = trail
+        self.last: Found | None = None
+        self.evaluations = 0
+        self.at: FloatArray | None = None
+        self.answer: tuple[FloatArray, FloatArray] = (np.zeros(0), np.zeros(0))
+
+    def __call__(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return residuals and Jacobian; the last ones are kept."""
+        if self.at is None or not np.array_equal(z, self.at):
+            r, J, self.last = self.problem.evaluate(z, self.last)
+            self.answer, self.at = (r, J), z.copy()
+            self.evaluations += 1
+            if self.trail is not None:
+                self.trail.append((self.at, float(r @ r)))
+        return self.answer
+
+    def surrogate(self, z: FloatArray) -> Rows | None:
+        """Return what is cheap and right near a point; None if a mode is lost there."""
+        rows = self(z)
+        return None if self.last is None else Surrogate(self.problem, z, rows, self.last)
+
+    def total(self, z: FloatArray) -> float:
+        """Return the sum of squares."""
+        return squares(self(z)[0])
+
+    def pull(self, cost: float) -> Callable[[Rows], Rows]:
+        """Return what adds a pull to the middle of the bounds to residuals, weak beside a cost.
+
+        It leads off plateaus and gives a flat valley of the cost one lowest point.
+        """
+        low, high = self.problem.prior.low, self.problem.prior.high
+        weight = np.sqrt(_RIDGE * self.problem.allowance(cost)) / (high - low)
+        middle, slopes = 0.5 * (low + high), np.diag(weight)
+
+        def pulled(rows: Rows) -> Rows:
+            def both(z: FloatArray) -> tuple[FloatArray, FloatArray]:
+                r, J = rows(z)
+                return np.concatenate([r, weight * (z - middle)]), np.concatenate([J, slopes])
+
+            return both
+
+        return pulled
+
+
+def squares(r: FloatArray) -> float:
+    """Return the sum of squares."""
+    return float(r @ r)
+
+
+def unchanged(rows: Rows) -> Rows:
+    """Return residuals as they are: no pull."""
+    return rows
+
+
+def creep(
+    path: Path,
+    start: FloatArray,
+    rows: Rows,
+    *,
+    tolerance: float,
+    most: int = _STEPS,
+    held: int | None = None,
+) -> FloatArray:
+    """Return where least squares end that ask the structure at every step, one coordinate held or none."""
+    prior, z = path.problem.prior, start.copy()
+    free = np.flatnonzero(np.arange(z.size) != held)
+
+    def full(y: FloatArray) -> FloatArray:
+        z[free] = y
+        return z
+
+    fit = least_squares(
+        lambda y: rows(full(y))[0],
+        np.clip(start, prior.low, prior.high)[free],
+        jac=lambda y: rows(full(y))[1][:, free],
+        bounds=(prior.low[free], prior.high[free]),
+        # a third of the steps of the default in the curved valleys of laws with several branches
+        method="dogbox",
+        xtol=tolerance,
+        ftol=max(1e-2 * tolerance, 1e-14),
+        gtol=1e-14,
+        max_nfev=most,
+    )
+    return full(fit.x).copy()
+
+
+def minimum(
+    path: Path,
+    start: FloatArray,
+    pulled: Callable[[Rows], Rows] = unchanged,
+    *,
+    held: int | None = None,
+    tolerance: float = 1e-8,
+    within: float = np.inf,
+) -> tuple[FloatArray, bool]:
+    """Return the minimum near a point, and whether it is one: by surrogates, or else by asking at every step.
+
+    Parameters
+    ----------
+    pulled : adds to the residuals
+    held : int, optional
+        A coordinate that does not move.
+    tolerance : float
+        It ends where a round lowers the cost by less than this share of it.
+    within : float
+        It ends, too, where a ln θ is farther from the start.
+    """
+    rows, z = pulled(path), start
+    cost = squares(rows(z)[0])
+    low, high = path.problem.prior.low, path.problem.prior.high
+    for _ in range(_ROUNDS):
+        surrogate = path.surrogate(z)
+        if surrogate is None:
+            break
+        near = pulled(surrogate)
+        there = damped_least_squares(near, z, low, high, held=held, tolerance=0.1 * tolerance)
+        promised, gained = cost - squares(near(there)[0]), cost - squares(rows(there)[0])
+        moved = np.abs(there - z).max()
+        arrived = moved < _STILL or (moved < _NEAR and abs(gained) < tolerance * cost)
+        believed = gained > _HONEST * promised
+        if gained > 0.0 and (arrived or believed):
+            z, cost = there, cost - gained
+        if arrived or (believed and np.abs(z - start).max() >= within):
+            return z, True
+        if not believed:
+            break
+    before = path.evaluations
+    z = creep(path, z, rows, tolerance=tolerance, held=held)
+    return z, path.evaluations - before < _STEPS
+
+
+def constrained(
+    path: Path,
+    z: FloatArray,
+    parameter: int,
+    value: float,
+    *,
+    near: Rows | None = None,
+    enough: float = 0.0,
+) -> tuple[FloatArray, float]:
+    """Return the point of least cost with one ln θ held, and its cost.
+
+    Parameters
+    ----------
+    near : optional
+        A surrogate to try first.
+    enough : float
+        A cost that need not be lowered.
+    """
+    start = z.copy()
+    start[parameter] = value
+    if near is not None:
+        there, _ = held_minimum(path.problem, near, start, parameter, enough)
+        if path.total(there) <= enough:
+            return there, path.total(there)
+    there = minimum(path, start, held=parameter, tolerance=_ROUGH)[0] if z.size > 1 else start
+    return there, path.total(there)
+
+
+def held_minimum(
+    problem: Problem, near: Rows, start: FloatArray, parameter: int, enough: float = 0.0
+) -> tuple[FloatArray, float]:
+    """Return the least point of a surrogate with one ln θ held, or one that is low enough, and its cost."""
+    prior = problem.prior
+    there = damped_least_squares(
+        near, start, prior.low, prior.high, held=parameter, tolerance=_ROUGH, enough=enough
+    )
+    return there, squares(near(there)[0])
