@@ -211,7 +211,7 @@ class Problem:
         return np.concatenate(parts, axis=1)
 
     def whitening(self, found: Found) -> FloatArray:
-        """Return what the residuals of all states are multiplied by where the modes are these, (n_data, n_data).
+        """Return what the residuals are multiplied by where the modes are these, (n_data, n_data).
 
         Without an error model it is one.
         """

@@ -99,7 +99,7 @@ def law_derivatives(row, s, out):
 
 @compiled
 def law_response(rows, jacobian, s, D, dD):
-    """Fill D(s) (n_groups, n_s) of law rows (n_groups, width), and dD/dz (n_groups, n_s, n_z) from d rows/dz."""
+    """Fill D(s) (n_groups, n_s) of law rows and, from d rows/dz, dD/dz (n_groups, n_s, n_z)."""
     law = np.empty(rows.shape[1], np.complex128)
     for g in range(rows.shape[0]):
         for m in range(s.size):

@@ -37,6 +37,8 @@ from jackettwin.soil.laws.viscoelastic import (
 # Bounds of the thesis, (8.6)–(8.10).
 _K = (1e7, 1e14, "N/m")
 _C = (1e4, 1e14, "N·s/m")
+_APART = 2.0
+"""Branches nearer than this factor in time cannot be told apart."""
 
 
 class Family(ABC):
@@ -96,6 +98,14 @@ class Family(ABC):
         Laws whose parameters data of a few modes determine need none.
         """
         return {}
+
+    def weakest(self, values: FloatArray) -> int | None:
+        """Return the parameter that a law can best do without, None where each has a meaning of its own."""
+        return None
+
+    def moved(self, values: FloatArray, like: FloatArray) -> FloatArray:
+        """Return the values (n_parameters,) with what is weakest at the place that it has in another law."""
+        return values
 
     def __reduce__(self) -> tuple[Callable[[str], Family], tuple[str]]:
         """A law crosses processes by its name: every process has the same laws."""
@@ -243,11 +253,32 @@ class FreeBranches(Family):
             slopes[:, k_place + 1, 4 : 3 + 2 * j : 2] = -tau[:, j, None]
         return rows, slopes
 
+    def weakest(self, values: FloatArray) -> int:
+        """Return the stiffness of the weakest branch."""
+        return 1 + 2 * int(np.argmin(values[1::2]))
+
+    def moved(self, values: FloatArray, like: FloatArray) -> FloatArray:
+        """Return the law with its weakest branch at the place that another's has: times stay in order."""
+        (g, tau), (g_like, tau_like) = _branches(values), _branches(like)
+        weak, to = int(np.argmin(g)), int(np.argmin(g_like))
+        others = np.delete(tau, weak)
+        ends = np.concatenate([[np.inf], others, [0.0]])
+        time = min(max(tau_like[to], _APART * ends[to + 1]), ends[to] / _APART)
+        times, out = np.insert(others, to, time), np.empty_like(values)
+        out[0], out[1::2], out[2] = values[0], np.insert(np.delete(g, weak), to, g[weak]), times[0]
+        out[4::2] = times[:-1] / times[1:]
+        return out
+
     def priors(self, reference_hz: float) -> Mapping[str, tuple[float, float]]:
         """Return priors about a loss factor of 0.1 that frequency hardly changes."""
         times, g = maxwell_3_times(reference_hz), float(np.mean(MAXWELL_3_WEIGHTS))
         about = {"g": (g, 1.0), "tau": (float(times[0]), 1.0), "spacing": (float(times[0] / times[1]), 0.7)}
         return {name: about[name.rstrip("0123456789")] for name in self.names[1:]}
+
+
+def _branches(values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return relative stiffness and relaxation time of every branch of one law."""
+    return values[1::2], values[2] / np.cumprod(np.concatenate([[1.0], values[4::2]]))
 
 
 def _free_branches(n: int) -> tuple[Parameter, ...]:
@@ -259,7 +290,7 @@ def _free_branches(n: int) -> tuple[Parameter, ...]:
             parameters.append(Parameter("tau1", 1e-2, 1e2, "s", words="relaxation time of branch 1"))
         else:
             words = f"times by which branch {j} relaxes faster than branch {j - 1}"
-            parameters.append(Parameter(f"spacing{j}", 2.0, 200.0, "-", words=words))
+            parameters.append(Parameter(f"spacing{j}", _APART, 200.0, "-", words=words))
     return tuple(parameters)
 
 

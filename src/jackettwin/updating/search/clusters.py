@@ -64,32 +64,73 @@ def linked(problem: Problem, low: End, high: End) -> tuple[bool, int]:
     """Return whether a walk from the higher end point to the lower one never has to climb, and its steps.
 
     One coordinate is stepped and the others are refitted, first the coordinate in which the two lie farthest
-    apart. If the cost falls on the way, the higher end point was a shoulder and no minimum.
+    apart. If the cost falls on the way, the higher end point was a shoulder and no minimum. What may as well
+    be nothing in a law may stand at another place in the lower one.
     """
+    found, taken = _joined(problem, low, high)
+    through = None if found else _through_nothing(problem, low, high)
+    if through is not None:
+        found, steps = _joined(problem, low, through)
+        taken += steps
+    return found, taken
+
+
+def _through_nothing(problem: Problem, low: End, high: End) -> End | None:
+    """Return the higher end point with the weakest part of its laws put where the lower has it.
+
+    The part is first taken away; None if the cost does not allow that.
+    """
+    family, path, here = problem.model.family, Path(problem), high
+    allowance, n = problem.allowance(high.cost), len(family.parameters)
+    of_laws = problem.states[0].weights[: n * len(problem.model.tie_groups.suffixes)]
+    for columns in (of_laws == 1.0).argmax(axis=1).reshape(-1, n):
+        weakest = family.weakest(np.exp(here.z[columns]))
+        if weakest is None:
+            return None
+        j = int(columns[weakest])
+        without, _, _ = _walk(path, here, j, float(problem.prior.low[j]), allowance)
+        if without is None:
+            return None
+        z, like = without.copy(), np.exp(low.z[columns])
+        z[columns] = np.log(family.moved(np.exp(without[columns]), like))
+        z, j = np.clip(z, problem.prior.low, problem.prior.high), int(columns[family.weakest(like) or 0])
+        z, cost = constrained(path, z, j, float(z[j]), enough=high.cost + allowance)
+        if cost > high.cost + allowance:
+            return None
+        here = End(z, cost, True)
+    return here
+
+
+def _joined(problem: Problem, low: End, high: End) -> tuple[bool, int]:
+    """Return whether some coordinate's walk leads from the higher end point to the lower, and its steps."""
     span = np.abs(high.z - low.z) / (problem.prior.high - problem.prior.low)
-    taken = 0
+    allowance, taken = problem.allowance(high.cost), 0
     for j in np.argsort(-span):
         if span[j] > 1e-3:
-            level, steps = _walks(problem, high, low, int(j))
+            path = Path(problem)
+            there, steps, fell = _walk(path, high, int(j), float(low.z[j]), allowance)
             taken += steps
-            if level:
+            if fell or (there is not None and _level(path, there, low.z, high.cost + allowance)):
                 return True, taken
     return False, taken
 
 
-def _walks(problem: Problem, high: End, low: End, j: int) -> tuple[bool, int]:
-    allowance = problem.allowance(high.cost)
-    path, here, step = Path(problem), high.z, abs(high.z[j] - low.z[j]) / _STAGES
-    near, ceiling = path.surrogate(here), high.cost + allowance
-    for steps, value in enumerate(np.linspace(high.z[j], low.z[j], _STAGES + 1)[1:], start=1):
+def _walk(path: Path, start: End, j: int, to: float, allowance: float) -> tuple[FloatArray | None, int, bool]:
+    """Return where a walk along one coordinate ends, its steps, and whether the cost fell on the way.
+
+    None if it climbs before.
+    """
+    here, step = start.z, abs(start.z[j] - to) / _STAGES
+    near, ceiling = path.surrogate(here), start.cost + allowance
+    for steps, value in enumerate(np.linspace(start.z[j], to, _STAGES + 1)[1:], start=1):
         there, cost = constrained(path, here, j, float(value), near=near, enough=ceiling)
         jumped = np.abs(there - here).max() > _JUMP * step
         if cost > ceiling or (jumped and not _level(path, here, there, ceiling)):
-            return False, steps
-        if cost < high.cost - allowance:
-            return True, steps
+            return None, steps, False
+        if cost < start.cost - allowance:
+            return there, steps, True
         here = there
-    return _level(path, here, low.z, ceiling), _STAGES
+    return here, _STAGES, False
 
 
 def _level(path: Path, start: FloatArray, end: FloatArray, ceiling: float) -> bool:

@@ -4,9 +4,9 @@ A step v of
 
 .. math:: (J^T J + λ S^{-2})\, v = -J^T r
 
-is bent by a/2 along the valley, a the solution for the second derivative of the residuals along v
-(Transtrum & Sethna 2012, *Improvements to the Levenberg–Marquardt algorithm*, eqs. (13)–(15)); a step that would be bent too sharply
-is shortened. For functions that are cheap: it evaluates twice a step.
+is bent by a/2 along the valley, a the solution for the second derivative of the residuals along v (Transtrum
+& Sethna 2012, *Improvements to the Levenberg–Marquardt algorithm*); a step that would be bent too sharply is
+shortened. S are the widths between the bounds. For functions that are cheap: it evaluates twice a step.
 """
 
 from __future__ import annotations

@@ -121,10 +121,16 @@ def creep(
         z[free] = y
         return z
 
+    def values(y: FloatArray) -> FloatArray:
+        return rows(full(y))[0]
+
+    def jacobian(y: FloatArray) -> FloatArray:
+        return rows(full(y))[1][:, free]
+
     fit = least_squares(
-        lambda y: rows(full(y))[0],
+        values,
         np.clip(start, prior.low, prior.high)[free],
-        jac=lambda y: rows(full(y))[1][:, free],
+        jac=jacobian,
         bounds=(prior.low[free], prior.high[free]),
         # a third of the steps of the default in the curved valleys of laws with several branches
         method="dogbox",

@@ -1,13 +1,14 @@
 r"""A problem near one point, cheap to evaluate: poles linear in the supports' complex stiffness.
 
-A pole knows a law only through its complex stiffness D there, in which it is nearly linear even where D is far
-from linear in the law's parameters. With the modes known at one point z₀,
+A pole knows a law only through its complex stiffness D there, in which it is nearly linear even where D is
+far from linear in the law's parameters. With the modes known at one point z₀,
 
 .. math:: r(z) ≈ r_0 + \sum_{m, g} \frac{∂r}{∂D_g(λ_m)} \left[D_g(λ_m; z) - D_g(λ_m; z_0)\right]
           + \sum_j \frac{∂r}{∂θ_j} (θ_j - θ_{j,0}) + R (z - z_0),
 
 θ_j the parameters that are no law's (dashpots, masses of water), R the slopes of whatever these leave over:
-shapes and relaxations. At z₀ residuals and their Jacobian are the problem's own. So the curved valleys of laws with several branches are walked without the structure.
+shapes and relaxations. At z₀ residuals and their Jacobian are the problem's own. So the curved valleys of
+laws with several branches are walked without the structure.
 """
 
 from __future__ import annotations
@@ -50,9 +51,9 @@ class _StatePart:
         theta = np.exp(weights @ z + self.state.shifts)
         D, dD = self.model.law_response(theta, self.poles)
         n = dD.shape[1]
-        dD = np.concatenate([dD.real, dD.imag])
+        slopes = np.concatenate([dD.real, dD.imag])
         r = self.laws @ np.concatenate([D.real, D.imag]) + self.others @ theta[n:]
-        J = (self.laws @ dD) @ weights[:n] + (self.others * theta[n:]) @ weights[n:]
+        J = (self.laws @ slopes) @ weights[:n] + (self.others * theta[n:]) @ weights[n:]
         return r, J
 
 
