@@ -360,6 +360,10 @@ CATALOGUE: dict[str, Kind] = {
         "behaves otherwise since {began} ({began_low} to {began_high}); most likely {cause} "
         "({probability:.0%})",
     ),
+    "cause_corrected": Kind(
+        "warning",
+        "the change of {alarm} was: {was} ({was_probability:.0%}); now: {now} ({probability:.0%})",
+    ),
     "record_late": Kind("info", "older than {days} days that are known; these days are computed again"),
 }
 """Every code there is, by the package that finds it."""

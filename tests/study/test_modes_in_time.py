@@ -70,4 +70,4 @@ def test_a_state_is_watched_by_the_command_as_well(tmp_path: Path) -> None:
     assert table.history.frequency.shape == (90, 2)
     assert table.history.days[0] == pytest.approx(0.5)  # the middle of 3, 9, 15 and 21 h
     (alarm,) = watch_table(table, baseline_days=60.0).alarms
-    assert BEGUN <= alarm.change.day < BEGUN + 9
+    assert BEGUN <= alarm.day < BEGUN + 9

@@ -5,6 +5,7 @@ from .judge import (
     Columns as Columns,
     Days as Days,
     Judged as Judged,
+    corrections as corrections,
     finding_of as finding_of,
     history_of as history_of,
     judge as judge,

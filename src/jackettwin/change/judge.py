@@ -8,6 +8,7 @@ The content of a day is loaded only when needed: after a quiet day, only that da
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime, timedelta
@@ -19,7 +20,7 @@ import numpy as np
 from jackettwin.change.causes import ModelCauses, seen_causes
 from jackettwin.change.ground import UNDESCRIBED, Ground
 from jackettwin.change.table_monitoring import explained_alarm, structure_causes, watch_after_baseline
-from jackettwin.change.watch_document import alarm_document
+from jackettwin.change.watch_document import alarm_document, with_later_look
 from jackettwin.errors import InputError
 from jackettwin.files import StoredSchema, digest
 from jackettwin.findings import Finding
@@ -27,7 +28,7 @@ from jackettwin.twin import UNDATED, UNIT, Day, TwinModel, TwinState
 from jackettwin.twin.config import WatchSettings
 from jackettwin.twin.exact_sums import ModeSums
 from jackettwin.twin.state import Operation
-from jackettwin.watching import History, Watch, step
+from jackettwin.watching import Change, History, PendingChange, Watch, look_again, step
 from jackettwin.watching.watch import FEWEST_DAYS
 
 EPOCH = date(1970, 1, 1)
@@ -46,6 +47,7 @@ class Judged:
     learnt, watch : at the end of the baseline, and after ``through``
     alarms : as documents, in the order of time
     columns : of the baseline
+    pending : the last alarm's change, while it is looked at again
     """
 
     baseline_days: float
@@ -58,6 +60,7 @@ class Judged:
     alarms: tuple[Mapping[str, Any], ...] = ()
     relearn: str = UNDATED
     columns: Columns | None = None
+    pending: PendingChange | None = None
 
     @property
     def promise(self) -> tuple[float, float, str]:
@@ -148,8 +151,11 @@ def judge(
     for day in (d for d in after if d > known.through):
         known = _day(known, baseline, history_of(columns, every, [day]), day, causes)
     known = replace(known, judged=_fingerprint(every, after))
-    told = {alarm["time_utc"] for alarm in kept.alarms}
-    return known, (*findings, *(finding_of(a) for a in known.alarms if a["time_utc"] not in told))
+    told = {alarm["time_utc"]: len(alarm["verdicts"]) for alarm in kept.alarms}
+    for alarm in known.alarms:
+        findings += [finding_of(alarm)] if alarm["time_utc"] not in told else []
+        findings += [f for _, f in corrections(alarm)[max(told.get(alarm["time_utc"], 1), 1) - 1 :]]
+    return known, tuple(findings)
 
 
 def _known(kept: Judged, fresh: Judged, every: Days, before: Sequence[str], after: Sequence[str]) -> Judged:
@@ -159,7 +165,7 @@ def _known(kept: Judged, fresh: Judged, every: Days, before: Sequence[str], afte
     if kept.learnt is None or kept.baseline != _fingerprint(every, before):
         return fresh
     if kept.judged != _fingerprint(every, [d for d in after if d <= kept.through]):
-        return replace(kept, judged="", through=UNDATED, watch=kept.learnt, alarms=())
+        return replace(kept, judged="", through=UNDATED, watch=kept.learnt, alarms=(), pending=None)
     return kept
 
 
@@ -184,13 +190,20 @@ def _day(
     if known.watch is None or not day.days.size:
         return replace(known, through=name)
     watch, look = step(known.watch, day)
-    alarms = known.alarms
-    if look.change is not None:
+    alarms, pending = known.alarms, known.pending
+
+    def told(change: Change) -> dict[str, Any]:
         of = causes()
         seen = None if of is None else seen_causes(of, watch.quantities, watch.labels)
-        found = explained_alarm(look.change, watch, baseline(), seen)
-        alarms = (*alarms, alarm_document(watch, _time, found))
-    return replace(known, watch=watch, through=name, alarms=alarms)
+        return alarm_document(watch, _time, explained_alarm(change, watch, baseline(), seen))
+
+    if pending is not None:
+        pending, change = look_again(pending, day)
+        if change is not None:
+            alarms = (*alarms[:-1], with_later_look(alarms[-1], told(change)))
+    if look.change is not None:
+        alarms, pending = (*alarms, told(look.change)), look.pending
+    return replace(known, watch=watch, through=name, alarms=alarms, pending=pending)
 
 
 def finding_of(alarm: Mapping[str, Any]) -> Finding:
@@ -206,6 +219,18 @@ def finding_of(alarm: Mapping[str, Any]) -> Finding:
     sensor = best["cause"].startswith("sensor") or alarm["kind"] == "scatter"
     turned = "structure_turned" if alarm.get("unit") == "deg" else "structure_changed"
     return Finding("sensor_changed" if sensor else turned, ", ".join(alarm["quantities"]), params)
+
+
+def corrections(alarm: Mapping[str, Any]) -> tuple[tuple[str, Finding], ...]:
+    """Return when the change of an alarm was given another cause than before, and the finding on it."""
+    found = []
+    for was, now in itertools.pairwise(alarm["verdicts"]):
+        params = {
+            "alarm": alarm["time_utc"][:10], "was": was["cause"], "was_probability": was["probability"],
+            "now": now["cause"], "probability": now["probability"],
+        }  # fmt: skip
+        found.append((now["time_utc"], Finding("cause_corrected", ", ".join(alarm["quantities"]), params)))
+    return tuple(found)
 
 
 def _fingerprint(every: Days, dates: Sequence[str]) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -20,10 +20,12 @@ from jackettwin.watching import (
     Diagnosis,
     History,
     Look,
+    PendingChange,
     Watch,
     diagnose,
     fresh,
     general_causes,
+    look_again,
     regressors,
     start,
     step,
@@ -49,12 +51,19 @@ class Alarm:
     ----------
     patterns : {cause: (m,)} what each likely cause would have done to all quantities, at the size it would
         have; NaN where that is not known
+    earlier : the same change as it looked before, first on the day of the alarm
     """
 
     change: Change
     diagnosis: Diagnosis
     next_measurements: tuple[Measurement, ...] = ()
     patterns: Mapping[str, FloatArray] = field(default_factory=dict)
+    earlier: tuple[Alarm, ...] = ()
+
+    @property
+    def day(self) -> float:
+        """Day of the alarm, whenever it was looked at last."""
+        return self.earlier[0].change.day if self.earlier else self.change.day
 
 
 @dataclass(frozen=True)
@@ -136,13 +145,20 @@ def watch_table(
     explained, unexplained = _explained(watch, baseline)
     seen = None if causes is None else seen_causes(causes, watch.quantities, watch.labels)
     limits += [] if causes is None else _unseen(causes, watch.labels)
-    looks, alarms = [], []
+    looks: list[Look] = []
+    alarms: list[Alarm] = []
+    pending: PendingChange | None = None
     for day in rest.by_day():
         progress(f"{table.time(float(day.days[0])):%Y-%m}")
+        if pending is not None:
+            pending, change = look_again(pending, day)
+            if change is not None:
+                alarms[-1] = _looked_again(alarms[-1], explained_alarm(change, watch, baseline, seen))
         watch, look = step(watch, day)
         looks.append(look)
         if look.change is not None:
             alarms.append(explained_alarm(look.change, watch, baseline, seen))
+            pending = look.pending
     found = [one for block in watch.blocks for one in slopes(block, watch.design)]
     per_unit: dict[tuple[str, int], dict[str, float]] = dict(zip(watch.quantities, found, strict=True))
     return Watched(
@@ -172,6 +188,11 @@ def explained_alarm(change: Change, watch: Watch, baseline: History, seen: SeenC
     around = Circumstances.of(watch, baseline, seen.model.labels)
     further = next_measurements(seen, diagnosis, around)
     return Alarm(change, diagnosis, further, _patterns(diagnosis, seen.causes, seen.known))
+
+
+def _looked_again(before: Alarm, later: Alarm) -> Alarm:
+    """Return an alarm as it looks later, with how it looked before."""
+    return replace(later, earlier=(*before.earlier, replace(before, earlier=())))
 
 
 def _patterns(diagnosis: Diagnosis, causes: Sequence[Cause], known: BoolArray) -> dict[str, FloatArray]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from datetime import datetime
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -48,8 +49,30 @@ def watched_document(watched: Watched) -> dict[str, Any]:
 
 
 def alarm_document(watch: Watch, time: Callable[[float], datetime], alarm: Alarm) -> dict[str, Any]:
-    """Return an alarm as plain data; ``time`` gives the time of a day number."""
-    change = alarm.change
+    """Return an alarm as plain data as it looks now; ``time`` gives the time of a day number."""
+    looks = [_looked_document(watch, time, one) for one in (*alarm.earlier, alarm)]
+    return reduce(with_later_look, looks)
+
+
+def with_later_look(before: Mapping[str, Any], later: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the document of an alarm that was looked at again.
+
+    Its size, begin and causes are those of the later look; its time and evidence stay those of the alarm.
+    ``verdicts`` holds what was called likeliest, from when on; ``at_alarm`` the document of the alarm's day.
+    """
+    was, now = before["verdicts"], later["verdicts"][-1]
+    first = before["at_alarm"] or {key: value for key, value in before.items() if key != "at_alarm"}
+    return {
+        **later,
+        "time_utc": before["time_utc"],
+        "ln_evidence": before["ln_evidence"],
+        "at_alarm": first,
+        "verdicts": [*was, *([now] if now["cause"] != was[-1]["cause"] else [])],
+    }
+
+
+def _looked_document(watch: Watch, time: Callable[[float], datetime], alarm: Alarm) -> dict[str, Any]:
+    change, best = alarm.change, alarm.diagnosis.verdicts[0]
     low, high = change.began_interval_90
     names = [quantity_name(watch, key) for key in watch.quantities]
     members = np.flatnonzero(change.members)
@@ -60,6 +83,7 @@ def alarm_document(watch: Watch, time: Callable[[float], datetime], alarm: Alarm
     lead = members[np.argmax(change.by_mode[members])]
     return {
         "time_utc": time(change.day).isoformat(),
+        "looked_utc": time(change.day).isoformat(),
         "began_utc": time(change.began).isoformat(),
         "began_interval_90": [time(low).isoformat(), time(high).isoformat()],
         "kind": change.kind,
@@ -68,6 +92,14 @@ def alarm_document(watch: Watch, time: Callable[[float], datetime], alarm: Alarm
         "size_interval_90": moved[names[lead]]["interval_90"],
         "unit": moved[names[lead]]["unit"],
         "by_quantity": moved,
+        "at_alarm": None,
+        "verdicts": [
+            {
+                "time_utc": time(change.day).isoformat(),
+                "cause": best.cause,
+                "probability": best.probability,
+            }
+        ],
         "causes": [_cause(v) for v in alarm.diagnosis.verdicts if v.probability > _LIKELY],
         "inseparable": [list(group) for group in alarm.diagnosis.inseparable],
         "next_measurements": [
@@ -77,6 +109,17 @@ def alarm_document(watch: Watch, time: Callable[[float], datetime], alarm: Alarm
         ],
         "ln_evidence": change.log_r,
     }
+
+
+def corrected_sentence(alarm: Mapping[str, Any]) -> str:
+    """Return what the change of an alarm was called before and is called now; empty if it is the same."""
+    *was, now = alarm["verdicts"]
+    if not was:
+        return ""
+    told = ", then ".join(f"{v['cause']} ({v['probability']:.0%}, {v['time_utc'][:10]})" for v in was)
+    return (
+        f"was: {told}; now: {now['cause']} ({alarm['causes'][0]['probability']:.0%}, {now['time_utc'][:10]})"
+    )
 
 
 def _doubt(alarm: Alarm) -> float:
@@ -148,7 +191,8 @@ def statement(watched: Watched) -> str:
         names = ", ".join(doc["quantities"])
         began = [table.time(day) for day in (change.began, *change.began_interval_90)]
         parts.append(
-            f"{table.time(change.day):%Y-%m-%d}: {what} {names} by {_sized_words(doc)}, began "
-            f"{began[0]:%Y-%m-%d} ({began[1]:%Y-%m-%d} to {began[2]:%Y-%m-%d}); {_likeliest(alarm)}."
+            f"{table.time(alarm.day):%Y-%m-%d}: {what} {names} by {_sized_words(doc)}, began "
+            f"{began[0]:%Y-%m-%d} ({began[1]:%Y-%m-%d} to {began[2]:%Y-%m-%d}); {_likeliest(alarm)}"
+            f"{f'; {corrected}' if (corrected := corrected_sentence(doc)) else ''}."
         )
     return " ".join(parts)

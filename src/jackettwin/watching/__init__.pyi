@@ -35,4 +35,10 @@ from .level import (
 )
 from .state import Watch as Watch
 from .variance_shares import unexplained_std as unexplained_std
-from .watch import Look as Look, start as start, step as step
+from .watch import (
+    Look as Look,
+    PendingChange as PendingChange,
+    look_again as look_again,
+    start as start,
+    step as step,
+)

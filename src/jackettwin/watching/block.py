@@ -25,6 +25,8 @@ BROAD = {"frequency": 0.03, "damping": 0.5, "angle": 0.5}
 _MAD = 1.4826
 _NEGLIGIBLE = -20.0
 """Logarithm of the weight below which a model is not evaluated."""
+_NO_WEIGHT = -1e9
+"""Logarithm of the weight of a model that is not to be evaluated, whatever it says."""
 _FEWEST, _STILL = 30, 1e-9
 """Fewest values of a quantity in the baseline for it to be monitored, and their smallest relative range:
 a constant is no measurement."""
@@ -213,19 +215,29 @@ def _set_apart(
 
 def hours_of(block: Block, history: History, rows: FloatArray) -> tuple[Hours, FloatArray, Block]:
     """Return a day's hours, the count of rejected values (m,), and the updated block."""
+    y, rest, variance, moving = residuals(block, history, rows)
+    apart, doubt, tail = outliers(rest, moving, block.tail)
+    told = _rejected_by_others(apart, y)
+    y[apart] = np.nan
+    hours = by_hour(history.days, history.states, np.nan_to_num(rows), y, variance * doubt, WINDOW_DAYS)
+    return hours, told, replace(block, tail=tail)
+
+
+def residuals(
+    block: Block, history: History, rows: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return values, what conditions do not explain of them, their noise and what moves in a day, (n, m).
+
+    The last two are variances; the latter contains the former.
+    """
     y, relative = deviations(history, block.kind, block.kept, block.typical, block.std_power)
     y[~np.isfinite(rows).all(axis=1)] = np.nan
     x = np.nan_to_num(rows)
-    variance = _variance(relative, block.usual_std)
-    variance = variance * block.louder**2
+    variance = _variance(relative, block.usual_std) * block.louder**2
     memory = block.memories[0]
     mean, cov = _coefficients(block)
     moving = variance * memory.scale**2 + memory.std**2 + _unsure(cov, x - x.mean(axis=0))
-    apart, doubt, tail = outliers(y - x @ mean.T, moving, block.tail)
-    told = _rejected_by_others(apart, y)
-    y[apart] = np.nan
-    hours = by_hour(history.days, history.states, x, y, variance * doubt, WINDOW_DAYS)
-    return hours, told, replace(block, tail=tail)
+    return y, y - x @ mean.T, variance, moving
 
 
 def _coefficients(block: Block) -> tuple[FloatArray, FloatArray]:
@@ -344,6 +356,40 @@ def with_change_accepted(block: Block, onset: int, size: FloatArray, states: int
         beliefs=tuple(beliefs),
         log_weights=log_weights - np.logaddexp.reduce(log_weights),
         tail=np.full(block.tail.shape, np.nan),
+    )
+
+
+def model_of_change(block: Block, log_stake: FloatArray) -> int:
+    """Return the number of the model that is likeliest if there was a step of any direction.
+
+    Those that are likeliest if nothing changed take the step for slow variation, the more so the longer it
+    lasts.
+
+    Parameters
+    ----------
+    log_stake : (n_begins,) ln of the weights of onsets
+    """
+    prior = np.full(len(block.kept), BROAD[block.kind] ** -2.0)
+    found = []
+    for weight, bank in zip(block.log_weights, block.banks, strict=True):
+        info = bank.info + np.diag(prior)
+        fit = np.einsum("ti,ti->t", bank.score, np.linalg.solve(info, bank.score[..., None])[..., 0])
+        logs = 0.5 * (fit - np.linalg.slogdet(info)[1] + np.log(prior).sum())
+        found.append(weight + np.logaddexp.reduce(logs + log_stake))
+    return int(np.argmax(found))
+
+
+def with_one_model(block: Block, model: int) -> Block:
+    """Return the block with one model; the first stays beside it for dating and scatter, without weight."""
+    chosen = (0,) if model == 0 else (0, model)
+    weights = np.where(np.array(chosen) == model, 0.0, _NO_WEIGHT)
+    return replace(
+        block,
+        memories=tuple(block.memories[i] for i in chosen),
+        beliefs=tuple(block.beliefs[i] for i in chosen),
+        banks=tuple(block.banks[i] for i in chosen),
+        log_weights=weights,
+        log_prior=weights,
     )
 
 

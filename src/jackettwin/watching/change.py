@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray
-from jackettwin.watching.block import BROAD, Block
+from jackettwin.watching.block import BROAD, Block, model_of_change
 from jackettwin.watching.directions import log_ramps
 from jackettwin.watching.scatter import STRONGER
 from jackettwin.watching.state import Watch
@@ -70,8 +70,8 @@ class Change:
         )
 
 
-def change_of(watch: Watch, worth: FloatArray, log_r: float) -> tuple[Change, int]:
-    """Return the most likely change, and its onset if it is a step."""
+def change_of(watch: Watch, worth: FloatArray, log_r: float, begun_by: float = np.inf) -> tuple[Change, int]:
+    """Return the most likely change, and its onset if it is a step; it had begun by some day."""
     begins = watch.begins
     posterior = np.exp(begins.log_stake[:, None] + worth - log_r)
     bet = int(np.argmax(posterior.sum(axis=0)))
@@ -80,7 +80,9 @@ def change_of(watch: Watch, worth: FloatArray, log_r: float) -> tuple[Change, in
     same = [b for b in range(worth.shape[1]) if _bet(watch, b)[0] == kind]
     by_begin = posterior[:, same].sum(axis=1)
     low, mid, high = _quantiles(_gradual(watch, kind, direction, by_begin))
-    until = np.append(begins.since[1:], watch.last_day)  # an onset represents those merged with it
+    until = np.append(
+        begins.since[1:], min(watch.last_day, begun_by)
+    )  # an onset represents those merged with it
     info, score = _all_info(watch)
     size, std = (
         _louder(watch, by_begin)
@@ -141,12 +143,12 @@ def _bet(watch: Watch, bet: int) -> tuple[str, str, BoolArray]:
 
 
 def _all_info(watch: Watch) -> tuple[FloatArray, FloatArray]:
-    """Return A and b of steps of all quantities under the likeliest models."""
+    """Return A and b of steps of all quantities under the models that are likeliest given a change."""
     n, m = watch.begins.log_scatter.shape[:2]
     info, score = np.zeros((n, m, m)), np.zeros((n, m))
     first = 0
     for block in watch.blocks:
-        bank = block.banks[int(np.argmax(block.log_weights))]
+        bank = block.banks[model_of_change(block, watch.begins.log_stake)]
         place = slice(first, first + len(block.kept))
         info[:, place, place], score[:, place] = bank.info, bank.score
         first += len(block.kept)

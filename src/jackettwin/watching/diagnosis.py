@@ -13,7 +13,7 @@ their values are expected to give on the cause.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,6 +29,9 @@ _OTHER_PRIOR = 1.0
 TAIL = {1.0: 0.68, 3.0: 0.22, 9.0: 0.1}
 """Errors of directions, as multiples of the usual one, and their probabilities: of some five hundred measured
 ones 68 % are within the usual error, 90 % within three times it (docs/verification/directions.md)."""
+_LOUDER_TOO, _NO_SIGN = 0.05, -3.0
+"""Probability that records of a changed structure scatter more as well, and ln of the evidence of that below
+which it is not considered."""
 SHIFTS = (0.1, 0.3, 1.0)
 """What moves beside louder noise, as shares of the most: how much of it there is depends on the sensor."""
 
@@ -75,9 +78,12 @@ def diagnose(change: Change, causes: Sequence[Cause], kinds: Sequence[str]) -> D
     ----------
     kinds : (m,) of each quantity
     """
-    judged = [_judge(change, cause, kinds) for cause in causes]
+    sensor = next((cause for cause in causes if cause.louder.size), None)
+    states = [(0.0, change), *([] if sensor is None else _in_noise(change, sensor))]
+    judged = [_judge(states, cause, kinds) for cause in causes]
     priors = np.log([cause.prior for cause in causes] + [_OTHER_PRIOR])
-    evidence = np.array([found[0] for found in judged] + [_something(change, kinds)]) + priors
+    other = np.logaddexp.reduce([weight + _something(known, kinds) for weight, known in states])
+    evidence = np.array([found[0] for found in judged] + [float(other)]) + priors
     probability = np.exp(evidence - np.logaddexp.reduce(evidence))
     verdicts = [
         CauseVerdict(cause.name, float(p), *found[1:], cause.unit)
@@ -89,17 +95,27 @@ def diagnose(change: Change, causes: Sequence[Cause], kinds: Sequence[str]) -> D
     return Diagnosis(ordered, _groups(change, likely, {v.cause: v for v in ordered}, kinds))
 
 
-def _judge(change: Change, cause: Cause, kinds: Sequence[str]) -> tuple[float, float, tuple[float, float]]:
-    """Return ln of the evidence, and median and 90 % interval of the size."""
-    begins = change.log_stake - np.logaddexp.reduce(change.log_stake)
+def _judge(
+    states: Sequence[tuple[float, Change]], cause: Cause, kinds: Sequence[str]
+) -> tuple[float, float, tuple[float, float]]:
+    """Return ln of the evidence, and median and 90 % interval of the size.
+
+    Parameters
+    ----------
+    states : ln of the weight, and the change, as usual first and then as in increased noise
+    """
     if cause.louder.size:
-        return _noisy(change, cause, begins), np.nan, (np.nan, np.nan)
-    by_miss = [
-        _likelihood(change.info, change.score, cause, kinds, times) + np.log(share)
-        for times, share in TAIL.items()
-    ]
-    logs = np.logaddexp.reduce(by_miss, axis=0) + begins[:, None]
-    by_size = np.logaddexp.reduce(logs, axis=0) + cause.log_size_weights
+        change = states[0][1]
+        return _noisy(change, cause, _begins(change)), np.nan, (np.nan, np.nan)
+    by_state = []
+    for weight, change in states:
+        by_miss = [
+            _likelihood(change.info, change.score, cause, kinds, times) + np.log(share)
+            for times, share in TAIL.items()
+        ]
+        logs = np.logaddexp.reduce(by_miss, axis=0) + _begins(change)[:, None]
+        by_state.append(weight + np.logaddexp.reduce(logs, axis=0) + cause.log_size_weights)
+    by_size = np.logaddexp.reduce(by_state, axis=0)
     total = float(np.logaddexp.reduce(by_size))
     order = np.argsort(cause.sizes)
     share = np.cumsum(np.exp(by_size[order] - total))
@@ -107,6 +123,34 @@ def _judge(change: Change, cause: Cause, kinds: Sequence[str]) -> tuple[float, f
         cause.sizes[order][np.searchsorted(share, p).clip(0, share.size - 1)] for p in (0.05, 0.5, 0.95)
     )
     return total, float(mid), (float(low), float(high))
+
+
+def _begins(change: Change) -> FloatArray:
+    """Return ln of the weights of the onsets."""
+    return np.asarray(change.log_stake - np.logaddexp.reduce(change.log_stake))
+
+
+def _in_noise(change: Change, sensor: Cause) -> list[tuple[float, Change]]:
+    r"""Return ln of the weight and the change if noise increased as well, if there is any sign of that.
+
+    Records of a structure that was damaged may scatter more, too: louder noise alone does not make a change
+    of frequencies that of a sensor. With the estimate X = A⁻¹b, the noise's factors G and A' = G⁻¹AG⁻¹,
+
+    .. math:: \frac{p(X|θ, G)}{p(X|0, 1)} = \frac{N(X; 0, GA^{-1}G)}{N(X; 0, A^{-1})}
+              \exp(θ J^T A'X - \tfrac12 θ^2 J^T A'J)
+
+    Its first factor and that of the scatter are the weights of onsets.
+    """
+    total, louder = _loudness(change, sensor)
+    if total.max() < _NO_SIGN:
+        return []
+    own = total + _moved(change, louder, np.zeros(louder.shape[1]))
+    info = change.info / louder[:, :, None] / louder[:, None, :]
+    seen = np.einsum("tij,tj->ti", _inverse(change.info), change.score)
+    begins = _begins(change) + own
+    weight = float(np.logaddexp.reduce(begins))
+    known = replace(change, info=info, score=np.einsum("tij,tj->ti", info, seen), log_stake=begins)
+    return [(weight + np.log(_LOUDER_TOO), known)]
 
 
 def _likelihood(
@@ -148,21 +192,28 @@ def _noisy(change: Change, cause: Cause, begins: FloatArray) -> float:
 
     The accompanying shift is evaluated with the noise that is likely for each onset.
     """
-    total = np.zeros(len(begins))
-    louder = np.ones((len(begins), change.info.shape[-1]))
+    total, louder = _loudness(change, cause)
+    shift = np.logaddexp.reduce([_moved(change, louder, g * np.diag(cause.draws)) for g in SHIFTS], axis=0)
+    return float(np.logaddexp.reduce(begins + total + shift - np.log(len(SHIFTS))))
+
+
+def _loudness(change: Change, cause: Cause) -> tuple[FloatArray, FloatArray]:
+    """Return ln of the evidence of increased noise of at least one mode (n_begins,), and its factors."""
+    total = np.zeros(len(change.info))
+    louder = np.ones((len(change.info), change.info.shape[-1]))
     ln_g = np.log(np.concatenate([[1.0], STRONGER]))
     for mode in np.unique(cause.louder):
         of_mode = cause.louder == mode
         by_factor = change.log_scatter[:, of_mode].sum(axis=1)  # all quantities of a mode by one factor
-        logs = np.concatenate([np.zeros((len(begins), 1)), by_factor - np.log(by_factor.shape[1])], axis=1)
+        none = np.zeros((len(by_factor), 1))
+        logs = np.concatenate([none, by_factor - np.log(by_factor.shape[1])], axis=1)
         mass = np.logaddexp.reduce(logs, axis=1)
         total += mass - np.log(2.0)
         louder[:, of_mode] = np.exp(np.exp(logs - mass[:, None]) @ ln_g)[:, None]
     # increased noise of no mode is not a failing sensor
-    none = -np.log(2.0) * len(np.unique(cause.louder))
-    total += np.log(np.maximum(-np.expm1(np.minimum(none - total, 0.0)), 1e-12)) - np.log(-np.expm1(none))
-    shift = np.logaddexp.reduce([_moved(change, louder, g * np.diag(cause.draws)) for g in SHIFTS], axis=0)
-    return float(np.logaddexp.reduce(begins + total + shift - np.log(len(SHIFTS))))
+    quiet = -np.log(2.0) * len(np.unique(cause.louder))
+    total += np.log(np.maximum(-np.expm1(np.minimum(quiet - total, 0.0)), 1e-12)) - np.log(-np.expm1(quiet))
+    return total, louder
 
 
 def _moved(change: Change, louder: FloatArray, std: FloatArray) -> FloatArray:
@@ -171,13 +222,18 @@ def _moved(change: Change, louder: FloatArray, std: FloatArray) -> FloatArray:
     The estimate of a step from the data, A⁻¹b, has the covariance A⁻¹ if nothing happened,
     and GA⁻¹G + std² here: under increased noise the mean deviates more, which is evidence of it.
     """
-    known = change.info + 1e-9 * np.trace(change.info, axis1=1, axis2=2)[:, None, None] * np.eye(len(std))
-    unsure = np.linalg.inv(known)
+    unsure = _inverse(change.info)
     seen = np.einsum("tij,tj->ti", unsure, change.score)
     wide = louder[:, :, None] * unsure * louder[:, None, :] + np.diag(std**2)
     fits = np.einsum("ti,ti->t", seen, np.linalg.solve(wide, seen[..., None])[..., 0])
-    ratio = np.linalg.slogdet(known @ wide)[1]
+    ratio = np.linalg.slogdet(wide)[1] - np.linalg.slogdet(unsure)[1]
     return np.asarray(0.5 * (np.einsum("ti,ti->t", seen, change.score) - fits - ratio))
+
+
+def _inverse(info: FloatArray) -> FloatArray:
+    """Return A⁻¹ by onset, with a ridge for what was hardly seen."""
+    ridge = 1e-9 * np.trace(info, axis1=1, axis2=2)[:, None, None] * np.eye(info.shape[-1])
+    return np.asarray(np.linalg.inv(info + ridge))
 
 
 def _free(info: FloatArray, score: FloatArray, std: FloatArray) -> FloatArray:
@@ -190,7 +246,7 @@ def _free(info: FloatArray, score: FloatArray, std: FloatArray) -> FloatArray:
 
 def _something(change: Change, kinds: Sequence[str]) -> float:
     """Return ln of the evidence of a step of any size and direction, of one kind of quantity or all."""
-    begins = change.log_stake - np.logaddexp.reduce(change.log_stake)
+    begins = _begins(change)
     spans = []
     alone = tuple((kind,) for kind in SIZES if kind in kinds)
     for chosen in alone if len(alone) == 1 else (*alone, tuple(SIZES)):

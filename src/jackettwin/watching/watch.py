@@ -17,7 +17,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from jackettwin.arrays import FloatArray, IntArray
+from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.watching.block import (
     Spoken,
@@ -26,16 +26,21 @@ from jackettwin.watching.block import (
     hours_of,
     log_evidence,
     log_scatter,
+    model_of_change,
+    residuals,
     thinned,
     watched,
     with_change_accepted,
     with_hours,
+    with_one_model,
     with_weights_reset,
 )
 from jackettwin.watching.change import Change, change_of
+from jackettwin.watching.day_parts import INSIDE, divided
 from jackettwin.watching.design import WHOLE_YEAR_DAYS, Slope, design_of, fresh, regressors
 from jackettwin.watching.directions import SHARES, Pattern, directions_of
 from jackettwin.watching.history import History, Kind, typical
+from jackettwin.watching.hours import ENOUGH
 from jackettwin.watching.scatter import STRONGER
 from jackettwin.watching.state import Begins, Watch
 
@@ -57,6 +62,8 @@ GUARDED = 0.8
 when the models are sure of the effects of weather, whose tail is longer than that of any normal process.
 The mean of a Bayes factor does not rise by that (Jensen), so that the promise is kept.
 After a shorter baseline the models are uncertain enough."""
+AGAIN_DAYS = (1.0, 2.0, 3.0, 5.0, 8.0, 13.0, 21.0, 30.0)
+"""Times after an alarm at which its change is looked at again [days]."""
 KINDS: tuple[Kind, ...] = ("frequency", "damping", "angle")
 
 
@@ -71,6 +78,7 @@ class Look:
         changed
     log_r : ln of the statistic
     change : Change or None
+    pending : if there is a change, what is needed to look at it again
     """
 
     day: float
@@ -79,6 +87,7 @@ class Look:
     log_r: float
     change: Change | None = None
     spoken: tuple[Spoken, ...] = field(default=(), repr=False)
+    pending: PendingChange | None = field(default=None, repr=False)
 
 
 def columns_to_watch(baseline: History) -> dict[Kind, IntArray]:
@@ -168,42 +177,123 @@ def step(watch: Watch, day: History) -> tuple[Watch, Look]:
     """
     if not day.days.size or day.days[0] < watch.last_day:
         raise InputError("a day that is over already, or without records", field="days", value=watch.last_day)
-    rows, lagged = regressors(watch.design, day, watch.lagged)
-    blocks, spoken = [], []
-    for block in watch.blocks:
-        hours, apart, block = hours_of(block, day, rows)
-        block, said = with_hours(block, hours, apart, watch.last_day)
-        blocks.append(block)
-        spoken.append(said)
-    scatter = np.concatenate([log_scatter(b, s) for b, s in zip(blocks, spoken, strict=True)])
-    today = float(np.floor(day.days[0]))
-    after = replace(
-        watch, lagged=lagged, blocks=tuple(blocks), begins=_with_today(watch, today, scatter),
-        last_day=float(day.days[-1]), accounted=max(today, watch.accounted),
-    )  # fmt: skip
+    after, spoken = _with_day(watch, day)
     worth = _worth(after)
-    old = after.begins.days <= after.last_day - after.patience_days
-    log_r = float(
-        np.logaddexp.reduce((after.begins.log_stake[:, None] + worth)[old].ravel(), initial=-np.inf)
-    )
-    change = None
+    log_r = _log_r(after, worth)
+    change, pending = None, None
     if log_r >= after.log_threshold:
         change, onset = change_of(after, worth, log_r)
+        pending = _pending(after)
         after = _without(after, change, onset)
     else:
         after = _reconsidered(_merged(after, worth))
     rest, std = (np.concatenate([getattr(s, name) for s in spoken]) for name in ("rest", "rest_std"))
-    return after, Look(float(day.days[-1]), rest, std, log_r, change, tuple(spoken))
+    return after, Look(float(day.days[-1]), rest, std, log_r, change, spoken, pending)
 
 
-def _with_today(watch: Watch, today: float, scatter: FloatArray) -> Begins:
+@dataclass(frozen=True)
+class PendingChange:
+    """A change that is looked at again as further days come.
+
+    Attributes
+    ----------
+    watch : the state that has not accepted it
+    alarmed, looked : days of the alarm, and of the last look
+    """
+
+    watch: Watch
+    alarmed: float
+    looked: float
+
+
+def look_again(pending: PendingChange, day: History) -> tuple[PendingChange | None, Change | None]:
+    """Return what is still pending after one more day, and the change as it looks now if a look is due.
+
+    On the day of the alarm a change is known no better than suffices for an alarm; ``AGAIN_DAYS`` after it
+    it is dated, measured and named anew. No further alarm comes of it.
+    """
+    before = pending.watch
+    after, _ = _with_day(before, day)
+    blocks = (replace(b, log_weights=a.log_weights) for a, b in zip(before.blocks, after.blocks, strict=True))
+    # it had begun by the day of the alarm
+    after = _thinned(replace(after, blocks=tuple(blocks)), after.begins.since < pending.alarmed)
+    worth = _worth(after)
+    age, looked = after.last_day - pending.alarmed, pending.looked - pending.alarmed
+    change = None
+    if any(looked < due <= age for due in AGAIN_DAYS):
+        change, _ = change_of(after, worth, _log_r(after, worth), pending.alarmed)
+    if age >= AGAIN_DAYS[-1]:
+        return None, change
+    return PendingChange(after, pending.alarmed, pending.looked if change is None else after.last_day), change
+
+
+def _pending(watch: Watch) -> PendingChange:
+    """Return what is needed to look at a change again: onsets, and the model that is likeliest with it."""
+    blocks = tuple(with_one_model(b, model_of_change(b, watch.begins.log_stake)) for b in watch.blocks)
+    return PendingChange(replace(watch, blocks=blocks), watch.last_day, watch.last_day)
+
+
+def _log_r(watch: Watch, worth: FloatArray) -> float:
+    """Return ln of the statistic."""
+    old = watch.begins.days <= watch.last_day - watch.patience_days
+    return float(np.logaddexp.reduce((watch.begins.log_stake[:, None] + worth)[old].ravel(), initial=-np.inf))
+
+
+def _with_day(watch: Watch, day: History) -> tuple[Watch, tuple[Spoken, ...]]:
+    """Return the watch with a day's records, and what they say: of its last part if it is divided.
+
+    A day has one onset, its first record, and the place that divides it as another. That place is chosen
+    after it was seen, hence only has its share of what is staked on all that might have been chosen.
+    """
+    rows, lagged = regressors(watch.design, day, watch.lagged)
+    cut = _cut(watch, day, rows)
+    today = float(np.floor(day.days[0]))
+    stake = np.log(max(today - watch.accounted, 1e-9))
+    whole = (slice(None), today, stake + np.log1p(-INSIDE))
+    parts = [whole]
+    if cut is not None:
+        first, places = cut
+        parts = [
+            (slice(first), *whole[1:]),
+            (slice(first, None), float(day.days[first]), stake + np.log(INSIDE / places)),
+        ]
+    spoken: tuple[Spoken, ...] = ()
+    for part, onset, log_stake in parts:
+        chosen = np.arange(day.days.size)[part]
+        records = day if cut is None else day.rows(np.isin(np.arange(day.days.size), chosen))
+        watch, spoken = _with_records(watch, records, rows[part], onset, log_stake)
+    return replace(watch, lagged=lagged, accounted=max(today, watch.accounted)), spoken
+
+
+def _cut(watch: Watch, day: History, rows: FloatArray) -> tuple[int, int] | None:
+    """Return before which record a day is divided, if it is, and between how many places was chosen."""
+    if day.days.size < 2 * ENOUGH:
+        return None
+    each = [residuals(block, day, rows) for block in watch.blocks]
+    rest, moving = (np.concatenate([one[i] for one in each], axis=1) for i in (1, 3))
+    return divided(rest, moving)
+
+
+def _with_records(
+    watch: Watch, records: History, rows: FloatArray, begin: float, log_stake: float
+) -> tuple[Watch, tuple[Spoken, ...]]:
+    """Return the watch after some records of a day, with an onset before the first of them."""
+    blocks, spoken = [], []
+    for block in watch.blocks:
+        hours, apart, block = hours_of(block, records, rows)
+        block, said = with_hours(block, hours, apart, watch.last_day)
+        blocks.append(block)
+        spoken.append(said)
+    scatter = np.concatenate([log_scatter(b, s) for b, s in zip(blocks, spoken, strict=True)])
     old = watch.begins
-    elapsed = max(today - watch.accounted, 1e-9)
-    return Begins(
-        np.append(old.days, today),
+    begins = Begins(
+        np.append(old.days, begin),
         np.append(old.since, watch.last_day),
-        np.append(old.log_stake, np.log(elapsed)),
+        np.append(old.log_stake, log_stake),
         np.concatenate([old.log_scatter, np.zeros((1, *scatter.shape))]) + scatter,
+    )
+    return replace(watch, blocks=tuple(blocks), begins=begins, last_day=float(records.days[-1])), tuple(
+        spoken
     )
 
 
@@ -233,8 +323,14 @@ def _merged(watch: Watch, worth: FloatArray) -> Watch:
     stake = begins.log_stake.copy()
     wealth = np.logaddexp(stake[gone] + value[gone], stake[gone - 1] + value[gone - 1])
     stake[gone - 1] = wealth - value[gone - 1]
-    keep = np.arange(begins.days.size) != gone
-    kept = Begins(begins.days[keep], begins.since[keep], stake[keep], begins.log_scatter[keep])
+    merged = replace(watch, begins=replace(begins, log_stake=stake))
+    return _thinned(merged, np.arange(begins.days.size) != gone)
+
+
+def _thinned(watch: Watch, keep: BoolArray) -> Watch:
+    """Return the watch with only some of its onsets."""
+    begins = watch.begins
+    kept = Begins(begins.days[keep], begins.since[keep], begins.log_stake[keep], begins.log_scatter[keep])
     return replace(watch, begins=kept, blocks=tuple(thinned(block, keep) for block in watch.blocks))
 
 

@@ -83,7 +83,7 @@ def _line(figure: go.Figure, watched: Watched, i: int, row: int) -> None:
 def _mark(figure: go.Figure, watched: Watched, alarm: Alarm, i: int, row: int, *, named: bool) -> None:
     change, table = alarm.change, watched.table
     low, high = (table.time(day) for day in change.began_interval_90)
-    at = table.time(change.day)
+    at = table.time(alarm.day)
     figure.add_vrect(x0=low, x1=high, fillcolor=style.ORANGE, opacity=0.25, line_width=0, row=row, col=1)
     figure.add_vline(x=at, line={"color": style.VERMILLION, "width": 2}, row=row, col=1)
     if named:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from jackettwin.change import Alarm, Watched, next_sentence, statement
-from jackettwin.change.watch_document import alarm_document
+from jackettwin.change.watch_document import alarm_document, corrected_sentence
 from jackettwin.report.figures.watch import (
     change_pattern,
     evidence_through_time,
@@ -97,6 +97,8 @@ def _alarm(watched: Watched, alarm: Alarm, number: int) -> list[Block]:
         Table(caption, ("cause", "probability [%]", "size", "90 %"), tuple(rows)),
         Plot(f"change_pattern_{number}", _PATTERN, change_pattern(watched, alarm), fits=True),
     ]
+    if corrected := corrected_sentence(document):
+        blocks.insert(0, Text((f"{corrected[0].upper()}{corrected[1:]}.",)))
     if document["inseparable"]:
         said = tuple(f"These data do not tell apart: {', '.join(g)}." for g in document["inseparable"])
         blocks.append(Text(said, "list"))

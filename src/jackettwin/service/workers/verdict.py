@@ -15,7 +15,7 @@ import numpy as np
 
 from jackettwin.answers import ModeAnswer, answer
 from jackettwin.arrays import FloatArray
-from jackettwin.change import JUDGED, Days, Ground, finding_of, judge
+from jackettwin.change import JUDGED, Days, Ground, corrections, finding_of, judge
 from jackettwin.report import PageSection
 from jackettwin.report.build import report_sections
 from jackettwin.report.pages.page import page_text
@@ -131,7 +131,8 @@ def watched(
     before, ground = JUDGED.load(kept) if kept else None, Ground.of(twin.config)
     judged, new = judge(twin.model, every, before, twin.config.watch, ground)
     said = [(f"{last}T00:00:00+00:00", f) for f in new if f.severity == "info"]
-    said += [(alarm["time_utc"], finding_of(alarm)) for alarm in judged.alarms]
+    for alarm in judged.alarms:
+        said += [(alarm["time_utc"], finding_of(alarm)), *corrections(alarm)]
     return JUDGED.dump(judged), tuple(
         engine.finding_row(f) | {"time_utc": at, "day": at[:10]} for at, f in said
     )

@@ -1,0 +1,72 @@
+"""A change that is looked at again: what it was called, and what it is called now."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from observations import seen
+from tests.change.test_judge import CHANGED, MODEL, SIXTY, days_of
+
+from jackettwin.change import corrections
+from jackettwin.change.judge import JUDGED, Judged, judge
+from jackettwin.change.watch_document import corrected_sentence, with_later_look
+
+
+def document(time: str, cause: str, size: float) -> dict[str, object]:
+    verdict = {"time_utc": time, "cause": cause, "probability": 0.9}
+    return {
+        "time_utc": time, "verdicts": [verdict], "causes": [verdict], "size": size, "ln_evidence": size,
+        "quantities": ["bending_1"], "at_alarm": None,
+    }  # fmt: skip
+
+
+def test_another_cause_corrects_the_first_and_the_same_does_not() -> None:
+    looks = [
+        document("2025-03-01", "sensor: more scatter", 1.0),
+        document("2025-03-02", "sensor: more scatter", 2.0),
+        document("2025-03-04", "brace_1 lost", 3.0),
+        document("2025-03-09", "brace_1 lost", 4.0),
+    ]
+    found = looks[0]
+    for later in looks[1:]:
+        found = with_later_look(found, later)
+    assert (found["time_utc"], found["ln_evidence"], found["size"]) == ("2025-03-01", 1.0, 4.0)
+    assert {**found["at_alarm"], "at_alarm": None} == looks[0]
+    ((at, finding),) = corrections(found)
+    assert at == "2025-03-04" and finding.code == "cause_corrected"
+    assert "was: sensor: more scatter (90%); now: brace_1 lost (90%)" in str(finding)
+    said = corrected_sentence(found)
+    assert said == "was: sensor: more scatter (90%, 2025-03-01); now: brace_1 lost (90%, 2025-03-04)"
+    assert not corrected_sentence(looks[0]) and not corrections(looks[0])
+
+
+def test_a_later_look_knows_a_change_better() -> None:
+    """The interval of its size shrinks as days come; the alarm stays where it was."""
+    early = judge(MODEL, days_of(CHANGED[:-40]), settings=SIXTY)[0]
+    late = judge(MODEL, days_of(CHANGED), settings=SIXTY)[0]
+    widths = []
+    for kept in (early, late):
+        (alarm,) = kept.alarms
+        widths.append(np.ptp(alarm["size_interval_90"]))
+    assert early.alarms[0]["time_utc"] == late.alarms[0]["time_utc"] < late.alarms[0]["looked_utc"]
+    assert early.alarms[0]["looked_utc"] < late.alarms[0]["looked_utc"]
+    assert widths[1] < widths[0]
+    low, high = late.alarms[0]["size_interval_90"]
+    assert low < -0.008 < high
+
+
+def test_looks_end_after_a_month_and_what_is_kept_is_small_again() -> None:
+    kept = judge(MODEL, days_of(seen(130, step=-0.008)), settings=SIXTY)[0]
+    assert kept.pending is None and len(kept.alarms) == 1
+    assert len(json.dumps(JUDGED.dump(kept))) < 1.5e6
+
+
+@pytest.mark.parametrize("last", [-30, -8])
+def test_looks_go_on_from_what_was_stored(last: int) -> None:
+    first: Judged | None = judge(MODEL, days_of(CHANGED[:last]), settings=SIXTY)[0]
+    stored = JUDGED.load(json.loads(json.dumps(JUDGED.dump(first))))
+    resumed, _ = judge(MODEL, days_of(CHANGED), stored, SIXTY)
+    whole, _ = judge(MODEL, days_of(CHANGED), None, SIXTY)
+    assert json.dumps(JUDGED.dump(resumed)) == json.dumps(JUDGED.dump(whole))
