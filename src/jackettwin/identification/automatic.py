@@ -17,9 +17,10 @@ from jackettwin.identification.preparation.components import components, expand_
 from jackettwin.identification.preparation.prepared import prepare
 from jackettwin.identification.preparation.resolve import with_orders
 from jackettwin.identification.preparation.spectra import welch
-from jackettwin.identification.preparation.whitening import as_measured
+from jackettwin.identification.preparation.whitening import as_measured, left_to_differentiate
 from jackettwin.identification.quiet_bands import candidates_of, searched, with_quiet_bands
 from jackettwin.identification.selection.choice import chosen_modes, clear_damping_doubts, screened_choice
+from jackettwin.identification.selection.light_damping import with_damping_likelihoods
 from jackettwin.identification.selection.picked import left_out, picked_clusters, with_verdicts
 from jackettwin.identification.selection.screening import evidence
 from jackettwin.identification.settings import IdentificationSettings
@@ -29,9 +30,11 @@ from jackettwin.processes import on_one_blas_thread
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from jackettwin.arrays import FloatArray
     from jackettwin.identification.decays.free_decay import Transient
     from jackettwin.identification.preparation.prepared import Prepared
     from jackettwin.identification.selection.candidates import Candidate
+    from jackettwin.identification.selection.choice import Choice
     from jackettwin.records import Record
 
 
@@ -123,6 +126,7 @@ def identify(
     chosen = chosen_modes(judged, tones, ready, settings)
     if screening_data is not None:
         chosen = screened_choice(chosen, judged, screening_data, rescue=not wanted, drifting=tones.drifting)
+    chosen = _with_likelihoods(chosen, tones.clean, ready, settings)
     label = poles.cluster.copy()
     for number, index in enumerate(chosen.candidate):
         label[judged[index].cluster.poles] = number
@@ -160,6 +164,17 @@ def _decay(
     finding = Finding("beside_knock", params={"fall": decay.fall, "used_s": decay.beside.duration_s})
     found = replace(found, findings=(finding, *found.findings), warnings=(str(finding), *found.warnings))
     return replace(decay, identified=found)
+
+
+def _with_likelihoods(
+    chosen: Choice, y: FloatArray, ready: Prepared, settings: IdentificationSettings
+) -> Choice:
+    """Return the modes, the lightly damped ones with the likelihood of their damping."""
+    if not (settings.refine and uncertain(settings)):
+        return chosen
+    kinds = left_to_differentiate(ready.channels, ready.differentiated)
+    rate = ready.settings.sample_rate_hz
+    return replace(chosen, modes=with_damping_likelihoods(chosen.modes, y, rate, ready.scale, kinds))
 
 
 def _with_picked_orders(ready: Prepared, picks: Sequence[Pick]) -> Prepared:

@@ -47,6 +47,9 @@ class ModalEstimate:
         Smallest standard deviations of ln f and ln ζ of any unbiased method, for the fitted spectral model.
     mode_shape_unaligned : (n_channels,) complex or None
         The shape as identified, if it was rotated within the plane of a close pair.
+    damping_log_likelihood : (n_nodes,) or None
+        Log-likelihood of a lightly damped mode at the nodes ``LOG_ZETA`` of ``line_likelihood.py``;
+        then the interval of ζ is the likelihood's, not symmetric on the logarithm.
     status : ModeStatus
         ``"ok"``, ``"damping unknown"``, ``"doubtful"`` or ``"not a mode: …"``.
     reasons : tuple of Finding
@@ -72,6 +75,7 @@ class ModalEstimate:
     unrefined: ModalEstimate | None = None
     cramer_rao_log_std: FloatArray | None = None
     mode_shape_unaligned: ComplexArray | None = None
+    damping_log_likelihood: FloatArray | None = None
 
     @property
     def status_reason(self) -> str | None:

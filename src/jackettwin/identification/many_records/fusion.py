@@ -11,6 +11,8 @@ happens to be high also claims a small relative variance, so that its own weight
 
 The mean of ζ uses the records in which the mode is ``OK``, that of f those in which it
 is at worst ``DAMPING_UNKNOWN``; if there are none, all records that contain the mode.
+Where the decay of a mode lasts about as long as a record, the estimates would be biased all alike, and ζ is
+found from the likelihoods of the records instead (``joint_damping.py``).
 The status of a fused mode is the median.
 """
 
@@ -22,6 +24,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.identification.many_records.joint_damping import joint_damping
 from jackettwin.identification.many_records.setups import WEAK_CONNECTION, tie
 from jackettwin.identification.many_records.tracking import Track, TrackedModes, follow
 from jackettwin.identification.status import ModeStatus
@@ -51,12 +54,15 @@ class Average:
         Standard deviation between records in excess of their own uncertainty.
     correlation : float
         Correlation of ln f and ln ζ of the mean; scatter between records counts as uncorrelated.
+    damping_ratio_likelihood_95 : (low, high) or None
+        Interval of ζ if it is estimated from the likelihoods of the records.
     """
 
     frequency_hz: float
     damping_ratio: float
     log_std: tuple[float, float]
     scatter: tuple[float, float]
+    damping_ratio_likelihood_95: tuple[float, float] | None = None
     correlation: float = 0.0
 
     @property
@@ -72,8 +78,8 @@ class Average:
 
     @property
     def damping_ratio_interval_95(self) -> tuple[float, float]:
-        """On the logarithm of ζ."""
-        return log_interval_95(self.damping_ratio, self.log_std[1])
+        """By likelihood ratio where the records' likelihoods are known, else on the logarithm of ζ."""
+        return self.damping_ratio_likelihood_95 or log_interval_95(self.damping_ratio, self.log_std[1])
 
 
 @dataclass(frozen=True)
@@ -204,6 +210,15 @@ def average(seen: Sightings) -> Average:
     own_f, own = _variances(of_f, 0, zeta), _variances(of_zeta, 1, zeta)
     mean_f, variance_f, between_f = random_effects(np.log(of_f.frequency_hz), own_f)
     within = 1.0 / np.sqrt(np.sum(1.0 / own_f) * np.sum(1.0 / own))
+    joint = joint_damping(seen)
+    if joint is not None:
+        return Average(
+            frequency_hz=float(np.exp(mean_f)),
+            damping_ratio=joint.damping_ratio,
+            log_std=(float(np.sqrt(variance_f)), joint.log_std),
+            scatter=(float(np.sqrt(between_f)), joint.scatter),
+            damping_ratio_likelihood_95=joint.interval_95,
+        )
     return Average(
         frequency_hz=float(np.exp(mean_f)),
         damping_ratio=zeta,

@@ -32,6 +32,8 @@ class Sightings:
         Covariance of (ln f, ln ζ); NaN where unknown.
     severity : (n,) int
         Severity of the mode's status in each record.
+    damping_log_likelihood : (n, n_nodes)
+        At ``LOG_ZETA`` of ``line_likelihood.py``; NaN where the record has none.
     """
 
     record: Int64Array
@@ -41,6 +43,7 @@ class Sightings:
     duration_s: FloatArray
     log_covariance: FloatArray
     severity: Int64Array
+    damping_log_likelihood: FloatArray
 
     def __len__(self) -> int:
         return len(self.record)

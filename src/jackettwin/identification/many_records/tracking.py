@@ -13,12 +13,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 import scipy  # scipy.optimize is loaded where it is used
 
 from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 from jackettwin.errors import InputError
 from jackettwin.identification.many_records.setups import ShapeSum, add_channels, tied
 from jackettwin.identification.many_records.sightings import Sightings, log_covariance
+from jackettwin.identification.maximum_likelihood.line_likelihood import LOG_ZETA
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable, Sequence
@@ -77,6 +79,8 @@ class Track:
         Index of the last of them.
     shapes : dict
         Sums of its shapes over the records of each key.
+    likelihoods : dict
+        Likelihood of its damping in those records that have one, in single precision.
     """
 
     rows: array[float] = field(default_factory=lambda: array("d"))
@@ -84,6 +88,7 @@ class Track:
     log_f: float = 0.0
     last: int = 0
     shapes: dict[Hashable, ShapeSum] = field(default_factory=dict)
+    likelihoods: dict[int, npt.NDArray[np.float32]] = field(default_factory=dict)
 
     def add(self, number: int, m: int, found: Identification, observed: _Observed, key: Hashable) -> None:
         """Append mode ``m`` of record ``number``."""
@@ -96,6 +101,8 @@ class Track:
             mode.status.severity,
         )
         self.rows.extend((number, m, *numbers))
+        if mode.damping_log_likelihood is not None:
+            self.likelihoods[number] = mode.damping_log_likelihood.astype(np.float32)
         self.recent.append(observed)
         self.last = number
         self.log_f = float(np.median([one.log_f for one in self.recent]))
@@ -107,7 +114,11 @@ class Track:
         rows = np.array(self.rows).reshape(-1, _COLUMNS)
         record, mode, severity = rows[:, (0, 1, 9)].astype(np.int64).T
         covariance = rows[:, 5:9].reshape(-1, 2, 2)
-        return Sightings(record, mode, rows[:, 2], rows[:, 3], rows[:, 4], covariance, severity)
+        likelihood = np.full((len(rows), len(LOG_ZETA)), np.nan)
+        for row, number in enumerate(record):
+            if int(number) in self.likelihoods:
+                likelihood[row] = self.likelihoods[int(number)]
+        return Sightings(record, mode, rows[:, 2], rows[:, 3], rows[:, 4], covariance, severity, likelihood)
 
     def shape(self, keys: Iterable[Hashable], n_channels: int) -> ComplexArray:
         """Return the mean shape over the records of some keys; NaN at channels that none of them has."""
@@ -317,4 +328,5 @@ def _merge(a: Track, b: Track) -> Track:
         shapes[key] = shapes[key].plus(total) if key in shapes else total
     both = np.array([*a.rows, *b.rows]).reshape(-1, _COLUMNS)
     _, first = np.unique(both[:, 0], return_index=True)
-    return Track(array("d", both[first].ravel()), b.recent, b.log_f, b.last, shapes)
+    likelihoods = b.likelihoods | a.likelihoods
+    return Track(array("d", both[first].ravel()), b.recent, b.log_f, b.last, shapes, likelihoods)

@@ -1,0 +1,180 @@
+r"""Exact likelihood of the damping of a lightly damped mode, from the Fourier lines of one record.
+
+Where the decay of a mode lasts about as long as the record, neighbouring lines are correlated: all hold the
+change of its motion from the first to the last sample. A periodogram likelihood, which takes lines as
+independent, is then biased. Near its peak the complex amplitude z of a mode under smooth random forces obeys
+:math:`\dot z = pz + w` with white w of density q and :math:`p = \omega(-\zeta + i\sqrt{1-\zeta^2})`. Its
+transform over a record of length T at a Fourier frequency is, without any approximation,
+
+.. math:: X_k = \frac{W_k - D}{i\omega_k - p}, \qquad D = \frac{z(T) - z(0)}{\sqrt T},
+
+.. math:: \mathrm{E}|W_k|^2 = q, \quad
+          \mathrm{E}\,D\bar W_k = \frac{q\,(1 - e^{pT})}{T\,(i\omega_k - p)}, \quad
+          \mathrm{E}|D|^2 = \frac{q\,(1 - \mathrm{Re}\,e^{pT})}{aT}, \qquad a = -\mathrm{Re}\,p .
+
+With white noise n the covariance of the lines is a diagonal plus a matrix of rank two. The likelihood of ln ζ
+is integrated over the frequency (uniform), q and n (uniform in the logarithm): a maximum over n instead
+would take part of the tails for noise and give too little damping, by a tenth in ten minutes.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jackettwin.arrays import ComplexArray, FloatArray
+
+LOG_ZETA = np.round(np.arange(np.log(1e-4), np.log(0.2), 0.2), 6)
+"""Nodes of ln ζ at which likelihoods are stored; a fifth is fine enough for one record up to 2πζfT = 25."""
+LEAST_BANDWIDTH, MOST_BANDWIDTH = 0.01, 12.0
+"""Range of ζfT within which the likelihood is computed. Below, a mode is a line: the likelihood stays;
+above, it is continued along its last slope."""
+FREQUENCY_POINTS = 17
+"""Frequencies over which the likelihood is integrated."""
+FREQUENCY_STDS, FREQUENCY_LINES = 4.5, 0.2
+"""Half range of these: so many standard deviations √(a/T) and lines, at most ``MOST_LINES``."""
+MOST_LINES = 3.0
+NOISE_STEP = 0.4
+"""Step of ln n."""
+NO_NOISE, NO_NOISE_WEIGHT = -8.0, 5.0
+"""Logarithm of noise too small to matter, over the tail of the mode, and the range that it stands for."""
+LOWEST_NOISE, HIGHEST_NOISE = -3.0, 4.0
+"""Range of ln n over the tail of the mode at the edge of the band, and over its density a line off its
+peak."""
+NEGLIGIBLE = 12.0
+"""Log-likelihood below the largest at which a noise level is left out."""
+
+
+def line_log_likelihood(
+    x: ComplexArray, omega: FloatArray, duration_s: float, pole: ComplexArray, noise: FloatArray
+) -> FloatArray:
+    """Return the log-likelihood of Fourier lines, integrated over the force density q, up to a constant.
+
+    Parameters
+    ----------
+    x : (n_lines,)
+        Transform over the root of the duration, at Fourier frequencies.
+    omega : (n_lines,)
+        Angular frequencies [rad/s].
+    pole : (...)
+        p [rad/s].
+    noise : (...)
+        n/q [s²/rad²].
+    """
+    pole, noise = np.broadcast_arrays(pole, noise)
+    p = pole[..., None]
+    g = 1.0 / (1j * omega - p)
+    change = 1.0 - np.exp(p * duration_s)
+    power = change.real / (-p.real * duration_s)
+    first = g * (0.5 * power - (change * g / duration_s).conj())
+    weight = 1.0 / (np.abs(g) ** 2 + noise[..., None])
+    weighted = g.conj() * weight
+    s_gg = np.sum(np.abs(g) ** 2 * weight, axis=-1)
+    s_ff = np.sum(np.abs(first) ** 2 * weight, axis=-1)
+    s_fg = np.sum(first.conj() * g * weight, axis=-1) + 1.0
+    y_f, y_g = (first.conj() * weight) @ x, weighted @ x
+    determinant = np.abs(s_fg) ** 2 - s_ff * s_gg
+    square = weight @ np.abs(x) ** 2
+    square += (s_gg * np.abs(y_f) ** 2 + s_ff * np.abs(y_g) ** 2 - 2.0 * np.real(y_f.conj() * s_fg * y_g)) / (
+        determinant
+    )
+    return np.asarray(np.sum(np.log(weight), axis=-1) - np.log(determinant) - len(x) * np.log(square))
+
+
+def damping_log_likelihood(
+    x: ComplexArray, frequency_hz: float, lines_hz: FloatArray, duration_s: float
+) -> FloatArray:
+    """Return the log-likelihood of ``LOG_ZETA``, with its largest value 0.
+
+    Parameters
+    ----------
+    x : (n_lines,)
+        Transform of one mode's motion over the root of the duration, at Fourier frequencies around its peak.
+    frequency_hz : float
+        Its frequency, to within two lines.
+    lines_hz : (n_lines,)
+        The Fourier frequencies.
+    """
+    omega, line = 2.0 * np.pi * lines_hz, 2.0 * np.pi / duration_s
+    bandwidth = np.exp(LOG_ZETA) * frequency_hz * duration_s
+    inside = np.flatnonzero((bandwidth > LEAST_BANDWIDTH) & (bandwidth < MOST_BANDWIDTH))
+    a = 2.0 * np.pi * bandwidth[inside] / duration_s
+    half = 0.5 * (len(x) - 1)
+    at_edge = -2.0 * np.log(half * line)
+    log_noise = np.arange(at_edge + LOWEST_NOISE, at_edge + 2.0 * np.log(half) + HIGHEST_NOISE, NOISE_STEP)
+    log_noise = np.append(at_edge + NO_NOISE, log_noise)
+    weight = np.append(NO_NOISE_WEIGHT, np.full(len(log_noise) - 1, NOISE_STEP))
+
+    near = 2.0 * np.pi * frequency_hz + line * np.linspace(-2.0, 2.0, 33)
+    coarse = line_log_likelihood(
+        x,
+        omega,
+        duration_s,
+        (-a[::4, None] + 1j * near)[:, :, None],
+        np.exp(log_noise[::3]),
+    )
+    centre = near[np.unravel_index(np.argmax(coarse), coarse.shape)[1]]
+    likely = 3 * np.flatnonzero(coarse.max(axis=(0, 1)) > coarse.max() - NEGLIGIBLE)
+    noise = slice(max(likely[0] - 2, 0), likely[-1] + 3)
+
+    reach = np.minimum(FREQUENCY_STDS * np.sqrt(a / duration_s), MOST_LINES * line) + FREQUENCY_LINES * line
+    at = centre + reach[:, None] * np.linspace(-1.0, 1.0, FREQUENCY_POINTS)
+    fine = line_log_likelihood(
+        x, omega, duration_s, (-a[:, None] + 1j * at)[:, :, None], np.exp(log_noise[noise])
+    )
+    top = fine.max()
+    out = np.full(len(LOG_ZETA), -np.inf)
+    out[inside] = np.log(np.sum(np.exp(fine - top) @ weight[noise], axis=-1) * reach)
+    out[: inside[0]] = out[inside[0]]
+    last = inside[-1]
+    beyond = np.arange(1, len(out) - last)
+    out[last + 1 :] = out[last] + min(out[last] - out[last - 1], 0.0) * beyond
+    return np.asarray(out - out.max())
+
+
+FINE = 20
+"""Points to a node at which a likelihood is interpolated."""
+HALF_CHI_SQUARE_95 = 1.9207
+"""Half the 95 % point of χ² with one degree of freedom."""
+
+
+def likelihood_interval(log_likelihood: FloatArray) -> tuple[float, float, float]:
+    """Return the median of ln ζ and the ends of its 95 % interval, by likelihood ratio.
+
+    Parameters
+    ----------
+    log_likelihood : (n_nodes,)
+        At ``LOG_ZETA``. The median is that of a uniform prior of ln ζ between the ends of these.
+
+    Examples
+    --------
+    >>> found = likelihood_interval(-0.5 * ((LOG_ZETA + 5.0) / 0.3) ** 2)
+    >>> [round(x, 2) for x in found]
+    [-5.0, -5.59, -4.41]
+    """
+    log_zeta, values = between_nodes(log_likelihood)
+    values = values - values.max()
+    weight = np.exp(values)
+    middle = float(np.interp(0.5 * weight.sum(), np.cumsum(weight) - 0.5 * weight, log_zeta))
+    held = np.flatnonzero(values > -HALF_CHI_SQUARE_95)
+    ends = [float(log_zeta[held[0]]), float(log_zeta[held[-1]])]
+    for k, (inner, outer) in enumerate(((held[0], held[0] - 1), (held[-1], held[-1] + 1))):
+        if 0 <= outer < len(values):
+            share = (values[inner] + HALF_CHI_SQUARE_95) / (values[inner] - values[outer])
+            ends[k] += share * float(log_zeta[outer] - log_zeta[inner])
+    return min(max(middle, ends[0]), ends[1]), ends[0], ends[1]
+
+
+def between_nodes(values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return ln ζ at ``FINE`` points to a node and values there, by cubics through four nodes each."""
+    n = len(LOG_ZETA)
+    at = np.arange((n - 1) * FINE + 1) / FINE
+    first = np.clip(at.astype(int) - 1, 0, n - 4)
+    t = at - first
+    weight = np.ones((4, len(at)))
+    for j in range(4):
+        for m in range(4):
+            if m != j:
+                weight[j] *= (t - m) / (j - m)
+    fine = sum(weight[j] * values[first + j] for j in range(4))
+    step = LOG_ZETA[1] - LOG_ZETA[0]
+    return np.asarray(LOG_ZETA[0] + step * at), np.asarray(fine)

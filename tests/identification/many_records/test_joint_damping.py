@@ -1,0 +1,63 @@
+"""Damping from the likelihoods of many records: closed forms, scatter, and a simulated mode."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.support.sightings import sightings
+
+from jackettwin.identification import ModalEstimate, fuse, identify
+from jackettwin.identification.many_records.joint_damping import joint_damping
+from jackettwin.identification.maximum_likelihood.line_likelihood import LOG_ZETA
+from jackettwin.identification.synthetic import ModalSystem, simulate
+
+
+def seen(log_zeta, std, *, likelihood=True):
+    """Return sightings with normal likelihoods of ln ζ, or with estimates of that spread alone."""
+    covariance = np.diag([1e-6, std**2])
+    modes = [
+        ModalEstimate(0.3, float(np.exp(x)), np.ones(3, complex), 1.0, 0.0, 1.0, log_covariance=covariance)
+        for x in log_zeta
+    ]
+    out = sightings(modes, [600.0] * len(modes))
+    if not likelihood:
+        return out
+    return replace(out, damping_log_likelihood=-0.5 * ((LOG_ZETA - np.asarray(log_zeta)[:, None]) / std) ** 2)
+
+
+def test_equal_normal_likelihoods_give_the_mean_and_the_root_n_interval():
+    joint = joint_damping(seen([-5.1, -4.9, -5.0, -5.0], 0.4))
+    # a tenth of its standard deviation, as a scatter that is not excluded moves the mean of ζ up
+    assert np.log(joint.damping_ratio) == pytest.approx(-5.0, abs=0.02)
+    # σ/√n, and some per cent for a scatter that is not excluded, whose estimate is 0
+    assert joint.log_std == pytest.approx(0.2, rel=0.04)
+    assert joint.scatter == 0.0
+
+
+def test_scatter_between_records_widens_the_interval_and_is_told(rng):
+    true = rng.normal(-5.0, 0.6, 60)
+    joint = joint_damping(seen(true + rng.normal(0.0, 0.3, 60), 0.3))
+    assert joint.scatter == pytest.approx(0.6, abs=0.2)
+    # √((τ² + σ²)/n), and the mean of ζ, not of ln ζ: half a variance higher
+    assert joint.log_std == pytest.approx(np.sqrt((0.36 + 0.09) / 60), rel=0.4)
+    assert np.log(joint.damping_ratio) == pytest.approx(-5.0 + 0.18, abs=0.3)
+
+
+def test_estimates_alone_are_averaged_as_before():
+    assert joint_damping(seen([-5.0, -5.2], 0.3, likelihood=False)) is None
+
+
+def test_pieces_of_a_light_mode_are_fused_without_bias():
+    """ζfT = 0.35: estimates one by one are 1.6 to 2 times the truth, and so was their mean."""
+    shapes = np.array([[1.0, 0.7, 0.3], [0.6, -0.8, 0.9]])
+    ratio = 0.35 / (0.3 * 600.0)
+    system = ModalSystem(np.array([0.3, 1.1]), np.array([ratio, 0.01]), shapes, np.eye(2))
+    found = [identify(simulate(system, np.random.default_rng([3, k]), sample_rate_hz=6.0)) for k in range(8)]
+    mode = min(fuse(found).modes, key=lambda m: abs(m.frequency_hz - 0.3))
+    low, high = mode.damping_ratio_interval_95
+    assert low < ratio < high
+    assert abs(np.log(mode.damping_ratio / ratio)) < 3.0 * mode.damping_ratio_std / mode.damping_ratio
+    # eight records tell it to about 1/√(8 · 2πζfT) = 0.24
+    assert mode.damping_ratio_std / mode.damping_ratio < 0.5
