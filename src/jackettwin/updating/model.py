@@ -152,13 +152,12 @@ class SupportModel:
         (n_groups · n_s,) D [N/m], group after group, and (n_groups · n_s, n_law_parameters)
         """
         p = len(self.family.parameters)
-        own = self._split(theta)[0].reshape(-1, p)
-        D, dD = law_response(*self.family.rows(own, self.reference_hz), s)
-        if len(own) == 1:
+        numbers = self._numbers(self._split(theta)[0]).reshape(-1, p)
+        D, dD = law_response(*self.family.rows(numbers, self.reference_hz), s)
+        if len(numbers) == 1:
             return D[0], dD[0]
-        each = np.zeros((len(own), s.size, len(own), p), np.complex128)
-        each[np.arange(len(own)), :, np.arange(len(own))] = dD
-        return D.ravel(), each.reshape(D.size, own.size)
+        powers = self.tie_groups.exponents(self.family).reshape(len(numbers), p, -1)
+        return D.ravel(), (dD @ powers).reshape(D.size, -1)
 
     def predict_many(
         self,

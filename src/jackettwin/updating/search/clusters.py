@@ -82,7 +82,9 @@ def _through_nothing(problem: Problem, low: End, high: End) -> End | None:
     """
     family, path, here = problem.model.family, Path(problem), high
     allowance, n = problem.allowance(high.cost), len(family.parameters)
-    of_laws = problem.states[0].weights[: n * len(problem.model.tie_groups.suffixes)]
+    if problem.model.tie_groups.one_loss:
+        return None  # its laws share parameters
+    of_laws = problem.states[0].weights[: problem.model.n_of_law]
     for columns in (of_laws == 1.0).argmax(axis=1).reshape(-1, n):
         weakest = family.weakest(np.exp(here.z[columns]))
         if weakest is None:

@@ -99,9 +99,15 @@ def _state_part(
     _, dD = problem.model.law_response(theta, poles)
     n_laws = dD.shape[1]
     dD = dD.reshape(-1, poles.size, n_laws)
-    # dλ/dz = (∂λ/∂D) dD/dz: any parameter of a law tells ∂λ/∂D, best the one that moves D most
-    best = np.abs(dD).argmax(axis=2)[..., None]
-    by_D = np.take_along_axis(slopes[None, :, :n_laws], best, axis=2) / np.take_along_axis(dD, best, axis=2)
+    # dλ/dz = (∂λ/∂D) dD/dz: a parameter of this law alone tells ∂λ/∂D, best the one that moves D most
+    touched = (dD != 0.0).any(axis=1)
+    alone = np.where((touched & (touched.sum(axis=0) == 1))[:, None], dD, 0.0)
+    best = np.abs(alone).argmax(axis=2)[..., None]
+    moved, by = (
+        np.take_along_axis(alone, best, axis=2),
+        np.take_along_axis(slopes[None, :, :n_laws], best, axis=2),
+    )
+    by_D = np.divide(by, moved, out=np.zeros_like(moved), where=moved != 0.0)
     each = (by_D * np.eye(poles.size)).transpose(1, 0, 2).reshape(poles.size, -1)
     columns = np.concatenate([each, 1j * each, slopes[:, n_laws:] / theta[n_laws:]], axis=1)
     own = root[:, : state.residuals.count] @ state.residuals.jacobian(poles, columns)
