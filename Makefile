@@ -71,9 +71,9 @@ qualify: $(VENV)/.dev ## statistics at full size, to docs/verification (takes ho
 
 lock: | $(BIN)/python ## refresh the lock files from pyproject.toml
 	$(PIP) install pip-tools
-	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --output-file requirements.lock pyproject.toml
-	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --extra service --extra postgresql --constraint requirements.lock --output-file requirements-service.lock pyproject.toml
-	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --extra service --extra postgresql --extra dev --extra docs --extra bench --constraint requirements-service.lock --output-file requirements-dev.lock pyproject.toml
+	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --extra fatigue --output-file requirements.lock pyproject.toml
+	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --extra fatigue --extra service --extra postgresql --constraint requirements.lock --output-file requirements-service.lock pyproject.toml
+	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --extra fatigue --extra service --extra postgresql --extra dev --extra docs --extra bench --constraint requirements-service.lock --output-file requirements-dev.lock pyproject.toml
 
 docs: $(VENV)/.dev ## the documentation, to site/
 	$(BIN)/mkdocs build --quiet --strict

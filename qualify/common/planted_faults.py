@@ -52,6 +52,15 @@ FAULTS = (
         ("Q_beta has a wrong factor", "beta * (1.0 - 0.833 * beta)", "beta * (1.0 - 0.933 * beta)"),
         ("out-of-plane strength has half the exponent", "3.2 * gamma ** (0.5 * beta**2)", "3.2 * gamma ** (beta**2)"),
     )),
+    *_of("fatigue", rows=(
+        ("the second slope begins at ten times the range", "many = S < 1e-6 * self.knee_pa", "many = S < 1e-5 * self.knee_pa"),
+        ("thick plates are stronger", "** self.thickness_exponent", "** -self.thickness_exponent"),
+        ("half cycles count whole", "np.full(self.half.size, 0.5)", "np.full(self.half.size, 1.0)"),
+        ("the last closed cycles are taken twice", "self._taken = first.size", "self._taken = max(first.size - 1, 0)"),
+        ("saddles and crowns are exchanged", "np.stack([cosine**2, sine**2])", "np.stack([sine**2, cosine**2])"),
+        ("a short chord is stiffened at its crown", "F * saddle, crown, F * brace_saddle, brace_crown, *_in_plane(s), out, _brace_side(s) * out\n    )\n\n\ndef _k(", "saddle, F * crown, F * brace_saddle, brace_crown, *_in_plane(s), out, _brace_side(s) * out\n    )\n\n\ndef _k("),
+        ("the median is that of the design curve", "10.0 ** (-2.0 * self.curve.log_std)", "10.0 ** (-0.0 * self.curve.log_std)"),
+    )),
     *_of("soil", rows=(
         ("clay's bearing factor is 8", "J * strength_pa * z, 9.0 * strength_pa * D)", "J * strength_pa * z, 8.0 * strength_pa * D)"),
         ("a clay shaft peaks at twice the displacement", "return TabulatedCurve(tuple(D * z for z in TZ_Z), tuple(t * share for share in (*TZ_T, residual)))", "return TabulatedCurve(tuple(2.0 * D * z for z in TZ_Z), tuple(t * share for share in (*TZ_T, residual)))"),

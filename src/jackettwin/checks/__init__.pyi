@@ -1,7 +1,12 @@
 from .columns import StraightRun as StraightRun, columns as columns
 from .iso19902 import EDITIONS as EDITIONS
-from .iso19902_joints import KINDS as KINDS
-from .joint_check import BraceUse as BraceUse
+from .iso19902_joints import IN_PLANE as IN_PLANE, KINDS as KINDS
+from .joint_check import (
+    BraceUse as BraceUse,
+    JointPlan as JointPlan,
+    joint_forces as joint_forces,
+    joint_plans as joint_plans,
+)
 from .member_check import (
     ALL_CHECKS as ALL_CHECKS,
     DesignBasis as DesignBasis,

@@ -163,17 +163,27 @@ def joint_uses(
     """Return the worst use of every brace's joint over all instants (n_cases, n_elements, 2) of forces."""
     uses = []
     for plan in plans:
-        axial = np.array([forces.axial[:, e.element, e.at_end] for e in plan.braces])
-        theta = np.array([joint.theta for joint in plan.joints])
-        shares = load_path(axial, theta, plan.across)
+        own, shares = joint_forces(assembly, plan, forces)
         sides = [(e.element, e.at_end) for e in plan.chord]
         chord_axial = np.array([forces.axial[:, k, end] for k, end in sides])
         chord_bending = np.array([forces.bending[:, k, end] for k, end in sides])
         for i, (end, joint) in enumerate(zip(plan.braces, plan.joints, strict=True)):
-            own = _brace_forces(assembly, forces, end, plan.chord[0].away)
-            found = joint_use(joint, own, shares[:, i], chord_axial, chord_bending, conservative=conservative)
-            uses.append(_worst(plan, end, joint, own, shares[:, i], found))
+            mine = shares[:, i]
+            found = joint_use(joint, own[i], mine, chord_axial, chord_bending, conservative=conservative)
+            uses.append(_worst(plan, end, joint, own[i], mine, found))
     return tuple(uses)
+
+
+def joint_forces(
+    assembly: Assembly, plan: JointPlan, forces: SectionForces
+) -> tuple[tuple[BraceForces, ...], FloatArray]:
+    """Return every brace's forces at the node (n_cases,), and how much of them is a K, Y and X joint's.
+
+    The shares are (3, n_braces, n_cases), by the balance of axial forces of 14.2.4.
+    """
+    own = tuple(_brace_forces(assembly, forces, end, plan.chord[0].away) for end in plan.braces)
+    theta = np.array([joint.theta for joint in plan.joints])
+    return own, load_path(np.array([one.axial for one in own]), theta, plan.across)
 
 
 def _brace_forces(assembly: Assembly, forces: SectionForces, end: MemberEnd, line: FloatArray) -> BraceForces:

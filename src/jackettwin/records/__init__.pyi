@@ -18,7 +18,7 @@ from .readers import (
 )
 from .readers.channels import Unsaid as Unsaid
 from .readers.delimited import MISSING as MISSING, text_table as text_table
-from .readers.registry import Format as Format
+from .readers.registry import Format as Format, read_table as read_table
 from .readers.stamps import parse_time as parse_time, read_zone as read_zone
 from .readers.table import ReadTable as ReadTable
 from .record import (

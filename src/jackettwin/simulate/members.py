@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from math import pi
 from typing import NamedTuple
 
@@ -36,19 +36,29 @@ def scenario_uses(scenario: Scenario, basis: DesignBasis | None = None) -> Frame
         without bound.
     """
     motion = simulate_motion(scenario)
+    assembly = motion.model.assembly
+    pressure = _pressure(scenario, assembly)
+    worst = FrameUse()
+    for u, along in deflections(scenario, motion):
+        worst = worst.worse(frame_use(assembly, u, basis, along=along, pressure=pressure))
+    return worst
+
+
+def deflections(scenario: Scenario, motion: Motion) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """Yield a scenario in blocks of instants, without what is discarded.
+
+    Each block is displacements (n, n_dof), weight included, and loads along the elements, (n_elements, 12) or
+    one for every instant.
+    """
     assembly, modes = motion.model.assembly, motion.model.reduced.basis.T
     q = motion.states[:, : motion.space.n]
     t = np.arange(len(q), dtype=np.float64) * motion.step_s
     rest = at_rest(scenario, motion)
     waves = _waves_along(scenario, assembly)
-    pressure = _pressure(scenario, assembly)
-    worst = FrameUse()
     for first in range(round(scenario.clock.discard_s / motion.step_s), len(q), _BLOCK):
         here = slice(first, first + _BLOCK)
         along = rest.along if waves is None else np.add(rest.along, waves(t[here]))
-        u = rest.displacement + q[here] @ modes
-        worst = worst.worse(frame_use(assembly, u, basis, along=along, pressure=pressure))
-    return worst
+        yield rest.displacement + q[here] @ modes, along
 
 
 def _pressure(scenario: Scenario, assembly: Assembly) -> FloatArray | None:

@@ -91,6 +91,19 @@ def read_record(path: Path | str, unsaid: Unsaid | None = None) -> Record:
         return to_record(_format_of(path).read(path), described, path, unsaid)
 
 
+def read_table(path: Path) -> ReadTable:
+    """Return the columns of a file in its own units, without the JSON that may lie beside it.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be opened, is of no known format or is damaged.
+    """
+    described_by(path)
+    with reading(path):
+        return _format_of(path).read(path)
+
+
 def tables_of(path: Path) -> Iterator[ReadTable]:
     """Yield a file in tables of some ten thousand rows, where the format allows it; else in one."""
     form = _format_of(path)

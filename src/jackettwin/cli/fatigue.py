@@ -1,0 +1,332 @@
+"""``jackettwin fatigue``: cycles, stress concentration, damage and life of welds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+import numpy as np
+
+from jackettwin.cli.console import (
+    CommandGroup,
+    FiniteFloat,
+    Reply,
+    answers,
+    messages,
+    say,
+    show_table,
+    working,
+)
+from jackettwin.errors import InputError, look_up, require
+from jackettwin.report import Table, TableColumn
+
+if TYPE_CHECKING:
+    from jackettwin.arrays import FloatArray
+    from jackettwin.fatigue import Cycles, Environment, LifeModel
+    from jackettwin.simulate import WeldLife
+
+_UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "N/mm^2": 1e6, "ksi": 6.894757293168e6}
+_STRONGEST_PA = 2e9
+"""A range that no steel carries: a slip of units."""
+_N_EQ = 1e7
+_SHOWN = 10
+_SPLASH_M = (-5.0, 5.0)
+"""About the sea level: no cathodic protection reaches there for all of the time."""
+
+
+@click.group("fatigue", cls=CommandGroup)
+def fatigue_command() -> None:
+    """Count cycles, and tell damage and life of welds."""
+
+
+def curve_options(command: Any) -> Any:
+    """Add the options that choose an S-N curve."""
+    edition = click.option(
+        "--edition", default=None, help="A shipped set of S-N curves or a YAML file; default: the newest."
+    )
+    return edition(command)
+
+
+@fatigue_command.command("stress")
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--column", required=True, metavar="NAME", help="The stress in FILE.")
+@click.option("--curve", default="T", show_default=True, help="S-N curve: B1 … W3, T.")
+@click.option(
+    "--environment",
+    default="air",
+    show_default=True,
+    type=click.Choice(("air", "cathodic", "free-corrosion")),
+)
+@click.option(
+    "--unit", type=click.Choice(tuple(_UNITS)), help="Of the stress; default: the file's, else MPa."
+)
+@click.option(
+    "--thickness-mm",
+    type=FiniteFloat(min=1.0, max=1000.0),
+    help="Of the plate; default: no effect of thickness.",
+)
+@curve_options
+@answers
+def stress(
+    file: Path,
+    column: str,
+    curve: str,
+    environment: Environment,
+    unit: str | None,
+    thickness_mm: float | None,
+    edition: str | None,
+) -> Reply:
+    """Count the cycles of a stress series in FILE, and sum their damage.
+
+    Rainflow counting; what does not close counts half. Damage is Miner's sum for the time of the series.
+    """
+    from jackettwin.fatigue import equivalent_range, read_curve
+
+    chosen = read_curve(curve, environment, *(() if edition is None else (edition,)))
+    values, taken = _stress_of(file, column, unit)
+    with working("counting cycles"):
+        cycles, scale, warnings = _counted(values, file, column)
+    widest = float(cycles.ranges.max(initial=0.0))
+    require(
+        widest < _STRONGEST_PA,
+        f"ranges of {widest / 1e6:.3g} MPa break any steel",
+        file=file,
+        field=column,
+        value=f"in {taken}",
+        remedy="state the unit with --unit",
+    )
+    thickness = None if thickness_mm is None else 1e-3 * thickness_mm
+    damage = scale * chosen.damage(cycles.ranges, cycles.numbers, thickness_m=thickness)
+    document = {
+        "file": str(file),
+        "column": column,
+        "unit": taken,
+        "curve": curve,
+        "environment": environment,
+        "edition": chosen.edition,
+        "cycles_full": int(cycles.full.size),
+        "cycles_half": int(cycles.half.size),
+        "largest_range_mpa": 1e-6 * widest,
+        "n_eq": _N_EQ,
+        "equivalent_range_mpa": {
+            f"m{m}": 1e-6 * scale ** (1.0 / m) * equivalent_range(cycles, m, _N_EQ) for m in (3, 5)
+        },
+        "damage": damage,
+        "damage_by_cycles": 0.0 if not cycles.full.size else scale * _closed(chosen, cycles, thickness),
+        "warnings": warnings,
+        "left_out": ["mean stress", "the order of cycles"],
+    }
+    return Reply(document, lambda: _show_stress(document))
+
+
+def _closed(chosen: Any, cycles: Cycles, thickness: float | None) -> float:
+    return float(chosen.damage(cycles.full, np.ones(cycles.full.size), thickness_m=thickness))
+
+
+def _stress_of(file: Path, column: str, unit: str | None) -> tuple[FloatArray, str]:
+    """Return a column of a file in pascals, and the unit in which it was taken."""
+    from jackettwin.records import read_table
+
+    table = read_table(file)
+    rows = dict(zip(table.names, table.data, strict=True))
+    values = look_up(rows, column, "column", file=file, field="--column")
+    said = table.channels.get(column)
+    stated = table.unit if said is None or said.unit is None else said.unit
+    if unit is None and stated is not None and stated not in _UNITS:
+        raise InputError(
+            "is no unit of stress", file=file, field=column, value=stated, allowed=", ".join(_UNITS),
+            remedy="state it with --unit",
+        )  # fmt: skip
+    taken = unit or stated or "MPa"
+    if unit and stated in _UNITS and _UNITS[stated] != _UNITS[unit]:
+        raise InputError(
+            f"the file says {stated}", file=file, field="--unit", value=unit, remedy="leave the option out"
+        )
+    return np.asarray(values, dtype=float) * _UNITS[taken], taken
+
+
+def _counted(values: FloatArray, file: Path, column: str) -> tuple[Cycles, float, list[str]]:
+    """Return the cycles between gaps, by how much gaps raise them, and what to say of it."""
+    from jackettwin.fatigue import Cycles, count
+
+    known = np.isfinite(values)
+    require(known.any(), "holds no numbers", file=file, field=column, remedy="export the file again")
+    if known.all():
+        return count(values), 1.0, []
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]])))
+    pieces = [count(values[a:b]) for a, b in edges.reshape(-1, 2)]
+    cycles = Cycles(*(np.concatenate([getattr(p, name) for p in pieces]) for name in ("full", "half")))
+    missing = float(1.0 - known.mean())
+    said = (
+        f"{100 * missing:.2g} % of the samples are missing: cycles between gaps, damage scaled to the whole"
+    )
+    return cycles, 1.0 / (1.0 - missing), [said]
+
+
+def _show_stress(document: dict[str, Any]) -> None:
+    for warning in document["warnings"]:
+        messages.print(f"warning: {warning}")
+    m3, m5 = (document["equivalent_range_mpa"][m] for m in ("m3", "m5"))
+    say(
+        f"{document['column']}: {document['cycles_full']} cycles and {document['cycles_half']} half cycles, "
+        f"largest range {document['largest_range_mpa']:.4g} MPa"
+    )
+    say(f"equivalent range of {_N_EQ:.0e} cycles: {m3:.4g} MPa (m = 3), {m5:.4g} MPa (m = 5)")
+    say(
+        f"damage {document['damage']:.4g} by {document['edition']}, curve {document['curve']}, "
+        f"{document['environment']}"
+    )
+
+
+@fatigue_command.command("scf")
+@click.argument("file", type=click.Path(path_type=Path))
+@answers
+def scf(file: Path) -> Reply:
+    """Compute the stress concentration factors of one tubular joint.
+
+    FILE (YAML or JSON) holds class (y, x or k), chord_diameter_m, chord_thickness_m, chord_length_m, fixity,
+    braces with diameter_m, thickness_m and angle_deg, and gap_m.
+    """
+    from jackettwin.fatigue import concentration, read_joint
+
+    kind, joint = read_joint(file)
+    factors, warnings = concentration(joint, kind)
+    rows = [_factors(kind, one) for one in factors]
+    document = {"class": kind, "braces": rows, "warnings": list(warnings)}
+
+    def show() -> None:
+        for warning in warnings:
+            messages.print(f"warning: {warning}")
+        flat = [
+            (str(i), load, place, f"{value:.3f}")
+            for i, row in enumerate(rows, start=1)
+            for load, places in row.items()
+            for place, value in places.items()
+        ]
+        show_table(Table("stress concentration", ("brace", "load", "place", "factor"), flat))
+
+    return Reply(document, show)
+
+
+def _factors(kind: str, f: Any) -> dict[str, dict[str, float]]:
+    """Return the factors of a brace by load and place."""
+    if kind == "k":
+        axial = {"chord": f.axial_chord_crown, "brace": f.axial_brace_crown}
+        out = {"chord": f.out_of_plane_chord, "brace": f.out_of_plane_brace}
+    else:
+        axial = {
+            "chord_saddle": f.axial_chord_saddle,
+            "chord_crown": f.axial_chord_crown,
+            "brace_saddle": f.axial_brace_saddle,
+            "brace_crown": f.axial_brace_crown,
+        }
+        out = {"chord_saddle": f.out_of_plane_chord, "brace_saddle": f.out_of_plane_brace}
+    return {
+        "axial": axial,
+        "in_plane": {"chord_crown": f.in_plane_chord, "brace_crown": f.in_plane_brace},
+        "out_of_plane": out,
+    }
+
+
+@fatigue_command.command("scenario")
+@click.argument("scenario")
+@click.option("--curve", default="T", show_default=True, help="S-N curve of tubular joints.")
+@click.option(
+    "--design-factor", default=1.0, show_default=True, type=FiniteFloat(min=1.0, max=10.0),
+    help="Design fatigue factor.",
+)  # fmt: skip
+@curve_options
+@answers
+def scenario_(scenario: str, curve: str, design_factor: float, edition: str | None) -> Reply:
+    """Tell the life of every tubular joint, if all time were like SCENARIO.
+
+    Joints in the air, under cathodic protection below the splash zone, and free to corrode in it.
+    """
+    from jackettwin.fatigue import LifeModel, read_curve
+    from jackettwin.simulate import read_scenario, scenario_life
+
+    read = read_scenario(scenario)
+    source = () if edition is None else (edition,)
+    by_environment = {
+        name: LifeModel(read_curve(curve, name, *source), design_factor)
+        for name in ("air", "free-corrosion", "cathodic")
+    }
+
+    def model(z_m: float) -> tuple[Environment, LifeModel]:
+        low, high = _SPLASH_M
+        name: Environment = "air" if z_m > high else "cathodic" if z_m < low else "free-corrosion"
+        return name, by_environment[name]
+
+    with working("stresses at the welds"):
+        welds = scenario_life(read, model)
+    rows = [_weld(one) for one in welds]
+    outside = [row for row in rows if row["beyond_validity"]]
+    document = {
+        "scenario": read.name,
+        "edition": by_environment["air"].curve.edition,
+        "curve": curve,
+        "design_factor": design_factor,
+        "duration_s": welds[0].life.duration_s,
+        "joints": rows,
+        "warnings": _warnings(rows, outside),
+        "left_out": [
+            "other seas, winds and states: life if all time were like this scenario",
+            "cans, butt welds, flanges, grout and piles",
+            "joints of several planes: each plane for itself",
+            "crack growth",
+        ],
+    }
+    return Reply(document, lambda: _show_welds(document))
+
+
+def _weld(one: WeldLife) -> dict[str, Any]:
+    life, weld = one.life, one.weld
+    return {
+        "joint": weld.node,
+        "chord": weld.chord,
+        "brace": weld.brace,
+        "side": one.side,
+        "position": one.position,
+        "z_m": one.z_m,
+        "environment": one.environment,
+        "scf": {kind: _factors("y", factors) for kind, factors in weld.factors.items()},
+        "largest_range_mpa": 1e-6 * one.largest_range_pa,
+        "damage": life.damage,
+        "damage_by_point": one.damage_by_point,
+        "damage_interval_90": list(life.damage_interval_90),
+        "life_years": life.life_years if np.isfinite(life.life_years) else None,
+        "variance_shares": life.variance_shares,
+        "beyond_validity": list(weld.warnings),
+    }
+
+
+def _warnings(rows: list[dict[str, Any]], outside: list[dict[str, Any]]) -> list[str]:
+    from jackettwin.structure import few
+
+    if not outside:
+        return []
+    named = few(list(dict.fromkeys(f"{row['brace']} at {row['joint']}" for row in outside)))
+    return [f"{len(outside)} of {len(rows)} welds are beyond the ranges of Efthymiou's factors: {named}"]
+
+
+_COLUMNS = (
+    TableColumn("joint", "joint"),
+    TableColumn("brace", "brace"),
+    TableColumn("side", "side"),
+    TableColumn("point", "position"),
+    TableColumn("environment", "environment"),
+    TableColumn("largest range [MPa]", "largest_range_mpa", ".1f"),
+    TableColumn("life [years]", "life_years", ".3g"),
+    TableColumn("within ranges", lambda row: "no" if row["beyond_validity"] else "yes"),
+)
+
+
+def _show_welds(document: dict[str, Any]) -> None:
+    show_table(
+        Table(f"life if all time were like {document['scenario']}", _COLUMNS, document["joints"][:_SHOWN])
+    )
+    if len(document["joints"]) > _SHOWN:
+        say(f"and {len(document['joints']) - _SHOWN} more welds; --json has all of them")
+    for warning in document["warnings"]:
+        messages.print(f"warning: {warning}")

@@ -1,0 +1,19 @@
+from .curves import (
+    ENVIRONMENTS as ENVIRONMENTS,
+    Environment as Environment,
+    SNCurve as SNCurve,
+    read_curve as read_curve,
+    shipped_editions as shipped_editions,
+)
+from .cycles import Counter as Counter, Cycles as Cycles, count as count, equivalent_range as equivalent_range
+from .efthymiou import (
+    BraceTube as BraceTube,
+    ConcentrationFactors as ConcentrationFactors,
+    JointClass as JointClass,
+    TubularJoint as TubularJoint,
+    concentration as concentration,
+    read_joint as read_joint,
+)
+from .hot_spots import POSITIONS as POSITIONS, SIDES as SIDES, hot_spot_matrix as hot_spot_matrix
+from .joint_life import HotSpot as HotSpot, JointStresses as JointStresses, joint_stresses as joint_stresses
+from .life import LifeModel as LifeModel, SpotLife as SpotLife

@@ -1,0 +1,132 @@
+"""Hot-spot stresses of every brace of every tubular joint of a structure, from its section forces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.checks import IN_PLANE, JointPlan, joint_forces
+from jackettwin.fatigue.efthymiou import (
+    BraceTube,
+    ConcentrationFactors,
+    JointClass,
+    TubularJoint,
+    concentration,
+)
+from jackettwin.fatigue.hot_spots import hot_spot_matrix
+from jackettwin.structure import Assembly, SectionForces, Structure
+
+_CLASSES: tuple[JointClass, ...] = ("k", "y", "x")
+"""In the order in which a joint's forces are shared."""
+
+
+@dataclass(frozen=True)
+class HotSpot:
+    """The weld of one brace on its chord.
+
+    Attributes
+    ----------
+    node, chord, brace : str
+    factors : {class: its factors}
+    matrices : (3 classes, 2 sides, 8 points, 3 components) hot-spot over nominal stress
+    thickness_m : (chord, brace)
+    per_force : (3,) nominal stress per axial force [Pa/N], in-plane and out-of-plane moment [Pa/(N·m)]
+    warnings : what lies outside the ranges of the factors
+    """
+
+    node: str
+    chord: str
+    brace: str
+    factors: dict[str, ConcentrationFactors]
+    matrices: FloatArray
+    thickness_m: tuple[float, float]
+    per_force: FloatArray
+    warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class JointStresses:
+    """Hot-spot stresses of a joint's welds.
+
+    Attributes
+    ----------
+    plan : JointPlan
+    welds : one for every brace
+    """
+
+    plan: JointPlan
+    welds: tuple[HotSpot, ...]
+
+    def stress(self, assembly: Assembly, forces: SectionForces) -> FloatArray:
+        """Return stresses (n_braces, 2 sides, 8 points, n) [Pa] under section forces (n, n_elements, 2).
+
+        The axial force is shared between K, Y and X at every instant, and each share has its own factors.
+        """
+        own, shares = joint_forces(assembly, self.plan, forces)
+        found = []
+        for i, (weld, force) in enumerate(zip(self.welds, own, strict=True)):
+            nominal = weld.per_force[:, None] * np.array([force.axial, force.in_plane, force.out_of_plane])
+            found.append(np.einsum("kn,kspc,cn->spn", shares[:, i], weld.matrices, nominal, optimize=True))
+        return np.array(found)
+
+
+def joint_stresses(
+    structure: Structure, plans: tuple[JointPlan, ...], *, fixity: float = 0.7
+) -> tuple[JointStresses, ...]:
+    """Return the welds of planned joints, with the factors of each class.
+
+    A chord is as long as the distance between the middles of the bays on its two sides. The K joint is that
+    with the nearest brace in the same plane on the same side; a brace without one has a Y joint's factors.
+    """
+    return tuple(JointStresses(plan, _welds(structure, plan, fixity)) for plan in plans)
+
+
+def _welds(structure: Structure, plan: JointPlan, fixity: float) -> tuple[HotSpot, ...]:
+    length = 0.0
+    for end in plan.chord:
+        ends = (np.array(structure.nodes[node]) for node in (end.member.start, end.member.end))
+        length += 0.5 * float(np.linalg.norm(np.subtract(*ends)))
+    length *= 2.0 / len(plan.chord) if len(plan.chord) == 1 else 1.0
+    return tuple(_weld(plan, i, length, fixity) for i in range(len(plan.braces)))
+
+
+def _weld(plan: JointPlan, i: int, length: float, fixity: float) -> HotSpot:
+    end, shape = plan.braces[i], plan.joints[i]
+    braces = tuple(BraceTube(j.d, j.t, j.theta) for j in plan.joints)
+    alone = TubularJoint(shape.D, shape.T, length, (braces[i],), fixity)
+    beside = _nearest(plan, i)
+    factors: dict[str, ConcentrationFactors] = {}
+    warnings: list[str] = []
+    for kind in _CLASSES:
+        joint, by = alone, kind
+        if kind == "k" and beside is not None:
+            pair = (braces[i], braces[beside])
+            joint = TubularJoint(shape.D, shape.T, length, pair, fixity, float(shape.gap))
+        elif kind == "k":
+            by = "y"
+        found, said = concentration(joint, by)
+        factors[kind] = found[0]
+        warnings += said
+    D, d = shape.d, shape.d - 2.0 * shape.t
+    area, modulus = 0.25 * np.pi * (D**2 - d**2), np.pi * (D**4 - d**4) / (32.0 * D)
+    return HotSpot(
+        plan.node,
+        plan.chord[0].member.name,
+        end.member.name,
+        factors,
+        np.array([hot_spot_matrix(factors[kind]) for kind in _CLASSES]),
+        (shape.T, shape.t),
+        np.array([1.0 / area, 1.0 / modulus, 1.0 / modulus]),
+        tuple(dict.fromkeys(warnings)),
+    )
+
+
+def _nearest(plan: JointPlan, i: int) -> int | None:
+    """Return the brace beside one in its plane, None without one."""
+    beside = np.flatnonzero((plan.across @ plan.across[i] > IN_PLANE) & (np.arange(len(plan.braces)) != i))
+    if beside.size == 0 or not np.isfinite(plan.joints[i].gap):
+        return None
+    same = [j for j in beside if plan.joints[j].gap == plan.joints[i].gap]
+    return int(same[0] if same else beside[0])

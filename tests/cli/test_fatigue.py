@@ -1,0 +1,125 @@
+"""``jackettwin fatigue``: the contract's keys, hand values, refusals."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from jackettwin.cli import main
+
+
+def run(*arguments: str):
+    return CliRunner().invoke(main, ["fatigue", *arguments])
+
+
+def answer(*arguments: str) -> dict:
+    found = run(*arguments, "--json")
+    assert found.exit_code == 0, found.stderr
+    return json.loads(found.stdout)
+
+
+@pytest.fixture
+def stress(tmp_path: Path) -> Path:
+    """Return 300 cycles of a range of 80 MPa about a slow cycle of 20 MPa."""
+    t = np.arange(0.0, 600.0, 0.05)
+    values = 40.0 * np.sin(np.pi * t) + 10.0 * np.sin(2 * np.pi * t / 600.0)
+    path = tmp_path / "stress.csv"
+    np.savetxt(
+        path, np.stack([t, values], axis=1), delimiter=",", header="time_s,leg", comments="", fmt="%.9g"
+    )
+    return path
+
+
+def test_a_series_has_the_keys_of_the_contract(stress: Path) -> None:
+    found = answer("stress", str(stress), "--column", "leg", "--curve", "T", "--environment", "cathodic")
+    assert found["n_eq"] == 1e7 and found["edition"] == "DNV-RP-C203 (2016)"
+    assert found["cycles_full"] + 0.5 * found["cycles_half"] == pytest.approx(300.0, abs=2.0)
+    # 300 ranges of 80 MPa: the slow cycle lifts the largest to 100
+    assert found["largest_range_mpa"] == pytest.approx(100.0, rel=0.01)
+    assert found["equivalent_range_mpa"]["m3"] == pytest.approx(80.0 * (300 / 1e7) ** (1 / 3), rel=0.02)
+    assert found["damage"] == pytest.approx(300.0 * 80.0**5 / 10.0**16.130, rel=0.05)
+
+
+def test_units_and_thickness(stress: Path) -> None:
+    mpa = answer("stress", str(stress), "--column", "leg", "--curve", "D")
+    n_mm2 = answer("stress", str(stress), "--column", "leg", "--curve", "D", "--unit", "N/mm^2")
+    assert n_mm2["damage"] == mpa["damage"]
+    thick = answer("stress", str(stress), "--column", "leg", "--curve", "D", "--thickness-mm", "50")
+    # (50/25)^0.2 on every range: 2^0.6 where the slope is 3, 2^1 where it is 5
+    assert 2.0**0.6 <= thick["damage"] / mpa["damage"] * (1 + 1e-9) and thick["damage"] / mpa["damage"] <= 2.0
+    pascal = answer("stress", str(stress), "--column", "leg", "--curve", "D", "--unit", "Pa")
+    assert pascal["damage"] < 1e-20 * mpa["damage"]
+
+
+def test_gaps_are_scaled_and_said(stress: Path, tmp_path: Path) -> None:
+    t, values = np.loadtxt(stress, delimiter=",", skiprows=1).T
+    values[6000:9000] = np.nan
+    path = tmp_path / "gap.csv"
+    np.savetxt(path, np.stack([t, values], axis=1), delimiter=",", header="time_s,leg", comments="")
+    whole = answer("stress", str(stress), "--column", "leg")
+    found = answer("stress", str(path), "--column", "leg")
+    assert found["damage"] == pytest.approx(whole["damage"], rel=0.05)
+    assert "25 % of the samples are missing" in found["warnings"][0]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--column", "brace"), "leg"),
+        (("--column", "leg", "--curve", "Q"), "S-N curve"),
+        (("--column", "leg", "--edition", "bs_7608"), "dnv_rp_c203_2016"),
+        (("--column", "leg", "--thickness-mm", "-3"), "thickness-mm"),
+        (("--column", "leg", "--unit", "ksi", "--environment", "wet"), "environment"),
+    ],
+)
+def test_bad_input_is_said_with_its_remedy(arguments: tuple[str, ...], said: str, stress: Path) -> None:
+    found = run("stress", str(stress), *arguments)
+    assert found.exit_code == 2
+    assert said in found.stderr and "Traceback" not in found.stderr
+
+
+def test_pascals_taken_for_megapascals_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "stress.csv"
+    t = np.arange(0.0, 60.0, 0.05)
+    np.savetxt(path, np.stack([t, 4e7 * np.sin(t)], axis=1), delimiter=",", header="time_s,leg", comments="")
+    found = run("stress", str(path), "--column", "leg")
+    assert found.exit_code == 2
+    assert "--unit" in found.stderr
+
+
+def test_a_joint_has_the_keys_of_the_contract(tmp_path: Path) -> None:
+    brace = {"diameter_m": 0.6, "thickness_m": 0.02, "angle_deg": 45.0}
+    said = {"chord_diameter_m": 1.2, "chord_thickness_m": 0.04, "chord_length_m": 9.0, "fixity": 0.7}
+    path = tmp_path / "joint.json"
+    path.write_text(json.dumps(said | {"class": "y", "braces": [brace]}))
+    (row,) = answer("scf", str(path))["braces"]
+    assert set(row["axial"]) == {"chord_saddle", "chord_crown", "brace_saddle", "brace_crown"}
+    assert set(row["in_plane"]) == {"chord_crown", "brace_crown"}
+    assert set(row["out_of_plane"]) == {"chord_saddle", "brace_saddle"}
+    path.write_text(json.dumps(said | {"class": "k", "braces": [brace, brace], "gap_m": 0.1}))
+    found = answer("scf", str(path))
+    assert found["warnings"] == []
+    assert set(found["braces"][0]["axial"]) == set(found["braces"][0]["out_of_plane"]) == {"chord", "brace"}
+    assert "stress concentration" in run("scf", str(path)).stdout
+
+
+def test_a_scenario_tells_the_life_of_every_weld(tmp_path: Path) -> None:
+    scenario = tmp_path / "short.yaml"
+    scenario.write_text(
+        "structure: jacket15\nfoundation: jacket15\nrotor: {state: parked}\n"
+        "wind: {speed_m_s: 12, seed: 1}\ntime: {duration_s: 60, step_s: 0.05}\n"
+    )
+    found = answer("scenario", str(scenario))
+    joints = found["joints"]
+    lives = [row["life_years"] for row in joints if row["life_years"] is not None]
+    assert lives == sorted(lives) and len(joints) > 100
+    first = joints[0]
+    assert first["damage"] == max(first["damage_by_point"]) and len(first["damage_by_point"]) == 8
+    low, high = first["damage_interval_90"]
+    assert low < high and sum(first["variance_shares"].values()) == pytest.approx(1.0)
+    assert {row["environment"] for row in joints} == {"air", "cathodic", "free-corrosion"}
+    assert any("crack growth" in text for text in found["left_out"])
+    stricter = answer("scenario", str(scenario), "--design-factor", "3")
+    assert stricter["joints"][0]["life_years"] == pytest.approx(first["life_years"] / 3.0, rel=1e-9)
