@@ -25,6 +25,9 @@ def test_the_example_of_the_standard() -> None:
     found = count(np.array([-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0]))
     assert found.full.tolist() == [4.0]
     assert sorted(found.half.tolist()) == [3.0, 4.0, 6.0, 8.0, 8.0, 9.0]
+    # the standard's table: 3 ½, 4 1½, 6 ½, 8 1, 9 ½
+    table = {r: found.numbers[found.ranges == r].sum() for r in np.unique(found.ranges).tolist()}
+    assert table == {3.0: 0.5, 4.0: 1.5, 6.0: 0.5, 8.0: 1.0, 9.0: 0.5}
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -84,3 +87,13 @@ def test_what_is_no_number_is_refused() -> None:
 @pytest.mark.parametrize("values", [[], [1.0], [1.0, 1.0, 1.0]])
 def test_what_does_not_move_has_no_cycle(values: list[float]) -> None:
     assert count(np.array(values)).ranges.size == 0
+
+
+def test_closed_cycles_are_given_once(rng: np.random.Generator) -> None:
+    x = series(rng)
+    counter, taken = Counter(), []
+    for piece in np.array_split(x, 7):
+        counter.add(piece)
+        taken.append(counter.closed())
+    assert counter.closed().size == 0
+    np.testing.assert_array_equal(np.concatenate(taken), count(x).full)
