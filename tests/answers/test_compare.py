@@ -11,6 +11,8 @@ from click.testing import CliRunner
 
 from jackettwin.answers.compare import change, changed_inputs, compare, shared_records
 from jackettwin.cli import main
+from jackettwin.study import inputs_document
+from jackettwin.twin import read_twin
 
 
 def document(f: float, k: float) -> dict:
@@ -67,7 +69,7 @@ def test_the_command_names_what_changed_and_refuses_what_is_no_run(tmp_path: Pat
         (tmp_path / name / "result.json").write_text(json.dumps(document(f, k)))
     a, b = str(tmp_path / "a"), str(tmp_path / "b")
     said = CliRunner().invoke(main, ["compare", a, b]).stdout
-    assert "Changed: frequency of fore_aft_1 by +5 %" in said
+    assert "Changed: frequency of fore-aft 1 by +5 %" in said
     changes = json.loads(CliRunner().invoke(main, ["compare", a, b, "--json"]).stdout)["changes"]
     assert changes[0]["relative_change"] == pytest.approx(0.05)
     refused = CliRunner().invoke(main, ["compare", a, str(tmp_path / "c")])
@@ -100,3 +102,58 @@ def test_every_input_that_differs_is_named() -> None:
         ("assumption", "parked", None), ("assumption", None, "model error 1 %"),
     }  # fmt: skip
     assert changed_inputs(a, a) == ()
+
+
+def asked(text: str, folder: Path, *, records: str = "ab") -> dict:
+    """Return the part of a run's result that says what it was asked with."""
+    (folder / "twin.yaml").write_text(text)
+    return made(records) | {"inputs": inputs_document(read_twin(folder / "twin.yaml", records_follow=True))}
+
+
+TWIN = """structure: jacket15
+damping: {{rayleigh: {{ratio: 0.0055, frequency_hz: 0.183}}}}
+water: {{depth_m: {depth}, marine_growth: [{{top_z_m: 0, bottom_z_m: -40, thickness_m: {growth}}}]}}
+update: {{modes: [1, 2], model_error: [{{modes: [1, 2], frequency: {error}, damping: 0.0}}]}}
+tolerances: {{rna_mass: {{std: {rna}}}}}
+"""
+USUAL = {"depth": 70.0, "growth": 0.05, "error": 0.005, "rna": 0.01}
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "place"),
+    [
+        ("depth", 71.5, "water.depth_m"),
+        ("growth", 0.1, "thickness_m"),
+        ("error", 0.01, "update.model_errors.1.frequency"),
+        ("rna", 0.02, "tolerances.given.rna_mass"),
+    ],
+)
+def test_a_value_that_differs_is_named_with_both(tmp_path: Path, key: str, value: float, place: str) -> None:
+    a, b = (asked(TWIN.format(**known), tmp_path) for known in (USUAL, {**USUAL, key: value}))
+    found = [i for i in changed_inputs(a, b) if i.what.endswith(place)]
+    assert [(i.before, i.after) for i in found] == [(USUAL[key], value)]
+    assert changed_inputs(a, a) == ()
+
+
+def test_a_mass_and_a_record_that_differ_are_named(tmp_path: Path) -> None:
+    a = asked("structure: jacket15\n", tmp_path)
+    heavier = asked("structure: jacket15\n", tmp_path, records="bc")
+    place = next(name for name in heavier["inputs"] if name.endswith("mass_kg"))
+    heavier["inputs"][place] *= 1.02
+    found = {i.what: (i.before, i.after) for i in changed_inputs(a, heavier)}
+    assert place.startswith("structure.masses.")
+    assert set(found) == {place, "a.parquet", "c.parquet"}
+    assert found[place][1] == pytest.approx(1.02 * found[place][0])
+
+
+def test_walls_that_differ_alike_are_one_line(tmp_path: Path) -> None:
+    a, b = asked("structure: jacket15\n", tmp_path), asked("structure: jacket15\n", tmp_path)
+    steel = [name for name in b["inputs"] if name.endswith("youngs_modulus_pa")]
+    steel = [name for name in steel if b["inputs"][name] == 2.1e11]
+    b["inputs"] |= dict.fromkeys(steel, 2.0e11)
+    for name, one in {"a": a, "b": b}.items():
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "result.json").write_text(json.dumps({**document(0.2, 1e9), **one}))
+    said = CliRunner().invoke(main, ["compare", str(tmp_path / "a"), str(tmp_path / "b")]).stdout
+    lines = [line for line in said.splitlines() if line.startswith("Other input")]
+    assert len(lines) == 1 and "210000000000.0 → 200000000000.0 (and" in lines[0]

@@ -31,6 +31,7 @@ QUERIES = {
     "/records/{record_id}": 3,
     "/assets/{asset}/modes": 4,
     "/assets/{asset}/twin": 7,
+    "/assets/{asset}/supports": 4,
     "/assets/{asset}/damping-budget": 7,
     "/assets/{asset}/sensitivity": 7,
     "/assets/{asset}/comparison": 12,

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from observations import observation
 
+from jackettwin.change import Days
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.files import write_json
 from jackettwin.identification import ModalEstimate, RealPole
@@ -20,8 +21,10 @@ from jackettwin.report.figures.follow import parameters_through_time
 from jackettwin.report.pages.follow import build_follow_page
 from jackettwin.response.sensors import Sensor
 from jackettwin.soil import family
-from jackettwin.study.follow import follow, follow_observations
-from jackettwin.study.follow_result import Followed, Known, follow_document, read_followed
+from jackettwin.study.follow import follow, follow_days, follow_observations
+from jackettwin.study.follow_result import FOLLOWED, Followed, follow_document, read_followed
+from jackettwin.study.in_time.question import question_of
+from jackettwin.study.in_time.slope import MOST_SPANS, spans_of
 from jackettwin.twin import Observation, TwinConfig, TwinModel, read_twin, twin_model
 from jackettwin.updating import Problem, SupportModel, support_model, update
 
@@ -104,6 +107,25 @@ def test_going_on_from_yesterday_is_the_same_as_all_at_once(
     json.dumps(follow_document(today), allow_nan=False)
 
 
+def test_days_one_by_one_are_those_all_at_once(
+    config: TwinConfig, model: TwinModel, followed: Followed
+) -> None:
+    """As a service asks: with sums of days alone, and what is gone on from through a file."""
+    state = followed.state
+    dates, kept = list(state.days), None
+    for n in range(1, len(dates) + 1):
+        same = 0 if kept is None else len(kept.days)
+        before = follow_module.empty_state(model) if kept is None else kept.state
+        every = Days.of(state.until(dates[n - 1]))
+        kept, now = follow_days(config, model, every, before, same=same, prior=kept)
+        assert now.days == followed.days[:n]
+        if kept is not None:
+            assert kept.days == followed.days[: n - 1] and kept.smoothed == {}
+            kept = FOLLOWED.load(json.loads(json.dumps(FOLLOWED.dump(kept))))
+    assert (now.smoothed, now.ahead) == (followed.smoothed, followed.ahead)
+    assert FOLLOWED.dump(now)["pooled"] == FOLLOWED.dump(followed)["pooled"]
+
+
 def test_a_late_record_renews_its_day_and_those_after(
     config: TwinConfig, model: TwinModel, records: list[Observation], followed: Followed
 ) -> None:
@@ -158,7 +180,7 @@ def test_the_posterior_of_a_thousand_days_costs_that_of_ten(
             state, replace(shown, start_utc=NOON + timedelta(days=i), record_id=f"r{i:04d}")
         )
         if i + 1 in taken:
-            question = question or follow_module._question(config, model, state, None, None)
+            question = question or question_of(config, model, state, None)
 
             def counting(
                 self: SupportModel, theta: np.ndarray, *args: Any, day: int = i + 1, **options: Any
@@ -167,8 +189,7 @@ def test_the_posterior_of_a_thousand_days_costs_that_of_ten(
                 return counted(self, theta, *args, **options)
 
             monkeypatch.setattr(SupportModel, "predict_many", counting)
-            known = question._known(state, Known("day", NOON, 1, "", {}, {}))
-            assert known.status == "ok"
+            assert question.pooled(state).status == "ok"
     assert taken[1000] <= 1.2 * taken[10]
 
 
@@ -180,8 +201,8 @@ def test_many_days_cost_what_ten_do(model: TwinModel, records: list[Observation]
         state, _ = follow_module.advance(
             state, replace(shown, start_utc=NOON + timedelta(days=i), record_id=f"r{i:03d}")
         )
-    spans = follow_module._spans(state)
-    assert 5 <= len(spans) <= follow_module.MOST_SPANS
+    spans = spans_of(state)
+    assert 5 <= len(spans) <= MOST_SPANS
     assert sum(len(span.days) for span in spans) == 100
 
 
@@ -289,7 +310,7 @@ def test_shapes_and_real_poles_are_followed_and_kept(
         problems.append(problem)
         return np.tile(np.log(TRUTH), (3, 1)), "ok"
 
-    monkeypatch.setattr(follow_module, "_draws", drawn)
+    monkeypatch.setattr("jackettwin.study.in_time.question._draws", drawn)
     with_shapes = replace(
         config, update=config.update.model_copy(update={"mac_std": 0.02, "model_errors": ()})
     )

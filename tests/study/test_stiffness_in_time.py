@@ -76,15 +76,28 @@ def test_frequencies_follow_one_curve(supports: SupportModel, about: Sensitivity
 
 
 def test_a_level_is_the_stiffness_that_it_stands_for() -> None:
-    """With one draw and one normal, quantiles are those of e^{h⁻¹}: of −0.2 at a = 1, 1/1.2."""
+    """With one draw and one normal, quantiles are those of e^{h⁻¹}: at a = 1, 1/(1 − ℓ).
+
+    The draw is of the ground at the reference, −0.1 below the first day's level. There the slope is 1; so
+    ln k was higher by −ln 0.9 on the first day, and the slope 0.9.
+    """
     about = Sensitivity((1,), np.array([0.01]), 1.0, np.log(2e9))
     one = Mixture(np.ones(1), np.array([-0.2]), np.array([1e-9]), np.array([-0.1]), np.array([1e-9]))
     found = level_of(one, Reference(np.full((1, 1), np.log(2e9))), about)
-    np.testing.assert_allclose(found.relative, 1.0 / 1.2, rtol=1e-6)
+    np.testing.assert_allclose(found.relative, 1.0 / (1.0 + 0.2 / 0.9), rtol=1e-6)
     np.testing.assert_allclose(found.absolute[0], 2e9 / 1.1, rtol=1e-6)
+    # both are one stiffness: the first day's is 2e9 / 0.9
+    np.testing.assert_allclose(found.relative, np.array(found.absolute[0]) / (2e9 / 0.9), rtol=1e-6)
     # on ground half as soft, as much of a frequency's change means twice as much of the stiffness's
     stiffer = level_of(one, Reference(np.full((1, 1), np.log(4e9))), about)
-    np.testing.assert_allclose(stiffer.relative, 1.0 / 1.4, rtol=1e-6)
+    np.testing.assert_allclose(stiffer.relative, 1.0 / (1.0 + 0.2 / 0.4), rtol=1e-6)
+    np.testing.assert_allclose(stiffer.absolute[0], 4e9 / 1.2, rtol=1e-6)
+    # where nothing has moved yet, the reference is the first day
+    still = Mixture(np.ones(1), np.array([-0.2]), np.array([1e-9]), np.array([-0.2]), np.array([1e-9]))
+    np.testing.assert_allclose(level_of(still, REFERENCE_AT_2, about).relative, 1.0 / 1.2, rtol=1e-6)
+
+
+REFERENCE_AT_2 = Reference(np.full((1, 1), np.log(2e9)))
 
 
 @pytest.fixture(scope="module")

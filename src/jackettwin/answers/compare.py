@@ -60,25 +60,42 @@ class ChangedInput:
     """An input that two runs do not share; None where a run does not have it."""
 
     what: str
-    before: str | None
-    after: str | None
+    before: str | float | None
+    after: str | float | None
 
 
 def changed_inputs(a: Mapping[str, Any], b: Mapping[str, Any]) -> tuple[ChangedInput, ...]:
-    """Return every input that differs: files by their content, what was assumed, the version of the code."""
-    found = [
-        ChangedInput(name.removeprefix(HASHES), before.get(name), after.get(name))
-        for before, after in [(_hashes(a), _hashes(b))]
-        for name in dict.fromkeys((*before, *after))
-        if before.get(name) != after.get(name)
-    ]
-    mine, theirs = (tuple(document.get("assumptions") or ()) for document in (a, b))
-    found += [ChangedInput("assumption", said, None) for said in mine if said not in theirs]
-    found += [ChangedInput("assumption", None, said) for said in theirs if said not in mine]
+    """Return every input that differs, by name and value: of the twin, records, the version of the code.
+
+    What a run assumed is said by the inputs that it follows from, and by itself where a run does not tell
+    them; so is the content of the twin file.
+    """
+    mine, theirs = (document.get("inputs") or {} for document in (a, b))
+    found = _differing(mine, theirs) if mine and theirs else []
+    told = bool(mine and theirs)
+    files = [_records(document) if told else _hashes(document) for document in (a, b)]
+    found += _differing(*({name.removeprefix(HASHES): h for name, h in one.items()} for one in files))
+    if not found or not told:
+        said = [tuple(document.get("assumptions") or ()) for document in (a, b)]
+        found += [ChangedInput("assumption", one, None) for one in said[0] if one not in said[1]]
+        found += [ChangedInput("assumption", None, one) for one in said[1] if one not in said[0]]
     versions = [document.get("code_version") for document in (a, b)]
     if versions[0] != versions[1]:
         found.append(ChangedInput("jackettwin", *versions))
     return tuple(found)
+
+
+def _differing(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[ChangedInput]:
+    return [
+        ChangedInput(name, before.get(name), after.get(name))
+        for name in dict.fromkeys((*before, *after))
+        if before.get(name) != after.get(name)
+    ]
+
+
+def _records(document: Mapping[str, Any]) -> dict[str, str]:
+    """Return the identity of each record by its file's name."""
+    return {name: h for name, h in _hashes(document).items() if not name.endswith((".yaml", ".yml"))}
 
 
 def _hashes(document: Mapping[str, Any]) -> dict[str, str]:
@@ -91,10 +108,7 @@ def shared_records(a: Mapping[str, Any], b: Mapping[str, Any]) -> float:
 
     Records of about one length weigh alike. It is 0 where runs do not tell their records.
     """
-    mine, theirs = (
-        {value for name, value in _hashes(document).items() if not name.endswith((".yaml", ".yml"))}
-        for document in (a, b)
-    )
+    mine, theirs = (set(_records(document).values()) for document in (a, b))
     return len(mine & theirs) / sqrt(len(mine) * len(theirs)) if mine and theirs else 0.0
 
 

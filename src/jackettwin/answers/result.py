@@ -86,6 +86,14 @@ class ModeAnswer:
     number: int = 0
 
     @property
+    def unexplained(self) -> float | None:
+        """Measured damping ratio beyond that of all sources; None if nothing is, or was not measured."""
+        if self.measured_damping is None or not self.sources:
+            return None
+        beyond = self.measured_damping.value - sum(span.value for span in self.sources.values())
+        return beyond if beyond > 0.0 else None
+
+    @property
     def as_designed(self) -> bool | None:
         """Whether measured frequency and design overlap, each with its interval; None without either."""
         if self.measured_hz is None or self.design_hz is None:

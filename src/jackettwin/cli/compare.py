@@ -11,10 +11,11 @@ import click
 
 from jackettwin.cli.console import Reply, answers, say, show_table
 from jackettwin.errors import InputError
-from jackettwin.report import Table, TableColumn
+from jackettwin.report import Table, TableColumn, quantity, words
+from jackettwin.soil import parameter_words
 
 if TYPE_CHECKING:
-    from jackettwin.answers.compare import ChangedNumber
+    from jackettwin.answers import ChangedInput, ChangedNumber
 
 
 @click.command("compare")
@@ -26,7 +27,8 @@ def compare_command(a: Path, b: Path) -> Reply:
 
     A and B are folders that `jackettwin run` wrote, or their result.json.
     """
-    from jackettwin.answers.compare import changed_inputs, compare
+    from jackettwin.answers import changed_inputs
+    from jackettwin.answers.compare import compare
 
     before, after = _result(a), _result(b)
     changes, inputs = compare(before, after), changed_inputs(before, after)
@@ -45,8 +47,8 @@ def compare_command(a: Path, b: Path) -> Reply:
     }
 
     def show() -> None:
-        for i in inputs:
-            say(f"Other input: {i.what}: {i.before or 'none'} → {i.after or 'none'}")
+        for line in _input_lines(inputs):
+            say(line)
         say(_summary(changes))
         for name, run in ((a, before), (b, after)):
             if not ((run.get("answers") or {}).get("fit") or {}).get("fits", True):
@@ -56,13 +58,42 @@ def compare_command(a: Path, b: Path) -> Reply:
     return Reply(document, show)
 
 
+def _input_lines(inputs: tuple[ChangedInput, ...]) -> list[str]:
+    """Return what differs, a line each; of what differs in many places alike, one and how many more."""
+    groups: dict[tuple[str, str, object, object], list[ChangedInput]] = {}
+    for i in inputs:
+        parts = i.what.split(".")
+        place = ".".join(parts[:2]) if len(parts) > 3 else i.what
+        groups.setdefault((place, parts[-1], i.before, i.after), []).append(i)
+    lines = []
+    for same in groups.values():
+        first, more = same[0], len(same) - 1
+        places = f" (and {more} more alike)" if more else ""
+        values = ["none" if v is None or v == "" else v for v in (first.before, first.after)]
+        lines.append(f"Other input: {first.what}: {values[0]} → {values[1]}{places}")
+    return lines
+
+
 def _summary(changes: tuple[ChangedNumber, ...]) -> str:
     """Return what changed in a sentence, most first."""
     changed = sorted((c for c in changes if c.verdict == "changed"), key=lambda c: -abs(c.sigmas or 0.0))
     if not changed:
         return "Nothing changed by more than two standard deviations of the difference."
-    texts = [f"{c.what} by {_percent(c.log_change or 0.0)} % ({c.sigmas:+.1f} σ)" for c in changed]
+    texts = [f"{_words(c.what)} by {_percent(c.log_change or 0.0)} % ({c.sigmas:+.1f} σ)" for c in changed]
     return f"Changed: {', '.join(texts)}."
+
+
+def _words(what: str) -> str:
+    """Return what a number is of, its mode or parameter in words."""
+    kind, of, label = what.rpartition(" of ")
+    if of:
+        return f"{kind} of {words(label)}"
+    name, _, law = what.partition(" (")
+    return f"{parameter_words(name)} ({law}" if law else what
+
+
+def _value(value: float | None, unit: str) -> str | None:
+    return None if value is None else quantity(value, unit, digits=4)
 
 
 def _percent(log_change: float) -> str:
@@ -84,9 +115,9 @@ def _result(path: Path) -> dict[str, Any]:
 
 
 _COLUMNS = (
-    TableColumn("what", lambda c: c.what if c.unit in ("", "-") else f"{c.what} [{c.unit}]"),
-    TableColumn("before", lambda c: c.before, ".4g"),
-    TableColumn("after", lambda c: c.after, ".4g"),
+    TableColumn("what", lambda c: _words(c.what)),
+    TableColumn("before", lambda c: _value(c.before, c.unit)),
+    TableColumn("after", lambda c: _value(c.after, c.unit)),
     TableColumn("change [%]", lambda c: None if c.log_change is None else _percent(c.log_change)),
     TableColumn("over its σ", lambda c: c.sigmas, "+.1f"),
     TableColumn("verdict", lambda c: c.verdict),

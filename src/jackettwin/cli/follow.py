@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 
 import click
 
+from jackettwin.answers import Span
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import Reply, answers, progress, say, say_all, show_table
-from jackettwin.report import Table
+from jackettwin.report import Table, span_words
+from jackettwin.soil import parameter_words
 
 if TYPE_CHECKING:
     from jackettwin.study import Followed
@@ -96,10 +98,10 @@ def follow_command(
 
 
 def _table(followed: Followed) -> Table:
-    heads = ("time (UTC)", "records", *(f"{n} [{followed.units[n]}]" for n in followed.stiffness))
+    heads = ("time (UTC)", "records", *map(parameter_words, followed.stiffness))
     rows = []
     for day in followed.days:
-        spans = ((day.median[n], *day.interval_90[n]) for n in followed.stiffness)
-        cells = (f"{median:.3g} ({low:.2g} … {high:.2g})" for median, low, high in spans)
+        spans = {n: Span(day.median[n], *day.interval_90[n]) for n in followed.stiffness}
+        cells = (span_words(span, followed.units[n]) for n, span in spans.items())
         rows.append((f"{day.time_utc:%Y-%m-%d %H:%M}", day.records, *cells))
     return Table("", heads, rows)

@@ -8,11 +8,13 @@ from pathlib import Path
 
 import click
 
+from jackettwin.answers import Span
 from jackettwin.cli.answers import answers_document, print_answers
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import Reply, answers, progress, say
 from jackettwin.cli.provenance import provenance
 from jackettwin.cli.update import DEFAULT_TWIN, print_updates
+from jackettwin.report import value_words
 
 SIMULATED_TWIN = "simulated"
 
@@ -53,6 +55,7 @@ def run_command(
     from jackettwin.study import (
         MODES_IN_TIME,
         count_steps,
+        inputs_document,
         run_document,
         run_twin,
         true_parameters,
@@ -79,7 +82,7 @@ def run_command(
         found = answer_run(result)
         made = provenance(config)
         document = run_document(result, report=str(folder / "report.html")) | answers_document(found)
-        document["provenance"] = dict(made)
+        document |= {"provenance": dict(made), "inputs": inputs_document(config)}
         with atomic_folder(folder) as temporary:
             build_report(result, temporary, answers=found, provenance=made)
             write_json(document, temporary / "result.json")
@@ -90,7 +93,8 @@ def run_command(
         print_answers(found)
         print_updates(result, only=found.law)
         for p in true_parameters(result):
-            say(f"  true {p.name} = {p.true:.4g}, updated {p.value:.4g}: {_COVERED[p.covered]}")
+            true, value = (value_words(Span(x), p.unit) for x in (p.true, p.value))
+            say(f"  true {p.name} = {true}, updated {value}: {_COVERED[p.covered]}")
         say(f"report: {folder / 'report.html'}")
 
     return Reply(document, show)

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 import click
 import numpy as np
 
+from jackettwin.answers import Span
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import Reply, answers, numbers_of, output, progress, say, say_all, show_table
 from jackettwin.errors import InputError, require
-from jackettwin.report import Table, cell
+from jackettwin.report import Table, cell, span_words, value_words, words
+from jackettwin.soil import parameter_words
 
 if TYPE_CHECKING:
     from jackettwin.study import DampingExcess, MeasuredMode, TwinResult
@@ -96,7 +98,7 @@ def print_updates(result: TwinResult, *, only: str = "") -> None:
             say(f"  {line}")
         for e in excess:
             if e.label in fitted and not e.explained:
-                say(f"  {e.label}: {_unexplained(e)}")
+                say(f"  {words(e.label)}: {_unexplained(e)}")
     output.print()
     if len(result.updates) > 1 and not result.updates[0].problem.weighted:
         show_table(_ranking(result.updates))
@@ -137,16 +139,16 @@ def _begun(u: Update) -> Table:
 
 def _parameters(u: Update) -> Table:
     rows = []
-    for i, (p, value) in enumerate(zip(u.problem.parameters, u.best.theta, strict=True)):
-        span, verdict = None, "–"
+    for i, (p, best) in enumerate(zip(u.problem.parameters, u.best.theta, strict=True)):
+        text, verdict = value_words(Span(float(best)), p.unit), "–"
         if u.uncertainty is not None:
-            value, verdict = u.uncertainty.median[i], u.uncertainty.verdicts[i].verdict
-            span = " … ".join(f"{end:.2e}" for end in u.uncertainty.interval_90[i])
-        unit = "" if p.unit == "-" else f" {p.unit}"
+            low, high = map(float, u.uncertainty.interval_90[i])
+            text = span_words(Span(float(u.uncertainty.median[i]), low, high), p.unit)
+            verdict = u.uncertainty.verdicts[i].verdict
         bound = ", on its bound" if p.name in u.best.at_bound else ""
-        rows.append((p.name, f"{value:.3g}{unit}", span, verdict + bound))
-    known = "best fit" if u.uncertainty is None else "median"
-    return Table("", ("parameter", known, "90 % interval", "verdict"), rows)
+        rows.append((parameter_words(p.name), p.name, text, verdict + bound))
+    known = "best fit" if u.uncertainty is None else "median (90 % interval)"
+    return Table("", ("parameter", "key", known, "verdict"), rows)
 
 
 def _solutions(u: Update) -> Table:
@@ -201,7 +203,7 @@ def _modes(measured: tuple[MeasuredMode, ...], u: Update) -> Table:
     rows = [
         (
             m.mode,
-            m.label,
+            words(m.label),
             _measured(m.frequency_hz, m.frequency_std_hz, 1.0, 4, m.fits_frequency),
             cell(f, ".4f"),
             cell(f0, ".4f"),

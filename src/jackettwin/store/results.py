@@ -275,12 +275,21 @@ def put_knowledge(
 def find_kept(connection: Connection, asset: str, version: int) -> Mapping[str, Any]:
     """Return what is kept from question to question besides the answer, by name."""
     document = connection.scalar(select(knowledge.c.document).where(*_of_version(asset, version))) or {}
-    return {name: value for name, value in document.items() if name != "known"}
+    return {name: value for name, value in document.items() if name not in ("known", "supports")}
 
 
 def find_supports(connection: Connection, asset: str, version: int) -> dict[str, Any]:
     """Return what the days say of the supports alone, empty if nothing yet: without what watching keeps."""
-    query = select(knowledge.c.document["known"]).where(*_of_version(asset, version))
+    return _part(connection, asset, version, "known")
+
+
+def find_stiffness(connection: Connection, asset: str, version: int) -> dict[str, Any]:
+    """Return the stiffness of the supports on each day, empty if nothing yet."""
+    return _part(connection, asset, version, "supports")
+
+
+def _part(connection: Connection, asset: str, version: int, name: str) -> dict[str, Any]:
+    query = select(knowledge.c.document[name]).where(*_of_version(asset, version))
     return connection.scalar(query) or {}
 
 

@@ -12,8 +12,13 @@ from .explore import (
     explore_model as explore_model,
     sensitivity_rows as sensitivity_rows,
 )
-from .follow import follow as follow
-from .follow_result import Followed as Followed
+from .follow import follow as follow, follow_days as follow_days
+from .follow_result import (
+    Followed as Followed,
+    days_document as days_document,
+    in_time_document as in_time_document,
+)
+from .inputs import inputs_document as inputs_document
 from .many_records.export import WRITERS as WRITERS, export_modes as export_modes
 from .many_records.long_records import LONG as LONG, PIECE_S as PIECE_S
 from .measurements import MeasuredMode as MeasuredMode

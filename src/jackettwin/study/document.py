@@ -158,21 +158,24 @@ def _compared_relaxations(measured: tuple[MeasuredRelaxation, ...], u: Update) -
 
 
 def _parameters(u: Update) -> dict[str, dict[str, Any]]:
-    """Return each parameter's value at the best solution, and what is known of it."""
+    """Return what is known of each parameter: its median, or without one its best fit."""
     known = u.uncertainty
+    best = [float(value) for value in u.best.theta]
+    middle = best if known is None else [float(value) for value in known.median]
     return {
         p.name: {
-            "value": float(value),
-            "std": None if known is None else float(value * known.log_std[i]),
+            "value": middle[i],
+            "std": None if known is None else float(middle[i] * known.log_std[i]),
             "interval_90": None if known is None else known.interval_90[i].tolist(),
-            "median": None if known is None else float(known.median[i]),
+            "median": None if known is None else middle[i],
+            "best_fit": best[i],
             "log_std": None if known is None else float(known.log_std[i]),
             "laplace_log_std": None if known is None else float(known.laplace_log_std[i]),
             "prior_log_std": float(u.problem.prior.std[i]),
             "bounds": [p.low, p.high],
             "unit": p.unit,
         }
-        for i, (p, value) in enumerate(zip(u.problem.parameters, u.best.theta, strict=True))
+        for i, p in enumerate(u.problem.parameters)
     }
 
 

@@ -149,18 +149,29 @@ class Followed:
         return () if self.track is None else self.track.changes
 
     @property
-    def statement(self) -> str:
-        """What is known of the stiffness through time: one slope unless it jumped, and where it is now."""
-        return " ".join(filter(None, (self._slope, *map(_sudden, self.changes), self._now)))
+    def window_begins_after(self) -> str:
+        """The day before those that are taken again by the next run; empty before the first."""
+        before = 0 if self.track is None else self.track.days
+        tracked = [day.date for day in self.days if day.relative is not None]
+        return tracked[before - 1] if before else ""
 
     @property
-    def _now(self) -> str:
+    def statement(self) -> str:
+        """What is known of the stiffness through time: one slope unless it jumped, and where it is now."""
+        return " ".join(filter(None, (self._slope, self.stiffness_statement)))
+
+    @property
+    def stiffness_statement(self) -> str:
+        """When the stiffness jumped, and where it is now."""
         last = next(iter(self.days[-1:]), None)
         if last is None or last.relative is None or len(self.days) < FEWEST_DAYS:
             return ""
         low, middle, high = (f"{x:.3f}" for x in last.relative)
-        when = f"{last.time_utc:%Y-%m-%d}"
-        return f"On {when} it is {middle} of what it was on the first day, 90 % interval {low} to {high}."
+        now = (
+            f"On {last.time_utc:%Y-%m-%d} the stiffness is {middle} of what it was on the first day, "
+            f"90 % interval {low} to {high}."
+        )
+        return " ".join((*map(_sudden, self.changes), now))
 
     @property
     def _slope(self) -> str:
@@ -220,19 +231,7 @@ def follow_document(followed: Followed) -> dict[str, Any]:
         "reference_frequency_hz": followed.reference_hz,
         "wind_speed_m_s": followed.wind_m_s,
         "units": dict(followed.units),
-        "days": [
-            {
-                "time_utc": day.time_utc.isoformat(),
-                "records": day.records,
-                "status": day.status,
-                "relative_stiffness": None if day.relative is None else _span(day.relative),
-                "parameters": {
-                    name: {"median": median, "interval_90": list(day.interval_90[name])}
-                    for name, median in day.median.items()
-                },
-            }
-            for day in followed.days
-        ],
+        "days": days_document(followed),
         "drift": None
         if drift is None
         else {
@@ -250,7 +249,7 @@ def follow_document(followed: Followed) -> dict[str, Any]:
                 for name in followed.stiffness
             },
         },
-        "stiffness_in_time": _in_time(followed),
+        "stiffness_in_time": in_time_document(followed),
         "statement": followed.statement,
         "warnings": list(followed.warnings),
         "code_version": __version__,
@@ -262,7 +261,24 @@ def _span(span: Span3) -> dict[str, Any]:
     return {"median": span[1], "interval_90": [span[0], span[2]]}
 
 
-def _in_time(followed: Followed) -> dict[str, Any]:
+def days_document(followed: Followed) -> list[dict[str, Any]]:
+    """Return what was known after each day."""
+    return [
+        {
+            "time_utc": day.time_utc.isoformat(),
+            "records": day.records,
+            "status": day.status,
+            "relative_stiffness": None if day.relative is None else _span(day.relative),
+            "parameters": {
+                name: {"median": median, "interval_90": list(day.interval_90[name])}
+                for name, median in day.median.items()
+            },
+        }
+        for day in followed.days
+    ]
+
+
+def in_time_document(followed: Followed) -> dict[str, Any]:
     """Return the stiffness of each day by all days, what jumped, and what to expect; over the first day's."""
     return {
         "smoothed": {date: _span(level.relative) for date, level in followed.smoothed.items()},

@@ -30,6 +30,7 @@ class TrueParameter:
     true: float
     value: float
     interval_90: tuple[float, float] | None
+    unit: str = "-"
 
     @property
     def covered(self) -> bool | None:
@@ -79,8 +80,13 @@ def true_parameters(result: TwinResult) -> tuple[TrueParameter, ...]:
         ):
             low_high = None if known is None else known.interval_90[i]
             interval = None if low_high is None else (float(low_high[0]), float(low_high[1]))
+            value = value if known is None else known.median[i]
             if parameter.name in true:
-                found.append(TrueParameter(law, parameter.name, true[parameter.name], float(value), interval))
+                found.append(
+                    TrueParameter(
+                        law, parameter.name, true[parameter.name], float(value), interval, parameter.unit
+                    )
+                )
     return tuple(found)
 
 

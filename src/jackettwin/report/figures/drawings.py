@@ -99,7 +99,10 @@ def campbell(a: Answers) -> Markup | None:
 
 
 def damping_bars(modes: Sequence[ModeAnswer]) -> Markup | None:
-    """Draw one bar per mode: the damping from steel, ground, rotor and water, above the measured one."""
+    """Draw one bar per mode: the damping from steel, ground, rotor and water, and what none of them explains.
+
+    Below it stands the measured one.
+    """
     shown = [m for m in modes if m.sources]
     if not shown:
         return None
@@ -122,7 +125,11 @@ def damping_bars(modes: Sequence[ModeAnswer]) -> Markup | None:
     for source in sources:
         c.box(at, 2, 14, 14, colour=SOURCE_COLOURS[source])
         c.text(at + 19, 14, SOURCE_NAMES[source])
-        at += 92
+        at += 76
+    if any(m.unexplained for m in shown):
+        c.box(at, 2, 14, 14, colour="white", edge=style.INK)
+        c.text(at + 19, 14, "unexplained")
+        at += 110
     c.line(at, 9, at + 18, 9, width=2.0)
     c.dot(at + 9, 9)
     c.text(at + 24, 14, "measured")
@@ -138,6 +145,8 @@ def damping_bars(modes: Sequence[ModeAnswer]) -> Markup | None:
                 value = max(m.sources[source].value, 0.0)
                 c.box(x(start), y + 4, x(start + value) - x(start), 13, colour=SOURCE_COLOURS[source])
                 start += value
+        if m.unexplained is not None:
+            c.box(x(start), y + 4, x(start + m.unexplained) - x(start), 13, colour="white", edge=style.INK)
         _whisker(c, m.measured_damping, x, y + 23)
     c.line(left, bottom, right, bottom, colour=style.GREY)
     c.text((left + right) / 2, bottom + 34, "damping ratio [%]", anchor="middle")

@@ -29,18 +29,13 @@ def build_follow_page(followed: Followed, path: Path) -> Path:
         f"How stiff is the ground? What was known of it after each {each}, with what the model may have "
         "wrong on all of them alike; band: one slope of all stiffness, 90 %, if it did not jump."
     )
-    in_time = (
-        "How did the stiffness change since the first day? Points: what was known on the day; band: what all "
-        "days say of it by now; dotted: what to expect. Weather is taken out by the conditions that are told."
-    )
     more = f"What else becomes known, {each} after {each}? Median and 90 %."
     sections = [
         PageSection(
             "Drift",
             (
                 Text((followed.statement,)),
-                *([Plot("stiffness_in_time", in_time, stiffness_in_time(followed), fits=True)]
-                  if len(followed.smoothed) > 1 else []),
+                *_in_time(followed),
                 _plot(followed, "stiffness_through_time", drift, followed.stiffness),
                 _table(followed, followed.stiffness),
             ),
@@ -55,6 +50,24 @@ def build_follow_page(followed: Followed, path: Path) -> Path:
         title=f"{followed.name} through time",
         subtitle=f"{followed.law}, {count(len(followed.days), each)} · jackettwin {__version__}",
     )
+
+
+def stiffness_section(followed: Followed) -> PageSection:
+    """Return the stiffness through time, as the report of a living twin begins with it."""
+    said = "What stands below is of all records together, as if the stiffness had been the same on all days."
+    return PageSection(
+        "Stiffness through time", (Text((followed.stiffness_statement, said)), *_in_time(followed))
+    )
+
+
+def _in_time(followed: Followed) -> tuple[Plot, ...]:
+    if len(followed.smoothed) < 2:
+        return ()
+    caption = (
+        "How did the stiffness change since the first day? Points: what was known on the day; band: what all "
+        "days say of it by now; dotted: what to expect. Weather is taken out by the conditions that are told."
+    )
+    return (Plot("stiffness_in_time", caption, stiffness_in_time(followed), fits=True),)
 
 
 def _plot(followed: Followed, name: str, caption: str, names: Sequence[str]) -> Plot:

@@ -33,7 +33,10 @@ def first_page(a: Answers, said: Said) -> FirstPage:
         drawings.append(Drawing("campbell", caption, (speeds,)))
     bars = damping_bars(a.modes)
     if bars is not None:
-        caption = "Whose damping is it? Each source's part of a mode's damping; dots: measured, with 90 %."
+        caption = (
+            "Whose damping is it? Each source's part of a mode's damping, and what no source explains; dots: "
+            "measured, with 90 %."
+        )
         drawings.append(Drawing("damping", caption, (bars,)))
     if speeds is None:
         drawings += ground_drawing(a)

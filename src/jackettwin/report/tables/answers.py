@@ -110,16 +110,19 @@ def budget_table(a: Answers) -> Table:
     """Return each mode's damping by source."""
     sources = [s for s in SOURCES if any(s in m.sources for m in a.modes)]
     names = {"structure": "steel", "soil": "ground"}
+    beyond = any(m.unexplained for m in a.modes)
     rows = tuple(
         (
             words(m.label),
             _cell(m.measured_damping, 100.0, 2),
             _cell(m.model_damping, 100.0, 2),
             *(_cell(m.sources.get(s), 100.0, 3) for s in sources),
+            *([UNKNOWN if m.unexplained is None else fixed(100.0 * m.unexplained, 3)] if beyond else []),
         )
         for m in a.modes
     )
-    columns = ("mode", "measured\nζ [%]", "model\nζ [%]", *(f"{names.get(s, s)}\nζ [%]" for s in sources))
+    owners = (*(names.get(s, s) for s in sources), *(["unexplained"] if beyond else []))
+    columns = ("mode", "measured\nζ [%]", "model\nζ [%]", *(f"{owner}\nζ [%]" for owner in owners))
     caption = (
         "How much damping does each source give each mode? Beneath each value its 90 % interval; sources at "
         "the best fit."

@@ -117,11 +117,14 @@ _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 def quantity(value: float, unit: str, *, digits: int = 2) -> str:
     """Return a number of any size with its unit and the prefix that suits; without a unit, none.
 
-    >>> quantity(3.797e9, "N/m"), quantity(0.0352, "-"), quantity(0.9, "")
-    ('3.8 GN/m', '0.035', '0.9')
+    >>> quantity(3.797e9, "N/m"), quantity(0.0352, "-"), quantity(0.9, ""), quantity(9.996e8, "N/m")
+    ('3.8 GN/m', '0.035', '0.9', '1 GN/m')
     """
+    if not math.isfinite(value):
+        return UNKNOWN
     if unit in ("", "-"):
         return f"{value:.{digits}g}"
+    value = float(f"{value:.{digits}g}")
     scale, prefix = next(((s, p) for s, p in _PREFIXES if abs(value) >= s), (1.0, ""))
     text = f"{value / scale:.{digits}g}"
     return f"{float(text):g} {prefix}{unit}"

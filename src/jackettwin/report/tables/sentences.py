@@ -243,8 +243,7 @@ def _range(g: GroundAnswer) -> str:
 def _shares(m: ModeAnswer) -> dict[str, float]:
     """Return each source's part of a mode's damping ratio, and what is measured beyond all of them."""
     parts = {source: span.value for source, span in m.sources.items()}
-    beyond = m.measured_damping.value - sum(parts.values()) if m.measured_damping is not None else 0.0
-    return parts | ({_UNEXPLAINED: beyond} if parts and beyond > 0.0 else {})
+    return parts | ({} if m.unexplained is None else {_UNEXPLAINED: m.unexplained})
 
 
 def _owner_headline(a: Answers) -> str:
@@ -402,16 +401,19 @@ def _law(a: Answers) -> list[str]:
     if not others:
         verdict = "all others lock a damper" if len(a.laws) > 1 else "no other was tried"
         return [f"Recommended law: {law.law} ({why}); {verdict}."]
+    more = next((one for one in others if one.probability == best and best > law.probability), None)
+    than = "" if more is None else f", {more.law} {100 * best:.0f} %"
+    first = "" if more is None else ", the twin's first"
     return [
-        f"Recommended law: {law.law} ({why}), {about}{100 * law.probability:.0f} % probable among "
-        f"{count(len(others) + 1, 'law')}; {verdict}."
+        f"Recommended law: {law.law} ({why}){first}, {about}{100 * law.probability:.0f} % probable among "
+        f"{count(len(others) + 1, 'law')}{than}; {verdict}."
     ]
 
 
 def _owners(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     short = [_budget_words(m) for m in _firsts(a) if m.sources and m.measured_damping is not None]
     for m in _firsts(a):
-        beyond = _shares(m).get(_UNEXPLAINED, 0.0)
+        beyond = m.unexplained or 0.0
         if m.measured_damping is not None and beyond > SMALL * m.measured_damping.value:
             share = 100.0 * beyond / m.measured_damping.value
             short.append(
@@ -432,8 +434,8 @@ def _budget_words(m: ModeAnswer) -> str:
         for s, span in sorted(m.sources.items(), key=lambda item: -item[1].value)
         if span.value > SMALL * whole or s == "soil"
     ]
-    if beyond := _shares(m).get(_UNEXPLAINED):
-        parts.append(f"unexplained {percent_words(Span(beyond))}")
+    if m.unexplained is not None:
+        parts.append(f"unexplained {percent_words(Span(m.unexplained))}")
     measured = "" if m.measured_damping is None else percent_words(m.measured_damping)
     return f"{words(m.label).capitalize()} measures {measured}: {', '.join(parts)}."
 

@@ -7,11 +7,21 @@ from math import exp
 
 import numpy as np
 
-from jackettwin.answers import Answers
+from jackettwin.answers import Answers, Span
 from jackettwin.arrays import FloatArray
 from jackettwin.report.table import Table
-from jackettwin.report.tables.numbers import UNKNOWN, count, frequency, percent, scientific, words
-from jackettwin.soil import Parameter
+from jackettwin.report.tables.numbers import (
+    UNKNOWN,
+    between,
+    count,
+    frequency,
+    percent,
+    quantity,
+    scientific,
+    words,
+)
+from jackettwin.report.tables.sentences import span_words
+from jackettwin.soil import Parameter, parameter_words
 from jackettwin.study import TwinResult
 from jackettwin.study.truth import StatedMode, TrueParameter
 from jackettwin.updating import Update
@@ -61,9 +71,9 @@ def true_parameters_table(parameters: tuple[TrueParameter, ...]) -> Table:
         (
             p.law,
             p.name,
-            f"{p.true:.4g}",
-            f"{p.value:.4g}",
-            UNKNOWN if p.interval_90 is None else f"{p.interval_90[0]:.4g} – {p.interval_90[1]:.4g}",
+            quantity(p.true, p.unit, digits=3),
+            quantity(p.value, p.unit, digits=3),
+            UNKNOWN if p.interval_90 is None else between(*p.interval_90, p.unit),
             UNKNOWN if p.covered is None else "yes" if p.covered else "no",
         )
         for p in parameters
@@ -130,34 +140,26 @@ def parameter_table(updates: Sequence[Update]) -> Table:
         for i, (p, value) in enumerate(zip(u.problem.parameters, u.best.theta, strict=True)):
             span, verdict = UNKNOWN, UNKNOWN
             if known is not None:
-                low, high = known.interval_90[i]
-                span, verdict = f"{scientific(low)} … {scientific(high)}", known.verdicts[i].verdict
+                low, high = map(float, known.interval_90[i])
+                span = span_words(Span(float(known.median[i]), low, high), p.unit)
+                verdict = known.verdicts[i].verdict
             text = f"{verdict}{', on its bound' if p.name in u.best.at_bound else ''}"
-            rows.append(
-                (
-                    u.law,
-                    p.name,
-                    UNKNOWN if p.unit == "-" else p.unit,
-                    text,
-                    _prior(p),
-                    scientific(float(value)),
-                    span,
-                )
-            )
-    columns = ("law", "parameter", "unit", "verdict", "before the data", "best fit", "90 % interval")
+            named = f"{parameter_words(p.name)}\n{p.name}"
+            rows.append((u.law, named, text, _prior(p), span, quantity(float(value), p.unit, digits=3)))
+    columns = ("law", "parameter", "verdict", "before the data", "median (90 % interval)", "best fit")
     return Table(
-        "What are each law's parameters at its best fit? Intervals are the posterior's, whose median is the "
-        "value stated everywhere else. c_fore_aft, c_side_side: the rotor's dashpot.",
+        "What are each law's parameters? The median, with its interval, is the value stated everywhere else; "
+        "the best fit is the likeliest point, elsewhere where much is left open. Beneath: the key in files.",
         columns,
         tuple(rows),
-        4,
+        3,
     )
 
 
 def _prior(p: Parameter) -> str:
     if p.median is None or p.log_std is None:
-        return f"{scientific(p.low)} … {scientific(p.high)}"
-    return f"{scientific(p.median)} ×÷ {exp(p.log_std):.2g}"
+        return between(p.low, p.high, p.unit)
+    return f"{quantity(p.median, p.unit)} ×÷ {exp(p.log_std):.2g}"
 
 
 def solutions_table(result: TwinResult, u: Update) -> Table:
@@ -172,7 +174,7 @@ def solutions_table(result: TwinResult, u: Update) -> Table:
         notes = [f"{i + 1}: {count(s.found, 'start')}"] + ["best fit"] * (s is u.best)
         notes += ["locked damper"] * s.locked_damper
         values = [
-            f"{p.name} {scientific(float(v))}{_unit(p.unit)}{' *' if p.name in s.at_bound else ''}"
+            f"{p.name} {quantity(float(v), p.unit, digits=3)}{' *' if p.name in s.at_bound else ''}"
             for p, v in zip(u.problem.parameters, s.theta, strict=True)
         ]
         modes = zip(s.frequency_hz, s.undamped_hz, s.damping_ratio, strict=True)
@@ -184,7 +186,3 @@ def solutions_table(result: TwinResult, u: Update) -> Table:
         "* on a bound."
     )
     return Table(caption, columns, tuple(rows), 2, frozenset(marked))
-
-
-def _unit(unit: str) -> str:
-    return "" if unit == "-" else f" {unit}"

@@ -8,7 +8,8 @@ const SYMBOLS = ["circle", "square", "diamond", "triangle-up", "cross", "x", "st
 const text = (value) => value === null || value === undefined ? "–" : value;
 const fixed = (value, digits) => value === null || value === undefined ? "–" : value.toFixed(digits);
 const counted = (n, what) => `${n} ${what}${n === 1 ? "" : "s"}`;
-const words = (label) => label.replaceAll("_", " ");
+// side_side_1: side-side 1, as in the report
+const words = (label) => label.replace(/_(\d+)$/, " $1").replaceAll("_", "-");
 
 function row(cells, numeric) {
   const tr = document.createElement("tr");
@@ -43,19 +44,53 @@ async function twin() {
     fixed(m.damping_ratio === null ? null : 100 * m.damping_ratio, 2),
     fixed(m.damping_ratio_std === null ? null : 100 * m.damping_ratio_std, 2), m.records]), [1, 2, 3, 4, 5]);
   const supports = known.parameters.parameters || {};
-  fill("supports", Object.entries(supports).map(([name, p]) => [
-    words(name), p.median.toPrecision(3), p.interval_90 ? `${p.interval_90[0].toPrecision(3)} to ${p.interval_90[1].toPrecision(3)}` : null, p.unit]), [1, 2]);
+  fill("supports", Object.values(supports).map((p) => [p.words, p.text, p.day ?? "all records"]), []);
+  document.getElementById("now").textContent = known.parameters.statement ?? "";
   const percent = (v) => !v ? null : `${(100 * v.value).toFixed(2)}${v.low === null ? "" : ` (${(100 * v.low).toFixed(2)} to ${(100 * v.high).toFixed(2)})`}`;
   fill("budget", (known.parameters.budget || []).map((m) => [words(m.label), percent(m.measured),
-    ...["structure", "soil", "rotor", "water"].map((source) => percent(m.sources[source]))]), [1, 2, 3, 4, 5]);
+    ...["structure", "soil", "rotor", "water"].map((source) => percent(m.sources[source])),
+    m.unexplained ? (100 * m.unexplained).toFixed(2) : null]), [1, 2, 3, 4, 5, 6]);
   report(known.parameters.law && `${known.version} ${known.parameters.until_utc} ${known.parameters.records}`, known.version);
   document.getElementById("law").textContent = known.parameters.law
-    ? `Law ${known.parameters.law}, from ${counted(known.parameters.records, "record")}; posterior: ${known.parameters.status}.`
+    ? `Law ${known.parameters.law}. All records: the ${counted(known.parameters.records, "record")} up to ${known.parameters.until_utc.slice(0, 10)} together, as if the ground had been the same; posterior: ${known.parameters.status}.`
     : "Not estimated yet: this is done when no record waits.";
   document.getElementById("sentence").textContent = known.records
     ? `${counted(known.records, "record")} of ${counted(known.days, "day")}, ${known.first_utc.slice(0, 16).replace("T", " ")} to ${known.last_utc.slice(0, 16).replace("T", " ")} UTC. ${known.status}`
     : "No record has been observed yet.";
 }
+
+// The stiffness of each day over that of the first.
+async function stiffness() {
+  const found = await api("/supports"), part = document.getElementById("through");
+  const known = found.days.filter((day) => day.relative_stiffness), time = found.stiffness_in_time;
+  part.hidden = !time || !known.length;
+  if (part.hidden) return;
+  const middle = (spans) => spans.map((s) => s.median), noon = (date) => `${date}T12:00:00Z`;
+  const band = (x, spans, colour, name, dash) => [
+    { x: [...x, ...x.slice().reverse()], y: [...spans.map((s) => s.interval_90[1]), ...spans.map((s) => s.interval_90[0]).reverse()], fill: "toself",
+      fillcolor: `${colour}33`, mode: "lines", line: { width: 0 }, hoverinfo: "skip", showlegend: false },
+    { x, y: middle(spans), mode: "lines", line: { color: colour, width: 2, dash }, name }];
+  const then = known.map((day) => day.relative_stiffness), last = known[0];
+  const later = (days) => new Date(Date.parse(last.time_utc) + days * 864e5).toISOString();
+  const traces = [
+    { x: known.map((day) => day.time_utc), y: middle(then), mode: "markers", marker: { size: 4, color: "#7f7f7f" }, name: "known on the day",
+      error_y: { type: "data", symmetric: false, thickness: 0.6, width: 0, array: then.map((s) => s.interval_90[1] - s.median), arrayminus: then.map((s) => s.median - s.interval_90[0]) } },
+    ...band(Object.keys(time.smoothed).map(noon), Object.values(time.smoothed), COLOURS[0], "by all days", "solid"),
+    ...band([last.time_utc, ...time.forecast.map((f) => later(f.days))], [last.relative_stiffness, ...time.forecast], "#7f7f7f", "expected", "dot")];
+  const shapes = time.changes.map((c) => ({ type: "line", x0: c.time_utc, x1: c.time_utc, yref: "paper", y0: 0, y1: 1, line: { color: COLOURS[1], width: 1 } }));
+  const from = Date.parse(known.at(-1).time_utc), seen = (Date.parse(last.time_utc) - from) / 864e5;
+  const layout = plain("stiffness over the first day's", "linear");
+  layout.xaxis.range = [known.at(-1).time_utc, later(Math.max(time.forecast[0].days, Math.min(seen, 365)))];
+  Plotly.react("stiffness", traces, { ...layout, shapes }, CONFIG);
+  const cells = (span) => span ? [span.median.toFixed(3), span.interval_90.map((v) => v.toFixed(3)).join(" to ")] : [null, null];
+  fill("days", known.slice(0, 14).map((day) => [day.time_utc.slice(0, 10), ...cells(day.relative_stiffness), ...cells(time.smoothed[day.time_utc.slice(0, 10)])]), [1, 2, 3, 4]);
+}
+
+const plain = (title, type) => ({
+  margin: { l: 60, r: 10, t: 10, b: 40 }, yaxis: { title: { text: title }, type }, xaxis: { title: { text: "UTC" }, type: "date" },
+  legend: { orientation: "h", y: 1.15 }, font: { family: "system-ui, sans-serif", size: 13 },
+});
+const CONFIG = { displaylogo: false, responsive: true };
 
 async function modes() {
   const items = [];
@@ -74,16 +109,11 @@ async function modes() {
       hovertemplate: "%{y:.4g}<br>%{x}<extra>" + words(label) + "</extra>",
     };
   };
-  const layout = (title, type) => ({
-    margin: { l: 60, r: 10, t: 10, b: 40 }, yaxis: { title: { text: title }, type }, xaxis: { title: { text: "UTC" }, type: "date" },
-    legend: { orientation: "h", y: 1.15 }, font: { family: "system-ui, sans-serif", size: 13 },
-  });
-  const config = { displaylogo: false, responsive: true };
-  Plotly.react("frequency", labels.map((l, i) => trace(l, i, (m) => m.frequency_hz, (own) => ({ array: own.map((m) => m.frequency_std_hz) }))), layout("frequency [Hz]", "log"), config);
+  Plotly.react("frequency", labels.map((l, i) => trace(l, i, (m) => m.frequency_hz, (own) => ({ array: own.map((m) => m.frequency_std_hz) }))), plain("frequency [Hz]", "log"), CONFIG);
   Plotly.react("damping", labels.map((l, i) => trace(l, i, (m) => m.damping_ratio === null ? null : 100 * m.damping_ratio, (own) => ({
     array: own.map((m) => m.damping_ratio_interval_95 ? 100 * (m.damping_ratio_interval_95[1] - m.damping_ratio) : 0),
     arrayminus: own.map((m) => m.damping_ratio_interval_95 ? 100 * (m.damping_ratio - m.damping_ratio_interval_95[0]) : 0), symmetric: false,
-  }))), layout("damping ratio [%]", "log"), config);
+  }))), plain("damping ratio [%]", "log"), CONFIG);
 }
 
 async function findings() {
@@ -108,7 +138,7 @@ async function records() {
 let due = null;
 async function refresh() {
   due = null;
-  await Promise.allSettled([twin(), modes(), findings(), records()]);
+  await Promise.allSettled([twin(), stiffness(), modes(), findings(), records()]);
 }
 const live = document.getElementById("live");
 const source = new EventSource("/api/v1/events");

@@ -20,6 +20,7 @@ from jackettwin.service.web.schemas import (
     FindingOut,
     ModeOut,
     Page,
+    SupportsOut,
     TwinOut,
 )
 from jackettwin.store import assets, results
@@ -129,6 +130,13 @@ def twin(
         days=told.days,
         **known,
     )
+
+
+def supports(connection: Connection, version: assets.Version) -> SupportsOut:
+    """Return the stiffness of the supports on each day, the last one first."""
+    found = results.find_stiffness(connection, version.asset, version.version)
+    days = found.pop("days", [])[::-1]
+    return SupportsOut(asset=version.asset, version=version.version, days=days, **found)
 
 
 def compared(

@@ -324,12 +324,71 @@ class Value(BaseModel):
     high: float | None
 
 
+class MedianOut(BaseModel):
+    """A median with its 90 % interval."""
+
+    median: float
+    interval_90: tuple[float, float]
+
+
+class SupportsDay(BaseModel):
+    """The supports' stiffness as it was known on a day: over that of the first day, and of each parameter."""
+
+    time_utc: datetime
+    records: int
+    status: str
+    relative_stiffness: MedianOut | None
+    parameters: dict[str, MedianOut]
+
+
+class SuddenChangeOut(BaseModel):
+    """A jump of the stiffness: when, and the stiffness after it over that before."""
+
+    time_utc: datetime
+    time_utc_interval_90: tuple[datetime, datetime]
+    factor: MedianOut
+    probability: float
+
+
+class ForecastOut(MedianOut):
+    """The stiffness to be expected so many days after the last one, over that of the first day."""
+
+    days: int
+
+
+class StiffnessInTime(BaseModel):
+    """The stiffness over that of the first day: of each day by all days, jumps, and what to expect."""
+
+    smoothed: dict[str, MedianOut]
+    changes: list[SuddenChangeOut]
+    forecast: list[ForecastOut]
+
+
+class SupportsOut(BaseModel):
+    """The stiffness of the supports on each day, as ``jackettwin follow --json`` has it; the last day first.
+
+    Empty before the third day.
+    """
+
+    asset: str
+    version: int
+    law: str | None = None
+    units: dict[str, str] = Field(default_factory=dict)
+    statement: str = ""
+    days: list[SupportsDay] = Field(default_factory=list)
+    stiffness_in_time: StiffnessInTime | None = None
+
+
 class BudgetOut(BaseModel):
-    """Whose damping a mode's is: damping ratios by source (structure, soil, rotor, water)."""
+    """Whose damping a mode's is: damping ratios by source (structure, soil, rotor, water).
+
+    What is measured beyond all of them is unexplained; null if nothing is.
+    """
 
     label: str
     measured: Value | None
     sources: dict[str, Value]
+    unexplained: float | None = None
 
 
 class SensitivityOut(BaseModel):

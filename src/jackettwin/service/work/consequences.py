@@ -68,14 +68,15 @@ def observing(connection: Connection, service: Service, job: work.Job) -> None:
 def question_of(connection: Connection, service: Place, job: work.Job, *, every_day: bool) -> Question:
     """Return what a worker must know to say what a turbine's state says of its supports.
 
-    It is sent the days after those that it has the sums of, or every day if it asked for them.
+    It is sent the days after those that it has the sums of and those that the stiffness is taken again in, or
+    every day if it asked for them.
     """
     key = (job.asset, job.model_hash)
     identities = results.state_hashes(connection, *key)
     kept = results.find_kept(connection, job.asset, job.version)
-    after = None if every_day else workers.engine.days_unsummed(kept.get("past"), identities)
-    if after is None:
-        kept = {"judged": kept.get("judged")}
+    if workers.engine.days_unsummed(kept.get("past"), identities) is None:
+        kept = {name: kept.get(name) for name in ("judged", "followed")}
+    after = None if every_day else _days_known(kept, identities)
     return Question(
         job.asset,
         job.version,
@@ -89,13 +90,25 @@ def question_of(connection: Connection, service: Place, job: work.Job, *, every_
     )
 
 
+def _days_known(kept: Mapping[str, Any], identities: Mapping[str, str]) -> str | None:
+    """Return the day after which days are to be sent; None for all."""
+    unsummed = workers.engine.days_unsummed(kept.get("past"), identities)
+    needed = workers.stiffness.days_needed(kept.get("followed"), identities)
+    if unsummed is None or (needed is None and kept.get("followed") is not None):
+        return None
+    return unsummed if needed is None else min(unsummed, needed)
+
+
 def keep_known(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
     """Keep what a turbine's days say of the supports, and of a change."""
     now = service.now()
     if not work.finish(connection, job, service.server_id, "done", now):
         return
     document = json.loads(outcome.document or "{}")
-    results.put_knowledge(connection, job.asset, job.version, document, outcome.page, now)
+    page = outcome.page
+    if outcome.same_page:
+        page = results.find_report(connection, job.asset, job.version)
+    results.put_knowledge(connection, job.asset, job.version, document, page, now)
     journal.tell(connection, "state", job.asset, {"known": document["known"]["status"]}, now)
     if outcome.of != results.identity_of(results.state_hashes(connection, job.asset, job.model_hash)):
         ask_known(connection, service, assets.found_version(connection, job.asset, job.version))

@@ -34,7 +34,8 @@ class Outcome:
 
     With both, the record was observed and is of another structure.
 
-    ``page`` is the report on a turbine's state, and ``of`` the identity of that state.
+    ``page`` is the report on a turbine's state, and ``of`` the identity of that state; ``same_page`` tells
+    that the report there is stays.
     """
 
     document: str | None
@@ -43,6 +44,7 @@ class Outcome:
     problem: dict[str, Any] | None = None
     page: bytes | None = None
     of: str = ""
+    same_page: bool = False
 
 
 @dataclass(frozen=True)
@@ -204,7 +206,7 @@ class Question:
     identities : {day: identity}
         Of all days.
     days : {day: document}
-        Of those after what is kept, or of all.
+        Of those that are not in what is kept, or of all.
     newest : documents of the newest observations, for the page
     in_all : how many records there are, and how long they are together [s]
     kept : what is kept of the sums of past days and of watching them, by name
@@ -237,18 +239,26 @@ def know(question: Question) -> Outcome | None:
         judged, findings = verdict.watched(
             twin, question.identities, question.days, question.kept.get("judged")
         )
+        followed, gone_on_from = verdict.through_time(twin, question)
+        sums, past = engine.summed(twin, question.kept.get("past"), question.identities, question.days)
     except KeyError:
         return None
-    sums, past = engine.summed(twin, question.kept.get("past"), question.identities, question.days)
-    page = None
-    try:
-        known, sections = verdict.known(twin, sums, question.newest, question.in_all)
-        if sections is not None:
-            page = verdict.report(sections, title=question.asset, subtitle=f"version {question.version}")
-    except JackettwinError as error:
-        known = {"status": str(error), "parameters": {}}
-    document = json.dumps({"known": known, "judged": judged, "past": past})
-    return Outcome(document, findings=findings, page=page, of=question.of)
+    changes, together = 0 if followed is None else len(followed.changes), question.kept.get("together")
+    page, asked = None, verdict.due(together, question, changes)
+    if asked or together is None:
+        try:
+            known, sections = verdict.known(twin, sums, question.newest, question.in_all)
+            if sections is not None:
+                about = f"version {question.version}"
+                page = verdict.report(sections, followed, title=question.asset, subtitle=about)
+        except JackettwinError as error:
+            known = {"status": str(error), "parameters": {}}
+        together = verdict.asked_together(known, question, changes)
+    document = {
+        "known": verdict.of_today(together["known"], followed), "supports": verdict.supports(followed),
+        "judged": judged, "past": past, "followed": gone_on_from, "together": together,
+    }  # fmt: skip
+    return Outcome(json.dumps(document), findings=findings, page=page, of=question.of, same_page=not asked)
 
 
 def observe_stored(task: Task) -> Outcome:

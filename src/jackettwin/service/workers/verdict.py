@@ -9,18 +9,21 @@ import gzip
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
-from typing import Any
+from datetime import date
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from jackettwin.answers import ModeAnswer, answer
+from jackettwin.answers import ModeAnswer, Span, answer
 from jackettwin.arrays import FloatArray
 from jackettwin.change import JUDGED, Days, Ground, corrections, finding_of, judge
-from jackettwin.report import PageSection
+from jackettwin.errors import JackettwinError
+from jackettwin.report import PageSection, span_words, stiffness_section
 from jackettwin.report.build import report_sections
 from jackettwin.report.pages.page import page_text
-from jackettwin.service.workers import engine
-from jackettwin.study import TwinResult, sensitivity_rows
+from jackettwin.service.workers import engine, stiffness
+from jackettwin.soil import parameter_words
+from jackettwin.study import Followed, TwinResult, days_document, in_time_document, sensitivity_rows
 from jackettwin.study.measure import Measured
 from jackettwin.study.run import updated_twin
 from jackettwin.twin import ALL, OBSERVATION
@@ -28,10 +31,88 @@ from jackettwin.twin.operation import OperationRule
 from jackettwin.updating import Update, sensitivity
 from jackettwin.version import __version__
 
+if TYPE_CHECKING:
+    from jackettwin.service.workers.tasks import Question
+
 CANNOT_MEET = "the model cannot meet what was measured on any ground: no interval; see the report"
 """What is said of parameters that come nearest to the data and do not explain them."""
 NO_MODE = "no mode of the model has been seen"
+FEW, GROWN, MOST_DAYS = 24, 1.3, 30
+"""Records up to which all together are asked whenever there is a new one; then their growth, and the days,
+after which they are: a posterior costs as much as a hundred days of stiffness."""
 NOT_TO_UPDATE = "no record is in a state of operation that may update the supports (operation.updates)"
+
+
+def due(before: Mapping[str, Any] | None, asked: Question, changes: int) -> bool:
+    """Tell whether all records together are to be asked again, at the price of a posterior.
+
+    They are while they are few, when they have grown by a third, once a month, after a change of the
+    stiffness, and when what was known of them holds no more; from day to day the stiffness is followed.
+    """
+    if before is None or "parameters" not in before["known"] or before["code_version"] != __version__:
+        return True
+    records, then = asked.in_all[0], before["records"]
+    aged = (date.fromisoformat(max(asked.identities)) - date.fromisoformat(before["day"])).days
+    grown = records <= max(FEW, then) or records >= GROWN * then
+    return bool(grown or aged >= MOST_DAYS or changes != before["changes"])
+
+
+def asked_together(known: Mapping[str, Any], asked: Question, changes: int) -> dict[str, Any]:
+    """Return what is kept of an answer by all records together, until :func:`due`."""
+    return {
+        "known": dict(known), "records": asked.in_all[0], "day": max(asked.identities), "changes": changes,
+        "code_version": __version__,
+    }  # fmt: skip
+
+
+def of_today(known: Mapping[str, Any], followed: Followed | None) -> dict[str, Any]:
+    """Return what all records together say, with the stiffness as it is on the last day.
+
+    Of a parameter that is followed from day to day, the day stands beside it.
+    """
+    parameters = {name: dict(p) for name, p in known["parameters"].items()}
+    found, said = dict(known), "" if followed is None else followed.stiffness_statement
+    if followed is not None and said and known["status"] != CANNOT_MEET:
+        last = followed.days[-1]
+        for name in {*followed.stiffness} & {*parameters}:
+            span = list(last.interval_90[name])
+            parameters[name] |= {"median": last.median[name], "interval_90": span, "day": last.date}
+        found["statement"] = said
+    for name, p in parameters.items():
+        low, high = p["interval_90"] or (None, None)
+        p["words"], p["text"] = parameter_words(name), span_words(Span(p["median"], low, high), p["unit"])
+    return found | {"parameters": parameters}
+
+
+def supports(followed: Followed | None) -> dict[str, Any]:
+    """Return the stiffness of every day, as ``jackettwin follow --json`` has it, nothing if there is none."""
+    if followed is None or not followed.stiffness_statement:
+        return {}
+    days = days_document(followed)
+    for day in days:
+        day["parameters"] = {name: day["parameters"][name] for name in followed.stiffness}
+    return {
+        "law": followed.law,
+        "units": {name: followed.units[name] for name in followed.stiffness},
+        "days": days,
+        "stiffness_in_time": in_time_document(followed),
+        "statement": followed.stiffness_statement,
+    }
+
+
+def through_time(twin: engine.Twin, asked: Question) -> tuple[Followed | None, Mapping[str, Any] | None]:
+    """Return what is known of the supports after each day, None if they cannot be followed; what to keep.
+
+    Raises
+    ------
+    KeyError
+        If a day is needed that was not sent.
+    """
+    kept = asked.kept.get("followed")
+    try:
+        return stiffness.followed(twin, kept, asked.identities, asked.days)
+    except JackettwinError:  # no mode yet, or none with a standard deviation: all records together say why
+        return None, None
 
 
 def known(
@@ -95,11 +176,14 @@ def _budget(mode: ModeAnswer) -> dict[str, Any]:
         "label": mode.label,
         "measured": None if measured is None else asdict(measured),
         "sources": {name: asdict(span) for name, span in mode.sources.items()},
+        "unexplained": mode.unexplained,
     }
 
 
-def report(sections: Sequence[PageSection], *, title: str, subtitle: str) -> bytes:
-    """Return the page of some sections, compressed."""
+def report(sections: Sequence[PageSection], followed: Followed | None, *, title: str, subtitle: str) -> bytes:
+    """Return the page of some sections, compressed; the stiffness through time stands first."""
+    if followed is not None and followed.stiffness_statement:
+        sections = [stiffness_section(followed), *sections]
     text = page_text(sections, title=title, subtitle=f"{subtitle} · jackettwin {__version__}")
     return gzip.compress(text.encode(), mtime=0)
 

@@ -8,7 +8,7 @@ less the stiffer the ground is, all of them alike: ln f = ln f₁ + s h(x) with
 and one a for all modes; it is 1 where the ground gives a small share of all flexibility, for frequencies are
 linear in 1/k then. So ℓ = h(x) is the level of :mod:`jackettwin.watching.level`; s and a are the model's. How
 stiff the ground is decides how much frequencies tell of a change, so that each draw of the posterior counts
-with its own slope e^{-aΔ} s. What all records say together goes with the mean of ℓ so far.
+with its own slope e^{-aΔ} s. What all records say together is of the ground at the mean of ℓ so far.
 """
 
 from __future__ import annotations
@@ -46,6 +46,8 @@ _LEAST_SPREAD = 5e-4
 """Standard deviation of ln f that conditions may explain where less is seen."""
 _EPOCH = np.datetime64("1970-01-01")
 _MOST_DRAWS = 60
+_HALVINGS = 26
+"""Of the interval of six standard deviations that a quantile is looked for in: to 10⁻⁷ of it."""
 _FARTHEST = 4.0
 """Largest change of ln k: a factor of 50."""
 
@@ -121,13 +123,20 @@ class StiffnessLevel(NamedTuple):
 
 
 def level_of(mixture: Mixture, reference: Reference, about: Sensitivity) -> StiffnessLevel:
-    """Return the stiffness that a level stands for."""
+    """Return the stiffness that a level stands for.
+
+    The reference's draws are of the ground at the mean level r of its records. On the first day ln k was less
+    by x_r, and the level's slope more by e^{a x_r}, with e^{-ad} h(x_r) e^{a x_r} = r, where d is how far a
+    draw lies from where the slopes are taken.
+    """
     draws = reference.log_k
-    flatter = np.exp(-about.bend * (draws.mean(axis=1) - about.log_k))
+    there = np.exp(-about.bend * (draws.mean(axis=1) - about.log_k))
+    mean = float(mixture.weights @ (mixture.level - mixture.shift) / mixture.weights.sum())
+    first = there * np.maximum(1.0 + about.bend * mean / there, np.exp(-_FARTHEST))
     none = np.zeros(len(draws))
-    relative = _quantiles(mixture.weights, mixture.level, mixture.level_std, flatter, none, about.bend)
+    relative = _quantiles(mixture.weights, mixture.level, mixture.level_std, first, none, about.bend)
     absolute = tuple(
-        _quantiles(mixture.weights, mixture.shift, mixture.shift_std, flatter, own, about.bend)
+        _quantiles(mixture.weights, mixture.shift, mixture.shift_std, there, own, about.bend)
         for own in draws.T
     )
     return StiffnessLevel(relative, absolute)
@@ -143,10 +152,13 @@ def _quantiles(
 ) -> Span3:
     """Return quantiles of exp(origin + h⁻¹(level/flatter)) over draws and a mixture of levels."""
     wanted = np.array([0.05, 0.5, 0.95])
-    low, high = np.full(3, origin.min() - _FARTHEST), np.full(3, origin.max() + _FARTHEST)
     kept = weights > 1e-4
     weights, mean, std = weights[kept] / weights[kept].sum(), mean[kept], std[kept]
-    for _ in range(40):
+    ends = np.array([np.min(mean - 6.0 * std), np.max(mean + 6.0 * std)])
+    inside = np.minimum(bend * ends[:, None] / flatter, -np.expm1(-bend * _FARTHEST))
+    farthest = origin + np.clip(-np.log1p(-inside) / bend, -_FARTHEST, _FARTHEST)
+    low, high = np.full(3, farthest[0].min()), np.full(3, farthest[1].max())
+    for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         x = np.clip(middle[:, None] - origin, -_FARTHEST, _FARTHEST)
         h = -np.expm1(-bend * x) / bend * flatter

@@ -79,6 +79,8 @@ class Tracked:
     copied : dates after which the mean level so far became the reference
     final : {date: StiffnessLevel} of days before the window, smoothed
     changes : found so far
+    settled, settled_changes : how many days there were when the window moved or conditions were learnt last,
+        and what had been found by then: from there, days that changed since are followed again
     """
 
     normal: Normalisation
@@ -90,6 +92,13 @@ class Tracked:
     copied: tuple[str, ...] = ()
     final: Mapping[str, StiffnessLevel] = field(default_factory=dict)
     changes: tuple[SuddenChange, ...] = ()
+    settled: int = 0
+    settled_changes: tuple[SuddenChange, ...] = ()
+
+    def until(self, date: str) -> Tracked:
+        """Return what was kept after the day on which it was settled, its date given."""
+        copied = tuple(one for one in self.copied if one <= date)
+        return replace(self, copied=copied, changes=self.settled_changes)
 
 
 @dataclass(frozen=True)
@@ -135,7 +144,7 @@ class StiffnessTrack:
             return self
         changes = () if self.kept is None else self.kept.changes
         n, of = len(self.dates), _chained("", self.every, self.dates)
-        kept = Tracked(known, identified=n, of=of, changes=changes)
+        kept = Tracked(known, identified=n, of=of, changes=changes, settled=n, settled_changes=changes)
         return replace(self, kept=kept)._from_start(self.dates)
 
     def _from_start(self, dates: Sequence[str]) -> StiffnessTrack:
@@ -180,8 +189,11 @@ class StiffnessTrack:
         if jump is None or jump.probability < SURE:
             return self
         found = SuddenChange(jump.probability, jump.days, change_of(jump, reference, about))
-        others = [c for c in self.kept.changes if c.days[2] < found.days[0] - 1.0]
-        return replace(self, kept=replace(self.kept, changes=(*others, found)))
+        changes = (*(c for c in self.kept.changes if c.days[2] < found.days[0] - 1.0), found)
+        kept = replace(self.kept, changes=changes)
+        if kept.settled == len(self.dates):
+            kept = replace(kept, settled_changes=changes)
+        return replace(self, kept=kept)
 
     def levels(self, reference: Reference) -> dict[str, StiffnessLevel]:
         """What all days together say of each: those of the window, and before."""
@@ -216,7 +228,8 @@ class StiffnessTrack:
         known = max(kept.identified, cut)
         window = replace(
             kept, start=start, lagged=before.lagged, days=cut, final={**kept.final, **gone}, identified=known,
-            of=_chained(kept.of, self.every, self.dates[kept.identified : known]),
+            of=_chained(kept.of, self.every, self.dates[kept.identified : known]), settled=n,
+            settled_changes=kept.changes,
         )  # fmt: skip
         return replace(self, kept=window)._from_start(self.dates[cut:])
 

@@ -32,6 +32,7 @@ from jackettwin.service.web.schemas import (
     ModeOut,
     Page,
     SensitivityOut,
+    SupportsOut,
     TwinOut,
 )
 from jackettwin.store import journal, people, results, writing
@@ -83,6 +84,12 @@ def twin(
     """Return what the twin knows at a time: mean modes and parameters with their intervals."""
     asked = known_version(connection, asset, version)
     return said.twin(connection, parts, asked, signals.with_zone(at, "at"))
+
+
+@router.get("/assets/{asset}/supports", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def supports(asset: AssetName, connection: Told, version: AnyVersion = None) -> SupportsOut:
+    """Return the stiffness of the supports on each day: then, by now, jumps, and what to expect."""
+    return said.supports(connection, known_version(connection, asset, version))
 
 
 @router.get("/assets/{asset}/comparison", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))

@@ -1,0 +1,106 @@
+"""The stiffness of a turbine's ground on each day, as ``jackettwin follow`` says it.
+
+It is gone on with from what is kept, which ends with the last day but one: the last one still grows.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import takewhile
+from typing import Any
+
+from jackettwin.change import Days
+from jackettwin.files import StoredSchema
+from jackettwin.service.workers import engine
+from jackettwin.study import Followed, follow_days
+from jackettwin.twin import UNDATED, Day, empty_state
+from jackettwin.version import __version__
+
+
+@dataclass(frozen=True)
+class FollowedPast:
+    """A twin followed through past days.
+
+    Attributes
+    ----------
+    days : {date: identity}
+        All of them.
+    window : the day before those that are taken again when more are known; empty before the first
+    followed : what is gone on from
+    code_version : that made it; another one follows all days anew
+    """
+
+    days: dict[str, str]
+    window: str
+    followed: Followed
+    code_version: str
+
+
+FOLLOWED_PAST = StoredSchema("followed_past", FollowedPast)
+"""How it is kept."""
+
+
+def days_needed(kept: Mapping[str, Any] | None, identities: Mapping[str, str]) -> str | None:
+    """Return the day after which days are needed to go on from what is kept; None if every day is."""
+    if kept is None or kept["code_version"] != __version__:
+        return None
+    known = len(kept["days"])
+    unchanged = _same(kept["days"], identities) == known < len(_dated(identities))
+    return str(kept["window"]) if unchanged else None
+
+
+def followed(
+    twin: engine.Twin,
+    kept: Mapping[str, Any] | None,
+    identities: Mapping[str, str],
+    documents: Mapping[str, str],
+) -> tuple[Followed, Mapping[str, Any] | None]:
+    """Return what is known of the supports after each day, and what to keep of it.
+
+    Parameters
+    ----------
+    documents : {day: document}
+        Of the days that :func:`days_needed` asks for, or of all.
+
+    Raises
+    ------
+    KeyError
+        If a day is needed that has no document here: after a change, and when conditions are learnt anew.
+    """
+
+    @cache
+    def load(day: str) -> Day:
+        return engine.DAY.load(json.loads(documents[day])).of_operations(twin.config.operation.may_update)
+
+    every = Days(_dated(identities), load)
+    dates = list(every.identities)
+    known = None if kept is None or kept["code_version"] != __version__ else FOLLOWED_PAST.load(kept)
+    same = min(0 if known is None else _same(known.days, identities), len(dates) - 1)
+    if known is not None and same == len(known.days):
+        before = known.followed.state
+    else:
+        before = empty_state(twin.model)
+        for day in dates[:same]:
+            before = replace(before.with_day(day, load(day)), days={})
+    past, now = follow_days(
+        twin.config, twin.model, every, before, same=same, prior=None if known is None else known.followed
+    )
+    if past is None or (known is not None and same == len(known.days) == len(dates) - 1):
+        return now, kept
+    whole = FollowedPast(
+        {day: every.identities[day] for day in dates[:-1]}, past.window_begins_after, past, __version__
+    )
+    return now, FOLLOWED_PAST.dump(whole)
+
+
+def _dated(identities: Mapping[str, str]) -> dict[str, str]:
+    return {day: identity for day, identity in identities.items() if day != UNDATED}
+
+
+def _same(known: Mapping[str, str], identities: Mapping[str, str]) -> int:
+    """Return how many of the first days are as they were."""
+    pairs = zip(known.items(), _dated(identities).items(), strict=False)
+    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))

@@ -1,0 +1,179 @@
+"""One quantity, one central value and one interval: on page and terminal, in JSON, and of a living asset."""
+
+from __future__ import annotations
+
+import gzip
+import html
+import json
+import re
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from datetime import timedelta
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tests.service.conftest import NOON
+from tests.support.observations import estimate, observation
+
+from jackettwin.answers import answer
+from jackettwin.cli.answers import answers_document, print_answers
+from jackettwin.cli.console import output
+from jackettwin.cli.update import print_updates
+from jackettwin.files import encode
+from jackettwin.service.workers import engine
+from jackettwin.service.workers.tasks import Question, know
+from jackettwin.study import run_document
+from jackettwin.study.measure import Measured
+from jackettwin.study.run import updated_twin
+from jackettwin.twin import OBSERVATION
+
+TWIN = """structure: jacket15
+gravity: true
+damping: {rayleigh: {ratio: 0.0055, frequency_hz: 0.183}}
+update: {laws: [kelvin-voigt], particles: 20, starts: 2, damping_of: all}
+"""
+SHOWN = {1: estimate(0.1755, 0.012, 2e-3, 0.1), 2: estimate(0.1785, 0.013, 2e-3, 0.1)}
+DAY = f"{NOON:%Y-%m-%d}"
+Value = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Outlets:
+    """What one set of records gave, by run and by a living asset."""
+
+    document: dict[str, Any]
+    terminal: str
+    page: str
+    known: dict[str, Any]
+    modes: list[dict[str, Any]]
+
+
+@pytest.fixture(scope="module")
+def outlets(tmp_path_factory: pytest.TempPathFactory) -> Outlets:
+    folder: Path = tmp_path_factory.mktemp("twin")
+    (folder / engine.TWIN_FILE).write_text(TWIN)
+    twin = engine.load_twin(folder)
+    made = [observation(SHOWN, NOON + timedelta(minutes=10 * k), name=f"r{k}") for k in range(3)]
+    seen = [type(one)(**{**vars(one), "model_hash": twin.model.model_hash}) for one in made]
+    texts = tuple(json.dumps(OBSERVATION.dump(one)) for one in seen)
+    day = engine.advance_day(twin.model, DAY, None, texts).document
+    asked = Question("wtg", 1, str(folder), {DAY: "a"}, {DAY: day}, texts, (3, 1800.0), of="it")
+    outcome = know(asked)
+    assert outcome is not None and outcome.document is not None and outcome.page is not None
+    sums, _ = engine.summed(twin, None, asked.identities, asked.days)
+    measured = Measured(tuple(seen), sums.state, in_all=(3, 1800.0))
+    result = updated_twin(twin.config, twin.model, measured, laws=("kelvin-voigt",), posteriors="likely")
+    answers, told = answer(result), replace(result, observations=())
+    with output.capture() as printed:
+        print_answers(answers)
+        print_updates(result, only=answers.law)
+    return Outlets(
+        encode(run_document(told, report=None) | answers_document(answers)),
+        re.sub(r"\s+", " ", printed.get()),
+        _text(gzip.decompress(outcome.page).decode()),
+        json.loads(outcome.document)["known"],
+        engine.knowledge(twin.model, sums)["modes"],
+    )
+
+
+def _text(page: str) -> str:
+    """Return what a page shows: its words, without scripts, styles and packed figures."""
+    bare = re.sub(r"(?s)<(script|style)\b.*?</\1>|<[^>]+>", " ", page)
+    return re.sub(r"\s+", " ", html.unescape(bare))
+
+
+def values(o: Outlets) -> Iterator[tuple[str, str, Value | float]]:
+    """Yield every number as (quantity, outlet, value): with its interval, if the outlet gives one."""
+    yield from of_parameters(o)
+    for m in o.document["answers"]["modes"]:
+        yield from of_mode(m)
+    for outlet, modes in (("result.json, modes", o.document["modes"]), ("API", o.modes)):
+        for m in modes:
+            yield f"f of {m['label']}", outlet, m["frequency_hz"]
+            yield f"ζ of {m['label']}", outlet, m["damping_ratio"]
+    yield from of_update(o.document["updates"][0])
+    for m in o.known["budget"]:
+        yield f"ζ of {m['label']}", "API, budget", m["measured"]["value"]
+        for source, span in m["sources"].items():
+            yield f"{source} in {m['label']}", "API, budget", _span(span)
+
+
+def of_parameters(o: Outlets) -> Iterator[tuple[str, str, Value | float]]:
+    for name, p in o.document["updates"][0]["parameters"].items():
+        yield name, "result.json, updates", (p["value"], *p["interval_90"])
+        yield name, "result.json, updates, median", p["median"]
+    for g in o.document["answers"]["ground"]:
+        yield g["name"], "result.json, answers", _span(g["value"])
+    for name, p in o.known["parameters"].items():
+        yield name, "API", (p["median"], *p["interval_90"])
+
+
+def of_mode(m: dict[str, Any]) -> Iterator[tuple[str, str, Value | float]]:
+    yield f"f of {m['label']}", "result.json, answers", m["measured_hz"]["value"]
+    yield f"ζ of {m['label']}", "result.json, answers", m["measured_damping"]["value"]
+    yield f"model's f of {m['label']}", "result.json, answers", _span(m["model_hz"])
+    yield f"model's ζ of {m['label']}", "result.json, answers", _span(m["model_damping"])
+    for source, span in m["sources"].items():
+        yield f"{source} in {m['label']}", "result.json, answers", _span(span)
+
+
+def of_update(update: dict[str, Any]) -> Iterator[tuple[str, str, Value | float]]:
+    labels = {m["mode"]: m["label"] for m in update["modes"]}
+    for m in update["modes"]:
+        yield f"f of {m['label']}", "result.json, updates", m["measured_frequency_hz"]
+        yield f"ζ of {m['label']}", "result.json, updates", m["measured_damping_ratio"]
+        yield f"model's f of {m['label']}", "result.json, updates", m["frequency_hz"]
+        yield f"model's ζ of {m['label']}", "result.json, updates", m["damping_ratio"]
+    for m in (m for m in update["predictions"] if m["mode"] in labels):
+        for short, key in (("f", "frequency_hz"), ("ζ", "damping_ratio")):
+            spread = (m[key]["median"], *m[key]["interval_90"])
+            yield f"model's {short} of {labels[m['mode']]}", "result.json, predictions", spread
+
+
+def _span(span: dict[str, Any]) -> Value | float:
+    low, high = span.get("low"), span.get("high")
+    return span["value"] if low is None or high is None else (span["value"], low, high)
+
+
+def test_every_quantity_has_one_value_and_one_interval(outlets: Outlets) -> None:
+    """To the last digits that sums in another order leave."""
+    found: dict[str, dict[str, Value | float]] = defaultdict(dict)
+    for quantity, outlet, value in values(outlets):
+        found[quantity][outlet] = value
+    assert {"k", "c", "f of side_side_1", "model's f of fore_aft_1", "soil in fore_aft_1"} <= set(found)
+    for quantity, by_outlet in found.items():
+        assert len(by_outlet) > 1, (quantity, by_outlet)
+        centres = {outlet: v[0] if isinstance(v, tuple) else v for outlet, v in by_outlet.items()}
+        first = next(iter(centres.values()))
+        assert centres == pytest.approx(dict.fromkeys(centres, first), rel=1e-9), (quantity, by_outlet)
+        spans = [v[1:] for v in by_outlet.values() if isinstance(v, tuple)]
+        for span in spans:
+            assert span == pytest.approx(spans[0], rel=1e-9), (quantity, by_outlet)
+
+
+def test_a_parameter_reads_alike_on_terminal_page_and_api(outlets: Outlets) -> None:
+    """One formatter: stiffness with its prefix and its interval, nowhere in powers of ten."""
+    text = outlets.known["parameters"]["k"]["text"]
+    assert re.fullmatch(r"[\d.]+ [MG]N/m \([\d.]+( [MG]N/m)? to [\d.]+ [MG]N/m\)", text)
+    for place in (outlets.terminal, outlets.page):
+        assert text in place
+        assert not re.search(r"\d(e\+\d|\s*×\s*10[⁰-⁹])\d*\s*N", place)
+
+
+def test_modes_are_named_and_counted_alike(outlets: Outlets) -> None:
+    for m in outlets.modes:
+        words = m["label"].replace("_", "-", m["label"].count("_") - 1).replace("_", " ")
+        for place in (outlets.terminal, outlets.page):
+            assert words in place and f"{m['frequency_hz']:.4f}" in place
+        assert m["label"] not in outlets.terminal
+
+
+def test_what_no_source_explains_is_said_drawn_and_told(outlets: Outlets) -> None:
+    """Sources and what is beyond them make up the measured ratio."""
+    beyond = [m for m in outlets.known["budget"] if m["unexplained"]]
+    for m in beyond:
+        parts = [span["value"] for span in m["sources"].values()]
+        assert sum(parts) + m["unexplained"] == pytest.approx(m["measured"]["value"])
+    assert ("unexplained" in outlets.page) == bool(beyond)
