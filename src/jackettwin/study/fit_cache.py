@@ -102,7 +102,14 @@ def _errors(model: ErrorModel | None) -> list[object]:
     if model is None:
         return []
     each = [
-        [one.tolerance.name, one.tolerance.std, _numbers(one.mass), _numbers(one.stiffness), one.feet]
+        [
+            one.tolerance.name,
+            one.tolerance.std,
+            _numbers(one.mass),
+            _numbers(one.stiffness),
+            one.feet,
+            one.resonance_hz,
+        ]
         for one in model.directions.each
     ]
     return [each, dict(model.remainder), model.usual_frequency, model.usual_damping, model.scales]

@@ -14,9 +14,8 @@ from jackettwin.identification.subspace.real_poles import JOINED
 from jackettwin.response import Sensor
 from jackettwin.soil import family
 from jackettwin.study.measurements import MeasuredRelaxation
-from jackettwin.twin import ALL, UNIT, OperationTotal, TwinConfig, TwinState
+from jackettwin.twin import ALL, UNIT, OperationTotal, TwinConfig, TwinState, plus
 from jackettwin.twin.config import GivenRelaxation
-from jackettwin.twin.exact_sums import plus
 from jackettwin.twin.state import ClearShape, RateSums
 from jackettwin.updating import RelaxationTarget, SupportModel
 

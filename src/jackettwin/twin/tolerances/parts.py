@@ -46,6 +46,21 @@ def legs(structure: Structure) -> tuple[str, ...]:
     return tuple(m.name for m in structure.members if parts[m.name] == JACKET and climbs(m))
 
 
+def legs_by_foot(structure: Structure) -> tuple[tuple[str, ...], ...]:
+    """Return the names of the members of each foot's leg, in the order of the reaction nodes.
+
+    A member belongs to the foot that lies most in its direction from the tower's axis.
+    """
+    axis, climbing = np.array(structure.nodes[structure.top_node])[:2], set(legs(structure))
+    feet = np.array([structure.nodes[node][:2] for node in structure.reaction_nodes]) - axis
+    found: list[list[str]] = [[] for _ in feet]
+    for m in structure.members:
+        if m.name in climbing:
+            middle = 0.5 * np.add(structure.nodes[m.start], structure.nodes[m.end])[:2] - axis
+            found[int(np.argmax(feet @ middle))].append(m.name)
+    return tuple(tuple(names) for names in found)
+
+
 def with_braces(structure: Structure, change: Callable[[Member], Member]) -> Structure | None:
     """Return the structure with every member of the jacket changed that does not climb; None without any."""
     parts, climbing = part_of(structure), set(legs(structure))

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from math import sqrt
 
 import scipy.sparse as sp
 
 from jackettwin.loads import Coefficients, GrowthBand, Water, mass_per_level
 from jackettwin.structure import Assembly, Structure
-from jackettwin.twin.tolerances.parts import legs
 from jackettwin.twin.water import WaterConfig, moving_mass
 
 _LEAST_DEPTH_M = 1.0
@@ -103,22 +101,17 @@ def more_added_mass(water: WaterConfig, structure: Structure, size: float) -> Wa
     return replace(water, coefficients=coefficients)
 
 
-def flooded_legs(water: WaterConfig, structure: Structure, size: float) -> WaterConfig | None:
-    """Return the water with all legs flooded if they are dry, and dry if any is drawn as flooded."""
-    names, flooded = legs(structure), set(water.carried.flooded)
-    if not names:
-        return None
-    parts = {member.name: member.part for member in structure.members}
-    wet = {name for name in names if name in flooded or parts[name] in flooded}
-    if wet:
-        members = {m.name for m in structure.members if m.name in flooded or m.part in flooded}
-        return replace(water, carried=Water(tuple(sorted(members - wet))))
-    return replace(water, carried=Water((*water.carried.flooded, *names)))
+def flooded(names: tuple[str, ...]) -> Change:
+    """Return the change that floods members if they are dry, and dries them if any is drawn as flooded."""
 
+    def change(water: WaterConfig, structure: Structure, size: float) -> WaterConfig:
+        given = set(water.carried.flooded)
+        members = {m.name for m in structure.members if m.name in given or m.part in given}
+        if members & set(names):
+            return replace(water, carried=Water(tuple(sorted(members - set(names)))))
+        return replace(water, carried=Water((*water.carried.flooded, *names)))
 
-def leg_share(structure: Structure) -> float:
-    """Return how a share of every leg's own water counts in that of all: independent legs add by squares."""
-    return 1.0 / sqrt(max(len(structure.reaction_nodes), 1))
+    return change
 
 
 def _grown(water: WaterConfig, bands: tuple[GrowthBand, ...]) -> WaterConfig:

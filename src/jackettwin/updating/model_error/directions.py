@@ -21,6 +21,10 @@ from jackettwin.response import Condensed, Matrix, NumberedModes
 from jackettwin.soil import law_slope, law_stiffness
 from jackettwin.structure import Assembly
 
+_SPLIT = 0.5
+"""Relative distance of squares within which a mode and a mass on springs split, so that the mass no longer
+counts by x/(1 − x), x = (ω/ω_b)², which has no bound there, but by x(1 − x)/((1 − x)² + 0.5²)."""
+
 
 @dataclass(frozen=True)
 class Tolerance:
@@ -63,6 +67,9 @@ class Direction:
         Power p of the frequency by which the ground's loss grows faster than its law says. What is not lost
         at the frequencies below stiffens the less (Kramers and Kronig, for slow changes: d ln Re D/d ln ω =
         2/π · Im D/Re D), so that ∂D = p (i − 2/π) Im D ln(ω/ω₁), ω₁ the first pinned frequency.
+    resonance_hz : float
+        Where the mass sits on springs of its own, as blades do: below their frequency it counts as if there
+        were more of it, above as if it were missing. Zero of a mass that moves along.
     """
 
     tolerance: Tolerance
@@ -70,6 +77,7 @@ class Direction:
     stiffness: Matrix | None = None
     feet: FloatArray | None = None
     loss_growth: float = 0.0
+    resonance_hz: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,6 +180,12 @@ class ToleranceDirections:
             forms[:, m].imag = products[:, m].imag @ pattern
         return forms
 
+    def _on_springs(self, pole: ComplexArray) -> FloatArray:
+        """Return by how much each mass counts at poles, (n_sets, n_modes, n_directions)."""
+        own = 2.0 * pi * np.array([one.resonance_hz or np.inf for one in self.each])
+        x = (np.abs(pole)[..., None] / own) ** 2
+        return np.where(np.isinf(own), 1.0, x * (1.0 - x) / ((1.0 - x) ** 2 + _SPLIT**2))
+
     def _changes(
         self, found: NumberedModes, pole: ComplexArray, forms: ComplexArray
     ) -> tuple[ComplexArray, ComplexArray]:
@@ -181,6 +195,7 @@ class ToleranceDirections:
         a, b = found.rayleigh[:, :1], found.rayleigh[:, 1:]
         below = (2.0 * pole + a) * forms[..., 0] + b * forms[..., 1]
         by_mass, by_stiffness, by_feet = np.split(forms[..., 2 + n_groups :], [n, 2 * n], axis=-1)
+        by_mass = by_mass * self._on_springs(pole)
         above = (pole**2 + a * pole)[..., None] * by_mass + (1.0 + b * pole)[..., None] * by_stiffness
         by_feet = by_feet.reshape(*pole.shape, len(on_feet), n_groups)
         powers = np.array([one.loss_growth for one in self.each])
