@@ -13,7 +13,7 @@ from jackettwin.soil import DEFAULT_LAWS, Family, Law, Parameter, Prony, read_su
 from jackettwin.soil.laws import families
 from jackettwin.soil.laws.coefficients import BRANCHES, K0, OMEGA0, law_stiffness
 
-PRONY = ("prony-2", "prony-3", "prony-4")
+PRONY = ("prony-1", "prony-2", "prony-3", "prony-4")
 
 
 class Rubber(Family):

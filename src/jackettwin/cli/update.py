@@ -26,7 +26,10 @@ DEFAULT_TWIN = "openfast_pile"
 
 @click.command("update")
 @click.argument("twin", default=DEFAULT_TWIN)
-@click.option("--law", help="Only this law; default: the first of the twin file.")
+@click.option(
+    "--law",
+    help="Only this law, or prony: as many branches as the data tell; default: the first of the twin file.",
+)
 @click.option("--all-laws", is_flag=True, help="Every law of the twin file, ranked.")
 @click.option(
     "--start",
@@ -39,13 +42,14 @@ DEFAULT_TWIN = "openfast_pile"
 @answers
 def update_command(twin: str, law: str | None, all_laws: bool, points: tuple[str, ...], fresh: bool) -> Reply:
     """Update TWIN's supports under one law or all; writes nothing."""
-    from jackettwin.soil import family
+    from jackettwin.soil import family, members
     from jackettwin.study import count_steps, ranking_document, run_twin, update_document
     from jackettwin.twin import read_twin
 
     config = read_twin(twin)
     if law is not None:
-        family(law, field="--law")
+        for name in members([law]):
+            family(name, field="--law")
     require(law is None or not all_laws, "one law or all", field="--law", value=law, remedy="leave one out")
     if points:
         config = replace(

@@ -26,10 +26,12 @@ from .laws.coefficients import (
 from .laws.curves import LawCurves as LawCurves, law_curves as law_curves
 from .laws.families import (
     DEFAULT_LAWS as DEFAULT_LAWS,
+    SERIES as SERIES,
     Family as Family,
     families as families,
     family as family,
     law_parameter as law_parameter,
+    members as members,
     parameter_words as parameter_words,
 )
 from .laws.parameter import Parameter as Parameter

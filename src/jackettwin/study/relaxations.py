@@ -12,7 +12,7 @@ from jackettwin.errors import InputError, located
 from jackettwin.identification import mac
 from jackettwin.identification.subspace.real_poles import JOINED
 from jackettwin.response import Sensor
-from jackettwin.soil import family
+from jackettwin.soil import family, members
 from jackettwin.study.measurements import MeasuredRelaxation
 from jackettwin.twin import ALL, UNIT, OperationTotal, TwinConfig, TwinState, plus
 from jackettwin.twin.config import GivenRelaxation
@@ -70,7 +70,7 @@ def relaxing(config: TwinConfig, laws: tuple[str, ...]) -> tuple[str, ...]:
     InputError
         If none has.
     """
-    kept = tuple(law for law in laws if family(law).relaxes)
+    kept = tuple(law for law in laws if all(family(name).relaxes for name in members([law])))
     if not kept:
         raise InputError(
             "no structure on this law has real poles, and one was measured",

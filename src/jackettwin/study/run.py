@@ -12,6 +12,7 @@ import numpy as np
 from jackettwin.errors import InputError
 from jackettwin.files import NOT_KEPT, Keep
 from jackettwin.progress import SILENT, Progress
+from jackettwin.soil import SERIES
 from jackettwin.study.fit_cache import fitted, with_kept_posterior
 from jackettwin.study.fit_data import recorded_modes, residuals, target_modes, updating
 from jackettwin.study.measure import Measured, measure
@@ -24,7 +25,7 @@ from jackettwin.study.result import DampingExcess, TwinResult
 from jackettwin.study.rotor import mean_wind, operating_states, rotor_damping, rotor_speed_hz
 from jackettwin.study.scrutiny import scrutiny
 from jackettwin.twin import TwinConfig, TwinModel, TwinState, suspects, twin_model
-from jackettwin.updating import Update, likely
+from jackettwin.updating import Update, likely, series
 
 Posteriors = Literal["all", "likely", "none"]
 log = logging.getLogger(__name__)
@@ -107,21 +108,24 @@ def updated_twin(
         assembly, state, states, rotor_damping(config, assembly, numbered, wind), relaxations
     )
     wanted = laws or config.update.laws
-    shown, updates = tuple(m.mode for m in measured), []
-    for law in relaxing(config, wanted) if relaxations else wanted:
-        progress(f"update {law}")
+    shown, updates, lengths = tuple(m.mode for m in measured), [], []
+
+    def fit(law: str, *, sampled: bool = posteriors == "all") -> Update:
         problem = law_problem(config, evidence, law)
         with _said_where(config):
-            updates.append(
-                fitted(
-                    problem,
-                    shown,
-                    config.update,
-                    sampled=posteriors == "all",
-                    progress=progress,
-                    keep=keep,
-                )
-            )
+            return fitted(problem, shown, config.update, sampled=sampled, progress=progress, keep=keep)
+
+    for law in relaxing(config, wanted) if relaxations else wanted:
+        progress(f"update {law}")
+        if law == SERIES:
+            chosen, why = series(lambda name: fit(name, sampled=False), progress)
+            lengths.append(why)
+            wanted = tuple(chosen.law if name == SERIES else name for name in wanted)
+            updates.append(fit(chosen.law))
+        else:
+            updates.append(fit(law))
+    # a series may end with a law that is listed, too
+    updates = list({u.law: u for u in updates}.values())
     if posteriors == "likely":
         updates = _with_one_posterior(config, updates, progress, keep)
     speed, blades = rotor_speed_hz(config)
@@ -140,7 +144,7 @@ def updated_twin(
         measured=measured,
         updates=tuple(updates),
         excess=tuple(_excess(measured, result) for result in updates),
-        assumptions=assumptions(config, measured, relaxations, wind),
+        assumptions=(*assumptions(config, measured, relaxations, wind), *lengths),
         warnings=(*without_relaxation(left_out), *cautions(config, found, measured, tuple(updates), labels)),
         relaxations=relaxations,
         rotor_speed_hz=speed,

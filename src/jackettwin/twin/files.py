@@ -16,7 +16,7 @@ from jackettwin.identification import IdentificationSettings, Pick, parse_picks,
 from jackettwin.loads import SeaState, WaterSchema, depth_of, water_members
 from jackettwin.records.readers import formats
 from jackettwin.response import mode_kinds, mode_labels, read_mode_label
-from jackettwin.soil import DEFAULT_LAWS, MUDLINE, Parameter, family, tied_at_mudline
+from jackettwin.soil import DEFAULT_LAWS, MUDLINE, Parameter, family, members, tied_at_mudline
 from jackettwin.structure import RayleighSchema, Structure
 from jackettwin.twin.config import (
     PAIRED_MODES,
@@ -149,7 +149,8 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
     require(len({*channels}) == len(channels), "a channel is given twice", field="sensors", value=channels)
     for field, law in (("support.law", support.law), *_numbered("update.laws", schema.update.laws)):
         with located(field=field):
-            family(law or DEFAULT_LAWS[0])
+            for name in members([law or DEFAULT_LAWS[0]]):
+                family(name)
     with located(field="update"):
         _check_update(schema.update, {target.number for target in schema.targets})
     with located(field="support"):
@@ -299,7 +300,7 @@ def _picks(given: dict[str, Any], folder: Path, records: list[str]) -> tuple[Pic
 
 def _check_ties(support: SupportSchema, update: UpdateSettings) -> None:
     sides = ("", *SIDES) if support.tie == SPLIT_LEGS else ("",)
-    laws = (*DEFAULT_LAWS, *update.laws)
+    laws = (*DEFAULT_LAWS, *members(update.laws))
     known = {p.name + side: law for law in laws for p in family(law).parameters for side in sides}
     for field, names in (("shared", support.shared), ("scatter", [*support.scatter])):
         for name in names:
@@ -317,7 +318,7 @@ def _check_ties(support: SupportSchema, update: UpdateSettings) -> None:
 
 def _check_update(update: UpdateSettings, given_modes: Container[int | None]) -> None:
     """Refuse unknown bounds and priors now, not after the records have been identified."""
-    known = {p.name for law in (*DEFAULT_LAWS, *update.laws) for p in family(law).parameters}
+    known = {p.name for law in (*DEFAULT_LAWS, *members(update.laws)) for p in family(law).parameters}
     for name in update.parameters:
         matrix_of(name, field="parameters")
     known |= {p.name for p in NuisanceParameters(_dashpots(update), rayleigh=True).parameters}
@@ -344,7 +345,9 @@ def _check_starts(update: UpdateSettings) -> None:
     """Refuse points to start from that are of no law which is fitted."""
     beside = {p.name for p in NuisanceParameters(_dashpots(update), rayleigh=True).parameters}
     beside |= {*update.water, *update.parameters}
-    laws = {law: tuple(p.name for p in family(law).parameters) for law in (*DEFAULT_LAWS, *update.laws)}
+    laws = {
+        law: tuple(p.name for p in family(law).parameters) for law in (*DEFAULT_LAWS, *members(update.laws))
+    }
     for i, point in enumerate(() if isinstance(update.starts, int) else update.starts):
         require(
             any(

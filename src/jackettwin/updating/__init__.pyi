@@ -31,6 +31,7 @@ from .law_choice import (
     likely as likely,
     ranked as ranked,
     recommended as recommended,
+    series as series,
 )
 from .model import SupportModel as SupportModel
 from .model_error.checks import DatumCheck as DatumCheck, Objection as Objection, objection as objection

@@ -8,7 +8,7 @@ forms, twin files and the report find there all that they say of it.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from math import pi
 from typing import ClassVar
@@ -294,6 +294,14 @@ def _free_branches(n: int) -> tuple[Parameter, ...]:
     return tuple(parameters)
 
 
+class PronyOne(FreeBranches):
+    """One free branch: ``zener`` in other parameters, with the priors of the longer series."""
+
+    name = "prony-1"
+    words = "a spring beside one free Maxwell branch"
+    parameters = _free_branches(1)
+
+
 class PronyTwo(FreeBranches):
     """Two free branches."""
 
@@ -329,10 +337,14 @@ LAWS = (
     Zener(),
     ThreeBranches(),
     FractionalElement(),
+    PronyOne(),
     PronyTwo(),
     PronyThree(),
     PronyFour(),
 )
+SERIES = "prony"
+"""A Prony series whose branches are as many as the data tell."""
+_SERIES_LAWS = ("prony-1", "prony-2", "prony-3", "prony-4")
 PLUGINS = "jackettwin.support_laws"
 """Group of entry points, each an instance of a :class:`Family`, entered by its name."""
 DEFAULT_LAWS = ("maxwell-3", "kelvin-voigt", "zener", "springpot")
@@ -355,6 +367,16 @@ def family(name: str, *, field: str | None = None) -> Family:
         If the name is unknown.
     """
     return look_up(families(), name, "law", field=field)
+
+
+def members(laws: Sequence[str]) -> tuple[str, ...]:
+    """Return the names of laws with a series instead of ``prony``: one branch, then two, three and four.
+
+    >>> members(("kelvin-voigt", "prony"))
+    ('kelvin-voigt', 'prony-1', 'prony-2', 'prony-3', 'prony-4')
+    """
+    each = (_SERIES_LAWS if law == SERIES else (law,) for law in laws)
+    return tuple(dict.fromkeys(name for names in each for name in names))
 
 
 _ROTORS = {f"c_{axis}": f"rotor's {axis.replace('_', '-')} dashpot" for axis in ("fore_aft", "side_side")}
