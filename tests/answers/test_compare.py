@@ -11,8 +11,7 @@ from click.testing import CliRunner
 
 from jackettwin.answers.compare import change, changed_inputs, compare, shared_records
 from jackettwin.cli import main
-from jackettwin.study import inputs_document
-from jackettwin.twin import read_twin
+from jackettwin.twin import inputs_document, read_twin
 
 
 def document(f: float, k: float) -> dict:

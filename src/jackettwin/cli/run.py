@@ -55,14 +55,13 @@ def run_command(
     from jackettwin.study import (
         MODES_IN_TIME,
         count_steps,
-        inputs_document,
         run_document,
         run_twin,
         true_parameters,
         write_modes_in_time,
     )
     from jackettwin.study.modes_in_time import rows_of_records
-    from jackettwin.twin import read_twin
+    from jackettwin.twin import inputs_document, read_twin
 
     config = read_twin(twin or (SIMULATED_TWIN if simulate else DEFAULT_TWIN), records_follow=simulate)
     folder = out or Path("out") / config.name

@@ -18,7 +18,6 @@ from .follow_result import (
     days_document as days_document,
     in_time_document as in_time_document,
 )
-from .inputs import inputs_document as inputs_document
 from .many_records.export import WRITERS as WRITERS, export_modes as export_modes
 from .many_records.long_records import LONG as LONG, PIECE_S as PIECE_S
 from .measurements import MeasuredMode as MeasuredMode

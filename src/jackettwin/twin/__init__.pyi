@@ -2,6 +2,7 @@ from .advance import advance as advance, advance_all as advance_all
 from .config import TwinConfig as TwinConfig
 from .exact_sums import UNIT as UNIT, average as average, plus as plus
 from .files import read_twin as read_twin, shipped_twins as shipped_twins
+from .inputs import inputs_document as inputs_document
 from .model import TwinModel as TwinModel, twin_model as twin_model
 from .observation import OBSERVATION as OBSERVATION, Observation as Observation
 from .observe import examined as examined, observe as observe

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel
 
-from jackettwin.twin import TwinConfig
+from jackettwin.twin.config import TwinConfig
 
 _NOT_ASKED = ("name", "path", "records", "assigned", "of_records")
 """Of a twin: its name, files, whose content is in the provenance, and what follows from the rest."""
