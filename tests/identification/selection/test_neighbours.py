@@ -9,9 +9,13 @@ import pytest
 
 from jackettwin.identification import ModalEstimate, identify
 from jackettwin.identification.selection.candidates import with_covariance
-from jackettwin.identification.selection.neighbours import combinations_of_neighbours, identified_twice
+from jackettwin.identification.selection.neighbours import (
+    combinations_of_neighbours,
+    identified_twice,
+    members_of_pairs,
+)
 from jackettwin.identification.synthetic import ModalSystem, simulate
-from jackettwin.records import Record
+from jackettwin.records import Channel, Record
 
 SHAPES = np.array(
     [[1.0, 0.6, 0.25, 0.1, 0.05, 0.02], [-0.4, 0.6, 0.9, -0.1, 0.2, 0.3], [0.5, -0.6, 0.8, 0.4, -0.3, 0.6]]
@@ -94,3 +98,24 @@ def test_a_peak_of_the_forces_is_doubted() -> None:
     assert peaks
     assert all("shape_of_neighbours" in [r.code for r in m.reasons] for m in peaks)
     assert [round(m.frequency_hz, 1) for m in found.modes if m.status == "ok"] == [0.3, 1.0]
+
+
+def test_a_pair_along_two_axes_is_one_also_where_its_shapes_are_mixed():
+    """Fore-aft and side-side within two bandwidths; a tone of all axes, or a mode far away, makes no pair."""
+    axes = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)) * 3
+    channels = [Channel(f"c{k}", direction=axis) for k, axis in enumerate(axes)]
+    heights = np.array([1.0, 0.6, 0.2])
+    along, across = np.kron(heights, [1.0, 0.0]), np.kron(heights, [0.0, 1.0])
+
+    def modes(frequency_hz, *shapes):
+        made = zip(frequency_hz, shapes, strict=True)
+        return [ModalEstimate(f, 0.01, shape.astype(complex), 1.0, 0.0, 1.0) for f, shape in made]
+
+    assert members_of_pairs(modes([0.300, 0.306], along, across), channels) == {0, 1}
+    mixed = (along + 0.5 * across, across - 0.5 * along)
+    assert members_of_pairs(modes([0.300, 0.306], *mixed), channels) == {0, 1}
+    assert members_of_pairs(modes([0.300, 0.320], along, across), channels) == set()
+    tone = np.array([0.9, 0.4, 0.3, 0.8, 0.5, 0.6])
+    assert members_of_pairs(modes([0.300, 0.306], along, tone), channels) == set()
+    unplaced = [Channel(f"c{k}") for k in range(6)]
+    assert members_of_pairs(modes([0.300, 0.306], along, across), unplaced) == set()

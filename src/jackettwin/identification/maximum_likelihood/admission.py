@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jackettwin.arrays import FloatArray, Int64Array
+from jackettwin.arrays import BoolArray, FloatArray, Int64Array
 from jackettwin.identification.maximum_likelihood import accuracy, likelihood
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.identification.maximum_likelihood.spectral_model import expected, response_power
@@ -33,6 +33,9 @@ if TYPE_CHECKING:
 SUSPECT_UNCERTAINTY = 2.5
 """A fitted mode is tested for removal if its damping is this many times as uncertain as the long-data
 limit."""
+CLOSE_DISTANCE, SAME_SHAPE = 2.0, 0.8
+"""Distance over the sum of half bandwidths below which two modes are close,
+and MAC above which they may be one."""
 STEPS_BEFORE_ADMISSION = 4
 """Scoring steps taken before doubtful modes are considered."""
 PARAMETERS_OF_A_MODE = 3
@@ -74,14 +77,17 @@ def admit_modes(
 def drop_unneeded_modes(
     data: Periodogram, optimum: likelihood.Optimum, chosen: Int64Array, known: accuracy.Accuracy
 ) -> tuple[likelihood.Optimum, Int64Array, accuracy.Accuracy]:
-    """Remove modes of very uncertain damping if the spectrum is explained as well without them."""
+    """Remove modes of very uncertain damping, or seen twice, if the spectrum is explained as well without."""
     kept: set[int] = set()
     while len(chosen) > 1:
         p = optimum.parameters
         mode = p.n_fixed + np.arange(len(chosen))
         std = np.sqrt(np.diag(known.covariance))[len(p.log_f) + mode]
         limit = long_data_limits(np.exp(p.log_f[mode]), np.exp(p.log_zeta[mode]), data.duration_s)[1]
-        suspect = [int(k) for k in np.argsort(-std / limit) if std[k] > SUSPECT_UNCERTAINTY * limit[k]]
+        doubled = possible_doubles(p, mode)
+        suspect = [
+            int(k) for k in np.argsort(-std / limit) if std[k] > SUSPECT_UNCERTAINTY * limit[k] or doubled[k]
+        ]
         suspect = [k for k in suspect if int(chosen[k]) not in kept]
         if not suspect:
             break
@@ -92,6 +98,19 @@ def drop_unneeded_modes(
         else:
             kept.add(int(chosen[suspect[0]]))
     return optimum, chosen, known
+
+
+def possible_doubles(p: Parameters, mode: Int64Array) -> BoolArray:
+    """Tell which modes have nearly the shape of another one close to them, or two others close, (n,).
+
+    Of one peak two modes explain a little more than one, and three a little more than a pair, whose shapes
+    they then mix. A further mode stays only if the likelihood needs it.
+    """
+    f, zeta = np.exp(p.log_f[mode]), np.exp(p.log_zeta[mode])
+    close = np.abs(f[:, None] - f) < CLOSE_DISTANCE * np.add.outer(f * zeta, f * zeta)
+    unit = p.shapes[mode] / np.linalg.norm(p.shapes[mode], axis=1, keepdims=True)
+    alike = (unit @ unit.T) ** 2 > SAME_SHAPE
+    return np.asarray((np.sum(close & alike, axis=1) > 1) | (np.sum(close, axis=1) > 2))
 
 
 def required_gain(data: Periodogram) -> float:

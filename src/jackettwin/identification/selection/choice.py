@@ -20,7 +20,7 @@ from jackettwin.identification.selection.candidates import (
     beside_tones,
     with_covariance,
 )
-from jackettwin.identification.selection.neighbours import apart
+from jackettwin.identification.selection.neighbours import apart, members_of_pairs
 from jackettwin.identification.selection.screening import screen, with_unknown_damping, worth_keeping
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.envelopes import is_suspiciously_steady
@@ -100,7 +100,13 @@ def chosen_modes(
     found = _sorted(judged, modes, tones_hz, resolved, settings, findings)
     flagged = (beside_orders(mode, ready.rotor_orders) for mode in found.modes)
     lines = transform(y)
-    found = replace(found, modes=tuple(_steady(mode, lines, duration_s, scale) for mode in flagged))
+    flagged_modes = tuple(flagged)
+    pairs = members_of_pairs(flagged_modes, ready.channels)
+    steady = (
+        mode if i in pairs else _steady(mode, lines, duration_s, scale)
+        for i, mode in enumerate(flagged_modes)
+    )
+    found = replace(found, modes=tuple(steady))
     if settings.refine:
         found = replace(found, findings=(*found.findings, *_hidden(judged, found)))
         found = replace(found, modes=tuple(_widen_close_pair(m, found.modes) for m in found.modes))
@@ -155,18 +161,21 @@ def screened_choice(
     drifting : sequence of PhaseTrack
         Tones already subtracted: a peak that remains where one crossed is a mode or a remainder of the tone.
     """
-    modes = dict(zip(chosen.candidate, screen(chosen.modes, known), strict=True))
+    found = dict(zip(chosen.candidate, chosen.modes, strict=True))
+    restored: dict[int, ModalEstimate] = {}
     rejected = list(chosen.rejected)
     for i, c in enumerate(judged if rescue else ()):
         f = c.mode.frequency_hz
         passing = next((tone for tone in drifting if tone.passes(f)), None) if c.is_tone else None
-        if i in modes or (c.objection is not None and passing is None) or not known.inside(f):
+        if i in found or (c.objection is not None and passing is None) or not known.inside(f):
             continue
-        if worth_keeping(c.mode, list(modes.values()), known):
+        if worth_keeping(c.mode, [*found.values(), *restored.values()], known):
             rejected = [r for r in rejected if not _about(r, c.mode)]
-            modes[i] = (
+            restored[i] = (
                 with_unknown_damping(c.mode) if passing is None else beside_tones(c.mode, [passing.swept_hz])
             )
+    judged_modes = screen(chosen.modes, known, beside=tuple(restored.values()))
+    modes = dict(zip(chosen.candidate, judged_modes, strict=True)) | restored
     forced = {i: m for i, m in modes.items() if not m.status.is_a_mode}
     order = sorted((i for i in modes if i not in forced), key=lambda i: modes[i].frequency_hz)
     left_out = [

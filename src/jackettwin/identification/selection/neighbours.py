@@ -10,6 +10,7 @@ that no fit describes, one may be identified twice; its second shape is a combin
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,11 +20,15 @@ from jackettwin.identification.status import ModeStatus
 
 if TYPE_CHECKING:
     from jackettwin.identification.estimate import ModalEstimate
+    from jackettwin.records import Channel
 
 MAX_OUTSIDE_SHARE = 0.01
 """Share of a shape outside the span of its neighbours' shapes below which it is their combination.
 Wave peaks between the first two pairs of a simulated jacket have 0.001;
 of 60 modes of random systems none had less than 0.03."""
+PAIR_DISTANCE, AXIS_SHARE = 2.0, 0.95
+"""Distance over the sum of half bandwidths within which two modes are a pair,
+and the least share of its own axis in the motion of a shape in their plane."""
 MIN_FREE_DIMENSIONS = 2
 """Dimensions outside the neighbours' span that are required; with fewer,
 almost any shape is a combination."""
@@ -112,6 +117,28 @@ def _outside(modes: Sequence[ModalEstimate], i: int, beside: Sequence[int], scal
     shape = modes[i].mode_shape / scale
     inside = float(np.sum(np.abs(basis.conj().T @ shape) ** 2) / np.sum(np.abs(shape) ** 2))
     return 1.0 - inside
+
+
+def members_of_pairs(modes: Sequence[ModalEstimate], channels: Sequence[Channel]) -> set[int]:
+    """Return the members of close pairs whose plane holds a shape along each of the horizontal axes.
+
+    A structure that is as stiff one way as the other has its modes in such pairs. Where one member is a mode,
+    so is the other: a tone would have to meet its frequency and keep to the other axis.
+
+    Parameters
+    ----------
+    channels : (n_channels,)
+        With their directions; channels without one are of no axis.
+    """
+    along = np.array([(0.0, 0.0, 0.0) if c.direction is None else c.direction for c in channels])[:, :2]
+    found: set[int] = set()
+    for i, j in combinations(range(len(modes)), 2):
+        if apart(modes[i], modes[j]) < PAIR_DISTANCE:
+            plane: ComplexArray = np.linalg.qr(np.array([modes[i].mode_shape, modes[j].mode_shape]).T)[0]
+            shares = (np.linalg.eigvalsh((plane.conj().T * axis**2) @ plane)[-1] for axis in along.T)
+            if min(shares) > AXIS_SHARE:
+                found |= {i, j}
+    return found
 
 
 def apart(mode: ModalEstimate, other: ModalEstimate) -> float:

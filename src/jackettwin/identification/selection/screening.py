@@ -198,9 +198,17 @@ def _peaks_hz(y: FloatArray, sample_rate_hz: float) -> tuple[float, ...]:
     return tuple(clear_peaks_hz(spectrum.frequencies_hz, spectrum.density))
 
 
-def screen(modes: Sequence[ModalEstimate], known: Evidence) -> list[ModalEstimate]:
-    """Return the modes with their statuses, including those found not to be modes."""
-    judged = [_judged(mode, [m for m in modes if m is not mode], known) for mode in modes]
+def screen(
+    modes: Sequence[ModalEstimate], known: Evidence, *, beside: Sequence[ModalEstimate] = ()
+) -> list[ModalEstimate]:
+    """Return the modes with their statuses, including those found not to be modes.
+
+    Parameters
+    ----------
+    beside : sequence of ModalEstimate
+        Further modes, which are not judged but may be the other member of a pair.
+    """
+    judged = [_judged(mode, [m for m in (*modes, *beside) if m is not mode], known) for mode in modes]
     for i in combinations_of_neighbours(judged, known.scale, CLOSE_DISTANCE):
         judged[i] = judged[i].flagged(ModeStatus.DOUBTFUL, Finding("shape_of_neighbours"))
     for i in identified_twice(judged, known.scale, CLOSE_DISTANCE):
@@ -255,7 +263,7 @@ def _judged(mode: ModalEstimate, others: Sequence[ModalEstimate], known: Evidenc
     close = [m for m in others if apart(mode, m) < CLOSE_DISTANCE]
     for status, finding in (
         *_forces(mode, close, known.peak_of_sea_hz),
-        *_shape(mode, close, known.scale),
+        *_shape(mode, close, known),
         *_agreement(mode, close, known),
         *_damping(mode, known),
         *_two_peaks(mode, others, known),
@@ -289,15 +297,24 @@ def _may_reach(mode: ModalEstimate, damping_ratio: float) -> bool:
     return interval is not None and interval[1] > damping_ratio
 
 
-def _shape(mode: ModalEstimate, close: Sequence[ModalEstimate], scale: FloatArray) -> Iterator[Verdict]:
+def _shape(mode: ModalEstimate, close: Sequence[ModalEstimate], known: Evidence) -> Iterator[Verdict]:
     if mode.mpc < MIN_MPC and not close:
         yield ModeStatus.DOUBTFUL, Finding("complex_shape", params={"mpc": mode.mpc})
-    share = np.abs(mode.mode_shape / scale) ** 2
-    share = share / share.sum()
-    if len(share) < MIN_SENSORS:
+    scale = known.scale
+    if len(scale) < MIN_SENSORS:
         return
-    if any(float(mac(mode.mode_shape / scale, m.mode_shape / scale)) > SAME_PEAK_MAC for m in close):
+    own = mode.mode_shape / scale
+    twins = [m for m in close if float(mac(own, m.mode_shape / scale)) > SAME_PEAK_MAC]
+    if any(_less_of_a_peak(mode, twin, known) for twin in twins):
         yield ModeStatus.DOUBTFUL, Finding("shape_twice")
+
+
+def _less_of_a_peak(mode: ModalEstimate, other: ModalEstimate, known: Evidence) -> bool:
+    """Tell which of two modes of one shape is the double: the one whose peak stands out less."""
+    ratio, theirs = (
+        contrast(known.lines, known.duration_s, m, m.mode_shape / known.scale)[0] for m in (mode, other)
+    )
+    return ratio <= theirs
 
 
 def _agreement(mode: ModalEstimate, close: Sequence[ModalEstimate], known: Evidence) -> Iterator[Verdict]:
