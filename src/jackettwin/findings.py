@@ -145,6 +145,11 @@ CATALOGUE: dict[str, Kind] = {
     "stamps_missing": Kind("warning", "{samples} samples have no time stamp; declared missing"),
     "stamps_disordered": Kind("warning", "{samples} time stamps repeat or run backwards; left out"),
     # identification
+    "peaks_above_band": Kind(
+        "info",
+        "{count} clear peaks above the band, which ends at {edge:.3g} Hz: {peaks} Hz; modes there are not "
+        "sought, --band {widen} widens it",
+    ),
     "not_refined": Kind("warning", "modes at {frequencies_hz} Hz not refined: {obstacle}"),
     "hidden_mode": Kind(
         "warning",

@@ -97,7 +97,7 @@ def test_methods_side_by_side(tmp_path: Path) -> None:
     assert code == 0
     document = json.loads(out)
     methods = document["methods"]["modes"]
-    assert list(methods) == ["ssi-cov", "ssi-dat", "plscf", "efdd"]
+    assert list(methods) == ["ssi-cov", "ssi-dat", "plscf", "efdd", "bayoma"]
     assert all(len(modes) == len(document["modes"]) for modes in methods.values())
     code, _, err = run(record, record, "--compare")
     assert code == 2

@@ -44,7 +44,7 @@ def quiet() -> Iterator[None]:
 
 
 def test_well_separated_modes_are_the_same_by_every_method(compared: Comparison) -> None:
-    assert list(compared.modes) == ["ssi-cov", "ssi-dat", "plscf", "efdd"]
+    assert list(compared.modes) == ["ssi-cov", "ssi-dat", "plscf", "efdd", "bayoma"]
     for method, modes in compared.modes.items():
         for k, mode in enumerate(modes):
             assert mode is not None, method

@@ -70,7 +70,7 @@ def test_it_is_chosen_like_ours(place: Path, how: str) -> None:
 def test_it_is_compared_and_reported(place: Path) -> None:
     """A method of another package ended the report with a KeyError."""
     compared = identify(place, "--compare", "--report", "r.html")["methods"]["modes"]
-    assert list(compared) == ["ssi-cov", "ssi-dat", "plscf", "efdd", "era"]
+    assert list(compared) == ["ssi-cov", "ssi-dat", "plscf", "efdd", "bayoma", "era"]
     assert compared["era"][0]["frequency_hz"] == compared["ssi-dat"][0]["frequency_hz"]
     assert "<th>era</th>" in (place / "r.html").read_text().replace(' scope="col"', "")
 

@@ -70,6 +70,8 @@ class _Method(click.types.StringParamType):
     type=PageFile(),
     help="HTML page: spectra, stabilisation and moving shapes of one record, or modes followed over many.",
 )
+@click.option("--band", help="LOW,HIGH in Hz: where modes are sought; default from the lowest clear peak.")
+@click.option("--quick", is_flag=True, help="A quick look: no uncertainty, no refinement, no further checks.")
 @click.option("--compare", is_flag=True, help="One record by every method, side by side.")
 @click.option("--real-poles", is_flag=True, help="Look for relaxations as well: poles that do not oscillate.")
 @click.option(
@@ -102,6 +104,8 @@ def identify_command(
     settings_file: str | None,
     method: str | None,
     report: Path | None,
+    band: str | None,
+    quick: bool,
     compare: bool,
     real_poles: bool,
     picks_file: str | None,
@@ -119,7 +123,7 @@ def identify_command(
 
     Several records are fused: over all of them and by wind speed, yaw and state.
     """
-    asked = (method, compare, real_poles, sample_rate, unit, gain, zone, whole)
+    asked = (method, band, quick, compare, real_poles, sample_rate, unit, gain, zone, whole)
     place = partial(_place, records, (settings_file, picks_file), asked, out)
     known = None if fresh or report is not None else cache.kept_document(place())
     if known is not None:
@@ -129,7 +133,7 @@ def identify_command(
     from jackettwin.files import check_room
     from jackettwin.records import record_files
 
-    settings = _settings(settings_file, method, real_poles)
+    settings = _settings(settings_file, method, band, quick=quick, real_poles=real_poles)
     _refuse_format(out)
     files = record_files(records)
     picks = _picks(picks_file, files)
@@ -273,7 +277,9 @@ def _many(
     return many_document(batch, together)
 
 
-def _settings(path: str | None, method: str | None, real_poles: bool) -> IdentificationSettings:
+def _settings(
+    path: str | None, method: str | None, band: str | None, *, quick: bool, real_poles: bool
+) -> IdentificationSettings:
     from jackettwin.files import read_yaml, validate
     from jackettwin.identification import IdentificationSettings
 
@@ -281,7 +287,34 @@ def _settings(path: str | None, method: str | None, real_poles: bool) -> Identif
     if path is not None:
         settings = validate(IdentificationSettings, read_yaml(path, what="settings file"), file=path)
     settings = settings if method is None else settings.with_method(method)
-    return settings.model_copy(update={"real_poles": True}) if real_poles else settings
+    if quick and real_poles:
+        raise InputError(
+            "needs the uncertainty that --quick leaves out", field="--real-poles", remedy="drop one"
+        )
+    update: dict[str, Any] = {"real_poles": True} if real_poles else {}
+    update |= {"blocks": 0, "refine": False} if quick else {}
+    update |= _band(band)
+    with located(field="--band"):
+        return validate(IdentificationSettings, {**dict(settings), **update}) if update else settings
+
+
+def _band(text: str | None) -> dict[str, float]:
+    """Return the settings of a band written LOW,HIGH."""
+    if text is None:
+        return {}
+    try:
+        low, high = (float(part) for part in text.split(","))
+    except ValueError:
+        low, high = 0.0, 0.0
+    if not 0.0 < low < high < float("inf"):
+        raise InputError(
+            "is not a band",
+            field="--band",
+            value=text,
+            allowed="two frequencies in Hz, 0 < LOW < HIGH",
+            remedy="write e.g. --band 0.1,12",
+        )
+    return {"lowest_frequency_hz": low, "highest_frequency_hz": high}
 
 
 def _unsaid(sample_rate: float | None, unit: str | None, gain: float | None, zone: str | None) -> Unsaid:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pkgutil import resolve_name
+from typing import TYPE_CHECKING, cast
 
 from jackettwin.errors import InputError
 from jackettwin.findings import Finding
 from jackettwin.identification.decays.free_decay import transient
 from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
-from jackettwin.identification.frequency_domain.fdd import fdd
-from jackettwin.identification.methods import EFDD, method_names
+from jackettwin.identification.methods import POLELESS, method_names
+from jackettwin.identification.peaks_above import peaks_above
 from jackettwin.identification.picks import Pick, of_record
 from jackettwin.identification.pole_methods import relaxations, uncertain
 from jackettwin.identification.preparation.components import components, expand_to_all_channels
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from jackettwin.identification.selection.choice import Choice
     from jackettwin.records import Record
 
+    PolelessMethod = Callable[[Record, IdentificationSettings], Identification]
 
 MIN_PERSISTENCE = 0.8
 """Share of the model orders in which a mode must appear if the method gives no uncertainty."""
@@ -89,9 +91,9 @@ def identify(
     """
     settings = settings or IdentificationSettings()
     wanted = of_record(picks, record.name)
-    if settings.method == EFDD:
-        _refuse_picks(wanted)
-        return fdd(record, settings)
+    if settings.method in POLELESS:
+        _refuse_picks(wanted, settings.method)
+        return cast("PolelessMethod", resolve_name(POLELESS[settings.method]))(record, settings)
     decay = _decay(record, settings, progress) if settings.method == "ssi-cov" and not wanted else None
     if decay is not None and decay.identified is not None:
         return decay.identified
@@ -142,6 +144,7 @@ def identify(
         duration_s=record.duration_s,
         warnings=(*ready.warnings, *missing, *map(str, chosen.findings)),
         findings=chosen.findings,
+        notes=peaks_above(record, settings, resolved),
         real_poles=relaxations(ready, settings) if settings.real_poles else (),
         picks=tuple(_pick(poles, c, record.name) for c in judged if c.objection is None),
     )
@@ -189,13 +192,13 @@ def _pick(poles: Stabilisation, chosen: Candidate, record: str) -> Pick:
     return Pick(float(poles.frequency_hz[k]), int(poles.order[k]), record, chosen.doubt is not None)
 
 
-def _refuse_picks(picks: Sequence[Pick]) -> None:
+def _refuse_picks(picks: Sequence[Pick], method: str) -> None:
     if picks:
         raise InputError(
             "has no poles to pick from",
             field="method",
-            value=EFDD,
-            allowed=", ".join(name for name in method_names() if name != EFDD),
+            value=method,
+            allowed=", ".join(name for name in method_names() if name not in POLELESS),
             remedy="leave the picks out, or choose another method",
         )
 

@@ -19,15 +19,20 @@ POLE_METHODS: Mapping[str, str] = {
     "plscf": "jackettwin.identification.pole_methods:by_plscf",
 }
 """Entry point of each method's function, loaded on first use."""
-EFDD = "efdd"
-"""Method without poles, which takes modes from spectral peaks (``frequency_domain/fdd.py``)."""
+POLELESS: Mapping[str, str] = {
+    "efdd": "jackettwin.identification.frequency_domain.fdd:fdd",
+    "bayoma": "jackettwin.identification.frequency_domain.bayoma:bayoma",
+}
+"""Methods without poles, which take modes from spectral peaks: entry point of a function from a record and
+settings to its identification."""
 PLUGINS = "jackettwin.identification_methods"
 """Group of entry points for further methods, each a function like those of ``POLE_METHODS``."""
 
 
 def method_names() -> tuple[str, ...]:
     """Return the names of all methods: built-in ones, then those of installed packages."""
-    return (*POLE_METHODS, EFDD, *(name for name in plugins(PLUGINS) if name not in (*POLE_METHODS, EFDD)))
+    own = (*POLE_METHODS, *POLELESS)
+    return (*own, *(name for name in plugins(PLUGINS) if name not in own))
 
 
 def is_method(name: str) -> bool:

@@ -20,7 +20,7 @@ class IdentificationSettings(Schema):
     Attributes
     ----------
     method : str
-        Method: "ssi-cov", "ssi-dat", "plscf", "efdd", or that of an installed package.
+        Method: "ssi-cov", "ssi-dat", "plscf", "efdd", "bayoma", or that of an installed package.
         Only SSI-cov gives the uncertainty of every pole; the others serve for comparison.
     reference_channels : tuple of str or None
         Reference channels of the covariances (a few good ones reduce work and noise); default all.

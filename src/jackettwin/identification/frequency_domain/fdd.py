@@ -53,15 +53,15 @@ def fdd(record: Record, settings: IdentificationSettings | None = None) -> Ident
     rate = resolved.sample_rate_hz
     length = int(min(SEGMENT_CYCLES * rate / resolved.lowest_frequency_hz, y.shape[1] / 2))
     f, matrix = spectral_matrix(y, rate, length)
-    values, vectors = _principal(matrix)
+    values, vectors = principal(matrix)
     inside = (f > resolved.lowest_frequency_hz) & (f < resolved.highest_frequency_hz)
-    modes = [_mode(f, values, vectors, k, scale) for k in _peaks(values, inside)]
+    modes = [_mode(f, values, vectors, k, scale) for k in peaks(values, inside)]
     return Identification(
         records=(record.name,),
         channels=ready.channels,
         modes=tuple(mode for mode in modes if mode is not None),
         rejected=(),
-        stabilisation=_no_poles(len(scale)),
+        stabilisation=no_poles(len(scale)),
         spectrum=as_measured(welch(y * scale[:, None], rate), ready.differentiated),
         settings=resolved,
         duration_s=record.duration_s,
@@ -69,13 +69,14 @@ def fdd(record: Record, settings: IdentificationSettings | None = None) -> Ident
     )
 
 
-def _principal(matrix: ComplexArray) -> tuple[FloatArray, ComplexArray]:
+def principal(matrix: ComplexArray) -> tuple[FloatArray, ComplexArray]:
     """Return the largest singular value and its vector at every frequency."""
     values, vectors = np.linalg.eigh(matrix)
     return np.asarray(values[:, -1]), np.asarray(vectors[:, :, -1])
 
 
-def _peaks(values: FloatArray, inside: BoolArray) -> list[int]:
+def peaks(values: FloatArray, inside: BoolArray) -> list[int]:
+    """Return the clear peaks of the largest singular value within the band."""
     level = running_median(values, max(len(values) // 10, 5))
     found = local_peaks(np.log(values), prominence=np.log(2.0))
     return [int(k) for k in found if inside[k] and values[k] > CLEAR_PEAK * level[k]]
@@ -116,7 +117,8 @@ def _mode(
     )
 
 
-def _no_poles(n_channels: int) -> Stabilisation:
+def no_poles(n_channels: int) -> Stabilisation:
+    """Return the stabilisation of a method without poles."""
     none, no = np.empty(0), np.empty(0, dtype=bool)
     whole = np.empty(0, dtype=np.int64)
     shapes = np.empty((0, n_channels), dtype=complex)

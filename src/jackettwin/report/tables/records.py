@@ -83,7 +83,13 @@ def method_table(compared: Comparison, names: Sequence[str]) -> Table:
 
 def _method_title(method: str) -> str:
     """Return how a method is written; one that an installed package brings goes by its name."""
-    return {"ssi-cov": "SSI-cov", "ssi-dat": "SSI-dat", "plscf": "pLSCF", "efdd": "EFDD"}.get(method, method)
+    return {
+        "ssi-cov": "SSI-cov",
+        "ssi-dat": "SSI-dat",
+        "plscf": "pLSCF",
+        "efdd": "EFDD",
+        "bayoma": "BAYOMA",
+    }.get(method, method)
 
 
 def identified_table(found: Identification, names: Sequence[str], *, folded: bool = False) -> Table:
