@@ -28,7 +28,8 @@ from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
     from jackettwin.files import KeptInFolder
-    from jackettwin.identification import IdentificationSettings, Pick
+    from jackettwin.identification import Examination, IdentificationSettings, Pick
+    from jackettwin.progress import Progress
     from jackettwin.records import Unsaid
 
 _SHOWN = 5
@@ -229,12 +230,16 @@ def _one(
 ) -> dict[str, Any]:
     from jackettwin.identification import examine_file, identification_document
 
-    with progress(1 + (report is not None), "identify") as step:
+    limits = settings.real_poles and settings.method == "ssi-cov"
+    with progress(1 + (report is not None) + limits, "identify") as step:
         step(f"identify {file.name}")
         seen = examine_file(file, settings, compare=compare or report is not None, **how)
         document = identification_document(
             seen.identification, seen.quality.summary(), seen.record.conditions, seen.comparison
         )
+        if limits:
+            step("detection limit of relaxations")
+            document["real_pole_limits"] = _limits(seen, settings, step)
         if report is not None:
             from jackettwin.report.pages.identification import build_identification_page
 
@@ -243,6 +248,16 @@ def _one(
     if report is not None:
         messages.print(f"wrote {report}")
     return document
+
+
+def _limits(seen: Examination, settings: IdentificationSettings, step: Progress) -> dict[str, Any]:
+    """Return which relaxations would have been seen: after a release, or else in ambient vibration."""
+    from jackettwin.identification import ambient_limits, limits_document, release_relaxations
+
+    release = release_relaxations(seen.record)
+    return limits_document(
+        ambient_limits(seen.record, settings, progress=step) if release is None else release
+    )
 
 
 def _many(
@@ -361,6 +376,8 @@ def _print_one(document: Mapping[str, Any]) -> None:
     for pole in document["real_poles"]:
         low, high = pole["rate_interval_95"]
         say(f"real pole: −{pole['rate_rad_s']:.3g} 1/s ({low:.3g} to {high:.3g} in 95 %)")
+    if "real_pole_limits" in document:
+        _print_limits(document["real_pole_limits"], bool(document["real_poles"]))
     _print_rejected(document["rejected"])
     quality = document["quality"]["findings"]
     for finding in quality:
@@ -379,6 +396,35 @@ def _print_reasons(modes: Iterable[Mapping[str, Any]]) -> None:
             alike.setdefault(about, []).append(f"{m['frequency_hz']:.4f}")
     for (status, reason), f in alike.items():
         say(f"{', '.join(f)} Hz {'is' if len(f) == 1 else 'are'} {status}: {reason}")
+
+
+def _print_limits(limits: Mapping[str, Any], found: bool) -> None:
+    """Say which relaxations would have been seen in 95 of 100 records like this."""
+    nothing = "" if found else "no real pole; "
+    if limits["kind"] == "release":
+        say(
+            f"{nothing}let go at {limits['release_s']:.1f} s; with 95 % power one of this size then is found:"
+        )
+        names = list(limits["limits"][0]["amplitude"])
+        rows = [
+            [f"{one['rate_rad_s']:.3g}", *(f"{one['amplitude'][n]:.2g}" for n in names)]
+            for one in limits["limits"]
+        ]
+        show_table(Table("amplitude of a relaxation", ("rate [1/s]", *names), rows))
+        return
+    low, high = limits["band_rad_s"]
+    band = f"{low:.3g} to {high:.3g} 1/s"
+    say(f"{nothing}nothing is said of rates beyond the band, {band}; inside, with 95 % power:")
+    name, rms = max(limits["rms"].items(), key=lambda pair: pair[1])
+    for one in limits["limits"]:
+        share, (least, most) = one["rms_share"], one["interval_95"]
+        said = (
+            "of no strength up to 8 times the record's rms"
+            if share is None
+            else f"from {share:.2g} times the record's rms ({least:.2g} to {most:.2g}), "
+            f"{share * rms:.2g} in {name}"
+        )
+        say(f"  a relaxation at {one['rate_rad_s']:.3g} 1/s is found {said}, by {one['trials']} trials")
 
 
 def _print_methods(document: Mapping[str, Any]) -> None:

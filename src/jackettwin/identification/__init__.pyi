@@ -1,6 +1,10 @@
 from .automatic import identify as identify
 from .comparison import Comparison as Comparison
-from .document import identification_document as identification_document
+from .decays.relaxations import (
+    ReleaseRelaxations as ReleaseRelaxations,
+    release_relaxations as release_relaxations,
+)
+from .document import identification_document as identification_document, limits_document as limits_document
 from .estimate import (
     Identification as Identification,
     ModalEstimate as ModalEstimate,
@@ -25,5 +29,6 @@ from .picks import Pick as Pick, parse_picks as parse_picks, refuse_strangers as
 from .pole_methods import PoleMethod as PoleMethod
 from .preparation.prepared import Prepared as Prepared
 from .record_steps import moving_channels as moving_channels
+from .relaxation_limits import AmbientLimits as AmbientLimits, ambient_limits as ambient_limits
 from .settings import IdentificationSettings as IdentificationSettings
 from .subspace.ssi_cov import OrderPoles as OrderPoles, ssi_cov as ssi_cov

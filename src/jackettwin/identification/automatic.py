@@ -6,9 +6,12 @@ from dataclasses import replace
 from pkgutil import resolve_name
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
+
 from jackettwin.errors import InputError
 from jackettwin.findings import Finding
 from jackettwin.identification.decays.free_decay import transient
+from jackettwin.identification.decays.relaxations import release_relaxations
 from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
 from jackettwin.identification.methods import POLELESS, method_names
 from jackettwin.identification.peaks_above import peaks_above
@@ -96,7 +99,7 @@ def identify(
         return cast("PolelessMethod", resolve_name(POLELESS[settings.method]))(record, settings)
     decay = _decay(record, settings, progress) if settings.method == "ssi-cov" and not wanted else None
     if decay is not None and decay.identified is not None:
-        return decay.identified
+        return _with_release(decay.identified, record, settings)
     if settings.method != "ssi-cov":
         # the methods are compared as such; without uncertainties, only persistence separates modes from noise
         share = max(settings.min_order_share, MIN_PERSISTENCE)
@@ -148,7 +151,18 @@ def identify(
         real_poles=relaxations(ready, settings) if settings.real_poles else (),
         picks=tuple(_pick(poles, c, record.name) for c in judged if c.objection is None),
     )
-    return identified if basis is None else expand_to_all_channels(identified, whole, basis)
+    identified = identified if basis is None else expand_to_all_channels(identified, whole, basis)
+    return _with_release(identified, record, settings)
+
+
+def _with_release(found: Identification, record: Record, settings: IdentificationSettings) -> Identification:
+    """Return the identification with the relaxation that shows after a release, if one is asked for."""
+    release = release_relaxations(record) if settings.real_poles else None
+    if release is None or release.pole is None:
+        return found
+    shape = dict(zip([c.name for c in release.channels], release.pole.mode_shape, strict=True))
+    pole = replace(release.pole, mode_shape=np.array([shape.get(c.name, 0j) for c in found.channels]))
+    return replace(found, real_poles=(pole,))
 
 
 def _decay(

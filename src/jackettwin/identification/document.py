@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+from jackettwin.identification.decays.relaxations import FALSE_ALARMS, POWER, ReleaseRelaxations
 from jackettwin.identification.picks import plain_picks
 from jackettwin.identification.status import ModeStatus
 
@@ -14,6 +16,7 @@ if TYPE_CHECKING:
     from jackettwin.arrays import ComplexArray
     from jackettwin.identification.comparison import Comparison
     from jackettwin.identification.estimate import Identification, ModalEstimate
+    from jackettwin.identification.relaxation_limits import AmbientLimits
 
 
 def identification_document(
@@ -48,6 +51,33 @@ def identification_document(
         "notes": list(found.notes),
         **({} if compared is None else {"methods": _comparison_document(compared)}),
         "conditions": dict(conditions),
+    }
+
+
+def limits_document(found: ReleaseRelaxations | AmbientLimits) -> dict[str, Any]:
+    """Return which relaxations would have been seen in a record, with 95 % power."""
+    if isinstance(found, ReleaseRelaxations):
+        names = [channel.name for channel in found.channels]
+        return {
+            "kind": "release",
+            "power": POWER,
+            "false_alarms": FALSE_ALARMS,
+            "release_s": found.release_s,
+            "amplitude": None if found.pole is None else dict(zip(names, found.amplitude, strict=True)),
+            "limits": [
+                {"rate_rad_s": one.rate_rad_s, "amplitude": dict(zip(names, one.amplitude, strict=True))}
+                for one in found.limits
+            ],
+        }
+    return {
+        "kind": "ambient",
+        "power": POWER,
+        "band_rad_s": [found.lowest_rate_rad_s, found.highest_rate_rad_s],
+        "rms": dict(zip(found.channels, found.rms, strict=True)),
+        "limits": [
+            {**asdict(one), "rms_share": one.rms_share if isfinite(one.rms_share) else None}
+            for one in found.limits
+        ],
     }
 
 
