@@ -24,13 +24,13 @@ from jackettwin.report.figures import (
     record as figures_record,
 )
 from jackettwin.report.pages.page import PageSection, Plot
-from jackettwin.report.tables.numbers import frequency, scientific, words
-from jackettwin.response import free_vibration
+from jackettwin.report.tables.numbers import frequency, percent, scientific, words
+from jackettwin.response import FreeVibration, free_vibration
 from jackettwin.response.modes.labels import mode_kinds, mode_labels
 from jackettwin.response.modes.modal import UndampedModes
 from jackettwin.response.motion.time import free_decay
 from jackettwin.response.sensors import Sensor, observation_matrix
-from jackettwin.soil import family
+from jackettwin.soil import family, law_curves
 from jackettwin.soil.laws.viscoelastic import Prony, kelvin_voigt, maxwell, zener
 from jackettwin.structure import Assembly, Rayleigh, assemble
 from jackettwin.updating import (
@@ -125,16 +125,22 @@ def _chapter_4() -> list[Plot]:
         "Zener": (schematics.zener_element(("E₁", "E₂", "η")), zener(0.5, 0.5, 0.5)),
     }
     caption = (
-        "Figure 4.2: models, relaxation under a unit step of strain, creep under a unit step of stress. "
-        "Kelvin–Voigt also gives an impulse at t = 0, not drawn."
+        "Figure 4.2: relaxation under a unit step of strain, creep under a unit step of stress, as "
+        "jackettwin law draws them. Kelvin–Voigt also gives an impulse at t = 0, not drawn."
     )
+    curves = {name: law_curves(one, 0.03, 1e3) for name, (_, one) in laws.items()}
     return [
         Plot(
             "figure_4_1",
             "Figure 4.1: harmonic loading of an elastic spring and of a Zener element.",
             law.cycle({"elastic": Prony(k0=1.0), "viscoelastic": zener(0.5, 0.3, 1.0)}, 0.5),
         ),
-        Plot("figure_4_2", caption, figures_theory.creep_and_relaxation(laws)),
+        Plot(
+            "figure_4_2_models",
+            "Figure 4.2: the models.",
+            schematics.draw([(name, drawing) for name, (drawing, _) in laws.items()], height=240),
+        ),
+        Plot("figure_4_2", caption, law.transients(curves)),
         Plot(
             "figure_4_3",
             "Figure 4.3: a mass on a Zener element.",
@@ -213,17 +219,21 @@ def _figure_5_4(jacket: _Jacket) -> Plot:
     step_s, n = 0.1, 3000
     motion = free_decay(pencil, pulled, step_s=step_s, n_steps=n) @ row
     pole = model.predict(np.array(_KV_1), (2,)).poles[0]
-    figure = figures_theory.free_decay(
+    f, zeta = abs(pole) / (2.0 * np.pi), -pole.real / abs(pole)
+    seen = FreeVibration(
+        np.array([pole, pole.conjugate()]),
+        "underdamped",
+        f,
+        zeta,
         np.linspace(0.0, step_s * n, n + 1),
-        motion,
-        frequency_hz=abs(pole) / (2.0 * np.pi),
-        damping_ratio=-pole.real / abs(pole),
+        motion / motion[0],
     )
     caption = (
         "Figure 5.4: free decay of the tower top after a pull of 1 MN along x, on Kelvin–Voigt feet "
-        f"(k {scientific(_KV_1[0])} N/m, c {scientific(_KV_1[1])} N·s/m)."
+        f"(k {scientific(_KV_1[0])} N/m, c {scientific(_KV_1[1])} N·s/m): {frequency(f)} Hz, "
+        f"ζ {percent(zeta)} %, logarithmic decrement {seen.logarithmic_decrement or 0.0:.4f}."
     )
-    return Plot("figure_5_4", caption, figure)
+    return Plot("figure_5_4", caption, law.let_go({"tower top": seen}))
 
 
 def _pair(record: Record, place: str) -> go.Figure:

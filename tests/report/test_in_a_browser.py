@@ -9,9 +9,13 @@ import subprocess
 from html import unescape
 from pathlib import Path
 
+import numpy as np
 import pytest
+import yaml
 
+from jackettwin.identification import Examination, parse_picks
 from jackettwin.report import build_report
+from jackettwin.report.pages.identification import build_identification_page
 from jackettwin.study import TwinResult
 
 CHROMIUM = next((p for p in ("chromium", "chromium-browser", "google-chrome") if shutil.which(p)), "")
@@ -78,3 +82,36 @@ def test_the_appendix_begins_within_twelve_screens_and_the_page_is_there_at_once
     found = laid_out(page, 1400)
     assert 1.0 < found["appendix"] <= 12.0
     assert found["ms"] < 3000.0  # parsed and laid out; figures follow when they come into view
+
+
+CLICKS = """<script>window.addEventListener("load", () => { const again = () => {
+  const d = document.getElementById("stabilisation_frequency");
+  if (!d.data || !d.emit) { setTimeout(again, 100); return; }
+  const t = d.data.filter(t => (t.mode || "").includes("markers")).pop();
+  const x = t.x._inputArray || t.x, y = t.y._inputArray || t.y;
+  [0, 1, 1].forEach(i => d.emit("plotly_click", {points: [{data: t, x: x[i], y: y[i]}]}));
+}; again(); });</script>"""
+
+
+def test_a_click_on_a_pole_picks_it_and_a_second_takes_it_back(
+    observation: Examination, tmp_path: Path
+) -> None:
+    """The list that the page writes is one that ``--picks`` reads."""
+    page = build_identification_page(observation, tmp_path / "page.html")
+    page.write_text(page.read_text("utf-8").replace("</body>", f"{CLICKS}</body>"), "utf-8")
+    done = subprocess.run(
+        [
+            CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=20000",
+            "--dump-dom", page.as_uri(),
+        ],
+        capture_output=True, text=True, timeout=120, check=True,
+    )  # fmt: skip
+    found = re.search(
+        r'<textarea id="picks-stabilisation_frequency"[^>]*>(.*?)</textarea>', done.stdout, re.S
+    )
+    assert found, done.stderr[-500:]
+    (pick,) = parse_picks(yaml.safe_load(unescape(found.group(1))))
+    poles = observation.identification.stabilisation
+    first = int(np.flatnonzero(poles.stable)[0])
+    assert (pick.record, pick.order) == (observation.record.name, poles.order[first])
+    assert pick.frequency_hz == pytest.approx(poles.frequency_hz[first], abs=1e-5)

@@ -38,6 +38,8 @@ class Plot:
     """Drawn on request only."""
     fits: bool = False
     """Drawn as narrow as the screen is; others are moved sideways on a small one."""
+    picks_of: str = ""
+    """Record of which a click on a pole, frequency over model order, makes a pick."""
     kind: Literal["plot"] = "plot"
 
     @property

@@ -64,7 +64,12 @@ def diagrams(found: Identification, names: tuple[str, ...]) -> list[Block]:
         "where known."
     )
     blocks: list[Block] = [
-        Plot("stabilisation_frequency", caption, figures_identification.stabilisation(found, names)),
+        Plot(
+            "stabilisation_frequency",
+            caption,
+            figures_identification.stabilisation(found, names),
+            picks_of=found.records[0],
+        ),
         Plot(
             "stabilisation_damping",
             "Is their damping as stable? The same poles against their damping ratio; above them the "
