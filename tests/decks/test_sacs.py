@@ -231,3 +231,74 @@ def test_a_superelement_of_a_deck_whose_interface_is_named(deck: Path, tmp_path:
     wrong = CliRunner().invoke(main, ["superelement", str(deck), "--interface", "202"])
     assert wrong.exit_code == 2
     assert "--interface" in wrong.stderr and "201" in wrong.stderr
+
+
+def section(name: str, shape: str, properties: str = "", sides: str = "") -> str:
+    return f"SECT {name:<7}   {shape:<3}{properties:<30} {sides}"
+
+
+SHAPES = "\n".join([
+    "OPTIONS      MN       SDUC   1 1   DC  A",
+    section("WF1", "WF", sides="  30.0 3.00  60.0 1.50"),
+    section("BX1", "BOX", sides="  80.0 2.00  50.0 2.00"),
+    section("PR1", "PRI", "100.0   500.0  4000.0  1000.0"),
+    section("PR2", "PRI"),
+    *(f"GRUP {g} {s:<7}              21.008.10024.82 1    1.001.00     0.500 7.8490"
+      for g, s in (("W01", "WF1"), ("B01", "BX1"), ("P01", "PR1"), ("P02", "PR2"))),
+    "GRUP LG1         100.00 3.000 21.008.10024.82 1    1.001.00     0.500 7.8490",
+    "MEMBER 1   2    LG1",
+    "MEMBER 2   3    W01",
+    "MEMBER 3   4    B01                 90.00",
+    "MEMBER 4   5    P01",
+    "MEMBER 2   4    P02",
+    "JOINT 1         0.     0.     0.                       111111",
+    "JOINT 2         0.     0.    10.",
+    "JOINT 3        10.     0.    10.",
+    "JOINT 4        10.    10.    10.",
+    "JOINT 5        20.    10.    10.",
+    "END",
+])  # fmt: skip
+
+
+def test_other_shapes_are_read_where_the_deck_gives_them(tmp_path: Path) -> None:
+    """By hand: an I and a box as differences of rectangles; AX, J, IY, IZ as given."""
+    path = tmp_path / "shapes.sacs"
+    path.write_text(SHAPES)
+    structure = read_structure(path)
+    beams = {b.part: b for b in structure.beams}
+    assert {b.shape for b in structure.beams} == {"I-section", "box", "any section"}
+    wide, box, given = (beams[g].section for g in ("W01", "B01", "P01"))
+    assert wide.A == pytest.approx(2 * 0.3 * 0.03 + 0.54 * 0.015)
+    assert wide.I_x == pytest.approx((0.3 * 0.6**3 - 0.285 * 0.54**3) / 12)
+    assert box.A == pytest.approx(0.8 * 0.5 - 0.76 * 0.46)
+    assert box.I_x == pytest.approx((0.5 * 0.8**3 - 0.46 * 0.76**3) / 12)  # the depth stands upright
+    assert (given.A, given.J, given.I_x, given.I_y) == pytest.approx((1e-2, 5e-6, 4e-5, 1e-5))
+    assert beams["B01"].twist_rad == pytest.approx(np.pi / 2)
+    remarks = " ".join(sacs_remarks(path))
+    assert "section PR2: shape PRI is not read" in remarks and "group P02" in remarks
+    # a mass by hand: the tube and the beams
+    tube = np.pi * (1.0 - 0.03) * 0.03 * 10
+    volume = tube + 10 * (wide.A + box.A + given.A)
+    assert check(assemble(structure)).mass_kg == pytest.approx(7849.0 * volume, rel=1e-6)
+
+
+def test_a_beam_of_a_deck_bends_as_its_second_moment_says(tmp_path: Path) -> None:
+    """A level cantilever under its tip: 3 E I/L³ about the level axis, and turned by 90° about the other."""
+    for angle, about in ((0.0, "I_x"), (90.0, "I_y")):
+        lines = [line for line in SHAPES.splitlines() if not line.startswith(("MEMBER", "JOINT", "END"))]
+        lines += [
+            f"MEMBER 1   2    W01               {angle:6.2f}",
+            "JOINT 1         0.     0.     0.                       111111",
+            "JOINT 2        10.     0.     0.",
+            "END",
+        ]
+        path = tmp_path / f"turned{angle:.0f}.sacs"
+        path.write_text("\n".join(lines))
+        structure = read_structure(path)
+        (beam,) = structure.beams
+        assembly = assemble(structure, subdivide=1)
+        dofs = assembly.dofs("2")
+        K = assembly.stiffness[dofs][:, dofs].toarray()
+        tip = 1.0 / np.linalg.inv(K)[2, 2]
+        E = 21.0e10
+        assert tip == pytest.approx(3 * E * getattr(beam.section, about) / 10.0**3, rel=1e-9)

@@ -13,12 +13,25 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import radians
 from pathlib import Path
 
 import numpy as np
 
+from jackettwin.decks.sacs_sections import NAMES, sacs_section
 from jackettwin.errors import InputError, located, require
-from jackettwin.structure import Material, Member, PointMass, Reaction, RigidLink, Section, Structure, Vector
+from jackettwin.structure import (
+    Beam,
+    BeamSection,
+    Material,
+    Member,
+    PointMass,
+    Reaction,
+    RigidLink,
+    Section,
+    Structure,
+    Vector,
+)
 
 log = logging.getLogger(__name__)
 _G = 9.80665
@@ -58,12 +71,13 @@ _METRIC = {
 
 @dataclass
 class _Part:
-    """A length of a group's members, None where it takes the rest; both sections are equal but for cones."""
+    """A length of a group's members, None where it takes the rest: a tube, a cone, or another section."""
 
-    start: Section
-    end: Section
+    start: Section | BeamSection
+    end: Section | BeamSection
     material: Material
     length: float | None
+    shape: str = ""
 
 
 _HERE = (0.0, 0.0, 0.0)
@@ -78,6 +92,8 @@ class _Bar:
     group: str
     code: str = ""
     shifts: tuple[Vector, Vector] | None = None
+    twist: float = 0.0
+    """Chord angle [rad]: how far the section is turned about the member."""
 
 
 @dataclass
@@ -89,6 +105,7 @@ class _Deck:
     held: dict[str, str] = field(default_factory=dict)
     groups: dict[str, list[_Part]] = field(default_factory=dict)
     tubes: dict[str, tuple[Section, Section]] = field(default_factory=dict)
+    beams: dict[str, tuple[BeamSection, str]] = field(default_factory=dict)
     shapes: set[str] = field(default_factory=set)
     members: list[_Bar] = field(default_factory=list)
     loads: dict[str, dict[str, float]] = field(default_factory=dict)
@@ -197,7 +214,8 @@ def _member(deck: _Deck, line: str) -> None:
     if "1" in line[22:34]:
         deck.remarks["members' end releases are not read: ends are rigid"] += 1
     if a and b and group:
-        deck.members.append(_Bar(a, b, group, line[6:7]))
+        twist = radians(_number(line, 36, 41, "chord angle", 0.0))
+        deck.members.append(_Bar(a, b, group, line[6:7], twist=twist))
 
 
 def _offsets(deck: _Deck, line: str) -> None:
@@ -216,11 +234,15 @@ def _group(deck: _Deck, line: str) -> None:
     rho = u.density * _number(line, 71, 76, "density", 490.0 if u is _ENGLISH else 7.849)
     material = Material(E, G, rho)
     length = _number(line, 77, 80, "segment length", 0.0) * u.long or None
-    if label and label not in deck.tubes:
+    if label and label not in deck.tubes and label not in deck.beams:
         deck.shapes.add(name)
         deck.remarks[f"group {name}: section {label} is no tube of this deck; its members are left out"] += 1
         return
-    if label:
+    start: Section | BeamSection
+    end: Section | BeamSection
+    if label in deck.beams:
+        start = end = deck.beams[label][0]
+    elif label:
         start, end = deck.tubes[label]
     else:
         start = end = Section(
@@ -231,18 +253,36 @@ def _group(deck: _Deck, line: str) -> None:
     if taper == "E" and parts:  # a pair of cards, B and E, is one cone from the one section to the other
         parts[-1].end = end
     else:
-        parts.append(_Part(start, end, material, length))
+        parts.append(_Part(start, end, material, length, deck.beams.get(label, (None, ""))[1]))
 
 
 def _section(deck: _Deck, line: str) -> None:
-    """Read a tube, or a cone whose far end has another diameter."""
+    """Read a tube, a cone whose far end has another diameter, or what is known of another shape."""
     name, shape, u = line[5:12].strip(), line[15:18].strip(), deck.units.short
     if shape not in ("TUB", "CON"):
-        deck.remarks[f"section {name}: shape {shape or 'unknown'} is not read"] += 1
+        other = _other_shape(line, shape, u)
+        if other is None:
+            deck.remarks[f"section {name}: shape {shape or 'unknown'} is not read"] += 1
+        else:
+            deck.beams[name] = other, NAMES.get(shape, "any section")
         return
     start = Section(u * _number(line, 50, 55, "A"), u * _number(line, 56, 60, "B"))
     far = u * _number(line, 61, 66, "C", 0.0) if shape == "CON" else 0.0
     deck.tubes[name] = (start, Section(far, start.thickness_m) if far else start)
+
+
+def _other_shape(line: str, shape: str, unit: float) -> BeamSection | None:
+    """Return a section by its properties, or by its sides."""
+    area, J, about_y, about_z = (
+        _number(line, first, last, what, 0.0)
+        for first, last, what in ((19, 24, "AX"), (25, 32, "J"), (33, 40, "IY"), (41, 48, "IZ"))
+    )
+    a, b, c, d = (
+        unit * _number(line, first, last, what, 0.0)
+        for first, last, what in ((50, 55, "A"), (56, 60, "B"), (61, 66, "C"), (67, 71, "D"))
+    )
+    fourth = unit**4
+    return sacs_section(shape, (area * unit**2, J * fourth, about_y * fourth, about_z * fourth), (a, b, c, d))
 
 
 def _load(deck: _Deck, line: str) -> None:
@@ -275,7 +315,7 @@ def _masses(deck: _Deck, used: set[str]) -> tuple[PointMass, ...]:
 
 def _structure(deck: _Deck, name: str) -> Structure:
     nodes = dict(deck.nodes)
-    members: list[Member] = []
+    members: list[Member | Beam] = []
     links: list[RigidLink] = []
     for bar in deck.members:
         if bar.group in deck.shapes:
@@ -291,13 +331,16 @@ def _structure(deck: _Deck, name: str) -> Structure:
         links += [
             RigidLink(joint, end) for joint, end in zip((bar.a, bar.b), ends, strict=True) if joint != end
         ]
-        members += _segments(nodes, f"{bar.a}-{bar.b}", ends, bar.group, deck.groups[bar.group])
-    require(members, "no member of the deck is a tube", field="MEMBER", value=len(deck.members))
+        members += _segments(nodes, bar, ends, deck.groups[bar.group])
+    require(
+        members, "no member of the deck has a section that is read", field="MEMBER", value=len(deck.members)
+    )
     used = {node for m in members for node in (m.start, m.end)} | {link.leader for link in links}
     return Structure(
         name=name,
         nodes={node: at for node, at in nodes.items() if node in used},
-        members=tuple(members),
+        members=tuple(m for m in members if isinstance(m, Member)),
+        beams=tuple(m for m in members if isinstance(m, Beam)),
         masses=_masses(deck, used),
         rigid_links=tuple(links),
         reactions=tuple(_reactions(deck.held, used)),
@@ -315,14 +358,10 @@ def _ends(nodes: dict[str, Vector], bar: _Bar) -> tuple[str, str]:
 
 
 def _segments(
-    nodes: dict[str, Vector],
-    name: str,
-    ends: tuple[str, str],
-    group: str,
-    parts: Sequence[_Part],
-) -> Iterable[Member]:
+    nodes: dict[str, Vector], bar: _Bar, ends: tuple[str, str], parts: Sequence[_Part]
+) -> Iterable[Member | Beam]:
     """Return a member, cut where its group changes; the segment without a length takes what is left."""
-    a, b = ends
+    (a, b), name = ends, f"{bar.a}-{bar.b}"
     start, end = (np.asarray(nodes[node]) for node in ends)
     whole = float(np.linalg.norm(end - start))
     left = whole - sum(part.length or 0.0 for part in parts)
@@ -335,7 +374,11 @@ def _segments(
             x, y, z = map(float, start + (end - start) * min(at / whole, 1.0))
             nodes[node] = (x, y, z)
         suffix = f".{i}" if len(parts) > 1 else ""
-        yield Member(f"{name}{suffix}", previous, node, part.start, part.end, part.material, group)
+        own, between = f"{name}{suffix}", (previous, node)
+        if isinstance(part.start, Section) and isinstance(part.end, Section):
+            yield Member(own, *between, part.start, part.end, part.material, bar.group)
+        elif isinstance(part.start, BeamSection):
+            yield Beam(own, *between, part.start, part.material, bar.twist, bar.group, part.shape)
         previous = node
 
 

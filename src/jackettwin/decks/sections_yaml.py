@@ -9,8 +9,7 @@ from pydantic import BeforeValidator, Field
 
 from jackettwin.errors import located, require
 from jackettwin.files import Schema
-from jackettwin.structure import BeamSection, Section
-from jackettwin.structure.sections import i_section, rectangular_section
+from jackettwin.structure import BeamSection, Section, i_section, rectangular_section
 
 Side = Annotated[float, Field(ge=1e-4, le=1e3)]
 """Of a section [m]."""

@@ -23,11 +23,11 @@ from jackettwin.structure import (
     Section,
     TwoNodeElement,
     Vector,
+    rectangular_section,
     spring_matrix,
     two_node_element,
 )
 from jackettwin.structure.mesh import beam_axes
-from jackettwin.structure.sections import rectangular_section
 from jackettwin.structure.two_node import bar_mass, cable_matrices
 
 _TUBE, _RECTANGLE, _CABLE, _RIGID, _ARBITRARY, _SPRING = ("1", "1c"), "1r", "2", "3", "4", "5"

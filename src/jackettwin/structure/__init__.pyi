@@ -41,6 +41,7 @@ from .rotor_modes import (
     with_rotor as with_rotor,
     without_rotor as without_rotor,
 )
+from .sections import i_section as i_section, rectangular_section as rectangular_section
 from .two_node import (
     BeamSection as BeamSection,
     TwoNodeElement as TwoNodeElement,
