@@ -93,7 +93,7 @@ def test_the_planted_truth_is_found_by_name(name: str, tmp_path: Path) -> None:
     assert list(found) == ["k_u", "k_theta", "c"]
     assert [found[p]["unit"] for p in found] == ["N/m", "N·m/rad", "N·s/m"]
     for (name_, one), truth in zip(found.items(), TRUTH[name], strict=True):
-        assert one["value"] == pytest.approx(truth, rel=1e-4), name_  # a search ends within 1e-6 of ln θ
+        assert one["best_fit"] == pytest.approx(truth, rel=1e-4), name_  # a search ends within 1e-6 of ln θ
         low, high = one["interval_90"]
         assert low < truth < high
     # rocking is what the first bending modes feel of a foundation
