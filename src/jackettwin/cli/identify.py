@@ -306,6 +306,8 @@ def _settings(
         raise InputError(
             "needs the uncertainty that --quick leaves out", field="--real-poles", remedy="drop one"
         )
+    if quick:
+        messages.print("a quick look: no mode is checked, ok says only that its poles persist")
     update: dict[str, Any] = {"real_poles": True} if real_poles else {}
     update |= {"blocks": 0, "refine": False} if quick else {}
     update |= _band(band)
