@@ -12,7 +12,6 @@ import click
 from jackettwin.cli.console import Reply, answers, say, show_table
 from jackettwin.errors import InputError
 from jackettwin.report import Table, TableColumn, quantity, words
-from jackettwin.soil import parameter_words
 
 if TYPE_CHECKING:
     from jackettwin.answers import ChangedInput, ChangedNumber
@@ -85,6 +84,8 @@ def _summary(changes: tuple[ChangedNumber, ...]) -> str:
 
 def _words(what: str) -> str:
     """Return what a number is of, its mode or parameter in words."""
+    from jackettwin.soil import parameter_words
+
     kind, of, label = what.rpartition(" of ")
     if of:
         return f"{kind} of {words(label)}"

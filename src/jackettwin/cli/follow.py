@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from jackettwin.answers import Span
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import Reply, answers, progress, say, say_all, show_table
-from jackettwin.report import Table, span_words
-from jackettwin.soil import parameter_words
+from jackettwin.report import Table
 
 if TYPE_CHECKING:
     from jackettwin.study import Followed
@@ -98,6 +96,10 @@ def follow_command(
 
 
 def _table(followed: Followed) -> Table:
+    from jackettwin.answers import Span
+    from jackettwin.report import span_words
+    from jackettwin.soil import parameter_words
+
     heads = ("time (UTC)", "records", *map(parameter_words, followed.stiffness))
     rows = []
     for day in followed.days:

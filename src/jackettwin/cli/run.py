@@ -8,13 +8,11 @@ from pathlib import Path
 
 import click
 
-from jackettwin.answers import Span
 from jackettwin.cli.answers import answers_document, print_answers
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import Reply, answers, progress, say
 from jackettwin.cli.provenance import provenance
 from jackettwin.cli.update import DEFAULT_TWIN, print_updates
-from jackettwin.report import value_words
 
 SIMULATED_TWIN = "simulated"
 
@@ -49,9 +47,9 @@ def run_command(
     a known asset; the report compares with its truth. The law to recommend gets a posterior (the twin's
     first, unless another is ten times as probable), the others are fitted; --all-laws gives each one.
     """
-    from jackettwin.answers import answer as answer_run
+    from jackettwin.answers import Span, answer as answer_run
     from jackettwin.files import atomic_folder, check_room, write_json
-    from jackettwin.report import build_report
+    from jackettwin.report import build_report, value_words
     from jackettwin.study import (
         MODES_IN_TIME,
         count_steps,

@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING
 import click
 import numpy as np
 
-from jackettwin.answers import Span
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import Reply, answers, numbers_of, output, progress, say, say_all, show_table
 from jackettwin.errors import InputError, require
-from jackettwin.report import Table, cell, span_words, value_words, words
-from jackettwin.soil import parameter_words
+from jackettwin.report import Table, cell, words
 
 if TYPE_CHECKING:
     from jackettwin.study import DampingExcess, MeasuredMode, TwinResult
@@ -152,6 +150,10 @@ def _begun(u: Update) -> Table:
 
 
 def _parameters(u: Update) -> Table:
+    from jackettwin.answers import Span
+    from jackettwin.report import span_words, value_words
+    from jackettwin.soil import parameter_words
+
     rows = []
     for i, (p, best) in enumerate(zip(u.problem.parameters, u.best.theta, strict=True)):
         text, verdict = value_words(Span(float(best)), p.unit), "–"
