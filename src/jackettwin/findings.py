@@ -369,6 +369,12 @@ CATALOGUE: dict[str, Kind] = {
         "warning",
         "the change of {alarm} was: {was} ({was_probability:.0%}); now: {now} ({probability:.0%})",
     ),
+    # service
+    "study_set_aside": Kind(
+        "alarm",
+        "what the days say could not be found in {tries} tries ({reason}): no change would be seen; "
+        "mend the cause, then POST /jobs/{job}/retry",
+    ),
     "record_late": Kind("info", "older than {days} days that are known; these days are computed again"),
 }
 """Every code there is, by the package that finds it."""

@@ -62,9 +62,9 @@ class Done:
 class Here:
     """Work that is done at once, in this process."""
 
-    workers, restarts = 1, 0
+    workers, restarts, reachable = 1, 0, True
 
-    def submit(self, task: Callable[..., Any], *args: Any, priority: int = 0) -> Done:
+    def submit(self, task: Callable[..., Any], *args: Any, priority: int = 0, study: bool = False) -> Done:
         try:
             return Done(task(*args))
         except Exception as error:
@@ -78,6 +78,9 @@ class Here:
 
     def end(self, future: Any) -> None:
         self.restarts += 1
+
+    def forsaken(self, future: Any) -> bool:
+        return False
 
     def mend(self) -> None:
         """Nothing to mend."""

@@ -1,14 +1,18 @@
 """Workers: there are as many as were asked for, whatever becomes of them; a task has its time to itself."""
 
 import os
+import subprocess
+import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from distributed.scheduler import KilledWorker
+from tests.service.servers import free_port, wait_for_port
 
 from jackettwin.service import ServiceSettings
+from jackettwin.service.workers.certificates import own_security
 from jackettwin.service.workers.cluster import WorkerCluster
 from jackettwin.service.workers.failures import NoWorker
 
@@ -86,3 +90,75 @@ def test_a_file_does_not_wait_at_a_busy_worker_while_another_is_free(tmp_path: P
         assert not long.done()
     finally:
         two.close()
+
+
+def test_no_record_waits_behind_a_study(compute: WorkerCluster) -> None:
+    """A posterior of a minute on a server with one worker for records."""
+    assert compute.submit(os.getpid).result(timeout=60)
+    before = compute.workers
+    study = compute.submit(time.sleep, 60.0, study=True)
+    end = time.monotonic() + 90.0
+    while not compute.has_begun(study) and time.monotonic() < end:
+        time.sleep(0.2)
+    assert compute.has_begun(study)
+    begin = time.monotonic()
+    assert len({compute.submit(os.getpid).result(timeout=30) for _ in range(5)}) == 1
+    assert time.monotonic() - begin < 20.0 and not study.done()
+    assert compute.workers == before  # that take records
+    compute.end(study)
+
+
+def test_a_scheduler_that_dies_and_comes_back_is_found_again(tmp_path: Path) -> None:
+    """Uploads are refused meanwhile, to be sent again, and what was under way is nobody's fault."""
+    security = own_security()
+    files = {name: tmp_path / f"{name}.pem" for name in ("ca", "certificate", "key")}
+    files["ca"].write_text(security.tls_ca_file)
+    files["certificate"].write_text(security.tls_scheduler_cert)
+    files["key"].write_text(security.tls_scheduler_key)
+    given = {f"scheduler_{name}": path for name, path in files.items()}
+    port = free_port()
+    tls = ["--tls-ca-file", files["ca"], "--tls-cert", files["certificate"], "--tls-key", files["key"]]
+    dask = [sys.executable, "-m", "distributed.cli.dask_scheduler"]
+    options = ["--protocol", "tls", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard"]
+
+    def started() -> subprocess.Popen[bytes]:
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        process = subprocess.Popen([*dask, *options, *map(str, tls)], **quiet)
+        wait_for_port(port, 60.0)
+        return process
+
+    scheduler = started()
+    made = WorkerCluster(ServiceSettings(store=tmp_path, scheduler=f"tls://127.0.0.1:{port}", **given))
+    try:
+        waiting = made.submit(os.getpid)  # there is no worker
+        assert made.reachable and not made.forsaken(waiting)
+        scheduler.kill()
+        scheduler.wait()
+        _until(lambda: not made.reachable)
+        assert made.forsaken(waiting) and made.workers == 0
+        with pytest.raises(NoWorker):
+            made.submit(os.getpid)
+        with pytest.raises(NoWorker):
+            made.result(waiting, 60.0)
+        made.mend()  # it is not there yet
+        assert not made.reachable
+        scheduler = started()
+
+        def mended() -> bool:
+            made.mend()
+            return made.reachable
+
+        _until(mended)
+        again = made.submit(os.getpid)
+        assert made.forsaken(waiting) and not made.forsaken(again)
+    finally:
+        made.close()
+        scheduler.kill()
+        scheduler.wait()
+
+
+def _until(holds: Callable[[], bool], seconds: float = 60.0) -> None:
+    end = time.monotonic() + seconds
+    while not holds():
+        assert time.monotonic() < end
+        time.sleep(0.2)

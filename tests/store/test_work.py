@@ -1,6 +1,7 @@
 """The queue: once for each key, leases that outlive no server, tries that are counted."""
 
 import time
+from collections import Counter
 from datetime import UTC, datetime
 from typing import Any
 
@@ -125,3 +126,45 @@ def test_leases_of_servers_nobody_knows_are_taken_back(database: Engine) -> None
         work.lease(c, "gone", 1, NOW)
         assert work.take_back_orphans(c, "me", ()) == 1
         assert work.queue_sizes(c) == {"queued": 1}
+
+
+def test_nobodys_backlog_holds_up_another_one(database: Engine) -> None:
+    """A thousand records of one turbine wait; of three others one each, which came later."""
+    names = ("a", "b", "c", "flood")
+    with writing(database) as c:
+        for name in names:
+            about = {"model_hash": "m", "settings_hash": "s", "by": "me", "now": NOW}
+            assets.add_version(c, name, {"twin.yaml": b""}, **about)
+        work.join(c, "one", {}, NOW)
+        for name, count in (("flood", 200), ("c", 1), ("a", 1), ("b", 2)):
+            version = assets.Version(name, 1, "m", "s", NOW, "me", "", "")
+            for k in range(count):
+                work.enqueue(c, version, f"{name}{k}", NOW)
+    served: Counter[str] = Counter()
+    taken = []
+    for _ in range(8):  # one at a time, as one worker takes them
+        with writing(database) as c:
+            jobs = work.lease(c, "one", 1, NOW, served=served)
+        served.update(job.asset for job in jobs)
+        taken += [job.record_id for job in jobs]
+    assert sorted(taken[:4]) == ["a0", "b0", "c0", "flood0"]
+    assert sorted(taken[4:6]) == ["b1", "flood1"]
+    assert taken[6:] == ["flood2", "flood3"]
+    with writing(database) as c:
+        assert len(work.lease(c, "one", 6, NOW, served=served)) == 6  # alone it has everything
+
+
+def test_one_server_has_a_post_until_it_leaves_or_is_dead(database: Engine) -> None:
+    with writing(database) as c:
+        for server in ("one", "two"):
+            work.join(c, server, {}, NOW)
+    for _ in range(2):  # and keeps it
+        with writing(database) as c:
+            assert work.hold_post(c, "intake", "one")
+            assert not work.hold_post(c, "intake", "two")
+            assert work.hold_post(c, "other", "two")
+    with writing(database) as c:
+        work.bury(c, "one")
+        assert work.hold_post(c, "intake", "two")
+        work.join(c, "one", {}, NOW)  # it was not dead after all
+        assert not work.hold_post(c, "intake", "one")

@@ -49,6 +49,10 @@ class Service:
     periodic: list[Callable[[], None]] = field(default_factory=list)
     wake: Callable[[], None] = lambda: None
     turning: Callable[[], bool] = lambda: True
+    has_intake: bool = False
+    """Whether this one of several servers takes what lies in the inbox and comes from the broker."""
+    on_lost: list[Callable[[], None]] = field(default_factory=list)
+    """What is done when the database goes away: another server may stand in for this one then."""
     broker_connected: Callable[[], bool | None] = lambda: None
     packets_refused: Callable[[], int] = lambda: 0
 
@@ -76,6 +80,7 @@ def open_service(settings: ServiceSettings) -> Service:
         If the database cannot be opened.
     """
     private_folder(settings.store)
+    os.environ.setdefault("NUMBA_CACHE_DIR", str(settings.store / "cache"))  # homes may be closed to us
     for folder in (settings.spool, settings.models):
         folder.mkdir(parents=True, exist_ok=True)
     database = open_database(settings.database_url)

@@ -25,6 +25,7 @@ from jackettwin.service.intake.files import Accepted, parse_here, take_file
 from jackettwin.service.intake.folder import watch_folders
 from jackettwin.service.intake.mqtt import MqttIntake
 from jackettwin.service.settings import ServiceSettings, refuse_exposed
+from jackettwin.service.systemd import tell_systemd
 from jackettwin.service.web.app import create_app
 from jackettwin.service.work.dispatch import Dispatcher
 from jackettwin.service.work.housekeeping import Housekeeping
@@ -57,14 +58,15 @@ def running(settings: ServiceSettings) -> Iterator[Service]:
             refuse_exposed(settings, people.any_user(connection))
         service.periodic.append(Housekeeping(service).turn)
         dispatcher, stop = Dispatcher(service), Event()
-        service.wake, service.turning = dispatcher.wake.set, dispatcher.is_alive
+        service.wake, service.turning = dispatcher.wake.set, lambda: dispatcher.turning
         in_the_end.callback(dispatcher.stop)
         if settings.mqtt is not None:
             mqtt = MqttIntake(service, settings.mqtt)
-            service.periodic += [mqtt.turn, StreamWindows(service, mqtt.silent).turn]
-            service.broker_connected = lambda: mqtt.connected
+            windows = StreamWindows(service, mqtt.silent)
+            service.periodic += [mqtt.turn, lambda: windows.turn() if service.has_intake else None]
+            service.on_lost.append(mqtt.leave)
+            service.broker_connected = lambda: mqtt.connected if service.has_intake else None
             service.packets_refused = lambda: mqtt.refused
-            mqtt.start()
             in_the_end.callback(mqtt.stop)
         dispatcher.start()
         Thread(target=_watch_inbox, args=(service, stop.is_set), name="inbox", daemon=True).start()
@@ -104,7 +106,9 @@ def serve(settings: ServiceSettings, ready: Callable[[Service], None] = lambda _
                 await asyncio.sleep(0.02)
             if server.started:
                 ready(service)
+                tell_systemd("READY=1")
             await task
+            tell_systemd("STOPPING=1")
 
         asyncio.run(main())
 
@@ -150,6 +154,8 @@ def _watch_inbox(service: Service, stop: Callable[[], bool]) -> None:
         (folder / name).mkdir(parents=True, exist_ok=True)
 
     def take(path: Path) -> Accepted | None:
+        if not service.has_intake:  # another server of this store takes it
+            return None
         try:
             return take_from_inbox(service, folder, path)
         except (SQLAlchemyError, OSError, NoWorker) as error:
@@ -171,7 +177,10 @@ def take_from_inbox(service: Service, inbox: Path, path: Path) -> Accepted | Non
         if not reason.exists():
             _leave(path, reason, _OF_NO_ASSET | {"value": None if path.parent == inbox else asset})
         return None
+    before = _lying(path)
     taken = take_file(service, parse_here(service), asset, path, path.name)
+    if taken.problem is not None and _lying(path) != before:
+        return None  # another server took it away while it was read, or it is written again
     if taken.problem is None:
         for file in (path, path.with_suffix(".json"), reason):
             file.unlink(missing_ok=True)
@@ -179,6 +188,19 @@ def take_from_inbox(service: Service, inbox: Path, path: Path) -> Accepted | Non
     else:
         _leave(path, reason, taken.problem)
     return taken
+
+
+def _lying(path: Path) -> list[tuple[int, int] | None]:
+    """Return what tells a record and its description from others of the same names."""
+    return [_mark(file) for file in (path, path.with_suffix(".json"))]
+
+
+def _mark(file: Path) -> tuple[int, int] | None:
+    try:
+        found = file.stat()
+    except OSError:
+        return None
+    return found.st_ino, found.st_mtime_ns
 
 
 def _leave(path: Path, reason: Path, problem: dict[str, Any]) -> None:

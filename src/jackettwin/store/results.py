@@ -180,6 +180,11 @@ def put_findings(connection: Connection, rows: Sequence[Mapping[str, Any]]) -> N
         connection.execute(insert(findings), list(rows))
 
 
+def drop_findings(connection: Connection, asset: str, model_hash: str, *, origin: str) -> None:
+    """Take findings of an origin away, whose cause is gone."""
+    connection.execute(_deleted(findings, asset, model_hash, origin=origin))
+
+
 def put_watched(
     connection: Connection, asset: str, model_hash: str, rows: Sequence[Mapping[str, Any]]
 ) -> list[Mapping[str, Any]]:

@@ -12,6 +12,10 @@ RAW_DAYS = "raw_days"
 """How many days raw samples of observed records are kept; without it, for ever."""
 
 
+MQTT_CLIENT = "mqtt_client"
+"""The name by which the broker knows the store."""
+
+
 def get(connection: Connection, name: str) -> Any:
     """Return a setting, or None."""
     return connection.scalar(select(settings.c.value).where(settings.c.name == name))

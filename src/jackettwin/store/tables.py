@@ -151,6 +151,7 @@ work = Table(
     UniqueConstraint("asset", "record_id", "model_hash", "settings_hash", "code_version", "kind"),
     Index("ix_work_queue", "state", "priority", "id"),
     Index("ix_work_state", "state", "id"),
+    Index("ix_work_fair", "state", "kind", "priority", "asset", "id"),
 )
 """What is to be done, once for each key. ``state``: queued, leased, done, failed, set_aside or cancelled."""
 

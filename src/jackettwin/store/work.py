@@ -7,17 +7,18 @@ the lease.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
+from itertools import zip_longest
 from typing import Any
 
-from sqlalchemy import Connection, Update, delete, func, insert, select, update
+from sqlalchemy import ColumnElement, Connection, Update, delete, func, insert, select, update
 
 from jackettwin.store.assets import Version
 from jackettwin.store.database import insert_new
 from jackettwin.store.rights import Assets, among
-from jackettwin.store.tables import servers, work
+from jackettwin.store.tables import posts, servers, work
 from jackettwin.version import __version__
 
 OBSERVE, KNOW = "observe", "know"
@@ -76,25 +77,54 @@ def enqueue(
     return int(connection.execute(select(work.c.id).filter_by(**key)).scalar_one())
 
 
-def lease(connection: Connection, owner: str, most: int, now: datetime, *, kind: str = OBSERVE) -> list[Job]:
-    """Take up to ``most`` pieces of queued work of a kind: urgent ones first, then what waits longest."""
-    order = (work.c.id,) if kind == OBSERVE else (work.c.started_utc.nulls_first(), work.c.id)
+def lease(
+    connection: Connection,
+    owner: str,
+    most: int,
+    now: datetime,
+    *,
+    kind: str = OBSERVE,
+    served: Mapping[str, int] | None = None,
+) -> list[Job]:
+    """Take up to ``most`` pieces of queued work of a kind.
+
+    Urgent ones first; of these, turn by turn, those of the asset that was served least of late; of an asset
+    what waits longest. Thousands of records of one turbine hold up no other one's.
+    """
     jobs: list[Job] = []
     for priority in _priorities(connection):
-        queued = (
-            select(work)
-            .where(work.c.state == "queued", work.c.priority == priority, work.c.kind == kind)
-            .order_by(*order)
-            .limit(most - len(jobs))
-            .with_for_update(skip_locked=True)
-        )
-        jobs += [Job(**row._mapping) for row in connection.execute(queued)]
+        same = (work.c.state == "queued", work.c.kind == kind, work.c.priority == priority)
+        if kind == OBSERVE:
+            jobs += _by_turns(connection, same, most - len(jobs), served or {})
+        else:
+            jobs += _queued(connection, same, most - len(jobs), work.c.started_utc.nulls_first())
         if len(jobs) == most:
             break
     if jobs:
         taken = {"state": "leased", "owner": owner, "started_utc": now, "tries": work.c.tries + 1}
         connection.execute(update(work).where(work.c.id.in_([job.id for job in jobs])).values(**taken))
     return jobs
+
+
+def _by_turns(
+    connection: Connection, same: tuple[ColumnElement[bool], ...], most: int, served: Mapping[str, int]
+) -> list[Job]:
+    """Return work of several assets alike, of those first that were served least."""
+    if most <= 0:
+        return []
+    heads = select(work.c.asset, func.min(work.c.id)).where(*same).group_by(work.c.asset)
+    waiting = sorted(connection.execute(heads), key=lambda row: (served.get(row[0], 0), row[1]))[:most]
+    each = -(-most // max(len(waiting), 1))
+    found = [_queued(connection, (*same, work.c.asset == asset), each) for asset, _ in waiting]
+    return [job for turn in zip_longest(*found) for job in turn if job is not None][:most]
+
+
+def _queued(
+    connection: Connection, same: tuple[ColumnElement[bool], ...], most: int, *order: ColumnElement[Any]
+) -> list[Job]:
+    query = select(work).where(*same).order_by(*order, work.c.id).limit(most)
+    rows = connection.execute(query.with_for_update(skip_locked=True))
+    return [Job(**row._mapping) for row in rows]
 
 
 def _priorities(connection: Connection) -> Iterator[int]:
@@ -253,6 +283,15 @@ def bury(connection: Connection, server: str, at_beat: int | None = None) -> Seq
     held = list(connection.scalars(select(work.c.id).where(work.c.state == "leased", work.c.owner == server)))
     connection.execute(update(work).where(work.c.id.in_(held)).values(**_UNTRIED))
     return held
+
+
+def hold_post(connection: Connection, name: str, server: str) -> bool:
+    """Take what one server of several does for all, or keep it; False while another one that lives has it."""
+    free = (posts.c.server == server) | posts.c.server.not_in(select(servers.c.id))
+    taken = update(posts).where(posts.c.name == name, free).values(server=server)
+    if connection.execute(taken).rowcount == 1:
+        return True
+    return insert_new(connection, posts, {"name": name, "server": server})
 
 
 def take_back_orphans(connection: Connection, me: str, mine: Collection[int]) -> int:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import logging
 import queue
+import secrets
 import ssl
 import time
 from collections.abc import Iterable
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote, urlsplit
 
@@ -16,7 +18,7 @@ from paho.mqtt.enums import CallbackAPIVersion, MQTTProtocolVersion
 from jackettwin.errors import InputError
 from jackettwin.files import read_text
 from jackettwin.service.intake.packets import TOPIC, read_packets
-from jackettwin.store import Packet, assets, streams, writing
+from jackettwin.store import Packet, assets, settings, streams, writing
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Service
@@ -62,7 +64,7 @@ class MqttIntake:
             )
         self._client = mqtt.Client(
             CallbackAPIVersion.VERSION2,
-            client_id=f"jackettwin-{service.settings.store.resolve().name}-{service.settings.port}",
+            client_id=_client_id(service),
             protocol=MQTTProtocolVersion.MQTTv311,
             clean_session=False,
             manual_ack=True,
@@ -75,26 +77,40 @@ class MqttIntake:
         self._client.on_connect = self._subscribe
         self._client.on_connect_fail = lambda *_: log.warning("the broker does not answer; it is asked again")
         self._client.on_message = lambda _client, _data, message: self._inbox.put(message)
-        self._client.connect_async(
-            place.hostname or "127.0.0.1", place.port or _PORTS[place.scheme], keepalive=30
-        )
+        self._place = (place.hostname or "127.0.0.1", place.port or _PORTS[place.scheme])
+        self._listening = False
 
     @property
     def connected(self) -> bool:
         """Whether the broker answers."""
         return bool(self._client.is_connected())
 
-    def start(self) -> None:
-        """Connect, and reconnect for ever, in a thread of its own."""
-        self._client.loop_start()
-
     def stop(self) -> None:
         """Disconnect; the broker keeps what comes meanwhile."""
         self._client.disconnect()
         self._client.loop_stop()
+        self._listening = False
+
+    def leave(self) -> None:
+        """Leave the broker to another server, which finds all that was not acknowledged."""
+        if self._listening:
+            self.stop()
+            self._held.clear()
+            with suppress(queue.Empty):
+                while True:
+                    self._inbox.get_nowait()
 
     def turn(self) -> None:
-        """Commit what came and acknowledge it; a message that cannot be committed now is tried again."""
+        """Commit what came and acknowledge it; a message that cannot be committed now is tried again.
+
+        Of several servers on one store one listens, with the session that the broker keeps for the store.
+        """
+        if not self.service.has_intake:
+            return self.leave()
+        if not self._listening:
+            self._listening = True
+            self._client.connect_async(*self._place, keepalive=30)
+            self._client.loop_start()  # it connects, and reconnects for ever, in a thread of its own
         while self._held or not self._inbox.empty():
             self._held += list(_waiting(self._inbox, _BATCH - len(self._held)))
             packets = [packet for message in self._held for packet in self._packets(message)]
@@ -138,14 +154,24 @@ class MqttIntake:
         return time.monotonic() - self._heard.setdefault(asset, time.monotonic()) > SILENT_S
 
 
-def _password(settings: ServiceSettings) -> str:
+def _client_id(service: Service) -> str:
+    """Return by which name the broker keeps the session of a store, whichever of its servers listens."""
+    with writing(service.database) as connection:
+        found = settings.get(connection, settings.MQTT_CLIENT)
+        if found is None:
+            found = f"jackettwin-{secrets.token_hex(4)}"
+            settings.put(connection, settings.MQTT_CLIENT, found)
+    return str(found)
+
+
+def _password(given: ServiceSettings) -> str:
     """Return the password for the broker, of a file or of the environment."""
-    if settings.mqtt_password_file is not None:
-        return read_text(settings.mqtt_password_file, what="password file").partition("\n")[0].rstrip("\r")
-    return "" if settings.mqtt_password is None else settings.mqtt_password.get_secret_value()
+    if given.mqtt_password_file is not None:
+        return read_text(given.mqtt_password_file, what="password file").partition("\n")[0].rstrip("\r")
+    return "" if given.mqtt_password is None else given.mqtt_password.get_secret_value()
 
 
-def _tls(settings: ServiceSettings) -> ssl.SSLContext:
+def _tls(given: ServiceSettings) -> ssl.SSLContext:
     """Return how the broker is known to us, and we to it.
 
     Raises
@@ -153,12 +179,12 @@ def _tls(settings: ServiceSettings) -> ssl.SSLContext:
     InputError
         If a file is no certificate, or its key does not fit.
     """
-    file, field = settings.mqtt_ca, "mqtt-ca"
+    file, field = given.mqtt_ca, "mqtt-ca"
     try:
         context = ssl.create_default_context(cafile=file)
-        if settings.mqtt_certificate is not None:
-            file, field = settings.mqtt_certificate, "mqtt-certificate"
-            context.load_cert_chain(file, settings.mqtt_key)
+        if given.mqtt_certificate is not None:
+            file, field = given.mqtt_certificate, "mqtt-certificate"
+            context.load_cert_chain(file, given.mqtt_key)
     except OSError as error:  # an SSLError is one
         reason = error.strerror or str(error)
         raise InputError(

@@ -14,18 +14,48 @@ if TYPE_CHECKING:
     from jackettwin.service.context import Service
 
 
+ROOM_BYTES = 256 * 2**20
+"""Room that must be left on the disk: the database needs it to finish what it began."""
+LATE_S = 3600.0
+"""A record that waits for so long is not observed: an hour of six records of every turbine is behind it."""
+
+
 def readiness(service: Service) -> Ready:
     """Return whether records can be taken and observed now."""
+    age = None
     try:
         with reading(service.database) as connection:
-            work.any_queued(connection, work.OBSERVE)
-        database = True
+            oldest = work.oldest_queued(connection)
+        age, database = 0.0 if oldest is None else max((service.now() - oldest).total_seconds(), 0.0), True
     except SQLAlchemyError:
         database = False
-    workers, broker = service.cluster.workers, service.broker_connected()
-    free = service.free_bytes()
-    ready = database and workers > 0 and broker is not False and free > 0
-    return Ready(ready=ready, database=database, workers=workers, broker=broker, free_bytes=free)
+    scheduler, workers = service.cluster.reachable, service.cluster.workers
+    broker, free = service.broker_connected(), service.free_bytes()
+    able = database and scheduler and workers > 0 and service.turning()
+    return Ready(
+        ready=able and broker is not False and free >= ROOM_BYTES,
+        database=database,
+        scheduler=scheduler,
+        workers=workers,
+        broker=broker,
+        free_bytes=free,
+        queue_age_s=age,
+    )
+
+
+def problems(service: Service, found: Ready) -> list[str]:
+    """Return in words what keeps a server from doing all that it should."""
+    late = found.queue_age_s is not None and found.queue_age_s > LATE_S
+    said = {
+        "the dispatcher hangs: start the server anew": not service.turning(),
+        "the database does not answer": not found.database,
+        "the scheduler does not answer": not found.scheduler,
+        "there is no worker": found.scheduler and found.workers == 0,
+        "the broker does not answer": found.broker is False,
+        "the disk is full, or read-only": found.free_bytes < ROOM_BYTES,
+        f"records wait for more than {LATE_S / 3600.0:g} h": late,
+    }
+    return [words for words, holds in said.items() if holds]
 
 
 def exposition(service: Service, seen: rights.Assets = None) -> bytes:

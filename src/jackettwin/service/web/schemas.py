@@ -429,10 +429,11 @@ class ComparisonOut(BaseModel):
 
 
 class Health(BaseModel):
-    """Whether the server turns."""
+    """Whether the server turns, and what keeps it from doing all that it should."""
 
     status: Literal["ok", "degraded"]
     version: str
+    problems: list[str] = []
 
 
 class Ready(BaseModel):
@@ -440,6 +441,8 @@ class Ready(BaseModel):
 
     ready: bool
     database: bool
+    scheduler: bool
     workers: int
     broker: bool | None
     free_bytes: int
+    queue_age_s: float | None = None

@@ -15,6 +15,7 @@ from jackettwin.service import workers
 from jackettwin.service.intake.bundles import twin_folder
 from jackettwin.service.intake.files import Accepted, discard, parse_here, spooled, take_file
 from jackettwin.service.web.dependencies import known_record, living_asset
+from jackettwin.service.web.metrics import ROOM_BYTES
 from jackettwin.service.web.problems import ApiError, disk_full
 from jackettwin.service.web.schemas import PicksIn, StabilisationOut, Taken
 from jackettwin.service.work.conditions import add_conditions
@@ -28,8 +29,6 @@ if TYPE_CHECKING:
 _PIECE = 1 << 20
 _DESCRIPTION_BYTES = 2**20
 """As much as a form takes in a field."""
-_ROOM_BYTES = 256 * 2**20
-"""Room that must be left on the disk after an upload: the database needs it to finish what it began."""
 
 
 def refuse_unfit(service: Service, asset: str) -> None:
@@ -44,7 +43,7 @@ def take(
     """Read an upload and keep its record; nothing of it is left behind if that fails."""
     if description is not None:
         _check(description)
-    if service.free_bytes() < _ROOM_BYTES:
+    if service.free_bytes() < ROOM_BYTES:
         raise disk_full()
     path = spooled(
         service.settings.spool,

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import Connection, select
 
+from jackettwin.findings import Finding
 from jackettwin.service import workers
 from jackettwin.service.intake.bundles import twin_folder
 from jackettwin.service.intake.examination import profile
@@ -109,6 +110,7 @@ def keep_known(connection: Connection, service: Service, job: work.Job, outcome:
     if outcome.same_page:
         page = results.find_report(connection, job.asset, job.version)
     results.put_knowledge(connection, job.asset, job.version, document, page, now)
+    results.drop_findings(connection, job.asset, job.model_hash, origin="work")
     journal.tell(connection, "state", job.asset, {"known": document["known"]["status"]}, now)
     if outcome.of != results.identity_of(results.state_hashes(connection, job.asset, job.model_hash)):
         ask_known(connection, service, assets.found_version(connection, job.asset, job.version))
@@ -202,6 +204,17 @@ def failed(connection: Connection, service: Service, job: work.Job, reason: str)
     state = work.put_back(connection, job, service.server_id, problem)
     if state == "set_aside" and job.kind != work.KNOW:
         _end(connection, job.asset, job.record_id, state, problem, service.now())
+    elif state == "set_aside":
+        _alarm_unknown(connection, job, reason, service.now())
+
+
+def _alarm_unknown(connection: Connection, job: work.Job, reason: str, now: datetime) -> None:
+    """Ask for a person: nobody is told what the days of a turbine say, and no change would be seen."""
+    said = Finding("study_set_aside", None, {"job": job.id, "tries": work.MOST_TRIES, "reason": reason})
+    row = {name: getattr(said, name) for name in ("code", "severity", "subject", "params", "text")}
+    key = {"asset": job.asset, "model_hash": job.model_hash, "record_id": ""}
+    results.put_findings(connection, [_finding_row(row, key, now, f"{now:%Y-%m-%d}", "work")])
+    journal.tell(connection, "finding", job.asset, row, now)
 
 
 _TRY_AGAIN = {"field": "record", "remedy": "try again with POST /jobs/{id}/retry"}

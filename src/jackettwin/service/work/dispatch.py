@@ -8,6 +8,7 @@ from __future__ import annotations
 import logging
 import os
 import time
+from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,8 +18,9 @@ from typing import TYPE_CHECKING, Any
 from sqlalchemy import Connection
 from sqlalchemy.exc import SQLAlchemyError
 
+from jackettwin.service.systemd import tell_systemd
 from jackettwin.service.work import consequences
-from jackettwin.service.workers.failures import LOST_WORKER
+from jackettwin.service.workers.failures import LOST_WORKER, NoWorker
 from jackettwin.service.workers.tasks import Outcome, Question, Task, know, observe_stored
 from jackettwin.store import reading, work, writing
 from jackettwin.version import __version__
@@ -33,6 +35,8 @@ log = logging.getLogger(__name__)
 _BEAT_S = 2.0
 DEAD_AFTER_S = 15.0
 """A server whose beat stood still for so long, by the stopwatch of another, is dead."""
+HANGS_AFTER_S = 60.0
+"""A dispatcher that did not turn for so long hangs: the watchdog of systemd then starts the server anew."""
 _TURN_S = 0.25
 _RESTS = 3.0
 """What a state says of the supports may take a quarter of one worker, however many turbines there are."""
@@ -61,17 +65,23 @@ class Dispatcher(Thread):
         self._running: dict[int, _Running] = {}
         self._seen: dict[str, tuple[int, float]] = {}
         self._last_beat = -_BEAT_S
+        self._turned = time.monotonic()
+        self._served: Counter[str] = Counter()
         self._rest_until = 0.0
 
     def run(self) -> None:
         """Turn; a database that is away for a while is waited for."""
         waited = 0.0
         while not self._stop_asked.is_set():
+            self._turned = time.monotonic()
             try:
                 self._turn()
                 waited = 0.0
             except (SQLAlchemyError, OSError) as error:
                 waited = min(waited + 1.0, 10.0)
+                self.service.has_intake = False  # another server may have taken it
+                for leave in self.service.on_lost:
+                    leave()
                 log.warning("dispatcher waits %g s: %s", waited, str(error).splitlines()[0])
                 self._stop_asked.wait(waited)
             except Exception:
@@ -79,6 +89,11 @@ class Dispatcher(Thread):
                 self._stop_asked.wait(1.0)
             self.wake.wait(_TURN_S)
             self.wake.clear()
+
+    @property
+    def turning(self) -> bool:
+        """Whether it lives and turns: one that hangs does neither observe nor beat."""
+        return self.is_alive() and time.monotonic() - self._turned < HANGS_AFTER_S
 
     def stop(self) -> None:
         """Stop, and leave the list of servers so that others take over at once."""
@@ -116,6 +131,8 @@ class Dispatcher(Thread):
                 freed = work.bury(connection, server, beats[server][0])
                 log.warning("server %s is dead, %d pieces of work go back to the queue", server, len(freed))
             work.take_back_orphans(connection, me, self._running)
+            self.service.has_intake = work.hold_post(connection, "intake", me)
+        tell_systemd("WATCHDOG=1")
 
     def _dead(self, server: str, count: int, about: Mapping[str, Any]) -> bool:
         """Tell whether a server's process is gone from this machine, or its beat stands still."""
@@ -128,15 +145,18 @@ class Dispatcher(Thread):
         return time.monotonic() - since > DEAD_AFTER_S
 
     def _lease(self) -> None:
-        free = _AHEAD * max(self.service.cluster.workers, 1) - len(self._running)
-        if free <= 0:
+        if not self.service.cluster.reachable:
             return
+        observing = sum(running.job.kind == work.OBSERVE for running in self._running.values())
+        free = _AHEAD * max(self.service.cluster.workers, 1) - observing
         kind = self._next_kind()
-        if kind is None:
+        if kind is None or (kind == work.OBSERVE and free <= 0):
             return
+        me, now = self.service.server_id, self.service.now()
         with writing(self.service.database) as connection:
             most = free if kind == work.OBSERVE else 1
-            jobs = work.lease(connection, self.service.server_id, most, self.service.now(), kind=kind)
+            jobs = work.lease(connection, me, most, now, kind=kind, served=self._served)
+            self._served.update(job.asset for job in jobs)
             for job in jobs if kind == work.OBSERVE else ():
                 consequences.observing(connection, self.service, job)
         for job in jobs:
@@ -151,7 +171,13 @@ class Dispatcher(Thread):
             with writing(self.service.database) as connection:
                 consequences.keep(connection, self.service, job, Outcome(None, problem={"detail": str(gone)}))
             return
-        future = self.service.cluster.submit(function, argument, priority=job.priority)
+        study = job.kind == work.KNOW
+        try:
+            future = self.service.cluster.submit(function, argument, priority=job.priority, study=study)
+        except NoWorker:  # the scheduler went away meanwhile
+            with writing(self.service.database) as connection:
+                work.release(connection, job, self.service.server_id)
+            return
         future.add_done_callback(lambda _: self.wake.set())
         self._running[job.id] = _Running(job, future, time.monotonic())
 
@@ -178,7 +204,7 @@ class Dispatcher(Thread):
 
     def _collect(self) -> None:
         for number, running in list(self._running.items()):
-            if running.future.done():
+            if running.future.done() or self.service.cluster.forsaken(running.future):
                 enough = self._keep(running)
                 del self._running[number]
                 if not enough:
@@ -189,6 +215,10 @@ class Dispatcher(Thread):
 
     def _keep(self, running: _Running) -> bool:
         """Keep what came of a piece of work; False if its worker must have every day to do it."""
+        if self.service.cluster.forsaken(running.future):  # that says nothing against the record
+            with writing(self.service.database) as connection:
+                work.release(connection, running.job, self.service.server_id)
+            return True
         if running.future.status == "finished":
             outcome: Outcome | None = running.future.result()
             if outcome is None:

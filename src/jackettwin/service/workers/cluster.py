@@ -10,11 +10,13 @@ import logging
 import os
 import secrets
 import signal
+import socket
 import time
 from collections.abc import Callable
 from contextlib import suppress
 from threading import Lock
 from typing import Any
+from urllib.parse import urlsplit
 
 import dask
 from distributed import Client, Future, LocalCluster, get_worker
@@ -64,6 +66,12 @@ keep what every thread did for an hour, and its logs the last thousand messages 
 that was sent: off, and short. What it tells without being asked who asks is that it lives.
 """
 
+ARRIVAL, STUDY = "arrival", "study"
+"""Resources of Dask by which workers take records alone, or studies: no record waits behind one."""
+_LOOK_S = 1.0
+"""How often somebody who waits for a task looks whether the scheduler is still there."""
+_RECONNECT = "3s"
+"""Time for a scheduler that went away to answer; it is asked again at the next beat."""
 _REMEMBERED = 10_000
 """Tasks of which it is known that they began: far more than there are at once."""
 
@@ -92,7 +100,7 @@ class WorkerCluster:
         self._wanted = settings.workers
         self._topic, self._began = f"begun-{secrets.token_hex(8)}", dict[str, float]()
         self._cluster: LocalCluster | None = None
-        security = own_security() if settings.scheduler is None else given_security(settings)
+        self._security = own_security() if settings.scheduler is None else given_security(settings)
         if settings.scheduler is None:
             self._cluster = LocalCluster(
                 n_workers=0,  # they come while the server answers already
@@ -103,13 +111,14 @@ class WorkerCluster:
                 worker_dashboard_address="127.0.0.1:0",
                 host="127.0.0.1",
                 protocol="tls://",
-                security=security,
+                security=self._security,
+                resources={ARRIVAL: 1},
                 silence_logs=logging.ERROR,
             )
             self._cluster.scale(settings.workers)
+        self._where = self._cluster or settings.scheduler
         try:
-            where = self._cluster or settings.scheduler
-            self.client = Client(where, security=security, set_as_default=False, timeout="30s")
+            self.client = self._connected("30s")
         except (OSError, ValueError):  # an SSLError is an OSError
             raise InputError(
                 "no scheduler of Dask answers there",
@@ -118,13 +127,24 @@ class WorkerCluster:
                 allowed="tls://HOST:PORT",
                 remedy="see that `dask scheduler` runs there, may be reached, and trusts our certificate",
             ) from None
-        self.client.subscribe_topic(self._topic, self._note)
         self._ever, self._ended = set[str](), 0
+
+    def _connected(self, timeout: str) -> Client:
+        """Return a connection to the scheduler, as it is now."""
+        client = Client(self._where, security=self._security, set_as_default=False, timeout=timeout)
+        client.subscribe_topic(self._topic, self._note)
+        self._scheduler = client.scheduler_info(n_workers=0).get("id")
+        return client
+
+    @property
+    def reachable(self) -> bool:
+        """Whether the scheduler answers: nothing can be read or observed without it."""
+        return bool(self.client.status == "running")
 
     @property
     def workers(self) -> int:
-        """How many workers there are now."""
-        return len(self._addresses())
+        """How many workers there are now that take records; those for studies apart."""
+        return len(self._offering(ARRIVAL) or self._addresses()) if self.reachable else 0
 
     @property
     def restarts(self) -> int:
@@ -135,14 +155,43 @@ class WorkerCluster:
         """Where workers are; one that is started anew is elsewhere."""
         return set(self.client.scheduler_info(n_workers=-1).get("workers", {}))
 
-    def mend(self) -> None:
-        """Start workers of our own that are gone for good.
+    def _offering(self, resource: str) -> set[str]:
+        found = self.client.scheduler_info(n_workers=-1).get("workers", {})
+        return {address for address, worker in found.items() if worker.get("resources", {}).get(resource)}
 
-        Dask starts a worker that died anew, but gives one up that dies, or takes long, while it starts.
+    def mend(self) -> None:
+        """Start workers of our own that are gone for good; find somebody's scheduler that came back.
+
+        Dask starts a worker that died anew, but gives one up that dies, or takes long, while it starts. A
+        client of a scheduler that went away gives up after a while, and one that finds another scheduler in
+        its place knows nothing of its tasks: a new client is made.
         """
-        if self._cluster is not None:
+        if self._cluster is None:
+            self._find_scheduler()
+        else:
             self._ever |= self._addresses()
             self._cluster.loop.add_callback(self._replace_lost, self._cluster)
+
+    def _find_scheduler(self) -> None:
+        same = self.client.scheduler_info(n_workers=0).get("id") == self._scheduler
+        if self.reachable and same:
+            return
+        gone, place = self.client, urlsplit(str(self._where))
+        try:
+            with socket.create_connection((place.hostname or "", place.port or 8786), timeout=1.0):
+                pass  # a client that finds nobody leaves threads behind
+            self.client = self._connected(_RECONNECT)
+        except (OSError, ValueError) as error:
+            log.warning("the scheduler does not answer: %s", str(error).partition("\n")[0])
+            return
+        log.warning("the scheduler answers again")
+        with suppress(Exception):
+            gone.close(timeout=1)
+
+    def forsaken(self, future: Future) -> bool:
+        """Tell whether a task is nobody's any more: its scheduler went away, and nothing will come of it."""
+        gone = future.client is not self.client or future.status in ("lost", "cancelled")
+        return gone or not self.reachable
 
     def _replace_lost(self, cluster: LocalCluster) -> None:
         for name, nanny in list(cluster.workers.items()):
@@ -150,14 +199,36 @@ class WorkerCluster:
                 del cluster.workers[name]
         cluster.scale(self._wanted)
 
-    def submit(self, task: Callable[..., Any], *args: Any, priority: int = 0) -> Future:
-        """Start a task; urgent ones overtake.
+    def submit(self, task: Callable[..., Any], *args: Any, priority: int = 0, study: bool = False) -> Future:
+        """Start a task; urgent ones overtake. Studies have a worker of their own, started for the first one.
 
         Its key begins with its name, by which Dask knows how long such tasks take and where to put the next.
+
+        Raises
+        ------
+        NoWorker
+            If the scheduler does not answer.
         """
+        if not self.reachable:
+            raise NoWorker
         name = getattr(task, "func", task).__name__
-        key = f"{name}-{secrets.token_hex(16)}"
-        return self.client.submit(run, self._topic, task, *args, key=key, priority=priority, retries=0)
+        how = {"key": f"{name}-{secrets.token_hex(16)}", "priority": priority, "retries": 0}
+        if study and self._cluster is not None:
+            self._start_studying(self._cluster)
+        kind = STUDY if study else ARRIVAL
+        if self._cluster is not None or self._offering(kind):
+            how["resources"] = {kind: 1}
+        return self.client.submit(run, self._topic, task, *args, **how)
+
+    def _start_studying(self, cluster: LocalCluster) -> None:
+        """Start the worker for studies, which from then on is mended as the others are."""
+        if STUDY in cluster.worker_spec:
+            return
+        usual = cluster.new_spec
+        later = {**usual["options"], "resources": {STUDY: 1}}
+        self._wanted += 1
+        cluster.worker_spec[STUDY] = {"cls": usual["cls"], "options": later}
+        cluster.scale(self._wanted)
 
     def _note(self, event: tuple[float, str]) -> None:
         self._began[event[1]] = time.monotonic()
@@ -175,25 +246,28 @@ class WorkerCluster:
         Raises
         ------
         NoWorker
-            If no worker came to it within the same time.
+            If no worker came to it within the same time, or the scheduler went away.
         TimeoutError
             If it takes longer.
         """
-        left = limit_s
+        asked = time.monotonic()
         while True:
+            left = self._began.get(future.key, asked) + limit_s - time.monotonic()
             try:
-                return future.result(timeout=left)
-            except TimeoutError:
-                if future.done():  # it is the task's own
+                return future.result(timeout=max(min(left, _LOOK_S), 0.0))
+            except Exception as error:
+                if self.forsaken(future):
+                    raise NoWorker from None
+                if not isinstance(error, TimeoutError) or future.done():  # it is the task's own
                     raise
-                began = self._began.get(future.key)
-                if began is None:
+                left = self._began.get(future.key, asked) + limit_s - time.monotonic()
+                if left > 0.0:
+                    continue
+                if future.key not in self._began:
                     future.cancel()
                     raise NoWorker from None
-                left = began + limit_s - time.monotonic()
-                if left <= 0.0:
-                    self.end(future)
-                    raise
+                self.end(future)
+                raise
 
     def end(self, future: Future) -> None:
         """Give a task up that takes too long: its worker is started anew, with whatever it holds."""

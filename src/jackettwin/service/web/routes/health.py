@@ -23,10 +23,15 @@ _TOLD_S = 600.0
 router = APIRouter(tags=["operation"], route_class=Route)
 
 
-@router.get("/health")
-def health(parts: Parts) -> Health:
-    """Tell whether the server turns; needs no login."""
-    return Health(status="ok" if parts.turning() else "degraded", version=__version__)
+@router.get("/health", responses={503: {"model": Health, "description": "It hangs: start it anew."}})
+def health(parts: Parts, response: Response) -> Health:
+    """Tell whether the server turns, and what it lacks; needs no login.
+
+    503 asks for a new start, which helps against nothing else than a server that hangs.
+    """
+    said = metrics.problems(parts, metrics.readiness(parts))
+    response.status_code = 200 if parts.turning() else 503
+    return Health(status="degraded" if said else "ok", version=__version__, problems=said)
 
 
 @router.get("/ready", responses={503: {"model": Ready, "description": "Not ready."}})

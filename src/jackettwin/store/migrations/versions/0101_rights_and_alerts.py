@@ -54,6 +54,7 @@ def upgrade() -> None:
         sa.UniqueConstraint("channel", "key"),
     )
     op.create_index("ix_alerts_due", "alerts", ["state", "due_utc"])
+    op.create_index("ix_work_fair", "work", ["state", "kind", "priority", "asset", "id"])
     if op.get_bind().dialect.name == "postgresql":
         op.execute("alter table observations alter document type bytea using convert_to(document, 'UTF8')")
     else:
@@ -66,6 +67,7 @@ def downgrade() -> None:
     """Take an empty database back, into which a backup of the version before is to be restored."""
     if op.get_bind().scalar(sa.text("select count(*) from observations")):
         raise NotImplementedError("put back the copy that was made before the upgrade")
+    op.drop_index("ix_work_fair", "work")
     for table in ("alerts", "handling", "posts", "asset_groups"):
         op.drop_table(table)
     with op.batch_alter_table("users") as users:
