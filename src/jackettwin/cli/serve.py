@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import sys
 from pathlib import Path
 from typing import Any
@@ -45,9 +44,21 @@ FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
     type=FiniteFloat(0.0),
     help="Days for which samples of observed records are kept, from now on; 0: for ever, the default.",
 )
+@click.option(
+    "--log-level",
+    default="warning",
+    show_default=True,
+    type=click.Choice(["debug", "info", "warning", "error"]),
+    help="What is written to the standard error stream.",
+)
+@click.option(
+    "--log-json", is_flag=True, help="One JSON object a line of it, for programs that collect them."
+)
 @click.option("--demo", is_flag=True, help="Let a demonstration asset's records arrive in fast motion.")
 @click.option("--json", "as_json", is_flag=True, help="Print the address as JSON when it can be asked.")
-def serve_command(store: Path, demo: bool, as_json: bool, **options: Any) -> None:
+def serve_command(
+    store: Path, demo: bool, as_json: bool, log_level: str, log_json: bool, **options: Any
+) -> None:
     """Serve the living twin in STORE: records in, answers out.
 
     STORE is made if it is not there. Open the address that is printed. Nothing else has to be set up.
@@ -56,9 +67,9 @@ def serve_command(store: Path, demo: bool, as_json: bool, **options: Any) -> Non
     scheduler = options["scheduler"]
     workers = f"{options['workers']} workers" if scheduler is None else f"work at {scheduler}"
     messages.print(f"starting {workers} and the server …")
-    from jackettwin.service import Service, demonstrate, read_settings, serve
+    from jackettwin.service import Service, demonstrate, read_settings, serve, start_logging
 
-    logging.basicConfig(level=logging.WARNING, format="%(asctime)s %(levelname)s %(message)s")
+    start_logging(log_level, as_json=log_json)
 
     def ready(service: Service) -> None:
         scheme = "https" if service.settings.tls_certificate else "http"

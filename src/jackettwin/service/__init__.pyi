@@ -2,6 +2,7 @@ from .context import Service as Service
 from .demonstration import demonstrate as demonstrate
 from .intake.files import Accepted as Accepted
 from .intake.folder import record_files as record_files, watch_folders as watch_folders
+from .logs import start_logging as start_logging
 from .server import serve as serve
 from .settings import ServiceSettings as ServiceSettings, read_settings as read_settings
 from .store_commands import (

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property
+from pathlib import Path
 
 from sqlalchemy import Engine
 
@@ -80,7 +81,8 @@ def open_service(settings: ServiceSettings) -> Service:
         If the database cannot be opened.
     """
     private_folder(settings.store)
-    os.environ.setdefault("NUMBA_CACHE_DIR", str(settings.store / "cache"))  # homes may be closed to us
+    if not os.access(Path(__file__).parent, os.W_OK):  # where it is kept otherwise; homes may be closed
+        os.environ.setdefault("NUMBA_CACHE_DIR", str(settings.store / "cache"))
     for folder in (settings.spool, settings.models):
         folder.mkdir(parents=True, exist_ok=True)
     database = open_database(settings.database_url)

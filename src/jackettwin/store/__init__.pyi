@@ -1,3 +1,4 @@
+from .columns import rounded as rounded
 from .database import (
     open_database as open_database,
     private_folder as private_folder,
@@ -5,6 +6,7 @@ from .database import (
     sqlite_url as sqlite_url,
     writing as writing,
 )
+from .export import exported as exported
 from .people import note_down as note_down
 from .results import StoredObservation as StoredObservation
 from .streams import Packet as Packet

@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from datetime import datetime
+from typing import TYPE_CHECKING, TypeVar
 
-from prometheus_client import CollectorRegistry, Gauge, generate_latest
+from prometheus_client import (
+    CollectorRegistry,
+    Counter,
+    Gauge,
+    disable_created_metrics,
+    generate_latest,
+)
+from sqlalchemy import Connection
 from sqlalchemy.exc import SQLAlchemyError
 
 from jackettwin.service.web.schemas import Ready
@@ -14,6 +23,7 @@ if TYPE_CHECKING:
     from jackettwin.service.context import Service
 
 
+T = TypeVar("T")
 ROOM_BYTES = 256 * 2**20
 """Room that must be left on the disk: the database needs it to finish what it began."""
 LATE_S = 3600.0
@@ -58,45 +68,63 @@ def problems(service: Service, found: Ready) -> list[str]:
     return [words for words, holds in said.items() if holds]
 
 
-def exposition(service: Service, seen: rights.Assets = None) -> bytes:
-    """Return all measures of the server, and of the assets that somebody may see, as text."""
-    registry, now = CollectorRegistry(), service.now()
+class _Measures:
+    """Measures of one answer."""
 
-    def gauge(name: str, text: str, value: float, **labels: str) -> None:
-        known = registry._names_to_collectors.get(f"jackettwin_{name}")
-        made = known or Gauge(f"jackettwin_{name}", text, list(labels), registry=registry)
+    def __init__(self) -> None:
+        self.registry = CollectorRegistry()
+
+    def gauge(self, name: str, text: str, value: float, **labels: str) -> None:
+        """Say what something is now, once or for each of its labels."""
+        known = self.registry._names_to_collectors.get(f"jackettwin_{name}")
+        made = known or Gauge(f"jackettwin_{name}", text, list(labels), registry=self.registry)
         assert isinstance(made, Gauge)
         (made.labels(**labels) if labels else made).set(value)
 
+    def counter(self, name: str, text: str, value: float) -> None:
+        """Say how often something happened since the server started; ``_total`` is added to its name."""
+        Counter(f"jackettwin_{name}", text, registry=self.registry).inc(value)
+
+
+def exposition(service: Service, seen: rights.Assets = None) -> bytes:
+    """Return all measures of the server, and of the assets that somebody may see, as text."""
+    disable_created_metrics()  # type: ignore[no-untyped-call]  # made anew, counters began at no time
+    measures, now = _Measures(), service.now()
+    gauge, counter = measures.gauge, measures.counter
     with reading(service.database) as connection:
-        for state, n in work.queue_sizes(connection, seen).items():
-            gauge("work", "Pieces of work by state", n, state=state)
+        _measure_assets(measures, connection, seen, now)
         oldest = work.oldest_queued(connection)
-        for name, counts in _seen(records.count_by_status(connection), seen):
-            for status, n in counts.items():
-                gauge("records", "Records by asset and status", n, asset=name, status=status)
-        for name, said in _seen(results.count_findings(connection), seen):
-            for severity, n in said.items():
-                gauge("findings", "Findings by asset and severity", n, asset=name, severity=severity)
-        for asset in assets.summaries(connection):
-            if asset.last_record_utc is not None and (seen is None or asset.name in seen):
-                age = (now - asset.last_record_utc).total_seconds()
-                gauge("last_record_age_seconds", "Time since the latest record began", age, asset=asset.name)
     waited = 0.0 if oldest is None else max((now - oldest).total_seconds(), 0.0)
     gauge("queue_age_seconds", "Time since the oldest record that is not observed yet was asked for", waited)
     gauge("workers", "Workers there are", service.cluster.workers)
-    gauge(
-        "worker_restarts_total",
-        "Workers that were replaced, whatever they ended of",
-        service.cluster.restarts,
-    )
+    gauge("scheduler_reachable", "Whether the scheduler of the workers answers", service.cluster.reachable)
+    counter("worker_restarts", "Workers that were replaced, whatever they ended of", service.cluster.restarts)
     gauge("disk_free_bytes", "Room left where the store is", service.free_bytes())
     broker = service.broker_connected()
     if broker is not None:
         gauge("broker_connected", "Whether the MQTT broker answers", float(broker))
-        gauge("packets_refused_total", "Packets that could not be kept", service.packets_refused())
-    return generate_latest(registry)
+        counter("packets_refused", "Packets that could not be kept", service.packets_refused())
+    return generate_latest(measures.registry)
 
 
-def _seen(counts: dict[str, dict[str, int]], seen: rights.Assets) -> list[tuple[str, dict[str, int]]]:
-    return [(name, of) for name, of in counts.items() if seen is None or name in seen]
+def _measure_assets(measures: _Measures, connection: Connection, seen: rights.Assets, now: datetime) -> None:
+    gauge = measures.gauge
+    for state, n in work.queue_sizes(connection, seen).items():
+        gauge("work", "Pieces of work by state", n, state=state)
+    for name, counts in _seen(records.count_by_status(connection), seen):
+        for status, n in counts.items():
+            gauge("records", "Records by asset and status", n, asset=name, status=status)
+    for name, said in _seen(results.count_findings(connection), seen):
+        for severity, n in said.items():
+            gauge("findings", "Findings by asset and severity", n, asset=name, severity=severity)
+    for name, n in _seen(results.unacknowledged_alarms(connection), seen):
+        gauge("alarms_open", "Alarms that nobody took note of", n, asset=name)
+    for name, last in _seen({a.name: a.last_record_utc for a in assets.summaries(connection)}, seen):
+        if last is not None:
+            age = (now - last).total_seconds()
+            gauge("last_record_age_seconds", "Time since the latest record began", age, asset=name)
+
+
+def _seen(of: Mapping[str, T], seen: rights.Assets) -> list[tuple[str, T]]:
+    """Return what there is of each asset that somebody may see."""
+    return [(name, value) for name, value in of.items() if seen is None or name in seen]

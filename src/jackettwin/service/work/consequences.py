@@ -26,11 +26,11 @@ from jackettwin.store import (
     people,
     records,
     results,
+    rounded,
     streams,
     tables,
     work,
 )
-from jackettwin.store.columns import rounded
 from jackettwin.store.results import StoredState
 
 if TYPE_CHECKING:

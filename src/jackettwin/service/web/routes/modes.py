@@ -35,8 +35,7 @@ from jackettwin.service.web.schemas import (
     SupportsOut,
     TwinOut,
 )
-from jackettwin.store import journal, people, results, writing
-from jackettwin.store.export import exported
+from jackettwin.store import exported, journal, people, results, writing
 
 router = APIRouter(tags=["answers"], route_class=Route)
 

@@ -1,0 +1,31 @@
+"""Lines of log for people, or one JSON object each for programs that collect them."""
+
+from __future__ import annotations
+
+import json
+import logging
+from datetime import UTC, datetime
+
+
+class JsonLines(logging.Formatter):
+    """One object a line: ``time_utc``, ``level``, ``logger``, ``message`` and, of a fault, ``trace``."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Return a line."""
+        said = {
+            "time_utc": datetime.fromtimestamp(record.created, UTC).isoformat(timespec="milliseconds"),
+            "level": record.levelname.lower(),
+            "logger": record.name,
+            "message": record.getMessage(),
+        }
+        if record.exc_info:
+            said["trace"] = self.formatException(record.exc_info)
+        return json.dumps(said, ensure_ascii=False)
+
+
+def start_logging(level: str, *, as_json: bool) -> None:
+    """Write what happens, from a level of :mod:`logging` on, to the standard error stream."""
+    handler = logging.StreamHandler()
+    plain = logging.Formatter("%(asctime)s %(levelname)s %(message)s")
+    handler.setFormatter(JsonLines() if as_json else plain)
+    logging.basicConfig(level=level.upper(), handlers=[handler])

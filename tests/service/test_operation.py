@@ -1,0 +1,67 @@
+"""What an operator's programs are given: rules and a dashboard of measures there are, and lines of log."""
+
+from __future__ import annotations
+
+import json
+import logging
+import re
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+from fastapi.testclient import TestClient
+from tests.service.conftest import Here, upload
+
+from jackettwin.service.context import Service
+from jackettwin.service.logs import JsonLines
+
+DEPLOY = Path(__file__).parents[2] / "deploy"
+
+
+def measured(client: TestClient) -> dict[str, str]:
+    """Return the type of every measure, {name: type}."""
+    text = client.get("/api/v1/metrics").text
+    return dict(re.findall(r"^# TYPE (\S+) (\S+)$", text, flags=re.MULTILINE))
+
+
+def test_rules_and_dashboard_ask_for_measures_there_are(client: TestClient, service: Service) -> None:
+    upload(client, 1)
+    service.broker_connected = lambda: True
+    rules = yaml.safe_load((DEPLOY / "prometheus_rules.yaml").read_text())["groups"][0]["rules"]
+    panels = json.loads((DEPLOY / "grafana_dashboard.json").read_text())["panels"]
+    asked = [rule["expr"] for rule in rules] + [p["targets"][0]["expr"] for p in panels]
+    names = {name for expression in asked for name in re.findall(r"jackettwin_\w+", expression)}
+    known = measured(client)
+    # no asset has an alarm here: the measure has no rows, and then no type is said of it
+    assert names - {"jackettwin_alarms_open"} <= set(known)
+    assert len(names) >= 10
+    rising = {name for e in asked if "increase(" in e for name in re.findall(r"jackettwin_\w+", e)}
+    assert {known[name] for name in rising} == {"counter"}
+    assert {name for name, kind in known.items() if kind == "counter"} == rising
+
+
+def test_health_says_what_is_lacking(
+    client: TestClient, service: Service, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert client.get("/api/v1/health").json() == {"status": "ok", "version": "0.1.0", "problems": []}
+    service.broker_connected = lambda: False
+    monkeypatch.setattr(Here, "reachable", False)
+    said = client.get("/api/v1/health")
+    assert (said.status_code, said.json()["status"]) == (200, "degraded")  # another start does not help
+    assert said.json()["problems"] == ["the scheduler does not answer", "the broker does not answer"]
+    assert client.get("/api/v1/ready").status_code == 503
+    service.turning = lambda: False
+    assert client.get("/api/v1/health").status_code == 503  # another start does
+
+
+def test_a_line_of_log_is_one_object() -> None:
+    try:
+        raise ValueError("gone\nwrong")
+    except ValueError:
+        fault = logging.LogRecord("a.b", logging.ERROR, "f", 1, "it %s\n", ("fell",), sys.exc_info())
+    line = JsonLines().format(fault)
+    assert "\n" not in line
+    said = json.loads(line)
+    assert (said["level"], said["logger"], said["message"]) == ("error", "a.b", "it fell\n")
+    assert "ValueError: gone" in said["trace"]
