@@ -78,6 +78,7 @@ class MqttIntake:
         self._client.on_connect_fail = lambda *_: log.warning("the broker does not answer; it is asked again")
         self._client.on_message = lambda _client, _data, message: self._inbox.put(message)
         self._place = (place.hostname or "127.0.0.1", place.port or _PORTS[place.scheme])
+        self._client.connect_async(*self._place, keepalive=30)
         self._listening = False
 
     @property
