@@ -17,6 +17,7 @@ from sqlalchemy import Connection
 from sqlalchemy.exc import SQLAlchemyError
 
 from jackettwin.service.web.schemas import Ready
+from jackettwin.service.workers.failures import ROOM_BYTES
 from jackettwin.store import assets, reading, records, results, rights, work
 
 if TYPE_CHECKING:
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
 
 
 T = TypeVar("T")
-ROOM_BYTES = 256 * 2**20
-"""Room that must be left on the disk: the database needs it to finish what it began."""
 LATE_S = 3600.0
 """A record that waits for so long is not observed: an hour of six records of every turbine is behind it."""
 

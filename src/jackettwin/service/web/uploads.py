@@ -15,10 +15,10 @@ from jackettwin.service import workers
 from jackettwin.service.intake.bundles import twin_folder
 from jackettwin.service.intake.files import Accepted, discard, parse_here, spooled, take_file
 from jackettwin.service.web.dependencies import known_record, living_asset
-from jackettwin.service.web.metrics import ROOM_BYTES
 from jackettwin.service.web.problems import ApiError, disk_full
 from jackettwin.service.web.schemas import PicksIn, StabilisationOut, Taken
 from jackettwin.service.work.conditions import add_conditions
+from jackettwin.service.workers.failures import ROOM_BYTES
 from jackettwin.service.workers.tasks import read_conditions
 from jackettwin.store import assets, journal, people, reading, records, work, writing
 

@@ -13,6 +13,10 @@ DISK_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 """What the system says where nothing can be written."""
 
 
+ROOM_BYTES = 256 * 2**20
+"""Room that must be left on the disk: the database needs it to finish what it began."""
+
+
 class NoWorker(Exception):
     """No worker came to a task in time; nothing is wrong with it."""
 
