@@ -350,14 +350,15 @@ CATALOGUE: dict[str, Kind] = {
     "watch_begins": Kind(
         "info", "watched from {from} on: a false alarm once in {arl_years:g} years or more rarely"
     ),
+    "watch_sees": Kind("info", "{said}"),
     "structure_changed": Kind(
         "alarm",
-        "changed by {size:+.2%} ({low:+.2%} to {high:+.2%}), began {began} ({began_low} to {began_high}); "
+        "changed: {by_mode}; began {began} ({began_low} to {began_high}); "
         "most likely {cause} ({probability:.0%})",
     ),
     "structure_turned": Kind(
         "alarm",
-        "turned by {size:+.1f}° ({low:+.1f} to {high:+.1f}°), began {began} ({began_low} to {began_high}); "
+        "turned: {by_mode}; began {began} ({began_low} to {began_high}); "
         "most likely {cause} ({probability:.0%})",
     ),
     "sensor_changed": Kind(

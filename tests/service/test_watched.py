@@ -42,13 +42,14 @@ def test_days_that_change_raise_an_alarm_and_days_that_do_not_none(
     """Which cause it is, is judged elsewhere, at the price of a thousand eigenvalue problems."""
     monkeypatch.setattr(import_module("jackettwin.change.judge"), "_causes", lambda *_: None)
     kept, findings = watched(folder, days(95, -0.008), None)
-    assert [f["code"] for f in findings] == ["watch_begins", "structure_changed"]
-    assert findings[1]["day"] > "2025-03-16"
+    assert [f["code"] for f in findings] == ["watch_begins", "watch_sees", "structure_changed"]
+    assert findings[2]["day"] > "2025-03-16"
+    assert findings[1]["text"].startswith("Would be found with 95% at this noise and promise: within 30 days")
     _, again = watched(folder, days(95, -0.008), json.loads(json.dumps(kept)))
     assert again == findings[1:]
     assert len(json.dumps(kept)) < 5e6
     _, quiet = watched(folder, days(95, 0.0), None)
-    assert [f["severity"] for f in quiet] == ["info"]
+    assert [f["severity"] for f in quiet] == ["info", "info"]
 
 
 def test_sums_of_past_days_are_kept_and_only_new_days_sent(folder: Path) -> None:

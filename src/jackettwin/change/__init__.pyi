@@ -9,6 +9,7 @@ from .judge import (
     finding_of as finding_of,
     history_of as history_of,
     judge as judge,
+    sight_of as sight_of,
 )
 from .table_monitoring import Alarm as Alarm, Watched as Watched
 from .watch_document import next_sentence as next_sentence, statement as statement

@@ -410,7 +410,8 @@ def _families(found: list[tuple[str, Cause]]) -> tuple[Cause, ...]:
         for group in groups:
             first, more = group[0], len(group) - 1
             name = first.name if not more else f"{first.name} (or {more} alike)"
-            out.append(replace(first, name=name, prior=len(group) / len(members)))
+            others = tuple(cause.name for cause in group[1:])
+            out.append(replace(first, name=name, prior=len(group) / len(members), alike=others))
     return tuple(out)
 
 

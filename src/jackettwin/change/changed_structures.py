@@ -82,7 +82,7 @@ def happenings(standing: Standing) -> tuple[Happening, ...]:
     return (
         *_grounds(structure),
         *_braces(structure),
-        Happening("growth", "marine growth", _grown, 0.05, 0.05, 0.8, "m"),
+        Happening("growth", "marine growth", _grown, 0.05, 0.02, 1.2, "m"),
         *_tops(structure),
         Happening("corrosion", "corrosion of the splash zone", _corroded, 0.002, 0.003, 0.8, "m"),
         Happening("connection", "grouted or bolted connection", _loosened, 0.3, 0.3, 0.8, "-", damps=0.5),

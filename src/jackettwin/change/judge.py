@@ -19,8 +19,13 @@ import numpy as np
 
 from jackettwin.change.causes import ModelCauses, seen_causes
 from jackettwin.change.ground import UNDESCRIBED, Ground
+from jackettwin.change.smallest_changes import (
+    smallest_changes,
+    smallest_documents,
+    smallest_sentence,
+)
 from jackettwin.change.table_monitoring import explained_alarm, structure_causes, watch_after_baseline
-from jackettwin.change.watch_document import alarm_document, with_later_look
+from jackettwin.change.watch_document import alarm_document, sizes_by_mode, with_later_look
 from jackettwin.errors import InputError
 from jackettwin.files import StoredSchema, digest
 from jackettwin.findings import Finding
@@ -48,6 +53,7 @@ class Judged:
     alarms : as documents, in the order of time
     columns : of the baseline
     pending : the last alarm's change, while it is looked at again
+    smallest : changes that would be found, as documents
     """
 
     baseline_days: float
@@ -61,6 +67,7 @@ class Judged:
     relearn: str = UNDATED
     columns: Columns | None = None
     pending: PendingChange | None = None
+    smallest: tuple[Mapping[str, Any], ...] = ()
 
     @property
     def promise(self) -> tuple[float, float, str]:
@@ -145,13 +152,14 @@ def judge(
     if known.learnt is None:
         watch = watch_after_baseline(baseline(), settings.arl_years, causes())
         known = replace(
-            known, baseline=_fingerprint(every, before), learnt=watch, watch=watch, columns=columns
-        )
+            known, baseline=_fingerprint(every, before), learnt=watch, watch=watch, columns=columns,
+            smallest=tuple(smallest_documents(smallest_changes(watch, baseline(), causes()))),
+        )  # fmt: skip
         findings.append(Finding("watch_begins", None, {"from": end, "arl_years": settings.arl_years}))
     for day in (d for d in after if d > known.through):
         known = _day(known, baseline, history_of(columns, every, [day]), day, causes)
     known = replace(known, judged=_fingerprint(every, after))
-    told = {alarm["time_utc"]: len(alarm["verdicts"]) for alarm in kept.alarms}
+    told = {alarm["time_utc"]: len(alarm.get("verdicts", ())) for alarm in kept.alarms}
     for alarm in known.alarms:
         findings += [finding_of(alarm)] if alarm["time_utc"] not in told else []
         findings += [f for _, f in corrections(alarm)[max(told.get(alarm["time_utc"], 1), 1) - 1 :]]
@@ -214,17 +222,23 @@ def finding_of(alarm: Mapping[str, Any]) -> Finding:
     params = {
         "time_utc": alarm["time_utc"], "began": alarm["began_utc"][:10], "began_low": began_low,
         "began_high": began_high, "size": alarm["size"], "low": low, "high": high, "cause": best["cause"],
-        "probability": best["probability"],
+        "probability": best["probability"], "by_mode": sizes_by_mode(alarm),
     }  # fmt: skip
     sensor = best["cause"].startswith("sensor") or alarm["kind"] == "scatter"
     turned = "structure_turned" if alarm.get("unit") == "deg" else "structure_changed"
     return Finding("sensor_changed" if sensor else turned, ", ".join(alarm["quantities"]), params)
 
 
+def sight_of(judged: Judged) -> Finding | None:
+    """Return the finding on the smallest changes that would be found, if they are known."""
+    said = smallest_sentence([dict(one) for one in judged.smallest])
+    return Finding("watch_sees", None, {"said": said}) if said else None
+
+
 def corrections(alarm: Mapping[str, Any]) -> tuple[tuple[str, Finding], ...]:
     """Return when the change of an alarm was given another cause than before, and the finding on it."""
     found = []
-    for was, now in itertools.pairwise(alarm["verdicts"]):
+    for was, now in itertools.pairwise(alarm.get("verdicts", ())):
         params = {
             "alarm": alarm["time_utc"][:10], "was": was["cause"], "was_probability": was["probability"],
             "now": now["cause"], "probability": now["probability"],

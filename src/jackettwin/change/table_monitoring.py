@@ -12,6 +12,7 @@ from jackettwin.change.causes import ModelCauses, SeenCauses, model_causes, seen
 from jackettwin.change.ground import UNDESCRIBED, Ground
 from jackettwin.change.modal_table import ModalTable
 from jackettwin.change.next_measurements import Circumstances, Measurement, next_measurements
+from jackettwin.change.smallest_changes import SmallestChange, smallest_changes
 from jackettwin.errors import InputError
 from jackettwin.structure import Structure
 from jackettwin.watching import (
@@ -79,6 +80,7 @@ class Watched:
     slopes : {(kind, mode): {condition: of the logarithm, by a unit of it}}
     unexplained_std : {(kind, mode): of the logarithm}
     limits : what could not be done, as sentences
+    smallest : changes that would be found
     """
 
     table: ModalTable
@@ -90,6 +92,7 @@ class Watched:
     unexplained_std: Mapping[tuple[str, int], float]
     limits: tuple[str, ...]
     slopes: Mapping[tuple[str, int], Mapping[str, float]]
+    smallest: tuple[SmallestChange, ...] = ()
 
 
 def watch_table(
@@ -141,6 +144,7 @@ def watch_table(
     causes = None if structure is None else structure_causes(structure, gravity, baseline, ground)
     progress("baseline")
     watch = watch_after_baseline(baseline, arl_years, causes)
+    smallest = smallest_changes(watch, baseline, causes)
     limits += _limits(watch, baseline, rest)
     explained, unexplained = _explained(watch, baseline)
     seen = None if causes is None else seen_causes(causes, watch.quantities, watch.labels)
@@ -171,6 +175,7 @@ def watch_table(
         unexplained,
         tuple(limits),
         per_unit,
+        smallest,
     )
 
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from jackettwin.change.smallest_changes import smallest_documents
 from jackettwin.change.table_monitoring import Alarm, Watched
 from jackettwin.watching import CauseVerdict, Watch
 
@@ -44,6 +45,7 @@ def watched_document(watched: Watched) -> dict[str, Any]:
             {"time_utc": table.time(look.day).isoformat(), "ln_evidence": look.log_r}
             for look in watched.looks
         ],
+        "smallest_found": smallest_documents(watched.smallest),
         "limits": list(watched.limits),
     }
 
@@ -111,6 +113,12 @@ def _looked_document(watch: Watch, time: Callable[[float], datetime], alarm: Ala
     }
 
 
+def alike_sentence(alarm: Mapping[str, Any]) -> str:
+    """Return which members an alarm's likeliest cause stands for beside the one it names; empty if none."""
+    best = alarm["causes"][0]
+    return f"{best['cause']}: does the same as {', '.join(best['alike'])}" if best["alike"] else ""
+
+
 def corrected_sentence(alarm: Mapping[str, Any]) -> str:
     """Return what the change of an alarm was called before and is called now; empty if it is the same."""
     *was, now = alarm["verdicts"]
@@ -147,16 +155,23 @@ def _sized(size: float, std: float, unit: str) -> dict[str, Any]:
     return {"size": mid, "interval_90": [low, high], "unit": unit}
 
 
-def _sized_words(document: dict[str, Any]) -> str:
-    """Return the size of an alarm with its interval, in words."""
-    low, high = document["size_interval_90"]
-    scale, unit = (1.0, "°") if document["unit"] == "deg" else (100.0, " %")
-    return f"{scale * document['size']:+.2f}{unit} ({scale * low:+.2f} to {scale * high:+.2f}{unit})"
+def sizes_by_mode(alarm: Mapping[str, Any]) -> str:
+    """Return by how much each quantity of an alarm's document changed, with its interval, in words."""
+    return ", ".join(f"{name} by {_sized_words(alarm['by_quantity'][name])}" for name in alarm["quantities"])
+
+
+def _sized_words(sized: Mapping[str, Any]) -> str:
+    """Return a size with its interval, in words."""
+    low, high = sized["interval_90"]
+    scale, unit = (1.0, "°") if sized["unit"] == "deg" else (100.0, " %")
+    return f"{scale * sized['size']:+.2f}{unit} ({scale * low:+.2f} to {scale * high:+.2f}{unit})"
 
 
 def _cause(verdict: CauseVerdict) -> dict[str, Any]:
     sized = not np.isnan(verdict.size)
-    return asdict(verdict) | {"interval_90": list(verdict.interval_90) if sized else None}
+    return asdict(verdict) | {
+        "interval_90": list(verdict.interval_90) if sized else None, "alike": list(verdict.alike)
+    }  # fmt: skip
 
 
 def quantity_name(watch: Watch, key: tuple[str, int]) -> str:
@@ -188,10 +203,9 @@ def statement(watched: Watched) -> str:
         change = alarm.change
         doc = alarm_document(watched.watch, table.time, alarm)
         what = "scatter of" if change.kind == "scatter" else "change of"
-        names = ", ".join(doc["quantities"])
         began = [table.time(day) for day in (change.began, *change.began_interval_90)]
         parts.append(
-            f"{table.time(alarm.day):%Y-%m-%d}: {what} {names} by {_sized_words(doc)}, began "
+            f"{table.time(alarm.day):%Y-%m-%d}: {what} {sizes_by_mode(doc)}, began "
             f"{began[0]:%Y-%m-%d} ({began[1]:%Y-%m-%d} to {began[2]:%Y-%m-%d}); {_likeliest(alarm)}"
             f"{f'; {corrected}' if (corrected := corrected_sentence(doc)) else ''}."
         )

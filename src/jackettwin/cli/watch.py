@@ -64,8 +64,9 @@ def watch_command(
     """
     from jackettwin.change import next_sentence, statement
     from jackettwin.change.modal_table import read_modal_table
+    from jackettwin.change.smallest_changes import smallest_sentence
     from jackettwin.change.table_monitoring import watch_table
-    from jackettwin.change.watch_document import watched_document
+    from jackettwin.change.watch_document import alike_sentence, watched_document
     from jackettwin.decks import read_structure
     from jackettwin.files import atomic_folder, write_json
     from jackettwin.report.pages.watch import build_watch_page
@@ -92,10 +93,14 @@ def watch_command(
         say(statement(watched))
         for alarm in document["alarms"]:
             show_table(Table(f"alarm of {alarm['time_utc']}", _CAUSES, alarm["causes"][:_SHOWN]))
+            if alike := alike_sentence(alarm):
+                say(alike)
             for group in alarm["inseparable"]:
                 say(f"not told apart by these data: {', '.join(group)}")
             if alarm["next_measurements"]:
                 say(next_sentence(alarm))
+        if could := smallest_sentence(document["smallest_found"]):
+            say(could)
         say_all(watched.limits, "limit")
         if out is not None:
             say(f"report: {out / 'report.html'}")

@@ -14,6 +14,7 @@ from .design import (
     regressors as regressors,
     with_time_of_year as with_time_of_year,
 )
+from .detectable import CHANCE as CHANCE, Sight as Sight, sight as sight
 from .diagnosis import (
     CauseVerdict as CauseVerdict,
     Diagnosis as Diagnosis,

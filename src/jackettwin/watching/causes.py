@@ -24,6 +24,8 @@ _STEP = 0.025
 """Step of ln size: a third of the accuracy of a size if a direction is as exact as that of the best model."""
 MISFIT = 0.12
 """Error of a direction in any quantity, relative to its length, if its model's accuracy is unknown."""
+_LARGEST = 4.0
+"""Largest size of a pattern without a model, in the largest that is bet on: a fifth off a frequency."""
 _SENSOR_PRIOR = 5.0
 """Prior weight of sensor and cable failures relative to that of a structural cause."""
 
@@ -46,6 +48,7 @@ class Cause:
     prior : weight before the data; of all causes they need not add up to one
     bent_at, bend : (n_bent,) sizes from 0 on, and (n_bent, m) by how much the change by a unit differs from
         that of the draws there, if a large one is not many small ones: a brace that carries less and less
+    alike : names of causes that do the same and are meant as well, without this one's
     misfit : a model's direction is not the structure's: share of its length by which it may miss in any
         quantity
     """
@@ -60,6 +63,7 @@ class Cause:
     bent_at: FloatArray = field(default_factory=lambda: np.zeros(0))
     bend: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
     misfit: float = MISFIT
+    alike: tuple[str, ...] = ()
 
     def steps(self, sizes: FloatArray) -> FloatArray:
         """Return the mean change of all quantities, (n_sizes, m); beyond the last size the bend is constant.
@@ -102,7 +106,8 @@ def general_causes(
 
     def add(name: str, kind: str, chosen: BoolArray, prior: float) -> None:
         size = np.array(SIZES[kind])
-        fine, weights = sizes_about(float(np.sqrt(size[0] * size[-1])), 0.8, both_ways=True)
+        low, high = float(size[0]), _LARGEST * float(size[-1])
+        fine, weights = sizes_about(np.sqrt(low * high), np.log(high / low) / (2.0 * REACH), both_ways=True)
         found.append(Cause(name, chosen[None].astype(np.float64), fine, weights, "-", prior=prior))
 
     for kind, what in (("frequency", ""), ("damping", "damping of "), ("angle", "direction of ")):

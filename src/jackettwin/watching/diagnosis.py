@@ -43,6 +43,7 @@ class CauseVerdict:
     Attributes
     ----------
     size, interval_90 : in ``unit`` if it is the cause; NaN for what has no size
+    alike : names of further causes that do the same
     """
 
     cause: str
@@ -50,6 +51,7 @@ class CauseVerdict:
     size: float
     interval_90: tuple[float, float]
     unit: str
+    alike: tuple[str, ...] = ()
 
     @property
     def is_clear(self) -> bool:
@@ -86,7 +88,7 @@ def diagnose(change: Change, causes: Sequence[Cause], kinds: Sequence[str]) -> D
     evidence = np.array([found[0] for found in judged] + [float(other)]) + priors
     probability = np.exp(evidence - np.logaddexp.reduce(evidence))
     verdicts = [
-        CauseVerdict(cause.name, float(p), *found[1:], cause.unit)
+        CauseVerdict(cause.name, float(p), *found[1:], cause.unit, cause.alike)
         for cause, p, found in zip(causes, probability, judged, strict=False)
     ]
     verdicts.append(CauseVerdict(SOMETHING_ELSE, float(probability[-1]), np.nan, (np.nan, np.nan), "-"))

@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from jackettwin.change import Alarm, Watched, next_sentence, statement
-from jackettwin.change.watch_document import alarm_document, corrected_sentence
+from jackettwin.change.smallest_changes import smallest_documents, smallest_sentence
+from jackettwin.change.watch_document import alarm_document, alike_sentence, corrected_sentence
 from jackettwin.report.figures.watch import (
     change_pattern,
     evidence_through_time,
@@ -36,6 +37,8 @@ def build_watch_page(watched: Watched, path: Path) -> Path:
         If the file cannot be written.
     """
     outcome: list[Block] = [Text((statement(watched),))]
+    if could := smallest_sentence(smallest_documents(watched.smallest)):
+        outcome.append(Text((could,)))
     sections = []
     if watched.looks:
         caption = (
@@ -97,6 +100,8 @@ def _alarm(watched: Watched, alarm: Alarm, number: int) -> list[Block]:
         Table(caption, ("cause", "probability [%]", "size", "90 %"), tuple(rows)),
         Plot(f"change_pattern_{number}", _PATTERN, change_pattern(watched, alarm), fits=True),
     ]
+    if alike := alike_sentence(document):
+        blocks.append(Text((f"{alike}.",)))
     if corrected := corrected_sentence(document):
         blocks.insert(0, Text((f"{corrected[0].upper()}{corrected[1:]}.",)))
     if document["inseparable"]:

@@ -16,7 +16,7 @@ import numpy as np
 
 from jackettwin.answers import ModeAnswer, Span, answer
 from jackettwin.arrays import FloatArray
-from jackettwin.change import JUDGED, Days, Ground, corrections, finding_of, judge
+from jackettwin.change import JUDGED, Days, Ground, corrections, finding_of, judge, sight_of
 from jackettwin.errors import JackettwinError
 from jackettwin.report import PageSection, span_words, stiffness_section
 from jackettwin.report.build import report_sections
@@ -215,6 +215,8 @@ def watched(
     before, ground = JUDGED.load(kept) if kept else None, Ground.of(twin.config)
     judged, new = judge(twin.model, every, before, twin.config.watch, ground)
     said = [(f"{last}T00:00:00+00:00", f) for f in new if f.severity == "info"]
+    if (sees := sight_of(judged)) is not None:
+        said.append((f"{min(identities)}T00:00:00+00:00", sees))
     for alarm in judged.alarms:
         said += [(alarm["time_utc"], finding_of(alarm)), *corrections(alarm)]
     return JUDGED.dump(judged), tuple(

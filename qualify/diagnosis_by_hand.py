@@ -1,0 +1,302 @@
+"""What a change was, where the truth is changed by hand, without any cause of ``jackettwin.change``.
+
+Usage: python qualify/diagnosis_by_hand.py [draws a change] [jacket…]
+
+Members are cut out, walls thinned, masses added on the drawing; scour is the pile's head stiffness from the
+soil's curves with the ground gone; the stiffness of every foot and member differs from the model's. Modes
+are solved before and after and paired by shape here; the change is seen with the noise of a month of seasons.
+Changes that would raise no alarm are left out.
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from common.page import write_page
+from diagnosis import CONFIDENT, LEAST, STD, Case, calibration, jackets, seen_change
+from scipy.optimize import linear_sum_assignment
+
+from jackettwin.change.causes import model_causes, seen_causes
+from jackettwin.decks import read_structure
+from jackettwin.response import build_system, mode_kinds, mode_labels, undamped_modes
+from jackettwin.response.modes.labels import LOCAL
+from jackettwin.soil import Spring, Support, read_foundation
+from jackettwin.structure import Material, Member, PointMass, Section, Structure, assemble
+from jackettwin.watching import Diagnosis, diagnose
+
+WATCHED, SOLVED = 5, 14
+LOSS = 0.08
+SCOUR_M, SOFTER, GROWTH_M, THINNER_M, HEAVIER = (
+    (0.7, 2.0),
+    (0.1, 0.3),
+    (0.02, 0.1),
+    (0.002, 0.005),
+    (0.01, 0.04),
+)
+
+
+@dataclass(frozen=True)
+class Site:
+    """A structure, and the head stiffness of the pile under every foot, (n_feet, 3) [N/m]."""
+
+    structure: Structure
+    feet: np.ndarray
+
+
+@dataclass(frozen=True)
+class Seen:
+    """Modes of the whole structure: labels, frequencies, shapes, and the ground's share of their energy."""
+
+    labels: tuple[str, ...]
+    frequency_hz: np.ndarray
+    shapes: np.ndarray
+    soil_share: np.ndarray
+
+
+def solved(site: Site) -> Seen:
+    assembly = assemble(site.structure, gravity=True)
+    nodes = site.structure.reaction_nodes
+    springs = tuple(
+        Spring(node, np.diag([*k, 0.0, 0.0, 0.0])) for node, k in zip(nodes, site.feet, strict=True)
+    )
+    modes = undamped_modes(build_system(assembly, Support(springs)), SOLVED)
+    labels = mode_labels(mode_kinds(assembly, modes.shapes, modes.frequency_hz))
+    moved = (assembly.expand @ modes.shapes).reshape(len(assembly.mesh.coordinates), 6, -1)
+    names = list(assembly.mesh.node_names)
+    at = np.stack([moved[names.index(node), :3] for node in nodes])
+    share = np.einsum("fi,fim->m", site.feet, at**2) / modes.omega**2
+    places = [names.index(n) for n in names if n in site.structure.nodes]
+    return Seen(labels, modes.frequency_hz, moved[places].reshape(6 * len(places), -1), share)
+
+
+def paired(before: Seen, after: Seen, chosen: list[int]) -> list[int]:
+    """Return which mode of the changed structure each chosen one is, by the shapes' likeness."""
+    a, b = (x / np.linalg.norm(x, axis=0) for x in (before.shapes[:, chosen], after.shapes))
+    return [int(j) for j in linear_sum_assignment(-np.abs(a.T @ b))[1]]
+
+
+def pile_head(depth_m: float) -> np.ndarray:
+    """Return the stiffness of a pile's head with so much ground gone, horizontal twice and vertical."""
+    head = (
+        read_foundation("jacket15").scoured(depth_m).head() if depth_m else read_foundation("jacket15").head()
+    )
+    k = head.steel + head.soil
+    return np.array([k[0, 0], k[1, 1], k[2, 2]])
+
+
+def submerged(structure: Structure, member: Member) -> float:
+    z = sorted(structure.nodes[n][2] for n in (member.start, member.end))
+    if z[1] <= structure.sea_level_z_m or z[1] == z[0]:
+        return float(z[0] <= structure.sea_level_z_m)
+    return max(0.0, (structure.sea_level_z_m - z[0]) / (z[1] - z[0]))
+
+
+def length(structure: Structure, m: Member) -> float:
+    return float(np.linalg.norm(np.subtract(structure.nodes[m.end], structure.nodes[m.start])))
+
+
+def slanted(structure: Structure) -> list[Member]:
+    """Return the braces of the drawing: members of the jacket that rise less than a leg does."""
+    return [
+        m for m in structure.members
+        if m.part in ("jacket", "")
+        and abs(structure.nodes[m.end][2] - structure.nodes[m.start][2]) < 0.85 * length(structure, m)
+    ]  # fmt: skip
+
+
+def brace_of(structure: Structure, one: Member) -> list[Member]:
+    """Return a brace's members: those on one straight line with it, end to end."""
+    line, grown = [one], True
+    way = np.subtract(structure.nodes[one.end], structure.nodes[one.start]) / length(structure, one)
+
+    def along(m: Member) -> bool:
+        own = np.subtract(structure.nodes[m.end], structure.nodes[m.start])
+        return bool(abs(own @ way) > 0.999 * length(structure, m))
+
+    while grown:
+        ends = {n for m in line for n in (m.start, m.end)}
+        more = [
+            m for m in slanted(structure) if m not in line and {m.start, m.end} & ends and along(m)
+        ]  # fmt: skip
+        line, grown = line + more, bool(more)
+    return line
+
+
+def with_members(site: Site, members: list[Member], change: Callable[[Member], Member]) -> Site:
+    names = {m.name for m in members}
+    new = tuple(change(m) if m.name in names else m for m in site.structure.members)
+    return replace(site, structure=replace(site.structure, members=new))
+
+
+def walls(m: Member, less_m: float) -> Member:
+    ends = (
+        Section(s.outer_diameter_m, max(s.thickness_m - less_m, 0.3 * s.thickness_m))
+        for s in (m.section_start, m.section_end)
+    )
+    start, end = ends
+    return replace(m, section_start=start, section_end=end)
+
+
+def stiffer(m: Member, by: float) -> Member:
+    x = m.material
+    return replace(m, material=Material(by * x.youngs_modulus_pa, by * x.shear_modulus_pa, x.density_kg_m3))
+
+
+def changes(site: Site, rng: np.random.Generator) -> list[tuple[str, Site]]:
+    """Return changed sites, each with the beginning of the name that it ought to be given."""
+    s, whole = site.structure, pile_head(0.0)
+    out: list[tuple[str, Site]] = []
+    depth = rng.uniform(*SCOUR_M)
+    gone = pile_head(depth) / whole
+    out.append(("scour at all feet", replace(site, feet=site.feet * gone)))
+    foot = int(rng.integers(len(site.feet)))
+    deeper = pile_head(rng.uniform(1.5, 3.0)) / whole
+    feet = site.feet.copy()
+    feet[foot] *= deeper
+    out.append((f"scour at {s.reaction_nodes[foot]}", replace(site, feet=feet)))
+    out.append(("soil softening", replace(site, feet=site.feet * (1.0 - rng.uniform(*SOFTER)))))
+    braces = slanted(s)
+    cut = brace_of(s, braces[int(rng.integers(len(braces)))])
+    out.append((f"{'|'.join(m.name for m in cut)} lost", with_members(site, cut, lambda m: stiffer(m, 1e-4))))
+    thin = rng.uniform(*GROWTH_M)
+
+    def ring(m: Member) -> float:
+        d = m.section_start.outer_diameter_m
+        return (
+            0.25 * np.pi * ((d + 2 * thin) ** 2 - d**2) * (1325.0 + 1025.0) * length(s, m) * submerged(s, m)
+        )
+
+    grown = [PointMass(n, 0.5 * ring(m)) for m in s.members for n in (m.start, m.end) if ring(m) > 0.0]
+    out.append(("marine growth", replace(site, structure=s.with_masses((*s.masses, *grown)))))
+    if s.masses:
+        top = max(s.masses, key=lambda body: body.mass_kg)
+        heavier = (1.0 + rng.uniform(*HEAVIER)) * top.mass_kg
+        bodies = tuple(replace(b, mass_kg=heavier) if b is top else b for b in s.masses)
+        out.append(("mass of the RNA", replace(site, structure=s.with_masses(bodies))))
+    wet = [
+        m for m in s.members
+        if m.part in ("jacket", "")
+        and min(s.nodes[n][2] for n in (m.start, m.end)) < s.sea_level_z_m + 6.0
+        and max(s.nodes[n][2] for n in (m.start, m.end)) > s.sea_level_z_m - 3.0
+    ]  # fmt: skip
+    less = rng.uniform(*THINNER_M)
+    out.append(("corrosion of the splash zone", with_members(site, wet, lambda m: walls(m, less))))
+    return out
+
+
+def right(wanted: str, cause: str, alike: tuple[str, ...]) -> bool:
+    """Tell whether a cause, or one that is said to do the same, is the wanted one."""
+    names = [cause.split(" (or ")[0], *alike]
+    if wanted.endswith(" lost"):
+        return any(f"{n} lost" in names for n in wanted.removesuffix(" lost").split("|"))
+    return wanted in names
+
+
+def judged(jacket: str, wanted: str, found: Diagnosis) -> Case:
+    first = found.verdicts[0]
+    group = next((g for g in found.inseparable if first.cause in g), ())
+    meant = {v.cause: v.alike for v in found.verdicts}
+    inside = any(right(wanted, name, meant[name]) for name in group)
+    what = "a brace lost" if wanted.endswith(" lost") else "scour at one foot" if wanted.startswith(
+        "scour at ") and wanted != "scour at all feet" else wanted  # fmt: skip
+    good = right(wanted, first.cause, first.alike)
+    return jacket, what, first.cause, 1, first.probability, good, bool(group), inside
+
+
+def cases(jacket: str, structure: Structure, draws: int) -> list[Case]:
+    rng, out = np.random.default_rng((47, len(jacket))), list[Case]()
+    for draw in range(draws):
+        feet = len(structure.reaction_nodes)
+        common = np.exp(0.4 * rng.standard_normal(3))[[0, 0, 2]]
+        ground = pile_head(0.0) * common * np.exp(0.1 * rng.standard_normal((feet, 3)))
+        site = Site(structure, ground)
+        # no member is as on the drawing
+        drawn = np.exp(0.02 * rng.standard_normal(len(structure.members)))
+        factor = {m.name: x for m, x in zip(structure.members, drawn, strict=True)}
+        site = with_members(site, list(structure.members), lambda m: stiffer(m, factor[m.name]))  # noqa: B023
+        before = solved(site)
+        chosen = [i for i, label in enumerate(before.labels) if not label.startswith(LOCAL)][:WATCHED]
+        labels = tuple(before.labels[i] for i in chosen)
+        zeta = 0.006 + 0.5 * LOSS * before.soil_share[chosen]
+        model = model_causes(structure, labels, before.frequency_hz[chosen], zeta, seed=draw)
+        quantities = [(kind, i) for kind in STD for i in range(len(chosen))]
+        kinds = [kind for kind, _ in quantities]
+        seen = seen_causes(model, quantities, labels)
+        own = [kind for kind, known in zip(kinds, seen.known, strict=True) if known]
+        for wanted, changed in changes(site, rng):
+            after = solved(changed)
+            at = paired(before, after, chosen)
+            ln_f = np.log(after.frequency_hz[at] / before.frequency_hz[chosen])
+            ln_z = np.log((0.006 + 0.5 * LOSS * after.soil_share[at]) / zeta)
+            known = seen_change(np.concatenate([ln_f, ln_z]), kinds, rng, False)
+            if known.by_mode.sum() < LEAST:
+                continue
+            out.append(judged(jacket, wanted, diagnose(known.restricted(seen.known), seen.causes, own)))
+            sys.stderr.write(f"{out[-1]} {np.round(100 * ln_f, 2)}\n")
+    return out
+
+
+def share(good: int, of: int) -> str:
+    return f"{good} of {of} ({100 * good / max(of, 1):.0f} %)"
+
+
+def page(found: list[Case], draws: int) -> list[str]:
+    error, chance, most = calibration(found)
+    confident = [c for c in found if c[4] > CONFIDENT and not c[5] and not c[7]]
+    lines = [
+        "# Diagnosis of changes made by hand",
+        "",
+        f"`python qualify/diagnosis_by_hand.py {draws}`: jackets whose feet and members all differ from the",
+        "model's, changed on the drawing: braces cut, walls thinned, masses added; scour from the curves.",
+        "Nothing of `jackettwin.change` makes the truth. Five modes, changes known to 0.03 % and 2 % of",
+        "frequency and damping; the model's feet are fitted to the frequencies before. Changes too small for",
+        "an alarm are left out.",
+        "",
+        "| | |",
+        "|---|---|",
+        f"| first place, or in its declared group | {share(sum(c[5] or c[7] for c in found), len(found))} |",
+        f"| first place | {share(sum(c[5] for c in found), len(found))} |",
+        f"| wrong with more than {100 * CONFIDENT:.0f} % | {len(confident)} of {len(found)} |",
+        f"| expected calibration error; by chance, mean and 95 of 100 below | {100 * error:.1f} %; "
+        f"{100 * chance:.1f} %; {100 * most:.1f} % |",
+        "",
+        "| jacket | first place or group | wrong and sure |",
+        "|---|---|---|",
+    ]
+    for jacket in dict.fromkeys(c[0] for c in found):
+        own = [c for c in found if c[0] == jacket]
+        sure = sum(c in confident for c in own)
+        lines.append(f"| {jacket} | {share(sum(c[5] or c[7] for c in own), len(own))} | {sure} |")
+    lines += ["", "| planted | first place | or in its group | most often taken for |", "|---|---|---|---|"]
+    for name in dict.fromkeys(c[1] for c in found):
+        own = [c for c in found if c[1] == name]
+        wrong = [c[2] for c in own if not c[5]]
+        other = max(set(wrong), key=wrong.count) if wrong else "–"
+        lines.append(f"| {name} | {sum(c[5] for c in own)} of {len(own)} | "
+                     f"{sum(c[5] or c[7] for c in own)} | {other} |")  # fmt: skip
+    return [*lines, ""]
+
+
+def main() -> None:
+    draws = int(sys.argv[1]) if len(sys.argv) > 1 else 2
+    with tempfile.TemporaryDirectory() as name:
+        every = {jacket: structure for jacket, (structure, _) in jackets(Path(name)).items()}
+    every["four legs, deck"] = read_structure(str(Path(__file__).parent / "decks/four_legs.yaml"))
+    found = [
+        c for jacket, s in every.items() if not sys.argv[2:] or jacket in sys.argv[2:]
+        for c in cases(jacket, s, draws)
+    ]  # fmt: skip
+    lines = page(found, draws)
+    if sys.argv[2:]:
+        sys.stdout.write("\n".join(lines))
+    else:
+        write_page("diagnosis_by_hand", lines)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,111 @@
+"""The smallest changes that a watch would find: what an owner asks first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.change.causes import ModelCauses, seen_causes
+from jackettwin.watching import CHANCE, Cause, History, Sight, Watch, general_causes, sight, typical
+
+HORIZONS_DAYS = (30.0, 90.0, 365.0)
+_RANGE = (0.05, 5.0)
+"""Sizes that are tried, in usual sizes of the cause."""
+_LARGEST = {"scour at all feet": 5.0, "soil softening": 0.9}
+"""Largest size that makes sense, [m] and as a share."""
+_ALL_OR_NONE = " lost"
+_EVERY = "all modes alike"
+
+
+@dataclass(frozen=True)
+class SmallestChange:
+    """What would be found with 95 % within some days of its begin.
+
+    Attributes
+    ----------
+    change : name of the cause
+    days : within which it is found
+    size : the smallest that is, in ``unit``; None if none is. For a lost brace None
+    found, of : number of braces whose loss would be found, and of all; None for what has a size
+    """
+
+    change: str
+    days: float
+    size: float | None
+    unit: str
+    found: int | None = None
+    of: int | None = None
+
+
+def smallest_changes(
+    watch: Watch, baseline: History, causes: ModelCauses | None
+) -> tuple[SmallestChange, ...]:
+    """Return what would be found within ``HORIZONS_DAYS``; a horizon longer than the baseline is left out.
+
+    Parameters
+    ----------
+    watch : at the end of the baseline
+    causes : of the structure; without, all modes are taken to change alike
+    """
+    out: list[SmallestChange] = []
+    for days in HORIZONS_DAYS:
+        seen = sight(watch, baseline, days)
+        if seen is not None:
+            out += _general(watch, baseline, seen) if causes is None else _of_structure(watch, seen, causes)
+    return tuple(out)
+
+
+def _general(watch: Watch, baseline: History, seen: Sight) -> Iterator[SmallestChange]:
+    f = typical(baseline.frequency)
+    named = [c for c in general_causes(watch.quantities, watch.labels, f) if c.name == _EVERY]
+    for cause in named:
+        size = seen.smallest(lambda x, c=cause: c.steps(np.array([-x]))[0], 1e-4, 0.2)  # type: ignore[misc]
+        yield SmallestChange(cause.name, seen.days, size, "-")
+
+
+def _of_structure(watch: Watch, seen: Sight, causes: ModelCauses) -> Iterator[SmallestChange]:
+    over = seen_causes(causes, watch.quantities, watch.labels)
+
+    def step(cause: Cause, size: float) -> FloatArray:
+        every = np.zeros(over.known.size)
+        every[over.known] = cause.steps(np.array([size]))[0]
+        return every
+
+    for cause in over.causes:
+        if cause.name in _LARGEST:
+            usual = float(np.median(np.abs(cause.sizes)))
+            high = min(_RANGE[1] * usual, _LARGEST[cause.name])
+            size = seen.smallest(lambda x, c=cause: step(c, x), _RANGE[0] * usual, high)  # type: ignore[misc]
+            yield SmallestChange(cause.name, seen.days, size, cause.unit)
+    lost = [c for c in over.causes if c.name.split(" (or ")[0].endswith(_ALL_OR_NONE)]
+    number = [1 + len(c.alike) for c in lost]
+    found = [n for c, n in zip(lost, number, strict=True) if seen.chance(step(c, 1.0)) >= CHANCE]
+    if lost:
+        yield SmallestChange("a brace lost", seen.days, None, "-", sum(found), sum(number))
+
+
+def smallest_documents(found: Sequence[SmallestChange]) -> list[dict[str, Any]]:
+    """Return the smallest changes as plain data."""
+    return [asdict(one) for one in found]
+
+
+def smallest_sentence(found: Sequence[dict[str, Any]]) -> str:
+    """Return what would be found with 95 %, horizon by horizon; empty if nothing is known."""
+    parts = []
+    for days in dict.fromkeys(one["days"] for one in found):
+        own = ", ".join(_words(one) for one in found if one["days"] == days)
+        parts.append(f"within {days:.0f} days {own}")
+    return f"Would be found with {CHANCE:.0%} at this noise and promise: {'; '.join(parts)}." if parts else ""
+
+
+def _words(one: dict[str, Any]) -> str:
+    if one["of"] is not None:
+        return f"{one['found']} of {one['of']} braces if lost"
+    if one["size"] is None:
+        return f"no {one['change']}"
+    size = f"{one['size']:.2g} m" if one["unit"] == "m" else f"{100.0 * one['size']:.2g} %"
+    return f"{one['change']} by {size}"

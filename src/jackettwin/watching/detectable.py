@@ -1,0 +1,146 @@
+r"""What a watch would find: the chance that a change raises an alarm within some days.
+
+What the innovations say of a step, A, does not depend on measured values but on when and how well was
+measured, on the unexplained variation and on what the baseline left open. A step s of all quantities of a
+kind is looked for along directions u, with
+
+.. math:: a = u^T A u, \quad c \sim N(u^T A s, a)
+
+and raises an alarm if the stake on it times the Bayes factor of a and c reaches the threshold. The records to
+come are taken to be as many and as good as those of as many last days of the baseline.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.stats import norm
+
+from jackettwin.arrays import FloatArray
+from jackettwin.watching.block import WINDOW_DAYS, Block, residuals
+from jackettwin.watching.day_parts import INSIDE
+from jackettwin.watching.design import fresh, regressors
+from jackettwin.watching.directions import SHARES, Directions, log_along
+from jackettwin.watching.history import History
+from jackettwin.watching.hours import Hours, by_hour
+from jackettwin.watching.memory import empty_bank, filtered
+from jackettwin.watching.state import Watch
+
+CHANCE = 0.95
+"""Probability with which a change of the size that is told is found."""
+_WHOLE = 0.9
+"""Share of some days that a baseline must cover to stand for them."""
+_LEAST = 0.01
+"""Smallest weight of a model that counts."""
+_Z = np.linspace(-4.0, 4.0, 65)
+"""Normal values over which the chance is summed."""
+_HALVINGS = 14
+"""Halvings of ln size: to a thousandth of a range of a factor of twenty."""
+
+
+@dataclass(frozen=True)
+class Sight:
+    """What some days of records would say of a step.
+
+    Attributes
+    ----------
+    days : how many
+    directions : of each block that are looked for, with their stakes
+    info : of each block, (n_models, m, m) A of a step at the beginning of these days
+    weights : of each block, (n_models,) of the models
+    log_needed : ln of the Bayes factor that suffices, over the power to which evidence counts
+    """
+
+    days: float
+    directions: tuple[Directions, ...]
+    info: tuple[FloatArray, ...]
+    weights: tuple[FloatArray, ...]
+    log_needed: float
+    power: float
+
+    def chance(self, step: FloatArray) -> float:
+        """Return the probability that a step of all quantities (m_all,) is found by its clearest kind."""
+        found, first = [0.0], 0
+        for directions, info, weights in zip(self.directions, self.info, self.weights, strict=True):
+            m = info.shape[1]
+            found.append(float(weights @ self._each(directions, info, step[first : first + m])))
+            first += m
+        return max(found)
+
+    def _each(self, directions: Directions, info: FloatArray, step: FloatArray) -> FloatArray:
+        """Return the chance under each model."""
+        u = directions.vectors
+        a = np.einsum("di,kij,dj->kd", u, info, u)
+        c = np.einsum("di,kij,j->kd", u, info, step)
+        drawn = c[..., None] + np.sign(c)[..., None] * np.sqrt(a)[..., None] * _Z
+        worth = log_along(directions, np.repeat(a[..., None], _Z.size, axis=2), drawn)
+        stake = directions.log_weights[:-1, None]
+        best = (self.power * worth + stake).max(axis=1)
+        mass = norm.pdf(_Z) / norm.pdf(_Z).sum()
+        return np.asarray((best >= self.log_needed) @ mass)
+
+    def smallest(self, step: Callable[[float], FloatArray], low: float, high: float) -> float | None:
+        """Return the smallest size between two that is found with ``CHANCE``; None if not even the largest.
+
+        Parameters
+        ----------
+        step : the change of all quantities (m_all,) by a size
+        """
+        if self.chance(step(high)) < CHANCE:
+            return None
+        ends = np.log([low, high])
+        for _ in range(_HALVINGS):
+            middle = float(ends.mean())
+            ends[1 if self.chance(step(float(np.exp(middle)))) >= CHANCE else 0] = middle
+        return float(np.exp(ends[1]))
+
+
+def sight(watch: Watch, baseline: History, days: float) -> Sight | None:
+    """Return what some days of records after a baseline would say of a step; None if it is too short to tell.
+
+    Parameters
+    ----------
+    watch : at the end of the baseline
+    """
+    last = float(baseline.days[-1])
+    if last - float(baseline.days[0]) < _WHOLE * days or days <= watch.patience_days:
+        return None
+    rows, _ = regressors(watch.design, baseline, fresh(watch.design))
+    chosen = baseline.days > last - days
+    records = baseline.rows(chosen)
+    known = [_informed(block, records, rows[chosen], watch.last_day) for block in watch.blocks]
+    gap = days / np.unique(np.floor(records.days)).size
+    staked = SHARES["scatter"] + sum(SHARES[block.kind] for block in watch.blocks)
+    needed = watch.log_threshold - np.log(max(gap, 1.0) * (1.0 - INSIDE)) + np.log(staked)
+    return Sight(
+        days,
+        tuple(block.directions for block in watch.blocks),
+        tuple(info for info, _ in known),
+        tuple(weights for _, weights in known),
+        float(needed),
+        watch.power,
+    )
+
+
+def _informed(
+    block: Block, records: History, rows: FloatArray, last_day: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return A of a step before some records as they come again, and the weight, by model."""
+    y, _, variance, _ = residuals(block, records, rows)
+    hours = by_hour(records.days, records.states, np.nan_to_num(rows), y, variance, WINDOW_DAYS)
+    later = _shifted(hours, last_day)
+    live = [i for i, weight in enumerate(block.log_weights) if np.exp(weight) > _LEAST]
+    info = []
+    for i in live:
+        belief = block.beliefs[i]
+        bank = empty_bank(len(block.kept), belief.mean.size).with_begin()
+        info.append(filtered(block.memories[i], belief, bank, later, last_day).bank.info[0])
+    weights = np.exp(block.log_weights[live])
+    return np.array(info), np.asarray(weights / weights.sum())
+
+
+def _shifted(hours: Hours, last_day: float) -> Hours:
+    """Return hours that follow a day."""
+    return replace(hours, days=hours.days - hours.days[0] + last_day + 1.0)
