@@ -11,5 +11,16 @@ from .judge import (
     judge as judge,
     sight_of as sight_of,
 )
+from .smallest_changes import (
+    smallest_documents as smallest_documents,
+    smallest_sentence as smallest_sentence,
+)
 from .table_monitoring import Alarm as Alarm, Watched as Watched
-from .watch_document import next_sentence as next_sentence, statement as statement
+from .watch_document import (
+    alarm_document as alarm_document,
+    alike_sentence as alike_sentence,
+    corrected_sentence as corrected_sentence,
+    next_sentence as next_sentence,
+    statement as statement,
+    watched_document as watched_document,
+)

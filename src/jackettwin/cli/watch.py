@@ -62,11 +62,15 @@ def watch_command(
     damping_ratio_std), or one column a mode with --columns. Further columns are conditions. The first
     days are taken as healthy.
     """
-    from jackettwin.change import next_sentence, statement
+    from jackettwin.change import (
+        alike_sentence,
+        next_sentence,
+        smallest_sentence,
+        statement,
+        watched_document,
+    )
     from jackettwin.change.modal_table import read_modal_table
-    from jackettwin.change.smallest_changes import smallest_sentence
     from jackettwin.change.table_monitoring import watch_table
-    from jackettwin.change.watch_document import alike_sentence, watched_document
     from jackettwin.decks import read_structure
     from jackettwin.files import atomic_folder, write_json
     from jackettwin.report.pages.watch import build_watch_page

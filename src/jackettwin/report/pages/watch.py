@@ -5,9 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from jackettwin.change import Alarm, Watched, next_sentence, statement
-from jackettwin.change.smallest_changes import smallest_documents, smallest_sentence
-from jackettwin.change.watch_document import alarm_document, alike_sentence, corrected_sentence
+from jackettwin.change import (
+    Alarm,
+    Watched,
+    alarm_document,
+    alike_sentence,
+    corrected_sentence,
+    next_sentence,
+    smallest_documents,
+    smallest_sentence,
+    statement,
+)
 from jackettwin.report.figures.watch import (
     change_pattern,
     evidence_through_time,
