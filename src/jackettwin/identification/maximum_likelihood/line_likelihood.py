@@ -160,7 +160,7 @@ def likelihood_interval(log_likelihood: FloatArray) -> tuple[float, float, float
     for k, (inner, outer) in enumerate(((held[0], held[0] - 1), (held[-1], held[-1] + 1))):
         if 0 <= outer < len(values):
             share = (values[inner] + HALF_CHI_SQUARE_95) / (values[inner] - values[outer])
-            ends[k] += share * float(log_zeta[outer] - log_zeta[inner])
+            ends[k] += float(share * (log_zeta[outer] - log_zeta[inner]))
     return min(max(middle, ends[0]), ends[1]), ends[0], ends[1]
 
 

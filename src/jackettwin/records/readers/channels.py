@@ -199,7 +199,7 @@ def without_flows(
     Parameters
     ----------
     data : (n_channels, n_samples)
-        Stored numbers; NaN marks a missing sample.
+        In SI units; NaN marks a missing sample.
     """
     out, remarks = [], []
     for one, y in zip(described, data, strict=True):

@@ -267,15 +267,16 @@ def to_record(
     start_utc, unzoned = _start(table, said, unsaid)
     metadata["remarks"] = [*metadata.get("remarks", ()), *unzoned]
     described = _described(names, table, said, unsaid)
+    with np.errstate(over="ignore"):  # what overflows is as unreadable as infinity: missing
+        data = data * np.array([one.factor for one in described])[:, None]
+    data = np.where(np.abs(data) <= LARGEST, data, np.nan)
     described, flows = without_flows(described, data)
     metadata["remarks"] += flows
     metadata["remarks"] += told({one.channel.name: one.from_name for one in described})
     if not metadata["remarks"]:
         del metadata["remarks"]
-    with np.errstate(over="ignore"):  # what overflows is as unreadable as infinity: missing
-        data = data * np.array([one.factor for one in described])[:, None]
     return Record(
-        data=np.where(np.abs(data) <= LARGEST, data, np.nan),
+        data=data,
         sample_rate_hz=stated,
         channels=tuple(one.channel for one in described),
         start_utc=start_utc,
