@@ -12,7 +12,8 @@ from tests.service.conftest import NOON
 from tests.support.observations import estimate, observation
 
 from jackettwin.service.workers import engine, verdict
-from jackettwin.service.workers.tasks import Question, know
+from jackettwin.service.workers.question import Question
+from jackettwin.service.workers.tasks import know
 from jackettwin.twin import OBSERVATION
 
 TWIN = """structure: jacket15

@@ -23,7 +23,8 @@ from jackettwin.cli.console import output
 from jackettwin.cli.update import print_updates
 from jackettwin.files import encode
 from jackettwin.service.workers import engine
-from jackettwin.service.workers.tasks import Question, know
+from jackettwin.service.workers.question import Question
+from jackettwin.service.workers.tasks import know
 from jackettwin.study import run_document
 from jackettwin.study.measure import Measured
 from jackettwin.study.run import updated_twin

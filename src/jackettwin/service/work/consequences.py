@@ -18,7 +18,8 @@ from jackettwin.service import workers
 from jackettwin.service.intake.bundles import twin_folder
 from jackettwin.service.intake.examination import profile
 from jackettwin.service.intake.files import living
-from jackettwin.service.workers.tasks import Outcome, Question, Task
+from jackettwin.service.workers.question import Question
+from jackettwin.service.workers.tasks import Outcome, Task
 from jackettwin.store import (
     StoredObservation,
     assets,

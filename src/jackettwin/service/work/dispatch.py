@@ -21,7 +21,8 @@ from sqlalchemy.exc import SQLAlchemyError
 from jackettwin.service.systemd import tell_systemd
 from jackettwin.service.work import consequences
 from jackettwin.service.workers.failures import LOST_WORKER, NoWorker
-from jackettwin.service.workers.tasks import Outcome, Question, Task, know, observe_stored
+from jackettwin.service.workers.question import Question
+from jackettwin.service.workers.tasks import Outcome, Task, know, observe_stored
 from jackettwin.store import reading, work, writing
 from jackettwin.version import __version__
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from jackettwin.errors import InputError, JackettwinError
 from jackettwin.service.workers.failures import problem_of
+from jackettwin.service.workers.question import Question
 
 if TYPE_CHECKING:
     from jackettwin.records import Record, Unsaid
@@ -195,33 +196,6 @@ def read_conditions(path: str, *, zone: str, end_stamped: bool) -> Any:
     except InputError as error:
         error.file = None
         return error
-
-
-@dataclass(frozen=True)
-class Question:
-    """What a turbine's records showed, of which it is asked what that says of the supports and of a change.
-
-    Attributes
-    ----------
-    identities : {day: identity}
-        Of all days.
-    days : {day: document}
-        Of those that are not in what is kept, or of all.
-    newest : documents of the newest observations, for the page
-    in_all : how many records there are, and how long they are together [s]
-    kept : what is kept of the sums of past days and of watching them, by name
-    of : identity of the state
-    """
-
-    asset: str
-    version: int
-    twin_folder: str
-    identities: Mapping[str, str]
-    days: Mapping[str, str]
-    newest: tuple[str, ...] = ()
-    in_all: tuple[int, float] = (0, 0.0)
-    kept: Mapping[str, Any] = field(default_factory=dict)
-    of: str = ""
 
 
 def know(question: Question) -> Outcome | None:

@@ -32,7 +32,7 @@ from jackettwin.updating import Update, sensitivity
 from jackettwin.version import __version__
 
 if TYPE_CHECKING:
-    from jackettwin.service.workers.tasks import Question
+    from jackettwin.service.workers.question import Question
 
 CANNOT_MEET = "the model cannot meet what was measured on any ground: no interval; see the report"
 """What is said of parameters that come nearest to the data and do not explain them."""
