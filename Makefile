@@ -10,7 +10,7 @@ export OPENBLAS_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help demo gallery live test lint types layers security unit servers bench qualify docs lock clean
+.PHONY: help demo gallery live test lint types layers security unit servers bench qualify docs pictures lock clean
 
 help: ## list the commands
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-9s %s\n", $$1, $$2}'
@@ -74,6 +74,9 @@ lock: | $(BIN)/python ## refresh the lock files from pyproject.toml
 	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --extra fatigue --output-file requirements.lock pyproject.toml
 	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --extra fatigue --extra service --extra postgresql --constraint requirements.lock --output-file requirements-service.lock pyproject.toml
 	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --extra fatigue --extra service --extra postgresql --extra dev --extra docs --extra bench --constraint requirements-service.lock --output-file requirements-dev.lock pyproject.toml
+
+pictures: $(VENV)/.dev ## the documentation's pictures, drawn anew by the program
+	PYTHONPATH=scripts $(BIN)/python -m pictures
 
 docs: $(VENV)/.dev ## the documentation, to site/
 	$(BIN)/mkdocs build --quiet --strict

@@ -1,0 +1,104 @@
+"""``python -m pictures [FOLDER]``: draw every picture of the documentation, by default into docs/pictures."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+import plotly.graph_objects as go
+from playwright.sync_api import Page, sync_playwright
+
+from pictures.drawn import DRAWN
+from pictures.table import write_table
+
+DOCS = Path(__file__).parents[2] / "docs" / "pictures"
+
+
+class Shot(NamedTuple):
+    """A picture of one figure on a page that a command wrote, or of the top of the page."""
+
+    name: str
+    page: str
+    figure: str | None
+    """Words of the figure's caption; none for the top of the page."""
+    width: int = 760
+    height: int = 560
+
+
+COMMANDS = (
+    "run --out demo",
+    "view jacket15 --out view.html",
+    "law zener:k0=1.48e6,c=5e4,k1=3.1096e5 kelvin-voigt:k=1.48e6,c=5e4 --mass 1.12e6 --out law.html",
+    "soil jacket15 --out soil.html",
+    "explore thesis_table_6_1 --law kelvin-voigt --over k,c --out explore.html",
+    "simulate parked --out parked.parquet",
+    "identify parked.parquet --report parked.html",
+    "watch table.csv --columns f1,f2,f3 --conditions none --out watched",
+)
+SHOTS = (
+    Shot("report", "demo/report.html", None, 1000, 920),
+    Shot("structure", "view.html", None, 1000, 760),
+    Shot("supports", "law.html", "store and lose", 1000),
+    Shot("soil", "soil.html", "bear sideways"),
+    Shot("updating", "explore.html", "Where is the cost low"),
+    Shot("condensed", "explore.html", "as c varies"),
+    Shot("response", "demo/report.html", "Pale: at rest", 1000),
+    Shot("identification", "demo/report.html", "Pick poles"),
+    Shot("posterior", "demo/report.html", "values go together"),
+    Shot("damping_budget", "demo/report.html", "Whose damping is it"),
+    Shot("closing_loop", "demo/report.html", "What did the data add"),
+    Shot("simulation", "parked.html", "Welch"),
+    Shot("watching", "watched/report.html", "nine days of ten"),
+)
+
+
+def main(out: Path) -> None:
+    """Run the commands, open their pages in Chromium, and keep a picture of each figure wanted."""
+    out.mkdir(parents=True, exist_ok=True)
+    with TemporaryDirectory() as name, sync_playwright() as playwright:
+        folder = Path(name)
+        write_table(folder / "table.csv")
+        for command in COMMANDS:
+            print(f"jackettwin {command}", file=sys.stderr)
+            subprocess.run(
+                [sys.executable, "-m", "jackettwin", *command.split()],
+                cwd=folder,
+                check=True,
+                stdout=subprocess.DEVNULL,
+            )
+        browser = playwright.chromium.launch(executable_path="/usr/bin/chromium")
+        for shot in SHOTS:
+            page = browser.new_page(viewport={"width": shot.width, "height": shot.height})
+            _take(page, folder / shot.page, shot, out / f"{shot.name}.png")
+            page.close()
+        for drawn, figure in DRAWN.items():
+            _draw(browser.new_page(viewport={"width": 760, "height": 460}), figure, out / f"{drawn}.png")
+        browser.close()
+
+
+def _take(page: Page, path: Path, shot: Shot, out: Path) -> None:
+    """Keep the picture of a figure, without its caption's surroundings."""
+    page.goto(path.as_uri())
+    page.wait_for_timeout(2000)
+    if shot.figure is None:
+        page.screenshot(path=out)
+        return
+    figure = page.locator("figure", has_text=shot.figure).first
+    figure.scroll_into_view_if_needed()
+    page.wait_for_timeout(500)
+    figure.screenshot(path=out)
+
+
+def _draw(page: Page, figure: Callable[[], go.Figure], out: Path) -> None:
+    page.set_content(figure().to_html(include_plotlyjs=True, config={"displayModeBar": False}))
+    page.wait_for_timeout(1500)
+    page.screenshot(path=out)
+    page.close()
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else DOCS)
