@@ -46,3 +46,18 @@ def test_a_failed_row_exits_1(monkeypatch: pytest.MonkeyPatch) -> None:
     result = CliRunner().invoke(main, ["verify"])
     assert result.exit_code == 1
     assert "FAILED" in result.stdout
+
+
+def test_benchmarks_of_others_show_misses_and_exit_0(monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = (
+        ROWS[0],
+        replace(ROWS[0], id="c", computed=1.1, note="two digits", missed="another rotor"),
+        ROWS[1],
+    )
+    monkeypatch.setattr("jackettwin.verify.benchmark_rows", lambda step: rows)
+    result = CliRunner().invoke(main, ["verify", "--published"])
+    assert result.exit_code == 0
+    assert "misses: f [Hz], Table 1: another rotor" in result.stdout
+    assert "1 of 2 checked rows hold, median error 5 %; 1 rows only inform" in result.stdout
+    monkeypatch.setattr("jackettwin.verify.benchmark_rows", lambda step: (replace(rows[1], missed=""),))
+    assert CliRunner().invoke(main, ["verify", "--published", "--json"]).exit_code == 1

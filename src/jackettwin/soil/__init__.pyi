@@ -53,7 +53,7 @@ from .mudline import (
     sway_and_rocking as sway_and_rocking,
     tied_at_mudline as tied_at_mudline,
 )
-from .piles.piles import Pile as Pile
+from .piles.piles import Pile as Pile, linear_springs as linear_springs
 from .piles.radiation import Radiation as Radiation
 from .piles.soil_curves import (
     CurveOptions as CurveOptions,

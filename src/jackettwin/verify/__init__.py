@@ -1,14 +1,17 @@
-"""Every published number, recomputed."""
+"""Every published number, recomputed: of the thesis, and of everybody else."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from math import nan
+from statistics import median
 
 from jackettwin.verify import chapters, open_questions, supports, tables
-from jackettwin.verify.rows import Computed, Row, published, rows_of
+from jackettwin.verify.benchmarks import BENCHMARKS
+from jackettwin.verify.rows import OTHERS, Computed, Row, published, rows_of
 
-__all__ = ["STEPS", "Row", "published", "published_rows"]
+__all__ = ["STEPS", "STEPS_OF_OTHERS", "Row", "benchmark_rows", "median_error", "published", "published_rows"]
 
 _CHAPTERS: dict[str, Callable[[], Computed]] = {
     "chapter 3: cantilever": chapters.cantilever,
@@ -22,6 +25,8 @@ _CHAPTERS: dict[str, Callable[[], Computed]] = {
 }
 STEPS = len(_CHAPTERS)
 """How often ``published_rows`` announces what it does."""
+STEPS_OF_OTHERS = len(BENCHMARKS)
+"""How often ``benchmark_rows`` announces what it does."""
 
 
 def published_rows(step: Callable[[str], None] = lambda _: None) -> tuple[Row, ...]:
@@ -31,3 +36,20 @@ def published_rows(step: Callable[[str], None] = lambda _: None) -> tuple[Row, .
         step(chapter)
         computed |= recompute()
     return rows_of(computed)
+
+
+def benchmark_rows(step: Callable[[str], None] = lambda _: None) -> tuple[Row, ...]:
+    """Return others' published benchmarks beside ours."""
+    computed: Computed = {}
+    for name, recompute in BENCHMARKS.items():
+        step(name)
+        computed |= recompute()
+    return rows_of(computed, OTHERS)
+
+
+def median_error(rows: tuple[Row, ...]) -> float:
+    """Return the median of the absolute relative errors of rows that are checked; nan if none is."""
+    errors = [
+        abs(row.relative_error) for row in rows if row.ok is not None and row.relative_error is not None
+    ]
+    return median(errors) if errors else nan
