@@ -4,8 +4,9 @@ from .iso19902_joints import IN_PLANE as IN_PLANE, KINDS as KINDS
 from .joint_check import (
     BraceUse as BraceUse,
     JointPlan as JointPlan,
-    joint_forces as joint_forces,
+    brace_forces as brace_forces,
     joint_plans as joint_plans,
+    joint_shares as joint_shares,
 )
 from .member_check import (
     ALL_CHECKS as ALL_CHECKS,

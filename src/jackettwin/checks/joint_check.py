@@ -181,9 +181,18 @@ def joint_forces(
 
     The shares are (3, n_braces, n_cases), by the balance of axial forces of 14.2.4.
     """
-    own = tuple(_brace_forces(assembly, forces, end, plan.chord[0].away) for end in plan.braces)
-    theta = np.array([joint.theta for joint in plan.joints])
-    return own, load_path(np.array([one.axial for one in own]), theta, plan.across)
+    own = brace_forces(assembly, plan, forces)
+    return own, joint_shares(plan, np.array([one.axial for one in own]))
+
+
+def brace_forces(assembly: Assembly, plan: JointPlan, forces: SectionForces) -> tuple[BraceForces, ...]:
+    """Return every brace's forces at the node (n_cases,): linear in the section forces."""
+    return tuple(_brace_forces(assembly, forces, end, plan.chord[0].away) for end in plan.braces)
+
+
+def joint_shares(plan: JointPlan, axial: FloatArray) -> FloatArray:
+    """Return how much of the braces' axial forces (n_braces, n_cases) [N] is a K, Y and X joint's."""
+    return load_path(axial, np.array([joint.theta for joint in plan.joints]), plan.across)
 
 
 def _brace_forces(assembly: Assembly, forces: SectionForces, end: MemberEnd, line: FloatArray) -> BraceForces:

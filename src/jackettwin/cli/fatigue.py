@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any
 import click
 import numpy as np
 
+from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import (
     CommandGroup,
     FiniteFloat,
     Reply,
     answers,
     messages,
+    progress,
     say,
     show_table,
     working,
@@ -23,8 +25,7 @@ from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
     from jackettwin.arrays import FloatArray
-    from jackettwin.fatigue import Cycles, Environment, LifeModel
-    from jackettwin.simulate import WeldLife
+    from jackettwin.fatigue import Cycles, Environment, LifeModel, ModelsAtHeight, WeldLife
 
 _UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "N/mm^2": 1e6, "ksi": 6.894757293168e6}
 _STRONGEST_PA = 2e9
@@ -35,7 +36,18 @@ _SPLASH_M = (-5.0, 5.0)
 """About the sea level: no cathodic protection reaches there for all of the time."""
 
 
-@click.group("fatigue", cls=CommandGroup)
+class _Fatigue(CommandGroup):
+    """A group that takes TWIN and RECORD for those of its command ``record``."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse what follows; where it begins with no command, it is a twin."""
+        named = next((a for a in args if not a.startswith("-")), None)
+        if named is not None and named not in self.commands:
+            args = ["record", *args]
+        return super().parse_args(ctx, args)
+
+
+@click.group("fatigue", cls=_Fatigue)
 def fatigue_command() -> None:
     """Count cycles, and tell damage and life of welds."""
 
@@ -243,28 +255,17 @@ def scenario_(scenario: str, curve: str, design_factor: float, edition: str | No
 
     Joints in the air, under cathodic protection below the splash zone, and free to corrode in it.
     """
-    from jackettwin.fatigue import LifeModel, read_curve
     from jackettwin.simulate import read_scenario, scenario_life
 
     read = read_scenario(scenario)
-    source = () if edition is None else (edition,)
-    by_environment = {
-        name: LifeModel(read_curve(curve, name, *source), design_factor)
-        for name in ("air", "free-corrosion", "cathodic")
-    }
-
-    def model(z_m: float) -> tuple[Environment, LifeModel]:
-        low, high = _SPLASH_M
-        name: Environment = "air" if z_m > high else "cathodic" if z_m < low else "free-corrosion"
-        return name, by_environment[name]
-
+    model = _models(curve, design_factor, edition)
     with working("stresses at the welds"):
         welds = scenario_life(read, model)
     rows = [_weld(one) for one in welds]
     outside = [row for row in rows if row["beyond_validity"]]
     document = {
         "scenario": read.name,
-        "edition": by_environment["air"].curve.edition,
+        "edition": model(np.inf)[1].curve.edition,
         "curve": curve,
         "design_factor": design_factor,
         "duration_s": welds[0].life.duration_s,
@@ -277,7 +278,100 @@ def scenario_(scenario: str, curve: str, design_factor: float, edition: str | No
             "crack growth",
         ],
     }
-    return Reply(document, lambda: _show_welds(document))
+    return Reply(document, lambda: _show_welds(document, read.name))
+
+
+@fatigue_command.command("record")
+@click.argument("twin")
+@click.argument("record", type=click.Path(path_type=Path))
+@click.option("--curve", default="T", show_default=True, help="S-N curve of tubular joints.")
+@click.option(
+    "--design-factor", default=1.0, show_default=True, type=FiniteFloat(min=1.0, max=10.0),
+    help="Design fatigue factor.",
+)  # fmt: skip
+@click.option(
+    "--draws", default=2, show_default=True, type=click.IntRange(1, 200),
+    help="Motions whose damage is averaged, on each support.",
+)  # fmt: skip
+@click.option(
+    "--supports", default=3, show_default=True, type=click.IntRange(1, 100),
+    help="How many probable supports of the updated twin count.",
+)  # fmt: skip
+@click.option("--feel-gravity", is_flag=True, help="Accelerometers pass constant acceleration: lean shows.")
+@click.option("--fresh", is_flag=True, help="Identify and fit again what an earlier run kept.")
+@curve_options
+@answers
+def record_(
+    twin: str,
+    record: Path,
+    curve: str,
+    design_factor: float,
+    draws: int,
+    supports: int,
+    feel_gravity: bool,
+    fresh: bool,
+    edition: str | None,
+) -> Reply:
+    """Tell the life of every tubular joint from the sensors of RECORD, if all time were like it.
+
+    TWIN updates its supports first: by its records or targets, else by RECORD.
+    """
+    from jackettwin.study import count_steps, life_of_record, updated, with_record
+    from jackettwin.twin import read_twin
+
+    model = _models(curve, design_factor, edition)
+    config = with_record(read_twin(twin), record)
+    with progress(count_steps(config), config.name) as step:
+        update = updated(config, progress=step, keep=keeping(fresh=fresh))
+    with working("stresses at the welds"):
+        found = life_of_record(
+            config, update, record, model, draws=draws, supports=supports, feel_gravity=feel_gravity
+        )
+    rows = [_weld(one) for one in found.welds]
+    outside = [row for row in rows if row["beyond_validity"]]
+    document = {
+        "twin": config.name,
+        "record": record.name,
+        "law": update.law,
+        "edition": model(np.inf)[1].curve.edition,
+        "curve": curve,
+        "design_factor": design_factor,
+        "duration_s": found.duration_s,
+        "forces": [
+            {"name": f.name, "level": f.level, "rate_hz": f.rate / (2.0 * np.pi)}
+            for f in found.estimate.levels.forces
+        ],
+        "noise": np.sqrt(found.estimate.levels.noise),
+        "joints": rows,
+        "warnings": _warnings(rows, outside),
+        "left_out": [
+            "other seas, winds and states: life if all time were like this record",
+            "what no sensor and no wind or sea that the record states tells of slow forces",
+            "buoyancy and mean thrust in the shares of K, Y and X joints",
+            "bending blades; cans, butt welds, flanges, grout and piles",
+            "joints of several planes: each plane for itself",
+            "crack growth",
+        ],
+    }
+    return Reply(document, lambda: _show_welds(document, record.name))
+
+
+def _models(curve: str, design_factor: float, edition: str | None) -> ModelsAtHeight:
+    """Return what corrodes a weld at an elevation above the sea [m], and its curve."""
+    from jackettwin.fatigue import LifeModel, read_curve
+
+    source = () if edition is None else (edition,)
+    by_environment = {
+        name: LifeModel(read_curve(curve, name, *source), design_factor)
+        for name in ("air", "free-corrosion", "cathodic")
+    }
+
+    def model(z_m: float) -> tuple[Environment, LifeModel]:
+        low, high = _SPLASH_M
+        name: Environment = "air" if z_m > high else "cathodic" if z_m < low else "free-corrosion"
+        return name, by_environment[name]
+
+    return model
 
 
 def _weld(one: WeldLife) -> dict[str, Any]:
@@ -322,10 +416,8 @@ _COLUMNS = (
 )
 
 
-def _show_welds(document: dict[str, Any]) -> None:
-    show_table(
-        Table(f"life if all time were like {document['scenario']}", _COLUMNS, document["joints"][:_SHOWN])
-    )
+def _show_welds(document: dict[str, Any], like: str) -> None:
+    show_table(Table(f"life if all time were like {like}", _COLUMNS, document["joints"][:_SHOWN]))
     if len(document["joints"]) > _SHOWN:
         say(f"and {len(document['joints']) - _SHOWN} more welds; --json has all of them")
     for warning in document["warnings"]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.checks import IN_PLANE, JointPlan, joint_forces
+from jackettwin.checks import IN_PLANE, JointPlan, brace_forces, joint_shares
 from jackettwin.fatigue.efthymiou import (
     BraceTube,
     ConcentrationFactors,
@@ -60,15 +60,29 @@ class JointStresses:
     welds: tuple[HotSpot, ...]
 
     def stress(self, assembly: Assembly, forces: SectionForces) -> FloatArray:
-        """Return stresses (n_braces, 2 sides, 8 points, n) [Pa] under section forces (n, n_elements, 2).
+        """Return stresses (n_braces, 2 sides, 8 points, n) [Pa] under section forces (n, n_elements, 2)."""
+        return self.stress_under(self.nominal(assembly, forces))
+
+    def nominal(self, assembly: Assembly, forces: SectionForces) -> FloatArray:
+        """Return the braces' nominal stresses (n_braces, 3, n) [Pa]: axial, in-plane, out-of-plane bending.
+
+        They are linear in the section forces, so that those of unit coordinates give rows for any motion.
+        """
+        own = brace_forces(assembly, self.plan, forces)
+        return np.array([w.per_force[:, None] * np.array(f) for w, f in zip(self.welds, own, strict=True)])
+
+    def stress_under(self, nominal: FloatArray) -> FloatArray:
+        """Return stresses (n_braces, 2 sides, 8 points, n) [Pa] under nominal ones (n_braces, 3, n).
 
         The axial force is shared between K, Y and X at every instant, and each share has its own factors.
         """
-        own, shares = joint_forces(assembly, self.plan, forces)
+        area = np.array([weld.per_force[0] for weld in self.welds])
+        shares = joint_shares(self.plan, nominal[:, 0] / area[:, None])
         found = []
-        for i, (weld, force) in enumerate(zip(self.welds, own, strict=True)):
-            nominal = weld.per_force[:, None] * np.array([force.axial, force.in_plane, force.out_of_plane])
-            found.append(np.einsum("kn,kspc,cn->spn", shares[:, i], weld.matrices, nominal, optimize=True))
+        for i, weld in enumerate(self.welds):
+            parts = (shares[:, i, None] * nominal[i]).reshape(9, -1)
+            by_part = weld.matrices.transpose(1, 2, 0, 3).reshape(16, 9)
+            found.append((by_part @ parts).reshape(2, 8, -1))
         return np.array(found)
 
 

@@ -10,6 +10,7 @@ failure, each named in the result. m is the slope at which the damage was done.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import exp, log, sqrt
 
@@ -43,9 +44,23 @@ class LifeModel:
     load_cov: float = 0.0
     miner_cov: float = 0.3
 
-    def life(self, cycles: Cycles, duration_s: float, thickness_m: float | None = None) -> SpotLife:
-        """Return damage and life of a weld from the cycles that a time brings."""
-        ranges, numbers = cycles.ranges, cycles.numbers
+    def life(
+        self,
+        cycles: Cycles,
+        duration_s: float,
+        thickness_m: float | None = None,
+        *,
+        times: int = 1,
+        others: Mapping[str, float] | None = None,
+    ) -> SpotLife:
+        """Return damage and life of a weld from the cycles that a time brings.
+
+        Parameters
+        ----------
+        times : how often the cycles tell the time over: as so many equally probable motions
+        others : {source: variance of ln D} beside those of the model
+        """
+        ranges, numbers = cycles.ranges, cycles.numbers / times
         damage = self.curve.damage(ranges, numbers, thickness_m=thickness_m)
         m = self._slope(ranges, numbers, thickness_m)
         parts = {
@@ -53,6 +68,7 @@ class LifeModel:
             "stress concentration": (m * self.scf_cov) ** 2,
             "stress ranges": (m * self.load_cov) ** 2,
             "Miner's sum": self.miner_cov**2,
+            **(others or {}),
         }
         std = sqrt(sum(parts.values()))
         # the curve lies two deviations of log N below the mean of the tests

@@ -6,4 +6,4 @@ from .scenario.air import rotor_notes as rotor_notes
 from .scenario.files import read_scenario as read_scenario, shipped_scenarios as shipped_scenarios
 from .scenario.scenario import Scenario as Scenario
 from .scenario.sets import read_set as read_set, shipped_sets as shipped_sets
-from .weld_life import WeldLife as WeldLife, scenario_life as scenario_life
+from .weld_life import scenario_life as scenario_life

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-
 import numpy as np
 
-from jackettwin.arrays import FloatArray
 from jackettwin.checks import joint_plans
 from jackettwin.errors import require
 from jackettwin.fatigue import (
     POSITIONS,
     SIDES,
     Counter,
-    Environment,
-    HotSpot,
-    LifeModel,
-    SpotLife,
+    ModelsAtHeight,
+    WeldLife,
     joint_stresses,
+    weld_lives,
 )
 from jackettwin.simulate.members import deflections
 from jackettwin.simulate.motion.motion import simulate_motion
@@ -29,38 +24,7 @@ _YIELD_PA = 355e6
 """Joints are planned with a yield strength, which fatigue does not use."""
 
 
-@dataclass(frozen=True)
-class WeldLife:
-    """The worst of the eight points on one side of a weld.
-
-    Attributes
-    ----------
-    weld : HotSpot
-    side : str
-        Chord or brace.
-    position : str
-        The point, counted from the crown.
-    z_m : float
-        Elevation of the node in the structure's frame.
-    environment : str
-    damage_by_point : (8,) by the design curve
-    largest_range_pa : float
-    life : SpotLife
-    """
-
-    weld: HotSpot
-    side: str
-    position: str
-    z_m: float
-    environment: Environment
-    damage_by_point: FloatArray
-    largest_range_pa: float
-    life: SpotLife
-
-
-def scenario_life(
-    scenario: Scenario, models: Callable[[float], tuple[Environment, LifeModel]]
-) -> tuple[WeldLife, ...]:
+def scenario_life(scenario: Scenario, models: ModelsAtHeight) -> tuple[WeldLife, ...]:
     """Return the life of both sides of every weld, shortest first, if all time were like the scenario.
 
     Parameters
@@ -90,25 +54,5 @@ def scenario_life(
             for of_side, points in zip(of_weld, counted, strict=True):
                 for series, counter in zip(of_side, points, strict=True):
                     counter.add(series)
-    found = []
-    duration_s = samples * motion.step_s
-    for weld, counted in zip(welds, counters, strict=True):
-        z = structure.nodes[weld.node][2]
-        environment, model = models(z - structure.sea_level_z_m)
-        for side, points, thickness in zip(SIDES, counted, weld.thickness_m, strict=True):
-            cycles = [counter.ended() for counter in points]
-            lives = [model.life(c, duration_s, thickness) for c in cycles]
-            worst = int(np.argmax([life.damage for life in lives]))
-            found.append(
-                WeldLife(
-                    weld,
-                    side,
-                    POSITIONS[worst],
-                    z,
-                    environment,
-                    np.array([life.damage for life in lives]),
-                    float(cycles[worst].ranges.max(initial=0.0)),
-                    lives[worst],
-                )
-            )
-    return tuple(sorted(found, key=lambda one: one.life.life_years))
+    cycles = [[[counter.ended() for counter in of_side] for of_side in counted] for counted in counters]
+    return weld_lives(structure, welds, cycles, samples * motion.step_s, models)

@@ -18,6 +18,18 @@ from .follow_result import (
     days_document as days_document,
     in_time_document as in_time_document,
 )
+from .life.record_life import (
+    RecordLife as RecordLife,
+    WeldMap as WeldMap,
+    life_of_record as life_of_record,
+    record_life as record_life,
+    weld_map as weld_map,
+)
+from .life.updated_system import (
+    updated as updated,
+    updated_systems as updated_systems,
+    with_record as with_record,
+)
 from .many_records.export import WRITERS as WRITERS, export_modes as export_modes
 from .many_records.long_records import LONG as LONG, PIECE_S as PIECE_S
 from .measurements import MeasuredMode as MeasuredMode

@@ -1,0 +1,5 @@
+"""Virtual sensing: motion, forces and stress everywhere from a few sensors."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

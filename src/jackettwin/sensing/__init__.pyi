@@ -1,0 +1,16 @@
+from .estimate import (
+    MotionEstimate as MotionEstimate,
+    estimate_motion as estimate_motion,
+    moved as moved,
+    section_rows as section_rows,
+    sensed_model as sensed_model,
+    spread_of as spread_of,
+)
+from .latent_forces import LatentForce as LatentForce
+from .motion_model import MotionModel as MotionModel, motion_model as motion_model
+from .readings import SensorReadings as SensorReadings, Weather as Weather, readings_of as readings_of
+from .smoother import (
+    SteadySmoother as SteadySmoother,
+    discrete as discrete,
+    steady_smoother as steady_smoother,
+)

@@ -1,0 +1,128 @@
+"""Motion, section forces and stress of a structure from its sensors, with what is not known of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as la
+
+from jackettwin.arrays import FloatArray
+from jackettwin.response import System
+from jackettwin.sensing.latent_forces import wave_forces, wind_forces
+from jackettwin.sensing.levels import Levels, find_levels
+from jackettwin.sensing.motion_model import MotionModel, motion_model
+from jackettwin.sensing.readings import SensorReadings, Weather, thinned
+from jackettwin.sensing.smoother import SteadySmoother, discrete, steady_smoother
+from jackettwin.structure import SectionForces, section_forces
+
+BAND_HZ = 2.2
+"""Modes up to here move with their own inertia; what is beyond follows the forces at once."""
+
+
+@dataclass(frozen=True)
+class MotionEstimate:
+    """Motion of a structure through a record.
+
+    Coordinates are the modes, then the levels of the forces: what a section feels is linear in both.
+
+    Attributes
+    ----------
+    model : MotionModel
+        With the levels found.
+    smoother : SteadySmoother
+    readings : SensorReadings
+    levels : Levels
+    """
+
+    model: MotionModel
+    smoother: SteadySmoother
+    readings: SensorReadings
+    levels: Levels
+
+    @property
+    def to_coordinates(self) -> FloatArray:
+        """Coordinates from the state, (n_coordinates, n_states)."""
+        own = np.eye(self.model.n_modes, self.smoother.F.shape[0])
+        return np.vstack([own, self.model.force_rows()])
+
+    @property
+    def covariance(self) -> FloatArray:
+        """What is not known of the coordinates at any instant far from the record's ends."""
+        T = self.to_coordinates
+        return np.asarray(T @ self.smoother.smoothed @ T.T)
+
+    def mean(self) -> FloatArray:
+        """Return the most probable coordinates, (n_samples, n_coordinates)."""
+        states, _ = self.smoother.smooth(self.readings.y.T)
+        return np.asarray(states @ self.to_coordinates.T)
+
+    def draws(self, number: int, *, seed: int = 0) -> Iterator[FloatArray]:
+        """Yield motions (n_samples, n_coordinates) as probable as the real one, about the mean in pairs.
+
+        A motion drawn from the model, less what its readings say of it, is as wrong as the estimate is
+        (Durbin & Koopman 2002): added to the mean and taken from it.
+        """
+        mean, rng, s = self.mean(), np.random.default_rng(seed), self.smoother
+        for k in range(0, number, 2):
+            states, y = s.draw(len(mean), rng)
+            said, _ = s.smooth(y)
+            error = (states - said) @ self.to_coordinates.T
+            yield mean + error
+            if k + 1 < number:
+                yield mean - error
+
+
+def estimate_motion(system: System, readings: SensorReadings, weather: Weather) -> MotionEstimate:
+    """Return the motion of a supported structure from what its sensors read.
+
+    Raises
+    ------
+    InputError
+        If no tube reaches into the water, or no mode lies in the band.
+    NumericalError
+        If the filter does not come to rest.
+    """
+    return moved(sensed_model(system, weather), readings)
+
+
+def sensed_model(system: System, weather: Weather) -> MotionModel:
+    """Return modes and forces of a structure in a weather: what records in it share."""
+    forces = (
+        *wind_forces(system.assembly, wind_m_s=weather.wind_m_s),
+        *wave_forces(
+            system.assembly,
+            height_m=weather.wave_height_m,
+            period_s=weather.wave_period_s,
+            direction_rad=weather.wave_direction_rad,
+            depth_m=weather.depth_m,
+        ),
+    )
+    return motion_model(system, forces, below_hz=BAND_HZ)
+
+
+def moved(model: MotionModel, readings: SensorReadings) -> MotionEstimate:
+    """Return the motion of a model from what sensors read."""
+    n, h = readings.y.shape[1], readings.step_s
+    which = thinned(n, h, min(0.9 * BAND_HZ, 0.4 / h))
+    omega = np.asarray(2.0 * np.pi * np.fft.rfftfreq(n, h)[which], dtype=np.float64)
+    seen = model.transfer(readings.rows, readings.tilt, readings.derivative, omega)
+    levels = find_levels(readings.y, h, seen, which, model.forces, readings.groups)
+    found = model.with_forces(levels.forces)
+    F, Q = discrete(*found.dynamics(), h)
+    C = found.motion_rows(readings.rows, readings.tilt, readings.derivative)
+    return MotionEstimate(found, steady_smoother(F, Q, C, levels.noise), readings, levels)
+
+
+def section_rows(model: MotionModel) -> SectionForces:
+    """Return the section forces that unit coordinates make, each (n_coordinates, n_elements, 2)."""
+    still = np.zeros((model.n_modes, *model.forces[0].along.shape))
+    along = np.concatenate([still, np.stack([force.along for force in model.forces])])
+    return section_forces(model.assembly, np.vstack([model.shapes.T, model.flexibility.T]), along=along)
+
+
+def spread_of(rows: FloatArray, covariance: FloatArray) -> FloatArray:
+    """Return standard deviations (n,) of what ``rows`` (n, n_coordinates) see of coordinates."""
+    root = la.cholesky(covariance + 1e-12 * np.diag(np.diag(covariance)), lower=True)
+    return np.asarray(np.linalg.norm(rows @ root, axis=1))

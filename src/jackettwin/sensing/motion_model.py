@@ -1,0 +1,159 @@
+r"""A structure as modes driven by latent forces: the state space that a record is smoothed with.
+
+.. math:: \ddot q + C \dot q + Ω^2 q = Φ^T S f, \qquad u = Φ q + R f, \quad
+          R = (K^{-1} - Φ Ω^{-2} Φ^T) S
+
+The modes stand on the updated supports. R is how the structure yields to a pattern beyond the modes kept, so
+that no static part is lost, braces under waves included. Damping is that of the supports' laws at each pair
+of modes, :math:`C_{ij} = φ_i^T\,\mathrm{Im} F(iω_{ij})\,φ_j/ω_{ij}`, :math:`ω_{ij}^2 = ω_i ω_j`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.linalg as la
+
+from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.errors import require
+from jackettwin.response import System, static_displacement, undamped_modes
+from jackettwin.sensing.latent_forces import LatentForce
+from jackettwin.structure import Assembly
+
+_FIRST_GUESS = 30
+
+
+@dataclass(frozen=True)
+class MotionModel:
+    """Modes and forces of a structure.
+
+    Attributes
+    ----------
+    assembly : Assembly
+    omega : (n_modes,) undamped [rad/s]
+    shapes : (n_dof, n_modes) mass-normalised
+    damping : (n_modes, n_modes) [rad/s]
+    forces : tuple of LatentForce
+    flexibility : (n_dof, n_forces) displacement per unit of each force beyond the modes
+    """
+
+    assembly: Assembly
+    omega: FloatArray
+    shapes: FloatArray
+    damping: FloatArray
+    forces: tuple[LatentForce, ...]
+    flexibility: FloatArray
+
+    @property
+    def n_modes(self) -> int:
+        """Number of modes."""
+        return int(self.omega.size)
+
+    @property
+    def modal_loads(self) -> FloatArray:
+        """Loads on the modes per unit of each force, (n_modes, n_forces)."""
+        return np.asarray(self.shapes.T @ np.column_stack([force.load for force in self.forces]))
+
+    def with_forces(self, forces: tuple[LatentForce, ...]) -> MotionModel:
+        """Return the model with the same patterns at other levels and rates."""
+        return replace(self, forces=forces)
+
+    def dynamics(self) -> tuple[FloatArray, FloatArray]:
+        """Return A (n, n) and the noise's density (n, n) of the state: modes, their velocities, forces."""
+        m, loads = self.n_modes, self.modal_loads
+        own = [force.dynamics() for force in self.forces]
+        n = 2 * m + sum(h.size for _, _, h in own)
+        A, Q = np.zeros((n, n)), np.zeros((n, n))
+        A[:m, m : 2 * m] = np.eye(m)
+        A[m : 2 * m, :m], A[m : 2 * m, m : 2 * m] = -np.diag(self.omega**2), -self.damping
+        at = 2 * m
+        for j, (a, q, h) in enumerate(own):
+            here = slice(at, at + h.size)
+            A[here, here], Q[here, here] = a, q
+            A[m : 2 * m, here] = np.outer(loads[:, j], h)
+            at += h.size
+        return A, Q
+
+    def force_rows(self) -> FloatArray:
+        """Return the forces from the state, (n_forces, n)."""
+        return la.block_diag(np.zeros((0, 2 * self.n_modes)), *(force.dynamics()[2] for force in self.forces))
+
+    def displacement_rows(self, rows: FloatArray) -> FloatArray:
+        """Return what ``rows`` (k, n_dof) see of the displacement from the state, (k, n)."""
+        m = self.n_modes
+        seen = (rows @ self.flexibility) @ self.force_rows()
+        seen[:, :m] += rows @ self.shapes
+        return np.asarray(seen)
+
+    def motion_rows(self, rows: FloatArray, tilt: FloatArray, derivative: tuple[int, ...]) -> FloatArray:
+        """Return what sensors read from the state, (k, n).
+
+        Of velocity and acceleration the part beyond the modes is left out: it is small, as it is slow.
+
+        Parameters
+        ----------
+        rows : (k, n_dof) what each sees of the displacement, or of its derivative
+        tilt : (k, n_dof) what it sees of the displacement beside
+        derivative : (k,) of the displacement: 0, 1 or 2
+        """
+        m, A = self.n_modes, self.dynamics()[0]
+        shift = {1: np.eye(m, A.shape[0], m), 2: A[m : 2 * m]}
+        at = np.array(derivative)
+        seen = self.displacement_rows(np.where((at == 0)[:, None], rows, 0.0) + tilt)
+        for k, by in shift.items():
+            seen += np.where((at == k)[:, None], rows, 0.0) @ self.shapes @ by
+        return np.asarray(seen)
+
+    def transfer(
+        self, rows: FloatArray, tilt: FloatArray, derivative: tuple[int, ...], omega: FloatArray
+    ) -> ComplexArray:
+        """Return what sensors read of each unit force in frequency, (n_omega, k, n_forces)."""
+        s = 1j * omega[:, None, None]
+        F = s**2 * np.eye(self.n_modes) + s * self.damping + np.diag(self.omega**2)
+        modal = np.linalg.solve(F, np.broadcast_to(self.modal_loads, (omega.size, *self.modal_loads.shape)))
+        at = np.array(derivative)[:, None]
+        still = np.where(at == 0, rows, 0.0) + tilt
+        moving = s**at * np.where(at == 0, 0.0, rows @ self.shapes)
+        return np.asarray(still @ self.shapes @ modal + still @ self.flexibility + moving @ modal)
+
+
+def motion_model(system: System, forces: tuple[LatentForce, ...], *, below_hz: float) -> MotionModel:
+    """Return the modes of a supported structure below a frequency, and what forces do to it.
+
+    Raises
+    ------
+    InputError
+        If no mode lies below the frequency, or the structure cannot stand.
+    """
+    modes, number = undamped_modes(system, _FIRST_GUESS), _FIRST_GUESS
+    while modes.frequency_hz[-1] < below_hz and modes.omega.size == number < system.free.size:
+        number *= 2
+        modes = undamped_modes(system, number)
+    keep = (modes.frequency_hz < below_hz) & (np.arange(modes.omega.size) >= modes.n_at_rest)
+    require(
+        keep.any(),
+        "no mode lies below this frequency",
+        field="below_hz",
+        value=below_hz,
+        allowed=f"> {modes.frequency_hz[modes.n_at_rest :].min(initial=np.inf):.3g} Hz",
+    )
+    omega, shapes = modes.omega[keep], modes.shapes[:, keep]
+    loads = np.column_stack([force.load for force in forces])
+    static = np.column_stack([static_displacement(system, force.load) for force in forces])
+    flexibility = static - shapes @ ((shapes.T @ loads) / omega[:, None] ** 2)
+    return MotionModel(system.assembly, omega, shapes, _damping(system, omega, shapes), forces, flexibility)
+
+
+def _damping(system: System, omega: FloatArray, shapes: FloatArray) -> FloatArray:
+    """Return the damping between modes, that of the laws at the geometric mean of their frequencies."""
+    pencil, x = system.pencil, shapes[system.free]
+    C = pencil.rayleigh.alpha * np.eye(omega.size) + pencil.rayleigh.beta * (x.T @ (pencil.K @ x))
+    between = np.sqrt(np.outer(omega, omega))
+    for group in pencil.groups:
+        S = x.T @ (group.S @ x)
+        loss = np.array([group.law.stiffness(1j * w).imag / w for w in between.ravel()]).reshape(
+            between.shape
+        )
+        C += loss * S
+    return np.asarray(0.5 * (C + C.T))

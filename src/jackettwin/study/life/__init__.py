@@ -1,0 +1,1 @@
+"""Stress and life from records, through the updated twin."""

@@ -1,0 +1,234 @@
+"""Damage and life of every weld of a structure through a record of a few sensors."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.checks import joint_plans
+from jackettwin.errors import require
+from jackettwin.fatigue import (
+    POSITIONS,
+    SIDES,
+    Cycles,
+    JointStresses,
+    ModelsAtHeight,
+    WeldLife,
+    count,
+    joint_stresses,
+    weld_lives,
+)
+from jackettwin.records import assess, read_record, repair, to_global_axes
+from jackettwin.response import System, self_weight, static_displacement
+from jackettwin.sensing import (
+    MotionEstimate,
+    MotionModel,
+    SensorReadings,
+    Weather,
+    moved,
+    readings_of,
+    section_rows,
+    sensed_model,
+)
+from jackettwin.structure import Assembly, assemble, element_weight, section_forces
+from jackettwin.study.life.updated_system import updated_systems
+from jackettwin.twin import TwinConfig, twin_model
+from jackettwin.twin.calibration import calibrated
+from jackettwin.updating import Update
+
+_YIELD_PA = 355e6
+"""Joints are planned with a yield strength, which fatigue does not use."""
+DRAWS = 2
+"""Motions about the mean, in pairs, whose damage is averaged."""
+
+
+@dataclass(frozen=True)
+class WeldMap:
+    """Stress at every weld from the coordinates of a motion.
+
+    Attributes
+    ----------
+    joints : tuple of JointStresses
+    rows : for every joint, (n_braces, 3, n_coordinates) nominal stress of unit coordinates
+    at_rest : for every joint, (n_braces, 3) nominal stress under the steel's weight
+    """
+
+    joints: tuple[JointStresses, ...]
+    rows: tuple[FloatArray, ...]
+    at_rest: tuple[FloatArray, ...]
+
+    def stress(self, joint: int, motion: FloatArray) -> FloatArray:
+        """Return stresses (n_braces, 2, 8, n) [Pa] of a joint in a motion (n, n_coordinates)."""
+        nominal = self.rows[joint] @ motion.T + self.at_rest[joint][:, :, None]
+        return self.joints[joint].stress_under(nominal)
+
+    def cycles(self, motion: FloatArray) -> list[list[list[Cycles]]]:
+        """Return the cycles at (welds, 2 sides, 8 points) of a motion."""
+        return [
+            [[count(series) for series in side] for side in weld]
+            for joint in range(len(self.joints))
+            for weld in self.stress(joint, motion)
+        ]
+
+
+@dataclass(frozen=True)
+class RecordLife:
+    """Life of every weld, shortest first, if all time were like the record.
+
+    Attributes
+    ----------
+    welds : tuple of WeldLife
+    estimate : MotionEstimate
+    duration_s : float
+    """
+
+    welds: tuple[WeldLife, ...]
+    estimate: MotionEstimate
+    duration_s: float
+
+
+def weld_map(system: System, model: MotionModel, dry: Assembly) -> WeldMap:
+    """Return the stresses of a structure's welds from a motion of its model.
+
+    Parameters
+    ----------
+    dry : the assembly with the mass of steel alone, whose weight shares forces between K, Y and X joints
+
+    Raises
+    ------
+    InputError
+        If no brace stands on a chord.
+    """
+    joints = joint_stresses(model.assembly.structure, joint_plans(model.assembly, _YIELD_PA))
+    require(joints, "no brace stands on a chord", field="structure", remedy="joints of tubes are checked")
+    weight = static_displacement(system, self_weight(dry))
+    still = section_forces(model.assembly, weight[None], along=element_weight(dry)[None])
+    moving = section_rows(model)
+    return WeldMap(
+        joints,
+        tuple(joint.nominal(model.assembly, moving) for joint in joints),
+        tuple(joint.nominal(model.assembly, still)[:, :, 0] for joint in joints),
+    )
+
+
+def life_of_record(
+    config: TwinConfig,
+    update: Update,
+    path: Path,
+    models: ModelsAtHeight,
+    *,
+    draws: int = DRAWS,
+    supports: int = 1,
+    feel_gravity: bool = False,
+) -> RecordLife:
+    """Return the life of a twin's welds through a record, on its updated supports.
+
+    Parameters
+    ----------
+    draws : motions on each of the supports
+    supports : how many of the posterior's supports count, the most probable one first
+    feel_gravity : whether accelerometers read −g times their lean
+
+    Raises
+    ------
+    InputError
+        If the record or its sensors do not fit the structure.
+    """
+    systems = updated_systems(update, draws=supports - 1)
+    record = calibrated(read_record(path, config.unsaid), config.calibrations)
+    record = repair(record, assess(record))
+    if record.metadata.get("axes") == "rotor" or any(c.frame == "nacelle" for c in record.channels):
+        record = to_global_axes(record)
+    model = twin_model(config)
+    readings = readings_of(record, model.placed(record), model.structure, feel_gravity=feel_gravity)
+    depth = None if config.water is None else config.water.depth_m
+    dry = assemble(
+        config.structure,
+        beam_theory=config.beam,
+        rotary_inertia=config.rotary_inertia,
+        subdivide=config.subdivide,
+    )
+    return record_life(systems, readings, Weather.of(record.conditions, depth), models, dry, draws=draws)
+
+
+def record_life(
+    systems: Sequence[System],
+    readings: SensorReadings,
+    weather: Weather,
+    models: ModelsAtHeight,
+    dry: Assembly,
+    *,
+    draws: int = DRAWS,
+    seed: int = 0,
+) -> RecordLife:
+    """Return damage and life of every weld through what sensors read.
+
+    Damage is the mean over motions that are as probable as the real one: that of the smoothest motion alone
+    would be too low, as it lacks what the sensors did not see.
+
+    Parameters
+    ----------
+    systems : the structure on its most probable supports, then on as probable others
+    draws : motions on each
+
+    Raises
+    ------
+    InputError
+        If no brace stands on a chord, or no tube reaches into the water.
+    """
+    of_systems = [
+        _cycles(system, readings, weather, dry, draws, seed + k) for k, system in enumerate(systems)
+    ]
+    chart, estimate, _ = of_systems[0]
+    welds = [weld for joint in chart.joints for weld in joint.welds]
+    every = [one for _, _, motions in of_systems for one in motions]
+    duration = readings.y.shape[1] * readings.step_s
+    structure = estimate.model.assembly.structure
+    curves = [models(structure.nodes[w.node][2] - structure.sea_level_z_m)[1].curve for w in welds]
+    damages = np.array(
+        [
+            [
+                [
+                    [curve.damage(c.ranges, c.numbers, thickness_m=t) for c in side]
+                    for side, t in zip(points, weld.thickness_m, strict=True)
+                ]
+                for points, weld, curve in zip(one, welds, curves, strict=True)
+            ]
+            for one in every
+        ]
+    )
+    by_system = damages.reshape(len(systems), -1, *damages.shape[1:])
+    others = [_variances(by_system[:, :, i]) for i in range(len(welds))]
+    cycles = [
+        [[_all_of([one[i][s][p] for one in every]) for p in range(len(POSITIONS))] for s in range(len(SIDES))]
+        for i in range(len(welds))
+    ]
+    lives = weld_lives(structure, welds, cycles, duration, models, times=len(every), others=others)
+    return RecordLife(lives, estimate, duration)
+
+
+def _cycles(
+    system: System, readings: SensorReadings, weather: Weather, dry: Assembly, draws: int, seed: int
+) -> tuple[WeldMap, MotionEstimate, list[list[list[list[Cycles]]]]]:
+    estimate = moved(sensed_model(system, weather), readings)
+    chart = weld_map(system, estimate.model, dry)
+    return chart, estimate, [chart.cycles(motion) for motion in estimate.draws(draws, seed=seed)]
+
+
+def _all_of(cycles: list[Cycles]) -> Cycles:
+    return Cycles(np.concatenate([c.full for c in cycles]), np.concatenate([c.half for c in cycles]))
+
+
+def _variances(damage: FloatArray) -> dict[str, FloatArray]:
+    """Return the variance of ln D (2, 8) by source, from damages (n_systems, n_draws, 2, 8)."""
+    with np.errstate(divide="ignore"):
+        logs = np.log(np.maximum(damage, 1e-300))
+    within = logs.var(axis=1, ddof=1).mean(axis=0) if logs.shape[1] > 1 else np.zeros(logs.shape[2:])
+    means = np.log(np.maximum(damage.mean(axis=1), 1e-300))
+    between = means.var(axis=0, ddof=1) if len(means) > 1 else np.zeros(means.shape[1:])
+    beyond = np.maximum(between - within / damage.shape[1], 0.0)
+    return {"what sensors do not see": within, "supports": beyond}

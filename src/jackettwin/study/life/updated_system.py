@@ -1,0 +1,62 @@
+"""The structure on the supports that a twin's records or targets made of it, and as probable others."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from jackettwin.errors import require
+from jackettwin.files import NOT_KEPT, Keep
+from jackettwin.progress import SILENT, Progress
+from jackettwin.response import System
+from jackettwin.study.run import run_twin
+from jackettwin.twin import TwinConfig
+from jackettwin.updating import Update, likely
+
+_MOST_DRAWS = 100
+
+
+def updated(config: TwinConfig, *, progress: Progress = SILENT, keep: Keep = NOT_KEPT) -> Update:
+    """Return a twin's supports under its likely law.
+
+    Raises
+    ------
+    InputError
+        If the twin has neither records nor targets, or they do not fit the structure.
+    """
+    require(
+        config.records or config.targets,
+        "nothing updates the supports",
+        file=config.path,
+        field="records",
+        remedy="state records or targets",
+    )
+    result = run_twin(config, posteriors="likely", progress=progress, keep=keep)
+    update = likely(result.updates)
+    assert update is not None
+    return update
+
+
+def updated_systems(update: Update, *, draws: int = 0, seed: int = 0) -> tuple[System, ...]:
+    """Return the structure on its most probable supports, then on ``draws`` others of the posterior.
+
+    Without a posterior there are no others.
+    """
+    known = update.uncertainty
+    best = np.log(update.best.theta) if known is None else np.log(known.median)
+    others = np.empty((0, best.size))
+    if known is not None and draws:
+        rows = np.random.default_rng(seed).choice(len(known.log_theta), min(draws, _MOST_DRAWS))
+        others = known.log_theta[rows]
+    state = update.problem.states[0]
+    vectors = update.problem.vectors(np.vstack([best[None], others]), state)
+    return tuple(update.model.system(theta) for theta in vectors)
+
+
+def with_record(config: TwinConfig, record: Path) -> TwinConfig:
+    """Return a twin that updates itself with a record if it has nothing else to."""
+    if config.records or config.targets:
+        return config
+    return replace(config, records=(record,))

@@ -1,0 +1,154 @@
+"""Motion and stress from sensors of a jacket whose truth the model itself makes."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from jackettwin.decks import read_structure
+from jackettwin.fatigue import LifeModel, read_curve
+from jackettwin.records import Channel, Record
+from jackettwin.response import Sensor, System, build_system, static_displacement
+from jackettwin.sensing import (
+    MotionEstimate,
+    MotionModel,
+    SensorReadings,
+    Weather,
+    discrete,
+    moved,
+    readings_of,
+    section_rows,
+    sensed_model,
+    spread_of,
+    steady_smoother,
+)
+from jackettwin.soil import pinned
+from jackettwin.structure import Rayleigh, assemble, section_forces
+from jackettwin.study import record_life, weld_map
+
+WEATHER = Weather(12.0, 2.5, 8.0, 0.3, 72.0)
+STEP_S = 0.05
+SENSORS = tuple(
+    Sensor(f"a{h}{axis}", d, height_m=h)
+    for h in (144.0, 77.0, 28.0)
+    for axis, d in (("x", (1.0, 0.0, 0.0)), ("y", (0.0, 1.0, 0.0)))
+)
+
+
+@pytest.fixture(scope="module")
+def system() -> System:
+    structure = read_structure("jacket15")
+    return build_system(assemble(structure), pinned(structure), rayleigh=Rayleigh.minimum(0.01, 0.3))
+
+
+@pytest.fixture(scope="module")
+def model(system: System) -> MotionModel:
+    return sensed_model(system, WEATHER)
+
+
+def drawn(model: MotionModel, seed: int) -> tuple[np.ndarray, SensorReadings]:
+    """Return the coordinates of a motion with known levels, and what sensors read of it."""
+    levels = {"rotor": 2e4, "tower": 0.02, "waves": 0.4}
+    known = model.with_forces(
+        tuple(
+            f.with_level(
+                levels[f.name.split()[0]]
+                * (20.0 if " M" in f.name else 1.0)
+                * (0.1 if "quick" in f.name else 1.0)
+            )
+            for f in model.forces
+        )
+    )
+    blank = Record(np.ones((len(SENSORS), 8)), 1.0 / STEP_S, tuple(Channel(s.channel) for s in SENSORS))
+    seen = readings_of(blank, SENSORS, model.assembly)
+    C = known.motion_rows(seen.rows, seen.tilt, seen.derivative)
+    s = steady_smoother(*discrete(*known.dynamics(), STEP_S), C, np.full(len(SENSORS), 1e-7))
+    x, y = s.draw(12_000, np.random.default_rng(seed))
+    to = np.vstack([np.eye(known.n_modes, x.shape[1]), known.force_rows()])
+    record = Record(y.T, 1.0 / STEP_S, blank.channels)
+    return x @ to.T, readings_of(record, SENSORS, model.assembly)
+
+
+@pytest.fixture(scope="module")
+def truth(model: MotionModel) -> tuple[np.ndarray, SensorReadings]:
+    return drawn(model, 1)
+
+
+@pytest.fixture(scope="module")
+def estimate(model: MotionModel, truth: tuple[np.ndarray, SensorReadings]) -> MotionEstimate:
+    return moved(model, truth[1])
+
+
+def test_a_constant_force_moves_the_model_as_statics_say(system: System, model: MotionModel) -> None:
+    """Whatever the modes leave out, braces under waves included."""
+    force = model.forces[-1]
+    u = static_displacement(system, force.load)
+    q = model.modal_loads[:, -1] / model.omega**2
+    assert_allclose(model.shapes @ q + model.flexibility[:, -1], u, atol=1e-9 * np.abs(u).max())
+    coordinates = np.concatenate([q, np.eye(len(model.forces))[-1]])
+    rows = section_rows(model)
+    exact = section_forces(model.assembly, u[None], along=force.along[None])
+    for part, whole in zip(rows, exact, strict=True):
+        found = np.tensordot(coordinates, part, 1)
+        assert_allclose(found, whole[0], atol=1e-8 * np.abs(whole).max())
+
+
+def test_readings_in_time_and_in_frequency_are_the_same_model(
+    model: MotionModel, truth: tuple[np.ndarray, SensorReadings]
+) -> None:
+    """C (iω − A)⁻¹ of a force's own state is the transfer function, times i ω twice for what accelerates."""
+    seen, omega = truth[1], np.array([0.2, 1.1, 5.0])
+    A, _ = model.dynamics()
+    C = model.motion_rows(seen.rows, seen.tilt, seen.derivative)
+    n = 2 * model.n_modes
+    found = model.transfer(seen.rows, seen.tilt, seen.derivative, omega)
+    for k, w in enumerate(omega):
+        f = A[:n, n:] / np.where(model.force_rows()[:, n:].sum(axis=0) > 0.0, 1.0, np.inf)
+        driven = np.linalg.solve(1j * w * np.eye(n) - A[:n, :n], f)
+        direct = C[:, :n] @ driven + C[:, n:]
+        first = [j for j, force in enumerate(model.forces) if force.kind == "gust"]
+        level = np.array([model.forces[j].level for j in first])
+        assert_allclose(direct[:, : len(first)] / level, found[k][:, first], rtol=1e-6, atol=1e-12)
+
+
+def test_section_forces_are_found_and_their_errors_are_as_said(
+    model: MotionModel, truth: tuple[np.ndarray, SensorReadings], estimate: MotionEstimate
+) -> None:
+    coordinates, _ = truth
+    names = [model.assembly.structure.members[m].name for m in model.assembly.mesh.member]
+    base = names.index("tower_1")
+    rows = section_rows(model)
+    for part in (rows.bending_y, rows.bending_z):
+        row = part[:, base, 0]
+        true, found = coordinates @ row, estimate.mean() @ row
+        error = (found - true).std()
+        assert error < 0.7 * true.std()
+        said = float(spread_of(row[None], estimate.covariance)[0])
+        # the mean over ten minutes of slow forces is in what is said, and in no range of stress
+        assert 0.2 < error / said < 2.0
+        # above 0.1 Hz nearly nothing is missed
+        fast = np.fft.rfftfreq(len(true), STEP_S) > 0.1
+        parts = [np.abs(np.fft.rfft(v)[fast]) ** 2 for v in (found - true[: len(found)], true)]
+        assert parts[0].sum() < 0.02**2 * parts[1].sum()
+
+
+def test_damage_is_neither_too_low_nor_too_high(
+    system: System, model: MotionModel, truth: tuple[np.ndarray, SensorReadings]
+) -> None:
+    """Damage-equivalent stress at the worst welds, against that of the motion itself."""
+    coordinates, readings = truth
+    life = LifeModel(read_curve("T", "air"))
+    dry = assemble(model.assembly.structure)
+    found = record_life([system], readings, WEATHER, lambda z: ("air", life), dry)
+    exact = weld_map(system, model, dry).cycles(coordinates)
+    welds = [w for joint in weld_map(system, model, dry).joints for w in joint.welds]
+    true = {
+        (w.node, w.brace, side): max(life.curve.damage(c.ranges, c.numbers, thickness_m=t) for c in points)
+        for w, of_weld in zip(welds, exact, strict=True)
+        for side, points, t in zip(("chord", "brace"), of_weld, w.thickness_m, strict=True)
+    }
+    ratio = np.array(
+        [(one.life.damage / true[one.weld.node, one.weld.brace, one.side]) ** 0.2 for one in found.welds[:40]]
+    )
+    assert 0.93 < np.median(ratio) < 1.08
+    assert (np.abs(ratio - 1.0) < 0.3).mean() > 0.9
+    assert "what sensors do not see" in found.welds[0].life.variance_shares
