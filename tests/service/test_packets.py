@@ -132,6 +132,7 @@ def test_what_is_no_packet_is_refused_by_field(topic: str, payload: bytes, field
 def test_packets_that_are_not_kept_are_counted_and_said_once(service: Service, caplog) -> None:
     """Of a turbine that is misspelt, of a clock that jumped, and rubbish; an operator can alarm on them."""
     intake = MqttIntake(service, "mqtt://127.0.0.1")
+    service.has_intake = True  # of several servers on a store, the one that listens
     good, jumped = (
         json.dumps({"t0_utc": t0, "rate_hz": 20.0, "channels": {"a": [1.0]}}).encode()
         for t0 in ("2025-03-01T12:00:00Z", "2095-03-01T12:00:00Z")
@@ -141,8 +142,10 @@ def test_packets_that_are_not_kept_are_counted_and_said_once(service: Service, c
         message.payload = payload
         intake._inbox.put(message)
     intake.turn()
+    intake.stop()
     assert intake.refused == 4
-    assert [record.message[:14] for record in caplog.records] == [
+    about_packets = [record.message[:14] for record in caplog.records if "broker" not in record.message]
+    assert about_packets == [
         "payload: not a",
         "packets of wtg",
         "packets of wgt",

@@ -22,6 +22,7 @@ from jackettwin.service.workers import engine
 from jackettwin.service.workers.tasks import File, read_file
 from jackettwin.store import sqlite_url, work, writing
 from jackettwin.store.backup import backup, restore
+from jackettwin.store.columns import rounded
 
 RECORDS = 5
 SAMPLES = 2400
@@ -44,7 +45,7 @@ def records() -> list[tuple[str, bytes, str]]:
 
 @pytest.fixture(scope="module")
 def expected(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
-    """What one process without a server knows in the end."""
+    """What one process without a server knows in the end, of observations with the digits that are kept."""
     folder = tmp_path_factory.mktemp("undisturbed")
     (folder / "twin.yaml").write_text(TWIN)
     model = engine.load_twin(folder).model
@@ -55,7 +56,7 @@ def expected(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
         (parsed,) = read_file(File(str(folder / name), "wtg", str(folder), 10**9, 2**31, hour(48)))
         assert parsed.waveform is not None
         observed = engine.observed(model, folder / parsed.waveform, {})[0]
-        documents.setdefault(parsed.about["start_utc"][:10], []).append(observed)
+        documents.setdefault(parsed.about["start_utc"][:10], []).append(rounded(observed))
     days = {day: engine.advance_day(model, day, None, seen).document for day, seen in documents.items()}
     return {f"wtg {day}": hashlib.sha256(text.encode()).hexdigest() for day, text in days.items()}
 
