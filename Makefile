@@ -10,7 +10,7 @@ export OPENBLAS_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help demo gallery live test lint types layers security unit servers bench qualify docs pictures lock clean
+.PHONY: help demo gallery live app window pages test lint types layers security unit servers bench qualify docs pictures lock clean
 
 help: ## list the commands
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-9s %s\n", $$1, $$2}'
@@ -34,14 +34,31 @@ demo: $(VENV)/.core ## digital twin of a 15 MW jacket from an OpenFAST record: o
 gallery: $(VENV)/.core ## the figures of the thesis, recomputed: out/gallery/gallery.html
 	PYTHONPATH=scripts $(BIN)/python -m gallery
 
-live: $(VENV)/.live ## a foundation lives: http://127.0.0.1:8470/, its records arrive in fast motion
+live: $(VENV)/.live window ## a foundation lives: http://127.0.0.1:8470/, its records arrive in fast motion
 	$(BIN)/jackettwin serve out/live --demo
 
 $(VENV)/.live: requirements-service.lock $(VENV)/.core
 	$(PIP) install -r requirements-service.lock
 	@touch $@
 
-test: $(VENV)/.dev lint types layers security unit ## everything CI checks
+app: app/node_modules/.installed ## the window, a browser's pages of the service, from app/ (Node 20 or newer)
+	cd app && npm run --silent build
+
+app/node_modules/.installed: app/package.json app/package-lock.json
+	cd app && npm ci --silent && touch node_modules/.installed
+
+NPM := $(shell command -v npm)
+ifdef NPM
+window: app
+pages: app $(VENV)/.dev # the window: types against the API of this source, style, tests
+	$(BIN)/python scripts/write_openapi.py app/openapi.json
+	cd app && npm run --silent schema && npm run --silent check
+else
+window pages:
+	@echo 'Node 20 or newer is not installed: the window is not built; the service says so'
+endif
+
+test: $(VENV)/.dev lint types layers security pages unit ## everything CI checks
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff check .
@@ -82,4 +99,4 @@ docs: $(VENV)/.dev ## the documentation, to site/
 	$(BIN)/mkdocs build --quiet --strict
 
 clean: ## remove everything built
-	rm -rf $(VENV) build dist site out .mypy_cache .ruff_cache .pytest_cache
+	rm -rf $(VENV) build dist site out app/node_modules src/jackettwin/service/window .mypy_cache .ruff_cache .pytest_cache

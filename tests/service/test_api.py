@@ -14,6 +14,7 @@ from fastapi.testclient import TestClient
 from tests.service.conftest import HERE, Done, description, hour, record_file, turn, upload
 
 from jackettwin.service.context import Service
+from jackettwin.service.web import pages
 
 
 def test_a_record_is_taken_observed_and_asked_for(client: TestClient, service: Service) -> None:
@@ -317,11 +318,24 @@ def test_health_and_readiness_need_no_login(client: TestClient) -> None:
     assert client.get("/api/v1/ready").json()["ready"]
 
 
-def test_pages_list_the_assets(client: TestClient) -> None:
-    assert "wtg" in client.get("/").text
-    assert "Frequency through time" in client.get("/assets/wtg").text
-    assert client.get("/static/asset.js").headers["content-type"].startswith("text/javascript")
-    assert client.get("/assets/none").status_code == 404
+def test_without_its_built_files_the_window_says_what_to_do(
+    client: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(pages, "_built", dict)
+    for path in ("/", "/assets/wtg", "/assets/wtg/timeline"):
+        answer = client.get(path)
+        assert (answer.status_code, "make app" in answer.text) == (503, True)
+    assert client.get("/window/assets/index.js").status_code == 404
+
+
+def test_no_name_leads_out_of_the_window(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pages, "_built", lambda: {"index.html": b"<title>", "a.js": b"1"})
+    assert client.get("/assets/wtg/timeline?from=x").text == "<title>"
+    found = client.get("/window/assets/a.js")
+    assert found.headers["content-type"].startswith("text/javascript")
+    assert "immutable" in found.headers["cache-control"]
+    for name in ("../index.html", "..%2f..%2fcontext.py", "%2e%2e/context.py", "b.js"):
+        assert client.get(f"/window/assets/{name}").status_code == 404
 
 
 def _model_hash(client: TestClient) -> str:

@@ -31,11 +31,11 @@ _HEADERS = {
     "X-Frame-Options": "DENY",
     "Referrer-Policy": "same-origin",
     "Content-Security-Policy": (
-        "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
-        "worker-src blob:; frame-ancestors 'none'"
+        "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; base-uri 'none'; "
+        "form-action 'self'; frame-ancestors 'none'"
     ),
 }
-"""Scripts come from files of ours alone; Plotly writes styles into the page."""
+"""Scripts and styles come from files of ours alone."""
 _FIELDS_BYTES = 2**20
 """Room for what comes beside a file in a form."""
 _TEXT_BYTES = 32 * 2**20

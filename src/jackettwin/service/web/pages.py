@@ -1,25 +1,17 @@
-"""The pages a browser sees without the application: the list of assets, and each one's newest report."""
+"""What a browser gets: the window, as ``make app`` builds it, and each turbine's newest report."""
 
 from __future__ import annotations
 
 import gzip
+from functools import cache
 from importlib.resources import files
-from typing import Literal
+from typing import Annotated
 
-from fastapi import APIRouter, Request
-from fastapi.responses import HTMLResponse, RedirectResponse, Response
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from fastapi import APIRouter, Path
+from fastapi.responses import HTMLResponse, Response
 
-from jackettwin.service.web import auth, catalogue
-from jackettwin.service.web.dependencies import (
-    Asker,
-    AssetName,
-    Parts,
-    Reads,
-    Route,
-    known_asset,
-    known_version,
-)
+from jackettwin.service.web import auth
+from jackettwin.service.web.dependencies import Asker, AssetName, Parts, Reads, Route, known_version
 from jackettwin.service.web.problems import ApiError, answers
 from jackettwin.store import people, results, writing
 
@@ -33,33 +25,23 @@ _SANDBOX = {
     ),
     "X-Frame-Options": "SAMEORIGIN",
 }
-_templates = Environment(
-    loader=PackageLoader("jackettwin.service", "templates"), autoescape=True, undefined=StrictUndefined
-)
+_KINDS = {"html": "text/html", "js": "text/javascript", "css": "text/css"}
+_UNBUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>jackettwin</title>
+<h1>The window is not built</h1>
+<p>This installation was made from the sources, which do not hold the pages. With Node 20 or newer, run
+<code>make app</code> in the repository and load this page again.</p>
+<p>The server itself works: its API is described at <a href="/api/v1/openapi.json">/api/v1/openapi.json</a>.</p>
+</html>"""
 
 
-@router.get("/")
-def home(request: Request, connection: Reads) -> Response:
-    """The list of assets, or the login."""
-    if request.state.who is None:
-        return RedirectResponse("/login")
-    page = _templates.get_template("home.html.j2")
-    who = request.state.who
-    return HTMLResponse(page.render(assets=catalogue.overview(connection, seen=who.assets), who=who))
-
-
-@router.get("/login")
-def login() -> HTMLResponse:
-    """Ask for name and password."""
-    return HTMLResponse(_templates.get_template("login.html.j2").render())
-
-
-@router.get("/assets/{asset}", dependencies=[auth.VIEWER], responses=answers(401, 404))
-def asset_page(asset: AssetName, connection: Reads) -> HTMLResponse:
-    """One turbine: what it does, what changed, how sure."""
-    known_asset(connection, asset)
-    page = _templates.get_template("asset.html.j2")
-    return HTMLResponse(page.render(asset=catalogue.one(connection, asset)))
+@cache
+def _built() -> dict[str, bytes]:
+    """Return the files of the window by name; empty if it is not built. No name asked for becomes a path."""
+    folder = files("jackettwin.service") / "window"
+    if not (folder / "index.html").is_file():
+        return {}
+    scripts = {file.name: file.read_bytes() for file in (folder / "assets").iterdir()}
+    return {"index.html": (folder / "index.html").read_bytes(), **scripts}
 
 
 @router.get("/assets/{asset}/report", dependencies=[auth.VIEWER], responses=answers(401, 404))
@@ -81,16 +63,25 @@ def report(
     return HTMLResponse(gzip.decompress(page), headers=_SANDBOX)
 
 
-@router.get("/static/{name}")
-def static(name: Literal["style.css", "home.js", "asset.js", "login.js"]) -> Response:
-    """What our pages consist of besides their text."""
-    content = (files("jackettwin.service") / "static" / name).read_bytes()
-    kind = "text/css" if name.endswith(".css") else "text/javascript"
-    return Response(content, media_type=kind, headers={"Cache-Control": "public, max-age=60"})
+@router.get("/window/assets/{name}", responses=answers(404))
+def part_of_the_window(name: Annotated[str, Path(max_length=100)]) -> Response:
+    """A script or style of the window; its name changes with what it holds."""
+    content = _built().get(name)
+    if content is None:
+        raise ApiError(404, "no such file", field="name", value=name)
+    kind = _KINDS.get(name.rpartition(".")[2], "application/octet-stream")
+    return Response(content, media_type=kind, headers={"Cache-Control": "public, max-age=31536000, immutable"})
 
 
-@router.get("/library/plotly.js")
-def plotly() -> Response:
-    """The drawing library, from the package that we install anyway."""
-    script = (files("plotly") / "package_data" / "plotly.min.js").read_bytes()
-    return Response(script, media_type="text/javascript", headers={"Cache-Control": "public, max-age=604800"})
+@router.get("/")
+@router.get("/login")
+@router.get("/jobs")
+@router.get("/start")
+@router.get("/users")
+@router.get("/assets/{path:path}")
+def window() -> HTMLResponse:
+    """The window: one page that reads its own address, and asks the API as whoever is logged in."""
+    page = _built().get("index.html")
+    if page is None:
+        return HTMLResponse(_UNBUILT, status_code=503)
+    return HTMLResponse(page, headers={"Cache-Control": "no-cache"})

@@ -1,0 +1,39 @@
+// A question that a page asks, and asks again when something happened.
+import { useEffect, useRef, useState } from "preact/hooks";
+import { Problem } from "./client";
+import { connection, happened } from "./events";
+
+export interface Answer<T> {
+  /** What was answered last; undefined before the first answer. */
+  data: T | undefined;
+  /** Why the newest question has no answer; data beside it is old. */
+  problem: Problem | undefined;
+  again: () => void;
+}
+
+/** Ask, and ask again when an event of the asset ("" for any) arrives or the question changes. */
+export function useAnswer<T>(asset: string | null, key: string, ask: () => Promise<T>): Answer<T> {
+  const [state, setState] = useState<{ key: string; data: T | undefined; problem: Problem | undefined }>({
+    key,
+    data: undefined,
+    problem: undefined,
+  });
+  const [tries, setTries] = useState(0);
+  const newest = useRef(0);
+  const events = asset === null ? 0 : (happened.value[asset] ?? 0);
+  const lost = connection.value === "lost";
+  useEffect(() => {
+    const number = ++newest.current;
+    const keep = (data: T | undefined, problem: Problem | undefined): void => {
+      if (number !== newest.current) return;
+      setState((old) => ({ key, data: data ?? (old.key === key ? old.data : undefined), problem }));
+    };
+    ask().then(
+      (data) => keep(data, undefined),
+      (error: unknown) =>
+        keep(undefined, error instanceof Problem ? error : new Problem("server", String(error))),
+    );
+  }, [key, events, tries, lost]);
+  const current = state.key === key ? state : { data: undefined, problem: undefined };
+  return { data: current.data, problem: current.problem, again: () => setTries((n) => n + 1) };
+}

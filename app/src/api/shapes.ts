@@ -1,0 +1,37 @@
+// What the API describes as an object of any kind, as the pages read it.
+
+export interface KnownMode {
+  mode: number;
+  label: string;
+  frequency_hz: number;
+  frequency_std_hz: number | null;
+  damping_ratio: number | null;
+  damping_ratio_std: number | null;
+  records: number;
+}
+
+export interface KnownParameter {
+  median: number;
+  interval_90: [number, number] | null;
+  unit: string;
+  words: string;
+  text: string;
+  day?: string;
+}
+
+export interface Knowledge {
+  law?: string;
+  status?: string;
+  statement?: string;
+  records?: number;
+  until_utc?: string;
+  parameters?: Record<string, KnownParameter>;
+}
+
+export interface Cause {
+  cause: string;
+  probability: number;
+  size?: number | null;
+  interval_90?: [number, number] | null;
+  unit?: string;
+}

@@ -1,0 +1,126 @@
+// Which turbine needs me?
+import { useAnswer } from "../api/answer";
+import { api, type Asset, told } from "../api/client";
+import { Ago, Choice, Light } from "../parts/Bits";
+import { Empty, Shown } from "../parts/Shown";
+import { type Column, Table } from "../parts/Table";
+import { asked, assetUrl, keep } from "../shell/place";
+import { count } from "../words/numbers";
+
+const URGENT = ["alarm", "warning", "no data", "ok"];
+const some = (asset: Asset, ...statuses: string[]): number =>
+  statuses.reduce((sum, status) => sum + (asset.records[status] ?? 0), 0);
+
+const COLUMNS: Column<Asset>[] = [
+  { title: "Status", show: (a) => <Light status={a.status} />, by: (a) => URGENT.indexOf(a.status) },
+  { title: "Turbine", show: (a) => <a href={assetUrl(a.name)}>{a.name}</a>, by: (a) => a.name },
+  {
+    title: "Last data",
+    show: (a) => (a.last_record_utc ? <Ago at={a.last_record_utc} /> : "none yet"),
+    by: (a) => a.last_record_utc,
+  },
+  {
+    title: "Observed",
+    unit: "records",
+    numeric: true,
+    show: (a) => some(a, "observed"),
+    by: (a) => some(a, "observed"),
+  },
+  {
+    title: "Waiting",
+    unit: "records",
+    numeric: true,
+    show: (a) => some(a, "received", "observing"),
+    by: (a) => some(a, "received", "observing"),
+  },
+  {
+    title: "Left out",
+    unit: "records",
+    numeric: true,
+    show: (a) => some(a, "refused", "mismatched", "set_aside"),
+    by: (a) => some(a, "refused", "mismatched", "set_aside"),
+  },
+  {
+    title: "Alarms",
+    unit: "in all",
+    numeric: true,
+    show: (a) => a.findings["alarm"] ?? 0,
+    by: (a) => a.findings["alarm"] ?? 0,
+  },
+  {
+    title: "Warnings",
+    unit: "in all",
+    numeric: true,
+    show: (a) => a.findings["warning"] ?? 0,
+    by: (a) => a.findings["warning"] ?? 0,
+  },
+  { title: "Model", unit: "version", numeric: true, show: (a) => a.version, by: (a) => a.version },
+];
+
+function Nothing() {
+  return (
+    <Empty title="No turbine yet">
+      <p>Add one with its twin file, and give it records:</p>
+      <pre>
+        jackettwin asset add NAME TWIN --store STORE{"\n"}jackettwin intake RECORDS --asset NAME --store STORE
+      </pre>
+    </Empty>
+  );
+}
+
+/** "2 turbines need you" */
+export function headline(assets: readonly Asset[]): string {
+  const alarms = assets.filter((a) => a.status === "alarm").length;
+  const warnings = assets.filter((a) => a.status === "warning").length;
+  if (alarms) return `${count(alarms, "turbine")} with an alarm that nobody has acknowledged.`;
+  if (warnings) return `${count(warnings, "turbine")} with records that were left out; no open alarm.`;
+  return "No open alarm.";
+}
+
+export function Fleet() {
+  const assets = useAnswer("", "assets", () => told(api.GET("/api/v1/assets")));
+  const [wanted, text] = [asked("status") ?? "", asked("find") ?? ""];
+  return (
+    <>
+      <div class="head">
+        <h1>Turbines</h1>
+        {assets.data && assets.data.items.length > 0 && <p class="said">{headline(assets.data.items)}</p>}
+      </div>
+      <Shown of={assets} empty={(data) => (data.items.length ? null : <Nothing />)} lines={6}>
+        {(data) => {
+          const rows = data.items.filter(
+            (a) => (!wanted || a.status === wanted) && a.name.toLowerCase().includes(text.toLowerCase()),
+          );
+          return (
+            <section class="card" aria-label="All turbines">
+              <div class="tools">
+                <Choice
+                  label="Status"
+                  value={wanted}
+                  options={[["", `All ${data.items.length}`], ...URGENT.map((s) => [s, s] as const)]}
+                  onChoose={(status) => keep({ status: status || null })}
+                />
+                <input
+                  type="search"
+                  aria-label="Find a turbine"
+                  placeholder="Find a turbine"
+                  value={text}
+                  onInput={(event) => keep({ find: event.currentTarget.value || null })}
+                />
+              </div>
+              {rows.length ? (
+                <Table label="Turbines" columns={COLUMNS} rows={rows} id={(a) => a.name} sorted={0} />
+              ) : (
+                <Empty title="No turbine fits">
+                  <button type="button" onClick={() => keep({ status: null, find: null })}>
+                    Show all
+                  </button>
+                </Empty>
+              )}
+            </section>
+          );
+        }}
+      </Shown>
+    </>
+  );
+}

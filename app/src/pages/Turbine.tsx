@@ -1,0 +1,217 @@
+// One screen: what the foundation does now, what changed and why, and how sure that is.
+import { lazy, Suspense } from "preact/compat";
+import { type Answer, useAnswer } from "../api/answer";
+import { api, type Alarm, type Asset, type Schemas, told } from "../api/client";
+import type { Knowledge, KnownMode } from "../api/shapes";
+import { AlarmList } from "../parts/AlarmList";
+import { Ago, Card, Light, Time } from "../parts/Bits";
+import { Budget } from "../parts/Budget";
+import { Empty, Shown, Trouble } from "../parts/Shown";
+import { Table } from "../parts/Table";
+import type { PageProps } from "../shell/App";
+import { assetUrl } from "../shell/place";
+import { between, count, frequency, percent, quantity, words } from "../words/numbers";
+
+const Stiffness = lazy(() => import("../parts/Stiffness"));
+type Twin = Schemas["TwinOut"];
+
+/** Numbers that a manager asks for: the first bending modes, the ground, alarms. */
+function Figures({ twin, alarms }: { twin: Twin; alarms: readonly Alarm[] }) {
+  const modes = twin.modes as unknown as KnownMode[];
+  const known = twin.parameters as Knowledge;
+  const first = ["fore_aft_1", "side_side_1"].flatMap((label) => modes.filter((m) => m.label === label));
+  const ground = Object.values(known.parameters ?? {})
+    .filter((p) => p.unit === "N/m")
+    .slice(0, 1);
+  const open = alarms.filter((a) => !a.acknowledged_by).length;
+  return (
+    <dl class="figures">
+      {first.map((m) => (
+        <div key={m.label}>
+          <dt>{words(m.label)}</dt>
+          <dd>
+            {frequency(m.frequency_hz)} Hz
+            <small>damping {percent(m.damping_ratio, m.damping_ratio_std)} %</small>
+          </dd>
+        </div>
+      ))}
+      {ground.map((p) => (
+        <div key={p.words}>
+          <dt>{p.words}</dt>
+          <dd>
+            {quantity(p.median, p.unit)}
+            <small>{p.interval_90 ? `90 %: ${between(...p.interval_90, p.unit)}` : "no interval"}</small>
+          </dd>
+        </div>
+      ))}
+      <div>
+        <dt>open alarms</dt>
+        <dd>
+          {open}
+          <small>{count(alarms.length, "alarm")} in all</small>
+        </dd>
+      </div>
+      <div>
+        <dt>known from</dt>
+        <dd>
+          {count(twin.records, "record")}
+          <small>of {count(twin.days, "day")}</small>
+        </dd>
+      </div>
+    </dl>
+  );
+}
+
+function Modes({ asset, twin }: { asset: string; twin: Twin }) {
+  const modes = twin.modes as unknown as KnownMode[];
+  return (
+    <Table
+      label="Modes"
+      rows={modes}
+      id={(m) => m.label}
+      columns={[
+        {
+          title: "Mode",
+          show: (m) => <a href={`${assetUrl(asset, "timeline")}?mode=${m.label}`}>{words(m.label)}</a>,
+        },
+        {
+          title: "Frequency",
+          unit: "Hz",
+          numeric: true,
+          show: (m) => frequency(m.frequency_hz, m.frequency_std_hz),
+        },
+        {
+          title: "Damping ratio",
+          unit: "%",
+          numeric: true,
+          show: (m) => percent(m.damping_ratio, m.damping_ratio_std),
+        },
+        { title: "Records", numeric: true, show: (m) => m.records },
+      ]}
+    />
+  );
+}
+
+function Supports({ known }: { known: Knowledge }) {
+  const rows = Object.entries(known.parameters ?? {});
+  return (
+    <>
+      {known.statement && <p class="note">{known.statement}</p>}
+      <Table
+        label="Supports"
+        rows={rows}
+        id={([name]) => name}
+        columns={[
+          { title: "Parameter", show: ([, p]) => p.words },
+          { title: "Median and 90 % interval", show: ([, p]) => p.text },
+          { title: "Of", show: ([, p]) => p.day ?? "all records" },
+        ]}
+      />
+      <p class="quiet">
+        Law {known.law}; of {count(known.records ?? 0, "record")}
+        {known.until_utc ? ` up to ${known.until_utc.slice(0, 10)}` : ""}; {known.status}.
+      </p>
+    </>
+  );
+}
+
+function Head({ asset, twin }: { asset: Asset; twin: Twin | undefined }) {
+  const left = ["refused", "mismatched", "set_aside"].reduce((n, s) => n + (asset.records[s] ?? 0), 0);
+  const waiting = (asset.records["received"] ?? 0) + (asset.records["observing"] ?? 0);
+  return (
+    <div class="head">
+      <Light status={asset.status} long />
+      <h1>{asset.name}</h1>
+      <span class="quiet">
+        {asset.last_record_utc ? (
+          <>
+            last data <Ago at={asset.last_record_utc} />
+          </>
+        ) : (
+          "no data yet"
+        )}
+        {waiting ? `, ${count(waiting, "record")} waiting` : ""}
+        {left ? `, ${count(left, "record")} left out` : ""}
+        {` · model version ${asset.version}`}
+      </span>
+      {twin && twin.status !== "ok" && <p class="said">{twin.status}</p>}
+    </div>
+  );
+}
+
+export function Turbine({ asset }: PageProps) {
+  const path = { params: { path: { asset } } };
+  const own = useAnswer(asset, `asset ${asset}`, () => told(api.GET("/api/v1/assets/{asset}", path)));
+  const twin = useAnswer(asset, `twin ${asset}`, () => told(api.GET("/api/v1/assets/{asset}/twin", path)));
+  const alarms = useAnswer(asset, `alarms ${asset}`, () =>
+    told(api.GET("/api/v1/assets/{asset}/alarms", path)),
+  );
+  const budget = useAnswer(asset, `budget ${asset}`, () =>
+    told(api.GET("/api/v1/assets/{asset}/damping-budget", path)),
+  );
+  if (own.data === undefined && own.problem) return <Trouble problem={own.problem} again={own.again} />;
+  const known = twin.data?.parameters as Knowledge | undefined;
+  return (
+    <>
+      {own.data ? <Head asset={own.data} twin={twin.data} /> : <div class="head bones" />}
+      {twin.data && twin.data.records > 0 && <Figures twin={twin.data} alarms={alarms.data?.items ?? []} />}
+      <div class="grid">
+        <Card title="What changed, and why" more={<a href={assetUrl(asset, "alarms")}>All alarms</a>}>
+          <Shown of={alarms} empty={(data) => (data.items.length ? null : <Unchanged own={own} />)} lines={3}>
+            {(data) => <AlarmList alarms={data.items.slice(0, 3)} again={alarms.again} />}
+          </Shown>
+        </Card>
+        <Card
+          title="What it does now"
+          more={<a href={assetUrl(asset, "timeline")}>Through time</a>}
+          note="Mean of all records, ± one standard deviation."
+        >
+          <Shown of={twin} empty={(data) => (data.records ? null : <NoRecord asset={asset} />)} lines={7}>
+            {(data) => <Modes asset={asset} twin={data} />}
+          </Shown>
+        </Card>
+        <Suspense fallback={null}>
+          <Stiffness asset={asset} />
+        </Suspense>
+        <Card title="Damping by source" note="Damping ratio in %, of all records.">
+          <Shown of={budget} empty={(data) => (data.items.length ? null : <NotYet />)} lines={7}>
+            {(data) => <Budget modes={data.items} />}
+          </Shown>
+        </Card>
+        <Card title="Ground and rotor" more={<a href={assetUrl(asset, "report")}>Report</a>}>
+          <Shown of={twin} empty={() => (known?.parameters ? null : <NotYet />)} lines={5}>
+            {() => <Supports known={known ?? {}} />}
+          </Shown>
+        </Card>
+      </div>
+    </>
+  );
+}
+
+function Unchanged({ own }: { own: Answer<Asset> }) {
+  return (
+    <Empty title="No change was found">
+      <p>
+        Changes are watched for once a baseline is whole.{" "}
+        {own.data?.last_record_utc && (
+          <>
+            The last record began <Time at={own.data.last_record_utc} />.
+          </>
+        )}
+      </p>
+    </Empty>
+  );
+}
+
+const NoRecord = ({ asset }: { asset: string }) => (
+  <Empty title="No record has been observed">
+    <p>Give the first one on the command line, or on the page of records:</p>
+    <pre>{`jackettwin intake RECORD --asset ${asset} --store STORE`}</pre>
+  </Empty>
+);
+
+const NotYet = () => (
+  <Empty title="Not estimated yet">
+    <p>This is done when no record waits, and takes a minute.</p>
+  </Empty>
+);

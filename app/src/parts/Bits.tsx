@@ -1,0 +1,79 @@
+// Small parts that every page uses.
+import type { ComponentChildren } from "preact";
+import { ago, local, utc } from "../words/time";
+
+const SAID: Record<string, string> = {
+  ok: "Nothing to do",
+  warning: "Look when you can",
+  alarm: "Look now",
+  "no data": "No data yet",
+};
+
+/** The light: a shape and a word beside its colour. */
+export function Light({ status, long = false }: { status: string; long?: boolean }) {
+  const name = status.replaceAll(" ", "-").replaceAll("_", "-");
+  return (
+    <span class={`light ${name}`}>
+      <i aria-hidden="true" />
+      {long ? (SAID[status] ?? status) : status.replaceAll("_", " ")}
+    </span>
+  );
+}
+
+/** A time in UTC; the reader's own clock on hover. */
+export function Time({ at, short = false }: { at: string; short?: boolean }) {
+  return (
+    <time dateTime={at} title={local(at)}>
+      {short ? utc(at).slice(0, 10) : `${utc(at)} UTC`}
+    </time>
+  );
+}
+
+export function Ago({ at }: { at: string }) {
+  return (
+    <time dateTime={at} title={`${utc(at)} UTC · ${local(at)}`}>
+      {ago(at, Date.now())}
+    </time>
+  );
+}
+
+interface CardProps {
+  title: string;
+  note?: ComponentChildren;
+  wide?: boolean;
+  more?: ComponentChildren;
+  children: ComponentChildren;
+}
+
+export function Card({ title, note, wide, more, children }: CardProps) {
+  return (
+    <section class={wide ? "card wide" : "card"} aria-label={title}>
+      <header>
+        <h2>{title}</h2>
+        {more && <span class="more">{more}</span>}
+      </header>
+      {note && <p class="note">{note}</p>}
+      {children}
+    </section>
+  );
+}
+
+interface ChoiceProps {
+  label: string;
+  value: string;
+  options: readonly (readonly [string, string])[];
+  onChoose: (value: string) => void;
+}
+
+/** A few things of which one is chosen. */
+export function Choice({ label, value, options, onChoose }: ChoiceProps) {
+  return (
+    <span class="choice" role="group" aria-label={label}>
+      {options.map(([key, words]) => (
+        <button type="button" key={key} aria-pressed={key === value} onClick={() => onChoose(key)}>
+          {words}
+        </button>
+      ))}
+    </span>
+  );
+}

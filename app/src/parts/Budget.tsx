@@ -1,0 +1,84 @@
+// Whose damping a mode's is: a bar by source, the measured interval above it, what is unexplained in outline.
+import type { Schemas } from "../api/client";
+import { percent, words } from "../words/numbers";
+
+const SOURCES = ["structure", "soil", "rotor", "water"] as const;
+const PAINT: Record<string, string> = { structure: "grey", soil: "orange", rotor: "sky", water: "blue" };
+
+function Row({ mode, most }: { mode: Schemas["BudgetOut"]; most: number }) {
+  const parts = SOURCES.map((name) => ({ name, value: mode.sources[name]?.value ?? 0 }));
+  const sum = parts.reduce((total, part) => total + part.value, 0);
+  const at = (ratio: number): number => (100 * ratio) / most;
+  let from = 0;
+  const measured = mode.measured;
+  const said = parts.filter((p) => p.value > 0).map((p) => `${p.name} ${percent(p.value)} %`);
+  return (
+    <div>
+      <span>{words(mode.label)}</span>
+      <svg
+        class="bar"
+        viewBox="0 0 100 18"
+        preserveAspectRatio="none"
+        role="img"
+        aria-label={`${words(mode.label)}: ${said.join(", ")}`}
+      >
+        {parts.map((part) => {
+          const x = from;
+          from += at(part.value);
+          return <rect key={part.name} class={part.name} x={x} y="4" width={at(part.value)} height="10" />;
+        })}
+        {mode.unexplained ? (
+          <rect class="unexplained" x={at(sum)} y="4" width={at(mode.unexplained)} height="10" />
+        ) : null}
+        {measured && <line x1={at(measured.value)} x2={at(measured.value)} y1="0" y2="18" />}
+        {measured && (
+          <line
+            x1={at(measured.low ?? measured.value)}
+            x2={at(measured.high ?? measured.value)}
+            y1="1"
+            y2="1"
+          />
+        )}
+      </svg>
+      <span class="n">
+        {measured ? percent(measured.value) : "–"}
+        {mode.unexplained ? <span class="error"> ({percent(mode.unexplained)} unexplained)</span> : ""}
+      </span>
+    </div>
+  );
+}
+
+export function Budget({ modes }: { modes: readonly Schemas["BudgetOut"][] }) {
+  const most = Math.max(
+    ...modes.map((m) =>
+      Math.max(
+        m.measured?.high ?? m.measured?.value ?? 0,
+        SOURCES.reduce((sum, s) => sum + (m.sources[s]?.value ?? 0), 0),
+      ),
+    ),
+    1e-6,
+  );
+  const used = SOURCES.filter((s) => modes.some((m) => (m.sources[s]?.value ?? 0) > 0));
+  return (
+    <>
+      <p class="keys">
+        {used.map((s) => (
+          <span key={s}>
+            <i class={`paint-${PAINT[s] ?? "grey"}`} aria-hidden="true" />
+            {s}
+          </span>
+        ))}
+        <span>
+          <i class="unexplained" aria-hidden="true" />
+          unexplained
+        </span>
+        <span>upright line: measured, with its 90 % interval</span>
+      </p>
+      <div class="budget">
+        {modes.map((mode) => (
+          <Row key={mode.label} mode={mode} most={most} />
+        ))}
+      </div>
+    </>
+  );
+}

@@ -1,0 +1,70 @@
+// What a page shows while an answer is not there, old, or refused: designed once, the same everywhere.
+import type { ComponentChildren } from "preact";
+import type { Answer } from "../api/answer";
+import type { Problem } from "../api/client";
+
+const HEADINGS: Record<Problem["kind"], string> = {
+  offline: "No connection",
+  login: "Logged out",
+  role: "Not allowed",
+  missing: "Not here",
+  refused: "Refused",
+  server: "The server failed",
+};
+
+export function Trouble({ problem, again }: { problem: Problem; again?: () => void }) {
+  return (
+    <div class={`state ${problem.kind}`} role="alert">
+      <h3>{HEADINGS[problem.kind]}</h3>
+      <p>{problem.message}</p>
+      {problem.remedy && <p>{problem.remedy}</p>}
+      {again && problem.kind !== "role" && problem.kind !== "missing" && (
+        <button type="button" onClick={again}>
+          Try again
+        </button>
+      )}
+    </div>
+  );
+}
+
+export function Empty({ title, children }: { title: string; children?: ComponentChildren }) {
+  return (
+    <div class="state">
+      <h3>{title}</h3>
+      {children}
+    </div>
+  );
+}
+
+interface ShownProps<T> {
+  of: Answer<T>;
+  /** What to say if there is nothing, null if there is something. */
+  empty?: (data: T) => ComponentChildren;
+  lines?: number;
+  children: (data: T) => ComponentChildren;
+}
+
+/** An answer: bones while it is awaited, its problem, what to do if it is empty, or itself. */
+export function Shown<T>({ of, empty, lines = 4, children }: ShownProps<T>) {
+  if (of.data === undefined) {
+    if (of.problem) return <Trouble problem={of.problem} again={of.again} />;
+    return (
+      <div class="bones" role="status" aria-label="Reading">
+        {Array.from({ length: lines }, (_, i) => (
+          <span key={i} />
+        ))}
+      </div>
+    );
+  }
+  const nothing = empty?.(of.data);
+  return (
+    <>
+      {of.problem && (
+        <p class="old" role="status">
+          Older than it should be: {of.problem.message}
+        </p>
+      )}
+      {nothing ? nothing : children(of.data)}
+    </>
+  );
+}

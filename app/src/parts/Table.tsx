@@ -1,0 +1,77 @@
+// A table whose columns can be sorted; on a phone each row is a card.
+import type { ComponentChildren } from "preact";
+import { useState } from "preact/hooks";
+
+export interface Column<T> {
+  title: string;
+  unit?: string;
+  show: (row: T) => ComponentChildren;
+  /** What rows are sorted by; without it the column cannot be. */
+  by?: (row: T) => string | number | null;
+  numeric?: boolean;
+}
+
+interface TableProps<T> {
+  label: string;
+  columns: readonly Column<T>[];
+  rows: readonly T[];
+  id: (row: T) => string;
+  sorted?: number;
+  descending?: boolean;
+  mark?: (row: T) => string;
+}
+
+function compared(a: string | number | null, b: string | number | null): number {
+  if (a === null || b === null) return Number(a === null) - Number(b === null);
+  if (typeof a === "number" && typeof b === "number") return a - b;
+  return String(a).localeCompare(String(b), "en", { numeric: true });
+}
+
+export function Table<T>(props: TableProps<T>) {
+  const [order, setOrder] = useState({ column: props.sorted ?? -1, down: props.descending ?? false });
+  const by = props.columns[order.column]?.by;
+  const rows = by
+    ? props.rows.toSorted((a, b) => compared(by(a), by(b)) * (order.down ? -1 : 1))
+    : props.rows;
+  const sort = (column: number): void =>
+    setOrder((old) => ({ column, down: old.column === column && !old.down }));
+  return (
+    <div class="scroll" tabIndex={0} role="region" aria-label={props.label}>
+      <table>
+        <thead>
+          <tr>
+            {props.columns.map((c, i) => (
+              <th
+                key={c.title}
+                class={c.numeric ? "n" : ""}
+                scope="col"
+                aria-sort={order.column !== i ? undefined : order.down ? "descending" : "ascending"}
+              >
+                {c.by ? (
+                  <button type="button" onClick={() => sort(i)}>
+                    {c.title}
+                    <span aria-hidden="true">{order.column !== i ? "" : order.down ? " ↓" : " ↑"}</span>
+                  </button>
+                ) : (
+                  c.title
+                )}
+                {c.unit && <small>{c.unit}</small>}
+              </th>
+            ))}
+          </tr>
+        </thead>
+        <tbody>
+          {rows.map((row) => (
+            <tr key={props.id(row)} class={props.mark?.(row) ?? ""}>
+              {props.columns.map((c) => (
+                <td key={c.title} class={c.numeric ? "n" : ""} data-label={c.title}>
+                  {c.show(row)}
+                </td>
+              ))}
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </div>
+  );
+}

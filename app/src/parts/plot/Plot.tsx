@@ -1,0 +1,328 @@
+// A plot: uPlot with our colours, UTC, intervals, marks, keyboard, and a copy to take away.
+import { useEffect, useRef, useState } from "preact/hooks";
+import uPlot from "uplot";
+import "uplot/dist/uPlot.min.css";
+import { colour, theme } from "../../shell/theme";
+import { SaveMenu } from "./SaveMenu";
+import type { PlotData, Range, Series } from "./series";
+import { extentOf, readX, spanOf } from "./series";
+
+interface PlotProps {
+  data: PlotData;
+  height?: number;
+  /** Shown part of the x axis; null for all. */
+  range?: Range | null;
+  onRange?: (range: Range | null) => void;
+  /** What to do when a point is chosen by click or Enter. */
+  onPick?: (series: number, index: number) => void;
+  /** Plots of one name share their cursor. */
+  together?: string;
+}
+
+const TIMES: uPlot.Axis.Values = [
+  [3600 * 24 * 360, "{YYYY}", null, null, null, null, null, null, 1],
+  [3600 * 24 * 28, "{MMM}", "\n{YYYY}", null, null, null, null, null, 1],
+  [3600 * 24, "{D} {MMM}", "\n{YYYY}", null, null, null, null, null, 1],
+  [60, "{HH}:{mm}", "\n{D} {MMM} {YYYY}", null, "\n{D} {MMM}", null, null, null, 1],
+  [1, "{HH}:{mm}:{ss}", "\n{D} {MMM} {YYYY}", null, "\n{D} {MMM}", null, null, null, 1],
+];
+const BAR_ROOM = 1500;
+
+/** One table for uPlot: x of all series, then y of each, then the lower and upper ends of bands. */
+function joined(series: Series[]): { table: uPlot.AlignedData; rows: number[][] } {
+  const every = [...new Set(series.flatMap((s) => Array.from(s.x)))].sort((a, b) => a - b);
+  const place = new Map(every.map((x, i) => [x, i]));
+  const spread = (s: Series, values: ArrayLike<number | null> | undefined): (number | null | undefined)[] => {
+    const out: (number | null | undefined)[] = new Array(every.length).fill(undefined);
+    for (let i = 0; i < s.x.length; i++) out[place.get(s.x[i] ?? NaN) ?? 0] = values?.[i] ?? null;
+    return out;
+  };
+  const columns = series.flatMap((s) =>
+    s.kind === "band" ? [spread(s, s.high), spread(s, s.low)] : [spread(s, s.y)],
+  );
+  const rows = series.map((s) => {
+    const out: number[] = new Array<number>(every.length).fill(-1);
+    for (let i = 0; i < s.x.length; i++) out[place.get(s.x[i] ?? NaN) ?? 0] = i;
+    return out;
+  });
+  return { table: [every, ...columns] as uPlot.AlignedData, rows };
+}
+
+function options(
+  data: PlotData,
+  width: number,
+  height: number,
+  shown: () => Range,
+  more: Partial<uPlot.Options>,
+): uPlot.Options {
+  const [ink, line] = [colour("quiet"), colour("line")];
+  const axis = {
+    stroke: ink,
+    grid: { stroke: line, width: 1 },
+    ticks: { stroke: line, width: 1 },
+    font: "12px system-ui, sans-serif",
+  };
+  const series: uPlot.Series[] = [{}];
+  const bands: uPlot.Band[] = [];
+  for (const s of data.series) {
+    const paint = colour(s.colour);
+    if (s.kind === "band") {
+      bands.push({ series: [series.length, series.length + 1], fill: paint + "33" });
+      series.push(
+        { stroke: paint + "55", width: 0.5, points: { show: false } },
+        { stroke: paint + "55", width: 0.5, points: { show: false } },
+      );
+    } else if (s.kind === "points") {
+      const n = s.x.length;
+      series.push({
+        stroke: paint,
+        paths: () => null,
+        points: {
+          show: true,
+          size: n > BAR_ROOM ? 3 : n > 200 ? 4 : 6,
+          fill: paint,
+          stroke: paint,
+          width: 0,
+        },
+      });
+    } else {
+      series.push({
+        stroke: paint,
+        width: 1.5,
+        points: { show: s.x.length < 3 },
+        spanGaps: true,
+        ...(s.dashed ? { dash: [6, 4] } : {}),
+      });
+    }
+  }
+  return {
+    width,
+    height,
+    series,
+    bands,
+    legend: { show: false },
+    tzDate: (at) => uPlot.tzDate(new Date(at * 1e3), "Etc/UTC"),
+    scales: {
+      x: { time: data.time, range: () => shown() },
+      y: {
+        distr: data.log ? 3 : 1,
+        range: () => spanOf(data, shown()),
+      },
+    },
+    axes: [
+      { ...axis, ...(data.time ? { values: TIMES } : {}), space: 70 },
+      {
+        ...axis,
+        size: 62,
+        values: (_u, ticks) => ticks.map((v) => (v === null ? "" : String(Number(v.toPrecision(6))))),
+      },
+    ],
+    ...more,
+  };
+}
+
+/** Intervals of points, and marks, behind the points. */
+function under(data: PlotData): uPlot.Plugin {
+  const draw = (u: uPlot): void => {
+    const { ctx, bbox } = u;
+    const ratio = devicePixelRatio;
+    const [from, to] = [u.scales["x"]?.min ?? 0, u.scales["x"]?.max ?? 1];
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    for (const s of data.series) {
+      if (s.kind !== "points" || !s.low || !s.high) continue;
+      ctx.strokeStyle = colour(s.colour) + (s.x.length > 300 ? "3a" : "77");
+      ctx.lineWidth = ratio;
+      ctx.beginPath();
+      for (let i = 0; i < s.x.length; i++) {
+        const [x, low, high] = [s.x[i] ?? NaN, s.low[i], s.high[i]];
+        if (!(x >= from && x <= to) || typeof low !== "number" || typeof high !== "number") continue;
+        const px = u.valToPos(x, "x", true);
+        ctx.moveTo(px, u.valToPos(low, "y", true));
+        ctx.lineTo(px, u.valToPos(high, "y", true));
+      }
+      ctx.stroke();
+    }
+    ctx.font = `${12 * ratio}px system-ui, sans-serif`;
+    let free = -Infinity;
+    for (const mark of data.marks ?? []) {
+      const px = u.valToPos(mark.x, "x", true);
+      const paint = colour(mark.colour);
+      if (mark.to !== undefined) {
+        ctx.fillStyle = paint + "22";
+        ctx.fillRect(px, bbox.top, u.valToPos(mark.to, "x", true) - px, bbox.height);
+      }
+      ctx.strokeStyle = paint;
+      ctx.setLineDash([4 * ratio, 3 * ratio]);
+      ctx.lineWidth = ratio;
+      ctx.beginPath();
+      ctx.moveTo(px, bbox.top);
+      ctx.lineTo(px, bbox.top + bbox.height);
+      ctx.stroke();
+      ctx.setLineDash([]);
+      const width = ctx.measureText(mark.words).width;
+      const left = px + width + 8 * ratio > bbox.left + bbox.width;
+      if (px >= bbox.left && px > free) {
+        ctx.fillStyle = paint;
+        ctx.textAlign = left ? "right" : "left";
+        ctx.fillText(mark.words, px + (left ? -5 : 5) * ratio, bbox.top + 13 * ratio);
+        free = px + (left ? 0 : width);
+      }
+    }
+    ctx.restore();
+  };
+  return { hooks: { drawAxes: draw } };
+}
+
+export function Plot({ data, height = 220, range = null, onRange, onPick, together }: PlotProps) {
+  const root = useRef<HTMLDivElement>(null);
+  const chart = useRef<uPlot | null>(null);
+  const [read, setRead] = useState("");
+  const extent = extentOf(data);
+  const shown = range ?? extent;
+  const dark = theme.value;
+  const latest = useRef({ shown, onRange, onPick });
+  latest.current = { shown, onRange, onPick };
+
+  useEffect(() => {
+    const box = root.current;
+    if (!box) return;
+    const { table, rows } = joined(data.series);
+    const columns = data.series.flatMap((s, i) => (s.kind === "band" ? [-1, -1] : [i]));
+    const nearest = (u: uPlot): [number, number] | null => {
+      let found: [number, number, number] | null = null;
+      columns.forEach((series, k) => {
+        const at = u.cursor.idxs?.[k + 1];
+        if (series < 0 || at === null || at === undefined) return;
+        const y = u.data[k + 1]?.[at];
+        const index = rows[series]?.[at] ?? -1;
+        if (typeof y !== "number" || index < 0) return;
+        const far = Math.abs(u.valToPos(y, "y") - (u.cursor.top ?? 0));
+        if (!found || far < found[2]) found = [series, index, far];
+      });
+      return found && [found[0], found[1]];
+    };
+    const u = new uPlot(
+      options(data, box.clientWidth, height, () => latest.current.shown, {
+        cursor: {
+          drag: { x: true, y: false, setScale: false },
+          points: { size: 7 },
+          ...(together ? { sync: { key: together, scales: ["x", null] } } : {}),
+          dataIdx: (self, seriesIdx, at) => nearestIndex(self, seriesIdx, at),
+        },
+        plugins: [under(data)],
+        hooks: {
+          setSelect: [
+            (self) => {
+              if (self.select.width < 4) return;
+              const [a, b] = [
+                self.posToVal(self.select.left, "x"),
+                self.posToVal(self.select.left + self.select.width, "x"),
+              ];
+              self.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+              latest.current.onRange?.([a, b]);
+            },
+          ],
+          setCursor: [
+            (self) => {
+              const hit = nearest(self);
+              if (!hit || (self.cursor.left ?? -1) < 0) return setRead("");
+              const s = data.series[hit[0]];
+              if (!s) return;
+              const [x, y, low, high] = [s.x[hit[1]] ?? 0, s.y[hit[1]], s.low?.[hit[1]], s.high?.[hit[1]]];
+              const interval =
+                typeof low === "number" && typeof high === "number"
+                  ? ` (${digits(low)} to ${digits(high)})`
+                  : "";
+              const [from, to] = latest.current.shown;
+              setRead(
+                `${readX(data, x, to - from)} · ${s.name} ${typeof y === "number" ? digits(y) : "–"}${interval}`,
+              );
+            },
+          ],
+          ready: [
+            (self) => {
+              self.over.addEventListener("dblclick", () => latest.current.onRange?.(null));
+              let down = 0;
+              self.over.addEventListener("mousedown", (e) => (down = e.clientX));
+              self.over.addEventListener("mouseup", (e) => {
+                const hit = Math.abs(e.clientX - down) < 4 ? nearest(self) : null;
+                if (hit) latest.current.onPick?.(...hit);
+              });
+            },
+          ],
+        },
+      }),
+      table,
+      box,
+    );
+    u.setScale("x", { min: latest.current.shown[0], max: latest.current.shown[1] });
+    chart.current = u;
+    const observer = new ResizeObserver(() => u.setSize({ width: box.clientWidth, height }));
+    observer.observe(box);
+    return () => {
+      observer.disconnect();
+      u.destroy();
+      chart.current = null;
+    };
+  }, [data, height, dark, together]);
+
+  useEffect(() => {
+    chart.current?.setScale("x", { min: shown[0], max: shown[1] });
+  }, [shown[0], shown[1]]);
+
+  const move = (event: KeyboardEvent): void => {
+    const [a, b] = shown;
+    const width = b - a;
+    const to: Record<string, Range | null> = {
+      ArrowLeft: [a - width / 5, b - width / 5],
+      ArrowRight: [a + width / 5, b + width / 5],
+      "+": [a + width / 5, b - width / 5],
+      "-": [a - width / 3, b + width / 3],
+      "0": null,
+    };
+    if (!onRange || !(event.key in to)) return;
+    event.preventDefault();
+    onRange(to[event.key] ?? null);
+  };
+
+  return (
+    <figure class="plot">
+      <figcaption>
+        <b>{data.title}</b>
+        <span class="unit">{data.yName}</span>
+        <span class="legend">
+          {data.series.length > 1 &&
+            data.series.map((s) => (
+              <span key={s.name} class={s.kind}>
+                <i class={`paint-${s.colour}`} aria-hidden="true" />
+                {s.name}
+              </span>
+            ))}
+        </span>
+        <output>{read}</output>
+        <SaveMenu data={data} range={shown} canvas={() => chart.current?.ctx.canvas} />
+      </figcaption>
+      <div
+        ref={root}
+        tabIndex={0}
+        role="img"
+        aria-label={`${data.title}, ${data.yName}. ${onRange ? "Arrow keys move, plus and minus zoom, 0 shows all." : ""} Its numbers are in the CSV.`}
+        onKeyDown={move}
+      />
+    </figure>
+  );
+}
+
+const digits = (value: number): string => String(Number(value.toPrecision(5)));
+
+/** The nearest place at which this series has a value, a few places around the cursor. */
+function nearestIndex(u: uPlot, series: number, at: number): number {
+  const values = u.data[series];
+  if (!values || series === 0) return at;
+  for (let far = 0; far < 60; far++)
+    for (const i of [at - far, at + far]) if (typeof values[i] === "number") return i;
+  return at;
+}

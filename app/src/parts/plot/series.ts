@@ -1,0 +1,112 @@
+// What a plot is given, and the same as CSV and SVG.
+import { day, utc } from "../../words/time";
+
+export interface Series {
+  name: string;
+  /** Name of one of our colours. */
+  colour: string;
+  kind: "points" | "line" | "band";
+  x: ArrayLike<number>;
+  y: ArrayLike<number | null>;
+  low?: ArrayLike<number | null>;
+  high?: ArrayLike<number | null>;
+  dashed?: boolean;
+  symbol?: "circle" | "square" | "diamond" | "cross";
+}
+
+/** A moment, or a stretch, that something is said of. */
+export interface Mark {
+  x: number;
+  to?: number;
+  words: string;
+  colour: string;
+}
+
+export interface PlotData {
+  title: string;
+  /** A time axis counts seconds since 1970. */
+  time: boolean;
+  xName: string;
+  yName: string;
+  log?: boolean;
+  series: Series[];
+  marks?: Mark[];
+}
+
+export type Range = [number, number];
+
+const stamp = (seconds: number): string => new Date(seconds * 1000).toISOString();
+const cell = (value: number | null | undefined): string =>
+  value === null || value === undefined ? "" : String(value);
+const quoted = (text: string): string => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+
+/** One line a point: series, x, y, low, high. */
+export function csvOf(plot: PlotData): string {
+  const head = ["series", plot.time ? "time_utc" : plot.xName, plot.yName, "low", "high"]
+    .map(quoted)
+    .join(",");
+  const lines = plot.series.flatMap((s) =>
+    Array.from(s.x, (x, i) =>
+      [
+        quoted(s.name),
+        plot.time ? stamp(x) : String(x),
+        cell(s.y[i]),
+        cell(s.low?.[i]),
+        cell(s.high?.[i]),
+      ].join(","),
+    ),
+  );
+  return [head, ...lines].join("\n") + "\n";
+}
+
+/** The extremes of what is shown between two places of x; of positive numbers only if logarithmic. */
+export function spanOf(plot: PlotData, range: Range | null): Range {
+  let [low, high] = [Infinity, -Infinity];
+  for (const s of plot.series)
+    for (let i = 0; i < s.x.length; i++) {
+      const x = s.x[i] ?? NaN;
+      if (range && (x < range[0] || x > range[1])) continue;
+      for (const value of [s.y[i], s.low?.[i], s.high?.[i]])
+        if (value !== null && value !== undefined && (!plot.log || value > 0)) {
+          if (value < low) low = value;
+          if (value > high) high = value;
+        }
+    }
+  if (low > high) return plot.log ? [0.1, 1] : [0, 1];
+  if (plot.log) return [low / 1.3, high * 1.3];
+  const room = (high - low || Math.abs(high) || 1) * 0.08;
+  return [low - room, high + room];
+}
+
+export function extentOf(plot: PlotData): Range {
+  let [first, last] = [Infinity, -Infinity];
+  for (const s of plot.series)
+    for (const x of [s.x[0], s.x[s.x.length - 1]])
+      if (x !== undefined) [first, last] = [Math.min(first, x), Math.max(last, x)];
+  if (first > last) return [0, 1];
+  const room = (last - first || (plot.time ? 86_400 : 1)) * 0.02;
+  return [first - room, last + room];
+}
+
+export const readX = (plot: PlotData, x: number, span: number): string =>
+  !plot.time ? `${Number(x.toPrecision(5))}` : span > 40 * 86_400 ? day(stamp(x)) : `${utc(stamp(x))} UTC`;
+
+/** Places of an axis that people count in. */
+export function ticksOf([low, high]: Range, most: number, log = false): number[] {
+  if (log) {
+    const found = [];
+    for (let p = Math.floor(Math.log10(low)); p <= Math.log10(high); p++)
+      for (const m of high / low > 1e3 ? [1] : [1, 2, 5]) {
+        const value = m * 10 ** p;
+        if (value >= low && value <= high) found.push(value);
+      }
+    return found;
+  }
+  const raw = (high - low) / most;
+  const size = 10 ** Math.floor(Math.log10(raw));
+  const step = size * ([1, 2, 5, 10].find((m) => m * size >= raw) ?? 10);
+  const found = [];
+  for (let v = Math.ceil(low / step) * step; v <= high + step * 1e-9; v += step)
+    found.push(Number(v.toPrecision(12)));
+  return found;
+}

@@ -1,0 +1,74 @@
+// A plot as a drawing of its own, for documents: the same series, marks and range as on the page.
+import type { PlotData, Range, Series } from "./series";
+import { readX, spanOf, ticksOf } from "./series";
+
+const [WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM] = [900, 360, 70, 16, 40, 46];
+const escaped = (text: string): string =>
+  text.replace(/[&<>"]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" })[c] ?? c);
+
+export function svgOf(plot: PlotData, range: Range, paint: (name: string) => string): string {
+  const span = spanOf(plot, range);
+  const scale = plot.log ? Math.log10 : (v: number) => v;
+  const [y0, y1] = [scale(span[0]), scale(span[1])];
+  const px = (x: number): number => LEFT + ((x - range[0]) / (range[1] - range[0])) * (WIDTH - LEFT - RIGHT);
+  const py = (y: number): number => HEIGHT - BOTTOM - ((scale(y) - y0) / (y1 - y0)) * (HEIGHT - TOP - BOTTOM);
+  const at = (v: number): string => v.toFixed(1);
+  const parts: string[] = [];
+  const text = (x: number, y: number, words: string, anchor = "start"): number =>
+    parts.push(`<text x="${at(x)}" y="${at(y)}" text-anchor="${anchor}">${escaped(words)}</text>`);
+  for (const v of ticksOf(span, 5, plot.log)) {
+    parts.push(`<path d="M${LEFT} ${at(py(v))}H${WIDTH - RIGHT}" stroke="${paint("line")}"/>`);
+    text(LEFT - 6, py(v) + 4, String(v), "end");
+  }
+  for (const v of ticksOf(range, 6))
+    text(px(v), HEIGHT - BOTTOM + 18, readX(plot, v, range[1] - range[0]), "middle");
+  text(LEFT, 18, plot.title);
+  text(LEFT, 34, plot.yName);
+  text(WIDTH - RIGHT, HEIGHT - 6, plot.xName, "end");
+  for (const mark of plot.marks ?? [])
+    if (mark.x >= range[0] && mark.x <= range[1]) {
+      parts.push(
+        `<path d="M${at(px(mark.x))} ${TOP}V${HEIGHT - BOTTOM}" stroke="${paint(mark.colour)}" stroke-dasharray="4 3"/>`,
+      );
+      text(px(mark.x) + 4, TOP + 12, mark.words);
+    }
+  plot.series.forEach((s, i) => {
+    parts.push(...shapes(s, range, plot.log ?? false, px, py, paint(s.colour)));
+    if (s.kind !== "band") {
+      parts.push(
+        `<text x="${WIDTH - RIGHT}" y="${18 + 15 * i}" text-anchor="end" fill="${paint(s.colour)}">${escaped(s.name)}</text>`,
+      );
+    }
+  });
+  return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${WIDTH} ${HEIGHT}" font-family="sans-serif" font-size="12" fill="${paint("ink")}"><rect width="${WIDTH}" height="${HEIGHT}" fill="${paint("paper")}"/>${parts.join("")}</svg>`;
+}
+
+type Map_ = (v: number) => number;
+
+function shapes(s: Series, range: Range, log: boolean, px: Map_, py: Map_, paint: string): string[] {
+  const seen = Array.from(s.x, (x, i) => ({ x, y: s.y[i], low: s.low?.[i], high: s.high?.[i] })).filter(
+    (p) => p.x >= range[0] && p.x <= range[1],
+  );
+  const there = (v: number | null | undefined): v is number => typeof v === "number" && (!log || v > 0);
+  const path = (points: [number, number][]): string =>
+    points.map(([x, y], i) => `${i ? "L" : "M"}${px(x).toFixed(1)} ${py(y).toFixed(1)}`).join("");
+  if (s.kind === "band") {
+    const up = seen.flatMap((p): [number, number][] => (there(p.high) ? [[p.x, p.high]] : []));
+    const down = seen.flatMap((p): [number, number][] => (there(p.low) ? [[p.x, p.low]] : [])).reverse();
+    return [`<path d="${path([...up, ...down])}Z" fill="${paint}" fill-opacity="0.18"/>`];
+  }
+  const points = seen.flatMap((p): [number, number][] => (there(p.y) ? [[p.x, p.y]] : []));
+  if (s.kind === "line") {
+    const dash = s.dashed ? ' stroke-dasharray="6 4"' : "";
+    return [`<path d="${path(points)}" fill="none" stroke="${paint}" stroke-width="1.5"${dash}/>`];
+  }
+  const bars = seen.flatMap((p) =>
+    there(p.low) && there(p.high)
+      ? [`M${px(p.x).toFixed(1)} ${py(p.low).toFixed(1)}V${py(p.high).toFixed(1)}`]
+      : [],
+  );
+  const dots = points.map(
+    ([x, y]) => `<circle cx="${px(x).toFixed(1)}" cy="${py(y).toFixed(1)}" r="2.4" fill="${paint}"/>`,
+  );
+  return [`<path d="${bars.join("")}" stroke="${paint}" stroke-opacity="0.35"/>`, ...dots];
+}

@@ -1,0 +1,139 @@
+// The frame: who is logged in, where the reader is, and the page of that place.
+import { lazy, Suspense } from "preact/compat";
+import type { ComponentType } from "preact";
+import { useEffect } from "preact/hooks";
+import { api, me, Problem, told } from "../api/client";
+import { connection, listen, stopListening } from "../api/events";
+import { Fleet } from "../pages/Fleet";
+import { Login } from "../pages/Login";
+import { Turbine } from "../pages/Turbine";
+import { Empty } from "../parts/Shown";
+import { assetUrl, go, place, route } from "./place";
+import { switchTheme, theme } from "./theme";
+
+export interface PageProps {
+  asset: string;
+  id: string;
+}
+
+/** Pages with plots come when they are first asked for. */
+const PAGES: Record<string, ComponentType<PageProps>> = {
+  fleet: Fleet,
+  turbine: Turbine,
+  timeline: lazy(() => import("../pages/Timeline")),
+};
+const TABS: readonly (readonly [string, string])[] = [
+  ["", "Turbine"],
+  ["timeline", "Timeline"],
+];
+
+async function ask(): Promise<void> {
+  try {
+    me.value = await told(api.GET("/api/v1/me"));
+  } catch (error) {
+    if (error instanceof Problem && error.kind !== "login") setTimeout(() => void ask(), 3000);
+  }
+}
+
+async function logOut(): Promise<void> {
+  await api.POST("/api/v1/logout").catch(() => undefined);
+  me.value = null;
+}
+
+function Top() {
+  const { asset, page } = route.value;
+  const state = connection.value;
+  const user = me.value;
+  return (
+    <header class="top">
+      <div class="row">
+        <a class="brand" href="/">
+          jackettwin
+        </a>
+        {asset && (
+          <nav class="where" aria-label="Turbine">
+            <span aria-hidden="true">/</span>
+            <a href={assetUrl(asset)}>{asset}</a>
+          </nav>
+        )}
+        <div class="who">
+          <span class={`link-state ${state}`} role="status" title={`Connection: ${state}`}>
+            <span>{state === "live" ? "live" : state === "lost" ? "no connection" : "connecting"}</span>
+          </span>
+          <button
+            type="button"
+            onClick={switchTheme}
+            aria-label={`Show in ${theme.value === "dark" ? "light" : "dark"} colours`}
+          >
+            {theme.value === "dark" ? "Light" : "Dark"}
+          </button>
+          {user && <span class="name">{`${user.name} (${user.role})`}</span>}
+          {user?.csrf_token && (
+            <button type="button" onClick={() => void logOut()}>
+              Log out
+            </button>
+          )}
+        </div>
+      </div>
+      {asset && (
+        <nav class="tabs" aria-label="Pages">
+          {TABS.map(([key, words]) => {
+            const here = key === (page === "turbine" ? "" : page === "record" ? "records" : page);
+            return (
+              <a key={key} href={assetUrl(asset, key)} {...(here ? { "aria-current": "page" } : {})}>
+                {words}
+              </a>
+            );
+          })}
+        </nav>
+      )}
+    </header>
+  );
+}
+
+export function App() {
+  const user = me.value;
+  const { page, asset, id } = route.value;
+  useEffect(() => void ask(), []);
+  useEffect(() => {
+    if (user === null && page !== "login") go(`/login?next=${encodeURIComponent(place.value.path)}`, true);
+    if (user) listen();
+    else stopListening();
+  }, [user, page]);
+  useEffect(() => {
+    document.title = [asset, page]
+      .filter((part) => part && part !== "turbine")
+      .concat("jackettwin")
+      .join(" – ");
+  }, [asset, page]);
+  if (page === "login") return <Login />;
+  const Page = PAGES[page];
+  return (
+    <>
+      <a class="skip" href="#main">
+        To the page
+      </a>
+      <Top />
+      {connection.value === "lost" && (
+        <p class="offline" role="alert">
+          The server does not answer. What is shown is as it was; it is asked again by itself.
+        </p>
+      )}
+      <main id="main" tabIndex={-1}>
+        {user && (
+          <Suspense fallback={<div class="bones" role="status" aria-label="Loading" />}>
+            {Page ? (
+              <Page key={`${page} ${asset} ${id}`} asset={asset} id={id} />
+            ) : (
+              <Empty title="There is no such page">
+                <p>
+                  Go to <a href="/">all turbines</a>.
+                </p>
+              </Empty>
+            )}
+          </Suspense>
+        )}
+      </main>
+    </>
+  );
+}

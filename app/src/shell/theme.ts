@@ -1,0 +1,21 @@
+// Light or dark: what the system says, unless the reader chose.
+import { computed, signal } from "@preact/signals";
+
+export type Theme = "light" | "dark";
+const system = matchMedia("(prefers-color-scheme: dark)");
+const systemDark = signal(system.matches);
+const chosen = signal(localStorage.getItem("theme"));
+export const theme = computed<Theme>(() =>
+  chosen.value === "dark" || (chosen.value === null && systemDark.value) ? "dark" : "light",
+);
+system.addEventListener("change", () => (systemDark.value = system.matches));
+theme.subscribe((now) => (document.documentElement.dataset["theme"] = now));
+
+export function switchTheme(): void {
+  chosen.value = theme.value === "dark" ? "light" : "dark";
+  localStorage.setItem("theme", chosen.value);
+}
+
+/** The value of one of our colours, for what is drawn and not styled. */
+export const colour = (name: string): string =>
+  getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();

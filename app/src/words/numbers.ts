@@ -1,0 +1,82 @@
+// Numbers as people read them, as report/tables/numbers.py writes them: tests/numbers.json holds both to it.
+
+export const UNKNOWN = "–";
+const SUPERSCRIPT = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+const WIDE = 0.2;
+const PREFIXES: readonly (readonly [number, string])[] = [
+  [1e9, "G"],
+  [1e6, "M"],
+  [1e3, "k"],
+];
+
+type Number_ = number | null | undefined;
+
+const known = (value: Number_): value is number => typeof value === "number" && Number.isFinite(value);
+/** Round half to even where a decimal tie is exact, as Python does. */
+function rounded(value: number, decimals: number): string {
+  const text = value.toFixed(decimals);
+  const tie = Math.abs(value) * 10 ** decimals;
+  if (decimals <= 15 && tie % 1 === 0.5 && tie < 2 ** 52) {
+    const down = Math.floor(tie);
+    return ((Math.sign(value) * (down % 2 ? down + 1 : down)) / 10 ** decimals).toFixed(decimals);
+  }
+  return text;
+}
+
+export function fixed(value: Number_, decimals: number): string {
+  if (!known(value)) return UNKNOWN;
+  const text = rounded(value, decimals);
+  return Number(text) === 0 ? text.replace("-", "") : text;
+}
+
+function withStd(value: Number_, std: Number_, scale: number, decimals: number): string {
+  if (!known(value)) return UNKNOWN;
+  const text = fixed(scale * value, decimals);
+  return known(std) ? `${text} ± ${fixed(scale * std, decimals)}` : text;
+}
+
+/** Hertz with four decimals. */
+export const frequency = (value: Number_, std?: Number_): string => withStd(value, std, 1, 4);
+/** A ratio in per cent, without the sign. */
+export const percent = (value: Number_, std?: Number_, decimals = 2): string =>
+  withStd(value, std, 100, decimals);
+
+export function scientific(value: Number_, digits = 3): string {
+  if (!known(value)) return UNKNOWN;
+  const [mantissa = "0", exponent = "0"] = value.toExponential(digits - 1).split("e");
+  const power = Number(exponent);
+  if (power >= -3 && power <= digits)
+    return Number(value.toPrecision(digits)).toFixed(Math.max(digits - 1 - power, 0));
+  const raised = [...String(power)].map((c) => (c === "-" ? "⁻" : (SUPERSCRIPT[Number(c)] ?? c))).join("");
+  return `${mantissa} × 10${raised}`;
+}
+
+/** Significant digits without an exponent or trailing zeros. */
+const short = (value: number, digits: number): string => String(Number(value.toPrecision(digits)));
+
+/** A number of any size with its unit and the prefix that suits. */
+export function quantity(value: Number_, unit: string, digits = 2): string {
+  if (!known(value)) return UNKNOWN;
+  if (unit === "" || unit === "-") return short(value, digits);
+  const near = Number(value.toPrecision(digits));
+  const [scale, prefix] = PREFIXES.find(([size]) => Math.abs(near) >= size) ?? [1, ""];
+  return `${short(near / scale, digits)} ${prefix}${unit}`;
+}
+
+/** How many significant digits tell the ends of an interval of positive numbers apart. */
+export function digitsOf(low: number, high: number): number {
+  const width = low > 0 ? high / low - 1 : 1;
+  return width > WIDE ? 2 : width > WIDE / 10 ? 3 : 4;
+}
+
+/** "2 to 14 GN/m", the unit once where both have the same prefix. */
+export function between(low: number, high: number, unit: string): string {
+  const digits = digitsOf(low, high);
+  const [a, b] = [quantity(low, unit, digits), quantity(high, unit, digits)];
+  const [number = "", same] = a.split(" ");
+  return same !== undefined && same === b.split(" ")[1] ? `${number} to ${b}` : `${a} to ${b}`;
+}
+
+/** side_side_1: side-side 1. */
+export const words = (label: string): string => label.replace(/_(\d+)$/, " $1").replaceAll("_", "-");
+export const count = (n: number, noun: string): string => `${n} ${noun}${n === 1 ? "" : "s"}`;

@@ -1,0 +1,50 @@
+import { describe, expect, test } from "vitest";
+import { csvOf, extentOf, type PlotData, spanOf, ticksOf } from "../src/parts/plot/series";
+import { svgOf } from "../src/parts/plot/svg";
+
+const plot: PlotData = {
+  title: 'side-side "1" <b>',
+  time: true,
+  xName: "UTC",
+  yName: "frequency [Hz]",
+  series: [
+    {
+      name: "a, b",
+      colour: "blue",
+      kind: "points",
+      x: [0, 60],
+      y: [1, null],
+      low: [0.5, null],
+      high: [2, null],
+    },
+  ],
+  marks: [{ x: 30, words: "alarm", colour: "alarm" }],
+};
+
+describe("a plot", () => {
+  test("is written with times in UTC and gaps left empty", () => {
+    expect(csvOf(plot).split("\n").slice(0, 3)).toEqual([
+      "series,time_utc,frequency [Hz],low,high",
+      '"a, b",1970-01-01T00:00:00.000Z,1,0.5,2',
+      '"a, b",1970-01-01T00:01:00.000Z,,,',
+    ]);
+  });
+  test("shows its intervals whole", () => {
+    const [low, high] = spanOf(plot, null);
+    expect(low).toBeLessThan(0.5);
+    expect(high).toBeGreaterThan(2);
+    expect(spanOf(plot, [50, 70])).toEqual([0, 1]);
+    expect(spanOf({ ...plot, log: true }, null)[0]).toBeGreaterThan(0);
+    expect(extentOf(plot)).toEqual([-1.2, 61.2]);
+  });
+  test("is drawn without letting a name become markup", () => {
+    const drawn = svgOf(plot, [0, 60], () => "#123456");
+    expect(drawn).toContain("side-side &quot;1&quot; &lt;b&gt;");
+    expect(drawn).not.toContain("<b>");
+    expect(drawn.match(/<circle/g)).toHaveLength(1);
+  });
+  test("has ticks in steps of 1, 2 or 5", () => {
+    expect(ticksOf([0, 1], 5)).toEqual([0, 0.2, 0.4, 0.6, 0.8, 1]);
+    expect(ticksOf([0.2, 30], 5, true)).toEqual([0.2, 0.5, 1, 2, 5, 10, 20]);
+  });
+});

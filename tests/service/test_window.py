@@ -1,0 +1,225 @@
+"""The window in a real browser: every page opens, on a phone and in the dark, for everybody who may."""
+
+from __future__ import annotations
+
+import shutil
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+import uvicorn
+from playwright.sync_api import Browser, Page, expect, sync_playwright
+from tests.service.conftest import NOON, PASSWORD, description, hour, make_service, record_file, turn
+from tests.service.servers import free_port
+
+from jackettwin.service.context import Service
+from jackettwin.service.web import pages
+from jackettwin.service.web.app import create_app
+from jackettwin.store import journal, people, results, writing
+
+AXE = Path(__file__).parents[2] / "app" / "node_modules" / "axe-core" / "axe.min.js"
+CHROMIUM = next((p for p in ("chromium", "chromium-browser", "google-chrome") if shutil.which(p)), "")
+PAGES = ("/", "/assets/wtg", "/assets/wtg/timeline")
+"""Every page of the window."""
+WIDTHS = {"desk": 1440, "tablet": 1024, "phone": 390}
+
+pytestmark = pytest.mark.skipif(
+    not CHROMIUM or not pages._built(), reason="Chromium is not installed, or make app was not run"
+)
+
+
+class Open:
+    """A window that is served: where, by which service, and what its browser complained of."""
+
+    def __init__(self, url: str, service: Service, browser: Browser) -> None:
+        self.url, self.service, self.browser = url, service, browser
+        self.said: list[str] = []
+
+    def page(self, path: str, *, width: int = 1440, theme: str = "light") -> Page:
+        """Open a page in a browser of its own, and wait until nothing on it is awaited."""
+        context = self.browser.new_context(
+            viewport={"width": width, "height": 900}, color_scheme=theme, base_url=self.url
+        )
+        page = context.new_page()
+        page.on("console", lambda m: self.said.append(m.text) if m.type in ("error", "warning") else None)
+        page.on("pageerror", lambda error: self.said.append(str(error)))
+        self.goto(page, path)
+        return page
+
+    @staticmethod
+    def goto(page: Page, path: str) -> None:
+        page.goto(path)
+        page.wait_for_selector("h1")
+        expect(page.locator(".bones")).to_have_count(0)
+
+
+def served(service: Service) -> Iterator[str]:
+    """Serve from a thread of this process."""
+    port = free_port()
+    config = uvicorn.Config(create_app(service), port=port, log_level="error", timeout_graceful_shutdown=1)
+    server = uvicorn.Server(config)
+    thread = threading.Thread(target=server.run)
+    thread.start()
+    while not server.started:
+        time.sleep(0.02)
+    yield f"http://127.0.0.1:{port}"
+    server.should_exit = True
+    thread.join(20.0)
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=shutil.which(CHROMIUM), args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def opened(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterator[Open]:
+    """A turbine with four records and an alarm whose words are markup."""
+    patch = pytest.MonkeyPatch()
+    for service in make_service(tmp_path_factory.mktemp("window"), None, patch):
+        for url in served(service):
+            for k in range(4):
+                send(url, k)
+            turn(service, 4)
+            alarm(service, url, SCRIPT)
+            yield Open(url, service, browser)
+    patch.undo()
+
+
+SCRIPT = "<img src=x onerror=\"document.title='injected'\"><script>document.title='injected'</script>"
+
+
+def send(url: str, k: int) -> httpx.Response:
+    return httpx.post(
+        f"{url}/api/v1/assets/wtg/records",
+        files={"file": (f"r{k}.parquet", record_file(k))},
+        data={"description": description(hour(k))},
+    )
+
+
+def alarm(service: Service, url: str, text: str) -> None:
+    """Let watching find a change."""
+    model = httpx.get(f"{url}/api/v1/assets/wtg").json()["model_hash"]
+    row = {"asset": "wtg", "model_hash": model, "record_id": "", "origin": "watch", "day": "2025-03-01"}
+    said = {"code": "structure_changed", "severity": "alarm", "subject": None, "params": {}, "text": text}
+    with writing(service.database) as connection:
+        results.put_findings(connection, [{**row, **said, "time_utc": NOON}])
+        journal.tell(connection, "finding", "wtg", {}, service.now())
+
+
+@pytest.mark.parametrize("path", PAGES)
+def test_a_page_is_whole_at_every_width_in_both_themes(opened: Open, path: str) -> None:
+    """Nothing wider than the window, no complaint of the browser, no serious finding of axe."""
+    opened.said.clear()
+    page = opened.page(path)
+    for theme in ("light", "dark"):
+        page.emulate_media(color_scheme=theme)
+        for width in WIDTHS.values():
+            page.set_viewport_size({"width": width, "height": 900})
+            assert page.evaluate("document.documentElement.scrollWidth") <= width, (path, width)
+        assert serious(page) == [], (path, theme)
+    assert opened.said == []
+    page.context.close()
+
+
+def serious(page: Page) -> list[str]:
+    """Return what axe finds of serious or critical impact."""
+    page.evaluate(AXE.read_text("utf-8"))
+    found = page.evaluate("axe.run(document, {resultTypes: ['violations']}).then(r => r.violations)")
+    return [
+        f"{v['id']}: {v['nodes'][0]['html'][:200]}" for v in found if v["impact"] in ("serious", "critical")
+    ]
+
+
+def test_axe_finds_what_is_wrong(opened: Open) -> None:
+    page = opened.page("/")
+    page.evaluate("""document.querySelector("main").innerHTML = "<input><p>pale</p>";
+        document.querySelector("main p").style.color = "#ddd";""")
+    assert {line.split(":")[0] for line in serious(page)} >= {"label", "color-contrast"}
+    page.context.close()
+
+
+def test_an_alarm_is_acknowledged_by_keyboard_and_another_reader_sees_it(opened: Open) -> None:
+    """Its words are text, whatever they are; who looks elsewhere sees it without loading again."""
+    mine, theirs = opened.page("/assets/wtg"), opened.page("/assets/wtg")
+    expect(mine.get_by_text("onerror=")).to_be_visible()
+    mine.get_by_role("button", name="Acknowledge").press("Enter")
+    mine.get_by_label("What you saw").fill("<b>divers</b> looked")
+    mine.get_by_role("button", name="Acknowledge").press("Enter")
+    for page in (mine, theirs):
+        expect(page.get_by_text("<b>divers</b> looked")).to_be_visible()
+        assert "injected" not in page.title()
+        page.context.close()
+
+
+def test_a_record_that_arrives_is_seen_without_loading_again(opened: Open) -> None:
+    page = opened.page("/")
+    before = page.locator("tbody tr td").nth(3).inner_text()
+    send(opened.url, int(before) + 20)
+    turn(opened.service)
+    expect(page.locator("tbody tr td").nth(3)).to_have_text(str(int(before) + 1))
+    page.context.close()
+
+
+def test_a_place_is_in_its_address(opened: Open) -> None:
+    page = opened.page("/assets/wtg/timeline?show=damping&mode=mode_1")
+    expect(page.get_by_role("button", name="Damping")).to_have_attribute("aria-pressed", "true")
+    expect(page.locator("figure.plot")).to_have_count(1)
+    page.get_by_role("button", name="Frequency").click()
+    page.get_by_role("button", name="30 days").click()
+    assert "mode=mode_1" in page.url and "from=" in page.url and "show" not in page.url
+    with page.expect_download() as download:
+        page.get_by_role("button", name="CSV").click()
+    lines = download.value.path().read_text().splitlines()
+    assert len(lines) >= 5 and lines[0].startswith("series,time_utc,")
+    page.context.close()
+
+
+def test_what_there_is_not_says_so(opened: Open) -> None:
+    opened.said.clear()
+    page = opened.page("/")
+    for path, words in (("/assets/none", "no such asset"), ("/assets/wtg/nothing", "no such page")):
+        page.goto(path)
+        expect(page.get_by_text(words)).to_be_visible()
+    page.context.close()
+
+
+def test_a_stranger_logs_in_and_comes_back_to_where_he_was(
+    tmp_path: Path, browser: Browser, monkeypatch: pytest.MonkeyPatch, password_hash: str
+) -> None:
+    """And is sent to the login when the session ends; a viewer is told who may acknowledge."""
+    for service in make_service(tmp_path / "store", None, monkeypatch):
+        for url in served(service):
+            alarm(service, url, "The structure changed.")
+            with writing(service.database) as connection:
+                people.add_user(connection, people.User("eva", "viewer", password_hash, NOON))
+            context = browser.new_context(base_url=url)
+            page = context.new_page()
+            page.goto("/assets/wtg")
+            page.get_by_label("Name").fill("eva")
+            page.get_by_label("Password").fill("not her password")
+            page.get_by_role("button", name="Log in").click()
+            expect(page.get_by_role("alert")).to_be_visible()
+            page.get_by_label("Password").fill(PASSWORD)
+            page.get_by_label("Password").press("Enter")
+            page.wait_for_url("**/assets/wtg")
+            expect(page.get_by_text("Engineers acknowledge alarms.")).to_be_visible()
+            assert page.get_by_role("button", name="Acknowledge").count() == 0
+            context.clear_cookies()
+            page.goto("/assets/wtg/timeline")
+            page.wait_for_url("**/login?next=*timeline")
+            context.close()
+
+
+def test_first_load_is_small(opened: Open) -> None:
+    """Bytes of scripts and styles as they are sent, without those of plots, which come when they are asked for."""
+    names = httpx.get(opened.url).text.split('"')
+    asked = [name for name in names if name.startswith("/window/")]
+    sent = [int(httpx.get(opened.url + name).headers.get("content-length", 0)) for name in asked]
+    assert len(asked) >= 2 and 0 < sum(sent) < 400_000
