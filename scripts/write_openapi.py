@@ -1,4 +1,4 @@
-"""Write the API's OpenAPI document, from which the window's client is generated: ``write_openapi.py FILE``."""
+"""Write the API's OpenAPI document to a file, from which the window's client is generated."""
 
 from __future__ import annotations
 

@@ -218,7 +218,7 @@ def test_a_stranger_logs_in_and_comes_back_to_where_he_was(
 
 
 def test_first_load_is_small(opened: Open) -> None:
-    """Bytes of scripts and styles as they are sent, without those of plots, which come when they are asked for."""
+    """Scripts and styles as they are sent; those of plots come when they are asked for."""
     names = httpx.get(opened.url).text.split('"')
     asked = [name for name in names if name.startswith("/window/")]
     sent = [int(httpx.get(opened.url + name).headers.get("content-length", 0)) for name in asked]

@@ -26,11 +26,12 @@ _SANDBOX = {
     "X-Frame-Options": "SAMEORIGIN",
 }
 _KINDS = {"html": "text/html", "js": "text/javascript", "css": "text/css"}
+_FOR_EVER = {"Cache-Control": "public, max-age=31536000, immutable"}
 _UNBUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>jackettwin</title>
 <h1>The window is not built</h1>
 <p>This installation was made from the sources, which do not hold the pages. With Node 20 or newer, run
 <code>make app</code> in the repository and load this page again.</p>
-<p>The server itself works: its API is described at <a href="/api/v1/openapi.json">/api/v1/openapi.json</a>.</p>
+<p>The server itself works: its API is described by <a href="/api/v1/openapi.json">a document</a>.</p>
 </html>"""
 
 
@@ -70,7 +71,7 @@ def part_of_the_window(name: Annotated[str, Path(max_length=100)]) -> Response:
     if content is None:
         raise ApiError(404, "no such file", field="name", value=name)
     kind = _KINDS.get(name.rpartition(".")[2], "application/octet-stream")
-    return Response(content, media_type=kind, headers={"Cache-Control": "public, max-age=31536000, immutable"})
+    return Response(content, media_type=kind, headers=_FOR_EVER)
 
 
 @router.get("/")
