@@ -15,14 +15,17 @@ from common.stiffness_histories import KINDS, MODES, History, history, modes_tab
 from tests.support.observations import estimate, observation
 
 from jackettwin.change import Days
+from jackettwin.files import StoredSchema
 from jackettwin.soil import family
-from jackettwin.study.in_time.stiffness import Reference, sensitivity
-from jackettwin.study.in_time.track import StiffnessTrack
+from jackettwin.study.in_time.stiffness import Reference, Sensitivity, sensitivity
+from jackettwin.study.in_time.track import LEARNT_DAYS, StiffnessTrack, Tracked, resumed
 from jackettwin.twin import TwinModel, TwinState, advance, empty_state, read_twin, twin_model
 from jackettwin.updating import Residuals, SupportModel, Target, single, support_model
 
 FIRST_SEED, LOSS, GROWN = 5000, 0.1, 1.3
 """Seeds below were used while it was written."""
+ALONE = tuple(sorted({*range(20, 961, 20), 64, 96, 128, 192, 256}))
+"""Days of the first history whose cost alone is measured."""
 KNOWN = 0.15
 """Standard deviation of ln k by all records together, as with a model error of a third of a per cent."""
 
@@ -40,7 +43,8 @@ class Scored:
     pooled: float
     width: float
     records: int | None
-    seconds: tuple[float, float]
+    seconds: tuple[float, float, float]
+    alone: tuple[float, ...] = ()
 
 
 def state_of(h: History, model: TwinModel) -> TwinState:
@@ -62,8 +66,11 @@ def scored(h: History, told: bool, model: TwinModel, supports: SupportModel, see
     assert about is not None
     draws = KNOWN * rng.standard_normal((60, 1))
     reference = Reference(centre[0] + draws)
-    track, levels, spent, asked = StiffnessTrack(model, Days.of(state)), [], [], 0.0
-    for n, date in enumerate(state.days, start=1):
+    every, dates = Days.of(state), list(state.days)
+    track, levels, spent, asked, alone = StiffnessTrack(model, every), [], [], 0.0, []
+    for n, date in enumerate(dates, start=1):
+        if seed == 0 and n in ALONE:
+            alone.append(going_on(track, dates[:n], about, reference))
         begun = time.process_time()
         copied = n >= GROWN * asked
         asked = n if copied else asked
@@ -83,8 +90,23 @@ def scored(h: History, told: bool, model: TwinModel, supports: SupportModel, see
         held(by_now[moved], h.stiffness[moved]) if moved.any() else None,
         held(itself, h.k * h.stiffness), pooled(h, about.slopes),
         float(np.median(np.log(then[:, 2] / then[:, 0]))), records_to_follow(h, then),
-        (float(np.mean(spent[third : 2 * third])), float(np.mean(spent[2 * third :]))),
+        tuple(float(np.mean(spent[i * third : (i + 1) * third])) for i in range(3)), tuple(alone),
     )  # fmt: skip
+
+
+def going_on(track: StiffnessTrack, dates: list[str], about: Sensitivity, reference: Reference) -> float:
+    """Return the processor time [s] of one more day for a run that goes on from a file, all told."""
+    kept = track.stored()
+    assert kept is not None
+    schema = StoredSchema("tracked", Tracked)
+    stored = schema.dump(kept)
+    begun = time.process_time()
+    again = resumed(track.model, track.every, schema.load(stored), dates[:-1])
+    again = again.with_day(dates[-1], about, copied=False).with_changes(reference).moved(reference)
+    again.levels(reference)
+    again.ahead(reference)
+    schema.dump(again.stored())
+    return time.process_time() - begun
 
 
 def held(spans: np.ndarray, truth: np.ndarray) -> float:
@@ -154,7 +176,10 @@ records to follow −15 % |
 
 def page(found: list[Scored]) -> list[str]:
     steps = [s.records for s in found if s.records is not None]
-    early, late = (np.mean([s.seconds[i] for s in found]) for i in range(2))
+    first, second, third = (1e3 * np.mean([s.seconds[i] for s in found]) for i in range(3))
+    alone = dict(zip(ALONE, found[0].alone, strict=False))
+    usual = [spent for n, spent in alone.items() if n not in LEARNT_DAYS]
+    anew = {n: spent for n, spent in alone.items() if n in LEARNT_DAYS}
     number = len(found)
     head = f"`python qualify/stiffness_in_time.py {number}`: {number} {ABOUT}"
     lines = ["# Stiffness in time", "", *head.splitlines()]
@@ -170,9 +195,14 @@ def page(found: list[Scored]) -> list[str]:
     mean = [f"**{100.0 * np.mean(one):.1f} %**" for one in values]
     last = f"| **all** | | {' | '.join(mean)} | | at most **{max(steps, default=0)}** |"
     cost = (
-        f"A day costs {1e3 * early:.0f} ms of one core in the second year, {1e3 * late:.0f} ms in the third."
+        f"A day among others costs {first:.0f}, {second:.0f} and {third:.0f} ms of one core in the three years.",
+        f"A day alone, gone on to from a file and back into it: {1e3 * np.median(usual):.0f} ms (at most "
+        f"{1e3 * max(usual):.0f} ms) on {len(usual)}",
+        f"days between the {min(ALONE)}th and the {max(ALONE)}th; where conditions are learnt anew "
+        + ", ".join(f"{1e3 * spent:.0f} ms on day {n}" for n, spent in anew.items())
+        + ".",
     )
-    return [*lines, last, "", cost]
+    return [*lines, last, "", *cost]
 
 
 if __name__ == "__main__":

@@ -126,6 +126,8 @@ def tracked(
     track = StiffnessTrack(model, Days.of(state))
     for n, date in enumerate(state.days, start=1):
         track = gone_on(h, track, n, date, about)
+        # what a later day takes again is bounded, whatever came before
+        assert sum(rows.days.size for rows in track.window) < 2 * STEP_DAYS
         level = track.level(together(h, n))
         assert level is not None
         found.append(level)

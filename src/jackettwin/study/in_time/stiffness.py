@@ -48,6 +48,8 @@ _EPOCH = np.datetime64("1970-01-01")
 _MOST_DRAWS = 60
 _HALVINGS = 26
 """Of the interval of six standard deviations that a quantile is looked for in: to 10⁻⁷ of it."""
+_LEAST_WEIGHT = 1e-4
+"""Of a part of a mixture that counts."""
 _FARTHEST = 4.0
 """Largest change of ln k: a factor of 50."""
 
@@ -123,23 +125,43 @@ class StiffnessLevel(NamedTuple):
 
 
 def level_of(mixture: Mixture, reference: Reference, about: Sensitivity) -> StiffnessLevel:
-    """Return the stiffness that a level stands for.
+    """Return the stiffness that a level stands for; see :func:`levels_of`."""
+    return levels_of((mixture,), reference, about)[0]
+
+
+def levels_of(
+    mixtures: Sequence[Mixture], reference: Reference, about: Sensitivity
+) -> tuple[StiffnessLevel, ...]:
+    """Return the stiffness that levels stand for; all of them are mixtures with the same weights.
 
     The reference's draws are of the ground at the mean level r of its records. On the first day ln k was less
     by x_r, and the level's slope more by e^{a x_r}, with e^{-ad} h(x_r) e^{a x_r} = r, where d is how far a
     draw lies from where the slopes are taken.
     """
-    draws = reference.log_k
-    there = np.exp(-about.bend * (draws.mean(axis=1) - about.log_k))
-    mean = float(mixture.weights @ (mixture.level - mixture.shift) / mixture.weights.sum())
-    first = there * np.maximum(1.0 + about.bend * mean / there, np.exp(-_FARTHEST))
-    none = np.zeros(len(draws))
-    relative = _quantiles(mixture.weights, mixture.level, mixture.level_std, first, none, about.bend)
-    absolute = tuple(
-        _quantiles(mixture.weights, mixture.shift, mixture.shift_std, there, own, about.bend)
-        for own in draws.T
+    if not mixtures:
+        return ()
+    weights, draws = mixtures[0].weights, reference.log_k
+    kept = weights > _LEAST_WEIGHT
+    w = weights[kept] / weights[kept].sum()
+    level, level_std, shift, shift_std = (
+        np.array([getattr(mixture, name)[kept] for mixture in mixtures])
+        for name in ("level", "level_std", "shift", "shift_std")
     )
-    return StiffnessLevel(relative, absolute)
+    there = np.exp(-about.bend * (draws.mean(axis=1) - about.log_k))
+    mean = (level - shift) @ w
+    first = there * np.maximum(1.0 + about.bend * mean[:, None] / there, np.exp(-_FARTHEST))
+    still = np.zeros(len(draws))
+    relative = _quantiles(w, level, level_std, first, still, about.bend)
+    every = np.broadcast_to(there, first.shape)
+    absolute = [_quantiles(w, shift, shift_std, every, own, about.bend) for own in draws.T]
+    return tuple(
+        StiffnessLevel(_three(relative[i]), tuple(_three(one[i]) for one in absolute))
+        for i in range(len(mixtures))
+    )
+
+
+def _three(x: FloatArray) -> Span3:
+    return float(x[0]), float(x[1]), float(x[2])
 
 
 def _quantiles(
@@ -149,23 +171,27 @@ def _quantiles(
     flatter: FloatArray,
     origin: FloatArray,
     bend: float,
-) -> Span3:
-    """Return quantiles of exp(origin + h⁻¹(level/flatter)) over draws and a mixture of levels."""
+) -> FloatArray:
+    """Return quantiles (t, 3) of exp(origin + h⁻¹(level/flatter)) over draws and mixtures of levels.
+
+    Parameters
+    ----------
+    weights, mean, std : (c,), (t, c), (t, c)
+    flatter, origin : (t, n), (n,)
+    """
     wanted = np.array([0.05, 0.5, 0.95])
-    kept = weights > 1e-4
-    weights, mean, std = weights[kept] / weights[kept].sum(), mean[kept], std[kept]
-    ends = np.array([np.min(mean - 6.0 * std), np.max(mean + 6.0 * std)])
-    inside = np.minimum(bend * ends[:, None] / flatter, -np.expm1(-bend * _FARTHEST))
+    ends = np.array([np.min(mean - 6.0 * std, axis=1), np.max(mean + 6.0 * std, axis=1)])
+    inside = np.minimum(bend * ends[..., None] / flatter, -np.expm1(-bend * _FARTHEST))
     farthest = origin + np.clip(-np.log1p(-inside) / bend, -_FARTHEST, _FARTHEST)
-    low, high = np.full(3, farthest[0].min()), np.full(3, farthest[1].max())
+    low = np.repeat(farthest[0].min(axis=-1)[:, None], 3, axis=1)
+    high = np.repeat(farthest[1].max(axis=-1)[:, None], 3, axis=1)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        x = np.clip(middle[:, None] - origin, -_FARTHEST, _FARTHEST)
-        h = -np.expm1(-bend * x) / bend * flatter
-        below = (ndtr((h[:, :, None] - mean) / std) @ weights).mean(axis=1) < wanted
-        low, high = np.where(below, middle, low), np.where(below, high, middle)
-    a, b, c = np.exp(0.5 * (low + high)).tolist()
-    return a, b, c
+        x = np.clip(middle[:, :, None] - origin, -_FARTHEST, _FARTHEST)
+        h = -np.expm1(-bend * x) / bend * flatter[:, None]
+        share = (ndtr((h[..., None] - mean[:, None, None]) / std[:, None, None]) @ weights).mean(axis=-1)
+        low, high = np.where(share < wanted, middle, low), np.where(share < wanted, high, middle)
+    return np.asarray(np.exp(0.5 * (low + high)))
 
 
 def change_of(jump: Jump, reference: Reference, about: Sensitivity) -> Span3:

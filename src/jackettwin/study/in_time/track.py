@@ -22,6 +22,7 @@ from jackettwin.study.in_time.stiffness import (
     StiffnessLevel,
     change_of,
     level_of,
+    levels_of,
     normalisation_of,
     readings_of,
 )
@@ -111,7 +112,8 @@ class StiffnessTrack:
     dates : all so far
     kept : what stays; None before the first day that tells anything
     bank, lagged : after the last day
-    window : rows of the window, their noise as it was taken, and {date: number of rows up to its end}
+    window : rows of the window, their noise as it was taken
+    half : the track without its last days, as it was run when conditions were learnt on this very day
     """
 
     model: TwinModel
@@ -122,6 +124,7 @@ class StiffnessTrack:
     lagged: Lagged | None = None
     window: tuple[Readings, ...] = ()
     copied: tuple[str, ...] = ()
+    half: StiffnessTrack | None = None
 
     def with_day(self, date: str, about: Sensitivity, *, copied: bool) -> StiffnessTrack:
         """Return the track after one more day.
@@ -145,7 +148,9 @@ class StiffnessTrack:
         changes = () if self.kept is None else self.kept.changes
         n, of = len(self.dates), _chained("", self.every, self.dates)
         kept = Tracked(known, identified=n, of=of, changes=changes, settled=n, settled_changes=changes)
-        return replace(self, kept=kept)._from_start(self.dates)
+        begun, cut = replace(self, kept=kept), max(n - STEP_DAYS, 0)
+        half = begun._from_start(self.dates[:cut])
+        return replace(half._ran(self.dates[cut:]), half=half)
 
     def _from_start(self, dates: Sequence[str]) -> StiffnessTrack:
         """Return the track with the days of its window taken again."""
@@ -164,7 +169,7 @@ class StiffnessTrack:
         for r in range(read.days.size):
             bank, noise[r] = after_row(bank, read, r)
         window = (*window, replace(read, noise=noise)) if read.days.size else window
-        return replace(self, bank=bank, lagged=lagged, window=window)
+        return replace(self, bank=bank, lagged=lagged, window=window, half=None)
 
     def level(self, reference: Reference) -> StiffnessLevel | None:
         """What is known of the last day."""
@@ -210,17 +215,18 @@ class StiffnessTrack:
         days = np.floor(whole.days).astype(np.intp)
         last = {int(day): i for i, day in enumerate(days)}
         epoch = np.datetime64("1970-01-01")
-        return {str(epoch + day): level_of(every[i], reference, kept.normal.about) for day, i in last.items()}
+        found = levels_of([every[i] for i in last.values()], reference, kept.normal.about)
+        return {str(epoch + day): level for day, level in zip(last, found, strict=True)}
 
     def moved(self, reference: Reference) -> StiffnessTrack:
         """Return the track with a window that is not too long: its oldest days become final."""
         kept, n = self.kept, len(self.dates)
-        if kept is None or n <= LEARNT_DAYS[-1] or n - kept.days < 2 * STEP_DAYS:
+        if kept is None or n - kept.days < 2 * STEP_DAYS:
             return self
         cut = n - STEP_DAYS
         whole = self._window_levels(reference)
         gone = {date: whole[date] for date in self.dates[kept.days : cut] if date in whole}
-        before = self._from_start(self.dates[kept.days : cut])
+        before = self.half or self._from_start(self.dates[kept.days : cut])
         if before.bank is None:
             raise ValueError("a track that has not begun")
         all_roots = replace(before, bank=rooted(before.bank), window=())._ran(self.dates[cut:])
