@@ -195,7 +195,7 @@ def page(found: list[Scored]) -> list[str]:
     mean = [f"**{100.0 * np.mean(one):.1f} %**" for one in values]
     last = f"| **all** | | {' | '.join(mean)} | | at most **{max(steps, default=0)}** |"
     cost = (
-        f"A day among others costs {first:.0f}, {second:.0f} and {third:.0f} ms of one core in the three years.",
+        f"A day among others costs {first:.0f}, {second:.0f} and {third:.0f} ms of one core in the years.",
         f"A day alone, gone on to from a file and back into it: {1e3 * np.median(usual):.0f} ms (at most "
         f"{1e3 * max(usual):.0f} ms) on {len(usual)}",
         f"days between the {min(ALONE)}th and the {max(ALONE)}th; where conditions are learnt anew "
