@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.records import Record
+from jackettwin.records import Record, read_record, write_record
 from jackettwin.study import run_twin
 from jackettwin.study.measure import Measured, measure
 from jackettwin.study.narrative import cautions
-from jackettwin.twin import TwinModel, read_twin
+from jackettwin.twin import ALL, TwinModel, read_twin
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.model import twin_model
 
@@ -39,6 +39,24 @@ def test_a_record_that_fails_is_left_out_and_said_to_be(config: TwinConfig, tmp_
     assert found.observations[0].modes
     assert "broken.parquet" in found.failed[0].problem
     assert cautions(config, found, (), ())[0].startswith("left out: ")
+
+
+def test_a_record_of_another_turbine_is_measured_and_counts_nowhere(
+    config: TwinConfig, tmp_path: Path
+) -> None:
+    """The shipped record played 1.7 times as fast: shapes of the twin, at frequencies that are not."""
+    other = tmp_path / "other.parquet"
+    own = read_record(config.records[0], config.unsaid)
+    write_record(replace(own, sample_rate_hz=1.7 * own.sample_rate_hz, metadata={}), other)
+    both = measured(replace(config, records=(config.records[0], other)))
+    assert [seen.name for seen in both.observations] == [config.records[0].stem]
+    assert both.state.totals[ALL].conditions.records == 1
+    assert [(said.code, said.subject) for said in both.findings] == [("record_mismatched", "other")]
+    # alone it is shown, as a record of another turbine, and no mode of this one is learnt from it
+    alone = measured(replace(config, records=(other,)))
+    (seen,) = alone.observations
+    assert seen.mismatched and len(seen.identification.modes) > 2 and not seen.modes
+    assert not alone.state.days and not alone.state.totals
 
 
 def test_a_fault_of_ours_costs_one_record(config: TwinConfig, monkeypatch: pytest.MonkeyPatch) -> None:
