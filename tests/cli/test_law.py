@@ -38,6 +38,7 @@ def test_the_thesis_s_oscillator_as_json_page_and_table(tmp_path: Path) -> None:
     assert float(rows[3]["storage_n_m"]) == zener["storage_n_m"][3]
     for heading in ("Harmonic motion", "In time", "A mass on it"):
         assert heading in page.read_text("utf-8")
+    assert "1.48 MN/m" in page.read_text("utf-8") and "× 10⁶" not in page.read_text("utf-8")
 
 
 def test_tables_say_the_regime(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from jackettwin.report.figures import landscape as figures
 from jackettwin.report.pages.page import Block, PageSection, Plot, Text, write_page
 from jackettwin.report.table import Table, cell
-from jackettwin.report.tables.numbers import frequency, percent, scientific, words
+from jackettwin.report.tables.numbers import frequency, percent, quantity, words
 from jackettwin.study import CostLandscape, Exploration
 from jackettwin.updating import Locus
 from jackettwin.version import __version__
@@ -24,7 +24,7 @@ def write_explore_page(found: Exploration, path: Path) -> Path:
         If the file cannot be written.
     """
     values = ", ".join(
-        f"{p.name} {scientific(float(v))}{'' if p.unit == '-' else f' {p.unit}'}"
+        f"{p.name} {quantity(float(v), p.unit, digits=3)}"
         for p, v in zip(found.model.parameters, found.theta, strict=True)
     )
     sections = [
@@ -73,7 +73,7 @@ def solutions_table(seen: CostLandscape) -> Table:
     """Return every solution in a column, the lowest first."""
     found = seen.update.solutions
     rows = [
-        (f"{p.name} [{p.unit}]", *(scientific(float(s.theta[j])) for s in found))
+        (p.name, *(quantity(float(s.theta[j]), p.unit, digits=3) for s in found))
         for j, p in enumerate(seen.update.problem.parameters)
     ]
     rows.append(("cost", *(f"{s.cost:.3g}" for s in found)))
@@ -84,10 +84,13 @@ def solutions_table(seen: CostLandscape) -> Table:
 
 def paths_table(seen: CostLandscape) -> Table:
     """Return where every search started and ended."""
-    names = [p.name for p in seen.update.problem.parameters]
+    parameters = seen.update.problem.parameters
     rows = []
     for i, path in enumerate(seen.paths, start=1):
-        start = ", ".join(f"{name} {value:.3g}" for name, value in zip(names, path.points[0], strict=True))
+        start = ", ".join(
+            f"{p.name} {quantity(float(value), p.unit, digits=3)}"
+            for p, value in zip(parameters, path.points[0], strict=True)
+        )
         fate = path.fate if path.solution is None else f"solution {path.solution + 1}"
         costs = (f"{value:.3g}" for value in (path.cost[0], path.end_cost))
         rows.append((str(i), start, fate, *costs, str(len(path.cost))))
@@ -131,9 +134,9 @@ def _locus(found: Exploration, locus: Locus) -> tuple[Block, ...]:
     p = locus.parameter
     several = p.name not in [one.name for one in found.model.parameters]
     together = " Those of all tie groups vary by one factor; this is the first's." if several else ""
-    unit = "" if p.unit == "-" else f" {p.unit}"
+    low, high = (quantity(value, p.unit, digits=3) for value in (p.low, p.high))
     caption = (
-        f"Where do the poles go as {p.name} varies from {scientific(p.low)} to {scientific(p.high)}{unit}? "
+        f"Where do the poles go as {p.name} varies from {low} to {high}? "
         f"Each branch was followed from the point explored.{together}"
     )
     name = f"root_locus_{p.name}"
@@ -153,7 +156,7 @@ def locus_table(found: Exploration, locus: Locus) -> Table:
                 str(mode),
                 *(text for k in (0, locus.origin, -1) for text in (frequency(f[k]), percent(zeta[k]))),
                 percent(most),
-                scientific(value),
+                quantity(value, locus.parameter.unit, digits=3),
                 "" if not lost.size else f"no oscillation in {lost.size} of {f.size} points",
             )
         )
@@ -161,6 +164,6 @@ def locus_table(found: Exploration, locus: Locus) -> Table:
     heads = ["mode", "no."]
     for where in ("lower end", "here", "upper end"):
         heads += [f"{where}: f [Hz]", "ζ [%]"]
-    heads += ["most damping [%]", f"at {name} [{locus.parameter.unit}]", ""]
+    heads += ["most damping [%]", f"at {name}", ""]
     caption = f"How far can {name} move each mode, and how much damping can it give?"
     return Table(caption, tuple(heads), tuple(rows))

@@ -10,7 +10,7 @@ import numpy as np
 from jackettwin.report.figures import law as figures
 from jackettwin.report.pages.page import Block, PageSection, Plot, write_page
 from jackettwin.report.table import Table
-from jackettwin.report.tables.numbers import scientific
+from jackettwin.report.tables.numbers import quantity, scientific
 from jackettwin.response import FreeVibration
 from jackettwin.soil import Law, LawCurves
 from jackettwin.version import __version__
@@ -65,8 +65,9 @@ def law_table(laws: Mapping[str, Law], frequency_hz: float) -> Table:
     for name, law in laws.items():
         D = complex(law.stiffness(2j * np.pi * frequency_hz))
         eta = D.imag / D.real if D.real > 0.0 else float("nan")
-        rows.append((name, *map(scientific, (law.static_stiffness, D.real, D.imag, eta))))
-    heads = ("law", "at rest [N/m]", "storage [N/m]", "loss [N/m]", "loss factor [-]")
+        moduli = (quantity(one, "N/m", digits=3) for one in (law.static_stiffness, D.real, D.imag))
+        rows.append((name, *moduli, scientific(eta)))
+    heads = ("law", "at rest", "storage", "loss", "loss factor [-]")
     return Table(f"What does each law store and lose at {frequency_hz:g} Hz?", heads, tuple(rows))
 
 

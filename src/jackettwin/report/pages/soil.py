@@ -12,6 +12,7 @@ import plotly.graph_objects as go
 from jackettwin.report.figures import style
 from jackettwin.report.pages.page import Block, PageSection, Plot, Text, write_page
 from jackettwin.report.table import Table, TableColumn
+from jackettwin.report.tables.numbers import quantity
 from jackettwin.version import __version__
 
 _SHOWN = 6
@@ -59,9 +60,10 @@ def _head(document: Mapping[str, Any]) -> tuple[Block, ...]:
     rows = tuple(
         (
             f"{_NAMES[i]}, {_NAMES[j]}" if i != j else _NAMES[i],
-            ("N/m", "N", "N·m/rad")[int(i > 2) + int(j > 2)],
-            f"{stiffness[i, j]:.4g}",
-            f"{loss[i, j]:.4g}",
+            *(
+                quantity(float(one[i, j]), ("N/m", "N", "N·m/rad")[int(i > 2) + int(j > 2)], digits=4)
+                for one in (stiffness, loss)
+            ),
         )
         for i, j in zip(*np.nonzero(there), strict=True)
     )
@@ -69,8 +71,8 @@ def _head(document: Mapping[str, Any]) -> tuple[Block, ...]:
         f"What does the head of the pile feel at {document['frequency_hz']:g} Hz? Its impedance, entry by "
         "entry; the matrix is symmetric, and entries that are not listed are zero."
     )
-    columns = ("entry", "unit", "stiffness (real part)", "loss (imaginary part)")
-    return (Table(caption, columns, rows, text_columns=2),)
+    columns = ("entry", "stiffness (real part)", "loss (imaginary part)")
+    return (Table(caption, columns, rows),)
 
 
 def _capacity(document: Mapping[str, Any]) -> tuple[Block, ...]:
