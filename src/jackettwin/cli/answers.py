@@ -9,13 +9,16 @@ from jackettwin.cli.console import output, say
 if TYPE_CHECKING:
     from jackettwin.answers import Answers
 
+_COLOURS = {"ok": "green", "look": "yellow", "act": "bold red"}
+
 
 def print_answers(answers: Answers) -> None:
-    """Print the headline, then every question with its short answer."""
-    from jackettwin.report import sentences
+    """Print the light and the headline, then every question with its short answer."""
+    from jackettwin.report import light, sentences
 
-    said = sentences(answers)
+    said, at_a_glance = sentences(answers), light(answers)
     output.print()
+    output.print(f"[{_COLOURS[at_a_glance.level]}]{at_a_glance.words}.[/]")
     for line in said.headline:
         output.print(f"[bold]{line}[/bold]")
     for question in said.questions:
@@ -27,10 +30,11 @@ def print_answers(answers: Answers) -> None:
 def answers_document(answers: Answers) -> dict[str, Any]:
     """Return the answers as plain JSON data, in numbers and in words."""
     from jackettwin.files import encode
-    from jackettwin.report import sentences
+    from jackettwin.report import light, sentences
 
     said = sentences(answers)
     return {
+        "light": encode(light(answers)),
         "answers": encode(answers),
         "headline": list(said.headline),
         "questions": {q.title: [*q.short, *q.more] for q in said.questions},

@@ -16,6 +16,7 @@ from plotly.offline import get_plotlyjs
 
 from jackettwin.files import atomic_path
 from jackettwin.report.table import Table
+from jackettwin.report.tables.light import Light
 
 
 @dataclass(frozen=True)
@@ -70,8 +71,9 @@ class Drawing:
 
 @dataclass(frozen=True)
 class FirstPage:
-    """A headline, answers to questions, and the drawings beside them."""
+    """A light, a headline, answers to questions, and the drawings beside them."""
 
+    light: Light
     headline: tuple[str, ...]
     answers: tuple[tuple[str, tuple[str, ...]], ...]
     drawings: tuple[Drawing, ...]

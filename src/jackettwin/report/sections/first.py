@@ -7,6 +7,7 @@ from jackettwin.report.figures.drawings import campbell, damping_bars, ground_in
 from jackettwin.report.figures.drawings_shapes import shape_drawings
 from jackettwin.report.figures.tornado import tornado
 from jackettwin.report.pages.page import Block, Drawing, FirstPage
+from jackettwin.report.tables.light import light
 from jackettwin.report.tables.sentences import MARGIN, Said
 from jackettwin.soil import parameter_words
 from jackettwin.study import TwinResult
@@ -40,7 +41,8 @@ def first_page(a: Answers, said: Said) -> FirstPage:
         drawings.append(Drawing("damping", caption, (bars,)))
     if speeds is None:
         drawings += ground_drawing(a)
-    return FirstPage(said.headline, tuple((q.title, q.short) for q in said.questions), tuple(drawings))
+    answers = tuple((q.title, q.short) for q in said.questions)
+    return FirstPage(light(a), said.headline, answers, tuple(drawings))
 
 
 def ground_drawing(a: Answers) -> list[Drawing]:

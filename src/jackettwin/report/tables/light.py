@@ -1,0 +1,48 @@
+"""The answers as one light: whether a foundation, or its twin, asks for somebody."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from jackettwin.answers import Answers
+from jackettwin.report.tables.numbers import listed, words
+from jackettwin.report.tables.sentences import MARGIN
+from jackettwin.report.tables.sentences_model import objection_sentences
+
+Level = Literal["ok", "look", "act"]
+
+
+@dataclass(frozen=True)
+class Light:
+    """How urgent the answers are, and why in a few words.
+
+    Attributes
+    ----------
+    level : {"ok", "look", "act"}
+        ``act``: the model cannot meet the data, or the rotor may excite a first mode. ``look``: something
+        measured is not as designed, or nothing can be said. How well the ground is known does not enter.
+    words : str
+    """
+
+    level: Level
+    words: str
+
+
+def light(a: Answers) -> Light:
+    """Return the light of a run's answers."""
+    if not a.fits:
+        return Light("act", "Not to be relied on: the model cannot meet the data")
+    tight = {c.label: c.order for c in a.clearances if c.margin < MARGIN}
+    if tight:
+        near = listed([f"{words(label)} is near the rotor's {order}" for label, order in tight.items()])
+        return Light("act", f"Act: {near}")
+    measured = [m for m in a.modes if m.measured_hz is not None and m.fits_frequency]
+    if not any(m.label in ("fore_aft_1", "side_side_1") for m in measured):
+        return Light("look", "Look: no first bending mode was measured")
+    off = [words(m.label) for m in measured if m.near_design is False]
+    if off:
+        return Light("look", f"Look: {listed(off)} {'is' if len(off) == 1 else 'are'} not as designed")
+    if objection_sentences(a):
+        return Light("look", "Look: something measured is not explained")
+    return Light("ok", "In order: nothing measured speaks against the model")
