@@ -41,7 +41,10 @@ def test_forces_and_lengths_are_shown() -> None:
     assert abs(tower["end"]["bending_y_nm"]) < 1.0  # of some 1e8 at the foot
     text = run(*arguments).stdout
     assert "K" in text
-    assert "116.00" in text
+    # the tower's walls are beyond the standard's range: it is in the warnings, and no headline
+    assert not tower["covered"]
+    assert "tower_12" not in text
+    assert "D/t above 120, beyond ISO 19902 13: tower_1" in text
     assert "kN·m" in text
 
 
@@ -119,3 +122,20 @@ def test_decks_without_tubes_are_drawn_but_not_checked(tmp_path: Path) -> None:
     assert page.exists()
     result = CliRunner().invoke(main, ["stages", str(deck)])
     assert result.exit_code == 0 and "whole structure" in result.stdout
+
+
+def test_vortices_are_screened_where_a_flow_is_given() -> None:
+    """EN 1991-1-4 E.1.2(2) of the tower at 0.183 Hz; what is not asked for is in left_out."""
+    found = json.loads(run("jacket15", "--wind", "30", "--json").stdout)
+    tower = next(row for row in found["vortices"] if row["member"] == "tower_12")
+    assert tower["reduced_velocity"] == pytest.approx(30.0 / (tower["frequency_hz"] * tower["diameter_m"]))
+    assert tower["onset_m_s"] == pytest.approx(tower["frequency_hz"] * tower["diameter_m"] / 0.18 / 1.25)
+    assert (tower["excites"], tower["clause"]) == ("across", "EN 1991-1-4 E.1.2(2)")
+    assert any("swinging" in text for text in found["warnings"])
+    assert any("--current" in text for text in found["left_out"])
+    assert any("earthquakes" in text for text in found["left_out"])
+    assert json.loads(run("jacket15", "--json").stdout)["vortices"] == []
+    assert run("jacket15", "--wind", "-1").exit_code == 2
+    refused = run("--scenario", "parked", "--current", "1")
+    assert refused.exit_code == 2
+    assert "name the structure" in refused.stderr

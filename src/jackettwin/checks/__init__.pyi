@@ -16,3 +16,4 @@ from .member_check import (
     frame_use as frame_use,
 )
 from .scope import left_out as left_out
+from .vortices import CLAUSES as CLAUSES, VortexUse as VortexUse, vortex_uses as vortex_uses

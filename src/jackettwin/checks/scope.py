@@ -6,6 +6,16 @@ from collections import defaultdict
 
 from jackettwin.structure import PILES, Structure, few
 
+_CLAUSES = (
+    "joints: cans shorter than ISO 19902 14.2 asks, strength relative to the braces (14.3-13), overlapping "
+    "(14.4), grouted (14.5) and ring-stiffened (14.6) joints",
+    "members: ring stiffeners (13.2.6), junctions of cones (13.6), dented, corroded and grouted members "
+    "(13.7 to 13.9), grouted connections (15.1)",
+    "actions are taken as given: partial action factors and combinations are the user's (9)",
+    "ice (ISO 19906) and earthquakes (ISO 19901-2) are out of scope",
+)
+"""What no structure is checked for."""
+
 
 def left_out(structure: Structure) -> tuple[str, ...]:
     """Return a sentence for each kind of thing that the checks of members and joints leave out."""
@@ -23,4 +33,4 @@ def left_out(structure: Structure) -> tuple[str, ...]:
         found.append(
             "joints of piles with legs or sleeves, and the ground's capacity: `jackettwin soil` has it"
         )
-    return tuple(found)
+    return (*found, *_CLAUSES)

@@ -16,7 +16,7 @@ from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
     from jackettwin.arrays import FloatArray
-    from jackettwin.checks import BraceUse, FrameUse, MemberUse
+    from jackettwin.checks import BraceUse, FrameUse, MemberUse, VortexUse
     from jackettwin.loads import Water
     from jackettwin.soil import PileModel
     from jackettwin.structure import Assembly
@@ -59,6 +59,12 @@ _HEADINGS = ("N", "Vy", "Vz", "T", "My", "Mz")
 )
 @click.option("--flooded", multiple=True, metavar="MEMBER|PART", help="With --still-water; may be repeated.")
 @click.option(
+    "--wind",
+    type=FiniteFloat(0.0, 150.0),
+    help="Mean wind [m/s]: are members in air set swinging by vortices?",
+)
+@click.option("--current", type=FiniteFloat(0.0, 10.0), help="The same of members in water [m/s].")
+@click.option(
     "--subdivide", type=click.IntRange(1, 1000), help="Elements a member; default: the structure's own."
 )
 @answers
@@ -74,16 +80,18 @@ def check_command(
     joints: str,
     still_water: bool,
     flooded: tuple[str, ...],
+    wind: float | None,
+    current: float | None,
     subdivide: int | None,
 ) -> Reply:
     """Check members and joints of STRUCTURE, or of a scenario.
 
     STRUCTURE is at rest under its weight and the forces given.
     """
-    from jackettwin.checks import DesignBasis, frame_use, left_out
+    from jackettwin.checks import DesignBasis, frame_use, left_out, vortex_uses
     from jackettwin.decks import read_structure
     from jackettwin.loads import Water
-    from jackettwin.response import build_system, nodal_load, self_weight, static_displacement
+    from jackettwin.response import build_system, nodal_load, self_weight, static_displacement, undamped_modes
     from jackettwin.simulate import read_scenario, scenario_uses, water_notes
     from jackettwin.structure import assemble, element_weight
 
@@ -95,12 +103,19 @@ def check_command(
     if flooded and not still_water:
         raise InputError("needs --still-water", field="--flooded", value=flooded, remedy="add --still-water")
     if scenario is not None:
+        if wind is not None or current is not None:
+            raise InputError(
+                "a scenario has no screening for vortices",
+                field="--wind, --current",
+                remedy="name the structure",
+            )
         if still_water:
             raise InputError("a scenario has its own water", field="--still-water", remedy="leave it out")
         chosen_scenario = read_scenario(scenario)
         use = scenario_uses(chosen_scenario, basis)
         stands = chosen_scenario.asset.structure
-        return _answer(chosen_scenario.name, use, water_notes(chosen_scenario), left_out(stands))
+        missing = (*left_out(stands), *_flows_left_out(None, None))
+        return _answer(chosen_scenario.name, use, water_notes(chosen_scenario), missing)
     assert structure is not None
     assembly = assemble(read_structure(structure), subdivide=subdivide)
     stands, held = supported_option(support, assembly, pile_model)
@@ -112,9 +127,16 @@ def check_command(
     pressure = None
     if still_water:
         load, along, pressure = _in_water(assembly, Water(flooded), load, along)
-    u = static_displacement(build_system(assembly, held), load)
-    use = frame_use(assembly, u, basis, along=along, pressure=pressure)
-    return _answer(assembly.structure.name, use, [], left_out(assembly.structure))
+    system = build_system(assembly, held)
+    use = frame_use(assembly, static_displacement(system, load), basis, along=along, pressure=pressure)
+    missing = (*left_out(assembly.structure), *_flows_left_out(wind, current))
+    vortices: tuple[VortexUse, ...] = ()
+    if wind is not None or current is not None:
+        lowest = float(undamped_modes(system, 1).frequency_hz[0])
+        vortices = vortex_uses(
+            assembly.structure, wind_m_s=wind, current_m_s=current, first_frequency_hz=lowest
+        )
+    return _answer(assembly.structure.name, use, [], missing, vortices)
 
 
 def _in_water(
@@ -145,13 +167,34 @@ def _in_water(
     return load + wet.load, wet.along if along is None else along + wet.along, pressure
 
 
-def _answer(name: str, use: FrameUse, notes: list[str], missing: tuple[str, ...]) -> Reply:
+def _flows_left_out(wind: float | None, current: float | None) -> tuple[str, ...]:
+    """Return what of the screening for vortices is left out, and how to have it."""
+    found = []
+    if wind is None:
+        found.append("vortices in air (EN 1991-1-4 E.1): give a structure and --wind")
+    if current is None:
+        found.append("vortices in water (DNV-RP-C205 section 9): give a structure and --current")
+    if wind is not None or current is not None:
+        found.append("vortices: the response beyond the onset, marine growth, waves and neighbouring members")
+    return tuple(found)
+
+
+def _answer(
+    name: str,
+    use: FrameUse,
+    notes: list[str],
+    missing: tuple[str, ...],
+    vortices: tuple[VortexUse, ...] = (),
+) -> Reply:
+    members = sorted(use.members, key=lambda one: (not one.covered, -one.utilisation))
+    joints = sorted(use.joints, key=lambda one: (bool(one.joint.beyond_validity), -one.utilisation))
     document = {
         "structure": name,
         "largest_von_mises_stress_pa": max(one.von_mises_pa for one in use.members),
-        "members": [_row(one) for one in sorted(use.members, key=lambda one: -one.utilisation)],
-        "joints": [_joint_row(one) for one in sorted(use.joints, key=lambda one: -one.utilisation)],
-        "warnings": [*_warnings(use), *notes],
+        "members": [_row(one) for one in members],
+        "joints": [_joint_row(one) for one in joints],
+        "vortices": [_vortex_row(one) for one in vortices],
+        "warnings": [*_warnings(use), *_vortex_warnings(vortices), *notes],
         "left_out": list(missing),
     }
     return Reply(document, lambda: _show(document))
@@ -219,9 +262,34 @@ def _joint_row(use: BraceUse) -> dict[str, Any]:
     }
 
 
+def _vortex_row(use: VortexUse) -> dict[str, Any]:
+    from jackettwin.checks import CLAUSES
+
+    return {
+        **use._asdict(),
+        "onset_m_s": use.onset_m_s,
+        "ratio": use.ratio,
+        "excites": use.direction,
+        "clause": CLAUSES[use.medium],
+    }
+
+
+def _vortex_warnings(uses: tuple[VortexUse, ...]) -> list[str]:
+    from jackettwin.checks import CLAUSES
+    from jackettwin.structure import few
+
+    found = []
+    for medium, clause in CLAUSES.items():
+        names = [use.member for use in uses if use.medium == medium and use.ratio >= 1.0]
+        if names:
+            found.append(f"vortices may set members in {medium} swinging ({clause}): {few(names)}")
+    return found
+
+
 def _warnings(use: FrameUse) -> list[str]:
     from jackettwin.structure import few
 
+    # what lies beyond a rule's range stands last in the tables: it is no headline
     thin = [one.member for one in use.members if not one.covered]
     over = [one.member for one in use.members if one.utilisation > 1.0]
     joints = [f"{one.brace} at {one.node}" for one in use.joints if one.utilisation > 1.0]
@@ -242,12 +310,16 @@ def _warnings(use: FrameUse) -> list[str]:
 def _show(document: dict[str, Any]) -> None:
     members = document["members"]
     show_table(Table(document["structure"], _USE, members[:_SHOWN]))
+    if not all(row["covered"] for row in members[:_SHOWN]):
+        say("* D/t above 120, beyond 13.1")
     show_table(Table("section forces there [kN, kN·m]", _SECTION_FORCES, members[:_SHOWN]))
     if len(members) > _SHOWN:
         more = len(members) - _SHOWN
         say(f"and {more} more members; --json has all of them, with the forces at both ends")
     if document["joints"]:
         _show_joints(document["joints"])
+    if document["vortices"]:
+        show_table(Table("vortices, by reduced velocity", _VORTICES, document["vortices"][:_SHOWN]))
     say(f"largest von Mises stress {document['largest_von_mises_stress_pa'] / 1e6:.1f} MPa")
     say_all(document["warnings"], "warning")
     say_all(document["left_out"], "left out")
@@ -269,7 +341,7 @@ _PLACES = {0.0: "start", 1.0: "end"}
 _USE = (
     TableColumn("member", "member"),
     TableColumn("part", "part"),
-    TableColumn("utilisation", "utilisation", ".3f"),
+    TableColumn("utilisation", lambda row: f"{row['utilisation']:.3f}{'' if row['covered'] else '*'}"),
     TableColumn("governed by", "clause"),
     TableColumn("K", "effective_length_factor", "g"),
     TableColumn("L [m]", "column_length_m", ".2f"),
@@ -301,4 +373,15 @@ _JOINTS = (
     TableColumn("N", "axial_n", ",.1f", 1e-3),
     TableColumn("M in plane", "in_plane_nm", ",.1f", 1e-3),
     TableColumn("M out of plane", "out_of_plane_nm", ",.1f", 1e-3),
+)
+_VORTICES = (
+    TableColumn("member", "member"),
+    TableColumn("in", "medium"),
+    TableColumn("D [m]", "diameter_m", ".2f"),
+    TableColumn("f [Hz]", "frequency_hz", ".3g"),
+    TableColumn("V_R", "reduced_velocity", ".2f"),
+    TableColumn("onset", "onset", ".2f"),
+    TableColumn("from [m/s]", "onset_m_s", ".2f"),
+    TableColumn("excites", "excites"),
+    TableColumn("by", "clause"),
 )

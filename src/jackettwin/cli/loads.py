@@ -9,6 +9,9 @@ import click
 from jackettwin.cli.console import Reply, answers, say, say_all, show_table, working
 from jackettwin.report import Table, TableColumn
 
+_SLAMMED = 5
+"""Members hit by the rising surface in the terminal."""
+
 
 @click.command("loads")
 @click.argument("scenario")
@@ -44,7 +47,24 @@ def _show(name: str, document: dict[str, Any]) -> None:
         _show_still_water(document["still_water"])
     if document["phases"] is not None:
         show_table(Table("water, over one wave", _PHASES, document["phases"]))
+    if document["breaking"] is not None:
+        _show_breaking(document["breaking"])
     say_all(document["warnings"], "warning")
+    say_all(document["left_out"], "left out")
+
+
+def _show_breaking(breaking: dict[str, Any]) -> None:
+    height, limit = breaking["highest_wave_m"], breaking["limit_m"]
+    verdict = "breaks" if breaking["breaks"] else "stands"
+    say(f"the highest wave, {height:.2f} m, {verdict}: the limit is {limit:.2f} m")
+    if breaking["impact"] is not None:
+        hit = breaking["impact"]
+        say(f"a wave that breaks at {hit['member']} hits it with {1e-6 * hit['force_n']:.2f} MN")
+    for row in breaking["slammed"][:_SLAMMED]:
+        say(
+            f"slam of {row['member']}, z = {row['z_msl_m']:.1f} m: {1e-3 * row['force_n_m']:.1f} kN/m as "
+            f"water rises at {row['speed_m_s']:.2f} m/s"
+        )
 
 
 def _show_loads(title: str, loads: dict[str, Any]) -> None:

@@ -36,6 +36,11 @@ from .members.morison import (
     point_forces as point_forces,
     wetness as wetness,
 )
+from .members.slam import (
+    breaking_impact as breaking_impact,
+    slam_coefficient as slam_coefficient,
+    slam_per_length as slam_per_length,
+)
 from .members.water import (
     Water as Water,
     mass_per_level as mass_per_level,

@@ -10,6 +10,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.errors import InputError
 from jackettwin.loads import Water, morison_points, resultant_columns, water_weights
+from jackettwin.simulate.breaking import breaking_document
 from jackettwin.simulate.motion.model import aerodynamics
 from jackettwin.simulate.motion.water import water_ends, water_loads, water_points, wave_field
 from jackettwin.simulate.motion.wind import rotor_loads_in, tower_loads, tower_points, wind_field
@@ -79,6 +80,13 @@ def _of_wind(scenario: Scenario, air: Air, assembly: Assembly) -> FloatArray:
     return total if tower is None else total + tower_loads(field, tower, resultant_columns(tower.points))
 
 
+_LEFT_OUT = (
+    "slam of horizontal members (DNV-RP-C205 section 8) and impact of breaking waves (IEC 61400-3-1) stand "
+    "in `breaking`, not in the loads",
+    "run-up, spray, ice (ISO 19906) and marine growth that is not given",
+)
+
+
 def loads_document(scenario: Scenario) -> dict[str, Any]:
     """Return the document of ``jackettwin loads``: extremes and spread of the total and of its parts."""
     parts = resultants(scenario)
@@ -93,6 +101,10 @@ def loads_document(scenario: Scenario) -> dict[str, Any]:
         "parts": {name: _statistics(loads) for name, loads in parts.items()},
         "reference_point_m": [0.0, 0.0, sea_level],
         "phases": _phases(scenario, parts),
+        "breaking": None
+        if scenario.sea is None
+        else breaking_document(scenario.sea, scenario.asset.structure),
+        "left_out": [] if scenario.sea is None or scenario.sea.waves is None else list(_LEFT_OUT),
         "warnings": [
             *([] if scenario.sea is None else sea_warnings(scenario.sea, scenario.asset.structure)),
             *rotor_notes(scenario.air, scenario.turbine),

@@ -257,6 +257,11 @@ def sea_warnings(sea: Sea, structure: Structure) -> list[str]:
             f"waves of {sea.period_s:g} s break at {highest:.1f} m in {sea.depth_m:g} m of water; "
             f"linear theory says nothing of {sea.height_m:g} m"
         )
+    elif not sea.regular and sea.highest_wave_m > highest:
+        found.append(
+            f"the highest waves, {sea.highest_wave_m:.1f} m, break: those of {sea.period_s:.3g} s reach "
+            f"{highest:.1f} m in {sea.depth_m:g} m of water"
+        )
     return found
 
 
