@@ -139,3 +139,38 @@ def test_vortices_are_screened_where_a_flow_is_given() -> None:
     refused = run("--scenario", "parked", "--current", "1")
     assert refused.exit_code == 2
     assert "name the structure" in refused.stderr
+
+
+def test_piles_are_checked_and_carry_what_stands_on_them() -> None:
+    """The forces of the heads balance the thrust; without it the weight is the same."""
+    found = json.loads(
+        run("jacket15", "--support", "jacket15", "--force", "tower_top=3e6,0,0", "--json").stdout
+    )
+    heads = [row["head_force"] for row in found["piles"]]
+    assert sum(head["x_n"] for head in heads) == pytest.approx(3e6, rel=1e-6)
+    assert sum(head["y_n"] for head in heads) == pytest.approx(0.0, abs=1.0)
+    unused = json.loads(run("jacket15", "--support", "jacket15", "--json").stdout)["piles"]
+    weight = [sum(row["head_force"]["z_n"] for row in rows) for rows in (found["piles"], unused)]
+    assert weight[0] == pytest.approx(weight[1], rel=1e-6)
+    worst = found["piles"][0]
+    assert worst["axial_utilisation"] == pytest.approx(
+        1.25 * -worst["head_force"]["z_n"] / worst["capacity_compression_n"]
+    )
+    assert all(row["stands"] for row in found["piles"])
+    assert any("group effects" in text for text in found["left_out"])
+
+
+def test_piles_that_the_ground_does_not_carry_are_said() -> None:
+    found = json.loads(
+        run("jacket15", "--support", "jacket15", "--force", "tower_top=0,0,2e9", "--json").stdout
+    )
+    assert not any(row["stands"] for row in found["piles"])
+    assert found["piles"][0]["steel_utilisation"] is None
+    assert any("does not carry the piles" in text for text in found["warnings"])
+    assert "piles, ISO 19902 17" in run("jacket15", "--support", "jacket15", "--no-weight").stdout
+
+
+def test_piles_need_a_foundation_of_layers() -> None:
+    found = json.loads(run("jacket15", "--json").stdout)
+    assert found["piles"] == []
+    assert any("--support FOUNDATION" in text for text in found["left_out"])

@@ -23,7 +23,9 @@ def test_tables_json_and_page(tmp_path: Path) -> None:
     assert K.shape == (6, 6) and (np.linalg.eigvalsh(K) > 0.0).all()
     assert np.array(document["head_loss"]).shape == (6, 6)
     capacity = document["capacity"]
-    assert capacity["axial_compression_n"] == pytest.approx(capacity["shaft_n"] + capacity["tip_n"])
+    assert capacity["axial_compression_n"] == pytest.approx(
+        capacity["shaft_n"] + capacity["inner_shaft_n"] + capacity["tip_n"]
+    )
     assert len(document["pushover"]["load_n"]) == 3
     assert document["pushover"]["load_n"][-1] == pytest.approx(capacity["lateral_n"])
     first = document["curves"]["stations"][0]["py"]

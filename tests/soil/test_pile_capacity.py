@@ -24,9 +24,9 @@ def plastic(pile: Pile, p_u: float, t_u: float = 1.0, q_u: float = 1.0) -> PileC
 
 def test_axial_capacity_is_friction_times_length_and_the_tip() -> None:
     """API in clay: α s_u π D L of the outer shaft, 9 s_u A of the tip; α = 0.5/√(s_u/σ'_v) at ψ ≤ 1."""
-    found = axial_capacity(plastic(STUBBY, 1e5, 2e5, 3e6))
+    found = axial_capacity(STUBBY, plastic(STUBBY, 1e5, 2e5, 3e6))
     assert (found.shaft_n, found.tip_n) == pytest.approx((2e5 * L, 3e6))
-    assert found.compression_n == pytest.approx(2e5 * L + 3e6)
+    assert found.compression_n == pytest.approx(2e5 * L * (1.0 + 1.9 / 2.0) + 3e6)
     assert found.tension_n == found.shaft_n
     su, gamma = 60e3, 9e3
     curves = pile_curves(STUBBY, SoilProfile((Layer(30.0, gamma, clay=Clay((su, su))),)))
@@ -34,7 +34,25 @@ def test_axial_capacity_is_friction_times_length_and_the_tip() -> None:
     psi = su / np.maximum(gamma * z, 1.0)
     alpha = np.minimum(np.where(psi <= 1.0, 0.5 * psi**-0.5, 0.5 * psi**-0.25), 1.0)
     # Simpson's rule in pieces of a metre on the fourth root of depth at the surface: half a per cent
-    assert axial_capacity(curves).shaft_n == pytest.approx(np.trapezoid(alpha * su, z) * np.pi * D, rel=6e-3)
+    assert axial_capacity(STUBBY, curves).shaft_n == pytest.approx(
+        np.trapezoid(alpha * su, z) * np.pi * D, rel=6e-3
+    )
+
+
+@pytest.mark.parametrize("declared", [False, True])
+def test_an_open_pile_plugs_where_that_is_weaker(declared: bool) -> None:
+    """API RP 2GEO 8.1: the smaller of outer friction with the whole base, and both frictions with the steel.
+
+    Whatever the file says of the plug; a soft tip below a rough shaft plugs, a hard one does not.
+    """
+    pile = Pile(L, D, 0.05, plugged=declared)
+    whole, steel = 0.25 * np.pi * D**2, 0.25 * np.pi * (D**2 - 1.9**2)
+    for bearing, plugged in ((1e5, True), (1e7, False)):
+        found = axial_capacity(pile, plastic(pile, 1e5, 2e5, bearing * pile.tip_area_m2))
+        plug, core = 4e6 + bearing * whole, 4e6 * 1.95 + bearing * steel
+        assert found.plugged is plugged
+        assert found.compression_n == pytest.approx(min(plug, core))
+        assert found.tension_n == pytest.approx(4e6)
 
 
 @pytest.mark.parametrize("arm", [0.0, 10.0])
@@ -82,5 +100,6 @@ def test_ground_that_holds_nothing_is_refused() -> None:
 
 def test_sand_carries_more_the_deeper() -> None:
     profile = SoilProfile((Layer(80.0, 10e3, Sand(35.0)),))
-    shallow, deep = (axial_capacity(pile_curves(Pile(length, D, 0.05), profile)) for length in (20.0, 40.0))
+    piles = [Pile(length, D, 0.05) for length in (20.0, 40.0)]
+    shallow, deep = (axial_capacity(pile, pile_curves(pile, profile)) for pile in piles)
     assert deep.shaft_n > 2.0 * shallow.shaft_n

@@ -16,15 +16,17 @@ from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
     from jackettwin.arrays import FloatArray
-    from jackettwin.checks import BraceUse, FrameUse, MemberUse, VortexUse
+    from jackettwin.checks import BraceUse, DesignBasis, FrameUse, MemberUse, VortexUse
     from jackettwin.loads import Water
-    from jackettwin.soil import PileModel
+    from jackettwin.response import System
+    from jackettwin.soil import PileModel, PileUse
     from jackettwin.structure import Assembly
 
 
 _SHOWN = 15
 """Members in the terminal."""
 _COMPONENTS = ("axial_n", "shear_y_n", "shear_z_n", "torsion_nm", "bending_y_nm", "bending_z_nm")
+_HEAD = ("x_n", "y_n", "z_n", "x_nm", "y_nm", "z_nm")
 _TRACE = 0.005
 """A share of a joint's class that rounds to nothing."""
 _HEADINGS = ("N", "Vy", "Vz", "T", "My", "Mz")
@@ -59,6 +61,13 @@ _HEADINGS = ("N", "Vy", "Vz", "T", "My", "Mz")
 )
 @click.option("--flooded", multiple=True, metavar="MEMBER|PART", help="With --still-water; may be repeated.")
 @click.option(
+    "--pile-resistance",
+    default=1.25,
+    show_default=True,
+    type=FiniteFloat(1.0, 5.0),
+    help="Partial factor on the axial capacity of piles: 1.5 under permanent and variable actions.",
+)
+@click.option(
     "--wind",
     type=FiniteFloat(0.0, 150.0),
     help="Mean wind [m/s]: are members in air set swinging by vortices?",
@@ -80,6 +89,7 @@ def check_command(
     joints: str,
     still_water: bool,
     flooded: tuple[str, ...],
+    pile_resistance: float,
     wind: float | None,
     current: float | None,
     subdivide: int | None,
@@ -114,7 +124,7 @@ def check_command(
         chosen_scenario = read_scenario(scenario)
         use = scenario_uses(chosen_scenario, basis)
         stands = chosen_scenario.asset.structure
-        missing = (*left_out(stands), *_flows_left_out(None, None))
+        missing = (*left_out(stands), *_flows_left_out(None, None), *_piles_left_out(()))
         return _answer(chosen_scenario.name, use, water_notes(chosen_scenario), missing)
     assert structure is not None
     assembly = assemble(read_structure(structure), subdivide=subdivide)
@@ -128,15 +138,49 @@ def check_command(
     if still_water:
         load, along, pressure = _in_water(assembly, Water(flooded), load, along)
     system = build_system(assembly, held)
-    use = frame_use(assembly, static_displacement(system, load), basis, along=along, pressure=pressure)
-    missing = (*left_out(assembly.structure), *_flows_left_out(wind, current))
+    u = static_displacement(system, load)
+    use = frame_use(assembly, u, basis, along=along, pressure=pressure)
+    piles = _piles(support, pile_model, system, u, basis, pile_resistance)
+    missing = (*left_out(assembly.structure), *_flows_left_out(wind, current), *_piles_left_out(piles))
     vortices: tuple[VortexUse, ...] = ()
     if wind is not None or current is not None:
         lowest = float(undamped_modes(system, 1).frequency_hz[0])
         vortices = vortex_uses(
             assembly.structure, wind_m_s=wind, current_m_s=current, first_frequency_hz=lowest
         )
-    return _answer(assembly.structure.name, use, [], missing, vortices)
+    return _answer(assembly.structure.name, use, [], missing, piles=piles, vortices=vortices)
+
+
+def _piles(
+    support: str | None,
+    model: PileModel | None,
+    system: System,
+    u: FloatArray,
+    basis: DesignBasis,
+    resistance: float,
+) -> tuple[PileUse, ...]:
+    """Return the use of every pile of a foundation whose piles are lumped at their heads."""
+    from jackettwin.soil import head_forces, named_foundation, pile_use
+
+    ground = named_foundation(support)
+    if ground is None or ground.curves is None or (model or ground.pile_model) == "members":
+        return ()
+    assembly = system.assembly
+    moved = {foot: u[assembly.dofs(foot)] for foot in assembly.structure.reaction_nodes}
+    return tuple(
+        pile_use(foot, ground.pile, ground.curves, force, basis=basis, resistance=resistance)
+        for foot, force in head_forces(system.support, moved).items()
+    )
+
+
+def _piles_left_out(piles: tuple[PileUse, ...]) -> tuple[str, ...]:
+    """Return what of the check of piles is left out, and how to have one."""
+    if not piles:
+        return ("piles (ISO 19902 17): give --support FOUNDATION with layers, piles lumped at their heads",)
+    return (
+        "piles: group effects, cyclic degradation along the axis, set-up, the weight of piles and plug, "
+        "yielding steel and driving (ISO 19902 17); the structure feels the ground's initial stiffness",
+    )
 
 
 def _in_water(
@@ -184,6 +228,8 @@ def _answer(
     use: FrameUse,
     notes: list[str],
     missing: tuple[str, ...],
+    *,
+    piles: tuple[PileUse, ...] = (),
     vortices: tuple[VortexUse, ...] = (),
 ) -> Reply:
     members = sorted(use.members, key=lambda one: (not one.covered, -one.utilisation))
@@ -193,8 +239,9 @@ def _answer(
         "largest_von_mises_stress_pa": max(one.von_mises_pa for one in use.members),
         "members": [_row(one) for one in members],
         "joints": [_joint_row(one) for one in joints],
+        "piles": [_pile_row(one) for one in sorted(piles, key=lambda one: -one.axial)],
         "vortices": [_vortex_row(one) for one in vortices],
-        "warnings": [*_warnings(use), *_vortex_warnings(vortices), *notes],
+        "warnings": [*_warnings(use), *_pile_warnings(piles), *_vortex_warnings(vortices), *notes],
         "left_out": list(missing),
     }
     return Reply(document, lambda: _show(document))
@@ -262,6 +309,34 @@ def _joint_row(use: BraceUse) -> dict[str, Any]:
     }
 
 
+def _pile_row(use: PileUse) -> dict[str, Any]:
+    steel, capacity = use.steel, use.capacity
+    return {
+        "foot": use.foot,
+        "axial_utilisation": use.axial,
+        "capacity_compression_n": capacity.compression_n,
+        "capacity_tension_n": capacity.tension_n,
+        "plugged": capacity.plugged,
+        "stands": use.stands,
+        "head_displacement_m": use.head_m,
+        "head_rotation_rad": use.rotation_rad,
+        "steel_utilisation": None if steel is None else steel.utilisation,
+        "steel_check": None if steel is None else steel.check,
+        "steel_depth_m": use.steel_depth_m,
+        "steel_forces": None if steel is None else _forces(steel.worst.forces),
+        "head_force": dict(zip(_HEAD, map(float, use.force), strict=True)),
+    }
+
+
+def _pile_warnings(uses: tuple[PileUse, ...]) -> list[str]:
+    from jackettwin.structure import few
+
+    over = [use.foot for use in uses if use.axial > 1.0 or (use.steel and use.steel.utilisation > 1.0)]
+    fallen = [use.foot for use in uses if not use.stands]
+    found = [f"piles used above 1: {few(over)}"] if over else []
+    return found + ([f"the ground does not carry the piles of {few(fallen)}"] if fallen else [])
+
+
 def _vortex_row(use: VortexUse) -> dict[str, Any]:
     from jackettwin.checks import CLAUSES
 
@@ -318,6 +393,10 @@ def _show(document: dict[str, Any]) -> None:
         say(f"and {more} more members; --json has all of them, with the forces at both ends")
     if document["joints"]:
         _show_joints(document["joints"])
+    if document["piles"]:
+        show_table(
+            Table("piles, ISO 19902 17 and 13; forces on their heads in MN", _PILES, document["piles"])
+        )
     if document["vortices"]:
         show_table(Table("vortices, by reduced velocity", _VORTICES, document["vortices"][:_SHOWN]))
     say(f"largest von Mises stress {document['largest_von_mises_stress_pa'] / 1e6:.1f} MPa")
@@ -373,6 +452,18 @@ _JOINTS = (
     TableColumn("N", "axial_n", ",.1f", 1e-3),
     TableColumn("M in plane", "in_plane_nm", ",.1f", 1e-3),
     TableColumn("M out of plane", "out_of_plane_nm", ",.1f", 1e-3),
+)
+_PILES = (
+    TableColumn("foot", "foot"),
+    TableColumn("axial use", "axial_utilisation", ".3f"),
+    TableColumn("steel use", "steel_utilisation", ".3f"),
+    TableColumn("at depth [m]", "steel_depth_m", ".1f"),
+    TableColumn("head moves [mm]", "head_displacement_m", ".1f", 1e3),
+    TableColumn("capacity ↓ [MN]", "capacity_compression_n", ".1f", 1e-6),
+    TableColumn("↑ [MN]", "capacity_tension_n", ".1f", 1e-6),
+    TableColumn("Fz", lambda row: row["head_force"]["z_n"], ".2f", 1e-6),
+    TableColumn("Fx", lambda row: row["head_force"]["x_n"], ".2f", 1e-6),
+    TableColumn("Fy", lambda row: row["head_force"]["y_n"], ".2f", 1e-6),
 )
 _VORTICES = (
     TableColumn("member", "member"),

@@ -98,7 +98,7 @@ def _document(
         "head_stiffness": K.real,
         "head_loss": K.imag,
         "curves": None if curves is None else {"kinds": _kinds(ground), **_curves(curves)},
-        "capacity": None if curves is None or pushed is None else _capacity(curves, pushed),
+        "capacity": None if curves is None or pushed is None else _capacity(ground, curves, pushed),
         "pushover": None if pushed is None else _pushover(pushed, arm_m),
         "warnings": [*ground.notes, *([_LINEAR] if curves is None else [])],
     }
@@ -137,12 +137,14 @@ def _curve(curve: Curve, reach: float) -> dict[str, Any]:
     }
 
 
-def _capacity(curves: PileCurves, pushed: Pushover) -> dict[str, Any]:
+def _capacity(ground: Foundation, curves: PileCurves, pushed: Pushover) -> dict[str, Any]:
     from jackettwin.soil.piles.capacity import FAILED_AT, axial_capacity
 
-    axial = axial_capacity(curves)
+    axial = axial_capacity(ground.pile, curves)
     return {
         "shaft_n": axial.shaft_n,
+        "inner_shaft_n": axial.inner_n,
+        "plugged": axial.plugged,
         "tip_n": axial.tip_n,
         "axial_compression_n": axial.compression_n,
         "axial_tension_n": axial.tension_n,
@@ -179,7 +181,8 @@ def _show(document: dict[str, Any]) -> None:
     if capacity is not None:
         say(
             f"capacity [MN]: compression {1e-6 * capacity['axial_compression_n']:.1f} (shaft "
-            f"{1e-6 * capacity['shaft_n']:.1f}, tip {1e-6 * capacity['tip_n']:.1f}), tension "
+            f"{1e-6 * capacity['shaft_n']:.1f}, inside {1e-6 * capacity['inner_shaft_n']:.1f}, tip "
+            f"{1e-6 * capacity['tip_n']:.1f}; {'plugged' if capacity['plugged'] else 'unplugged'}), tension "
             f"{1e-6 * capacity['axial_tension_n']:.1f}, lateral {1e-6 * capacity['lateral_n']:.2f} at "
             f"{capacity['lateral_displacement_limit_m']:.2f} m"
         )

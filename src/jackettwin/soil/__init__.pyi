@@ -1,4 +1,5 @@
 from .files import (
+    named_foundation as named_foundation,
     parse_law as parse_law,
     read_family as read_family,
     read_law as read_law,
@@ -53,6 +54,7 @@ from .mudline import (
     sway_and_rocking as sway_and_rocking,
     tied_at_mudline as tied_at_mudline,
 )
+from .piles.pile_use import PileUse as PileUse, head_forces as head_forces, pile_use as pile_use
 from .piles.piles import Pile as Pile, linear_springs as linear_springs
 from .piles.radiation import Radiation as Radiation
 from .piles.soil_curves import (

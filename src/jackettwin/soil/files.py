@@ -98,7 +98,7 @@ def read_support(
         return _mudline(arguments, structure, first_frequency_hz)
     if colon and name in forms:
         return on_translations(structure, parse_law(name, arguments, first_frequency_hz))
-    foundation = _foundation(text, folder)
+    foundation = named_foundation(text, folder)
     if foundation is not None:
         return foundation.heads(structure)
     path = Path(word) if folder is None else folder / word
@@ -138,7 +138,7 @@ def read_supported(
     InputError
         As :func:`read_support`; and if members are asked for where no foundation of piles is.
     """
-    foundation = _foundation(text, folder) if structure.reactions else None
+    foundation = named_foundation(text, folder) if structure.reactions else None
     if foundation is not None:
         return foundation.under(structure, pile_model)
     require(
@@ -181,7 +181,7 @@ def _mudline_values(text: str) -> tuple[Family, dict[str, float]]:
     return law, {key: _number(key, value) for key, value in given.items()}
 
 
-def _foundation(text: str | Path | None, folder: Path | None) -> Foundation | None:
+def named_foundation(text: str | Path | None, folder: Path | None = None) -> Foundation | None:
     """Return the foundation that a support's text names; None if it names another kind of support."""
     if text is None:
         return None

@@ -80,6 +80,7 @@ def _capacity(document: Mapping[str, Any]) -> tuple[Block, ...]:
     rows = (
         ("compression", capacity["axial_compression_n"]),
         ("of the shaft", capacity["shaft_n"]),
+        ("of the shaft inside, unplugged", capacity["inner_shaft_n"]),
         ("of the tip", capacity["tip_n"]),
         ("tension", capacity["axial_tension_n"]),
         (f"lateral, head moved by {capacity['lateral_displacement_limit_m']:.2f} m", capacity["lateral_n"]),

@@ -116,19 +116,29 @@ def _nodal(curves: PileCurves, kind: str, y: FloatArray) -> tuple[FloatArray, Fl
 
 @dataclass(frozen=True)
 class AxialCapacity:
-    """Ultimate loads along a pile [N]: of its shaft, of its tip; what pulls it out has the shaft alone."""
+    """Ultimate loads along an open pile [N], plugged or not, whichever carries less (API RP 2GEO, 8.1).
+
+    Attributes
+    ----------
+    shaft_n : friction outside
+    inner_n : friction inside, of the soil that stays behind as the pile goes on; none if it plugs
+    tip_n : of the whole base if it plugs, else of the steel
+    plugged : whether the soil inside goes with the pile
+    """
 
     shaft_n: float
+    inner_n: float
     tip_n: float
+    plugged: bool
 
     @property
     def compression_n(self) -> float:
-        """Shaft and tip."""
-        return self.shaft_n + self.tip_n
+        """Shaft, outside and inside, and tip."""
+        return self.shaft_n + self.inner_n + self.tip_n
 
     @property
     def tension_n(self) -> float:
-        """The shaft; the pile's own weight is not counted."""
+        """The shaft outside; neither weight nor friction inside is counted."""
         return self.shaft_n
 
 
@@ -152,10 +162,15 @@ class Pushover:
     ultimate_n: float
 
 
-def axial_capacity(curves: PileCurves) -> AxialCapacity:
-    """Return the pile's capacity along its axis: ∫ t_max dz, and q_max."""
+def axial_capacity(pile: Pile, curves: PileCurves) -> AxialCapacity:
+    """Return the pile's capacity along its axis: ∫ t_max dz, and q_max on what the tip bears on."""
     t = np.array([curve.capacity for curve in curves.tz])
-    return AxialCapacity(float(curves.at.weight @ t), float(curves.qz.capacity))
+    shaft, D, d = float(curves.at.weight @ t), pile.outer_diameter_m, pile.inner_diameter_m
+    bearing_pa = float(curves.qz.capacity) / pile.tip_area_m2
+    whole, steel = 0.25 * np.pi * D**2, 0.25 * np.pi * (D**2 - d**2)
+    plug = AxialCapacity(shaft, 0.0, bearing_pa * whole, plugged=True)
+    core = AxialCapacity(shaft, shaft * d / D, bearing_pa * steel, plugged=False)
+    return min(plug, core, key=lambda one: one.compression_n)
 
 
 def pushover(pile: Pile, curves: PileCurves, *, arm_m: float = 0.0, steps: int = 20) -> Pushover:

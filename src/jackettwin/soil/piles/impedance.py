@@ -14,7 +14,7 @@ from jackettwin.soil.laws.viscoelastic import Law, Prony
 from jackettwin.soil.mudline import feet_of
 from jackettwin.soil.piles.piles import Pile, PileSprings, pile_beams
 from jackettwin.soil.support import ELASTIC, Spring, Support
-from jackettwin.structure import Structure, assemble
+from jackettwin.structure import Assembly, Structure, assemble
 
 
 @dataclass(frozen=True)
@@ -32,11 +32,16 @@ def pile_matrices(pile: Pile, springs: PileSprings, *, dashpots: PileSprings | N
 
     ``dashpots`` are the ground's own [N·s/m], beside what the law says of its springs: radiation.
     """
-    below, members = pile_beams("head", (0.0, 0.0, 0.0), pile, springs.node_depth)
-    free = assemble(Structure("pile", {"head": (0.0, 0.0, 0.0), **below}, tuple(members)))
+    free = pile_assembly(pile, springs.node_depth)
     soil = _at_nodes(springs)
     lost = sp.csc_array(soil.shape) if dashpots is None else _at_nodes(dashpots)
     return PileMatrices(free.stiffness, free.mass, soil, lost)
+
+
+def pile_assembly(pile: Pile, node_depth: FloatArray) -> Assembly:
+    """Return a free pile with its nodes at these depths, its head first."""
+    below, members = pile_beams("head", (0.0, 0.0, 0.0), pile, node_depth)
+    return assemble(Structure("pile", {"head": (0.0, 0.0, 0.0), **below}, tuple(members)))
 
 
 def _at_nodes(springs: PileSprings) -> sp.csc_array:

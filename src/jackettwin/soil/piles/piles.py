@@ -73,10 +73,15 @@ class Pile:
         return 0.5 * self.outer_diameter_m if self.element_m is None else self.element_m
 
     @property
+    def inner_diameter_m(self) -> float:
+        """Of the soil inside."""
+        return self.outer_diameter_m - 2.0 * self.thickness_m
+
+    @property
     def tip_area_m2(self) -> float:
         """Area the soil under the tip pushes on."""
-        D, t = self.outer_diameter_m, self.thickness_m
-        return 0.25 * pi * (D**2 if self.plugged else D**2 - (D - 2.0 * t) ** 2)
+        hollow = 0.0 if self.plugged else self.inner_diameter_m
+        return 0.25 * pi * (self.outer_diameter_m**2 - hollow**2)
 
 
 @dataclass(frozen=True)
