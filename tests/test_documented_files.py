@@ -1,6 +1,8 @@
-"""The files that the reference pages show can be read as they stand."""
+"""The files that the reference pages show can be read as they stand, and what pages import exists."""
 
+import ast
 import re
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -54,3 +56,15 @@ def test_every_python_file_that_a_page_names_exists() -> None:
     for page in (root / "docs").rglob("*.md"):
         for name in re.findall(r"`(?:python )?([a-z_/0-9]+\.py)\b", page.read_text(encoding="utf-8")):
             assert any(f"/{path}".endswith(f"/{name}") for path in there), f"{page.name}: {name}"
+
+
+@pytest.mark.parametrize(
+    "page", sorted((PAGE.parents[2]).glob("docs/[!d]*/*.md")), ids=lambda page: page.stem
+)
+def test_what_a_page_imports_exists(page: Path) -> None:
+    """One imported ``run_twin`` from the package that it had left months before; designs are sketches."""
+    blocks = re.findall(r"^```python\n(.*?)^```", page.read_text(), re.DOTALL | re.MULTILINE)
+    for node in (node for block in blocks for node in ast.walk(ast.parse(block))):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("jackettwin"):
+            package = import_module(node.module or "")
+            assert [one.name for one in node.names if not hasattr(package, one.name)] == []
