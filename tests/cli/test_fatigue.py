@@ -123,3 +123,34 @@ def test_a_scenario_tells_the_life_of_every_weld(tmp_path: Path) -> None:
     assert any("crack growth" in text for text in found["left_out"])
     stricter = answer("scenario", str(scenario), "--design-factor", "3")
     assert stricter["joints"][0]["life_years"] == pytest.approx(first["life_years"] / 3.0, rel=1e-9)
+
+
+@pytest.fixture(scope="module")
+def motion(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A record of two accelerometers and the wind."""
+    t = np.arange(0.0, 120.0, 0.05)
+    rows = [t, np.sin(1.1 * t), np.cos(1.2 * t), 12.0 + np.sin(0.1 * t)]
+    path = tmp_path_factory.mktemp("motion") / "motion.csv"
+    np.savetxt(
+        path, np.stack(rows, axis=1), delimiter=",", header="time_s,acc_x,acc_y,wind_speed", comments=""
+    )
+    return path
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("no_such_twin", "{motion}"), "no_such_twin"),
+        (("simulated", "no_such_record.parquet"), "no_such_record"),
+        (("simulated", "{motion}"), "acc_x"),
+        (("simulated", "{motion}", "--curve", "Q"), "S-N curve"),
+        (("simulated", "{motion}", "--draws", "0"), "draws"),
+        (("record", "simulated"), "RECORD"),
+    ],
+)
+def test_a_record_that_does_not_fit_is_refused_before_anything_is_updated(
+    arguments: tuple[str, ...], said: str, motion: Path
+) -> None:
+    found = run(*(text.format(motion=motion) for text in arguments))
+    assert found.exit_code == 2
+    assert said in found.stderr and "Traceback" not in found.stderr

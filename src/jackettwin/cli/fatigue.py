@@ -316,17 +316,16 @@ def record_(
 
     TWIN updates its supports first: by its records or targets, else by RECORD.
     """
-    from jackettwin.study import count_steps, life_of_record, updated, with_record
+    from jackettwin.study import count_steps, life_of_record, sensed, updated, with_record
     from jackettwin.twin import read_twin
 
     model = _models(curve, design_factor, edition)
     config = with_record(read_twin(twin), record)
+    readings, weather = sensed(config, record, feel_gravity=feel_gravity)
     with progress(count_steps(config), config.name) as step:
         update = updated(config, progress=step, keep=keeping(fresh=fresh))
     with working("stresses at the welds"):
-        found = life_of_record(
-            config, update, record, model, draws=draws, supports=supports, feel_gravity=feel_gravity
-        )
+        found = life_of_record(config, update, readings, weather, model, draws=draws, supports=supports)
     rows = [_weld(one) for one in found.welds]
     outside = [row for row in rows if row["beyond_validity"]]
     document = {

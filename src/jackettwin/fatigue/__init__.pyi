@@ -17,4 +17,5 @@ from .efthymiou import (
 from .hot_spots import POSITIONS as POSITIONS, SIDES as SIDES, hot_spot_matrix as hot_spot_matrix
 from .joint_life import HotSpot as HotSpot, JointStresses as JointStresses, joint_stresses as joint_stresses
 from .life import LifeModel as LifeModel, SpotLife as SpotLife
+from .spectral import dirlik as dirlik, tovo_benasciutti as tovo_benasciutti
 from .weld_life import ModelsAtHeight as ModelsAtHeight, WeldLife as WeldLife, weld_lives as weld_lives

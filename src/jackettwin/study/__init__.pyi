@@ -23,6 +23,7 @@ from .life.record_life import (
     WeldMap as WeldMap,
     life_of_record as life_of_record,
     record_life as record_life,
+    sensed as sensed,
     weld_map as weld_map,
 )
 from .life.updated_system import (

@@ -115,15 +115,39 @@ def weld_map(system: System, model: MotionModel, dry: Assembly) -> WeldMap:
     )
 
 
+def sensed(config: TwinConfig, path: Path, *, feel_gravity: bool = False) -> tuple[SensorReadings, Weather]:
+    """Return what a record's sensors read of a twin's structure, repaired, and its wind and sea.
+
+    Parameters
+    ----------
+    feel_gravity : whether accelerometers read −g times their lean
+
+    Raises
+    ------
+    InputError
+        If the record cannot be read, measures no motion, or its sensors do not fit the structure.
+    """
+    record = calibrated(read_record(path, config.unsaid), config.calibrations)
+    record = repair(record, assess(record))
+    if record.metadata.get("axes") == "rotor" or any(c.frame == "nacelle" for c in record.channels):
+        record = to_global_axes(record)
+    model = twin_model(config)
+    depth = None if config.water is None else config.water.depth_m
+    return (
+        readings_of(record, model.placed(record), model.structure, feel_gravity=feel_gravity),
+        Weather.of(record.conditions, depth),
+    )
+
+
 def life_of_record(
     config: TwinConfig,
     update: Update,
-    path: Path,
+    readings: SensorReadings,
+    weather: Weather,
     models: ModelsAtHeight,
     *,
     draws: int = DRAWS,
     supports: int = 1,
-    feel_gravity: bool = False,
 ) -> RecordLife:
     """Return the life of a twin's welds through a record, on its updated supports.
 
@@ -131,28 +155,15 @@ def life_of_record(
     ----------
     draws : motions on each of the supports
     supports : how many of the posterior's supports count, the most probable one first
-    feel_gravity : whether accelerometers read −g times their lean
-
-    Raises
-    ------
-    InputError
-        If the record or its sensors do not fit the structure.
     """
-    systems = updated_systems(update, draws=supports - 1)
-    record = calibrated(read_record(path, config.unsaid), config.calibrations)
-    record = repair(record, assess(record))
-    if record.metadata.get("axes") == "rotor" or any(c.frame == "nacelle" for c in record.channels):
-        record = to_global_axes(record)
-    model = twin_model(config)
-    readings = readings_of(record, model.placed(record), model.structure, feel_gravity=feel_gravity)
-    depth = None if config.water is None else config.water.depth_m
     dry = assemble(
         config.structure,
         beam_theory=config.beam,
         rotary_inertia=config.rotary_inertia,
         subdivide=config.subdivide,
     )
-    return record_life(systems, readings, Weather.of(record.conditions, depth), models, dry, draws=draws)
+    systems = updated_systems(update, draws=supports - 1)
+    return record_life(systems, readings, weather, models, dry, draws=draws)
 
 
 def record_life(
