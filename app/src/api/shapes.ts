@@ -27,11 +27,3 @@ export interface Knowledge {
   until_utc?: string;
   parameters?: Record<string, KnownParameter>;
 }
-
-export interface Cause {
-  cause: string;
-  probability: number;
-  size?: number | null;
-  interval_90?: [number, number] | null;
-  unit?: string;
-}

@@ -178,7 +178,7 @@ export function Turbine({ asset }: PageProps) {
             {(data) => <Budget modes={data.items} />}
           </Shown>
         </Card>
-        <Card title="Ground and rotor" more={<a href={assetUrl(asset, "report")}>Report</a>}>
+        <Card title="Ground and rotor" more={<a href={assetUrl(asset, "reports")}>Report</a>}>
           <Shown of={twin} empty={() => (known?.parameters ? null : <NotYet />)} lines={5}>
             {() => <Supports known={known ?? {}} />}
           </Shown>

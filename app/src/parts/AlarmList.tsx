@@ -1,14 +1,13 @@
 // Findings that ask for a person, and the way to say that one has looked.
 import { useState } from "preact/hooks";
-import { api, type Alarm, me, Problem, told } from "../api/client";
+import { api, type Alarm, Problem, told } from "../api/client";
+import { may } from "../api/do";
 import { Light, Time } from "./Bits";
-
-const MAY = ["engineer", "admin"];
 
 function Acknowledge({ alarm, again }: { alarm: Alarm; again: () => void }) {
   const [open, setOpen] = useState(false);
   const [problem, setProblem] = useState<Problem | null>(null);
-  if (!MAY.includes(me.value?.role ?? "")) return <span class="quiet">Engineers acknowledge alarms.</span>;
+  if (!may("engineer")) return <span class="quiet">Engineers acknowledge alarms.</span>;
   if (!open)
     return (
       <button type="button" onClick={() => setOpen(true)}>

@@ -4,6 +4,7 @@ import type { ComponentType } from "preact";
 import { useEffect } from "preact/hooks";
 import { api, me, Problem, told } from "../api/client";
 import { connection, listen, stopListening } from "../api/events";
+import { may } from "../api/do";
 import { Fleet } from "../pages/Fleet";
 import { Login } from "../pages/Login";
 import { Turbine } from "../pages/Turbine";
@@ -21,10 +22,28 @@ const PAGES: Record<string, ComponentType<PageProps>> = {
   fleet: Fleet,
   turbine: Turbine,
   timeline: lazy(() => import("../pages/Timeline")),
+  records: lazy(() => import("../pages/Records")),
+  record: lazy(() => import("../pages/Record")),
+  alarms: lazy(() => import("../pages/Alarms")),
+  model: lazy(() => import("../pages/Model")),
+  reports: lazy(() => import("../pages/Reports")),
+  jobs: lazy(() => import("../pages/Jobs")),
+  users: lazy(() => import("../pages/Users")),
+  start: lazy(() => import("../pages/Start")),
 };
 const TABS: readonly (readonly [string, string])[] = [
   ["", "Turbine"],
   ["timeline", "Timeline"],
+  ["records", "Records"],
+  ["alarms", "Alarms"],
+  ["model", "Model"],
+  ["reports", "Report"],
+];
+const OWN_TABS: readonly (readonly [string, string, string])[] = [
+  ["/", "Turbines", "viewer"],
+  ["/jobs", "Jobs", "viewer"],
+  ["/start", "New turbine", "engineer"],
+  ["/users", "Users", "admin"],
 ];
 
 async function ask(): Promise<void> {
@@ -75,6 +94,18 @@ function Top() {
           )}
         </div>
       </div>
+      {!asset && (
+        <nav class="tabs" aria-label="Pages">
+          {OWN_TABS.filter(([, , role]) => may(role)).map(([url, words]) => (
+            <a key={url} href={url} {...(url === place.value.path ? { "aria-current": "page" } : {})}>
+              {words}
+            </a>
+          ))}
+          <a href="/api/v1/openapi.json" data-leave>
+            API
+          </a>
+        </nav>
+      )}
       {asset && (
         <nav class="tabs" aria-label="Pages">
           {TABS.map(([key, words]) => {

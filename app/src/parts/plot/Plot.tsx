@@ -3,6 +3,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { colour, theme } from "../../shell/theme";
+import { scientific } from "../../words/numbers";
 import { SaveMenu } from "./SaveMenu";
 import type { PlotData, Range, Series } from "./series";
 import { extentOf, readX, spanOf } from "./series";
@@ -67,10 +68,10 @@ function options(
   for (const s of data.series) {
     const paint = colour(s.colour);
     if (s.kind === "band") {
-      bands.push({ series: [series.length, series.length + 1], fill: paint + "33" });
+      bands.push({ series: [series.length, series.length + 1], fill: paint + (s.solid ? "cc" : "33") });
       series.push(
-        { stroke: paint + "55", width: 0.5, points: { show: false } },
-        { stroke: paint + "55", width: 0.5, points: { show: false } },
+        { stroke: paint + (s.solid ? "" : "55"), width: 0.5, points: { show: false } },
+        { stroke: paint + (s.solid ? "" : "55"), width: 0.5, points: { show: false } },
       );
     } else if (s.kind === "points") {
       const n = s.x.length;
@@ -114,7 +115,8 @@ function options(
       {
         ...axis,
         size: 62,
-        values: (_u, ticks) => ticks.map((v) => (v === null ? "" : String(Number(v.toPrecision(6))))),
+        space: 24,
+        values: (_u, ticks) => ticks.map((v) => (v === null ? "" : axisNumber(v))),
       },
     ],
     ...more,
@@ -248,7 +250,7 @@ export function Plot({ data, height = 220, range = null, onRange, onPick, togeth
               let down = 0;
               self.over.addEventListener("mousedown", (e) => (down = e.clientX));
               self.over.addEventListener("mouseup", (e) => {
-                const hit = Math.abs(e.clientX - down) < 4 ? nearest(self) : null;
+                const hit = Math.abs(e.clientX - down) < 4 ? closest(self, data) : null;
                 if (hit) latest.current.onPick?.(...hit);
               });
             },
@@ -292,7 +294,7 @@ export function Plot({ data, height = 220, range = null, onRange, onPick, togeth
     <figure class="plot">
       <figcaption>
         <b>{data.title}</b>
-        <span class="unit">{data.yName}</span>
+        <span class="unit">{data.time ? data.yName : `${data.yName} by ${data.xName}`}</span>
         <span class="legend">
           {data.series.length > 1 &&
             data.series.map((s) => (
@@ -316,7 +318,28 @@ export function Plot({ data, height = 220, range = null, onRange, onPick, togeth
   );
 }
 
+const axisNumber = (v: number): string =>
+  v !== 0 && Math.abs(v) < 1e-3 ? scientific(v, 1).replace(/^1 × /, "") : String(Number(v.toPrecision(6)));
 const digits = (value: number): string => String(Number(value.toPrecision(5)));
+
+const REACH_PX = 14;
+
+/** The point that is nearest to the cursor, if one is within reach. */
+function closest(u: uPlot, data: PlotData): [number, number] | null {
+  const [left, top] = [u.cursor.left ?? -1, u.cursor.top ?? -1];
+  let found: [number, number] | null = null;
+  let least = REACH_PX;
+  data.series.forEach((s, k) => {
+    if (s.kind !== "points") return;
+    for (let i = 0; i < s.x.length; i++) {
+      const y = s.y[i];
+      if (typeof y !== "number") continue;
+      const far = Math.hypot(u.valToPos(s.x[i] ?? NaN, "x") - left, u.valToPos(y, "y") - top);
+      if (far < least) [found, least] = [[k, i], far];
+    }
+  });
+  return found;
+}
 
 /** The nearest place at which this series has a value, a few places around the cursor. */
 function nearestIndex(u: uPlot, series: number, at: number): number {

@@ -11,7 +11,8 @@ export interface Series {
   low?: ArrayLike<number | null>;
   high?: ArrayLike<number | null>;
   dashed?: boolean;
-  symbol?: "circle" | "square" | "diamond" | "cross";
+  /** A band that is itself what is measured: extremes of a signal. */
+  solid?: boolean;
 }
 
 /** A moment, or a stretch, that something is said of. */

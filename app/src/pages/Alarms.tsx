@@ -1,0 +1,80 @@
+// What asked for a person, what was worth saying, and who looked.
+import { useAnswer } from "../api/answer";
+import { api, told } from "../api/client";
+import { AlarmList } from "../parts/AlarmList";
+import { Card, Choice, Light, Time } from "../parts/Bits";
+import { Empty, Shown } from "../parts/Shown";
+import type { PageProps } from "../shell/App";
+import { asked, assetUrl, keep } from "../shell/place";
+
+const KINDS = [
+  ["", "All"],
+  ["warning", "warnings"],
+  ["info", "notes"],
+] as const;
+
+export default function Alarms({ asset }: PageProps) {
+  const kind = asked("severity") ?? "";
+  const path = { asset };
+  const alarms = useAnswer(asset, `alarms ${asset}`, () =>
+    told(api.GET("/api/v1/assets/{asset}/alarms", { params: { path } })),
+  );
+  const query = { limit: 200, ...(kind ? { severity: kind as "info" | "warning" } : {}) };
+  const said = useAnswer(asset, `findings ${asset} ${kind}`, () =>
+    told(api.GET("/api/v1/assets/{asset}/findings", { params: { path, query } })),
+  );
+  return (
+    <>
+      <div class="head">
+        <h1>Alarms</h1>
+        <p>
+          A change of the structure, with its causes by probability. Whoever looked says what was seen and
+          what is done.
+        </p>
+      </div>
+      <div class="grid">
+        <Card title="Asks for a person" wide>
+          <Shown of={alarms} empty={(data) => (data.items.length ? null : <Empty title="No alarm" />)}>
+            {(data) => <AlarmList alarms={data.items} again={alarms.again} />}
+          </Shown>
+        </Card>
+        <Card
+          title="Also said"
+          wide
+          more={
+            <Choice
+              label="Kind"
+              value={kind}
+              options={KINDS}
+              onChoose={(k) => keep({ severity: k || null })}
+            />
+          }
+        >
+          <Shown
+            of={said}
+            empty={(data) =>
+              data.items.some((f) => f.severity !== "alarm") ? null : <Empty title="Nothing else" />
+            }
+          >
+            {(data) => (
+              <ul class="list">
+                {data.items
+                  .filter((f) => f.severity !== "alarm")
+                  .map((f) => (
+                    <li key={f.id}>
+                      <p class="meta">
+                        <Light status={f.severity} />
+                        <Time at={f.time_utc} />
+                        {f.record_id && <a href={assetUrl(asset, "records", f.record_id)}>the record</a>}
+                      </p>
+                      <p>{f.text}</p>
+                    </li>
+                  ))}
+              </ul>
+            )}
+          </Shown>
+        </Card>
+      </div>
+    </>
+  );
+}

@@ -1,0 +1,100 @@
+// What waits, what runs, what failed, and what to do about it.
+import { useAnswer } from "../api/answer";
+import { api, type Schemas, told } from "../api/client";
+import { may, useDeed } from "../api/do";
+import { Ago, Card, Choice, Light } from "../parts/Bits";
+import { Empty, Shown } from "../parts/Shown";
+import { Table } from "../parts/Table";
+import { asked, assetUrl, keep } from "../shell/place";
+
+type Job = Schemas["JobOut"];
+const STATES: readonly (readonly [string, string])[] = [
+  ["", "All"],
+  ["queued", "waiting"],
+  ["leased", "under way"],
+  ["done", "done"],
+  ["failed", "failed"],
+  ["set_aside", "set aside"],
+];
+const WORDS: Record<string, string> = { queued: "waiting", leased: "under way" };
+const KINDS: Record<string, string> = {
+  observe: "find the modes of a record",
+  know: "ask what all records say",
+};
+
+export default function Jobs() {
+  const state = asked("state") ?? "";
+  const query = { limit: 200, ...(state ? { state: state as Job["state"] } : {}) };
+  const jobs = useAnswer("", `jobs ${state}`, () => told(api.GET("/api/v1/jobs", { params: { query } })));
+  const deed = useDeed();
+  const act = async (job: Job, what: "cancel" | "retry"): Promise<void> => {
+    const path = { params: { path: { job_id: job.id } } };
+    const asked_ = (): Promise<unknown> =>
+      what === "cancel"
+        ? told(api.POST("/api/v1/jobs/{job_id}/cancel", path))
+        : told(api.POST("/api/v1/jobs/{job_id}/retry", path));
+    if (await deed.run(asked_)) jobs.again();
+  };
+  return (
+    <>
+      <div class="head">
+        <h1>Jobs</h1>
+      </div>
+      <div class="tools">
+        <Choice label="State" value={state} options={STATES} onChoose={(s) => keep({ state: s || null })} />
+        {deed.problem && <span class="error">{deed.problem.message}</span>}
+      </div>
+      <Card title="Newest first" wide>
+        <Shown
+          of={jobs}
+          lines={8}
+          empty={(data) => (data.items.length ? null : <Empty title="No job of this kind" />)}
+        >
+          {(data) => (
+            <Table
+              label="Jobs"
+              rows={data.items}
+              id={(j) => String(j.id)}
+              columns={[
+                { title: "State", show: (j) => <Light status={WORDS[j.state] ?? j.state} /> },
+                { title: "What", show: (j) => KINDS[j.kind] ?? j.kind },
+                {
+                  title: "Of",
+                  show: (j) => (
+                    <a href={assetUrl(j.asset, j.record_id ? "records" : "", j.record_id)}>
+                      {j.record_id ? `${j.asset} ${j.record_id.slice(0, 8)}` : j.asset}
+                    </a>
+                  ),
+                },
+                { title: "Asked", show: (j) => <Ago at={j.created_utc} /> },
+                { title: "Tries", numeric: true, show: (j) => j.tries },
+                {
+                  title: "Reason",
+                  show: (j) => <span class="prose">{String(j.reason?.["detail"] ?? "")}</span>,
+                },
+                {
+                  title: "Do",
+                  show: (j) => {
+                    if (!may("engineer")) return null;
+                    const what = ["queued", "leased"].includes(j.state)
+                      ? "cancel"
+                      : j.state === "done"
+                        ? null
+                        : "retry";
+                    return (
+                      what && (
+                        <button type="button" disabled={deed.busy} onClick={() => void act(j, what)}>
+                          {what === "cancel" ? "Cancel" : "Try again"}
+                        </button>
+                      )
+                    );
+                  },
+                },
+              ]}
+            />
+          )}
+        </Shown>
+      </Card>
+    </>
+  );
+}

@@ -1,0 +1,182 @@
+// Which model speaks for the turbine, and what another one would say of the same records.
+import { useState } from "preact/hooks";
+import { type Answer, useAnswer } from "../api/answer";
+import { api, type Schemas, told } from "../api/client";
+import { may, useDeed } from "../api/do";
+import { Card, Time } from "../parts/Bits";
+import { Shown } from "../parts/Shown";
+import { Table } from "../parts/Table";
+import type { PageProps } from "../shell/App";
+import { asked, keep } from "../shell/place";
+import { scientific, words } from "../words/numbers";
+
+type Versions = Schemas["Page_VersionOut_"];
+
+function spoken(quantity: string): string {
+  const [name = "", ...rest] = quantity.split(" ");
+  const what: Record<string, string> = { frequency_hz: "frequency [Hz]", damping_ratio: "damping ratio" };
+  return name === "ln"
+    ? `ln ${rest.join(" ").replaceAll("_", " ")}`
+    : `${words(name)} ${what[rest.join(" ")] ?? rest.join(" ")}`;
+}
+
+function Comparison({ asset, version }: { asset: string; version: number }) {
+  const params = { path: { asset }, query: { version } };
+  const found = useAnswer(asset, `comparison ${asset} ${version}`, () =>
+    told(api.GET("/api/v1/assets/{asset}/comparison", { params })),
+  );
+  return (
+    <Card
+      title={`Version ${version} beside the adopted one`}
+      wide
+      note="Of the same records; differences also in standard deviations of what the adopted version is sure of."
+    >
+      <Shown of={found}>
+        {(data) => (
+          <Table
+            label="Differences"
+            rows={data.changes}
+            id={(c) => c.quantity}
+            columns={[
+              { title: "Quantity", show: (c) => spoken(c.quantity) },
+              { title: "Adopted", numeric: true, show: (c) => scientific(c.adopted, 4) },
+              { title: `Version ${version}`, numeric: true, show: (c) => scientific(c.other, 4) },
+              {
+                title: "Difference",
+                numeric: true,
+                show: (c) => scientific(c.difference),
+                by: (c) => Math.abs(c.difference ?? 0),
+              },
+              {
+                title: "In std",
+                numeric: true,
+                show: (c) => scientific(c.in_standard_deviations, 2),
+                by: (c) => Math.abs(c.in_standard_deviations ?? 0),
+              },
+            ]}
+          />
+        )}
+      </Shown>
+    </Card>
+  );
+}
+
+function NewVersion({ asset, versions }: { asset: string; versions: Answer<Versions> }) {
+  const deed = useDeed();
+  const [said, setSaid] = useState("");
+  const send = async (event: SubmitEvent): Promise<void> => {
+    event.preventDefault();
+    const form = new FormData(event.currentTarget as HTMLFormElement);
+    const chosen = form.getAll("files").filter((f): f is File => f instanceof File && f.size > 0);
+    const twin = form.get("twin");
+    const done = await deed.run(async () => {
+      const files = Object.fromEntries(
+        await Promise.all(chosen.map(async (f) => [f.name, await f.text()] as const)),
+      );
+      const body = {
+        twin: twin instanceof File ? await twin.text() : "",
+        files,
+        comment: String(form.get("comment") ?? ""),
+      };
+      const made = await told(api.PUT("/api/v1/assets/{asset}", { params: { path: { asset } }, body }));
+      setSaid(
+        `Version ${made.version} is there; records are observed by it too. It counts once it is adopted.`,
+      );
+    });
+    if (done) versions.again();
+  };
+  return (
+    <Card title="A new version">
+      <form class="stack" onSubmit={(event) => void send(event)}>
+        <label>
+          Twin file (YAML)
+          <input name="twin" type="file" required accept=".yaml,.yml" />
+        </label>
+        <label>
+          Files that it names
+          <input name="files" type="file" multiple />
+        </label>
+        <label>
+          Why
+          <input name="comment" maxLength={1000} required />
+        </label>
+        {deed.problem && (
+          <p class="error" role="alert">
+            {deed.problem.message} {deed.problem.remedy}
+          </p>
+        )}
+        {said && <p role="status">{said}</p>}
+        <span>
+          <button class="main" disabled={deed.busy}>
+            {deed.busy ? "A worker reads it" : "Add"}
+          </button>
+        </span>
+      </form>
+    </Card>
+  );
+}
+
+export default function Model({ asset }: PageProps) {
+  const versions = useAnswer(asset, `versions ${asset}`, () =>
+    told(api.GET("/api/v1/assets/{asset}/versions", { params: { path: { asset } } })),
+  );
+  const deed = useDeed();
+  const other = Number(asked("compare") ?? 0);
+  const adopt = async (version: number): Promise<void> => {
+    const path = { params: { path: { asset, version } } };
+    if (await deed.run(() => told(api.POST("/api/v1/assets/{asset}/versions/{version}/adopt", path))))
+      versions.again();
+  };
+  return (
+    <>
+      <div class="head">
+        <h1>Model</h1>
+        <p>
+          Every version of the twin stays, with what it knows. One is adopted: its answers count. Adopting an
+          earlier one rolls back.
+        </p>
+      </div>
+      <div class="grid">
+        <Card title="Versions" wide>
+          {deed.problem && <p class="error">{deed.problem.message}</p>}
+          <Shown of={versions}>
+            {(data) => (
+              <Table
+                label="Versions"
+                rows={data.items.toReversed()}
+                id={(v) => String(v.version)}
+                columns={[
+                  { title: "Version", show: (v) => v.version },
+                  { title: "Counts", show: (v) => (v.adopted ? <b>adopted</b> : "") },
+                  { title: "Made", show: (v) => <Time at={v.created_utc} /> },
+                  { title: "By", show: (v) => v.created_by },
+                  { title: "Why", show: (v) => <span class="prose">{v.comment}</span> },
+                  { title: "Observed", unit: "records", numeric: true, show: (v) => v.observations },
+                  { title: "Model", show: (v) => <code>{v.model_hash.slice(0, 8)}</code> },
+                  {
+                    title: "Do",
+                    show: (v) =>
+                      v.adopted ? null : (
+                        <>
+                          <button type="button" onClick={() => keep({ compare: String(v.version) })}>
+                            Compare
+                          </button>{" "}
+                          {may("engineer") && (
+                            <button type="button" disabled={deed.busy} onClick={() => void adopt(v.version)}>
+                              Adopt
+                            </button>
+                          )}
+                        </>
+                      ),
+                  },
+                ]}
+              />
+            )}
+          </Shown>
+        </Card>
+        {other > 0 && <Comparison asset={asset} version={other} />}
+        {may("engineer") && <NewVersion asset={asset} versions={versions} />}
+      </div>
+    </>
+  );
+}

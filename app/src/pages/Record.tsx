@@ -1,0 +1,248 @@
+// What one record holds: signals at any zoom, spectrum, stabilisation chart, and poles picked by hand.
+import { useMemo, useState } from "preact/hooks";
+import { useAnswer } from "../api/answer";
+import { api, type Mode, type RecordOut, type Schemas, told } from "../api/client";
+import { Card, Light, Time } from "../parts/Bits";
+import { Plot } from "../parts/plot/Plot";
+import type { Mark, PlotData, Range } from "../parts/plot/series";
+import { Shown, Trouble } from "../parts/Shown";
+import { Stabilisation } from "../parts/Stabilisation";
+import { Table } from "../parts/Table";
+import type { PageProps } from "../shell/App";
+import { asked, assetUrl } from "../shell/place";
+import { keepRange } from "../parts/Stiffness";
+import { frequency, percent, words } from "../words/numbers";
+import { seconds } from "../words/time";
+
+const COLOURS = ["blue", "vermillion", "green", "purple", "orange", "sky", "grey", "ink"];
+const POINTS = 1400;
+const UNITS: readonly (readonly [RegExp, string])[] = [
+  [/_m_s$/, " [m/s]"],
+  [/_deg$/, " [°]"],
+  [/_c$/, " [°C]"],
+  [/_rpm$/, " [1/min]"],
+  [/_m$/, " [m]"],
+  [/_s$/, " [s]"],
+];
+
+/** mean_wind_speed_m_s: mean wind speed [m/s]. */
+export function condition(name: string): string {
+  const [end, unit] = UNITS.find(([known]) => known.test(name)) ?? [/$/, ""];
+  return name.replace(end, "").replaceAll("_", " ") + unit;
+}
+
+function Signals({ record }: { record: RecordOut }) {
+  const names = record.channels.map((c) => String(c["name"]));
+  const [chosen, setChosen] = useState(names.slice(0, 3));
+  const begin = seconds(record.start_utc);
+  const [a, b] = [asked("from"), asked("to")];
+  const range: Range | null = a && b ? [seconds(a), seconds(b)] : null;
+  const query = {
+    channels: chosen,
+    points: POINTS,
+    ...(range ? { from: Math.max(range[0] - begin, 0), to: Math.max(range[1] - begin, 0.1) } : {}),
+  };
+  const signal = useAnswer(null, `signal ${record.record_id} ${chosen.join()} ${a ?? ""} ${b ?? ""}`, () => {
+    const params = { path: { record_id: record.record_id }, query };
+    return told(api.GET("/api/v1/records/{record_id}/signal", { params })) as Promise<Schemas["Signal"]>;
+  });
+  const switched = (name: string): void =>
+    setChosen((old) =>
+      old.includes(name) ? old.filter((n) => n !== name) : names.filter((n) => n === name || old.includes(n)),
+    );
+  const plots = useMemo(
+    () =>
+      Object.entries(signal.data?.channels ?? {}).map(([name, bins]): PlotData => {
+        const unit = record.channels.find((c) => c["name"] === name)?.["unit"];
+        const colour = COLOURS[names.indexOf(name) % COLOURS.length] ?? "blue";
+        const x = (signal.data?.time_s ?? []).map((t) => begin + t);
+        const [low, high] = [bins["min"] ?? [], bins["max"] ?? []];
+        return {
+          title: name,
+          time: true,
+          xName: "UTC",
+          yName: typeof unit === "string" ? unit : "",
+          series: [{ name, colour, kind: "band", solid: true, x, y: [], low, high }],
+        };
+      }),
+    [signal.data],
+  );
+  return (
+    <Card
+      title="Signals"
+      wide
+      note="Least and greatest value of each bin, as many bins as the plot is wide. Drag to zoom, double-click to see all."
+    >
+      <div class="tools" role="group" aria-label="Channels">
+        {names.map((name) => (
+          <label key={name}>
+            <input type="checkbox" checked={chosen.includes(name)} onChange={() => switched(name)} /> {name}
+          </label>
+        ))}
+      </div>
+      {chosen.length === 0 ? (
+        <p class="quiet">Choose a channel.</p>
+      ) : (
+        <Shown of={signal} lines={8}>
+          {() =>
+            plots.map((plot) => (
+              <Plot
+                key={plot.title}
+                data={plot}
+                height={120}
+                range={range}
+                onRange={keepRange}
+                together="signal"
+              />
+            ))
+          }
+        </Shown>
+      )}
+    </Card>
+  );
+}
+
+function Spectrum({ record, modes }: { record: RecordOut; modes: readonly Mode[] }) {
+  const [range, setRange] = useState<Range | null>([0, Math.min(2, record.sample_rate_hz / 2)]);
+  const found = useAnswer(null, `spectrum ${record.record_id}`, () =>
+    told(
+      api.GET("/api/v1/records/{record_id}/spectrum", { params: { path: { record_id: record.record_id } } }),
+    ),
+  );
+  const key = modes.map((m) => m.frequency_hz).join();
+  const plot = useMemo((): PlotData | null => {
+    if (!found.data) return null;
+    const { frequency_hz, channels, units } = found.data;
+    const first = Object.values(units)[0] ?? "";
+    const marks: Mark[] = modes.map((m) => ({ x: m.frequency_hz, words: words(m.label), colour: "quiet" }));
+    const series = Object.entries(channels)
+      .filter(([name]) => units[name] === first)
+      .map(([name, y], i) => ({
+        name,
+        colour: COLOURS[i % COLOURS.length] ?? "blue",
+        kind: "line" as const,
+        x: frequency_hz.slice(1),
+        y: y.slice(1).map((v) => (v > 0 ? v : null)),
+      }));
+    return {
+      title: "Spectrum",
+      time: false,
+      xName: "frequency [Hz]",
+      yName: first,
+      log: true,
+      series,
+      marks,
+    };
+  }, [found.data, key]);
+  return (
+    <Card
+      title="Spectral densities"
+      wide
+      note="Welch's method, segments of a minute; upright lines are the modes found."
+    >
+      <Shown of={found} lines={6}>
+        {() => plot && <Plot data={plot} height={300} range={range} onRange={setRange} />}
+      </Shown>
+    </Card>
+  );
+}
+
+function Facts({ record }: { record: RecordOut }) {
+  const facts: [string, string][] = [
+    ["Length", `${record.duration_s.toFixed(0)} s at ${Number(record.sample_rate_hz.toPrecision(4))} Hz`],
+    ["Source", record.source_name],
+    ...Object.entries(record.conditions).map(([name, value]): [string, string] => [
+      condition(name),
+      String(value),
+    ]),
+  ];
+  return (
+    <dl class="facts">
+      {facts.map(([name, value]) => (
+        <div key={name}>
+          <dt>{name}</dt>
+          <dd>{value}</dd>
+        </div>
+      ))}
+    </dl>
+  );
+}
+
+export default function Record({ asset, id }: PageProps) {
+  const record = useAnswer(asset, `record ${id}`, () =>
+    told(api.GET("/api/v1/records/{record_id}", { params: { path: { record_id: id } } })),
+  );
+  const start = record.data?.start_utc;
+  const modes = useAnswer(asset, `modes of ${id} ${start ?? ""}`, async () => {
+    if (!start) return [];
+    const to = new Date(Date.parse(start) + 1000).toISOString();
+    const query = { from: start, to, limit: 100 };
+    const found = await told(api.GET("/api/v1/assets/{asset}/modes", { params: { path: { asset }, query } }));
+    return found.items.filter((m) => m.record_id === id);
+  });
+  if (record.data === undefined)
+    return record.problem ? (
+      <Trouble problem={record.problem} again={record.again} />
+    ) : (
+      <div class="bones" role="status" aria-label="Reading" />
+    );
+  const data = record.data;
+  const problem = data.problem?.["detail"];
+  return (
+    <>
+      <div class="head">
+        <Light status={data.status} />
+        <h1>
+          Record of <Time at={data.start_utc} />
+        </h1>
+        {typeof problem === "string" && <p class="said">{problem}</p>}
+      </div>
+      <div class="grid">
+        <Card title="Modes found">
+          <Shown of={modes} empty={(rows) => (rows.length ? null : <p class="quiet">None yet.</p>)}>
+            {(rows) => (
+              <Table
+                label="Modes"
+                rows={rows}
+                id={(m) => m.label}
+                columns={[
+                  {
+                    title: "Mode",
+                    show: (m) => (
+                      <a href={`${assetUrl(asset, "timeline")}?mode=${m.label}`}>{words(m.label)}</a>
+                    ),
+                  },
+                  {
+                    title: "Frequency",
+                    unit: "Hz",
+                    numeric: true,
+                    show: (m) => frequency(m.frequency_hz, m.frequency_std_hz),
+                  },
+                  {
+                    title: "Damping ratio",
+                    unit: "%",
+                    numeric: true,
+                    show: (m) => percent(m.damping_ratio, m.damping_ratio_std),
+                  },
+                  { title: "Status", show: (m) => <Light status={m.status} /> },
+                ]}
+              />
+            )}
+          </Shown>
+        </Card>
+        <Card title="What it is">
+          <Facts record={data} />
+        </Card>
+        {data.raw_kept ? (
+          <>
+            <Signals record={data} />
+            <Spectrum record={data} modes={modes.data ?? []} />
+            <Stabilisation record={data} modes={modes.data ?? []} again={record.again} />
+          </>
+        ) : (
+          <p class="quiet">Its samples are not kept any more.</p>
+        )}
+      </div>
+    </>
+  );
+}

@@ -1,0 +1,65 @@
+// The report on all records, to read, print and send; tables to take away.
+import { useAnswer } from "../api/answer";
+import { api, told } from "../api/client";
+import type { Knowledge } from "../api/shapes";
+import { Card } from "../parts/Bits";
+import { Empty, Shown } from "../parts/Shown";
+import type { PageProps } from "../shell/App";
+import { count } from "../words/numbers";
+
+const TABLES = ["modes", "findings", "records", "states", "conditions"];
+
+export default function Reports({ asset }: PageProps) {
+  const twin = useAnswer(asset, `twin ${asset}`, () =>
+    told(api.GET("/api/v1/assets/{asset}/twin", { params: { path: { asset } } })),
+  );
+  return (
+    <>
+      <div class="head">
+        <h1>Report</h1>
+        <div class="end">
+          {TABLES.map((table) => (
+            <a
+              key={table}
+              class="button"
+              download={`${table}.parquet`}
+              href={`/api/v1/export.parquet?table=${table}`}
+            >
+              {table} (Parquet)
+            </a>
+          ))}
+        </div>
+      </div>
+      <Shown of={twin} lines={10} empty={(data) => ((data.parameters as Knowledge).law ? null : <Nothing />)}>
+        {(data) => {
+          const known = data.parameters as Knowledge;
+          const url = `/assets/${encodeURIComponent(asset)}/report?version=${data.version}`;
+          return (
+            <Card
+              title={`Of ${count(known.records ?? 0, "record")}${known.until_utc ? ` up to ${known.until_utc.slice(0, 10)}` : ""}`}
+              wide
+              more={
+                <a href={url} target="_blank" rel="noreferrer">
+                  By itself, to print
+                </a>
+              }
+            >
+              <iframe
+                class="report"
+                title={`Report on ${asset}`}
+                src={url}
+                key={`${known.until_utc} ${known.records}`}
+              />
+            </Card>
+          );
+        }}
+      </Shown>
+    </>
+  );
+}
+
+const Nothing = () => (
+  <Empty title="No report yet">
+    <p>It is written when no record waits.</p>
+  </Empty>
+);

@@ -1,0 +1,125 @@
+// Who may what, and who did what.
+import { useAnswer } from "../api/answer";
+import { api, type Schemas, told } from "../api/client";
+import { useDeed } from "../api/do";
+import { Card, Time } from "../parts/Bits";
+import { Empty, Shown } from "../parts/Shown";
+import { Table } from "../parts/Table";
+
+type Role = Schemas["UserOut"]["role"];
+
+function Add({ again }: { again: () => void }) {
+  const deed = useDeed();
+  const send = async (event: SubmitEvent): Promise<void> => {
+    event.preventDefault();
+    const form = event.currentTarget as HTMLFormElement;
+    const of = new FormData(form);
+    const text = (name: string): string => String(of.get(name) ?? "");
+    const assets = text("assets")
+      .split(",")
+      .map((a) => a.trim())
+      .filter(Boolean);
+    const body = {
+      name: text("name"),
+      role: text("role") as Role,
+      password: text("password"),
+      assets: assets.length ? assets : null,
+    };
+    if (await deed.run(() => told(api.POST("/api/v1/users", { body })))) {
+      form.reset();
+      again();
+    }
+  };
+  return (
+    <form class="stack" onSubmit={(event) => void send(event)}>
+      <label>
+        Name
+        <input name="name" required autocomplete="off" />
+      </label>
+      <label>
+        Role
+        <select name="role">
+          <option value="viewer">viewer: reads</option>
+          <option value="engineer">engineer: sends records, picks, acknowledges, adopts</option>
+          <option value="admin">admin: also users and archives</option>
+        </select>
+      </label>
+      <label>
+        Password, 12 characters or more
+        <input name="password" type="password" minLength={12} required autocomplete="new-password" />
+      </label>
+      <label>
+        Turbines it may see, by comma; none for all
+        <input name="assets" />
+      </label>
+      {deed.problem && (
+        <p class="error" role="alert">
+          {deed.problem.message}
+        </p>
+      )}
+      <span>
+        <button class="main" disabled={deed.busy}>
+          Add
+        </button>
+      </span>
+    </form>
+  );
+}
+
+export default function Users() {
+  const users = useAnswer("", "users", () => told(api.GET("/api/v1/users")));
+  const audit = useAnswer("", "audit", () =>
+    told(api.GET("/api/v1/audit", { params: { query: { limit: 100 } } })),
+  );
+  return (
+    <>
+      <div class="head">
+        <h1>Users</h1>
+        <p>
+          With the first user, everybody needs a login. Until then this server answers to its own machine
+          only.
+        </p>
+      </div>
+      <div class="grid">
+        <Card title="Who may">
+          <Shown of={users} empty={(data) => (data.items.length ? null : <Empty title="No user yet" />)}>
+            {(data) => (
+              <Table
+                label="Users"
+                rows={data.items}
+                id={(u) => u.name}
+                columns={[
+                  { title: "Name", show: (u) => u.name, by: (u) => u.name },
+                  { title: "Role", show: (u) => (u.disabled ? "disabled" : u.role), by: (u) => u.role },
+                  { title: "Sees", show: (u) => u.assets?.join(", ") ?? "all" },
+                  { title: "Until", show: (u) => (u.expires_utc ? <Time at={u.expires_utc} short /> : "") },
+                ]}
+              />
+            )}
+          </Shown>
+        </Card>
+        <Card title="Add somebody" note="The first one should be an admin: yourself.">
+          <Add again={users.again} />
+        </Card>
+        <Card title="Who did what" wide>
+          <Shown of={audit} empty={(data) => (data.items.length ? null : <Empty title="Nothing yet" />)}>
+            {(data) => (
+              <Table
+                label="Audit log"
+                rows={data.items}
+                id={(a) => String(a.id)}
+                columns={[
+                  { title: "When", show: (a) => <Time at={a.time_utc} /> },
+                  { title: "Who", show: (a) => a.who },
+                  { title: "Did", show: (a) => a.action },
+                  { title: "To", show: (a) => <span class="prose">{a.subject}</span> },
+                  { title: "Outcome", show: (a) => a.outcome },
+                ]}
+              />
+            )}
+          </Shown>
+        </Card>
+      </div>
+    </>
+  );
+}

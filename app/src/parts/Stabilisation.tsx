@@ -1,0 +1,195 @@
+// Poles of every model order; they are picked by click or from the list, kept, and taken back.
+import { useEffect, useMemo, useState } from "preact/hooks";
+import { useAnswer } from "../api/answer";
+import { api, type Mode, type RecordOut, type Schemas, told } from "../api/client";
+import { may, useDeed } from "../api/do";
+import { percent, words } from "../words/numbers";
+import { Card, Time } from "./Bits";
+import { Plot } from "./plot/Plot";
+import type { PlotData, Range, Series } from "./plot/series";
+import { Shown } from "./Shown";
+
+type Poles = Schemas["StabilisationOut"];
+type Pick_ = { frequency_hz: number; order: number };
+
+const KIND = ["picked", "stable", "not stable"] as const;
+const PAINT = { picked: "alarm", stable: "green", "not stable": "grey" } as const;
+
+/** The number of each pole in the answer, by what it is shown as. */
+function sorted(poles: Poles, picks: readonly Pick_[]): Record<(typeof KIND)[number], number[]> {
+  const taken = new Set(picks.map((p) => `${p.order} ${p.frequency_hz}`));
+  const out: Record<(typeof KIND)[number], number[]> = { picked: [], stable: [], "not stable": [] };
+  poles.frequency_hz.forEach((f, i) => {
+    if (taken.has(`${poles.order[i]} ${f}`)) out.picked.push(i);
+    else out[poles.stable[i] ? "stable" : "not stable"].push(i);
+  });
+  return out;
+}
+
+function Chart({
+  poles,
+  picks,
+  onPick,
+  modes,
+}: {
+  poles: Poles;
+  picks: Pick_[];
+  onPick: (i: number) => void;
+  modes: readonly Mode[];
+}) {
+  const [range, setRange] = useState<Range | null>(null);
+  const groups = useMemo(() => sorted(poles, picks), [poles, picks]);
+  const plot = useMemo((): PlotData => {
+    const series = KIND.map((kind): Series => {
+      const own = [...groups[kind]].sort(
+        (a, b) => (poles.frequency_hz[a] ?? 0) - (poles.frequency_hz[b] ?? 0),
+      );
+      groups[kind] = own;
+      const at = (values: number[]): number[] => own.map((i) => values[i] ?? NaN);
+      return {
+        name: kind,
+        colour: PAINT[kind],
+        kind: "points",
+        x: at(poles.frequency_hz),
+        y: at(poles.order),
+      };
+    });
+    const marks = modes.map((m) => ({ x: m.frequency_hz, words: words(m.label), colour: "quiet" }));
+    return {
+      title: "Stabilisation chart",
+      time: false,
+      xName: "frequency [Hz]",
+      yName: "model order",
+      series,
+      marks,
+    };
+  }, [groups, modes]);
+  const chosen = (series: number, index: number): void => {
+    const pole = groups[KIND[series] ?? "stable"][index];
+    if (pole !== undefined) onPick(pole);
+  };
+  return <Plot data={plot} height={340} range={range} onRange={setRange} onPick={chosen} />;
+}
+
+/** Of every mode that poles were gathered to, the stable pole of highest order: what the keyboard picks from. */
+export function candidates(poles: Poles): number[] {
+  const best = new Map<number, number>();
+  poles.mode.forEach((mode, i) => {
+    const old = best.get(mode);
+    if (
+      mode >= 0 &&
+      poles.stable[i] &&
+      (old === undefined || (poles.order[i] ?? 0) >= (poles.order[old] ?? 0))
+    )
+      best.set(mode, i);
+  });
+  return [...best.values()].sort((a, b) => (poles.frequency_hz[a] ?? 0) - (poles.frequency_hz[b] ?? 0));
+}
+
+const kept = (record: RecordOut): Pick_[] => {
+  const poles = record.picks?.["poles"];
+  return Array.isArray(poles) ? (poles as Pick_[]) : [];
+};
+
+export function Stabilisation({
+  record,
+  modes,
+  again,
+}: {
+  record: RecordOut;
+  modes: readonly Mode[];
+  again: () => void;
+}) {
+  const [open, setOpen] = useState(false);
+  return (
+    <Card
+      title="Poles"
+      wide
+      note="Poles of every model order. Choose some to take them instead of the automatic choice; the record is identified again."
+    >
+      {open ? (
+        <Open record={record} modes={modes} again={again} />
+      ) : (
+        <button type="button" onClick={() => setOpen(true)}>
+          Compute the stabilisation chart
+        </button>
+      )}
+    </Card>
+  );
+}
+
+function Open({ record, modes, again }: { record: RecordOut; modes: readonly Mode[]; again: () => void }) {
+  const [picks, setPicks] = useState(kept(record));
+  useEffect(() => setPicks(kept(record)), [JSON.stringify(record.picks)]);
+  const deed = useDeed();
+  const path = { params: { path: { record_id: record.record_id } } };
+  const poles = useAnswer(null, `poles ${record.record_id}`, () =>
+    told(api.GET("/api/v1/records/{record_id}/stabilisation", path)),
+  );
+  const switched = (i: number): void => {
+    const [f, order] = [poles.data?.frequency_hz[i], poles.data?.order[i]];
+    if (f === undefined || order === undefined || !may("engineer")) return;
+    const same = (p: Pick_): boolean => p.frequency_hz === f && p.order === order;
+    setPicks((old) => (old.some(same) ? old.filter((p) => !same(p)) : [...old, { frequency_hz: f, order }]));
+  };
+  const save = async (chosen: Pick_[]): Promise<void> => {
+    const done = await deed.run(() =>
+      told(api.PUT("/api/v1/records/{record_id}/picks", { ...path, body: { picks: chosen } })),
+    );
+    if (done) again();
+  };
+  const by = record.picks?.["by"];
+  const when = record.picks?.["time_utc"];
+  return (
+    <Shown of={poles} lines={9}>
+      {(data) => (
+        <>
+          <Chart poles={data} picks={picks} onPick={switched} modes={modes} />
+          {may("engineer") && (
+            <>
+              <div class="tools" role="group" aria-label="Poles to take">
+                {candidates(data).map((i) => (
+                  <label key={i}>
+                    <input
+                      type="checkbox"
+                      checked={picks.some(
+                        (p) => p.frequency_hz === data.frequency_hz[i] && p.order === data.order[i],
+                      )}
+                      onChange={() => switched(i)}
+                    />{" "}
+                    {(data.frequency_hz[i] ?? 0).toFixed(4)} Hz, {percent(data.damping_ratio[i])} %
+                  </label>
+                ))}
+              </div>
+              <div class="tools">
+                <button
+                  type="button"
+                  class="main"
+                  disabled={deed.busy || !picks.length}
+                  onClick={() => void save(picks)}
+                >
+                  Take {picks.length} picked
+                </button>
+                <button type="button" disabled={deed.busy || !record.picks} onClick={() => void save([])}>
+                  Return to the automatic choice
+                </button>
+                {deed.problem && <span class="error">{deed.problem.message}</span>}
+              </div>
+            </>
+          )}
+          {record.picks && (
+            <p class="quiet">
+              Picked by {String(by)}
+              {typeof when === "string" && (
+                <>
+                  , <Time at={when} />
+                </>
+              )}
+              .
+            </p>
+          )}
+        </>
+      )}
+    </Shown>
+  );
+}
