@@ -184,13 +184,20 @@ def test_a_mode_that_was_not_fitted_and_is_off_is_named() -> None:
     """Fore-aft 3, 1.2 % off and in no fit, stood in no sentence of the first page."""
     third = replace(
         MODE, label="fore_aft_3", fits_frequency=False, measured_hz=Span(2.0, 1.995, 2.005),
-        model_hz=Span(2.024, 2.02, 2.03),
+        model_hz=Span(2.024, 2.02, 2.03), design_hz=Span(2.0, 1.99, 2.01),
     )  # fmt: skip
     shorts = sentences(replace(ANSWERS, modes=(MODE, third))).questions[0].short
     assert "Updated, the model puts fore-aft 3 1.2 % above what was measured; it was not fitted." in shorts
     met = replace(third, model_hz=Span(2.0, 1.99, 2.01))
     assert not any(
         "was not fitted" in text for text in sentences(replace(ANSWERS, modes=(met,))).questions[0].short
+    )
+    # wide tolerances may allow what the design does not
+    allowed = replace(third, model_hz=Span(2.024, 1.99, 2.06), design_hz=Span(2.03, 2.01, 2.04))
+    shorts = sentences(replace(ANSWERS, modes=(MODE, allowed))).questions[0].short
+    assert (
+        "Fore-aft 3 at 2 Hz is 1.5 % below the design's 2.03 Hz; it was not fitted, and the updated model "
+        "allows it (2.024 Hz, 1.99 to 2.06)." in shorts
     )
 
 
@@ -234,6 +241,16 @@ def test_what_the_objections_name_is_not_said_twice() -> None:
     # damping of that mode is another matter
     shorts = sentences(objected_answers(DatumCheck("ζ10", 0.8, 0.2, False, True))).questions[0].short
     assert any("it was not fitted" in text for text in shorts)
+
+
+def test_what_these_data_would_not_show_is_said_with_its_size() -> None:
+    nothing = replace(SOFT, name="weak_leg", words="one foot softer than the others")
+    found = Objection((), 8.0, 8, 0.4, unseen=(SOFT, nothing), seen_from=(0.95, float("inf")))
+    shorts = sentences(replace(ANSWERS, scrutiny=Scrutiny(found))).questions[0].short
+    assert (
+        "These data would not show feet softer sideways than lengthwise (30 %; they would from 95 %) and one "
+        "foot softer than the others (30 %; nor of any size that is likely)." in shorts
+    )
 
 
 def test_a_turned_pair_and_a_suspect_have_sentences() -> None:

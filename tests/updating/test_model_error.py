@@ -332,6 +332,27 @@ def test_a_turned_pair_objects_and_a_weak_foot_explains_it(model: SupportModel, 
         assert found.explanations[0].tolerance.name == "weak"
 
 
+def test_what_is_not_seen_says_from_which_size_it_would_be(model: SupportModel, errors: ErrorModel) -> None:
+    """A suspect of nearly that size is not seen, one a little larger is; one that moves nothing never is."""
+    z, data = np.log(THETA), targets(model.predict(THETA, MODES).poles)
+    problem, pair = problem_of(model, data, errors), pair_of(model, THETA, (1, 2))
+
+    def suspects(size: float) -> tuple[Direction, ...]:
+        foot = np.zeros((4, 6))
+        foot[1] = -size
+        nothing = Direction(tolerance("nothing", size), feet=np.zeros((4, 6)))
+        return Direction(tolerance("weak", size), feet=foot), nothing
+
+    first = objection(problem, z, suspects=suspects(0.001), pairs=(pair,))
+    assert first is not None and [t.name for t in first.unseen] == ["weak", "nothing"]
+    size, never = first.seen_from
+    assert size > 0.001 and never == np.inf
+    for part, seen in ((0.99, False), (1.01, True)):
+        found = objection(problem, z, suspects=suspects(part * size), pairs=(pair,))
+        assert found is not None and ("weak" not in {t.name for t in found.unseen}) == seen
+        assert seen or found.seen_from[0] == pytest.approx(size, rel=1e-6)
+
+
 def test_ten_turbines_know_their_tower_better_than_one(
     model: SupportModel,
     errors: ErrorModel,

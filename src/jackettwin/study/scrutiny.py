@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import degrees, exp, log
+from math import degrees, exp, isfinite, log
 from typing import Any
 
 import numpy as np
@@ -160,6 +160,10 @@ def _objection_document(o: Objection) -> dict[str, Any]:
         ],
         "asked_for_by_these_data": [tolerance.name for tolerance in o.suspected],
         "not_seen_by_these_data": [tolerance.name for tolerance in o.unseen],
+        "seen_from": {
+            tolerance.name: size if isfinite(size) else None
+            for tolerance, size in zip(o.unseen, o.seen_from, strict=True)
+        },
     }
 
 

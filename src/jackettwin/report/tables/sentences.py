@@ -308,7 +308,7 @@ def _model(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     short += [] if a.fit is None else [fit_sentence(a.fit)]
     short += _off_unfitted(a)
     short += [*filter(None, objection_sentences(a))]
-    more += [*filter(None, [unseen_sentence(a)])]
+    short += [*filter(None, [unseen_sentence(a)])]
     short += _margins(a)
     misses = [
         (abs(m.model_hz.value / m.measured_hz.value - 1.0), m.label)
@@ -323,11 +323,12 @@ def _model(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
 
 
 def _off_unfitted(a: Answers) -> list[str]:
-    """Name the modes that were measured, not fitted, and that the updated model does not meet.
+    """Name the modes that were measured, not fitted, and that the updated model or the design does not meet.
 
     What the objections name is not said twice.
     """
-    found, named = [], {mode_of(check) for check in objected(a) if check.datum.startswith("f")}
+    found, beside = [], []
+    named = {mode_of(check) for check in objected(a) if check.datum.startswith("f")}
     for m in a.modes:
         if m.fits_frequency or m.model_hz is None or m.measured_hz is None or m.number in named:
             continue
@@ -335,8 +336,16 @@ def _off_unfitted(a: Answers) -> list[str]:
         if abs(off) > _NOTHING and not m.measured_hz.meets(m.model_hz):
             side = "above" if off > 0.0 else "below"
             found.append(f"{words(m.label)} {100.0 * abs(off):.1f} % {side}")
+        elif m.as_designed is False:
+            text = f"{_against_design(m)}; it was not fitted, and the updated model allows it"
+            beside.append(f"{text[0].upper()}{text[1:]} ({m.model_hz.value:.4g} Hz{_from_to(m.model_hz)}).")
     what = "it was not fitted" if len(found) == 1 else "they were not fitted"
-    return [f"Updated, the model puts {listed(found)} what was measured; {what}."] if found else []
+    said = [f"Updated, the model puts {listed(found)} what was measured; {what}."] if found else []
+    return [*beside, *said]
+
+
+def _from_to(span: Span) -> str:
+    return "" if span.low is None or span.high is None else f", {span.low:.4g} to {span.high:.4g}"
 
 
 def _hertz(span: Span | None) -> str:

@@ -12,6 +12,8 @@ from jackettwin.updating import DatumCheck, Tolerance
 
 _NAMED = 3
 """Values and tolerances that a sentence names: the table has all."""
+_ANY = 8.0
+"""Standard deviations of a suspect beyond which no size is named: the first order does not hold so far."""
 _FELT = 0.01
 """Changes of a logarithm below this are not reported."""
 _STEPS = {"-": (0.01, "1 %"), "m": (0.01, "10 mm"), "kg/m³": (100.0, "100 kg/m³"), "power": (0.1, "0.1")}
@@ -125,8 +127,18 @@ def _most(a: Answers, i: int, g: GroundAnswer) -> str:
 
 
 def unseen_sentence(a: Answers) -> str:
-    """Return what may be wrong with the structure and would not show in these data."""
+    """Return what may be wrong with the structure and would not show in these data, and how large."""
     if a.scrutiny is None or a.scrutiny.objection is None:
         return ""
-    unseen = [t.words for t in a.scrutiny.objection.unseen]
-    return f"These data would not show {listed(unseen)}." if unseen else ""
+    o = a.scrutiny.objection
+    said = [
+        f"{t.words} ({size_words(t, t.std).lstrip('+')}; {_seen_from(t, size)})"
+        for t, size in zip(o.unseen, o.seen_from, strict=True)
+    ]
+    return f"These data would not show {listed(said)}." if said else ""
+
+
+def _seen_from(t: Tolerance, size: float) -> str:
+    if size > _ANY * t.std:
+        return "nor of any size that is likely"
+    return f"they would from {size_words(t, size).lstrip('+')}"

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from math import exp
+from math import exp, sqrt
 
 import numpy as np
 from scipy.special import chdtrc, ndtri
@@ -101,6 +101,9 @@ class Objection:
         The best first; empty where nothing is to be explained.
     unseen : tuple of Tolerance
         Suspects that at their size would be objected to less than every second time.
+    seen_from : tuple of float
+        Of each of these, the size in its unit from which it would be every second time or more, as far as the
+        first order holds; infinite if it moves nothing.
     suspected : tuple of Tolerance
         Suspects that the data ask for, beyond chance.
     """
@@ -112,6 +115,7 @@ class Objection:
     explanations: tuple[Explanation, ...] = ()
     unseen: tuple[Tolerance, ...] = ()
     suspected: tuple[Tolerance, ...] = ()
+    seen_from: tuple[float, ...] = ()
 
     @property
     def objects(self) -> bool:
@@ -150,12 +154,14 @@ def objection(
     used = int((np.linalg.svd(rows.J * problem.prior.std, compute_uv=False) > 0.5).sum())
     freedom = max(rows.r.size - used, 1)
     limit = -float(ndtri(0.5 * UNLIKELY / max(len(rows.names) + len(rows.asked), 1)))
+    unseen = _unseen(rows.asked, W, limit)
     result = Objection(
         _checks(rows, set(problem.data_names), W, Wr, limit),
         chi2,
         freedom,
         float(chdtrc(freedom, max(chi2, 0.0))),
-        unseen=_each_once(c.tolerance for c, gamma in rows.asked if gamma @ W @ gamma < limit**2),
+        unseen=tuple(tolerance for tolerance, _ in unseen),
+        seen_from=tuple(size for _, size in unseen),
         suspected=_each_once(
             c.tolerance
             for c, gamma in rows.asked
@@ -165,6 +171,17 @@ def objection(
     if not result.objects:
         return result
     return replace(result, explanations=_explanations([*rows.known, *rows.asked], W, Wr))
+
+
+def _unseen(asked: Sequence[Column], W: FloatArray, limit: float) -> list[tuple[Tolerance, float]]:
+    """Return the suspects that would not be seen at their size, and from which size each would, wherever."""
+    found: dict[str, tuple[Tolerance, float]] = {}
+    for direction, gamma in asked:
+        tolerance, power = direction.tolerance, sqrt(max(float(gamma @ W @ gamma), 0.0))
+        size = tolerance.std * (limit / power if power > 0.0 else np.inf)
+        if size > tolerance.std and size > found.get(tolerance.name, (tolerance, 0.0))[1]:
+            found[tolerance.name] = tolerance, float(size)
+    return list(found.values())
 
 
 def _each_once(tolerances: Iterable[Tolerance]) -> tuple[Tolerance, ...]:
