@@ -28,6 +28,10 @@ def test_tables_json_and_page(tmp_path: Path) -> None:
     )
     assert len(document["pushover"]["load_n"]) == 3
     assert document["pushover"]["load_n"][-1] == pytest.approx(capacity["lateral_n"])
+    # f_y D/2 ≥ M D/2I: the steel of this pile yields on the way
+    assert 0.0 < capacity["steel_yields_at_n"] < capacity["lateral_n"] <= capacity["highest_lateral_n"]
+    assert any("steel yields" in text for text in document["warnings"])
+    assert document["left_out"]
     first = document["curves"]["stations"][0]["py"]
     assert len(first["y_m"]) == len(first["reaction"])
     assert "Capacity" in page.read_text(encoding="utf-8")

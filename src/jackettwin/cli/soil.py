@@ -17,6 +17,7 @@ from jackettwin.cli.console import (
     messages,
     plain,
     say,
+    say_all,
     show_table,
     working,
 )
@@ -32,6 +33,10 @@ _POINTS = 31
 """Of a curve in the tables."""
 _REACH = {"py": 0.1, "tz": 0.02, "qz": 0.1}
 """Largest displacement of a curve in the tables, in pile diameters."""
+_LEFT_OUT = (
+    "yield of the pile's steel in the pushover, group effects (ISO 19902 17)",
+    "cyclic degradation along the axis, set-up, weight of pile and plug; base and side shear of stocky piles",
+)
 _LINEAR = "linear ground has no curves and no capacity: describe it by layers"
 
 
@@ -52,10 +57,13 @@ _LINEAR = "linear ground has no curves and no capacity: describe it by layers"
     type=FiniteFloat(-300.0, 300.0),
     help="Height of the lateral load [m].",
 )
+@click.option("--yield-strength", default=355e6, show_default=True, type=FiniteFloat(min=1e6), help="[Pa]")
 @click.option("--steps", default=20, show_default=True, type=click.IntRange(2, 500), help="Of the pushover.")
 @click.option("--out", type=PageFile(), help="The page, in a folder that exists; default out/NAME_soil.html.")
 @answers
-def soil_command(foundation: str, frequency_hz: float, arm_m: float, steps: int, out: Path | None) -> Reply:
+def soil_command(
+    foundation: str, frequency_hz: float, arm_m: float, yield_strength: float, steps: int, out: Path | None
+) -> Reply:
     """Compute curves, stiffness, capacity of a pile of FOUNDATION.
 
     They are the reaction curves, the head's stiffness, capacity and a pushover; a page shows them.
@@ -69,6 +77,8 @@ def soil_command(foundation: str, frequency_hz: float, arm_m: float, steps: int,
         if ground.curves is not None:
             pushed = pushover(ground.pile, ground.curves, arm_m=arm_m, steps=steps)
         document = _document(Path(foundation).stem, ground, pushed, frequency_hz, arm_m)
+        if pushed is not None:
+            _add_yield(document, ground, pushed, yield_strength)
         # drawing takes a second to load: not before it is needed
         from jackettwin.report.pages.soil import write_soil_page
 
@@ -101,7 +111,19 @@ def _document(
         "capacity": None if curves is None or pushed is None else _capacity(ground, curves, pushed),
         "pushover": None if pushed is None else _pushover(pushed, arm_m),
         "warnings": [*ground.notes, *([_LINEAR] if curves is None else [])],
+        "left_out": list(_LEFT_OUT),
     }
+
+
+def _add_yield(document: dict[str, Any], ground: Foundation, pushed: Pushover, f_y: float) -> None:
+    """Add the load from which on the pile's steel yields, which the pushover does not follow."""
+    first = pushed.first_load_n(f_y * ground.pile.elastic_modulus_m3)
+    document["capacity"]["steel_yields_at_n"] = first
+    if first is not None:
+        document["warnings"].append(
+            f"the pile's steel yields from {1e-6 * first:.2f} MN on (f_y = {1e-6 * f_y:g} MPa, bending "
+            "alone); the pushover goes on with elastic steel, and shows more than the pile bears"
+        )
 
 
 def _kinds(ground: Foundation) -> list[dict[str, str]]:
@@ -149,6 +171,7 @@ def _capacity(ground: Foundation, curves: PileCurves, pushed: Pushover) -> dict[
         "axial_compression_n": axial.compression_n,
         "axial_tension_n": axial.tension_n,
         "lateral_n": pushed.ultimate_n,
+        "highest_lateral_n": pushed.highest_n,
         "lateral_displacement_limit_m": FAILED_AT * curves.diameter_m,
     }
 
@@ -184,9 +207,11 @@ def _show(document: dict[str, Any]) -> None:
             f"{1e-6 * capacity['shaft_n']:.1f}, inside {1e-6 * capacity['inner_shaft_n']:.1f}, tip "
             f"{1e-6 * capacity['tip_n']:.1f}; {'plugged' if capacity['plugged'] else 'unplugged'}), tension "
             f"{1e-6 * capacity['axial_tension_n']:.1f}, lateral {1e-6 * capacity['lateral_n']:.2f} at "
-            f"{capacity['lateral_displacement_limit_m']:.2f} m"
+            f"{capacity['lateral_displacement_limit_m']:.2f} m (at most "
+            f"{1e-6 * capacity['highest_lateral_n']:.2f})"
         )
         from jackettwin.report.pages.soil import pushover_table
 
         show_table(pushover_table(pushed, "pushover"))
+    say_all(document["left_out"], "left out")
     say(f"wrote {document['page']}")

@@ -17,8 +17,8 @@ from jackettwin.soil.piles.reaction_curves import PileCurves, linearised
 
 FAILED_AT = 0.1
 """Head displacement in pile diameters that counts as failure: a tenth, as pile tests are read."""
-_BISECTIONS = 12
-"""Of the ultimate load between a load that stands and one that fails: 0.02 % of it."""
+_LEAST_STEPS = 20
+"""Of the head on its way to failure."""
 
 
 @dataclass(frozen=True)
@@ -148,11 +148,12 @@ class Pushover:
 
     Attributes
     ----------
-    load_n : (n,) lateral load at the head, growing
-    head_m : (n,) displacement of the head
+    load_n : (n,) lateral load at the head; it falls where the ground softens
+    head_m : (n,) displacement of the head, in equal steps to ``FAILED_AT`` diameters
     rotation_rad : (n,) of the head
     moment_nm : (n,) largest bending moment along the pile
-    ultimate_n : load at which the head moves by ``FAILED_AT`` diameters, or beyond which nothing stands
+    ultimate_n : load with which the head has moved by ``FAILED_AT`` diameters
+    highest_n : largest load on the way, at least that
     """
 
     load_n: FloatArray
@@ -160,6 +161,16 @@ class Pushover:
     rotation_rad: FloatArray
     moment_nm: FloatArray
     ultimate_n: float
+    highest_n: float
+
+    def first_load_n(self, moment_nm: float) -> float | None:
+        """Return the first load at which the largest moment reaches ``moment_nm``; None if it never does."""
+        over = np.flatnonzero(self.moment_nm >= moment_nm)
+        if not over.size:
+            return None
+        k = int(over[0])
+        load, moment = np.append(0.0, self.load_n), np.append(0.0, self.moment_nm)
+        return float(np.interp(moment_nm, moment[k : k + 2], load[k : k + 2]))
 
 
 def axial_capacity(pile: Pile, curves: PileCurves) -> AxialCapacity:
@@ -176,46 +187,88 @@ def axial_capacity(pile: Pile, curves: PileCurves) -> AxialCapacity:
 def pushover(pile: Pile, curves: PileCurves, *, arm_m: float = 0.0, steps: int = 20) -> Pushover:
     """Return a pile pushed to failure by a lateral load ``arm_m`` [m] above its free head.
 
+    The head is moved step by step, and the load that holds it there is found with it: ground that softens is
+    followed beyond the largest load.
+
     Raises
     ------
     InputError
         If the ground holds nothing, or fewer than two steps are asked for.
+    NumericalError
+        If no equilibrium is found on the way.
     """
     require(2 <= steps <= 500, "out of range", field="steps", value=steps, allowed="2 to 500")
-    ultimate = _ultimate(pile, curves, arm_m)
-    load = ultimate * np.arange(1, steps + 1) / steps
-    stood = [push(pile, curves, _head_load(float(h), arm_m)) for h in load]
-    u = np.array([one.displacement[0] for one in stood])
-    moment = np.array([_largest_moment(pile, curves, one) for one in stood])
-    return Pushover(load, u[:, 0], u[:, 4], moment, ultimate)
+    require(
+        any(curve.capacity > 0.0 for curve in curves.py),
+        "the ground resists no lateral load",
+        field="soil",
+        remedy="check its strength",
+    )
+    path = _HeldHead(pile, curves, arm_m)
+    limit, fine = FAILED_AT * curves.diameter_m, -(-_LEAST_STEPS // steps)
+    way = [path.move_to(limit * k / (steps * fine)) for k in range(1, steps * fine + 1)]
+    # of two mirrored paths the one in which the load is positive
+    forwards = 1.0 if way[-1][0] >= 0.0 else -1.0
+    every = forwards * np.array([load for load, _ in way])
+    u = forwards * np.array([u for _, u in way[fine - 1 :: fine]])
+    load = every[fine - 1 :: fine]
+    moment = np.array([_largest_moment(pile, curves, LoadedPile(one)) for one in u])
+    return Pushover(load, u[:, 0, 0], u[:, 0, 4], moment, float(load[-1]), float(every.max()))
 
 
-def _head_load(lateral_n: float, arm_m: float) -> FloatArray:
-    return np.array([lateral_n, 0.0, 0.0, 0.0, lateral_n * arm_m, 0.0])
+class _HeldHead:
+    """A pile whose head is moved sideways, with the load that does it."""
 
+    def __init__(self, pile: Pile, curves: PileCurves, arm_m: float) -> None:
+        initial = linearised(curves)
+        self.curves, self.torsional = curves, initial.torsional
+        self.steel = pile_matrices(pile, initial).steel
+        self.unit = np.zeros((initial.node_depth.size, 6))
+        self.unit[0] = [1.0, 0.0, 0.0, 0.0, arm_m, 0.0]
+        self.u, self.load = np.zeros_like(self.unit), 0.0
 
-def _ultimate(pile: Pile, curves: PileCurves, arm_m: float) -> float:
-    """Return the largest load that stands with less displacement than failure's, by doubling and halving."""
-    limit = FAILED_AT * curves.diameter_m
-    p = np.array([curve.capacity for curve in curves.py])
-    total = float(curves.at.weight @ p)
-    require(total > 0.0, "the ground resists no lateral load", field="soil", remedy="check its strength")
-
-    def stands(load: float) -> bool:
+    def move_to(self, head_m: float, halvings: int = 6) -> tuple[float, FloatArray]:
+        """Return the load with which the head has moved by ``head_m``, and all displacements (n, 6)."""
+        u, load = self.u, self.load
         try:
-            return bool(abs(push(pile, curves, _head_load(load, arm_m)).displacement[0, 0]) <= limit)
+            self._settle(head_m)
         except NumericalError:
-            return False
+            self.u, self.load = u, load
+            if halvings == 0:
+                raise
+            self.move_to(0.5 * (abs(float(u[0, 0])) + head_m), halvings - 1)
+            self.move_to(head_m, halvings - 1)
+        return self.load, self.u
 
-    # no load above the sum of all that resists can stand
-    low = total
-    while not stands(low):
-        low *= 0.5
-    high = 2.0 * low
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if stands(middle) else (low, middle)
-    return low
+    def _settle(self, head_m: float) -> None:
+        """Newton's method on displacements and load together: the head is where it is asked to be."""
+        for _ in range(60):
+            force, _ = soil_reaction(self.curves, self.torsional, self.u)
+            inside = force + (self.steel @ self.u.ravel()).reshape(self.u.shape)
+            residual = self.load * self.unit - inside
+            scale = max(abs(self.load) * max(1.0, abs(self.unit[0, 4])), 1.0)
+            if np.abs(residual).max() <= 1e-6 * scale and abs(self.u[0, 0] - head_m) <= 1e-9:
+                return
+            change = self._solve(residual, head_m - self.u[0, 0])
+            self.u, self.load = self.u + change[:-1].reshape(self.u.shape), self.load + float(change[-1])
+            if not np.isfinite(self.u).all() or np.abs(self.u[:, :3]).max() > 100.0:
+                break
+        raise NumericalError("the pile finds no equilibrium with its head held there")
+
+    def _solve(self, residual: FloatArray, head_m: float) -> FloatArray:
+        """Return the changes of displacements and load, (6n + 1,), even where all ground is plastic."""
+        _, tangent = soil_reaction(self.curves, self.torsional, self.u)
+        held = np.zeros((1, residual.size))
+        held[0, 0] = scale = float(np.abs(self.steel.diagonal()).max())
+        load = sp.csc_array(-scale * self.unit.reshape(-1, 1))
+        bordered = sp.bmat([[self.steel + tangent, load], [sp.csc_array(held), None]])
+        try:
+            factors = spla.splu(sp.csc_matrix(bordered))
+        except RuntimeError:
+            raise NumericalError("nothing holds the pile any more") from None
+        change = np.asarray(factors.solve(np.append(residual.ravel(), scale * head_m)))
+        change[-1] *= scale
+        return change
 
 
 def _largest_moment(pile: Pile, curves: PileCurves, loaded: LoadedPile) -> float:

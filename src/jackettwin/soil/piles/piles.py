@@ -78,6 +78,12 @@ class Pile:
         return self.outer_diameter_m - 2.0 * self.thickness_m
 
     @property
+    def elastic_modulus_m3(self) -> float:
+        """Elastic section modulus of the tube."""
+        D, d = self.outer_diameter_m, self.inner_diameter_m
+        return pi / 32.0 * (D**4 - d**4) / D
+
+    @property
     def tip_area_m2(self) -> float:
         """Area the soil under the tip pushes on."""
         hollow = 0.0 if self.plugged else self.inner_diameter_m
