@@ -87,6 +87,11 @@ CATALOGUE: dict[str, Kind] = {
         "{channels}: the clock runs {drift_ppm:.0f} ± {std_ppm:.2g} ppm too {slow} against the others', off"
         " by {delay_s:.3g} s in the middle of the record; resampled",
     ),
+    "clock_curve": Kind(
+        "warning",
+        "{channels}: the clock's rate changes: later than the others' by {begin_s:.3g} s at the beginning, "
+        "{middle_s:.3g} s in the middle and {end_s:.3g} s at the end; resampled",
+    ),
     "clock_late_or_complex": Kind(
         "info",
         "{channels}: read {delay_s:.3g} s {late} than the others, or the modes are complex: the record "

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime
 from types import SimpleNamespace
@@ -22,6 +23,7 @@ LOWER = (2, 3, 6, 7)
 CODES = (
     "clock_late",
     "clock_drift",
+    "clock_curve",
     "clock_jump",
     "clock_cut",
     "clock_late_or_complex",
@@ -108,6 +110,27 @@ def test_a_clock_that_runs_fast_is_slowed_down(tower: SimpleNamespace) -> None:
     assert set(late.rows) in ({*UPPER}, {*LOWER})
     assert abs(late.drift) == pytest.approx(200e-6, abs=6.0 * late.drift_std)
     assert late.drift_std < 20e-6
+
+
+@pytest.mark.parametrize("late_s", [lambda u: 0.3 * u**2, lambda u: -1.2 * u * (1.0 - u)])
+def test_a_clock_whose_rate_changes_is_brought_into_step(
+    late_s: Callable[[np.ndarray], np.ndarray], tower: SimpleNamespace
+) -> None:
+    """A quartz that warms up; a line alone would leave up to 0.04 and 0.2 s."""
+    record = tower.record(4, noise=0.005)
+    n = record.data.shape[1]
+    t, truth = np.arange(n) / 20.0, late_s(np.arange(n) / n)
+    data = record.data.copy()
+    for i in (3, 7):
+        data[i] = np.interp(t - truth, t, data[i])
+    quality = assess(replace(record, data=data))
+    assert said(replace(record, data=data)) == ["clock_curve"]
+    (late,) = quality.clocks.late
+    assert late.rows == (3, 7)
+    # 0.05 rad at the frequency of the second mode
+    assert np.abs([late.delay_at(time) for time in t[::100]] - truth[::100]).max() < 0.012
+    ready = common_time(repair(replace(record, data=data), quality), quality)
+    assert said(ready) == []
 
 
 @pytest.mark.parametrize("drawn", [(13, 100), (77, 185)])

@@ -33,6 +33,13 @@ def test_a_clock_that_is_too_fast_is_slowed_down() -> None:
     np.testing.assert_allclose(ready[PAD:-PAD], signal(t)[PAD:-PAD], atol=0.02)
 
 
+def test_a_clock_whose_rate_changes_is_straightened() -> None:
+    t, growth, bend = np.arange(4000.0), 5e-4, -2e-7
+    at = np.interp(t, t + 1.5 + growth * t + bend * t**2, t)
+    ready = shifted_earlier(signal(at), 1.5, growth, bend)
+    np.testing.assert_allclose(ready[PAD:-PAD], signal(t)[PAD:-PAD], atol=0.02)
+
+
 def test_gaps_stay_gaps() -> None:
     t = np.arange(1000.0)
     late = signal(t - 10.5)

@@ -159,6 +159,8 @@ MIN_GAP_RATIO = 1.5
 channels of one logger drift alike, whereas modes that alternate cause different slopes."""
 MIN_DRIFT_WINDOWS = 6
 """Fewest windows for a drift; with fewer, the scatter about the line is too uncertain."""
+MIN_CURVE_WINDOWS = 8
+"""The same for a drift that is not a line."""
 SLOPE_TOLERANCE = 0.1
 """Share of the spread of all slopes within which a precise slope is known."""
 MIN_RISE = 0.04
@@ -178,20 +180,69 @@ MIN_BAND_RATIO = 1.6
 """Smallest ratio of upper to lower frequency of the middle 80 % of the weight."""
 
 
-def drifts(series: FloatArray, network: Network) -> tuple[FloatArray, FloatArray]:
-    """Return the slope of each channel [s per window], 0 for the main group, and its standard deviation.
+@dataclass(frozen=True)
+class Growth:
+    """How the delays of channels grow over the windows; 0 for the main group.
 
-    Channels of similar slopes belong to one logger and share their mean;
-    one of uncertain slope joins the nearest group.
+    Attributes
+    ----------
+    slope, slope_std : (n_channels,)
+        [s per window]
+    bend, bend_std : (n_channels,)
+        [s per window squared], along :func:`curve`.
+    """
+
+    slope: FloatArray
+    slope_std: FloatArray
+    bend: FloatArray
+    bend_std: FloatArray
+
+
+def growth(series: FloatArray, network: Network) -> Growth:
+    """Return how the delays of channels grow, in a line and in a curve.
+
+    Parameters
+    ----------
+    series : (n_windows, n_channels)
     """
     n = len(series)
+    least = DRIFT_RAD / REACH_RAD * network.reach_s
     slope, rest = lines(series)
-    power = float(np.sum((np.arange(n) - 0.5 * (n - 1)) ** 2))
-    std = np.maximum(scatter(series), rest.std(axis=0)) / np.sqrt(power)
-    least = DRIFT_RAD / REACH_RAD * network.reach_s / n
-    out, spread = np.zeros(len(slope)), np.zeros(len(slope))
+    time = np.arange(n) - 0.5 * (n - 1)
+    std = np.maximum(scatter(series), rest.std(axis=0)) / np.sqrt(float(np.sum(time**2)))
+    none = np.zeros(len(slope))
     if n < MIN_DRIFT_WINDOWS:
-        return out, spread
+        return Growth(none, none, none, none)
+    drift = _of_loggers(slope, std, network, least / n)
+    if n < MIN_CURVE_WINDOWS:
+        return Growth(*drift, none, none)
+    over = curve(n)
+    power = float(np.sum(over**2))
+    bend = over @ rest / power
+    left = rest - np.outer(over, bend)
+    std = np.maximum(scatter(left), left.std(axis=0)) / np.sqrt(power)
+    return Growth(*drift, *_of_loggers(bend, std, network, least / float(np.ptp(over))))
+
+
+def curve(n: int) -> FloatArray:
+    """Return the square of the time from the middle of some windows, of zero mean, (n_windows,).
+
+    >>> curve(3).round(3).tolist()
+    [0.333, -0.667, 0.333]
+    """
+    square = (np.arange(n) - 0.5 * (n - 1)) ** 2
+    return np.asarray(square - square.mean())
+
+
+def _of_loggers(
+    slope: FloatArray, std: FloatArray, network: Network, least: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return the growth of each channel, 0 for the main group and where it is below ``least``, and its std.
+
+    Channels that grow alike belong to one logger and share their mean; one of uncertain growth joins the
+    nearest group.
+    """
+    out, spread = np.zeros(len(slope)), np.zeros(len(slope))
     for part in joined(network):
         clear = max(0.4 * least, SLOPE_TOLERANCE * float(np.ptp(slope[part])))
         sharp = [i for i in part if std[i] < clear]
@@ -214,7 +265,7 @@ def drifts(series: FloatArray, network: Network) -> tuple[FloatArray, FloatArray
 
 
 def late_clocks(
-    seen: Phases, network: Network, far_s: FloatArray, drift: tuple[FloatArray, FloatArray], middle_s: float
+    seen: Phases, network: Network, far_s: FloatArray, grown: Growth, begin_s: float, window_s: float
 ) -> tuple[LateClock, ...]:
     """Return the groups that drift, or are late by a delay consistent over all bands and pairs.
 
@@ -222,10 +273,10 @@ def late_clocks(
     ----------
     far_s : (n_channels,)
         Delays already corrected.
-    drift : (n_channels,), (n_channels,)
-        Slopes, also already corrected, and their standard deviations.
-    middle_s : float
-        Time to which the delays from the phases refer.
+    grown : Growth
+        Also already corrected, relative to the first window.
+    begin_s, window_s : float
+        Beginning of the first window, and length of each.
     """
     z = doubled(seen)
     search = seen.search_s
@@ -233,25 +284,30 @@ def late_clocks(
     weight = np.where(network.informative, np.maximum(value, 0.0), 0.0)
     each = against_main(network, per_channel(network, delay, weight)[None, :])[0]
     main = np.flatnonzero((np.abs(each) <= network.reach_s) & (far_s == 0.0))
+    n = len(seen.coherency)
+    first_s, middle_s = begin_s + 0.5 * window_s, begin_s + 0.5 * n * window_s
     found: list[LateClock] = []
-    for rows in _alike(each, far_s, drift[0], network.reach_s):
-        before, grows = float(far_s[rows[0]]), float(drift[0][rows[0]])
+    for rows in _alike(each, far_s, grown, network.reach_s):
+        before, first = float(far_s[rows[0]]), rows[0]
+        slope, bend = float(grown.slope[first]) / window_s, float(grown.bend[first]) / window_s**2
+        grows = slope != 0.0 or bend != 0.0
         known = None if np.isin(main, rows).any() else _confirmed(seen, network, z, rows, main, before)
-        if known is None and grows == 0.0 and before == 0.0:
+        if known is None and not grows and before == 0.0:
             continue
         late, std, certain = known or (0.0, 0.0, True)
-        late += before - grows * middle_s
-        spread = float(np.max(drift[1][rows])) if grows else 0.0
-        found.append(LateClock(tuple(rows), late, std, grows, spread, certain))
+        late += before - slope * first_s + bend * (middle_s**2 - (first_s - middle_s) ** 2)
+        spread = float(np.max(grown.slope_std[rows])) / window_s if grows else 0.0
+        found.append(LateClock(tuple(rows), late, std, slope - 2.0 * bend * middle_s, spread, certain, bend))
     return tuple(found)
 
 
-def _alike(delay_s: FloatArray, far_s: FloatArray, drift: FloatArray, reach_s: float) -> list[list[int]]:
-    """Return groups of channels of equal delay and drift."""
+def _alike(delay_s: FloatArray, far_s: FloatArray, grown: Growth, reach_s: float) -> list[list[int]]:
+    """Return groups of channels of equal delay and growth."""
     out: list[list[int]] = []
+    both = np.column_stack([grown.slope, grown.bend])
     for group in without_gaps(delay_s + far_s, reach_s):
-        for value in np.unique(drift[group]):
-            out.append([i for i in group if drift[i] == value])
+        for value in np.unique(both[group], axis=0):
+            out.append([i for i in group if np.array_equal(both[i], value)])
     return out
 
 

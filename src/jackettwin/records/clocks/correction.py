@@ -23,8 +23,8 @@ DEGREE = 5
 """Degree of the spline; its error is 3e-4 for a sine of eight points per period, 4e-6 of sixteen."""
 
 
-def shifted_earlier(y: FloatArray, delay: float, growth: float = 0.0) -> FloatArray:
-    """Return :math:`y(t + d + g t)`, the samples of a channel that was late by d + g·t.
+def shifted_earlier(y: FloatArray, delay: float, growth: float = 0.0, bend: float = 0.0) -> FloatArray:
+    """Return :math:`y(t + d + g t + b t^2)`, the samples of a channel that was late by that delay.
 
     Parameters
     ----------
@@ -34,6 +34,8 @@ def shifted_earlier(y: FloatArray, delay: float, growth: float = 0.0) -> FloatAr
         d, in samples.
     growth : float
         g, samples a sample.
+    bend : float
+        b, samples a squared sample.
 
     Returns
     -------
@@ -48,11 +50,11 @@ def shifted_earlier(y: FloatArray, delay: float, growth: float = 0.0) -> FloatAr
     True
     """
     n = len(y)
-    at = np.arange(n) * (1.0 + growth) + delay
+    at = np.arange(n) * (1.0 + growth + bend * np.arange(n)) + delay
     line = bridge(y) - remove_line(bridge(y)[None, :])[0]
     pad = min(PAD, n - 1)
     padded = np.pad(bridge(y) - line, pad, mode="reflect", reflect_type="odd")
-    if growth == 0.0:
+    if growth == 0.0 and bend == 0.0:
         moved = _turned(padded, delay - np.floor(delay))
         index = np.arange(n) + int(np.floor(delay)) + pad
         out = moved[np.clip(index, 0, len(moved) - 1)]
@@ -91,7 +93,8 @@ def in_step(data: FloatArray, clocks: LoggerClocks, sample_rate_hz: float) -> Fl
     for late in clocks.late:
         if late.certain:
             for i in late.rows:
-                out[i] = shifted_earlier(data[i], late.delay_s * sample_rate_hz, late.drift)
+                delay, bend = late.delay_s * sample_rate_hz, late.bend / sample_rate_hz
+                out[i] = shifted_earlier(data[i], delay, late.drift, bend)
     for jump in clocks.gains:
         rows = list(jump.rows)
         out[rows, : jump.start] /= jump.factor[0]
@@ -108,10 +111,10 @@ def in_step(data: FloatArray, clocks: LoggerClocks, sample_rate_hz: float) -> Fl
 def stretch(clocks: LoggerClocks, n_samples: int, sample_rate_hz: float) -> tuple[int, int]:
     """Return first and last sample (excluded) that all channels share once corrected."""
     ends = [
-        (late.delay_s + late.drift * t) * sample_rate_hz
+        late.delay_at(share * n_samples / sample_rate_hz) * sample_rate_hz
         for late in clocks.late
         if late.certain
-        for t in (0.0, n_samples / sample_rate_hz)
+        for share in np.linspace(0.0, 1.0, 17)
     ]
     first = max(clocks.start, int(np.ceil(-min(ends, default=0.0))))
     last = min(clocks.stop, n_samples - int(np.ceil(max(ends, default=0.0))))

@@ -2,7 +2,8 @@
 
 Channels of one logger share its clock. Delays of all pairs (``delays.py``) are reduced to one
 per channel and window. Channels that agree form a group, and the largest group is the reference.
-A constant delay of a group is an offset, a growing one is a slow clock, and a jump divides the record,
+A constant delay of a group is an offset, a growing one is a slow clock, a curve one whose rate changes
+(as a quartz that warms up), and a jump divides the record,
 of which the longest part without jumps is judged. Jumps of sensitivity appear in the same pairs.
 """
 
@@ -33,7 +34,8 @@ from jackettwin.records.clocks.channel_delays import (
     Network,
     against_main,
     by_channel,
-    drifts,
+    curve,
+    growth,
     late_clocks,
     per_channel,
     ties,
@@ -182,13 +184,12 @@ def logger_clocks(
         return replace(whole, jumps=jumps, judged=False)
     start, stop = (first * length, last * length) if jumps else (0, y.shape[1])
     stop = y.shape[1] if last == len(series) else stop
-    slope, slope_std = drifts(series[first:last], seen.network)
-    model = slope * (np.arange(first, last) - first)[:, None]
+    grown = growth(series[first:last], seen.network)
+    model = np.outer(np.arange(last - first), grown.slope) + np.outer(curve(last - first), grown.bend)
+    model -= model[0]
     within = replace(seen.phases, coherency=seen.phases.coherency[first:last])
     still = aligned(within, model)
-    late = late_clocks(
-        still, seen.network, far, (slope / window_s, slope_std / window_s), (first + 0.5) * window_s
-    )
+    late = late_clocks(still, seen.network, far, grown, first * window_s, window_s)
     return replace(whole, late=late, jumps=jumps, start=start, stop=stop)
 
 

@@ -24,9 +24,11 @@ class LateClock:
     delay_s, delay_std_s : float
         Delay at the beginning of the record; negative if early.
     drift, drift_std : float
-        Growth of the delay [s/s]; 0 if it is constant.
+        Growth of the delay at the beginning [s/s]; 0 if it is constant.
     certain : bool
         Whether complex modes are excluded as an explanation.
+    bend : float
+        Half of the rate at which the drift changes [1/s]; 0 if the clock's rate is constant.
     """
 
     rows: tuple[int, ...]
@@ -35,6 +37,15 @@ class LateClock:
     drift: float = 0.0
     drift_std: float = 0.0
     certain: bool = True
+    bend: float = 0.0
+
+    def delay_at(self, time_s: float) -> float:
+        """Return the delay at a time from the beginning of the record [s].
+
+        >>> LateClock((0,), 1.0, 0.0, drift=0.5, bend=0.25).delay_at(2.0)
+        3.0
+        """
+        return self.delay_s + self.drift * time_s + self.bend * time_s**2
 
 
 @dataclass(frozen=True)
@@ -208,7 +219,7 @@ def _strangers(
 
 def _late(record: Record, late: LateClock) -> Finding:
     names = _names(record, late.rows)
-    middle = late.delay_s + 0.5 * late.drift * record.duration_s
+    middle = late.delay_at(0.5 * record.duration_s)
     common: dict[str, float | str] = {
         "channels": names,
         "delay_s": abs(middle),
@@ -216,6 +227,9 @@ def _late(record: Record, late: LateClock) -> Finding:
     }
     if not late.certain:
         return _said("clock_late_or_complex", False, **common)
+    if late.bend:
+        at = [late.delay_at(share * record.duration_s) for share in (0.0, 0.5, 1.0)]
+        return _said("clock_curve", True, channels=names, begin_s=at[0], middle_s=at[1], end_s=at[2])
     if late.drift:
         return _said(
             "clock_drift",
