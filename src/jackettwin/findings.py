@@ -141,6 +141,19 @@ CATALOGUE: dict[str, Kind] = {
     "strong": Kind(
         "warning", "its rms is {ratio:.2g} times that of similar channels: is the sensor or its unit wrong?"
     ),
+    "not_filtered": Kind(
+        "warning",
+        "{channels}: the spectrum does not fall towards half the sample rate, has a peak and {share:.1%} of "
+        "its power near it: sampled or decimated without a filter? Peaks may be folded from above",
+    ),
+    "axes_crossed": Kind(
+        "warning", "{channels}: each moves with the other axis of all other places: exchanged; put right"
+    ),
+    "axes_crossed_unclear": Kind(
+        "warning",
+        "{channels}: at some of these places x and y are exchanged, and nothing says at which; kept, state "
+        '"direction" in the JSON beside the file',
+    ),
     "unreadable": Kind("warning", "{samples} samples are infinite or beyond {limit:g}; declared missing"),
     "changed": Kind("warning", "{what}; declared missing there"),
     "changed_unclear": Kind("warning", "{what}, or a similar channel changes; kept"),

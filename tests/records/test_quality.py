@@ -209,3 +209,19 @@ def test_a_step_of_the_rms_is_coarse_and_one_of_a_tenth_is_not(tower: SimpleName
         size = step * y.std()
         found = assess(with_row(record, 3, size * np.round(y / size)))
         assert ("acc_28_x", "coarse_quantiser") in faults_of(found) if coarse else not found.findings
+
+
+@pytest.mark.parametrize("noise_alone", [False, True])
+def test_a_channel_of_a_thousandth_is_flagged_on_either_axis(
+    noise_alone: bool, tower: SimpleNamespace
+) -> None:
+    """One axis moves four times as strongly as the other, as across and along the wind."""
+    record = tower.record(2)
+    data = record.data * np.repeat([1.0, 4.0], 4)[:, None]
+    assert not any(code in ("weak", "strong") for _, code in faults_of(assess(replace(record, data=data))))
+    rng = np.random.default_rng(1)
+    for i in (0, 3, 4, 7):
+        row = data[i]
+        small = 1e-3 * (row.std() * rng.normal(size=len(row)) if noise_alone else row)
+        found = faults_of(assess(with_row(replace(record, data=data), i, small)))
+        assert {name for name, code in found if code == "weak"} == {record.channels[i].name}

@@ -42,6 +42,7 @@ from jackettwin.records import (
     record_content,
     with_conditions,
 )
+from jackettwin.records.quality.crossed_axes import axes_in_line
 from jackettwin.records.quality.length import CYCLES, too_short
 from jackettwin.records.quality.record_quality import Quality
 from jackettwin.records.quality.repeats import each_sample_once
@@ -131,6 +132,7 @@ def examine(
     chosen, absent = placed(source, places) if places else (moving_channels(source), ())
     chosen, repeated = each_sample_once(chosen)
     chosen, stepped = zeros_in_line(chosen)
+    chosen, crossed = axes_in_line(chosen)
     quality = assess(chosen)
     alarms = (f for f in (*repeated, *stepped, *too_short(chosen)) if f.severity == "alarm")
     doubts = (*alarms, *(f for f in quality.findings if f.code in UNFIT and not f.repaired))
@@ -145,6 +147,7 @@ def examine(
         *absent,
         *doubts,
         *(f for f in stepped if f.severity != "alarm"),
+        *crossed,
         *findings,
         *unplaced(chosen),
         *(() if places else (*unclear(source), *set_aside(source, chosen))),

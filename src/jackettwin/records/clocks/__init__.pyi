@@ -1,4 +1,5 @@
 from .correction import in_step as in_step, stretch as stretch
+from .delays import phases as phases
 from .grid import (
     between_ticks as between_ticks,
     regularise as regularise,

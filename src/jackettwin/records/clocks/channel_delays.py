@@ -181,7 +181,7 @@ MIN_BAND_RATIO = 1.6
 
 
 @dataclass(frozen=True)
-class Growth:
+class DelayGrowth:
     """How the delays of channels grow over the windows; 0 for the main group.
 
     Attributes
@@ -198,7 +198,7 @@ class Growth:
     bend_std: FloatArray
 
 
-def growth(series: FloatArray, network: Network) -> Growth:
+def growth(series: FloatArray, network: Network) -> DelayGrowth:
     """Return how the delays of channels grow, in a line and in a curve.
 
     Parameters
@@ -212,16 +212,16 @@ def growth(series: FloatArray, network: Network) -> Growth:
     std = np.maximum(scatter(series), rest.std(axis=0)) / np.sqrt(float(np.sum(time**2)))
     none = np.zeros(len(slope))
     if n < MIN_DRIFT_WINDOWS:
-        return Growth(none, none, none, none)
+        return DelayGrowth(none, none, none, none)
     drift = _of_loggers(slope, std, network, least / n)
     if n < MIN_CURVE_WINDOWS:
-        return Growth(*drift, none, none)
+        return DelayGrowth(*drift, none, none)
     over = curve(n)
     power = float(np.sum(over**2))
     bend = over @ rest / power
     left = rest - np.outer(over, bend)
     std = np.maximum(scatter(left), left.std(axis=0)) / np.sqrt(power)
-    return Growth(*drift, *_of_loggers(bend, std, network, least / float(np.ptp(over))))
+    return DelayGrowth(*drift, *_of_loggers(bend, std, network, least / float(np.ptp(over))))
 
 
 def curve(n: int) -> FloatArray:
@@ -265,7 +265,7 @@ def _of_loggers(
 
 
 def late_clocks(
-    seen: Phases, network: Network, far_s: FloatArray, grown: Growth, begin_s: float, window_s: float
+    seen: Phases, network: Network, far_s: FloatArray, grown: DelayGrowth, begin_s: float, window_s: float
 ) -> tuple[LateClock, ...]:
     """Return the groups that drift, or are late by a delay consistent over all bands and pairs.
 
@@ -273,7 +273,7 @@ def late_clocks(
     ----------
     far_s : (n_channels,)
         Delays already corrected.
-    grown : Growth
+    grown : DelayGrowth
         Also already corrected, relative to the first window.
     begin_s, window_s : float
         Beginning of the first window, and length of each.
@@ -301,7 +301,7 @@ def late_clocks(
     return tuple(found)
 
 
-def _alike(delay_s: FloatArray, far_s: FloatArray, grown: Growth, reach_s: float) -> list[list[int]]:
+def _alike(delay_s: FloatArray, far_s: FloatArray, grown: DelayGrowth, reach_s: float) -> list[list[int]]:
     """Return groups of channels of equal delay and growth."""
     out: list[list[int]] = []
     both = np.column_stack([grown.slope, grown.bend])

@@ -13,6 +13,7 @@ from jackettwin.quantities import VIBRATIONS
 from jackettwin.records.clocks import clock_findings, clocks_of, in_step
 from jackettwin.records.processing import filters
 from jackettwin.records.quality import faults, sensor_polarity
+from jackettwin.records.quality.aliasing import not_filtered
 from jackettwin.records.quality.faults import ChannelQuality, channel_findings
 from jackettwin.records.quality.sensor_changes import SensorChange, changes, described
 from jackettwin.records.quality.unit_errors import wrong_units
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from jackettwin.records.clocks import LoggerClocks
-    from jackettwin.records.record import Record
+    from jackettwin.records.record import Channel, Record
 
 
 STUCK_S = 1.0
@@ -40,6 +41,8 @@ PARTS = 10
 WEAK_RATIO = 1.0 / 300.0
 """Ratio of a channel's rms to the median of its quantity below which the sensor is nearly dead,
 and above whose inverse its unit is wrong."""
+MIN_PARALLEL_COSINE = 0.5
+"""Cosine of the angle between two channels below which their sizes are not compared."""
 JITTER = 0.05
 """Clock jitter, as a share of the step, above which a finding is given."""
 
@@ -105,6 +108,7 @@ def assess(record: Record) -> Quality:
     findings += [Finding("unit", name, wrong.words) for name, wrong in units.items()]
     findings += [Finding("file", params={"text": str(text)}) for text in record.metadata.get("remarks", ())]
     findings += [*_unreadable(record, unreadable), *_weak(record, channels), *_clock(record)]
+    findings += _folded(record, channels, slow_free)
     findings += clock_findings(record, clocks)
     vibrating = [q.score for q, c in zip(channels, record.channels, strict=True) if c.quantity in VIBRATIONS]
     scores = vibrating or [q.score for q in channels]
@@ -215,14 +219,34 @@ def _unreadable(record: Record, unreadable: BoolArray) -> Iterator[Finding]:
 
 
 def _weak(record: Record, channels: tuple[ChannelQuality, ...]) -> Iterator[Finding]:
-    """Yield channels whose rms differs from that of similar channels by a very large factor."""
+    """Yield channels whose rms differs from that of similar, parallel channels by a very large factor."""
     live = [i for i, q in enumerate(channels) if not q.dead and record.channels[i].quantity in VIBRATIONS]
     rms = {i: float(np.nanstd(record.data[i])) for i in live}
     for i in live:
-        like = [rms[j] for j in live if record.channels[j].quantity == record.channels[i].quantity]
+        like = [rms[j] for j in live if _similar(record.channels[i], record.channels[j])]
         ratio = rms[i] / float(np.median(like))
         if not WEAK_RATIO <= ratio <= 1.0 / WEAK_RATIO:
             yield Finding("weak" if ratio < 1.0 else "strong", channels[i].name, {"ratio": float(ratio)})
+
+
+def _similar(one: Channel, other: Channel) -> bool:
+    """Tell whether two channels measure the same quantity and are not known to lie across."""
+    known = any(one.direction) and any(other.direction)
+    cosine = abs(float(np.dot(one.direction, other.direction))) if known else 1.0
+    return one.quantity == other.quantity and cosine > MIN_PARALLEL_COSINE
+
+
+def _folded(record: Record, channels: tuple[ChannelQuality, ...], slow_free: FloatArray) -> Iterator[Finding]:
+    """Yield one finding on the channels that no filter seems to have passed."""
+    rows = [
+        i
+        for i, q in enumerate(channels)
+        if record.channels[i].quantity in VIBRATIONS and not q.dead and q.hold_length == 1
+    ]
+    flat, share = not_filtered(slow_free[rows])
+    if flat.any():
+        names = ", ".join(channels[i].name for i, one in zip(rows, flat, strict=True) if one)
+        yield Finding("not_filtered", params={"channels": names, "share": float(share[flat].max())})
 
 
 def _clock(record: Record) -> Iterator[Finding]:

@@ -1,0 +1,80 @@
+"""Detection of records that were decimated, or sampled, without a filter.
+
+What lies above half the sample rate is then folded below it, peaks with the rest, and nothing in the record
+says which peak is in its place. A filter leaves a trace: just below half the sample rate nothing passes. A
+spectrum that does not fall there, and holds noticeable power beside it, was not filtered, or is that of
+noise.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy  # scipy.ndimage is loaded where it is used
+
+from jackettwin.arrays import BoolArray, FloatArray
+from jackettwin.records.processing.filters import bridge
+from jackettwin.records.processing.spectra import of_fast_length, welch_densities
+
+SEGMENTS = 16
+"""Segments of Welch's estimate, without overlap."""
+MIN_SAMPLES = 1024
+"""Shortest record that is examined, in samples."""
+EDGE = (0.97, 0.999)
+"""Band, over half the sample rate, in which a filter passes nothing."""
+BESIDE = (0.7, 0.93)
+"""Band with which it is compared."""
+FALL = 0.3
+"""Ratio of the mean density at the edge to the median beside it above which the spectrum does not fall.
+Of the shipped records decimated through Chebyshev's filter of order 8 it is 0.05 at most, without a filter
+0.25 to 23."""
+UPPER = 2.0 / 3.0
+"""Lower end of the band, over half the sample rate, whose power is compared with the whole."""
+LEAST_POWER = 0.005
+"""Share of the power in that band above which folding matters."""
+PEAKS = (0.4, 0.95)
+"""Band, over half the sample rate, in which a peak is sought."""
+PEAK_RATIO = 3.0
+"""Ratio of the highest density there to the median around it from which it is a peak; noise has 1.4 to 1.9,
+every twentieth sample of the shipped records 2.6 to 18."""
+AROUND = 8
+"""The band over which this median is taken, as a divisor of the whole one."""
+MIN_AROUND = 9
+"""Fewest lines of that band."""
+
+
+def not_filtered(y: FloatArray) -> tuple[BoolArray, FloatArray]:
+    """Tell which channels do not fall towards half the sample rate but have a peak near it.
+
+    The second result is their share of power in the upper third of the band.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Zero mean; NaN marks a missing sample.
+
+    Returns
+    -------
+    (n_channels,) bool, (n_channels,)
+
+    Examples
+    --------
+    >>> noise = np.random.default_rng(1).standard_normal((2, 4096))
+    >>> noise[1] = np.convolve(noise[1], [1.0, -1.2, 0.9], "same") + 2.0 * np.sin(2.2 * np.arange(4096))
+    >>> not_filtered(noise)[0].tolist()
+    [False, True]
+    """
+    none = np.zeros(len(y), dtype=np.bool_), np.zeros(len(y))
+    if y.shape[1] < MIN_SAMPLES or not len(y):
+        return none
+    x = of_fast_length(np.array([bridge(row) for row in y]))
+    length = x.shape[1] // SEGMENTS // 2 * 2
+    f, density = welch_densities(x - x.mean(axis=1, keepdims=True), 2.0, length)
+    total = density.sum(axis=1)
+    share = density[:, f > UPPER].sum(axis=1) / np.where(total > 0.0, total, 1.0)
+    edge, beside = ((f > low) & (f < high) for low, high in (EDGE, BESIDE))
+    flat = density[:, edge].mean(axis=1) > FALL * np.median(density[:, beside], axis=1)
+    width = max(len(f) // AROUND, MIN_AROUND)
+    median = scipy.ndimage.median_filter(density, size=(1, width), mode="nearest")
+    ratio = density / np.where(median > 0.0, median, np.inf)
+    peaked = ratio[:, (f > PEAKS[0]) & (f < PEAKS[1])].max(axis=1) > PEAK_RATIO
+    return np.asarray(flat & peaked & (share > LEAST_POWER)), np.asarray(share)
