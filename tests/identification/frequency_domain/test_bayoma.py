@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from importlib.resources import files
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -15,7 +18,9 @@ from jackettwin.identification.frequency_domain.bayoma import (
     transfer,
 )
 from jackettwin.identification.mode_shapes import mac
+from jackettwin.identification.record_steps import moving_channels
 from jackettwin.identification.synthetic import ModalSystem, cramer_rao, simulate
+from jackettwin.records import read_record
 
 RATE_HZ, DURATION_S, BAND_HZ = 8.0, 600.0, (0.42, 0.58)
 ONE = ModalSystem(
@@ -121,3 +126,20 @@ def test_as_a_method_it_states_intervals(tower: ModalSystem, rng: np.random.Gene
     for f in (1.20, 1.26):
         near = min(found.modes, key=lambda mode: abs(mode.frequency_hz - f))
         assert abs(np.log(near.frequency_hz / f)) < 4.0 * near.frequency_std_hz / f
+
+
+def test_the_first_pair_of_a_record_without_noise_is_found() -> None:
+    """One shape leaves the other direction unexplained, 10⁴ times the noise: the search has to get there.
+
+    Frequencies of the pair as the subspace method with its refinement finds them.
+    """
+    record = moving_channels(
+        read_record(Path(str(files("jackettwin"))) / "data/records/pile_U12_s308.parquet")
+    )
+    settings = IdentificationSettings(method="bayoma", lowest_frequency_hz=0.11, highest_frequency_hz=0.5)
+    found = identify(record, settings).modes
+    assert len(found) == 2
+    for mode, f in zip(found, (0.1743, 0.1788), strict=True):
+        low, high = mode.frequency_interval_95 or (0.0, 0.0)
+        assert low < f < high
+        assert high / low < 1.1

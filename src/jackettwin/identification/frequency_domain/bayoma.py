@@ -50,7 +50,7 @@ MOST_MODES = 3
 """Most modes in a band."""
 SMOOTH = 5
 """Lines over which the power in another direction is averaged."""
-MIN_PEAK = 6.0
+MIN_PEAK = 4.0
 """Smallest ratio of its peak to its median for which a further mode is tried."""
 START_DAMPING = 0.01
 """Damping ratio from which the search starts."""
@@ -64,6 +64,16 @@ WIDE = 7.0
 """Reach of the search about its start, in logarithms and in units of the shapes."""
 STEP = 1e-4
 """Step of the curvature's differences, in logarithms and in units of the shapes."""
+MOST_STEPS = 10
+"""Most of Newton's steps after the search."""
+MIN_GAIN = 1e-3
+"""Gain of log-posterior that a step must promise, in twice its units."""
+MOST_MOVE = 0.5
+"""Largest change of a parameter in one step."""
+HALVINGS = 10
+"""Times a step is halved that does not gain."""
+FLAT = 1e-9
+"""Share of the largest curvature below which a direction has none: the lengths of shapes."""
 NORMAL_95 = 1.959964
 """Half width of a 95 % interval in standard deviations."""
 
@@ -196,8 +206,7 @@ def _peak_beside(lines: ComplexArray, f: FloatArray, starts_hz: list[float]) -> 
     _, vectors = np.linalg.eigh(np.real(lines @ lines.conj().T))
     power = np.abs(vectors[:, -1 - n_modes] @ lines) ** 2
     smooth = np.convolve(power, np.full(SMOOTH, 1.0 / SMOOTH), mode="same")
-    apart = np.min(np.abs(np.subtract.outer(f, starts_hz)), axis=1) >= SMOOTH * (f[1] - f[0])
-    peak = int(np.argmax(np.where(apart, smooth, 0.0)))
+    peak = int(np.argmax(smooth))  # at the same frequency, too: pairs of a tower are that close
     return float(f[peak]) if smooth[peak] > MIN_PEAK * np.median(smooth) else None
 
 
@@ -211,7 +220,8 @@ def _one_mode(lines: ComplexArray, f: FloatArray, start_hz: float) -> BandPoster
     """Return the one most probable mode: an eigenvector, and four numbers (ln f, ln ζ, ln S, ln Se)."""
     outer = np.real(np.einsum("ak,bk->kab", lines, lines.conj()))
     cost = partial(one_mode_cost, outer=outer, f=f)
-    noise = max(float(np.linalg.eigvalsh(outer.mean(axis=0))[0]), 1e-6)
+    powers = np.linalg.eigvalsh(outer.mean(axis=0))
+    noise = max(float(powers[:-1].mean()), 1e-6)  # one shape leaves all other directions to the noise
     peak = float(np.einsum("kaa->k", outer).max())
     start = np.log([start_hz, START_DAMPING, peak * 4.0 * START_DAMPING**2, noise])
     theta = _most_probable(cost, start, f, 1)
@@ -345,7 +355,33 @@ def _most_probable(
 
     with np.errstate(all="ignore"):
         found = scipy.optimize.minimize(within, start, method="BFGS", options={"gtol": 1e-2})
-    return np.asarray(np.clip(found.x, low, high))
+    best = np.clip(found.x, low, high)
+    return np.asarray(best) if found.success else _polished(within, best)
+
+
+def _polished(cost: Callable[[FloatArray], float], theta: FloatArray) -> FloatArray:
+    """Return the minimum near a point by Newton's steps along the directions of curvature.
+
+    The search before may stop on the slope of a valley: differences of a cost of thousands are rounded.
+    """
+    value, steps = cost(theta), STEP * np.eye(len(theta))
+    for _ in range(MOST_STEPS):
+        gradient = np.array([cost(theta + e) - cost(theta - e) for e in steps]) / (2.0 * STEP)
+        curvature = _curvature(cost, theta)
+        if not (np.isfinite(curvature).all() and np.isfinite(gradient).all()):
+            break
+        size, along = np.linalg.eigh(curvature)
+        known = np.abs(size) > FLAT * np.abs(size).max()
+        move = -along[:, known] @ (along[:, known].T @ gradient / np.abs(size[known]))
+        if -gradient @ move < MIN_GAIN:
+            break
+        move *= min(1.0, MOST_MOVE / float(np.abs(move).max()))
+        tries = [theta + 0.5**k * move for k in range(HALVINGS)]
+        better = next((one for one in tries if cost(one) < value), None)
+        if better is None:
+            break
+        theta, value = better, cost(better)
+    return np.asarray(theta)
 
 
 def _curvature(cost: Callable[[FloatArray], float], theta: FloatArray) -> FloatArray:
