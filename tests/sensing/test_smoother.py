@@ -85,6 +85,14 @@ def test_a_discrete_step_of_an_oscillator(rng: np.random.Generator) -> None:
     assert s.stationary[1, 1] == pytest.approx(q / (4.0 * zeta * w), rel=1e-10)
 
 
+def test_what_decays_within_a_step_is_noise_of_its_own() -> None:
+    """A rate of 3,000 in steps of 0.05 s beside one of 0.1: e^{150} and e^{0.005}."""
+    rates = np.array([3000.0, 0.1])
+    F, Q = discrete(-np.diag(rates), np.diag(2.0 * rates), 0.05)
+    assert_allclose(F, np.diag(np.exp(-0.05 * rates)), atol=1e-12)
+    assert_allclose(Q, np.diag(1.0 - np.exp(-0.1 * rates)), atol=1e-12)
+
+
 def test_bad_models_are_refused() -> None:
     with pytest.raises(InputError, match="must be positive"):
         steady_smoother(0.9 * np.eye(1), np.eye(1), np.eye(1), np.zeros(1))

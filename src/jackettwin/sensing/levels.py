@@ -111,12 +111,13 @@ def find_levels(
         away = (z - start) / std
         return value + 0.5 * float(away @ away), gradient + away / std
 
+    reach = np.minimum(_REACH, 4.0 * std)
     found = minimize(
         cost,
         start,
         jac=True,
         method="L-BFGS-B",
-        bounds=list(zip(start - _REACH, start + _REACH, strict=True)),
+        bounds=list(zip(start - reach, start + reach, strict=True)),
         options={"maxiter": 60, "ftol": 1e-7},
     )
     z = found.x
