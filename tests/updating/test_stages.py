@@ -1,5 +1,7 @@
 """Stages: the last is the whole, masses add up, the numbers of reproduce's tables."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -18,3 +20,15 @@ def test_jacket15_part_by_part() -> None:
     np.testing.assert_array_equal(full.frequency_hz, numbered_modes(assemble(structure), 5).frequency_hz)
     # the calibrated reference jacket, printed with three digits
     np.testing.assert_allclose(jacket.frequency_hz, [0.836, 0.957, 0.957, 1.016, 1.637], rtol=1e-3)
+
+
+def test_legs_that_only_braces_join_are_no_stage_of_their_own() -> None:
+    """As in a SACS deck, whose groups are its parts: the legs come with the braces."""
+    whole = read_structure("jacket15")
+    members = tuple(replace(m, part="legs") if m.name.startswith("leg") else m for m in whole.members)
+    legs_first = tuple(sorted(members, key=lambda m: m.part != "legs"))
+    first, *_, full = stages(replace(whole, members=legs_first), 2)
+    assert first.parts == first.added == ("legs", "jacket")
+    assert first.name == "legs, jacket"
+    np.testing.assert_allclose(first.frequency_hz, stages(whole, 2)[0].frequency_hz, rtol=1e-9)
+    assert full.name == "+ tower"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import require
+from jackettwin.errors import InputError, require
 from jackettwin.response import UndampedModes
 from jackettwin.structure import Assembly, Structure, assemble, check
 from jackettwin.updating.band import numbered_modes
@@ -44,12 +44,14 @@ class Stage:
     Attributes
     ----------
     parts : names of the parts standing
+    added : those of them that the stage before has not
     mass_kg : float
     assembly : Assembly
     modes : UndampedModes
     """
 
     parts: tuple[str, ...]
+    added: tuple[str, ...]
     mass_kg: float
     assembly: Assembly
     modes: UndampedModes
@@ -61,26 +63,40 @@ class Stage:
 
     @property
     def name(self) -> str:
-        """``jacket``, then ``+ transition_piece`` and so on: the part added last."""
-        last = self.parts[-1] or "members of no named part"
-        if len(self.parts) > 1:
-            return f"+ {last}"
-        return self.parts[0] or "whole structure"
+        """``jacket``, then ``+ transition_piece`` and so on: the parts added last."""
+        if self.parts == ("",):
+            return "whole structure"
+        last = ", ".join(part or "members of no named part" for part in self.added)
+        return last if self.added == self.parts else f"+ {last}"
 
 
 def stages(structure: Structure, number: int, *, gravity: bool = False) -> tuple[Stage, ...]:
     """Return a stage for every part, in the order the structure names them; the last is the whole.
 
-    Raises
-    ------
-    InputError
-        If the first part does not stand on its own: parts must be named from the ground upwards.
+    Parts that do not hold together with those before them, such as legs that only braces join, are no stage:
+    they come with the next part.
     """
     parts = tuple(dict.fromkeys(one.part for one in structure.bars)) or ("",)
-    found = []
+    found: list[Stage] = []
+    before = 0
     for k in range(1, len(parts) + 1):
-        # the whole keeps what no member holds, rigid links' ends among them
-        standing = structure if k == len(parts) else only_parts(structure, parts[:k])
+        standing: Structure | None = (
+            structure  # the whole keeps what no member holds, rigid links' ends among it
+        )
+        if k < len(parts):
+            standing = _if_joined(structure, parts[:k])
+        if standing is None:
+            continue
         assembly = assemble(standing, gravity=gravity)
-        found.append(Stage(parts[:k], check(assembly).mass_kg, assembly, numbered_modes(assembly, number)))
+        mass, modes = check(assembly).mass_kg, numbered_modes(assembly, number)
+        found.append(Stage(parts[:k], parts[before:k], mass, assembly, modes))
+        before = k
     return tuple(found)
+
+
+def _if_joined(structure: Structure, parts: tuple[str, ...]) -> Structure | None:
+    """Return only some parts of the structure; None if they are not one piece on all its feet."""
+    try:
+        return only_parts(structure, parts)
+    except InputError:
+        return None
