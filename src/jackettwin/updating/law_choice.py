@@ -73,13 +73,12 @@ def better(longer: Update, shorter: Update) -> bool:
     """Tell whether data want the longer of two laws, one of which holds the other.
 
     With standard deviations it is ten times as probable by Laplace's approximation of the evidence; without,
-    it lowers the cost by more than counts as the same.
+    it lowers the cost by more than counts as the same. One that alone locks a damper is no better.
     """
-    if longer.best.locked_damper:
-        return False
+    if longer.best.locked_damper != shorter.best.locked_damper:
+        return shorter.best.locked_damper
     if longer.problem.weighted:
-        probability = approximate_probability([shorter, longer])
-        return PREFERRED * probability.get(longer.law, 0.0) > probability.get(shorter.law, 0.0)
+        return bool(_log_evidence(longer) - _log_evidence(shorter) > -np.log(PREFERRED))
     cost = shorter.best.cost
     return longer.best.cost < cost - longer.problem.allowance(cost)
 
@@ -149,7 +148,7 @@ def series(fit: Callable[[str], Update], progress: Progress = SILENT) -> tuple[U
 def _why(chosen: Update, other: Update, branches: int) -> str:
     number = "one branch" if branches == 1 else f"{branches} branches"
     least, cost = other.best.cost, chosen.best.cost
-    if other.best.locked_damper:
+    if other.best.locked_damper and not chosen.best.locked_damper:
         reason = "one more locks a damper"
     elif chosen.problem.weighted:
         reason = "one more is not ten times as probable"

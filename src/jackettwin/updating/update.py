@@ -24,7 +24,14 @@ from jackettwin.updating.posterior.predictive import Missed, Predictive, predict
 from jackettwin.updating.posterior.smc import Posterior, sample_posterior
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.search.profile import Profile, profile
-from jackettwin.updating.search.solutions import MOST_EVALUATIONS, Search, SearchMethod, Solution, search
+from jackettwin.updating.search.solutions import (
+    LOCKED_DAMPER,
+    MOST_EVALUATIONS,
+    Search,
+    SearchMethod,
+    Solution,
+    search,
+)
 
 Sampler = Literal["smc", "nested"]
 
@@ -132,8 +139,8 @@ class Update:
 
     @property
     def best(self) -> Solution:
-        """The cheapest solution without a locked damper; the cheapest of all if every one is locked."""
-        return _best(self.search)
+        """The cheapest solution without a locked damper that is near the data; else the cheapest of all."""
+        return best_solution(self.search.solutions)
 
     @property
     def modes(self) -> ExactModes:
@@ -225,7 +232,7 @@ def update(
     )
     shown = problem.states[0].residuals.modes if modes is None else modes
     model = problem.model.reaching(max(shown))
-    theta = _first(problem, np.log(_best(found).theta)[None])[0]
+    theta = _first(problem, np.log(best_solution(found.solutions).theta)[None])[0]
     fit = Fit(found, model.exact_modes(theta, shown), damping_budget(model, theta, shown))
     fitted = Update(problem, model, shown, fit)
     if not sampled:
@@ -267,9 +274,22 @@ def law_probability(updates: Sequence[Update]) -> dict[str, float] | None:
     return {u.law: float(p) for u, p in zip(updates, probability, strict=True)}
 
 
-def _best(found: Search) -> Solution:
-    """Return the cheapest solution without a locked damper; the cheapest of all if every one is locked."""
-    return next((s for s in found.solutions if not s.locked_damper), found.solutions[0])
+def best_solution(solutions: Sequence[Solution]) -> Solution:
+    """Return the cheapest solution without a locked damper whose frequencies are near those of the cheapest.
+
+    A locked damper is suspect because the undamped structure is then far from what was measured. A solution
+    without one that is itself as far off is no better: without any other, the cheapest of all is returned.
+
+    Parameters
+    ----------
+    solutions : cheapest first
+    """
+    cheapest = solutions[0]
+    for s in solutions:
+        apart = abs(s.frequency_hz / cheapest.frequency_hz - 1.0)
+        if not s.locked_damper and (apart <= LOCKED_DAMPER).all():
+            return s
+    return cheapest
 
 
 def _first(problem: Problem, z: FloatArray) -> FloatArray:
