@@ -11,7 +11,7 @@ import pytest
 from jackettwin.decks import read_structure
 from jackettwin.soil import family, members
 from jackettwin.structure import Rayleigh, assemble
-from jackettwin.study import run_twin
+from jackettwin.study import run_twin, update_document
 from jackettwin.twin import read_twin
 from jackettwin.updating import Residuals, SupportModel, Target, Update, series, single, support_model, update
 
@@ -68,4 +68,7 @@ def test_a_twin_names_the_series_that_its_data_chose() -> None:
     result = run_twin(config, laws=("prony",), posteriors="none")
     (fit,) = result.updates
     assert fit.law in members(["prony"])
-    assert any(line.startswith("prony: ") for line in result.assumptions)
+    document = update_document(result, 0)
+    assert document["series"] in result.assumptions
+    assert f"({fit.law})" in document["series"] or "the most that are tried" in document["series"]
+    assert update_document(run_twin(config, laws=("zener",), posteriors="none"), 0)["series"] is None

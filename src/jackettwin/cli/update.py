@@ -83,19 +83,13 @@ def _point(text: str) -> dict[str, float]:
     return point
 
 
-def _print_series(result: TwinResult) -> None:
-    """Print how many branches a Prony series without a number was given, and why."""
-    from jackettwin.soil import SERIES
-
-    for line in result.assumptions:
-        if line.startswith(f"{SERIES}: "):
-            output.print(f"  {line}")
-
-
 def print_updates(result: TwinResult, *, only: str = "") -> None:
     """Print parameters and modes of each law, or of one, what no support explains, and what to beware of."""
+    from jackettwin.study import series_sentence
+
     fitted = {m.label for m in result.measured if m.fits_frequency}
-    _print_series(result)
+    if chosen := series_sentence(result):
+        output.print(f"  {chosen}")
     for u, excess in zip(result.updates, result.excess, strict=True):
         if only and u.law != only:
             continue

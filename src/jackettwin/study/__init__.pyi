@@ -1,6 +1,7 @@
 from .document import (
     ranking_document as ranking_document,
     run_document as run_document,
+    series_sentence as series_sentence,
     update_document as update_document,
 )
 from .explore import (

@@ -10,6 +10,7 @@ from jackettwin.files import named
 from jackettwin.identification import Comparison, identification_document
 from jackettwin.identification.document import mode_document, shape_document
 from jackettwin.intervals import interval_90
+from jackettwin.soil import SERIES, members
 from jackettwin.study.measurements import MeasuredMode, MeasuredRelaxation
 from jackettwin.study.result import TwinResult, held_document
 from jackettwin.study.scrutiny import scrutiny_document
@@ -71,6 +72,11 @@ def ranking_document(updates: Sequence[Update]) -> list[dict[str, Any]]:
     return [{**named(r, *names), "locked_damper": r.locked} for r in ranked(updates)]
 
 
+def series_sentence(result: TwinResult) -> str | None:
+    """Return how many branches a Prony series without a number was given, and why; None if none was asked."""
+    return next((line for line in result.assumptions if line.startswith(f"{SERIES}: ")), None)
+
+
 def update_document(result: TwinResult, index: int) -> dict[str, Any]:
     """Return the document of one law of ``jackettwin update``."""
     u = result.updates[index]
@@ -78,6 +84,7 @@ def update_document(result: TwinResult, index: int) -> dict[str, Any]:
     known = u.uncertainty
     return {
         "law": u.law,
+        "series": series_sentence(result) if u.law in members([SERIES]) else None,
         "parameters": _parameters(u),
         "modes": _compared(result.measured, u),
         "real_poles": _compared_relaxations(result.relaxations, u),
