@@ -111,6 +111,10 @@ class Client:
         """Return by how much every updated parameter moves each measured mode."""
         return list(self._pages(f"/assets/{asset}/sensitivity"))
 
+    def explored(self, asset: str) -> dict[str, Any]:
+        """Return cost surface, cost curves and root loci of the updated law around its medians."""
+        return self._asked("GET", f"/assets/{asset}/explore")
+
     def findings(self, asset: str, **query: Any) -> Iterator[dict[str, Any]]:
         """Yield what was worth saying, newest first."""
         return self._pages(f"/assets/{asset}/findings", **query)

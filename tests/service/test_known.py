@@ -11,6 +11,7 @@ import pytest
 from tests.service.conftest import NOON
 from tests.support.observations import estimate, observation
 
+from jackettwin.service.web.schemas import ExploredOut
 from jackettwin.service.workers import engine, verdict
 from jackettwin.service.workers.question import Question
 from jackettwin.service.workers.tasks import know
@@ -24,8 +25,8 @@ update: {laws: [kelvin-voigt], particles: 20, starts: 2, damping_of: all}
 MODES = {1: estimate(0.1755, 0.012, 2e-3, 0.1), 2: estimate(0.1785, 0.011, 2e-3, 0.1)}
 
 
-def asked_of(folder: Path, modes: dict) -> tuple[dict, str]:
-    """Return what is known of three records that show some modes, and the page on it."""
+def outcome_of(folder: Path, modes: dict) -> tuple[dict, str]:
+    """Return what is kept of three records that show some modes, and the page on it."""
     (folder / engine.TWIN_FILE).write_text(TWIN)
     model = engine.load_twin(folder).model
     documents = []
@@ -40,12 +41,28 @@ def asked_of(folder: Path, modes: dict) -> tuple[dict, str]:
     )  # fmt: skip
     outcome = know(asked)
     assert outcome.page is not None and outcome.of == "it"
-    return json.loads(outcome.document)["known"], gzip.decompress(outcome.page).decode()
+    return json.loads(outcome.document), gzip.decompress(outcome.page).decode()
+
+
+def asked_of(folder: Path, modes: dict) -> tuple[dict, str]:
+    """Return what is known of them, and the page on it."""
+    document, page = outcome_of(folder, modes)
+    return document["known"], page
 
 
 @pytest.fixture(scope="module")
-def answered(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict, str]:
-    return asked_of(tmp_path_factory.mktemp("twin"), MODES)
+def kept(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict, str]:
+    return outcome_of(tmp_path_factory.mktemp("twin"), MODES)
+
+
+@pytest.fixture(scope="module")
+def answered(kept: tuple[dict, str]) -> tuple[dict, str]:
+    return kept[0]["known"], kept[1]
+
+
+@pytest.fixture(scope="module")
+def told(kept: tuple[dict, str]) -> dict:
+    return kept[0]
 
 
 def test_what_no_ground_explains_has_no_interval(tmp_path: Path) -> None:
@@ -83,6 +100,27 @@ def test_a_softer_ground_slows_the_first_mode(answered: tuple[dict, str]) -> Non
     assert set(first["frequency_sensitivity"]) == set(known["parameters"])
     assert 0.0 < first["frequency_sensitivity"]["k"] < 0.5
     assert first["damping_sensitivity"]["k"] < 0.0 < first["damping_sensitivity"]["c"]
+
+
+def test_the_law_is_explored_around_the_medians(told: dict) -> None:
+    """The cost rises far from where the parameters are, and every locus goes through the poles that are known."""
+    found, known = ExploredOut(**told["together"]["known"]["explored"]), told["known"]
+    assert "explored" not in known  # what the twin knows stays short
+    at = {p.name: p.value for p in found.parameters}
+    assert at == pytest.approx({name: p["median"] for name, p in known["parameters"].items()}, rel=1e-5)
+    assert found.surface is not None
+    assert (found.surface.x.parameter, found.surface.y.parameter) == ("k", "c")
+    assert len(found.surface.cost) == len(found.surface.y.values)
+    assert {len(row) for row in found.surface.cost} == {len(found.surface.x.values)}
+    here = [curve.cost[curve.factor.index(1.0)] for curve in found.curves]
+    assert here == pytest.approx([here[0]] * 2, rel=1e-5)  # of one and the same point
+    assert found.surface.cost[0][0] > 10.0 * here[0] and found.surface.cost[0][-1] > 10.0 * here[0]
+    first = known["sensitivity"][0]
+    for locus in found.loci:
+        (branch,) = (b for b in locus.branches if b.mode == first["mode"])
+        assert branch.frequency_hz[locus.origin] == pytest.approx(first["frequency_hz"], rel=1e-5)
+        assert branch.damping_ratio[locus.origin] == pytest.approx(first["damping_ratio"], rel=1e-5)
+        assert len(branch.frequency_hz) == len(locus.values)
 
 
 def test_the_page_is_of_all_records(answered: tuple[dict, str]) -> None:

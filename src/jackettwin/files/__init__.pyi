@@ -2,7 +2,12 @@ from .atomic import atomic_folder as atomic_folder, atomic_path as atomic_path
 from .cache import NOT_KEPT as NOT_KEPT, Keep as Keep, KeptInFolder as KeptInFolder, kept as kept
 from .codec import encode as encode, named as named
 from .disk_space import check_room as check_room
-from .json import Streamed as Streamed, json_pieces as json_pieces, write_json as write_json
+from .json import (
+    Streamed as Streamed,
+    json_pieces as json_pieces,
+    null_for_nan as null_for_nan,
+    write_json as write_json,
+)
 from .limits import (
     Angle as Angle,
     ForceCoefficient as ForceCoefficient,

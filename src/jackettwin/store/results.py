@@ -288,12 +288,17 @@ def find_supports(connection: Connection, asset: str, version: int) -> dict[str,
     return _part(connection, asset, version, "known")
 
 
+def find_explored(connection: Connection, asset: str, version: int) -> dict[str, Any]:
+    """Return what the law's parameters do to cost and modes, empty if nothing yet."""
+    return _part(connection, asset, version, ("together", "known", "explored"))
+
+
 def find_stiffness(connection: Connection, asset: str, version: int) -> dict[str, Any]:
     """Return the stiffness of the supports on each day, empty if nothing yet."""
     return _part(connection, asset, version, "supports")
 
 
-def _part(connection: Connection, asset: str, version: int, name: str) -> dict[str, Any]:
+def _part(connection: Connection, asset: str, version: int, name: str | tuple[str, ...]) -> dict[str, Any]:
     query = select(knowledge.c.document[name]).where(*_of_version(asset, version))
     return connection.scalar(query) or {}
 

@@ -11,6 +11,7 @@ from .explore import (
     exploration_document as exploration_document,
     explore as explore,
     explore_model as explore_model,
+    explore_update as explore_update,
     sensitivity_rows as sensitivity_rows,
 )
 from .follow import follow as follow, follow_days as follow_days

@@ -133,14 +133,38 @@ def explore(
     chosen = (law or config.update.laws[0],)
     result = run_twin(config, laws=chosen, posteriors="none", progress=progress, keep=keep)
     (update,) = result.updates
+    return explore_update(config.name, update, settings, seed=config.update.seed, progress=progress)
+
+
+def explore_update(
+    name: str,
+    update: Update,
+    settings: ExploreSettings = ExploreSettings(),
+    *,
+    seed: int = 0,
+    progress: Progress = SILENT,
+) -> Exploration:
+    """Explore a law that was fitted, around its best solution or around a given point.
+
+    Parameters
+    ----------
+    seed : of the starting points that are followed
+    progress : Progress
+        Told of two steps.
+
+    Raises
+    ------
+    InputError
+        If a mode, parameter or value is none of its own.
+    """
     problem = update.problem
     with located(field="at"):
         at = _point(problem, settings.at, update.best.theta)
     progress("cost and ways of the search")
-    landscape = _landscape(update, settings, at, seed=config.update.seed, progress=progress)
+    landscape = _landscape(update, settings, at, seed=seed, progress=progress)
     theta = problem.vectors(np.log(at)[None], problem.states[0])[0]
     progress("modes along the parameters")
-    return _explored(config.name, update.model, theta, settings, update.shown, landscape)
+    return _explored(name, update.model, theta, settings, update.shown, landscape)
 
 
 def explore_model(

@@ -17,8 +17,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from jackettwin.arrays import FloatArray
-from jackettwin.files import atomic_path
-from jackettwin.files.json import null_for_nan
+from jackettwin.files import atomic_path, null_for_nan
 from jackettwin.loads import Coefficients
 from jackettwin.report.view.dimensions import dimensions
 from jackettwin.report.view.motions import DrawnMotion

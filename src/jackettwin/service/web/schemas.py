@@ -405,6 +405,77 @@ class SensitivityOut(BaseModel):
     damping_sensitivity: dict[str, float]
 
 
+Drawn = list[float | None]
+"""Values of a curve; null where there is none."""
+
+
+class BranchOut(BaseModel):
+    """The way of one mode along a parameter; null from where it no longer oscillates."""
+
+    mode: int
+    label: str
+    pole_real_rad_s: Drawn
+    pole_imag_rad_s: Drawn
+    frequency_hz: Drawn
+    damping_ratio: Drawn
+    most_damped_at: float | None
+    most_damping_ratio: float | None
+
+
+class LocusOut(BaseModel):
+    """The root locus along a parameter; ``origin`` is the place of the point explored among its values."""
+
+    parameter: str
+    unit: str
+    values: list[float]
+    origin: int
+    branches: list[BranchOut]
+
+
+class AxisOut(BaseModel):
+    """Values of a parameter along an axis."""
+
+    parameter: str
+    values: list[float]
+
+
+class SurfaceOut(BaseModel):
+    """The cost over two parameters, a row a value of y."""
+
+    x: AxisOut
+    y: AxisOut
+    cost: list[Drawn]
+
+
+class CurveOut(BaseModel):
+    """The cost as one parameter is multiplied by factors."""
+
+    parameter: str
+    value: float
+    factor: list[float]
+    cost: Drawn
+
+
+class ExploredValue(BaseModel):
+    """A parameter at the point explored, and its bounds."""
+
+    name: str
+    unit: str
+    value: float
+    low: float
+    high: float
+
+
+class ExploredOut(BaseModel):
+    """What the parameters of the law do to cost and modes around their medians; empty if nothing yet."""
+
+    law: str | None = None
+    parameters: list[ExploredValue] = []
+    loci: list[LocusOut] = []
+    surface: SurfaceOut | None = None
+    curves: list[CurveOut] = []
+
+
 class ChangeOut(BaseModel):
     """A quantity under two versions; null where one does not know it.
 

@@ -18,12 +18,22 @@ from jackettwin.answers import ModeAnswer, Span, answer
 from jackettwin.arrays import FloatArray
 from jackettwin.change import JUDGED, Days, Ground, corrections, finding_of, judge, sight_of
 from jackettwin.errors import JackettwinError
+from jackettwin.files import null_for_nan
 from jackettwin.report import PageSection, span_words, stiffness_section
 from jackettwin.report.build import report_sections
 from jackettwin.report.pages.page import page_text
 from jackettwin.service.workers import engine, stiffness
 from jackettwin.soil import parameter_words
-from jackettwin.study import Followed, TwinResult, days_document, in_time_document, sensitivity_rows
+from jackettwin.study import (
+    ExploreSettings,
+    Followed,
+    TwinResult,
+    days_document,
+    exploration_document,
+    explore_update,
+    in_time_document,
+    sensitivity_rows,
+)
 from jackettwin.study.measure import Measured
 from jackettwin.study.run import updated_twin
 from jackettwin.twin import ALL, OBSERVATION
@@ -36,6 +46,8 @@ if TYPE_CHECKING:
 
 CANNOT_MEET = "the model cannot meet what was measured on any ground: no interval; see the report"
 """What is said of parameters that come nearest to the data and do not explain them."""
+_GRID = 33
+"""Points a side of the cost surface that is kept."""
 NO_MODE = "no mode of the model has been seen"
 FEW, GROWN, MOST_DAYS = 24, 1.3, 30
 """Records up to which all together are asked whenever there is a new one; then their growth, and the days,
@@ -71,7 +83,8 @@ def of_today(known: Mapping[str, Any], followed: Followed | None) -> dict[str, A
     Of a parameter that is followed from day to day, the day stands beside it.
     """
     parameters = {name: dict(p) for name, p in known["parameters"].items()}
-    found, said = dict(known), "" if followed is None else followed.stiffness_statement
+    found = {name: value for name, value in known.items() if name != "explored"}
+    said = "" if followed is None else followed.stiffness_statement
     if followed is not None and said and known["status"] != CANNOT_MEET:
         last = followed.days[-1]
         for name in {*followed.stiffness} & {*parameters}:
@@ -158,6 +171,7 @@ def known(
         },
         "budget": [_budget(mode) for mode in answers.modes],
         "sensitivity": _sensitivity(u, median, result),
+        "explored": _explored(u, median, result.name),
     }, sections
 
 
@@ -167,6 +181,27 @@ def _sensitivity(u: Update, median: FloatArray, result: TwinResult) -> list[dict
     found = sensitivity(u.model, theta, tuple(m.mode for m in result.measured))
     rows = sensitivity_rows(found, [m.label for m in result.measured])
     return [row for row in rows if np.isfinite(row["frequency_hz"])]
+
+
+def _explored(u: Update, median: FloatArray, name: str) -> dict[str, Any]:
+    """Return the cost and every mode's way along each parameter around the medians; empty if it cannot be."""
+    at = {p.name: float(np.clip(v, p.low, p.high)) for p, v in zip(u.problem.parameters, median, strict=True)}
+    try:
+        found = explore_update(name, u, ExploreSettings(grid=_GRID, starts=0, at=at))
+    except JackettwinError:  # no mode oscillates there; what else is known stands
+        return {}
+    document = exploration_document(found)
+    kept = {key: document[key] for key in ("parameters", "loci", "surface", "curves")}
+    return {"law": u.law, **_rounded(null_for_nan(kept))}
+
+
+def _rounded(value: Any) -> Any:
+    """Return plain JSON data with numbers of six digits: they are drawn, not computed with."""
+    if isinstance(value, dict):
+        return {key: _rounded(one) for key, one in value.items()}
+    if isinstance(value, list):
+        return [_rounded(one) for one in value]
+    return float(f"{value:.6g}") if isinstance(value, float) else value
 
 
 def _budget(mode: ModeAnswer) -> dict[str, Any]:

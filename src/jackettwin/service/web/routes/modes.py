@@ -28,6 +28,7 @@ from jackettwin.service.web.schemas import (
     AlarmOut,
     BudgetOut,
     ComparisonOut,
+    ExploredOut,
     FindingOut,
     ModeOut,
     Page,
@@ -121,6 +122,13 @@ def sensitivity(
     asked = known_version(connection, asset, version)
     found = said.twin(connection, parts, asked)
     return Page(items=found.parameters.get("sensitivity", []))
+
+
+@router.get("/assets/{asset}/explore", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def explored(asset: AssetName, connection: Told, version: AnyVersion = None) -> ExploredOut:
+    """Return what the law's parameters do: cost over two of them and over each, root loci along each."""
+    asked = known_version(connection, asset, version)
+    return ExploredOut(**results.find_explored(connection, asset, asked.version))
 
 
 @router.get("/assets/{asset}/life", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
