@@ -165,7 +165,11 @@ def known(twin: Any, sums: Any, newest: Any, in_all: tuple[int, float]) -> tuple
         "damping_sensitivity": {"k": -0.01},
     }
     found = {"status": "ok", "parameters": parameters, "records": in_all[0], "budget": budget}
-    return {**found, "sensitivity": [moved]}, None
+    explored = {
+        "law": "kelvin-voigt",
+        "curves": [{"parameter": "k", "value": k, "factor": [1.0], "cost": [None]}],
+    }
+    return {**found, "sensitivity": [moved], "explored": explored}, None
 
 
 @pytest.fixture

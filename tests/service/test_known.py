@@ -103,7 +103,7 @@ def test_a_softer_ground_slows_the_first_mode(answered: tuple[dict, str]) -> Non
 
 
 def test_the_law_is_explored_around_the_medians(told: dict) -> None:
-    """The cost rises far from where the parameters are, and every locus goes through the poles that are known."""
+    """The cost rises far from the parameters, and every locus goes through the poles that are known."""
     found, known = ExploredOut(**told["together"]["known"]["explored"]), told["known"]
     assert "explored" not in known  # what the twin knows stays short
     at = {p.name: p.value for p in found.parameters}

@@ -34,6 +34,7 @@ QUERIES = {
     "/assets/{asset}/supports": 4,
     "/assets/{asset}/damping-budget": 7,
     "/assets/{asset}/sensitivity": 7,
+    "/assets/{asset}/explore": 4,
     "/assets/{asset}/comparison": 12,
     "/assets/{asset}/life": 3,
     "/assets/{asset}/findings": 4,
