@@ -109,6 +109,7 @@ def test_a_part_without_density_is_refused_and_what_it_has_is_named(tmp_path: Pa
     ("free", "value"),
     [
         ({"part": "jacket", "property": "wall_thickness"}, 1.12),
+        ({"part": "jacket", "property": "growth_m", "bounds": [0.0, 0.1]}, 0.02),
         ({"part": "transition_piece", "property": "added_mass_kg", "bounds": [0.0, 2.0e6]}, 4.0e5),
         ({"body": "rna", "property": "mass"}, 0.93),
         ({"body": "tower_top", "property": "cg_shift_z_m", "bounds": [-3.0, 3.0]}, 1.7),

@@ -1,4 +1,9 @@
-from .adjusted import PROPERTIES as PROPERTIES, adjusted as adjusted, foot_stiffness as foot_stiffness
+from .adjusted import (
+    GROWTH_KG_M3 as GROWTH_KG_M3,
+    PROPERTIES as PROPERTIES,
+    adjusted as adjusted,
+    foot_stiffness as foot_stiffness,
+)
 from .assemble import Assembly as Assembly, assemble as assemble
 from .check import (
     ModelCheck as ModelCheck,

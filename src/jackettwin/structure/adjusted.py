@@ -16,6 +16,8 @@ from jackettwin.structure.mesh import discretise
 from jackettwin.structure.model import Inertia, Member, PointMass, Section, Structure, Vector
 from jackettwin.structure.two_node import Matrix
 
+GROWTH_KG_M3 = 1325.0
+"""Density of marine growth, ISO 19901-1 (2015) annex: 1325 kg/m³ unless measured."""
 RNA = "rna"
 """What stands on the top node goes by this name, too."""
 
@@ -91,6 +93,39 @@ def _added_mass(structure: Structure, part: str, mass_kg: float) -> Structure:
         return replace(m, material=replace(m.material, density_kg_m3=rho))
 
     return _with_members(structure, part, changed)
+
+
+def _growth(structure: Structure, part: str, thickness_m: float) -> Structure:
+    """Return the part with marine growth of a thickness on it below still water, in its density.
+
+    ρ π t (D + t) of a metre of tube in water: its own mass, not that of the water it moves along.
+    """
+    require(
+        thickness_m >= 0.0, "growth is not negative", field="growth_m", value=thickness_m, allowed=">= 0 m"
+    )
+    p = discretise(structure, subdivide=1).properties
+    places = {m.name: i for i, m in enumerate(structure.members)}
+
+    def changed(m: Member) -> Member:
+        ends = (structure.nodes[m.start][2], structure.nodes[m.end][2])
+        layer = GROWTH_KG_M3 * pi * thickness_m * (_width(m) + thickness_m)
+        wet = _wet_share(*ends, structure.sea_level_z_m)
+        rho = m.material.density_kg_m3 + layer * wet / float(p.A[places[m.name]])
+        return replace(m, material=replace(m.material, density_kg_m3=rho))
+
+    return _with_members(structure, part, changed)
+
+
+def _wet_share(a: float, b: float, surface: float) -> float:
+    """Return which share of a member from height a to height b is below the surface.
+
+    >>> _wet_share(-30.0, 10.0, 0.0), _wet_share(-5.0, -5.0, 0.0), _wet_share(2.0, 9.0, 0.0)
+    (0.75, 1.0, 0.0)
+    """
+    low, high = min(a, b), max(a, b)
+    if high <= surface:
+        return 1.0
+    return 0.0 if low >= surface else (surface - low) / (high - low)
 
 
 def _width(member: Member) -> float:
@@ -212,6 +247,7 @@ PROPERTIES: dict[str, dict[str, Property]] = {
         "density": Property(True, _density),
         "wall_thickness": Property(True, _walls),
         "added_mass_kg": Property(False, _added_mass),
+        "growth_m": Property(False, _growth),
     },
     "body": {
         "mass": Property(True, _body_mass),

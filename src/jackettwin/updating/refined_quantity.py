@@ -107,4 +107,4 @@ def _usual_bounds(what: str, is_factor: bool, tolerance: float | None) -> tuple[
         return 0.1, 10.0
     if is_factor:
         return float(np.exp(-_WIDEST * tolerance)), float(np.exp(_WIDEST * tolerance))
-    return (0.0 if what == "added_mass_kg" else -_WIDEST * tolerance), _WIDEST * tolerance
+    return (0.0 if what in ("added_mass_kg", "growth_m") else -_WIDEST * tolerance), _WIDEST * tolerance

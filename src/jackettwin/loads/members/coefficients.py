@@ -14,10 +14,9 @@ import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.errors import InputError, require
+from jackettwin.structure import GROWTH_KG_M3
 
 SEA_WATER_KG_M3 = 1025.0
-GROWTH_KG_M3 = 1325.0
-"""Density of marine growth, ISO 19901-1 (2015) annex: 1325 kg/m³ unless measured."""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,6 @@ from pydantic import Field
 from jackettwin.errors import InputError, located, require
 from jackettwin.files import ForceCoefficient, Height, Placed, Schema
 from jackettwin.loads.members.coefficients import (
-    GROWTH_KG_M3,
     SEA_WATER_KG_M3,
     Coefficients,
     GrowthBand,
@@ -23,7 +22,7 @@ from jackettwin.loads.members.coefficients import (
 from jackettwin.loads.members.ends import EndCoefficients
 from jackettwin.loads.members.hydrodyn_deck import read_hydrodyn
 from jackettwin.loads.members.water import Water
-from jackettwin.structure import PILES, Structure
+from jackettwin.structure import GROWTH_KG_M3, PILES, Structure
 
 _GAP_M = 5.0
 """How far above the bed feet may end, as those of piles that stick out do."""
