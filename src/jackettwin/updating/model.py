@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import pi
 from typing import Any
 
@@ -105,7 +106,7 @@ class SupportModel:
         per_group = np.reshape(numbers, (len(self.tie_groups.suffixes), -1))
         return [self.family.build(values, self.reference_hz) for values in per_group]
 
-    @property
+    @cached_property
     def n_of_law(self) -> int:
         """How many of the parameters are the law's, on all tie groups."""
         return len(self.tie_groups.parameters(self.family))

@@ -239,19 +239,13 @@ class FreeBranches(Family):
     def rows(self, values: FloatArray, reference_hz: float) -> tuple[FloatArray, FloatArray]:
         """Return rows and slopes, as the base class says."""
         n = len(self.parameters) // 2
-        rows, slopes = _empty(values, branches=n)
-        k0, g = values[:, 0], values[:, 1::2]
-        tau = values[:, 2, None] / np.cumprod(
-            np.column_stack([np.ones(len(values)), values[:, 4::2]]), axis=1
-        )
-        rows[:, K0], rows[:, BRANCHES::2], rows[:, BRANCHES + 1 :: 2] = k0, k0[:, None] * g, tau
-        slopes[:, K0, 0], slopes[:, BRANCHES::2, 0] = k0, rows[:, BRANCHES::2]
-        for j in range(n):
-            k_place = BRANCHES + 2 * j
-            slopes[:, k_place, 1 + 2 * j] = rows[:, k_place]
-            slopes[:, k_place + 1, 2] = tau[:, j]
-            slopes[:, k_place + 1, 4 : 3 + 2 * j : 2] = -tau[:, j, None]
-        return rows, slopes
+        rows = np.zeros((len(values), BRANCHES + 2 * n))
+        faster = values[:, 2::2].copy()
+        faster[:, 0] = 1.0 / faster[:, 0]
+        rows[:, K0], rows[:, OMEGA0] = values[:, 0], 1.0
+        rows[:, BRANCHES::2] = values[:, :1] * values[:, 1::2]
+        rows[:, BRANCHES + 1 :: 2] = 1.0 / np.cumprod(faster, axis=1)
+        return rows, rows[:, :, None] * _powers(n)
 
     def weakest(self, values: FloatArray) -> int:
         """Return the stiffness of the weakest branch."""
@@ -274,6 +268,19 @@ class FreeBranches(Family):
         times, g = maxwell_3_times(reference_hz), float(np.mean(MAXWELL_3_WEIGHTS))
         about = {"g": (g, 1.0), "tau": (float(times[0]), 1.0), "spacing": (float(times[0] / times[1]), 0.7)}
         return {name: about[name.rstrip("0123456789")] for name in self.names[1:]}
+
+
+@cache
+def _powers(n: int) -> FloatArray:
+    """Return the powers of the parameters of n free branches in each entry of a row, (width, 2 n + 1)."""
+    powers = np.zeros((BRANCHES + 2 * n, 1 + 2 * n))
+    powers[K0, 0] = 1.0
+    for j in range(n):
+        stiffness = BRANCHES + 2 * j
+        powers[stiffness, [0, 1 + 2 * j]] = 1.0
+        powers[stiffness + 1, 2] = 1.0
+        powers[stiffness + 1, 4 : 3 + 2 * j : 2] = -1.0
+    return powers
 
 
 def _branches(values: FloatArray) -> tuple[FloatArray, FloatArray]:
