@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from jackettwin.arrays import ComplexArray
     from jackettwin.identification.comparison import Comparison
-    from jackettwin.identification.estimate import Identification, ModalEstimate
+    from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
     from jackettwin.identification.relaxation_limits import AmbientLimits
 
 
@@ -29,7 +29,10 @@ def identification_document(
     names = [channel.name for channel in found.channels]
     return {
         "records": list(found.records),
-        "modes": [mode_document(mode, names) for mode in found.modes],
+        "modes": [
+            {**mode_document(mode, names), "poles": poles_document(found.stabilisation, k)}
+            for k, mode in enumerate(found.modes)
+        ],
         "rejected": [{**asdict(one), "status": one.status.value} for one in found.rejected],
         "settings": {**asdict(found.settings), "orders": list(found.settings.orders)},
         "real_poles": [
@@ -100,6 +103,7 @@ def mode_document(m: ModalEstimate, channels: Sequence[str] | None) -> dict[str,
         "status_reason": m.status_reason,
         "status_codes": [finding.code for finding in m.reasons],
         "unrefined": None if m.unrefined is None else mode_document(m.unrefined, None),
+        "log_covariance": None if m.log_covariance is None else m.log_covariance.tolist(),
         "least_relative_std": {
             "damping_ratio_long_data": m.damping_ratio_cov_limit,
             "frequency_cramer_rao": frequency_bound,
@@ -111,6 +115,29 @@ def mode_document(m: ModalEstimate, channels: Sequence[str] | None) -> dict[str,
         raw = m.mode_shape_unaligned
         document["mode_shape_unaligned"] = None if raw is None else shape_document(raw, channels)
     return document
+
+
+def poles_document(poles: Stabilisation, mode: int) -> dict[str, float | int] | None:
+    """Return number, mean and scatter over the model orders of a mode's poles, None where it has none.
+
+    The scatter is that of one record over its models, not the uncertainty of the mode.
+
+    Parameters
+    ----------
+    mode : int
+        Its number in ``Stabilisation.cluster``.
+    """
+    own = poles.cluster == mode
+    if not own.any():
+        return None
+    f, zeta = poles.frequency_hz[own], poles.damping_ratio[own]
+    return {
+        "count": int(own.sum()),
+        "frequency_mean_hz": float(f.mean()),
+        "frequency_scatter_hz": float(f.std()),
+        "damping_ratio_mean": float(zeta.mean()),
+        "damping_ratio_scatter": float(zeta.std()),
+    }
 
 
 def shape_document(shape: ComplexArray, channels: Sequence[str]) -> dict[str, list[float]]:
