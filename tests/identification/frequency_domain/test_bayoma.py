@@ -10,7 +10,7 @@ import pytest
 from scipy import stats
 
 from jackettwin.identification import IdentificationSettings, identify
-from jackettwin.identification.frequency_domain.bayoma import (
+from jackettwin.identification.frequency_domain.band_posterior import (
     BandPosterior,
     band_posterior,
     one_mode_cost,

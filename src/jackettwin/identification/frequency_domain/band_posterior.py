@@ -1,0 +1,330 @@
+r"""Most probable modes of one band under Gaussian lines, and their posterior deviations (BAYOMA).
+
+In a band around one or a few modes the scaled transforms of the channels are independent complex Gaussian
+vectors of covariance
+
+.. math:: E_k = \Phi H_k S H_k^* \Phi^T + S_e I, \qquad
+          h_{ik} = \frac{1}{1 - \beta_{ik}^{-2} - 2 i \zeta_i \beta_{ik}^{-1}}, \quad \beta_{ik} = f_k/f_i
+
+(accelerations under forces of constant density S in the band). With flat priors the posterior is the
+likelihood; its maximum is the most probable value, and the inverse of its curvature there the covariance.
+For one mode the most probable shape is an eigenvector (Au 2011, J. Eng. Mech. 137(3)), so that four numbers
+are sought; for several the likelihood is that of the few coordinates of the dominant subspace (Au 2012, Mech.
+Syst. Signal Process. 26). The number of modes in a band is that of the largest evidence by Schwarz.
+
+Au, S.K. 2017, Operational Modal Analysis, Springer, chapters 12 and 13.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy  # scipy.optimize is loaded where it is used
+
+from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.identification.mode_shapes import aligned
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+MOST_MODES = 3
+"""Most modes in a band."""
+SMOOTH = 5
+"""Lines over which the power in another direction is averaged."""
+MIN_PEAK = 4.0
+"""Smallest ratio of its peak to its median for which a further mode is tried."""
+START_DAMPING = 0.01
+"""Damping ratio from which the search starts."""
+MAX_DAMPING = 0.2
+"""Damping ratio beyond which a mode of a band is its background, and dropped."""
+MAX_LOG_STD = 1.0
+"""Standard deviation of ln ζ beyond which a band does not tell a mode."""
+LEAST_NOISE = 1e-12
+"""Share of the power that is rounding, without which a matrix of one strong mode has no inverse."""
+WIDE = 7.0
+"""Reach of the search about its start, in logarithms and in units of the shapes."""
+STEP = 1e-4
+"""Step of the curvature's differences, in logarithms and in units of the shapes."""
+MOST_STEPS = 10
+"""Most of Newton's steps after the search."""
+MIN_GAIN = 1e-3
+"""Gain of log-posterior that a step must promise, in twice its units."""
+MOST_MOVE = 0.5
+"""Largest change of a parameter in one step."""
+HALVINGS = 10
+"""Times a step is halved that does not gain."""
+FLAT = 1e-9
+"""Share of the largest curvature below which a direction has none: the lengths of shapes."""
+
+
+@dataclass(frozen=True)
+class BandPosterior:
+    """Most probable modes of one band.
+
+    Attributes
+    ----------
+    frequency_hz, damping_ratio : (n_modes,)
+    shapes : (n_channels, n_modes)
+        Of unit length.
+    log_covariance : (n_modes, 2, 2)
+        Posterior covariance of (ln f, ln ζ).
+    shape_std : (n_channels, n_modes)
+        Posterior standard deviation of the entries of the shapes of unit length, from the noise alone.
+    evidence : float
+        Logarithm of the likelihood less Schwarz's penalty.
+    """
+
+    frequency_hz: FloatArray
+    damping_ratio: FloatArray
+    shapes: FloatArray
+    log_covariance: FloatArray
+    shape_std: FloatArray
+    evidence: float
+
+
+def band_posterior(lines: ComplexArray, f: FloatArray, starts_hz: list[float]) -> BandPosterior | None:
+    """Return the most probable modes of a band; None if it tells none.
+
+    As many modes as peaks are tried, and one more.
+
+    Parameters
+    ----------
+    lines : (n_channels, n_lines)
+        Fourier transform of the samples in the band, in any constant scale.
+    f : (n_lines,)
+        Frequencies [Hz].
+    starts_hz : list of float
+        Frequencies of the peaks.
+    """
+    found = []
+    scaled = lines / np.sqrt(np.mean(np.abs(lines) ** 2))
+    starts_hz = starts_hz[: len(lines)]
+    trials, beside = [starts_hz], _peak_beside(scaled, f, starts_hz)
+    if beside is not None:
+        trials.append([*starts_hz, beside])
+    for starts in trials:
+        one = _one_mode(scaled, f, starts[0]) if len(starts) == 1 else _modes(scaled, f, starts)
+        if one is not None:
+            found.append(one)
+    return max(found, key=lambda one: one.evidence, default=None)
+
+
+def _peak_beside(lines: ComplexArray, f: FloatArray, starts_hz: list[float]) -> float | None:
+    """Return where the next direction of motion has a clear peak, None if it has none or is not sought."""
+    n_modes = len(starts_hz)
+    if n_modes >= min(MOST_MODES, len(lines)):
+        return None
+    _, vectors = np.linalg.eigh(np.real(lines @ lines.conj().T))
+    power = np.abs(vectors[:, -1 - n_modes] @ lines) ** 2
+    smooth = np.convolve(power, np.full(SMOOTH, 1.0 / SMOOTH), mode="same")
+    peak = int(np.argmax(smooth))  # at the same frequency, too: pairs of a tower are that close
+    return float(f[peak]) if smooth[peak] > MIN_PEAK * np.median(smooth) else None
+
+
+def transfer(f: FloatArray, f_n: FloatArray, zeta: FloatArray) -> ComplexArray:
+    """Return the acceleration of modes under a force of one [per unit modal mass], (n_lines, n_modes)."""
+    beta = np.divide.outer(f, f_n)
+    return np.asarray(beta**2 / (beta**2 - 1.0 - 2j * zeta * beta))
+
+
+def _one_mode(lines: ComplexArray, f: FloatArray, start_hz: float) -> BandPosterior | None:
+    """Return the one most probable mode: an eigenvector, and four numbers (ln f, ln ζ, ln S, ln Se)."""
+    outer = np.real(np.einsum("ak,bk->kab", lines, lines.conj()))
+    cost = partial(one_mode_cost, outer=outer, f=f)
+    powers = np.linalg.eigvalsh(outer.mean(axis=0))
+    noise = max(float(powers[:-1].mean()), 1e-6)  # one shape leaves all other directions to the noise
+    peak = float(np.einsum("kaa->k", outer).max())
+    start = np.log([start_hz, START_DAMPING, peak * 4.0 * START_DAMPING**2, noise])
+    theta = _most_probable(cost, start, f, 1)
+    curvature = _curvature(cost, theta)
+    covariance = _covariance(curvature)
+    if covariance is None or not _credible(theta[:1], theta[1:2], f, covariance[1:2, 1:2]):
+        return None
+    a = _weighted(theta, outer, f)
+    values, vectors = np.linalg.eigh(a)
+    apart = 2.0 * (values[-1] - values[:-1]) / np.exp(theta[3])
+    spread = vectors[:, :-1] ** 2 @ (1.0 / np.maximum(apart, 1e-12))
+    n = len(lines)
+    return BandPosterior(
+        np.exp(theta[:1]),
+        np.exp(theta[1:2]),
+        vectors[:, -1:],
+        covariance[None, :2, :2],
+        np.sqrt(spread)[:, None],
+        -cost(theta) - 0.5 * (4 + n - 1) * np.log(len(f)),
+    )
+
+
+def one_mode_cost(theta: FloatArray, outer: FloatArray, f: FloatArray) -> float:
+    """Return minus the logarithm of the posterior of (ln f, ln ζ, ln S, ln Se), the shape at its best.
+
+    Parameters
+    ----------
+    theta : (4,)
+    outer : (n_lines, n_channels, n_channels)
+        Real parts of the products of the lines.
+    f : (n_lines,)
+    """
+    s, noise = np.exp(theta[2]), np.exp(theta[3])
+    power = np.abs(transfer(f, np.exp(theta[:1]), np.exp(theta[1:2]))[:, 0]) ** 2
+    largest = float(np.linalg.eigvalsh(_weighted(theta, outer, f))[-1])
+    total = float(np.einsum("kaa->", outer))
+    n = outer.shape[1]
+    return float(
+        (n - 1) * len(f) * np.log(noise) + np.sum(np.log(s * power + noise)) + (total - largest) / noise
+    )
+
+
+def _weighted(theta: FloatArray, outer: FloatArray, f: FloatArray) -> FloatArray:
+    """Return the sum of the products of lines, each by the share that the mode has of its power."""
+    signal = np.exp(theta[2]) * np.abs(transfer(f, np.exp(theta[:1]), np.exp(theta[1:2]))[:, 0]) ** 2
+    share = signal / (signal + np.exp(theta[3]))
+    return np.asarray(np.tensordot(share, outer, axes=1))
+
+
+def _modes(lines: ComplexArray, f: FloatArray, starts_hz: list[float]) -> BandPosterior | None:
+    """Return the most probable modes of a band that holds several."""
+    m, (n, count) = len(starts_hz), lines.shape
+    values, vectors = np.linalg.eigh(np.real(lines @ lines.conj().T))
+    basis = vectors[:, ::-1][:, :m]
+    inner = basis.T @ lines
+    left = float(np.sum(np.abs(lines) ** 2) - np.sum(np.abs(inner) ** 2))
+    noise = max(left / max((n - m) * count, 1), 1e-6 * float(values[-1]) / count)
+    cost = partial(several_modes_cost, inner=inner, f=f, left=left, n_channels=n)
+    nearest = [int(np.argmin(np.abs(f - start))) for start in starts_hz]
+    at_peaks = np.array([np.real(aligned(inner[:, k] / np.linalg.norm(inner[:, k]))) for k in nearest]).T
+    force = np.log([4.0 * START_DAMPING**2 * float(np.sum(np.abs(inner[:, k]) ** 2)) for k in nearest])
+    before = [np.log(starts_hz), np.full(m, np.log(START_DAMPING)), 0.5 * force, np.zeros(m * (m - 1))]
+    starts = [np.concatenate([*before, [np.log(noise)], v.T.ravel()]) for v in (at_peaks, np.eye(m))]
+    theta = min((_most_probable(cost, start, f, m) for start in starts), key=cost)
+    curvature = _curvature(cost, theta)
+    rows = np.r_[:m, m : 2 * m]
+    covariance = _covariance(curvature, singular=m)
+    if covariance is None or not _credible(theta[:m], theta[m : 2 * m], f, covariance[m : 2 * m, m : 2 * m]):
+        return None
+    alpha = theta[-m * m :].reshape(m, m).T
+    size = np.linalg.norm(alpha, axis=0)
+    alpha = alpha / size
+    free = len(theta) - m + m * (n - m)
+    inside = covariance[-m * m :, -m * m :].reshape(m, m, m, m)
+    shape_var = [np.einsum("ai,ij,aj->a", basis, inside[i, :, i, :], basis) / size[i] ** 2 for i in range(m)]
+    return BandPosterior(
+        np.exp(theta[:m]),
+        np.exp(theta[m : 2 * m]),
+        basis @ alpha,
+        np.array([covariance[np.ix_(rows[[i, m + i]], rows[[i, m + i]])] for i in range(m)]),
+        np.sqrt(np.maximum(np.array(shape_var).T, 0.0)),
+        -cost(theta) - 0.5 * free * np.log(count),
+    )
+
+
+def several_modes_cost(
+    theta: FloatArray, inner: ComplexArray, f: FloatArray, left: float, n_channels: int
+) -> float:
+    """Return minus the logarithm of the posterior of several modes in their subspace.
+
+    Parameters
+    ----------
+    theta : (2 m + m² + 1 + m²,)
+        ln f, ln ζ, the factor of the forces (logarithms of its diagonal, then real and imaginary parts
+        below), ln Se, and the shapes in the subspace one after another; their lengths do not matter.
+    inner : (m, n_lines)
+        Lines in the subspace.
+    left : float
+        Power outside it.
+    """
+    m = len(inner)
+    noise = np.exp(theta[2 * m + m * m])
+    factor = np.diag(np.exp(theta[2 * m : 3 * m])).astype(complex)
+    below = np.tril_indices(m, -1)
+    real, imag = np.split(theta[3 * m : 2 * m + m * m], 2)
+    factor[below] = real + 1j * imag
+    alpha = theta[-m * m :].reshape(m, m).T
+    alpha = alpha / np.maximum(np.linalg.norm(alpha, axis=0), 1e-12)
+    h = transfer(f, np.exp(theta[:m]), np.exp(theta[m : 2 * m]))
+    moved = alpha[None] * h[:, None, :] @ factor
+    matrix = moved @ moved.conj().transpose(0, 2, 1)
+    rounding = LEAST_NOISE * np.einsum("kaa->k", matrix).real[:, None, None]
+    matrix = matrix + (noise + rounding) * np.eye(m)
+    solved = np.linalg.solve(matrix, inner.T[:, :, None])[:, :, 0]
+    quadratic = float(np.sum(np.real(inner.T.conj() * solved)))
+    log_det = float(np.sum(np.linalg.slogdet(matrix)[1]))
+    return (n_channels - m) * len(f) * float(np.log(noise)) + left / float(noise) + log_det + quadratic
+
+
+def _most_probable(
+    cost: Callable[[FloatArray], float], start: FloatArray, f: FloatArray, n_modes: int
+) -> FloatArray:
+    """Return the parameters of least cost."""
+    low, high = start - WIDE, start + WIDE
+    low[: 2 * n_modes] = np.repeat(np.log([f[0], 1e-5]), n_modes)
+    high[: 2 * n_modes] = np.repeat(np.log([f[-1], 0.5]), n_modes)
+
+    def within(theta: FloatArray) -> float:
+        inside = np.clip(theta, low, high)
+        return cost(inside) + len(f) * float(np.sum((theta - inside) ** 2))
+
+    with np.errstate(all="ignore"):
+        found = scipy.optimize.minimize(within, start, method="BFGS", options={"gtol": 1e-2})
+    best = np.clip(found.x, low, high)
+    return np.asarray(best) if found.success else _polished(within, best)
+
+
+def _polished(cost: Callable[[FloatArray], float], theta: FloatArray) -> FloatArray:
+    """Return the minimum near a point by Newton's steps along the directions of curvature.
+
+    The search before may stop on the slope of a valley: differences of a cost of thousands are rounded.
+    """
+    value, steps = cost(theta), STEP * np.eye(len(theta))
+    for _ in range(MOST_STEPS):
+        gradient = np.array([cost(theta + e) - cost(theta - e) for e in steps]) / (2.0 * STEP)
+        curvature = _curvature(cost, theta)
+        if not (np.isfinite(curvature).all() and np.isfinite(gradient).all()):
+            break
+        size, along = np.linalg.eigh(curvature)
+        known = np.abs(size) > FLAT * np.abs(size).max()
+        move = -along[:, known] @ (along[:, known].T @ gradient / np.abs(size[known]))
+        if -gradient @ move < MIN_GAIN:
+            break
+        move *= min(1.0, MOST_MOVE / float(np.abs(move).max()))
+        tries = [theta + 0.5**k * move for k in range(HALVINGS)]
+        better = next((one for one in tries if cost(one) < value), None)
+        if better is None:
+            break
+        theta, value = better, cost(better)
+    return np.asarray(theta)
+
+
+def _curvature(cost: Callable[[FloatArray], float], theta: FloatArray) -> FloatArray:
+    """Return the second derivatives of a cost by central differences."""
+    n = len(theta)
+    steps, out = STEP * np.eye(n), np.empty((n, n))
+    for i in range(n):
+        for j in range(i, n):
+            signs = ((1, 1), (1, -1), (-1, 1), (-1, -1))
+            four = [cost(theta + a * steps[i] + b * steps[j]) * a * b for a, b in signs]
+            out[i, j] = out[j, i] = sum(four) / (4.0 * STEP**2)
+    return out
+
+
+def _covariance(curvature: FloatArray, singular: int = 0) -> FloatArray | None:
+    """Return the inverse of a curvature, without as many directions of none; None if it is no minimum."""
+    if not np.isfinite(curvature).all():
+        return None
+    values, vectors = np.linalg.eigh(curvature)
+    order = np.argsort(np.abs(values))[singular:]
+    if np.any(values[order] <= 0.0):
+        return None
+    return np.asarray(vectors[:, order] / values[order] @ vectors[:, order].T)
+
+
+def _credible(log_f: FloatArray, log_zeta: FloatArray, f: FloatArray, covariance: FloatArray) -> bool:
+    """Tell whether all modes lie in the band, are lightly damped, and known."""
+    inside = np.all((np.exp(log_f) > f[0]) & (np.exp(log_f) < f[-1]))
+    return bool(
+        inside and np.all(np.exp(log_zeta) < MAX_DAMPING) and np.all(np.diag(covariance) < MAX_LOG_STD**2)
+    )
