@@ -174,3 +174,15 @@ def test_piles_need_a_foundation_of_layers() -> None:
     found = json.loads(run("jacket15", "--json").stdout)
     assert found["piles"] == []
     assert any("--support FOUNDATION" in text for text in found["left_out"])
+
+
+def test_the_calculation_of_a_member_is_shown() -> None:
+    found = json.loads(run("jacket15", "--sheet", "leg_1_bay_1", "--json").stdout)
+    use = next(row for row in found["members"] if row["member"] == "leg_1_bay_1")
+    lines = {line["symbol"]: line for line in found["sheet"]}
+    assert lines[f"U {use['check']}"]["value"] == pytest.approx(use["utilisation"])
+    assert lines["f_c"]["clause"].startswith("13.2.3")
+    assert "calculation, ISO 19902" in run("jacket15", "--sheet", "leg_1_bay_1").stdout
+    refused = run("jacket15", "--sheet", "leg_1_bay_9")
+    assert refused.exit_code == 2
+    assert "leg_1_bay" in refused.stderr

@@ -1,3 +1,4 @@
+from .calculation_sheet import SheetLine as SheetLine, calculation_sheet as calculation_sheet
 from .columns import StraightRun as StraightRun, columns as columns
 from .iso19902 import EDITIONS as EDITIONS
 from .iso19902_joints import IN_PLANE as IN_PLANE, KINDS as KINDS

@@ -11,12 +11,12 @@ import numpy as np
 from jackettwin.checks import EDITIONS
 from jackettwin.cli.console import FiniteFloat, Reply, answers, numbers_of, say, say_all, show_table
 from jackettwin.cli.modes import pile_model_option, supported_option
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, look_up
 from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
     from jackettwin.arrays import FloatArray
-    from jackettwin.checks import BraceUse, DesignBasis, FrameUse, MemberUse, VortexUse
+    from jackettwin.checks import BraceUse, DesignBasis, FrameUse, MemberUse, SheetLine, VortexUse
     from jackettwin.loads import Water
     from jackettwin.response import System
     from jackettwin.soil import PileModel, PileUse
@@ -60,6 +60,7 @@ _HEADINGS = ("N", "Vy", "Vz", "T", "My", "Mz")
     "--still-water", is_flag=True, help="Buoyancy, and hydrostatic pressure on what is not flooded."
 )
 @click.option("--flooded", multiple=True, metavar="MEMBER|PART", help="With --still-water; may be repeated.")
+@click.option("--sheet", metavar="MEMBER", help="The calculation of a member, line by line, for a checker.")
 @click.option(
     "--pile-resistance",
     default=1.25,
@@ -89,6 +90,7 @@ def check_command(
     joints: str,
     still_water: bool,
     flooded: tuple[str, ...],
+    sheet: str | None,
     pile_resistance: float,
     wind: float | None,
     current: float | None,
@@ -113,14 +115,7 @@ def check_command(
     if flooded and not still_water:
         raise InputError("needs --still-water", field="--flooded", value=flooded, remedy="add --still-water")
     if scenario is not None:
-        if wind is not None or current is not None:
-            raise InputError(
-                "a scenario has no screening for vortices",
-                field="--wind, --current",
-                remedy="name the structure",
-            )
-        if still_water:
-            raise InputError("a scenario has its own water", field="--still-water", remedy="leave it out")
+        _refuse_beside_scenario(wind=wind, current=current, sheet=sheet, still_water=still_water or None)
         chosen_scenario = read_scenario(scenario)
         use = scenario_uses(chosen_scenario, basis)
         stands = chosen_scenario.asset.structure
@@ -148,7 +143,41 @@ def check_command(
         vortices = vortex_uses(
             assembly.structure, wind_m_s=wind, current_m_s=current, first_frequency_hz=lowest
         )
-    return _answer(assembly.structure.name, use, [], missing, piles=piles, vortices=vortices)
+    return _answer(
+        assembly.structure.name,
+        use,
+        [],
+        missing,
+        piles=piles,
+        vortices=vortices,
+        sheet=_sheet(sheet, assembly, use, basis),
+    )
+
+
+def _refuse_beside_scenario(**given: object) -> None:
+    """Refuse options that belong to a structure at rest."""
+    for name, value in given.items():
+        if value is not None:
+            option = f"--{name.replace('_', '-')}"
+            remedy = (
+                "leave it out: a scenario has its own water"
+                if name == "still_water"
+                else "name the structure"
+            )
+            raise InputError("belongs to a structure at rest", field=option, remedy=remedy)
+
+
+def _sheet(
+    name: str | None, assembly: Assembly, use: FrameUse, basis: DesignBasis
+) -> tuple[SheetLine, ...] | None:
+    """Return the calculation of a member; None if none is asked for."""
+    from jackettwin.checks import calculation_sheet
+
+    if name is None:
+        return None
+    members = {one.name: one for one in assembly.structure.members}
+    member = look_up(members, name, "member", field="--sheet")
+    return calculation_sheet(member, next(one for one in use.members if one.member == name), basis)
 
 
 def _piles(
@@ -231,6 +260,7 @@ def _answer(
     *,
     piles: tuple[PileUse, ...] = (),
     vortices: tuple[VortexUse, ...] = (),
+    sheet: tuple[SheetLine, ...] | None = None,
 ) -> Reply:
     members = sorted(use.members, key=lambda one: (not one.covered, -one.utilisation))
     joints = sorted(use.joints, key=lambda one: (bool(one.joint.beyond_validity), -one.utilisation))
@@ -239,6 +269,7 @@ def _answer(
         "largest_von_mises_stress_pa": max(one.von_mises_pa for one in use.members),
         "members": [_row(one) for one in members],
         "joints": [_joint_row(one) for one in joints],
+        "sheet": None if sheet is None else [line._asdict() for line in sheet],
         "piles": [_pile_row(one) for one in sorted(piles, key=lambda one: -one.axial)],
         "vortices": [_vortex_row(one) for one in vortices],
         "warnings": [*_warnings(use), *_pile_warnings(piles), *_vortex_warnings(vortices), *notes],
@@ -399,6 +430,8 @@ def _show(document: dict[str, Any]) -> None:
         )
     if document["vortices"]:
         show_table(Table("vortices, by reduced velocity", _VORTICES, document["vortices"][:_SHOWN]))
+    if document["sheet"] is not None:
+        show_table(Table("calculation, ISO 19902 clause 13", _SHEET, document["sheet"]))
     say(f"largest von Mises stress {document['largest_von_mises_stress_pa'] / 1e6:.1f} MPa")
     say_all(document["warnings"], "warning")
     say_all(document["left_out"], "left out")
@@ -452,6 +485,13 @@ _JOINTS = (
     TableColumn("N", "axial_n", ",.1f", 1e-3),
     TableColumn("M in plane", "in_plane_nm", ",.1f", 1e-3),
     TableColumn("M out of plane", "out_of_plane_nm", ",.1f", 1e-3),
+)
+_SHEET = (
+    TableColumn("", "symbol"),
+    TableColumn("formula", "formula"),
+    TableColumn("value", "value", ".5g"),
+    TableColumn("unit", "unit"),
+    TableColumn("clause", "clause"),
 )
 _PILES = (
     TableColumn("foot", "foot"),
