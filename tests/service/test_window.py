@@ -6,6 +6,7 @@ import shutil
 import threading
 import time
 from collections.abc import Iterator
+from datetime import timedelta
 from pathlib import Path
 
 import httpx
@@ -115,13 +116,13 @@ def send(url: str, k: int, *, samples: int = 200) -> httpx.Response:
     )
 
 
-def alarm(service: Service, url: str, text: str) -> None:
+def alarm(service: Service, url: str, text: str, *, day: int = 1) -> None:
     """Let watching find a change."""
     model = httpx.get(f"{url}/api/v1/assets/wtg").json()["model_hash"]
-    row = {"asset": "wtg", "model_hash": model, "record_id": "", "origin": "watch", "day": "2025-03-01"}
+    row = {"asset": "wtg", "model_hash": model, "record_id": "", "origin": "watch", "day": f"2025-03-0{day}"}
     said = {"code": "structure_changed", "severity": "alarm", "subject": None, "params": {}, "text": text}
     with writing(service.database) as connection:
-        results.put_findings(connection, [{**row, **said, "time_utc": NOON}])
+        results.put_findings(connection, [{**row, **said, "time_utc": NOON + timedelta(days=day)}])
         journal.tell(connection, "finding", "wtg", {}, service.now())
 
 
@@ -178,6 +179,31 @@ def test_an_alarm_is_acknowledged_by_keyboard_and_another_reader_sees_it(opened:
         expect(page.get_by_text("<b>divers</b> looked")).to_be_visible()
         assert "injected" not in page.title()
         page.context.close()
+
+
+def test_two_acknowledge_at_once_and_read_the_same(opened: Open) -> None:
+    alarm(opened.service, opened.url, "A second change.", day=2)
+    pages = [opened.page("/assets/wtg/alarms") for _ in range(2)]
+    for page, comment in zip(pages, ("first", "second"), strict=True):
+        page.get_by_role("button", name="Acknowledge").first.click()
+        page.get_by_label("What you saw").fill(f"the {comment} of two")
+    for page in pages:
+        page.locator("form button.main").click()
+    for page in pages:
+        expect(page.get_by_text("the second of two")).to_be_visible()
+        expect(page.locator(".error")).to_have_count(0)
+        page.context.close()
+
+
+def test_without_a_connection_a_page_says_so_and_comes_back(opened: Open) -> None:
+    page = opened.page("/assets/wtg")
+    page.context.set_offline(True)
+    page.get_by_role("link", name="Timeline").click()
+    expect(page.get_by_role("heading", name="No connection").first).to_be_visible()
+    page.context.set_offline(False)
+    page.get_by_role("button", name="Try again").first.click()
+    expect(page.get_by_role("heading", name="Modes through time")).to_be_visible()
+    page.context.close()
 
 
 def test_a_record_that_arrives_is_seen_without_loading_again(opened: Open) -> None:

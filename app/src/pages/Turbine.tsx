@@ -1,5 +1,5 @@
 // One screen: what the foundation does now, what changed and why, and how sure that is.
-import { lazy, Suspense } from "preact/compat";
+import { Suspense } from "preact/compat";
 import { type Answer, useAnswer } from "../api/answer";
 import { api, type Alarm, type Asset, type Schemas, told } from "../api/client";
 import type { Knowledge, KnownMode } from "../api/shapes";
@@ -8,11 +8,12 @@ import { Ago, Card, Light, Time } from "../parts/Bits";
 import { Budget } from "../parts/Budget";
 import { Empty, Shown, Trouble } from "../parts/Shown";
 import { Table } from "../parts/Table";
+import { later } from "../parts/later";
 import type { PageProps } from "../shell/App";
 import { assetUrl } from "../shell/place";
 import { between, count, frequency, percent, quantity, words } from "../words/numbers";
 
-const Stiffness = lazy(() => import("../parts/Stiffness"));
+const Stiffness = later(() => import("../parts/Stiffness"));
 type Twin = Schemas["TwinOut"];
 
 /** Numbers that a manager asks for: the first bending modes, the ground, alarms. */
@@ -102,8 +103,8 @@ function Supports({ known }: { known: Knowledge }) {
         rows={rows}
         id={([name]) => name}
         columns={[
-          { title: "Parameter", show: ([, p]) => p.words },
-          { title: "Median and 90 % interval", show: ([, p]) => p.text },
+          { title: "Parameter", show: ([, p]) => <span class="prose">{p.words}</span> },
+          { title: "Median and 90 % interval", show: ([, p]) => <span class="prose">{p.text}</span> },
           { title: "Of", show: ([, p]) => p.day ?? "all records" },
         ]}
       />

@@ -21,6 +21,9 @@ interface TableProps<T> {
   mark?: (row: T) => string;
 }
 
+/** Columns from which on a phone shows each row as a card. */
+const MANY = 4;
+
 function compared(a: string | number | null, b: string | number | null): number {
   if (a === null || b === null) return Number(a === null) - Number(b === null);
   if (typeof a === "number" && typeof b === "number") return a - b;
@@ -37,7 +40,7 @@ export function Table<T>(props: TableProps<T>) {
     setOrder((old) => ({ column, down: old.column === column && !old.down }));
   return (
     <div class="scroll" tabIndex={0} role="region" aria-label={props.label}>
-      <table>
+      <table class={props.columns.length > MANY ? "many" : ""}>
         <thead>
           <tr>
             {props.columns.map((c, i) => (
@@ -64,7 +67,11 @@ export function Table<T>(props: TableProps<T>) {
           {rows.map((row) => (
             <tr key={props.id(row)} class={props.mark?.(row) ?? ""}>
               {props.columns.map((c) => (
-                <td key={c.title} class={c.numeric ? "n" : ""} data-label={c.title}>
+                <td
+                  key={c.title}
+                  class={c.numeric ? "n" : ""}
+                  data-label={c.unit ? `${c.title} [${c.unit}]` : c.title}
+                >
                   {c.show(row)}
                 </td>
               ))}

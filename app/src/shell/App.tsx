@@ -1,5 +1,5 @@
 // The frame: who is logged in, where the reader is, and the page of that place.
-import { lazy, Suspense } from "preact/compat";
+import { Suspense } from "preact/compat";
 import type { ComponentType } from "preact";
 import { useEffect } from "preact/hooks";
 import { api, me, Problem, told } from "../api/client";
@@ -8,6 +8,7 @@ import { may } from "../api/do";
 import { Fleet } from "../pages/Fleet";
 import { Login } from "../pages/Login";
 import { Turbine } from "../pages/Turbine";
+import { later } from "../parts/later";
 import { Empty } from "../parts/Shown";
 import { assetUrl, go, place, route } from "./place";
 import { switchTheme, theme } from "./theme";
@@ -21,15 +22,15 @@ export interface PageProps {
 const PAGES: Record<string, ComponentType<PageProps>> = {
   fleet: Fleet,
   turbine: Turbine,
-  timeline: lazy(() => import("../pages/Timeline")),
-  records: lazy(() => import("../pages/Records")),
-  record: lazy(() => import("../pages/Record")),
-  alarms: lazy(() => import("../pages/Alarms")),
-  model: lazy(() => import("../pages/Model")),
-  reports: lazy(() => import("../pages/Reports")),
-  jobs: lazy(() => import("../pages/Jobs")),
-  users: lazy(() => import("../pages/Users")),
-  start: lazy(() => import("../pages/Start")),
+  timeline: later(() => import("../pages/Timeline")),
+  records: later(() => import("../pages/Records")),
+  record: later(() => import("../pages/Record")),
+  alarms: later(() => import("../pages/Alarms")),
+  model: later(() => import("../pages/Model")),
+  reports: later(() => import("../pages/Reports")),
+  jobs: later(() => import("../pages/Jobs")),
+  users: later(() => import("../pages/Users")),
+  start: later(() => import("../pages/Start")),
 };
 const TABS: readonly (readonly [string, string])[] = [
   ["", "Turbine"],
