@@ -46,6 +46,6 @@ def cases(
 def digest(name: str, *, whole: bool = False) -> str:
     """Return a short hash of a script and of all code that it may call."""
     files = [ROOT / "qualify" / f"{name}.py", *sorted((ROOT / "src" / "jackettwin").rglob("*.py"))]
-    layers = ("updating", "response", "soil", "structure", name)
-    text = b"".join(f.read_bytes() for f in files if whole or f.parent.name in layers or f.stem in layers)
+    layers = {"updating", "response", "soil", "structure", name}
+    text = b"".join(f.read_bytes() for f in files if whole or layers & {*f.parts, f.stem})
     return hashlib.sha256(text).hexdigest()[:10]
