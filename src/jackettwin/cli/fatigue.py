@@ -345,6 +345,7 @@ def record_(
         "warnings": _warnings(rows, outside),
         "left_out": [
             "other seas, winds and states: life if all time were like this record",
+            "the model's own errors beyond its supports: intervals of stress are too narrow, see the docs",
             "what no sensor and no wind or sea that the record states tells of slow forces",
             "buoyancy and mean thrust in the shares of K, Y and X joints",
             "bending blades; cans, butt welds, flanges, grout and piles",
