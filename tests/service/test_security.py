@@ -26,6 +26,8 @@ from jackettwin.store import people, results, writing
 
 OPEN = {
     "/api/v1/login",
+    "/api/v1/oidc/login",
+    "/api/v1/oidc/callback",
     "/api/v1/health",
     "/api/v1/ready",
     "/",

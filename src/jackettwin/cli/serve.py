@@ -39,6 +39,11 @@ FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
     help="Address or network of that proxy, again for each; default: this machine.",
 )
 @click.option("--trusted-header", help="Header in which the proxy names the user it authenticated.")
+@click.option("--oidc-issuer", help="OpenID provider at which people may log in, as it names itself.")
+@click.option("--oidc-client", help="Name by which it knows this server.")
+@click.option("--oidc-secret-file", type=FILE, help="Its first line is the secret by which it knows us.")
+@click.option("--oidc-claim", help="What it says of somebody that is a user's name here; default: sub.")
+@click.option("--public-url", help="Address at which browsers find this server; needed for OIDC.")
 @click.option(
     "--raw-days",
     type=FiniteFloat(0.0),

@@ -27,6 +27,7 @@ from jackettwin.service.intake.mqtt import MqttIntake
 from jackettwin.service.settings import ServiceSettings, refuse_exposed
 from jackettwin.service.systemd import tell_systemd
 from jackettwin.service.web.app import create_app
+from jackettwin.service.web.oidc import check_settings
 from jackettwin.service.work.dispatch import Dispatcher
 from jackettwin.service.work.housekeeping import Housekeeping
 from jackettwin.service.work.stream_windows import StreamWindows
@@ -56,6 +57,7 @@ def running(settings: ServiceSettings) -> Iterator[Service]:
         in_the_end.callback(service.cluster.close)
         with reading(service.database) as connection:
             refuse_exposed(settings, people.any_user(connection))
+        check_settings(settings)
         service.periodic.append(Housekeeping(service).turn)
         dispatcher, stop = Dispatcher(service), Event()
         service.wake, service.turning = dispatcher.wake.set, lambda: dispatcher.turning

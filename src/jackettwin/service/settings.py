@@ -5,6 +5,7 @@ from __future__ import annotations
 import ipaddress
 from pathlib import Path
 from typing import Annotated, Any
+from urllib.parse import urlsplit
 
 from pydantic import AfterValidator, Field, SecretStr, ValidationError
 from pydantic_settings import BaseSettings, SettingsConfigDict
@@ -66,6 +67,18 @@ class ServiceSettings(BaseSettings):
     """Addresses and networks of the proxies whose word on who asks is taken; nobody else's is."""
     trusted_header: str | None = None
     """Header in which the proxy names the user it has authenticated, as OIDC proxies do."""
+    oidc_issuer: str | None = None
+    """Address of the OpenID provider at which people may log in, as it names itself."""
+    oidc_client: str | None = None
+    """Name by which it knows this server."""
+    oidc_secret: SecretStr | None = None
+    """By which it knows that it is us, from the environment alone; None if it asks for PKCE only."""
+    oidc_secret_file: Path | None = None
+    """File whose first line is that secret."""
+    oidc_claim: str = "sub"
+    """What the provider says of somebody that is the user's name here; nobody may change it there himself."""
+    public_url: str | None = None
+    """Address at which browsers find this server, such as ``https://twin.example.org``."""
     password_days: float | None = Field(default=None, gt=0.0)
     """Days after which a password must be replaced by another one; None for never."""
     raw_days: float | None = None
@@ -138,6 +151,26 @@ def read_settings(**given: Any) -> ServiceSettings:
         raise InputError(
             first["msg"], field=name, value=first["input"], remedy=f"see JACKETTWIN_SERVE_{name.upper()}"
         ) from None
+
+
+def checked_url(url: str, field: str) -> str:
+    """Return an address, if what is sent there can be read by nobody else.
+
+    Raises
+    ------
+    InputError
+        If it is neither of https nor of this machine.
+    """
+    parts = urlsplit(url)
+    safe = parts.scheme == "https" or (parts.scheme == "http" and is_loopback(parts.hostname or ""))
+    require(
+        safe and bool(parts.hostname) and not parts.query and not parts.fragment and "@" not in parts.netloc,
+        "what is sent there could be read on its way",
+        field=field,
+        value=url,
+        allowed="https://HOST…, or http:// of this machine",
+    )
+    return url
 
 
 def is_loopback(host: str) -> bool:

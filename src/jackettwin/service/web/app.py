@@ -19,13 +19,21 @@ from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 from jackettwin.service.context import Service
 from jackettwin.service.web import auth, pages, problems
 from jackettwin.service.web.dependencies import KnownAnswer, sent
-from jackettwin.service.web.routes import assets, health, jobs, modes, people, records
+from jackettwin.service.web.routes import assets, health, jobs, modes, oidc, people, records
 from jackettwin.version import __version__
 
 API = "/api/v1"
 EXAMPLES: dict[str, Any] = json.loads(files("jackettwin.service").joinpath("examples.json").read_bytes())
 """Of every schema one, by its name."""
-ROUTERS = (people.router, assets.router, records.router, modes.router, jobs.router, health.router)
+ROUTERS = (
+    people.router,
+    oidc.router,
+    assets.router,
+    records.router,
+    modes.router,
+    jobs.router,
+    health.router,
+)
 _HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "DENY",

@@ -13,7 +13,7 @@ from urllib.parse import urlsplit
 
 from argon2 import PasswordHasher
 from argon2.exceptions import InvalidHashError, VerificationError
-from fastapi import Depends, Request
+from fastapi import Depends, Request, Response
 from sqlalchemy import Connection, Engine
 
 from jackettwin.errors import InputError
@@ -114,7 +114,7 @@ def opened_session(
     ApiError
         401 if it is nobody's, 403 if it is too old and none comes in its place, 429 after too many tries.
     """
-    limits, now, database = _counted(service.login_attempts, name, place), service.now(), service.database
+    limits, now, database = counted(service.login_attempts, name, place), service.now(), service.database
     with reading(database) as connection:  # it takes its time, and guesses must not hold up those who write
         user = checked_login(connection, name, password, now)
     old = user is not None and _is_old(user, service.settings.password_days, now)
@@ -156,10 +156,18 @@ def _another(old: str, new: str) -> str:
     return new
 
 
-def _counted(attempts: LoginAttempts, name: str, place: str) -> dict[str, int]:
-    """Count an attempt, and return as what; refuse it with 429 after too many."""
+def counted(attempts: LoginAttempts, name: str, place: str) -> dict[str, int]:
+    """Count an attempt, and return as what; without a name it is counted by its place alone.
+
+    Raises
+    ------
+    ApiError
+        429 after too many.
+    """
     peer = attempts.place(place)
-    limits = {f"from {peer}": ATTEMPTS_FROM, f"{name} from {peer}": ATTEMPTS, name: ATTEMPTS_OF}
+    limits = {f"from {peer}": ATTEMPTS_FROM}
+    if name:
+        limits |= {f"{name} from {peer}": ATTEMPTS, name: ATTEMPTS_OF}
     wait = attempts.wait_s(limits)
     if wait > 0.0:
         raise ApiError(429, "too many failed logins; wait", headers={"Retry-After": str(ceil(wait))})
@@ -174,7 +182,7 @@ def change_password(service: Service, name: str, old: str, new: str, place: str,
     ApiError
         403 if the old one is wrong, 429 after too many tries.
     """
-    limits, now = _counted(service.login_attempts, name, place), service.now()
+    limits, now = counted(service.login_attempts, name, place), service.now()
     with reading(service.database) as connection:
         right = checked_login(connection, name, old, now) is not None
     replacement = hashed(_another(old, new)) if right else ""
@@ -202,6 +210,12 @@ def new_grant(
         connection, secret, kind=kind, user=user, label=label, csrf=csrf, now=now, expires=now + lasts
     )
     return secret, csrf
+
+
+def set_session(response: Response, secret: str, *, secure: bool) -> None:
+    """Give a browser the secret of its session, which no script and no other page may use."""
+    lasts = int(SESSION.total_seconds())
+    response.set_cookie(COOKIE, secret, max_age=lasts, httponly=True, samesite="strict", secure=secure)
 
 
 def who_asks(request: Request, database: Engine, settings: ServiceSettings, now: datetime) -> Who | None:

@@ -33,9 +33,7 @@ def login(body: Login, request: Request, response: Response, parts: Parts) -> Me
     """Open a session: its cookie is set, and the CSRF token of what it changes is answered."""
     place = request.client.host if request.client else "?"
     user, secret, csrf = auth.opened_session(parts, body.name, body.password, body.new, place)
-    lasts = int(auth.SESSION.total_seconds())
-    secure = parts.settings.secure
-    response.set_cookie(auth.COOKIE, secret, max_age=lasts, httponly=True, samesite="strict", secure=secure)
+    auth.set_session(response, secret, secure=parts.settings.secure)
     return Me(name=user.name, role=user.role, csrf_token=csrf)  # type: ignore[arg-type]
 
 
