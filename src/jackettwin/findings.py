@@ -394,6 +394,10 @@ CATALOGUE: dict[str, Kind] = {
         "what the days say could not be found in {tries} tries ({reason}): no change would be seen; "
         "mend the cause, then POST /jobs/{job}/retry",
     ),
+    "asset_silent": Kind(
+        "alarm",
+        "nothing came since for more than {hours:g} hours: is the logger, or the way from it, broken?",
+    ),
     "record_late": Kind("info", "older than {days} days that are known; these days are computed again"),
 }
 """Every code there is, by the package that finds it."""

@@ -20,6 +20,8 @@ import uvicorn
 from sqlalchemy.exc import SQLAlchemyError
 
 from jackettwin.errors import InputError
+from jackettwin.service.alerts.outbox import Outbox
+from jackettwin.service.alerts.rules import read_alerts
 from jackettwin.service.context import Service, open_service
 from jackettwin.service.intake.files import Accepted, parse_here, take_file
 from jackettwin.service.intake.folder import watch_folders
@@ -48,9 +50,11 @@ def running(settings: ServiceSettings) -> Iterator[Service]:
     Raises
     ------
     InputError
-        If the database cannot be opened, or others could reach a server without users or TLS.
+        If the database cannot be opened, the alerts file cannot be read, or others could reach a server
+        without users or TLS.
     """
     one_heap()
+    told = None if settings.alerts is None else read_alerts(settings.alerts)
     with ExitStack() as in_the_end:
         service = open_service(settings)
         in_the_end.callback(service.database.dispose)
@@ -71,6 +75,10 @@ def running(settings: ServiceSettings) -> Iterator[Service]:
             service.packets_refused = lambda: mqtt.refused
             in_the_end.callback(mqtt.stop)
         dispatcher.start()
+        if told is not None and settings.alerts is not None:
+            outbox = Outbox(service, told, settings.alerts.parent)
+            outbox.start()
+            in_the_end.callback(outbox.stop)
         Thread(target=_watch_inbox, args=(service, stop.is_set), name="inbox", daemon=True).start()
         in_the_end.callback(stop.set)
         yield service

@@ -58,6 +58,8 @@ class ServiceSettings(BaseSettings):
     mqtt_certificate: Path | None = None
     """By which the broker knows us, with ``mqtt_key``."""
     mqtt_key: Path | None = None
+    alerts: Path | None = None
+    """File that says who is told what, and how; without it nobody is."""
     tls_certificate: Path | None = None
     """For HTTPS without a proxy, with ``tls_key``."""
     tls_key: Path | None = None

@@ -244,9 +244,14 @@ def _rows(connection: Connection, query: Select[Any]) -> list[Mapping[str, Any]]
     return [dict(row._mapping) for row in connection.execute(query)]
 
 
+_KEY = 240
+"""Characters of a key: the tables have room for 255, and something is put before some."""
+
+
 def alarm_key(row: Mapping[str, Any]) -> str:
     """Return what an alarm is known by: it keeps its acknowledgement when its day is advanced anew."""
-    return f"{row['asset']}/{row['day']}/{row['code']}/{row['subject'] or ''}"
+    key = f"{row['asset']}/{row['day']}/{row['code']}/{row['subject'] or ''}"
+    return key if len(key) <= _KEY else f"{key[: _KEY - 65]} {hashlib.sha256(key.encode()).hexdigest()}"
 
 
 def acknowledge(connection: Connection, row: Mapping[str, Any], by: str, comment: str, now: datetime) -> None:
@@ -261,6 +266,17 @@ def acknowledgements_of(connection: Connection, asset: str) -> dict[str, Mapping
     """Return who took note of which alarm, {alarm key: note}."""
     notes = _rows(connection, select(acknowledgements).filter_by(asset=asset))
     return {note["alarm_key"]: note for note in notes}
+
+
+def acknowledged_keys(connection: Connection) -> set[str]:
+    """Return the keys of all alarms that somebody took note of."""
+    return set(connection.scalars(select(acknowledgements.c.alarm_key)))
+
+
+def silent_assets(connection: Connection) -> dict[str, str]:
+    """Return which assets are said to be silent, and since what, {asset: subject}."""
+    query = select(findings.c.asset, findings.c.subject).where(findings.c.origin == "silence")
+    return {asset: since for asset, since in connection.execute(query)}
 
 
 def put_knowledge(
@@ -317,7 +333,7 @@ def unacknowledged_alarms(connection: Connection, asset: str | None = None) -> d
     """Return how many alarms of the adopted versions nobody took note of, {asset: number}."""
     columns = (findings.c.asset, findings.c.day, findings.c.code, findings.c.subject)
     query = _adopted(select(*columns), asset).where(findings.c.severity == "alarm")
-    noted = set(connection.scalars(select(acknowledgements.c.alarm_key)))
+    noted = acknowledged_keys(connection)
     counts: dict[str, int] = {}
     for row in _rows(connection, query):
         counts[row["asset"]] = counts.get(row["asset"], 0) + (alarm_key(row) not in noted)

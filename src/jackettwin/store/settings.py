@@ -15,6 +15,9 @@ RAW_DAYS = "raw_days"
 MQTT_CLIENT = "mqtt_client"
 """The name by which the broker knows the store."""
 
+ALERTED = "alerted"
+"""The numbers of the newest finding when alerts began, and of the last one that was looked at."""
+
 
 def get(connection: Connection, name: str) -> Any:
     """Return a setting, or None."""

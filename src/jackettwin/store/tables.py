@@ -400,4 +400,5 @@ alerts = Table(
     UniqueConstraint("channel", "key"),
     Index("ix_alerts_due", "state", "due_utc"),
 )
-"""What is to be told to people, once for each channel and key. ``state``: waiting, sent or given_up."""
+"""What is to be told to people, once for each channel and key. ``state``: waiting, sent, withdrawn (somebody
+dealt with it before, or it holds no more) or given_up."""

@@ -18,7 +18,7 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from jackettwin.service.web.schemas import Ready
 from jackettwin.service.workers.failures import ROOM_BYTES
-from jackettwin.store import assets, reading, records, results, rights, work
+from jackettwin.store import alerts, assets, reading, records, results, rights, work
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Service
@@ -93,8 +93,11 @@ def exposition(service: Service, seen: rights.Assets = None) -> bytes:
     with reading(service.database) as connection:
         _measure_assets(measures, connection, seen, now)
         oldest = work.oldest_queued(connection)
+        alerted = {} if seen is not None else alerts.count(connection)
     waited = 0.0 if oldest is None else max((now - oldest).total_seconds(), 0.0)
     gauge("queue_age_seconds", "Time since the oldest record that is not observed yet was asked for", waited)
+    for state, n in alerted.items():
+        gauge("alerts", "What is to be told to people, by state", n, state=state)
     gauge("workers", "Workers there are", service.cluster.workers)
     gauge("scheduler_reachable", "Whether the scheduler of the workers answers", service.cluster.reachable)
     counter("worker_restarts", "Workers that were replaced, whatever they ended of", service.cluster.restarts)

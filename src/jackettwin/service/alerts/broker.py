@@ -1,0 +1,93 @@
+"""Alerts to an MQTT broker."""
+
+from __future__ import annotations
+
+import json
+import ssl
+from pathlib import Path
+from typing import Literal
+
+import paho.mqtt.client as mqtt
+from paho.mqtt.enums import CallbackAPIVersion
+from pydantic import Field
+
+from jackettwin.errors import require
+from jackettwin.files import Schema
+from jackettwin.service.alerts.mail import trusted
+from jackettwin.service.alerts.notice import NotDelivered, Notice, secret
+
+_TIMEOUT_S = 15.0
+
+
+class Broker(Schema):
+    """A broker and the topic below which each finding is published, retained by nobody, QoS 1."""
+
+    kind: Literal["mqtt"]
+    host: str = Field(min_length=1)
+    port: int | None = Field(default=None, ge=1, le=65535)
+    """Without it 8883 with TLS, 1883 without."""
+    tls: bool = True
+    ca: Path | None = None
+    user: str | None = None
+    password_file: Path | None = None
+    topic: str = "jackettwin-alerts"
+    """``/ASSET/SEVERITY`` is put behind it."""
+
+    def check(self, folder: Path) -> None:
+        """Refuse what could not be sent.
+
+        Raises
+        ------
+        InputError
+            If the topic is none, a password would travel unencrypted, or a file cannot be read.
+        """
+        good = self.topic and not set(self.topic) & set("+#\0") and self.topic.isprintable()
+        require(good, "cannot be published to", field="topic", value=self.topic, allowed="no + and #")
+        require(
+            not self.topic.startswith("jackettwin/") and self.topic != "jackettwin",
+            "this is where packets of samples come from",
+            field="topic",
+            value=self.topic,
+            remedy="take another one",
+        )
+        require(
+            self.tls or self.user is None, "a password would travel unencrypted", field="tls", value=self.tls
+        )
+        secret(folder, self.password_file, "password_file")
+        if self.ca is not None:
+            trusted(folder, self.ca)
+
+    def send(self, notice: Notice, folder: Path) -> None:
+        """Publish every finding of a message.
+
+        Raises
+        ------
+        OSError, NotDelivered
+            If the broker did not take all of them.
+        """
+        client = mqtt.Client(CallbackAPIVersion.VERSION2)
+        client.connect_timeout = _TIMEOUT_S
+        if self.user is not None:
+            client.username_pw_set(self.user, secret(folder, self.password_file, "password_file"))
+        if self.tls:
+            context: ssl.SSLContext = trusted(folder, self.ca)
+            client.tls_set_context(context)
+        client.connect(self.host, self.port or (8883 if self.tls else 1883))
+        client.loop_start()
+        try:
+            told = [self._published(client, dict(finding), notice.id) for finding in notice.findings]
+            for one in told:
+                one.wait_for_publish(_TIMEOUT_S)
+                if not one.is_published():
+                    raise NotDelivered("the broker does not acknowledge it")
+        except (RuntimeError, ValueError) as error:
+            raise NotDelivered(f"the broker does not take it: {error}") from None
+        finally:
+            client.disconnect()
+            client.loop_stop()
+
+    def _published(
+        self, client: mqtt.Client, finding: dict[str, object], message: str
+    ) -> mqtt.MQTTMessageInfo:
+        topic = f"{self.topic}/{finding['asset']}/{finding['severity']}"
+        return client.publish(topic, json.dumps({"message": message, **finding}, ensure_ascii=False), qos=1)

@@ -1,0 +1,9 @@
+"""The ways by which people are told: a way is one file with a kind of its own, and a name in this line."""
+
+from __future__ import annotations
+
+from jackettwin.service.alerts.broker import Broker
+from jackettwin.service.alerts.mail import Mail
+from jackettwin.service.alerts.webhook import Webhook
+
+AnyChannel = Mail | Webhook | Broker

@@ -1,0 +1,125 @@
+"""Alerts by e-mail."""
+
+from __future__ import annotations
+
+import smtplib
+import ssl
+from email.message import EmailMessage
+from email.utils import formatdate, parseaddr
+from pathlib import Path
+from typing import Literal
+
+from pydantic import Field
+
+from jackettwin.errors import InputError, require
+from jackettwin.files import Schema
+from jackettwin.service.alerts.notice import NotDelivered, Notice, secret
+
+_TIMEOUT_S = 20.0
+_PORTS = {"starttls": 587, "tls": 465, "none": 25}
+
+
+class Mail(Schema):
+    """A server that takes mail by SMTP, and who is written to."""
+
+    kind: Literal["email"]
+    host: str = Field(min_length=1)
+    port: int | None = Field(default=None, ge=1, le=65535)
+    """Without it 587 with STARTTLS, 465 with TLS, 25 without."""
+    security: Literal["starttls", "tls", "none"] = "starttls"
+    ca: Path | None = None
+    """Certificates by which the server is known; without it those that the system trusts."""
+    user: str | None = None
+    password_file: Path | None = None
+    """Its first line is the user's password; beside the alerts file if the path is not absolute."""
+    sender: str
+    to: list[str] = Field(min_length=1)
+
+    def check(self, folder: Path) -> None:
+        """Refuse what could not be sent.
+
+        Raises
+        ------
+        InputError
+            If an address is none, a password would travel unencrypted, or a file cannot be read.
+        """
+        for field, address in [("sender", self.sender), *((f"to.{k}", one) for k, one in enumerate(self.to))]:
+            plain = parseaddr(address)[1]
+            require(
+                plain.count("@") == 1 and all(plain.split("@")) and address.isprintable(),
+                "not an address of e-mail",
+                field=field,
+                value=address,
+                allowed="NAME@HOST",
+            )
+        require(
+            self.user is None or self.security != "none",
+            "a password would travel unencrypted",
+            field="security",
+            value=self.security,
+            allowed="starttls, tls",
+        )
+        require(
+            (self.user is None) == (self.password_file is None),
+            "user and password_file belong together",
+            field="password_file" if self.password_file is None else "user",
+            remedy="give both or neither",
+        )
+        secret(folder, self.password_file, "password_file")
+        if self.ca is not None:
+            trusted(folder, self.ca)
+
+    def send(self, notice: Notice, folder: Path) -> None:
+        """Send a message.
+
+        Raises
+        ------
+        OSError, NotDelivered
+            If it was not taken.
+        """
+        message = self._written(notice)
+        port = self.port or _PORTS[self.security]
+        context = None if self.security == "none" else trusted(folder, self.ca)
+        try:
+            with self._connected(port, context) as server:
+                if self.security == "starttls":
+                    server.starttls(context=context)
+                if self.user is not None:
+                    server.login(self.user, secret(folder, self.password_file, "password_file") or "")
+                refused = server.send_message(message)
+        except smtplib.SMTPException as error:
+            raise NotDelivered(f"the mail server refuses it: {error}") from None
+        if refused:
+            raise NotDelivered(f"the mail server does not know {', '.join(refused)}")
+
+    def _connected(self, port: int, context: ssl.SSLContext | None) -> smtplib.SMTP:
+        if self.security == "tls":
+            return smtplib.SMTP_SSL(self.host, port, timeout=_TIMEOUT_S, context=context)
+        return smtplib.SMTP(self.host, port, timeout=_TIMEOUT_S)
+
+    def _written(self, notice: Notice) -> EmailMessage:
+        message = EmailMessage()
+        message["From"], message["To"] = self.sender, ", ".join(self.to)
+        message["Subject"] = f"[jackettwin] {notice.title}"
+        message["Date"] = formatdate()
+        message["Message-ID"] = f"<{notice.id}@{parseaddr(self.sender)[1].partition('@')[2]}>"
+        message["Auto-Submitted"] = "auto-generated"
+        if notice.severity == "alarm":
+            message["Importance"] = "high"
+        message.set_content("\n".join(notice.lines) + "\n")
+        return message
+
+
+def trusted(folder: Path, ca: Path | None) -> ssl.SSLContext:
+    """Return how the other side of a connection is known.
+
+    Raises
+    ------
+    InputError
+        If the file is no certificate.
+    """
+    try:
+        return ssl.create_default_context(cafile=None if ca is None else folder / ca)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise InputError(f"not certificates in PEM ({reason})", field="ca", value=str(ca)) from None

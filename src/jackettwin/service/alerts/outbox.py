@@ -1,0 +1,164 @@
+"""What is on its way to people: found, sent, tried again, withdrawn."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from datetime import datetime, timedelta
+from itertools import groupby
+from pathlib import Path
+from threading import Event, Thread
+from typing import TYPE_CHECKING, Any
+
+import httpx
+from sqlalchemy import Connection
+from sqlalchemy.exc import SQLAlchemyError
+
+from jackettwin.errors import InputError
+from jackettwin.findings import Finding
+from jackettwin.service.alerts.notice import NotDelivered, Notice
+from jackettwin.service.alerts.rules import Alerts, Rule, is_fresh
+from jackettwin.store import alerts, assets, journal, reading, results, rights, settings, work, writing
+
+if TYPE_CHECKING:
+    from jackettwin.service.context import Service
+
+log = logging.getLogger(__name__)
+
+_TURN_S = 2.0
+_FIRST_WAIT, _LONGEST_WAIT = timedelta(seconds=30), timedelta(hours=1)
+MOST_TRIES = 30
+"""A channel that fails is tried for a day, then what waits for it is given up."""
+_AT_ONCE = 500
+"""Findings of one message; the rest is another."""
+_SILENCE = "silence"
+"""The origin of what is said of an asset that nothing comes from."""
+
+
+class Outbox(Thread):
+    """A thread that tells people what was found, of several servers on one store one's."""
+
+    def __init__(self, service: Service, told: Alerts, folder: Path) -> None:
+        super().__init__(name="alerts", daemon=True)
+        self._service, self._told, self._folder = service, told, folder
+        self._stop_asked = Event()
+        self._looked_at: set[int] = set()
+
+    def run(self) -> None:
+        """Turn until told to stop; a database that is away for a while is waited for."""
+        while not self._stop_asked.wait(_TURN_S):
+            try:
+                self.turn()
+            except (SQLAlchemyError, OSError) as error:
+                log.warning("alerts wait: %s", str(error).partition("\n")[0])
+            except Exception:
+                log.exception("alerts go on after a fault of ours")
+
+    def stop(self) -> None:
+        """Stop after the message that is being sent; what is not sent is sent by the next server."""
+        self._stop_asked.set()
+
+    def turn(self) -> None:
+        """Look for what is new, and send what is due."""
+        with writing(self._service.database) as connection:
+            if not work.hold_post(connection, "alerts", self._service.server_id):
+                return
+            self._note_silence(connection)
+            self._note_new(connection)
+        for name, group in groupby(sorted(self._due(), key=lambda alert: alert.channel), lambda a: a.channel):
+            self._send(name, list(group)[:_AT_ONCE])
+
+    def _note_silence(self, connection: Connection) -> None:
+        """Say which assets nothing came from for too long, and take it back of those that sent again."""
+        hours, now = self._told.silent_hours, self._service.now()
+        if hours is None:
+            return
+        said = results.silent_assets(connection)
+        for asset in assets.summaries(connection):
+            last = asset.last_record_utc or asset.created_utc
+            silent = now - last > timedelta(hours=hours)
+            named = f"{'latest record' if asset.last_record_utc else 'added'} {last:%Y-%m-%d %H:%M} UTC"
+            if silent and said.get(asset.name) != named:
+                results.drop_findings(connection, asset.name, asset.model_hash, origin=_SILENCE)
+                self._say_silent(connection, asset, last, named)
+            elif not silent and asset.name in said:
+                results.drop_findings(connection, asset.name, asset.model_hash, origin=_SILENCE)
+                journal.tell(connection, "finding", asset.name, {"code": "asset_silent", "over": True}, now)
+
+    def _say_silent(self, connection: Connection, asset: assets.Summary, last: datetime, named: str) -> None:
+        now = self._service.now()
+        said = Finding("asset_silent", named, {"hours": self._told.silent_hours})
+        row = {name: getattr(said, name) for name in ("code", "severity", "subject", "params", "text")}
+        key = {"asset": asset.name, "model_hash": asset.model_hash, "record_id": "", "origin": _SILENCE}
+        results.put_findings(connection, [{**row, **key, "time_utc": now, "day": f"{last:%Y-%m-%d}"}])
+        journal.tell(connection, "finding", asset.name, row, now)
+
+    def _note_new(self, connection: Connection) -> None:
+        """Have what was found since the last time told by the rules; before the first time, nothing."""
+        seen = settings.get(connection, settings.ALERTED)
+        if seen is None:
+            newest = alerts.newest_finding(connection)
+            settings.put(connection, settings.ALERTED, {"first": newest, "last": newest})
+            return
+        after = max(seen["first"], seen["last"] - alerts.LOOK_BACK)
+        found = alerts.findings_after(connection, after)
+        new = [finding for finding in found if finding["id"] not in self._looked_at]
+        for rule in self._told.rules if new else ():
+            named = rights.visible(connection, rule.assets)
+            for finding in new:
+                if rule.tells(finding, named) and is_fresh(finding, self._service.now()):
+                    self._add(connection, rule, finding)
+        self._looked_at = {finding["id"] for finding in found}
+        if new and new[-1]["id"] > seen["last"]:
+            settings.put(connection, settings.ALERTED, {**seen, "last": new[-1]["id"]})
+
+    def _add(self, connection: Connection, rule: Rule, finding: dict[str, Any]) -> None:
+        now, key = self._service.now(), results.alarm_key(finding)
+        named = ("asset", "code", "severity", "subject", "text", "day", "params")
+        message = {name: finding[name] for name in named}
+        message |= {"time_utc": finding["time_utc"].isoformat(), "key": key}
+        alerts.add(connection, rule.channel, key, finding["asset"], message, now, rule.due(finding, now))
+        if rule.escalate is not None:
+            after, to = rule.escalate.after_minutes, rule.escalate.channel
+            later = {**message, "unanswered_minutes": after}
+            due = now + timedelta(minutes=after)
+            alerts.add(connection, to, f"unanswered {key}", finding["asset"], later, now, due)
+
+    def _due(self) -> list[alerts.Alert]:
+        """Return what is to be sent now; what somebody dealt with, or what holds no more, is withdrawn."""
+        now = self._service.now()
+        with reading(self._service.database) as connection:
+            found = alerts.due(connection, now)
+            if not found:
+                return []
+            noted = results.acknowledged_keys(connection)
+            gone = [
+                alert.id
+                for alert in found
+                if alert.message["key"] in noted or not alerts.still_found(connection, alert)
+            ]
+        if gone:
+            with writing(self._service.database) as connection:
+                alerts.end(connection, gone, alerts.WITHDRAWN, now)
+        return [alert for alert in found if alert.id not in set(gone)]
+
+    def _send(self, name: str, group: Sequence[alerts.Alert]) -> None:
+        channel = self._told.channels.get(name)
+        problem = None if channel is not None else "there is no such channel any more"
+        ids, now = [alert.id for alert in group], self._service.now()
+        if channel is not None:
+            try:
+                channel.send(Notice([alert.message for alert in group], self._told.address), self._folder)
+            except (OSError, httpx.HTTPError, NotDelivered, InputError) as error:
+                problem = str(error) or type(error).__name__
+        with writing(self._service.database) as connection:
+            if problem is None:
+                alerts.end(connection, ids, alerts.SENT, now)
+                return
+            log.warning("%d alerts are not delivered by %s: %s", len(ids), name, problem)
+            for alert in group:
+                wait = min(_FIRST_WAIT * 2 ** min(alert.tries, 20), _LONGEST_WAIT)
+                alerts.try_again(connection, [alert.id], now + wait, problem)
+            out = [alert.id for alert in group if alert.tries + 1 >= MOST_TRIES]
+            if out:
+                alerts.end(connection, out, alerts.GIVEN_UP, now)
