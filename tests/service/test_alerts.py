@@ -19,6 +19,7 @@ import yaml
 from fastapi.testclient import TestClient
 from tests.service.conftest import NOON, TWIN, turn, upload
 from tests.service.servers import free_port
+from tests.service.test_people_commands import ran
 
 from jackettwin.errors import InputError
 from jackettwin.service.alerts.notice import Notice
@@ -487,3 +488,17 @@ def test_a_file_that_is_wrong_is_refused_at_its_place(
         read_alerts(write(tmp_path, **{**good, **wrong}))
     said = str(error.value)
     assert field in said and problem in said and str(tmp_path) in said
+
+
+def test_the_command_tries_every_channel_and_lists_what_was_told(
+    service: Service, clock: list[datetime], receiver: Receiver
+) -> None:
+    store = service.settings.store
+    channels = {"ops": hook(receiver), "dead": {"kind": "webhook", "url": f"http://127.0.0.1:{free_port()}"}}
+    out = outbox(service, channels=channels, rules=[{"channel": "ops"}])
+    tried = ran(store, "alerts", "--try", str(store / "alerts.yaml"))["channels"]
+    assert tried["ops"] is None and "refused" in tried["dead"]
+    key = found(service)
+    out.turn()
+    listed = ran(store, "alerts")["alerts"]
+    assert [(row["channel"], row["key"], row["state"]) for row in listed] == [("ops", key, "sent")]

@@ -45,6 +45,7 @@ GROUPS = {
         "restore": "Fill the empty STORE from a backup FILE.",
         "user": "Manage the users of a server.",
         "token": "Manage the tokens with which machines log in.",
+        "alerts": "List what people were told of a store's findings, newest first.",
         "audit": "List who did what in a store, newest first.",
     },
     "To other programs": {

@@ -1,3 +1,4 @@
+from .alerts.outbox import tried_channels as tried_channels
 from .context import Service as Service
 from .demonstration import demonstrate as demonstrate
 from .intake.files import Accepted as Accepted

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta
 from itertools import groupby
 from pathlib import Path
 from threading import Event, Thread
@@ -16,8 +16,9 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from jackettwin.errors import InputError
 from jackettwin.findings import Finding
+from jackettwin.service.alerts.channels import AnyChannel
 from jackettwin.service.alerts.notice import NotDelivered, Notice
-from jackettwin.service.alerts.rules import Alerts, Rule, is_fresh
+from jackettwin.service.alerts.rules import Alerts, Rule, is_fresh, read_alerts
 from jackettwin.store import alerts, assets, journal, reading, results, rights, settings, work, writing
 
 if TYPE_CHECKING:
@@ -147,10 +148,8 @@ class Outbox(Thread):
         problem = None if channel is not None else "there is no such channel any more"
         ids, now = [alert.id for alert in group], self._service.now()
         if channel is not None:
-            try:
-                channel.send(Notice([alert.message for alert in group], self._told.address), self._folder)
-            except (OSError, httpx.HTTPError, NotDelivered, InputError) as error:
-                problem = str(error) or type(error).__name__
+            notice = Notice([alert.message for alert in group], self._told.address)
+            problem = _sent(channel, notice, self._folder)
         with writing(self._service.database) as connection:
             if problem is None:
                 alerts.end(connection, ids, alerts.SENT, now)
@@ -162,3 +161,39 @@ class Outbox(Thread):
             out = [alert.id for alert in group if alert.tries + 1 >= MOST_TRIES]
             if out:
                 alerts.end(connection, out, alerts.GIVEN_UP, now)
+
+
+def tried_channels(file: Path) -> dict[str, str | None]:
+    """Send a message by each channel of an alerts file; return what went wrong, or None, by channel.
+
+    Raises
+    ------
+    InputError
+        If the file is not what it must be.
+    """
+    now = datetime.now(UTC)
+    said: dict[str, Any] = {
+        "asset": "none",
+        "code": "try",
+        "severity": "info",
+        "subject": None,
+        "text": "this is a try: whoever reads it will be told what is found",
+        "day": f"{now:%Y-%m-%d}",
+        "time_utc": now.isoformat(),
+        "params": {},
+        "key": f"try {now.isoformat()}",
+    }
+    told = read_alerts(file)
+    return {
+        name: _sent(channel, Notice([said], told.address), file.parent)
+        for name, channel in told.channels.items()
+    }
+
+
+def _sent(channel: AnyChannel, notice: Notice, folder: Path) -> str | None:
+    """Send a message; return why it was not taken, or None."""
+    try:
+        channel.send(notice, folder)
+    except (OSError, httpx.HTTPError, NotDelivered, InputError) as error:
+        return str(error) or type(error).__name__
+    return None
