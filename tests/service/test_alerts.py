@@ -375,7 +375,7 @@ def notice(**more: Any) -> Notice:
 
 
 def test_every_shape_is_what_its_reader_reads() -> None:
-    """Their fields are those that the makers document for incoming webhooks, workflows and receivers."""
+    """Slack takes a text, Teams a card in a message, Alertmanager a list of alerts with labels."""
     slack = SHAPES["slack"](notice())
     assert list(slack) == ["text"]
     assert "&lt;b&gt; &amp; more" in slack["text"]

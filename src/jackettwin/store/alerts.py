@@ -76,11 +76,6 @@ def end(connection: Connection, ids: Collection[int], state: str, now: datetime)
     connection.execute(update(alerts).where(alerts.c.id.in_(ids)).values(state=state, ended_utc=now))
 
 
-def put_off(connection: Connection, ids: Collection[int], until: datetime) -> None:
-    """Tell some later."""
-    connection.execute(update(alerts).where(alerts.c.id.in_(ids)).values(due_utc=until))
-
-
 def try_again(connection: Connection, ids: Collection[int], at: datetime, problem: str) -> None:
     """Count a try that failed, and say when the next one is."""
     changed = {"tries": alerts.c.tries + 1, "due_utc": at, "problem": problem[:500]}
