@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from sqlalchemy import JSON, BigInteger, Boolean, Column, Engine, Float, Integer, LargeBinary, Table, select
 
@@ -17,7 +17,7 @@ from jackettwin.store.tables import Packed, Utc
 if TYPE_CHECKING:
     import pyarrow as pa
 
-EXPORTED = (
+Exported = Literal[
     "modes",
     "findings",
     "records",
@@ -30,18 +30,19 @@ EXPORTED = (
     "work",
     "handling",
     "acknowledgements",
-)
+]
 """Tables of whose every row it is known which asset it is of; the first is what is asked for most."""
+EXPORTED: tuple[Exported, ...] = get_args(Exported)
 _ROWS = 5000
 """Rows in memory at once, and in a group of rows of the file."""
 
 
-def exported(database: Engine, name: str, seen: Assets, *, arrow: bool = False) -> Iterator[bytes]:
+def exported(database: Engine, name: Exported, seen: Assets, *, arrow: bool = False) -> Iterator[bytes]:
     """Yield a table of the assets that somebody may see, piece by piece.
 
     Parameters
     ----------
-    name : of :data:`EXPORTED`; times are UTC, nested values JSON, and bundles and pages are left out
+    name : times are UTC, nested values JSON, and bundles and pages are left out
     arrow : as a stream of Arrow (IPC) instead of a Parquet file
     """
     import pyarrow as pa

@@ -36,27 +36,13 @@ from jackettwin.service.web.schemas import (
     SupportsOut,
     TwinOut,
 )
-from jackettwin.store import exported, journal, people, results, writing
+from jackettwin.store import Exported, exported, journal, people, results, writing
 
 router = APIRouter(tags=["answers"], route_class=Route)
 
 Cursor = Annotated[str | None, Query(max_length=500)]
 Limit = Annotated[int, Query(ge=1, le=10_000)]
 AnyVersion = Annotated[int | None, Query(ge=1, le=1_000_000, description="Default: the adopted one.")]
-Exported = Literal[
-    "modes",
-    "findings",
-    "records",
-    "observations",
-    "states",
-    "conditions",
-    "knowledge",
-    "versions",
-    "assets",
-    "work",
-    "handling",
-    "acknowledgements",
-]
 _PARQUET, _ARROW = "application/vnd.apache.parquet", "application/vnd.apache.arrow.stream"
 When = Annotated[datetime | None, Query(description="The state as it was then; default: now.")]
 
@@ -200,7 +186,7 @@ def export_arrow(who: Asker, parts: Parts, table: Exported = "modes") -> Streami
     return _exported(who, parts, table, _ARROW)
 
 
-def _exported(who: Who, parts: Service, table: str, form: str) -> StreamingResponse:
+def _exported(who: Who, parts: Service, table: Exported, form: str) -> StreamingResponse:
     with writing(parts.database) as connection:
         people.note_down(connection, who.name, "download", f"table {table}", "ok", parts.now())
     pieces = exported(parts.database, table, who.assets, arrow=form == _ARROW)
