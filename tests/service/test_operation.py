@@ -14,7 +14,7 @@ from fastapi.testclient import TestClient
 from tests.service.conftest import Here, upload
 
 from jackettwin.service.context import Service
-from jackettwin.service.logs import JsonLines
+from jackettwin.service.logs import JsonLines, start_logging
 
 DEPLOY = Path(__file__).parents[2] / "deploy"
 
@@ -65,3 +65,23 @@ def test_a_line_of_log_is_one_object() -> None:
     said = json.loads(line)
     assert (said["level"], said["logger"], said["message"]) == ("error", "a.b", "it fell\n")
     assert "ValueError: gone" in said["trace"]
+
+
+@pytest.mark.parametrize(
+    ("level", "told"), [("info", ["slow", "here"]), ("debug", ["begun", "slow", "here"])]
+)
+def test_libraries_tell_their_warnings_alone(
+    level: str, told: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A server that starts told of twenty handshakes between its workers."""
+    root = logging.RootLogger(logging.WARNING)
+    monkeypatch.setattr(logging, "root", root)
+    start_logging(level, as_json=True)
+    for name, severity, text in [
+        ("distributed.worker", logging.INFO, "begun"),
+        ("distributed.worker", logging.WARNING, "slow"),
+        ("jackettwin.service", logging.INFO, "here"),
+    ]:
+        record = logging.LogRecord(name, severity, __file__, 1, text, None, None)
+        root.handle(record)
+    assert [json.loads(line)["message"] for line in capsys.readouterr().err.splitlines()] == told

@@ -24,8 +24,13 @@ class JsonLines(logging.Formatter):
 
 
 def start_logging(level: str, *, as_json: bool) -> None:
-    """Write what happens, from a level of :mod:`logging` on, to the standard error stream."""
+    """Write what happens, from a level of :mod:`logging` on, to the standard error stream.
+
+    Of the libraries that serve and compute it takes their warnings, or with ``debug`` everything.
+    """
     handler = logging.StreamHandler()
     plain = logging.Formatter("%(asctime)s %(levelname)s %(message)s")
     handler.setFormatter(JsonLines() if as_json else plain)
+    if level.lower() != "debug":
+        handler.addFilter(lambda r: r.name.startswith("jackettwin") or r.levelno >= logging.WARNING)
     logging.basicConfig(level=level.upper(), handlers=[handler])
