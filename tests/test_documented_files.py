@@ -68,3 +68,9 @@ def test_what_a_page_imports_exists(page: Path) -> None:
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("jackettwin"):
             package = import_module(node.module or "")
             assert [one.name for one in node.names if not hasattr(package, one.name)] == []
+
+
+def test_every_page_is_in_the_contents() -> None:
+    docs = PAGE.parents[1]
+    listed = set(re.findall(r"(\S+\.md)$", (docs.parent / "mkdocs.yml").read_text(), re.MULTILINE))
+    assert listed == {page.relative_to(docs).as_posix() for page in docs.rglob("*.md")}
