@@ -61,6 +61,11 @@ FAULTS = (
         ("a short chord is stiffened at its crown", "F * saddle, crown, F * brace_saddle, brace_crown, *_in_plane(s), out, _brace_side(s) * out\n    )\n\n\ndef _k(", "saddle, F * crown, F * brace_saddle, brace_crown, *_in_plane(s), out, _brace_side(s) * out\n    )\n\n\ndef _k("),
         ("the median is that of the design curve", "10.0 ** (-2.0 * self.curve.log_std)", "10.0 ** (-0.0 * self.curve.log_std)"),
     )),
+    *_of("sensing", rows=(
+        ("what is smoothed is what is predicted", "(p, p - p @ known @ p, before)", "(p, p + 0.0 * known, before)"),
+        ("the smoother goes back by its gain's transpose", "_forward(np.ascontiguousarray(self.closed_loop), np.zeros", "_forward(np.ascontiguousarray(self.closed_loop.T), np.zeros"),
+        ("noise of a step is that of its end", "Q = F @ exact[:n, n:]", "Q = exact[:n, n:]"),
+    )),
     *_of("soil", rows=(
         ("clay's bearing factor is 8", "J * strength_pa * z, 9.0 * strength_pa * D)", "J * strength_pa * z, 8.0 * strength_pa * D)"),
         ("a clay shaft peaks at twice the displacement", "return TabulatedCurve(tuple(D * z for z in TZ_Z), tuple(t * share for share in (*TZ_T, residual)))", "return TabulatedCurve(tuple(2.0 * D * z for z in TZ_Z), tuple(t * share for share in (*TZ_T, residual)))"),
