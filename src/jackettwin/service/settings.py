@@ -11,6 +11,7 @@ from pydantic import AfterValidator, Field, SecretStr, ValidationError
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from jackettwin.errors import InputError, require
+from jackettwin.files import read_text
 from jackettwin.store import sqlite_url
 
 LOOPBACK = ("127.0.0.1", "::1")
@@ -153,6 +154,19 @@ def read_settings(**given: Any) -> ServiceSettings:
         raise InputError(
             first["msg"], field=name, value=first["input"], remedy=f"see JACKETTWIN_SERVE_{name.upper()}"
         ) from None
+
+
+def secret_of(file: Path | None, given: SecretStr | None, *, what: str) -> str:
+    """Return the first line of a secret's file, else what the environment gave, else nothing.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read; ``what`` names it.
+    """
+    if file is not None:
+        return read_text(file, what=what).partition("\n")[0].rstrip("\r")
+    return "" if given is None else given.get_secret_value()
 
 
 def checked_url(url: str, field: str) -> str:

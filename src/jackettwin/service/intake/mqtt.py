@@ -16,8 +16,8 @@ import paho.mqtt.client as mqtt
 from paho.mqtt.enums import CallbackAPIVersion, MQTTProtocolVersion
 
 from jackettwin.errors import InputError
-from jackettwin.files import read_text
 from jackettwin.service.intake.packets import TOPIC, read_packets
+from jackettwin.service.settings import secret_of
 from jackettwin.store import Packet, assets, settings, streams, writing
 
 if TYPE_CHECKING:
@@ -70,7 +70,9 @@ class MqttIntake:
             manual_ack=True,
         )
         if place.username:
-            self._client.username_pw_set(unquote(place.username), _password(service.settings))
+            given = service.settings
+            password = secret_of(given.mqtt_password_file, given.mqtt_password, what="password file")
+            self._client.username_pw_set(unquote(place.username), password)
         if place.scheme == "mqtts":
             self._client.tls_set_context(_tls(service.settings))
         self._client.reconnect_delay_set(1, 30)
@@ -163,13 +165,6 @@ def _client_id(service: Service) -> str:
             found = f"jackettwin-{secrets.token_hex(4)}"
             settings.put(connection, settings.MQTT_CLIENT, found)
     return str(found)
-
-
-def _password(given: ServiceSettings) -> str:
-    """Return the password for the broker, of a file or of the environment."""
-    if given.mqtt_password_file is not None:
-        return read_text(given.mqtt_password_file, what="password file").partition("\n")[0].rstrip("\r")
-    return "" if given.mqtt_password is None else given.mqtt_password.get_secret_value()
 
 
 def _tls(given: ServiceSettings) -> ssl.SSLContext:

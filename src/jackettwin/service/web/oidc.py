@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote, urlencode
 
 from jackettwin.errors import InputError, require
-from jackettwin.files import read_text
-from jackettwin.service.settings import ServiceSettings, checked_url
+from jackettwin.service.settings import ServiceSettings, checked_url, secret_of
 from jackettwin.service.web import auth
 from jackettwin.service.web.problems import ApiError
 from jackettwin.store import people, writing
@@ -228,10 +227,8 @@ def check_settings(settings: ServiceSettings) -> None:
 
 
 def _secret(settings: ServiceSettings) -> str:
-    """Return the secret by which the provider knows us, of a file or of the environment."""
-    if settings.oidc_secret_file is not None:
-        return read_text(settings.oidc_secret_file, what="secret file").partition("\n")[0].rstrip("\r")
-    return "" if settings.oidc_secret is None else settings.oidc_secret.get_secret_value()
+    """Return the secret by which the provider knows us."""
+    return secret_of(settings.oidc_secret_file, settings.oidc_secret, what="secret file")
 
 
 def _refused(why: str) -> ApiError:
