@@ -120,7 +120,7 @@ def test_a_scenario_tells_the_life_of_every_weld(tmp_path: Path) -> None:
     low, high = first["damage_interval_90"]
     assert low < high and sum(first["variance_shares"].values()) == pytest.approx(1.0)
     assert {row["environment"] for row in joints} == {"air", "cathodic", "free-corrosion"}
-    assert any("crack growth" in text for text in found["left_out"])
+    assert any("crack growth" in one["what"] for one in found["left_out"])
     stricter = answer("scenario", str(scenario), "--design-factor", "3")
     assert stricter["joints"][0]["life_years"] == pytest.approx(first["life_years"] / 3.0, rel=1e-9)
 

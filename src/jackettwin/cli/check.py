@@ -12,6 +12,7 @@ from jackettwin.checks import EDITIONS
 from jackettwin.cli.console import FiniteFloat, Reply, answers, numbers_of, say, say_all, show_table
 from jackettwin.cli.modes import pile_model_option, supported_option
 from jackettwin.errors import InputError, look_up
+from jackettwin.omissions import Omission, omission_documents, omission_sentences
 from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
@@ -202,13 +203,17 @@ def _piles(
     )
 
 
-def _piles_left_out(piles: tuple[PileUse, ...]) -> tuple[str, ...]:
+def _piles_left_out(piles: tuple[PileUse, ...]) -> tuple[Omission, ...]:
     """Return what of the check of piles is left out, and how to have one."""
     if not piles:
-        return ("piles (ISO 19902 17): give --support FOUNDATION with layers, piles lumped at their heads",)
+        how = "piles: give --support FOUNDATION with layers, piles lumped at their heads"
+        return (Omission(how, "ISO 19902 17"),)
     return (
-        "piles: group effects, cyclic degradation along the axis, set-up, the weight of piles and plug, "
-        "yielding steel and driving (ISO 19902 17); the structure feels the ground's initial stiffness",
+        Omission(
+            "piles: group effects, cyclic degradation along the axis, set-up, the weight of piles and plug, "
+            "yielding steel and driving; the structure feels the ground's initial stiffness",
+            "ISO 19902 17",
+        ),
     )
 
 
@@ -240,15 +245,16 @@ def _in_water(
     return load + wet.load, wet.along if along is None else along + wet.along, pressure
 
 
-def _flows_left_out(wind: float | None, current: float | None) -> tuple[str, ...]:
+def _flows_left_out(wind: float | None, current: float | None) -> tuple[Omission, ...]:
     """Return what of the screening for vortices is left out, and how to have it."""
     found = []
     if wind is None:
-        found.append("vortices in air (EN 1991-1-4 E.1): give a structure and --wind")
+        found.append(Omission("vortices in air: give a structure and --wind", "EN 1991-1-4 E.1"))
     if current is None:
-        found.append("vortices in water (DNV-RP-C205 section 9): give a structure and --current")
+        found.append(Omission("vortices in water: give a structure and --current", "DNV-RP-C205 9"))
     if wind is not None or current is not None:
-        found.append("vortices: the response beyond the onset, marine growth, waves and neighbouring members")
+        what = "vortices: the response beyond the onset, marine growth, waves and neighbouring members"
+        found.append(Omission(what, "DNV-RP-C205 9"))
     return tuple(found)
 
 
@@ -256,7 +262,7 @@ def _answer(
     name: str,
     use: FrameUse,
     notes: list[str],
-    missing: tuple[str, ...],
+    missing: tuple[Omission, ...],
     *,
     piles: tuple[PileUse, ...] = (),
     vortices: tuple[VortexUse, ...] = (),
@@ -273,7 +279,7 @@ def _answer(
         "piles": [_pile_row(one) for one in sorted(piles, key=lambda one: -one.axial)],
         "vortices": [_vortex_row(one) for one in vortices],
         "warnings": [*_warnings(use), *_pile_warnings(piles), *_vortex_warnings(vortices), *notes],
-        "left_out": list(missing),
+        "left_out": omission_documents(missing),
     }
     return Reply(document, lambda: _show(document))
 
@@ -434,7 +440,7 @@ def _show(document: dict[str, Any]) -> None:
         show_table(Table("calculation, ISO 19902 clause 13", _SHEET, document["sheet"]))
     say(f"largest von Mises stress {document['largest_von_mises_stress_pa'] / 1e6:.1f} MPa")
     say_all(document["warnings"], "warning")
-    say_all(document["left_out"], "left out")
+    say_all(omission_sentences(document["left_out"]), "left out")
 
 
 def _show_joints(rows: list[dict[str, Any]]) -> None:

@@ -21,6 +21,7 @@ from jackettwin.cli.console import (
     working,
 )
 from jackettwin.errors import InputError, look_up, require
+from jackettwin.omissions import Omission, omission_documents
 from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
@@ -34,6 +35,18 @@ _N_EQ = 1e7
 _SHOWN = 10
 _SPLASH_M = (-5.0, 5.0)
 """About the sea level: no cathodic protection reaches there for all of the time."""
+_OF_WELDS = (
+    Omission("cans, butt welds, flanges, grout and piles"),
+    Omission("joints of several planes: each plane for itself"),
+    Omission("crack growth"),
+)
+_OF_RECORDS = (
+    Omission("other seas, winds and states: life if all time were like this record"),
+    Omission("the model's own errors beyond its supports: intervals of stress are too narrow, see the docs"),
+    Omission("slow forces that neither a sensor nor the record's stated wind and sea show"),
+    Omission("buoyancy and mean thrust in the shares of K, Y and X joints"),
+    Omission("bending blades"),
+)
 
 
 class _Fatigue(CommandGroup):
@@ -127,7 +140,7 @@ def stress(
         "damage": damage,
         "damage_by_cycles": 0.0 if not cycles.full.size else scale * _closed(chosen, cycles, thickness),
         "warnings": warnings,
-        "left_out": ["mean stress", "the order of cycles"],
+        "left_out": omission_documents([Omission("mean stress"), Omission("the order of cycles")]),
     }
     return Reply(document, lambda: _show_stress(document))
 
@@ -271,12 +284,9 @@ def scenario_(scenario: str, curve: str, design_factor: float, edition: str | No
         "duration_s": welds[0].life.duration_s,
         "joints": rows,
         "warnings": _warnings(rows, outside),
-        "left_out": [
-            "other seas, winds and states: life if all time were like this scenario",
-            "cans, butt welds, flanges, grout and piles",
-            "joints of several planes: each plane for itself",
-            "crack growth",
-        ],
+        "left_out": omission_documents(
+            [Omission("other seas, winds and states: life if all time were like this scenario"), *_OF_WELDS]
+        ),
     }
     return Reply(document, lambda: _show_welds(document, read.name))
 
@@ -343,15 +353,7 @@ def record_(
         "noise": np.sqrt(found.estimate.levels.noise),
         "joints": rows,
         "warnings": [*_warnings(rows, outside), _TOO_NARROW],
-        "left_out": [
-            "other seas, winds and states: life if all time were like this record",
-            "the model's own errors beyond its supports: intervals of stress are too narrow, see the docs",
-            "what no sensor and no wind or sea that the record states tells of slow forces",
-            "buoyancy and mean thrust in the shares of K, Y and X joints",
-            "bending blades; cans, butt welds, flanges, grout and piles",
-            "joints of several planes: each plane for itself",
-            "crack growth",
-        ],
+        "left_out": omission_documents([*_OF_RECORDS, *_OF_WELDS]),
     }
     return Reply(document, lambda: _show_welds(document, record.name))
 

@@ -7,6 +7,7 @@ from typing import Any
 import click
 
 from jackettwin.cli.console import Reply, answers, say, say_all, show_table, working
+from jackettwin.omissions import omission_sentences
 from jackettwin.report import Table, TableColumn
 
 _SLAMMED = 5
@@ -50,7 +51,7 @@ def _show(name: str, document: dict[str, Any]) -> None:
     if document["breaking"] is not None:
         _show_breaking(document["breaking"])
     say_all(document["warnings"], "warning")
-    say_all(document["left_out"], "left out")
+    say_all(omission_sentences(document["left_out"]), "left out")
 
 
 def _show_breaking(breaking: dict[str, Any]) -> None:

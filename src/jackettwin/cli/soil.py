@@ -21,6 +21,7 @@ from jackettwin.cli.console import (
     show_table,
     working,
 )
+from jackettwin.omissions import Omission, omission_documents, omission_sentences
 from jackettwin.report import Table
 
 if TYPE_CHECKING:
@@ -34,8 +35,10 @@ _POINTS = 31
 _REACH = {"py": 0.1, "tz": 0.02, "qz": 0.1}
 """Largest displacement of a curve in the tables, in pile diameters."""
 _LEFT_OUT = (
-    "yield of the pile's steel in the pushover, group effects (ISO 19902 17)",
-    "cyclic degradation along the axis, set-up, weight of pile and plug; base and side shear of stocky piles",
+    Omission("yield of the pile's steel in the pushover", "ISO 19902 17"),
+    Omission("group effects", "ISO 19902 17"),
+    Omission("cyclic degradation along the axis, set-up, weight of pile and plug", "ISO 19902 17"),
+    Omission("base and side shear of stocky piles"),
 )
 _LINEAR = "linear ground has no curves and no capacity: describe it by layers"
 
@@ -111,7 +114,7 @@ def _document(
         "capacity": None if curves is None or pushed is None else _capacity(ground, curves, pushed),
         "pushover": None if pushed is None else _pushover(pushed, arm_m),
         "warnings": [*ground.notes, *([_LINEAR] if curves is None else [])],
-        "left_out": list(_LEFT_OUT),
+        "left_out": omission_documents(_LEFT_OUT),
     }
 
 
@@ -213,5 +216,5 @@ def _show(document: dict[str, Any]) -> None:
         from jackettwin.report.pages.soil import pushover_table
 
         show_table(pushover_table(pushed, "pushover"))
-    say_all(document["left_out"], "left out")
+    say_all(omission_sentences(document["left_out"]), "left out")
     say(f"wrote {document['page']}")

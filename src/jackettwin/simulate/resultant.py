@@ -10,6 +10,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.errors import InputError
 from jackettwin.loads import Water, morison_points, resultant_columns, water_weights
+from jackettwin.omissions import Omission, omission_documents
 from jackettwin.simulate.breaking import breaking_document
 from jackettwin.simulate.motion.model import aerodynamics
 from jackettwin.simulate.motion.water import water_ends, water_loads, water_points, wave_field
@@ -81,9 +82,10 @@ def _of_wind(scenario: Scenario, air: Air, assembly: Assembly) -> FloatArray:
 
 
 _LEFT_OUT = (
-    "slam of horizontal members (DNV-RP-C205 section 8) and impact of breaking waves (IEC 61400-3-1) stand "
-    "in `breaking`, not in the loads",
-    "run-up, spray, ice (ISO 19906) and marine growth that is not given",
+    Omission("slam of horizontal members is in `breaking`, not in the loads", "DNV-RP-C205 8"),
+    Omission("impact of breaking waves is in `breaking`, not in the loads", "IEC 61400-3-1"),
+    Omission("ice: out of scope", "ISO 19906"),
+    Omission("run-up, spray and marine growth that is not given"),
 )
 
 
@@ -104,7 +106,9 @@ def loads_document(scenario: Scenario) -> dict[str, Any]:
         "breaking": None
         if scenario.sea is None
         else breaking_document(scenario.sea, scenario.asset.structure),
-        "left_out": [] if scenario.sea is None or scenario.sea.waves is None else list(_LEFT_OUT),
+        "left_out": []
+        if scenario.sea is None or scenario.sea.waves is None
+        else omission_documents(_LEFT_OUT),
         "warnings": [
             *([] if scenario.sea is None else sea_warnings(scenario.sea, scenario.asset.structure)),
             *rotor_notes(scenario.air, scenario.turbine),
