@@ -198,11 +198,7 @@ class Identified:
 
 
 IDENTIFIED = StoredSchema("identified", Identified)
-"""How identifications are kept."""
-
-
-IDENTIFIED = StoredSchema("identified", Identified)
-"""How identifications are kept."""
+"""Format of stored identifications."""
 
 
 def identified_key(

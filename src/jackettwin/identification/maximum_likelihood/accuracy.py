@@ -1,7 +1,7 @@
 """Accuracy of a fit: covariance of its parameters, Cramér-Rao bound, small-sample bias and lack of fit.
 
-The dither is added to the data but does not scatter. The covariance of the estimate is therefore the sandwich
-estimator, not the inverse of the information.
+The dither, a known power added to model and data, has no sampling scatter. The covariance of the estimate is
+therefore the sandwich estimator, not the inverse of the information.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 BOUND_DITHER_SHARES = (1e-4, 1e-2, 1.0)
 """Shares of the dither tried for the Cramér-Rao bound; the first that leaves E positive definite is used.
-Without a dither, E can be indefinite where fully coherent forces leak."""
+Without a dither, E can be indefinite at lines that receive leakage of fully coherent forces."""
 RELATIVE_RIDGE = 1e-10
 """Share of its own information added to each parameter, so that the inverse exists: if all shapes have one
 direction, the data do not determine the components normal to it."""
@@ -72,7 +72,7 @@ def accuracy_of(data: Periodogram, p: Parameters) -> Accuracy:
     .. math:: F^{-1} V F^{-1}, \quad V_{pq} = \sum_k n_k \mathrm{tr}(E^{-1}\partial_p E\,E^{-1}E_0\,
               E^{-1}\partial_q E\,E^{-1}E_0)
 
-    where :math:`E_0` is the model without the dither, which does not scatter.
+    where :math:`E_0` is the model without the dither.
     """
     prior = prior_of(data, p)
     model = expected(data, p)

@@ -77,8 +77,8 @@ def admit_modes(
 def drop_unneeded_modes(
     data: Periodogram, optimum: likelihood.Optimum, chosen: Int64Array, known: accuracy.Accuracy
 ) -> tuple[likelihood.Optimum, Int64Array, accuracy.Accuracy]:
-    """Remove modes of very uncertain damping, or seen twice, if the spectrum is explained as well without."""
-    kept: set[int] = set()
+    """Remove modes of very uncertain damping and possible duplicates that the likelihood does not need."""
+    needed: set[int] = set()
     while len(chosen) > 1:
         p = optimum.parameters
         mode = p.n_fixed + np.arange(len(chosen))
@@ -88,7 +88,7 @@ def drop_unneeded_modes(
         suspect = [
             int(k) for k in np.argsort(-std / limit) if std[k] > SUSPECT_UNCERTAINTY * limit[k] or doubled[k]
         ]
-        suspect = [k for k in suspect if int(chosen[k]) not in kept]
+        suspect = [k for k in suspect if int(chosen[k]) not in needed]
         if not suspect:
             break
         fewer = likelihood.maximise(data, p.without(p.n_fixed + suspect[0]), MAX_REMOVAL_STEPS)
@@ -96,15 +96,15 @@ def drop_unneeded_modes(
             optimum, chosen = fewer, np.delete(chosen, suspect[0])
             known = accuracy.accuracy_of(data, optimum.parameters)
         else:
-            kept.add(int(chosen[suspect[0]]))
+            needed.add(int(chosen[suspect[0]]))
     return optimum, chosen, known
 
 
 def possible_doubles(p: Parameters, mode: Int64Array) -> BoolArray:
-    """Tell which modes have nearly the shape of another one close to them, or two others close, (n,).
+    """Return which modes are close to one of nearly the same shape, or to two other modes, (n_modes,) bool.
 
-    Of one peak two modes explain a little more than one, and three a little more than a pair, whose shapes
-    they then mix. A further mode stays only if the likelihood needs it.
+    Two modes always fit a single peak slightly better than one mode, and three fit a pair slightly better
+    than two. A mode marked here is therefore retained only if the likelihood needs it.
     """
     f, zeta = np.exp(p.log_f[mode]), np.exp(p.log_zeta[mode])
     close = np.abs(f[:, None] - f) < CLOSE_DISTANCE * np.add.outer(f * zeta, f * zeta)

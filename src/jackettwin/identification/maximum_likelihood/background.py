@@ -33,7 +33,10 @@ FAR_HALF_BANDWIDTHS = 4.0
 
 
 def with_background(data: Periodogram, p: Parameters) -> Parameters:
-    """Return the parameters with backgrounds added first, along the main directions between the peaks."""
+    """Return the parameters with background shapes put before the modes.
+
+    Their initial directions are the principal directions of the spectral matrix between the peaks.
+    """
     n_channels = p.shapes.shape[1]
     count = min(MAX_BACKGROUNDS, n_channels // 2)
     n = len(p.log_f) + count

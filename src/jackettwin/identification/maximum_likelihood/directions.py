@@ -27,7 +27,7 @@ EXTRA_DIRECTIONS = 3
 MIN_LINES = 150
 """A band with fewer lines is fitted in all channels: that is cheap, and separates close pairs better."""
 MIN_MODES = 2
-"""Modes assumed at least: a single mode may have a doubtful neighbour of another direction."""
+"""Smallest number of modes assumed: a single mode may have a doubtful neighbour in another direction."""
 
 
 def directions(
@@ -60,7 +60,10 @@ def directions(
 
 
 def project(y: FloatArray, basis: FloatArray) -> FloatArray:
-    """Return samples along each direction, (n_directions, n_samples); a gap in one channel is one in all."""
+    """Return samples along each direction, (n_directions, n_samples).
+
+    A sample that is missing in one channel is missing in all directions.
+    """
     whole = np.isfinite(y).all(axis=0)
     return np.asarray(np.where(whole, basis.T @ np.where(whole, y, 0.0), np.nan))
 
@@ -68,7 +71,7 @@ def project(y: FloatArray, basis: FloatArray) -> FloatArray:
 def expand_to_channels(fit: Refined, basis: FloatArray) -> Refined:
     """Return a projected fit with its shapes expanded to all channels.
 
-    Outside the span of the basis, a shape is given the variance of its most certain direction.
+    Outside the span of the basis, the variance of a shape is set to that of its most certain direction.
     """
     across = np.eye(len(basis)) - basis @ basis.T
     covariance = basis @ fit.shape_covariance @ basis.T

@@ -37,8 +37,8 @@ MAX_LOCAL_LACK_OF_FIT = 2.0
 """Largest accepted lack of fit in a narrow band, where the covariance is multiplied by a lack of fit above
 1."""
 CROWDED_GROUP = 4
-"""From this number of modes in one narrow band on, one fit is tried only:
-others take seconds and rarely converge."""
+"""Number of modes in a narrow band from which only one fit is tried: further fits take seconds and rarely
+converge."""
 SHARED_ARGUMENTS = ("frequency_hz", "damping_ratio", "shapes", "sure", "derivatives", "avoid_hz")
 FIELDS_PER_MODE = (
     "candidate",
@@ -93,7 +93,7 @@ class AcceptedFit:
 
 @dataclass(frozen=True)
 class _Attempt:
-    """A fit or the reason why it is refused, and which candidates drifted, (n_candidates,)."""
+    """A fit, or the reason why it was rejected, and which candidates drifted, (n_candidates,) bool."""
 
     fit: Refined | None
     drifted: BoolArray
@@ -137,17 +137,17 @@ def accepted_fits(
 
 
 def not_refined(frequency_hz: FloatArray, obstacle: str) -> Finding:
-    """Return the finding on modes that keep their subspace estimates, with the reason."""
+    """Return the finding that modes retain their subspace estimates, with the reason."""
     return Finding("not_refined", params={"frequencies_hz": _listed(frequency_hz), "obstacle": obstacle})
 
 
 def _whole_band(
     y: FloatArray, sample_rate_hz: float, band_hz: tuple[float, float], start: FitStart
 ) -> _Attempt:
-    """Return the fit of the whole band in which the fewest modes drift, without a background if none does.
+    """Return the fit of the whole band in which the fewest modes drift.
 
-    A background is tried only if the fit without it converged: otherwise it doubles the cost,
-    and it helped in none of the records examined.
+    A background is tried if the fit without it converged but is poor or let a mode drift. After a fit that
+    did not converge it would double the cost, and it helped in none of the records examined.
     """
     best: _Attempt | None = None
     for background in (False, True):

@@ -50,19 +50,20 @@ TOLERANCE = 0.1
 """The iteration has converged if the undamped step is below this share of the standard deviations of ln f and
 ln ζ of the fitted modes, and the gain it predicts is below ``EXPECTED_GAIN``."""
 EXPECTED_GAIN = 1.0
-"""Predicted gain of log-likelihood below which forces and noise have settled as well."""
+"""Predicted gain of log-likelihood below which the force and noise parameters have converged as well."""
 FULL_STEP_RIDGE = 1e-4
-"""Ridge of a step that counts as undamped, as a share of the information;
-some directions have next to none."""
+"""Ridge of a step that counts as undamped, as a share of the information. It is not zero because the data
+hardly determine some directions of the parameters."""
 MAX_RIDGE = 1e7
-"""Ridge from which a step no longer moves."""
+"""Ridge above which a step is negligibly short."""
 MIN_GAIN = 0.001
-"""A step of smaller gain ends the iteration if its ridge was at most ``SHORT_STEP_RIDGE``."""
+"""Smallest gain of a step: one of less gain ends the iteration if its ridge was at most
+``SHORT_STEP_RIDGE``."""
 SHORT_STEP_RIDGE = 0.1
 """Largest ridge of a step whose small gain means convergence; a more damped step may just be short."""
 SMALL_GAIN = 0.03
-"""Gain below which a step is idle if the predicted gain is below ``EXPECTED_GAIN``;
-otherwise it is ``MIN_GAIN``."""
+"""Gain below which a step counts as idle while the predicted gain is below ``EXPECTED_GAIN``; otherwise a
+step is idle below ``MIN_GAIN``."""
 MAX_IDLE_STEPS = 3
 """Consecutive idle steps that end the iteration, however damped they were."""
 ZETA_RANGE = (1e-5, 0.5)
@@ -153,7 +154,7 @@ def start(
 ) -> Parameters:
     """Return the starting point: shapes scaled to their peaks, incoherent forces, one common exponent.
 
-    The first ``outside`` modes lie beside the band; they are scaled to the power of the nearest line.
+    The first ``outside`` modes lie outside the band; they are scaled to the power of the nearest line.
     """
     zeta = np.clip(zeta, 1e-3, 0.3)
     scaled = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
@@ -251,7 +252,7 @@ def inverse_root(matrices: ComplexArray) -> ComplexArray:
 
 
 def _relative_step(p: Parameters, step: FloatArray) -> float:
-    """Return the length of a step over the neighbourhood in which the model is nearly linear."""
+    """Return the length of a step relative to the range in which the model is nearly linear."""
     n, n_pairs = len(p.log_f), len(p.coherence)
     size = np.linalg.norm(p.shapes, axis=1, keepdims=True)
     reach = np.concatenate(

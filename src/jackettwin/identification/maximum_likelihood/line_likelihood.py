@@ -1,10 +1,11 @@
 r"""Exact likelihood of the damping of a lightly damped mode, from the Fourier lines of one record.
 
-Where the decay of a mode lasts about as long as the record, neighbouring lines are correlated: all hold the
-change of its motion from the first to the last sample. A periodogram likelihood, which takes lines as
-independent, is then biased. Near its peak the complex amplitude z of a mode under smooth random forces obeys
-:math:`\dot z = pz + w` with white w of density q and :math:`p = \omega(-\zeta + i\sqrt{1-\zeta^2})`. Its
-transform over a record of length T at a Fourier frequency is, without any approximation,
+Where the decay time of a mode is about the length of the record, neighbouring lines are correlated: all
+contain the difference between the motion at the first and at the last sample. A periodogram likelihood, which
+assumes independent lines, is then biased. Near its peak the complex amplitude z of a mode under smooth random
+forces obeys :math:`\dot z = pz + w` with white w of density q and
+:math:`p = \omega(-\zeta + i\sqrt{1-\zeta^2})`. Its transform over a record of length T at a Fourier frequency
+is, without any approximation,
 
 .. math:: X_k = \frac{W_k - D}{i\omega_k - p}, \qquad D = \frac{z(T) - z(0)}{\sqrt T},
 
@@ -13,8 +14,8 @@ transform over a record of length T at a Fourier frequency is, without any appro
           \mathrm{E}|D|^2 = \frac{q\,(1 - \mathrm{Re}\,e^{pT})}{aT}, \qquad a = -\mathrm{Re}\,p .
 
 With white noise n the covariance of the lines is a diagonal plus a matrix of rank two. The likelihood of ln ζ
-is integrated over the frequency (uniform), q and n (uniform in the logarithm): a maximum over n instead
-would take part of the tails for noise and give too little damping, by a tenth in ten minutes.
+is integrated over the frequency (uniform prior), q and n (uniform in the logarithm). Maximising over n
+instead attributes part of the tails to noise and underestimates the damping, by a tenth in ten minutes.
 """
 
 from __future__ import annotations
@@ -24,24 +25,25 @@ import numpy as np
 from jackettwin.arrays import ComplexArray, FloatArray
 
 LOG_ZETA = np.round(np.arange(np.log(1e-4), np.log(0.2), 0.2), 6)
-"""Nodes of ln ζ at which likelihoods are stored; a fifth is fine enough for one record up to 2πζfT = 25."""
+"""Nodes of ln ζ at which likelihoods are stored; a spacing of 0.2 suffices for records up to 2πζfT = 25."""
 LEAST_BANDWIDTH, MOST_BANDWIDTH = 0.01, 12.0
-"""Range of ζfT within which the likelihood is computed. Below, a mode is a line: the likelihood stays;
-above, it is continued along its last slope."""
+"""Range of ζfT within which the likelihood is computed. Below it a mode is a single line, and the likelihood
+is continued as a constant; above it the likelihood is extrapolated with its last slope."""
 FREQUENCY_POINTS = 17
 """Frequencies over which the likelihood is integrated."""
 FREQUENCY_STDS, FREQUENCY_LINES = 4.5, 0.2
-"""Half range of these: so many standard deviations √(a/T) and lines, at most ``MOST_LINES``."""
+"""Half range of these frequencies: this many standard deviations √(a/T), at most ``MOST_LINES`` lines, plus
+this many lines."""
 MOST_LINES = 3.0
 NOISE_STEP = 0.4
 """Step of ln n."""
 NO_NOISE, NO_NOISE_WEIGHT = -8.0, 5.0
-"""Logarithm of noise too small to matter, over the tail of the mode, and the range that it stands for."""
+"""Logarithm of a negligible noise relative to the tail of the mode, and the range of ln n it represents."""
 LOWEST_NOISE, HIGHEST_NOISE = -3.0, 4.0
-"""Range of ln n over the tail of the mode at the edge of the band, and over its density a line off its
-peak."""
+"""Lower limit of ln n relative to the tail of the mode at the edge of the band, and upper limit relative to
+the density of the mode one line from its peak."""
 NEGLIGIBLE = 12.0
-"""Log-likelihood below the largest at which a noise level is left out."""
+"""Noise levels whose log-likelihood is this far below the largest are left out."""
 
 
 def line_log_likelihood(
@@ -90,7 +92,7 @@ def damping_log_likelihood(
     x : (n_lines,)
         Transform of one mode's motion over the root of the duration, at Fourier frequencies around its peak.
     frequency_hz : float
-        Its frequency, to within two lines.
+        Frequency of the mode, accurate to two lines.
     lines_hz : (n_lines,)
         The Fourier frequencies.
     """
@@ -132,7 +134,7 @@ def damping_log_likelihood(
 
 
 FINE = 20
-"""Points to a node at which a likelihood is interpolated."""
+"""Points per interval of nodes at which a likelihood is interpolated."""
 HALF_CHI_SQUARE_95 = 1.9207
 """Half the 95 % point of χ² with one degree of freedom."""
 
@@ -143,7 +145,7 @@ def likelihood_interval(log_likelihood: FloatArray) -> tuple[float, float, float
     Parameters
     ----------
     log_likelihood : (n_nodes,)
-        At ``LOG_ZETA``. The median is that of a uniform prior of ln ζ between the ends of these.
+        At ``LOG_ZETA``. The median is that of a uniform prior on ln ζ over the range of these nodes.
 
     Examples
     --------
@@ -155,9 +157,9 @@ def likelihood_interval(log_likelihood: FloatArray) -> tuple[float, float, float
     values = values - values.max()
     weight = np.exp(values)
     middle = float(np.interp(0.5 * weight.sum(), np.cumsum(weight) - 0.5 * weight, log_zeta))
-    held = np.flatnonzero(values > -HALF_CHI_SQUARE_95)
-    ends = [float(log_zeta[held[0]]), float(log_zeta[held[-1]])]
-    for k, (inner, outer) in enumerate(((held[0], held[0] - 1), (held[-1], held[-1] + 1))):
+    inside = np.flatnonzero(values > -HALF_CHI_SQUARE_95)
+    ends = [float(log_zeta[inside[0]]), float(log_zeta[inside[-1]])]
+    for k, (inner, outer) in enumerate(((inside[0], inside[0] - 1), (inside[-1], inside[-1] + 1))):
         if 0 <= outer < len(values):
             share = (values[inner] + HALF_CHI_SQUARE_95) / (values[inner] - values[outer])
             ends[k] += float(share * (log_zeta[outer] - log_zeta[inner]))
@@ -165,7 +167,7 @@ def likelihood_interval(log_likelihood: FloatArray) -> tuple[float, float, float
 
 
 def between_nodes(values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return ln ζ at ``FINE`` points to a node and values there, by cubics through four nodes each."""
+    """Return ln ζ at ``FINE`` points per interval and the values there, by cubic interpolation."""
     n = len(LOG_ZETA)
     at = np.arange((n - 1) * FINE + 1) / FINE
     first = np.clip(at.astype(int) - 1, 0, n - 4)

@@ -4,8 +4,8 @@ The model assumes that force spectra are powers of frequency and that no mode ou
 Turbulence on a rotor violates both over a wide band. Around one group of close modes, however,
 every smooth spectrum is nearly a power of frequency. Modes just outside the band are included
 with fixed frequencies and damping; those farther away form a background (``background.py``).
-Shapes may have a phase lag: the dashpot of a rotor makes the other direction respond late,
-and with little noise a lag of a few degrees changes the damping.
+Shapes may have a phase lag: the aerodynamic damping of a rotor makes the perpendicular direction respond with
+a delay, and with little noise a lag of a few degrees changes the estimated damping.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ beyond them."""
 
 DITHER_SHARES = (1.0, 10.0)
 """Shares of the local median spectrum added as dither, tried in turn until a fit describes the lines.
-Since one force moves all channels, their ratios between the peaks would fix the damping more sharply than the
-inexact model permits; a larger dither reduces their weight."""
+Since one force moves all channels, the ratios of the channels between the peaks would determine the damping
+more sharply than the accuracy of the model justifies; a larger dither reduces their weight."""
 
 NEIGHBOUR_RATIO = 2.0
 """Modes within this ratio of the edges of the band are modelled as modes, not as background."""
 
 FEW_LINES_FACTOR = 1.5
-"""Factor on the covariance, as a narrow band holds few lines for its many parameters."""
+"""Factor on the covariance, since a narrow band has few lines for its many parameters."""
 
 
 @dataclass(frozen=True)
@@ -94,12 +94,12 @@ def refine_group(
 ) -> Refined:
     """Fit one group; parameters and candidate numbers are those of ``refine``.
 
-    Many channels are projected on the directions that move in the band (``directions.py``).
+    Many channels are projected onto the directions in which they move in the band (``directions.py``).
     A lack of fit above 1 multiplies the covariance.
     """
     among = np.flatnonzero(group.members)
     low, high = group.band_hz
-    beside = (
+    outside = (
         sure
         & ~group.members
         & (frequency_hz > low / NEIGHBOUR_RATIO)
@@ -121,7 +121,7 @@ def refine_group(
         derivatives=derivatives,
         avoid_hz=avoid_hz,
         background=True,
-        narrow=NarrowBand(dither_share, frequency_hz[beside], damping_ratio[beside], shapes[beside]),
+        narrow=NarrowBand(dither_share, frequency_hz[outside], damping_ratio[outside], shapes[outside]),
         max_lack_of_fit=max_lack_of_fit,
     )
     wider = FEW_LINES_FACTOR * max(fit.lack_of_fit, 1.0)

@@ -1,7 +1,7 @@
 r"""Test whether a refined mode is still the mode it started from.
 
 A likelihood has other maxima than the one at the modes of the record. Where the forces do not follow
-the model, a mode may leave its peak to describe a slope of the spectrum, or shrink to a single line.
+the model, a fitted mode may leave its peak to fit a slope of the spectrum, or shrink to a single line.
 The information in a record limits both: the frequency must stay within a few half bandwidths and ln ζ within
 a few standard deviations, and no estimate of ζ is more certain than :math:`1/\sqrt{2\pi\zeta fT}` (Au 2014).
 """
@@ -41,7 +41,7 @@ def long_data_limits(f: FloatArray | float, zeta: FloatArray | float, duration_s
 def frequency_left(
     frequency_hz: FloatArray, start_hz: FloatArray, start_damping_ratio: FloatArray, duration_s: float
 ) -> BoolArray:
-    """Tell which frequencies are too far from where they started, (n_modes,)."""
+    """Return which frequencies are too far from their initial values, (n_modes,) bool."""
     least = long_data_limits(start_hz, start_damping_ratio, duration_s)[0]
     reach = MAX_FREQUENCY_DRIFT * np.maximum(start_damping_ratio, least)
     return np.asarray(np.abs(np.log(frequency_hz / start_hz)) > reach)
@@ -56,7 +56,7 @@ def drifted(
     duration_s: float,
     max_damping_ratio: float,
 ) -> BoolArray:
-    """Tell which refined modes are no longer those they started from, (n_modes,).
+    """Return which refined modes are no longer those they started from, (n_modes,) bool.
 
     Parameters
     ----------

@@ -29,10 +29,10 @@ class Parameters:
     pairs : (n_pairs, 2) int
         Modes i < j whose forces may be coherent; not a parameter.
     background : int
-        Number of backgrounds, which come first: modes far below the band, so that they follow their force.
-        They represent the modes far outside the band.
+        Number of background shapes, which come first: modes far below the band, whose response is therefore
+        proportional to their force. They represent the modes far outside the band.
     outside : int
-        Number of modes beside the band, which come next; their frequencies and damping ratios are fixed.
+        Number of modes outside the band, which come next; their frequencies and damping ratios are fixed.
     exponent : float
         Common exponent of the force spectra, the centre of the prior of ``colour``; not a parameter.
     lag : (n_modes − n_fixed, n_channels) or (0, 0)
@@ -53,7 +53,7 @@ class Parameters:
 
     @property
     def n_fixed(self) -> int:
-        """Number of modes that are not fitted: backgrounds, and modes beside the band."""
+        """Number of modes whose f and ζ are fixed: background shapes, and modes outside the band."""
         return self.background + self.outside
 
     @cached_property

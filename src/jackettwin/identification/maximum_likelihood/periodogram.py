@@ -16,14 +16,15 @@ if TYPE_CHECKING:
 
 
 LINES_IN_HALF_BANDWIDTH = 3
-"""Groups of lines are narrower than the half bandwidth of the nearest mode by this factor, at its peak."""
+"""Groups of lines at a mode's peak are narrower than its half bandwidth by this factor."""
 FAR_LINES = 6.0
 """The width of a group grows with its distance from that mode, divided by this."""
 DITHER_SHARE = 0.3
-"""Share of the local median spectrum added to model and data, up to ``DITHER_LINES`` lines in the median."""
+"""Share of the local median spectrum added to model and data where the median has at most ``DITHER_LINES``
+lines."""
 DITHER_LINES = 90.0
-"""Above this number of lines in the median, the dither falls in inverse proportion. With few lines a fit is
-too certain of the ratios between channels, which it takes from the lines of the peaks."""
+"""Above this number of lines in the median, the dither falls in inverse proportion to it. With few lines a
+fit overstates how accurately the peaks determine the ratios between channels."""
 MEDIAN_SHARE_OF_BAND = 0.25
 """Width of the running median, as a share of the frequency it is taken at."""
 
@@ -91,13 +92,13 @@ def periodogram(
     y : (n_channels, n_samples)
         Zero-mean samples; a missing one (NaN) counts as zero and the power is corrected for it.
     modes : (frequency_hz, damping_ratio)
-        Approximate modal parameters: lines stay single where the spectrum curves.
+        Approximate modal parameters; where they make the spectrum curve, lines are not grouped.
     derivatives : (n_channels,) int
     avoid_hz : sequence of (low, high)
         Groups of lines that touch one of these ranges are left out.
     dither_share : float, optional
         Dither as a share of the local median; by default one that falls with frequency. A small dither keeps
-        spectral matrices regular where a record has little noise; a large one hides everything but peaks.
+        spectral matrices regular where a record has little noise; a large one leaves only the peaks visible.
     """
     n_channels, n_samples = y.shape
     duration = n_samples / sample_rate_hz
@@ -144,8 +145,8 @@ def group_starts(
 def _local_median(power: FloatArray, line: IntArray) -> FloatArray:
     """Return the running median over a window proportional to frequency, corrected to a mean.
 
-    Medians of fixed width on a logarithmic frequency axis; a periodogram line is exponentially
-    distributed, with a median of ln 2 times its mean.
+    The window has a fixed width on a logarithmic frequency axis. A periodogram line is exponentially
+    distributed; its median is ln 2 times its mean.
     """
     n = 400
     grid = np.exp(np.linspace(np.log(line[0]), np.log(line[-1]), n))

@@ -1,4 +1,4 @@
-"""Priors of the spectral model: weak ones on forces, noise and phase lags, none on the fitted modes."""
+"""Priors of the spectral model: weak on forces, noise and phase lags, none on f and ζ of the fitted modes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ COLOUR_PRIOR = 3.0
 """Standard deviation of the exponents of the force spectra about their common exponent."""
 NOISE_PRIOR = (2.7, 1.0)
 """Standard deviations of the logarithm of the noise and of its exponent. The first is that of a uniform
-distribution over four decades: noise may be the whole floor or next to none of it."""
+distribution over four decades: noise may be the whole floor of the spectrum or a negligible part of it."""
 LAG_PRIOR = 0.05
 """Standard deviation of the imaginary parts of a shape, as a share of its norm (3° for all channels
 together)."""

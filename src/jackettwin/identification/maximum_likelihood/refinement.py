@@ -2,8 +2,8 @@ r"""Maximum-likelihood estimates of the modes that a subspace method found.
 
 Two small-sample biases are corrected: b, the bias of ln ζ due to the curvature of the model
 (``accuracy.curvature_bias``), and that of ζ given an error of ln ζ that is nearly Gaussian with standard
-deviation σ: :math:`\hat\zeta = \zeta\,e^{-b}/(1+\sigma^2/2)`. The information holds for many lines;
-with few the scatter is larger, so that :math:`\sigma^2(1+\sigma^2)` is reported as variance.
+deviation σ: :math:`\hat\zeta = \zeta\,e^{-b}/(1+\sigma^2/2)`. The Fisher information is asymptotic: with few
+lines the scatter is larger, so that :math:`\sigma^2(1+\sigma^2)` is reported as variance.
 Intervals of a single mode then cover 94 to 95 % down to 2πζfT = 6; without this factor, 93 to 95 %.
 """
 
@@ -37,23 +37,23 @@ if TYPE_CHECKING:
 EARLY_LIMIT = 3.5
 """A fit is abandoned before admission if its lack of fit exceeds the accepted one by this factor."""
 SLOW_LIMIT, SLOW_SHARE = 2.0, 0.5
-"""A fit is also abandoned before admission if its lack of fit exceeds the accepted one by the first
-factor and is still above this share of its initial value. Of a hundred fits that were accepted in the end,
-none had by then more than 2.6 times the accepted lack of fit, and those above twice it had come down to less
-than 0.4 of their initial value."""
+"""A fit is also abandoned before admission if its lack of fit exceeds the accepted one by the first factor
+and is still above the second, a share of its initial value. Of a hundred fits that were finally accepted,
+none had more than 2.6 times the accepted lack of fit at this point, and those above 2.0 had fallen below 0.4
+of their initial value."""
 ADMISSION_LIMIT = 3.0
 """A fit is abandoned after admission if its lack of fit exceeds the accepted one by this factor."""
 TRIAL_STEPS = 12
-"""Further steps, after which ``TRIAL_LIMIT`` applies."""
+"""Number of scoring steps after admission, after which ``TRIAL_LIMIT`` applies."""
 TRIAL_LIMIT = 1.5
 """A fit is abandoned after the trial steps if its lack of fit exceeds the accepted one by this factor."""
 MAX_STEPS, MIN_STEPS = 30, 8
 """Most and fewest steps after the trial; fits that converge usually take eight to twenty."""
 MAX_WORK = 4e9
-"""Most products in these steps; fits that take more rarely converge."""
+"""Most products in these steps; fits that need more rarely converge."""
 MAX_STEP_WORK = 2e9
-"""Most products in one step of a fit that is tried. Of seven hundred accepted fits none took more than half
-as many, and such a fit costs more than the rest of an identification."""
+"""A fit with more products than this in one step is not tried: it costs more than the rest of an
+identification. Of seven hundred accepted fits none needed more than half as many."""
 MAX_BIAS = 0.5
 """Largest bias corrected, in standard deviations; beyond it a second-order expansion is not valid."""
 
@@ -66,10 +66,10 @@ class NarrowBand:
     ----------
     dither_share : float
         Share of the local median spectrum added to model and data.
-    frequency_hz, damping_ratio : (n_beside,)
-        Modes beside the band; these values are fixed.
-    shapes : (n_beside, n_channels)
-        Real shapes from which their fit starts.
+    frequency_hz, damping_ratio : (n_outside,)
+        Modes outside the band; these values are fixed.
+    shapes : (n_outside, n_channels)
+        Real initial values of their shapes, which are fitted.
     """
 
     dither_share: float
@@ -109,13 +109,13 @@ def refine(
     avoid_hz : sequence of (low, high)
         Ranges left out of the fit.
     background : bool
-        Whether backgrounds are fitted too: the quasi-static response of modes above the band,
-        or waves below it.
+        Whether background shapes are fitted too: the quasi-static response of modes above the band, or to
+        waves below it.
     narrow : NarrowBand, optional
-        Given if the band holds only some of the modes; their shapes may then have a phase lag.
+        Given if the band contains only some of the modes; their shapes may then have a phase lag.
     max_lack_of_fit : float
-        Largest accepted lack of fit. A fit above it is returned without removing modes,
-        as fewer modes fit no better; a fit far above it is abandoned and returned without modes.
+        Largest accepted lack of fit. A fit above it is returned without removing modes; a fit far above it is
+        abandoned and returned without modes.
     """
     data = periodogram(
         y,
@@ -175,7 +175,7 @@ def _step_work(data: Periodogram, p: Parameters) -> int:
 def _start_narrow(
     narrow: NarrowBand, data: Periodogram, f: FloatArray, zeta: FloatArray, unit: FloatArray
 ) -> Parameters:
-    """Return the starting point for the modes of a narrow band and those beside it."""
+    """Return the starting point for the modes of a narrow band and those just outside it."""
     first = likelihood.start(
         data,
         np.append(narrow.frequency_hz, f),
@@ -203,7 +203,7 @@ def _result(
     shape = 3 * n + mode[:, None] * n_channels + np.arange(n_channels)
     log_covariance = covariance[both[:, :, None], both[:, None, :]]
     bias, excess = np.zeros((len(mode), 2)), np.zeros(len(mode))
-    # a background takes part of the peaks, and with it the small-sample bias
+    # a background absorbs part of the peaks and with it the small-sample bias, so none is corrected
     if not p.background:
         excess = log_covariance[:, 1, 1]
         most = MAX_BIAS * np.sqrt(np.diagonal(log_covariance, axis1=1, axis2=2))

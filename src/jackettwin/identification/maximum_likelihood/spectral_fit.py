@@ -37,7 +37,8 @@ WINDOW_LINES = 2.0
 WINDOW_SAMPLES = 81
 """Number of points over that reach at which the average is taken."""
 NEAR_HALF_BANDWIDTHS, NEAR_LINES = 3.0, 2.0
-"""S and N are fitted to lines within this many half bandwidths plus this many lines of a mode."""
+"""S and N are fitted to lines whose distance from a mode is at most this many half bandwidths plus this many
+lines."""
 REGULARISATION = 0.3
 """Share of the measured densities added to data and model;
 without it the smallest singular values dominate."""
@@ -97,7 +98,7 @@ def _motion(
 
 
 def _lines_near_modes(modes: Sequence[ModalEstimate], f: FloatArray, step: float) -> BoolArray:
-    """Tell which lines are near a mode; elsewhere other motion prevails."""
+    """Return which lines are near a mode; elsewhere other motion dominates."""
     reach = np.array(
         [NEAR_HALF_BANDWIDTHS * m.damping_ratio * m.frequency_hz + NEAR_LINES * step for m in modes]
     )

@@ -1,6 +1,6 @@
 r"""Spectral matrix of modes driven by coloured forces, with sensor noise.
 
-At a group k of Fourier lines
+For a group k of Fourier lines the spectral matrix is
 
 .. math:: E_k = \Phi^T\,(\Gamma\circ(K_k\circ c_k c_k^T + L_k))\,\bar\Phi + N_k, \qquad
           c_{ki} = (f_k/f_i)^{-\alpha_i/2}, \quad N_k = \mathrm{diag}\,e^{a + b\ln(f_k/f_0)}
@@ -8,7 +8,7 @@ At a group k of Fourier lines
 with the rows of Φ scaled by the roots of the force densities, Γ the coherences of the modal forces,
 α the exponents of the force spectra, and K + L the expected periodogram of unit forces in closed
 form (``modal_spectrum.kernel``: without bias from the finite record; L is leakage from the peaks).
-Shapes are real or have a phase lag: near its peak a mode moves as a real one times a complex row of Φ.
+Rows of Φ are real or, if shapes may have a phase lag, complex.
 Every parameter changes E by a matrix :math:`u w^H + w u^H`, from which all derivatives are formed.
 """
 
@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 
 
 STEP = 1e-5
-"""Relative step of the central differences of the kernel; their error is its square."""
+"""Relative step of the central differences of the kernel; their relative error is of the order of its
+square."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,7 @@ def response_power(data: Periodogram, f: float, zeta: float) -> FloatArray:
 
 
 def modal_slopes(data: Periodogram, p: Parameters, model: Expected) -> tuple[ComplexArray, ...]:
-    """Return the derivatives of Γ∘(K∘ccᵀ + L) by ln f, ln ζ and α of the mode of the first index."""
+    """Return the derivatives of Γ∘(K∘ccᵀ + L) by ln f, ln ζ and α of the mode with the first index."""
     f, zeta = np.exp(p.log_f), np.exp(p.log_zeta)
     lam = poles(f, zeta)
     away = log_distance(data, p)
@@ -119,7 +120,7 @@ def linear_curvature(
     Parameters
     ----------
     covariance : (n, n)
-        C of these parameters, in the order of the vector.
+        C of these parameters, in the order of ``Parameters.vector``.
     """
     n_modes, n_channels = p.shapes.shape
     i, j = p.pairs.T
@@ -189,7 +190,7 @@ def gram(
 ) -> tuple[FloatArray, FloatArray]:
     r"""Return the inner products of :math:`G_p = u_p w_p^H + w_p u_p^H` with a matrix and with each other.
 
-    Channels are taken pair by pair, so that no large array is formed.
+    The sum runs over pairs of channels one by one, so that no large array is formed.
 
     Parameters
     ----------

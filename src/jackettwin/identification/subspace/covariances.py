@@ -10,9 +10,9 @@ from jackettwin.errors import InputError
 from jackettwin.signals import next_fast_len
 
 SEGMENT_WINDOWS = 8
-"""Length of the transforms in lag windows."""
+"""Length of the FFT segments, in lag windows."""
 LEAST_PAIRS = 0.2
-"""A lag must keep this share of its sample pairs, else gaps have eaten the record."""
+"""Smallest share of the sample pairs of a lag that must be free of gaps."""
 
 
 def covariances(y: FloatArray, n_lags: int) -> FloatArray:
@@ -62,13 +62,13 @@ def covariances(y: FloatArray, n_lags: int) -> FloatArray:
 def block_covariances(y: FloatArray, n_lags: int, n_blocks: int) -> FloatArray:
     """Return the covariances of consecutive blocks of the record, lags 0 … ``n_lags``.
 
-    Block b holds the products whose earlier sample lies in block b; the later one may lie in the
-    next. The mean over blocks is the covariance of the record up to its end.
+    Block b contains the products whose earlier sample lies in block b; the later sample may lie in the next.
+    The mean over blocks is the covariance of the record, except for the samples after the last block.
 
     Parameters
     ----------
     y : (n_channels, n_samples)
-        Zero-mean samples; NaN marks a missing one, which counts as zero with its pairs left out.
+        Zero-mean samples; NaN marks a missing one, whose pairs are left out.
 
     Returns
     -------
@@ -104,7 +104,7 @@ def block_covariances(y: FloatArray, n_lags: int, n_blocks: int) -> FloatArray:
 def _lag_products(late: FloatArray, early: FloatArray, n_lags: int) -> FloatArray:
     """Return Σ_t late_{t+i} early_tᵀ for i = 0 … n_lags: (n_lags + 1, n_late, n_early).
 
-    The record is cut into segments of a few lag windows whose cross spectra are added up before the one
+    The record is cut into segments of a few lag windows; their cross spectra are summed before a single
     inverse transform.
     """
     size = next_fast_len(min(max(SEGMENT_WINDOWS * n_lags, 1024), early.shape[1] + n_lags), real=True)

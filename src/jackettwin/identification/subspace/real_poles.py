@@ -1,9 +1,9 @@
-r"""Real poles: relaxations that do not oscillate, of a damper or a creeping soil.
+r"""Real poles: relaxations, that is motion that decays without oscillating, of a damper or a creeping soil.
 
-The discrete eigenvalue of :math:`\lambda = -a` is :math:`e^{-a\Delta t}`, real between 0 and 1. Models fit
-noise with many of them, so a relaxation counts only if model orders agree on its rate and its uncertainty is
-known and moderate. No method beats :math:`\sigma_{\ln a} = \sqrt{2/(aT)}`, the limit of a first-order process
-observed alone for T.
+The discrete eigenvalue of :math:`\lambda = -a` is :math:`e^{-a\Delta t}`, real between 0 and 1. Since
+subspace models fit noise with many such poles, a relaxation is reported only if several model orders agree on
+its rate and the uncertainty of the rate is known and moderate. The smallest attainable uncertainty is
+:math:`\sigma_{\ln a} = \sqrt{2/(aT)}`, that of a first-order process observed without noise for a time T.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 JOINED = 0.3
-"""Poles nearer than this, |Δ ln a| + 1 − MAC on average, are one relaxation."""
+"""Poles whose average distance |Δ ln a| + 1 − MAC is below this are one relaxation."""
 MOST_LOG_STD = 0.5
 """Largest standard deviation of ln a of a relaxation that is reported."""
 FEWEST_ORDERS = 5
@@ -100,7 +100,7 @@ def _groups(table: _Table, scale: FloatArray) -> list[Int64Array]:
 def _relaxation(
     table: _Table, members: Int64Array, orders: Int64Array, settings: IdentificationSettings
 ) -> RealPole | None:
-    """Return the best known pole of a group, its variance and the scatter over the orders together."""
+    """Return the most certain pole of a group; its variance includes the scatter over the orders."""
     held = len(np.unique(table.order[members]))
     share = held / int(np.sum(orders >= table.order[members].min()))
     if held < FEWEST_ORDERS or share < settings.min_order_share:

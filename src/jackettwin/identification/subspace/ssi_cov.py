@@ -22,9 +22,10 @@ if TYPE_CHECKING:
 
 
 LEAST_SQUARE = 1e-9
-"""Smallest squared singular value over the largest for which HᵀH is as good as H: poles agree to 1e-7."""
+"""Smallest ratio of squared singular values to the largest for which HᵀH may replace H: poles then agree to
+1e-7."""
 RANK = 1e-12
-"""A singular value counts when it is more than this share of the largest."""
+"""Singular values below this share of the largest are taken as zero."""
 
 Weighting = Literal["br", "cva"]
 StateMatrix = Literal["shift", "one-lag"]
@@ -32,14 +33,15 @@ StateMatrix = Literal["shift", "one-lag"]
 
 @dataclass(frozen=True)
 class Factors:
-    """Right singular vectors of a Hankel matrix H, what H makes of them, and the leading left vectors.
+    """Singular vectors of a Hankel matrix H.
 
-    Left vectors of small singular values are not needed, nor would they be exact: H v is, for every v.
+    Left vectors of small singular values are not stored, since they would be inaccurate; the products H v are
+    accurate for every right vector v.
 
     Attributes
     ----------
     left : (n_rows, n_max)
-        The leading ones, in columns.
+        Leading left singular vectors, in columns.
     right : (n_columns, n_singular)
     images : (n_rows, n_singular)
         H times ``right``: left vectors times singular values.
@@ -62,11 +64,12 @@ class Subspace:
         Column-nested: order n uses the first n columns.
     n_channels : int
     upper, right : (n_max, n_max)
-        Upper triangle and right side of the equation for the state matrix; order n uses the leading blocks.
+        Upper triangle and right-hand side of the equation for the state matrix; order n uses the leading
+        n × n blocks.
     basis : (n_rows − n_channels, n_max) or None
         Orthonormal basis of the observability matrix without its last block row (shift structure only).
     factors : Factors or None
-        Of the Hankel matrix with unit weights, which uncertainty needs.
+        Of the Hankel matrix with unit weights; needed for the uncertainty.
     """
 
     observability: FloatArray
@@ -85,7 +88,7 @@ class Subspace:
         )
 
     def orders(self, wanted: Sequence[int]) -> list[int]:
-        """Return the orders among the wanted that the factorisation has columns for."""
+        """Return those of the wanted orders that the factorisation has columns for."""
         return [order for order in wanted if order <= self.observability.shape[1]]
 
     def output_matrix(self, order: int) -> FloatArray:
@@ -119,7 +122,8 @@ def hankel(covariances: FloatArray, block_rows: int, first_lag: int = 1, every: 
     covariances : (n_lags + 1, n_channels, n_references)
         Lags 0 … at least ``first_lag + 2·block_rows − 2``.
     every : int
-        Of the block columns, which are instruments: so many samples apart, they span as long a past.
+        Spacing of the block columns [samples]. The columns serve as instruments, so that fewer of them,
+        spaced more widely, cover the same past.
     """
     _, n_channels, n_references = covariances.shape
     lags = covariances[first_lag : first_lag + 2 * block_rows - 1]
@@ -152,9 +156,9 @@ def ssi_cov(
     covariances : (2·block_rows + 1, n_channels, n_channels)
         Lags 0 … 2·block_rows.
     factors : bool
-        Whether what uncertainty needs is kept; with unit weights and shift structure only.
+        Whether the factors needed for the uncertainty are stored; with unit weights and shift structure only.
     every : int
-        Of the block columns, with unit weights and shift structure only.
+        Spacing of the block columns [samples], with unit weights and shift structure only.
     """
     n_channels = covariances.shape[1]
     if weighting == "br" and state_matrix == "shift":
@@ -176,12 +180,12 @@ def ssi_cov(
 def balanced_subspace(h: FloatArray, n_channels: int, max_order: int, *, factors: bool = True) -> Subspace:
     """Factorise a Hankel matrix with unit weights and take A from the shift structure.
 
-    Its right vectors come from HᵀH, where that loses no digit of the leading ones that matters.
+    The right vectors are those of HᵀH if that is accurate enough (``LEAST_SQUARE``).
 
     Parameters
     ----------
     factors : bool
-        Whether what uncertainty needs is kept.
+        Whether the factors needed for the uncertainty are stored.
     """
     n = min(max_order, min(h.shape) - n_channels)
     first = 0 if factors else max(h.shape[1] - n, 0)
@@ -194,7 +198,7 @@ def balanced_subspace(h: FloatArray, n_channels: int, max_order: int, *, factors
         right = linalg.svd(h, full_matrices=False, check_finite=False)[2].T
     images = h @ right
     s = np.linalg.norm(images, axis=0)
-    # noise-free signals have a rank, beyond which there is nothing to divide by
+    # the Hankel matrix of noise-free signals is rank-deficient: only non-zero singular values can be divisors
     n = min(n, int(np.sum(s > RANK * s[0])))
     left = images[:, :n] / s[:n]
     kept = Factors(left, right, images, s) if factors else None

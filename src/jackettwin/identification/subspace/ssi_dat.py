@@ -5,7 +5,7 @@ r"""Data-driven stochastic subspace identification: the projection of future on 
    \begin{bmatrix} Q_1^T \\ Q_2^T \end{bmatrix}, \quad P = L_{21} Q_1^T
 
 (Van Overschee & De Moor 1996, ch. 3; Peeters & De Roeck 1999, reference channels). The column space of P
-is that of its factor :math:`L_{21}`, from where on SSI-dat is SSI-cov with another weighting.
+is that of its factor :math:`L_{21}`; from there SSI-dat proceeds as SSI-cov with another weighting.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ def ssi_dat(
     Parameters
     ----------
     y : (n_channels, n_samples)
-        NaN marks a missing sample; instants whose past or future holds one are left out.
+        NaN marks a missing sample; instants whose past or future contains one are left out.
     references : sequence of int, optional
         Rows that make up the past; default all.
 
     Raises
     ------
     InputError
-        If fewer instants are whole than the data matrices have rows.
+        If there are fewer complete instants than the data matrices have rows.
     """
     n_channels = len(y)
     past = y if references is None else y[list(references)]
@@ -52,7 +52,7 @@ def ssi_dat(
         raise InputError(
             "gaps or a short record leave too little for SSI-dat",
             field="method",
-            value=f"{len(instants)} whole instants",
+            value=f"{len(instants)} complete instants",
             allowed=f"≥ {n_past + n_future} for {block_rows} block rows",
             remedy="use ssi-cov, which copes with gaps, or fewer block rows",
         )
@@ -67,7 +67,7 @@ def ssi_dat(
 
 
 def _whole_instants(y: FloatArray, block_rows: int) -> IntArray:
-    """Return the instants whose past and future hold no missing sample."""
+    """Return the instants whose past and future contain no missing sample."""
     whole = np.isfinite(y).all(axis=0)
     run = np.convolve(whole, np.ones(2 * block_rows), mode="valid")
     return np.flatnonzero(run > 2 * block_rows - 0.5) + block_rows
@@ -80,5 +80,5 @@ def _triangle(rows: FloatArray) -> FloatArray:
 
 
 def _stacked(windows: FloatArray) -> FloatArray:
-    """Return (n_channels, n_instants, block_rows) as rows of block rows of channels."""
+    """Reshape (n_channels, n_instants, block_rows) to (n_instants, block_rows · n_channels)."""
     return np.asarray(windows.transpose(1, 2, 0).reshape(windows.shape[1], -1))

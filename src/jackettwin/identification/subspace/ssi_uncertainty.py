@@ -1,7 +1,7 @@
 r"""First-order uncertainty of SSI-cov poles and shapes at every model order, without Kronecker products.
 
-Poles depend on the column space of the observability matrix only, so of its perturbation only the part
-outside that space matters (first-order perturbation of a singular subspace):
+Poles depend only on the column space of the observability matrix. To first order only the part of its
+perturbation outside that space matters (perturbation of a singular subspace):
 
 .. math:: \delta O = U_K D\,\Sigma_1^{1/2}, \quad
    D_{kj} = \frac{\sigma_j\, u_k^T \Delta H v_j + \sigma_k\, v_k^T \Delta H^T u_j}{\sigma_j^2-\sigma_k^2},
@@ -35,15 +35,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Propagation:
-    """Everything about the perturbed factorisation that all model orders share.
+    """The part of the perturbed factorisation that is common to all model orders.
 
-    Perturbations are multiplied with the rows of O↓ᵀ and Qᵀ on U↑, of Qᵀ on U↓ and of the first block row:
-    the *tests*, 3 n_max + n_channels rows.
+    Perturbations are only needed multiplied with O↓ᵀ and Qᵀ (on U↑), with Qᵀ (on U↓) and with the selection
+    of the first block row. These 3 n_max + n_channels rows are called *tests*.
 
     Attributes
     ----------
     inside : (n_max, n_blocks, n_max)
-        D Σ₁^½ along the leading left vectors: an order takes the rows beyond it and the columns up to it.
+        D Σ₁^½ along the leading left vectors; order n uses the rows from n on and the first n columns.
     seen : (3 n_max + n_channels, n_max)
         The tests on the leading left vectors.
     beyond : (3 n_max + n_channels, n_blocks, n_max)
@@ -64,7 +64,7 @@ def block_deviations(blocks: FloatArray, block_rows: int, every: int = 1) -> Ite
     blocks : (n_blocks, n_lags + 1, n_channels, n_channels)
         From ``block_covariances``.
     every : int
-        As of ``hankel``.
+        As in ``hankel``.
     """
     n_blocks = len(blocks)
     mean = blocks.mean(axis=0)
@@ -75,18 +75,18 @@ def block_deviations(blocks: FloatArray, block_rows: int, every: int = 1) -> Ite
 def propagation(
     subspace: Subspace, deviations: Iterable[FloatArray], precision: type[np.floating[Any]] = np.float64
 ) -> Propagation:
-    """Form what all orders share. Unit weights and shift structure only.
+    """Return the part common to all orders; for unit weights and the shift structure only.
 
     Parameters
     ----------
     precision : numpy.float64 or numpy.float32
-        Of the products with ΔH. A standard deviation from thirty blocks has an error of 13 %: single
-        precision halves the work and changes nothing.
+        Precision of the products with ΔH. Since a standard deviation from thirty blocks has an error of 13 %,
+        single precision suffices and halves the work.
 
     Raises
     ------
     InputError
-        If the subspace does not hold the factors.
+        If the subspace was computed without the factors.
     """
     if subspace.basis is None or subspace.factors is None:
         raise InputError(
@@ -104,14 +104,14 @@ def propagation(
 
 @dataclass(frozen=True)
 class _Multiplied:
-    r"""What every ΔH is multiplied with.
+    r"""The matrices with which every ΔH is multiplied.
 
     With the images :math:`h_k = H v_k = \sigma_k u_k` of the directions beyond the leading ones
 
     .. math:: \sum_k u_k D_{kj} = \frac{(I - U_1 U_1^T)\,\Delta H v_j}{\sigma_j}
        + \sum_k h_k \frac{h_k^T \Delta H v_j/\sigma_j + v_k^T \Delta H^T u_j}{\sigma_j^2-\sigma_k^2},
 
-    which asks for no left vector of a small singular value.
+    which needs no left vector of a small singular value.
 
     Attributes
     ----------
@@ -180,7 +180,7 @@ def order_poles_with_uncertainty(
     Parameters
     ----------
     keep : callable, optional
-        Which of the eigenvalues (n,) to report; default all of positive frequency.
+        Selects the eigenvalues (n,) to report; by default all of positive frequency.
     real : bool
         Report real eigenvalues between 0 and 1 instead.
     """
@@ -198,12 +198,12 @@ def order_poles_with_uncertainty(
 
 @dataclass
 class _Sums:
-    """The tests on U D Σ₁^½ from an order on, to which the next lower order adds a few rows of D.
+    """The tests on U D Σ₁^½ summed over the rows of D from one order on; lower orders add further rows.
 
     Attributes
     ----------
     first : int
-        The first row that is in them.
+        First row of D that is included.
     tested : (3 n_max + n_channels, n_blocks, n_max)
     """
 
@@ -211,7 +211,7 @@ class _Sums:
     tested: FloatArray
 
     def reach(self, shared: Propagation, order: int) -> None:
-        """Add the rows down to an order."""
+        """Add the rows of D down to an order."""
         if order < self.first:
             added = slice(order, self.first)
             inside = shared.inside[added].reshape(self.first - order, -1)

@@ -28,7 +28,7 @@ def stabilisation(
     Parameters
     ----------
     scale : (n_channels,)
-        Standard deviations by which the channels were divided: shapes come back in channel units.
+        Standard deviations by which the channels were divided; returned shapes are in channel units.
     """
     poles = [_inside(p, settings, sample_rate_hz, band_hz) for p in poles]
     table = [(*frequency_and_damping(p.eigenvalues, sample_rate_hz), p.shapes) for p in poles]
@@ -59,7 +59,7 @@ def admissible(
     sample_rate_hz: float,
     band_hz: tuple[float, float],
 ) -> BoolArray:
-    """Return which poles lie inside the band and below the hard limit on damping, and are stable."""
+    """Return which poles lie in the band, are stable and below the hard limit on damping, (n_poles,) bool."""
     f, zeta = frequency_and_damping(eigenvalues, sample_rate_hz)
     inside = (f > band_hz[0]) & (f < band_hz[1])
     return np.asarray(inside & (zeta > 0.0) & (zeta < settings.max_damping_ratio))
@@ -136,7 +136,7 @@ def _stable(
     before: tuple[FloatArray, FloatArray, ComplexArray],
     settings: IdentificationSettings,
 ) -> BoolArray:
-    """Return the three soft criteria of each pole towards the most similar pole of the order before."""
+    """Return which poles meet the three soft criteria with the most similar pole of the order before."""
     f, zeta, shapes = now
     f0, zeta0, shapes0 = before
     out = np.zeros((len(f), 3), dtype=bool)
