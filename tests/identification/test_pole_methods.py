@@ -52,7 +52,7 @@ def test_ssi_dat_leaves_out_instants_with_gaps() -> None:
 def test_ssi_dat_refuses_a_record_of_gaps() -> None:
     y = np.ones((2, 400))
     y[0, ::10] = np.nan
-    with pytest.raises(InputError, match=r"too little for SSI-dat.*0 whole instants.*ssi-cov"):
+    with pytest.raises(InputError, match=r"too little for SSI-dat.*0 complete instants.*ssi-cov"):
         ssi_dat(y, block_rows=8, max_order=4)
 
 

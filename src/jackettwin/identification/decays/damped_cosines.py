@@ -1,6 +1,6 @@
 r"""Damped cosines in noise, by maximum likelihood: the modes of a free decay.
 
-After a structure is released, its channels share poles and nothing else,
+After a structure is released, all channels have the same poles but different amplitudes,
 
 .. math:: y_c(t) = b_c + \mathrm{Re} \sum_m a_{cm} e^{\lambda_m t} + e_c(t), \qquad
           \lambda = -\zeta\omega + i\omega\sqrt{1 - \zeta^2},
@@ -43,8 +43,8 @@ MAX_ITERATIONS = 40
 MAX_FREQUENCY_CHANGE = 0.2
 """Largest change of ln ω from the start of a fit; a frequency farther away belongs to another mode."""
 MIN_NOISE_LENGTH = 0.125
-"""Length of the record after a decay, over the decay's, from which the noise is estimated there and not from
-the residual."""
+"""Smallest ratio of the length of the record after a decay to that of the decay for the noise to be estimated
+from that part; otherwise the residual of the fit is used."""
 MIN_NOISE = 1e-6
 """Smallest noise of a channel, as a share of its rms."""
 MIN_DEGREES_OF_FREEDOM = 2.0
@@ -95,7 +95,8 @@ def damped_cosines(
         Samples of the decay, none missing.
     frequency_hz, damping_ratio : (n_modes,)
     noise : (n_channels, n_more), optional
-        The same channels after the decay; less the rest of the decay, they give the spectrum of the noise.
+        The same channels after the decay; the spectrum of the noise is theirs after subtraction of the rest
+        of the decay.
 
     Examples
     --------
@@ -126,7 +127,7 @@ def damped_cosines(
         later = t[-1] + np.arange(1, noise.shape[1] + 1) / sample_rate_hz
         background = noise / sigma[:, None] - _decays_at(p, fit.amplitudes, later)
     variance, freedom = _score_variance(_jacobian(fit), background)
-    # a variance from few lines of noise is itself uncertain: intervals are Student's
+    # a variance from few lines of noise is itself uncertain: intervals follow Student's t distribution
     wider = scipy.special.stdtrit(freedom, 0.975) / scipy.special.ndtri(0.975)
     covariance = bound @ variance @ bound * np.outer(wider, wider)
     about = white - white.mean(axis=1, keepdims=True)
@@ -246,9 +247,10 @@ def _jacobian(fit: _Projection) -> FloatArray:
 
 
 def _score_variance(jacobian: FloatArray, noise: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the variance of Jᵀe, where the noise e has the spectrum of a sample, and its degrees of freedom.
+    """Return the variance of Jᵀe for noise e with the spectrum of a given sample, and its degrees of freedom.
 
-    The variance is averaged over all positions of the sample, and at least that of white noise of its power.
+    The variance is averaged over all time shifts of the sample, and at least that of white noise of its
+    power.
 
     Returns
     -------

@@ -1,9 +1,9 @@
-r"""Find the part of a record in which a released structure decays freely.
+r"""The part of a record in which a released structure decays freely.
 
 The power of each channel is smoothed over cycles of the strongest frequency and divided by its quiet level.
-The decay starts at the highest point, from which the power falls by e-folds without recovering.
-Fading of the response to random forces does that too, but rarely to such depth; the fit of damped cosines
-decides, since they explain nearly all of a free decay and little of a forced response.
+The decay starts at the highest point, from which the power falls by e-folds without recovering. The response
+to random forces may fade in the same way, but rarely by as much; the fit of damped cosines decides, since
+they explain nearly all of a free decay and little of a forced response.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class DecayPart:
     first, last : int
         Samples [first, last).
     strongest_hz : float
-        Frequency of the largest power in it.
+        Frequency of the largest power in the part.
     fall : float
         Fall of the amplitude in e-folds.
     """

@@ -51,16 +51,17 @@ MIN_EXPLAINED_SHALLOW = 0.97
 BRIEF_SHARE = 0.1
 """Share of the record below which a decay may come from an impact."""
 MAX_IMPACT_FALL = 3.0
-"""Fall in e-folds below which a brief decay counts as an impact, whose record says more about the modes
-beside it."""
+"""Fall in e-folds below which a brief decay counts as an impact; the modes are then identified from the
+record before or after it."""
 FORCED_RATIO = 1.5
 """Ratio of the residual power in the first quarter of a fit to that in the rest above which forces still
 act."""
 MAX_STARTS = 8
-"""Number of starts of the decay that are tried, each two cycles later."""
+"""Number of initial instants of the decay that are tried, each two cycles later."""
 MIN_EXPLAINED_FIRST = 0.8
-"""Share explained by damped cosines below which no later start is tried. In decays that are accepted in the
-end the first fit explains 0.95; on a shaking table that fades it explains 0.3 from any start."""
+"""Share explained by damped cosines below which no later initial instant is tried. In decays that are finally
+accepted the first fit explains 0.95; in the fading response of a structure on a shaking table it explains 0.3
+from any instant."""
 CERTAIN_RATIO = 25.0
 """Ratio of the power of a mode to the noise power in its cosines from which the mode is certain."""
 MIN_EXPLAINED_INTERVALS = 0.92
@@ -136,7 +137,7 @@ def transient(record: Record, settings: IdentificationSettings, *, impacts: bool
     level, times = accelerated(measured, as_declared=True)
     part, level = _falling(level)
     if part is None and times.any():
-        # differentiating twice amplifies noise, which may hide a decay that the displacement shows
+        # the noise amplified by two differentiations may hide a decay that is visible in the displacement
         times = np.zeros_like(times)
         part, level = _falling(measured)
     if part is None:
@@ -224,7 +225,7 @@ def _free_part(part: DecayPart, y: FloatArray, rate: float) -> _Decay | None:
         if falling.shape[1] < 4 * step:
             return None
         if fit is not None:
-            # the first modes show when forces cease to act; from there modes are sought again
+            # the first fit shows when forces cease to act; modes are then sought again from that instant
             fit = damped_cosines(falling, rate, fit.frequency_hz, fit.damping_ratio)
         if fit is None or not _forces_act(fit) or attempt == MAX_STARTS - 1:
             modes_fit = modes_of_decay(falling, rate, part.strongest_hz, y[:, part.last :])

@@ -1,4 +1,4 @@
-"""Modes of a decay: poles of a subspace fit, accepted as long as they explain more than noise does."""
+"""Modes of a decay: poles of a subspace fit, accepted as long as they explain more power than noise would."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ MIN_EXPLAINED_BY_POLES = 0.5
 """Share of a decay explained by the cosines of all poles below which no fit is tried:
 for a released structure it is 0.7 or more, for random forces that fade 0.2 to 0.9."""
 MIN_EIGENVALUE = 1e-9
-"""Smallest eigenvalue kept of the cosines' products, relative to the largest;
-smaller ones are differences of poles of one mode."""
+"""Smallest eigenvalue of the cosines' Gram matrix that is used, relative to the largest; smaller ones belong
+to differences between nearly equal poles."""
 MIN_RATIO = 12.0
 """Smallest ratio of the power of a mode to the power of noise in the same cosines."""
 MIN_DAMPING_RATIO, MAX_DAMPING_RATIO = 2e-4, 0.12
@@ -112,7 +112,7 @@ class _Background:
 
 
 def _poles(y: FloatArray, sample_rate_hz: float, strongest_hz: float) -> tuple[FloatArray, FloatArray]:
-    """Return the poles of the decay for all orders, from its sums taken as covariances."""
+    """Return the poles of the decay for all orders, by subspace identification from its lagged products."""
     rows = min(
         max(round(BLOCK_ROW_CYCLES * sample_rate_hz / strongest_hz), 6), MAX_ROWS, (y.shape[1] - 2) // 2
     )

@@ -1,19 +1,20 @@
-r"""Relaxations of a structure that was pulled aside and let go, and which ones would have been seen.
+r"""Relaxations of a structure that was pulled aside and released, and their detection limits.
 
-After the release at t = 0 the channels are modes, which are fitted first, and what does not oscillate,
+After the release at t = 0 each channel is the sum of a constant, modes (fitted first) and a relaxation,
 
 .. math:: y_c(t) = b_c + \mathrm{Re} \sum_m a_{cm} e^{\lambda_m t} + A_c e^{-at} + e_c(t).
 
-For a given rate a the amplitude A_c is linear: with g the part of :math:`e^{-at}` that constant and modes
-do not explain, :math:`\hat A_c = g^T y_c/g^T g`. Its variance is that in noise with the spectrum of what the
-whole fit leaves, and its degrees of freedom are those of that spectrum, so that :math:`\hat A_c/\sigma_c` is
-Student's. A relaxation is there if any channel at any rate of a grid passes the test; all of them together
-give a false alarm in at most 5 % of records (Bonferroni). One of amplitude
+For a given rate a the model is linear in the amplitude A_c: with g the part of :math:`e^{-at}` orthogonal to
+the constant and the modes, :math:`\hat A_c = g^T y_c/g^T g`. Its variance and degrees of freedom are those
+for noise with the spectrum of the residual of the whole fit, so that :math:`\hat A_c/\sigma_c` follows
+Student's t distribution. A relaxation is detected if any channel at any rate of a grid passes the test; the
+thresholds limit false alarms to 5 % of records over all channels and rates (Bonferroni). A relaxation of
+amplitude
 
 .. math:: A_c = (t_{1-\alpha/2} + t_{0.95})\,\sigma_c
 
-passes it in 95 % of records: the detection limit. Poles nearer to each other than data of this length tell
-apart are seen as one.
+passes the test in 95 % of records: this is the detection limit. Relaxations whose rates are too close for
+data of this length to separate are detected as one.
 """
 
 from __future__ import annotations
@@ -42,15 +43,16 @@ if TYPE_CHECKING:
 FALSE_ALARMS = 0.05
 """Largest share of records without a relaxation in which one is reported."""
 POWER = 0.95
-"""Share of records with a relaxation at the limit in which it is found."""
+"""Probability of detecting a relaxation at the limit."""
 RATES = 12
-"""Rates of the grid."""
+"""Number of rates of the grid."""
 SLOWEST = 6.0
-"""Slowest rate of the grid times the time after the release: a slower one is part of the constant."""
+"""Product of the slowest rate of the grid and the time after the release; slower relaxations cannot be
+separated from the constant."""
 FASTEST = 2.0
-"""Fastest rate of the grid, in radians of the strongest mode."""
+"""Ratio of the fastest rate of the grid to the angular frequency of the strongest mode."""
 SAMPLES_PER_CYCLE = 40.0
-"""Samples in a cycle of the strongest mode, at most: no relaxation of the grid needs more."""
+"""Most samples per cycle of the strongest mode: no relaxation of the grid needs more."""
 SETTLING_SAMPLES = 26
 """Samples after the release that the filter before decimation blurs."""
 MIN_EXPLAINED = 0.9
@@ -58,24 +60,25 @@ MIN_EXPLAINED = 0.9
 MIN_FALL = 4.0
 """Least ratio of the power right after a release to that at the end of the record."""
 ONSET_RATIO = 10.0
-"""Least ratio of the power after a release to that before; a lower one is a record that begins let go."""
+"""Smallest ratio of the power after a release to that before; with a lower one the record begins after the
+release."""
 _ROUNDS = 3
-"""Times that modes and relaxation are fitted in turn."""
+"""Number of times that modes and relaxation are fitted in turn."""
 _STILL = 1e-6
-"""Share of the mean power below which a channel is still."""
+"""Share of the mean power below which a channel counts as not moving."""
 MIN_SAMPLES = 256
 
 
 @dataclass(frozen=True)
 class RelaxationLimit:
-    """What would have been seen at one rate.
+    """Detection limit of a relaxation at one rate.
 
     Attributes
     ----------
     rate_rad_s : float
     amplitude : (n_channels,)
-        In the units of the channels: of a release, A at that moment; of ambient vibration, the rms. Infinite
-        where none would have been seen.
+        Smallest detectable amplitude in the units of the channels: for a release, A at that instant; for
+        ambient vibration, the rms. Infinite where no relaxation would be detected.
     """
 
     rate_rad_s: float
@@ -89,14 +92,14 @@ class ReleaseRelaxations:
     Attributes
     ----------
     release_s : float
-        From the start of the record.
+        Time of the release from the start of the record.
     channels : tuple of Channel
     pole : RealPole or None
-        The relaxation that explains most, if any passes the test; its shape is A_c.
+        The relaxation that leaves the smallest residual, if any passes the test; its shape is A_c.
     amplitude : (n_channels,)
-        Of the pole, at the release; zero without one.
+        Amplitudes of the pole at the release; zero without one.
     limits : tuple of RelaxationLimit
-        One a rate of the grid, slowest first.
+        One for each rate of the grid, slowest first.
     """
 
     release_s: float
@@ -108,14 +111,14 @@ class ReleaseRelaxations:
 
 @dataclass(frozen=True)
 class AmplitudeTest:
-    """Amplitudes of exp(−at) beside given decays, for rates of a grid.
+    """Amplitudes of exp(−at) fitted together with given decays, for rates of a grid.
 
     Attributes
     ----------
     rates : (n_rates,) [rad/s]
     amplitude, std : (n_rates, n_channels)
     critical : (n_rates, n_channels)
-        What |amplitude|/std must exceed.
+        Threshold of |amplitude|/std.
     limit : (n_rates, n_channels)
         Amplitude that passes with probability ``POWER``.
     """
@@ -128,12 +131,12 @@ class AmplitudeTest:
 
     @property
     def passed(self) -> bool:
-        """Whether any amplitude is there."""
+        """Whether any amplitude exceeds its threshold."""
         return bool(np.any(np.abs(self.amplitude) > self.critical * self.std))
 
 
 def release_relaxations(record: Record) -> ReleaseRelaxations | None:
-    """Return the relaxations of a record in which a structure is let go; None if it shows no free decay.
+    """Return the relaxations of a record in which a structure is released; None if it contains no free decay.
 
     Parameters
     ----------
@@ -181,7 +184,7 @@ def release_relaxations(record: Record) -> ReleaseRelaxations | None:
 def _tested(
     y: FloatArray, sample_rate_hz: float, fit: DampedCosines, rates: FloatArray
 ) -> tuple[RealPole | None, FloatArray, FloatArray]:
-    """Return the relaxation beside fitted modes, its amplitudes, and the limits (n_rates, n_channels)."""
+    """Return the relaxation next to fitted modes, its amplitudes, and the limits (n_rates, n_channels)."""
     t = np.arange(y.shape[1]) / sample_rate_hz
     pole, amplitude, slow = None, np.zeros(len(y)), np.zeros_like(y)
     f, zeta = fit.frequency_hz, fit.damping_ratio
@@ -189,7 +192,7 @@ def _tested(
     for _ in range(_ROUNDS if test.passed else 0):
         pole, amplitude = _pole(y, sample_rate_hz, f, zeta, test)
         slow = np.outer(amplitude, np.exp(-pole.rate_rad_s * t))
-        # the modes again, without what relaxes
+        # refit the modes without the relaxation
         fit = damped_cosines(y - slow, sample_rate_hz, f, zeta)
         f, zeta = fit.frequency_hz, fit.damping_ratio
         test = amplitude_test(y, sample_rate_hz, f, zeta, rates)
@@ -202,7 +205,9 @@ def grid(duration_s: float, strongest_hz: float) -> FloatArray:
 
 
 def onset(y: FloatArray, sample_rate_hz: float, strongest_hz: float) -> float:
-    """Return when a structure is let go [s]: where most power follows least; 0 if the record begins so.
+    """Return the time of a release [s]: where the ratio of the power after to that before is largest.
+
+    It is 0 if the record begins after the release.
 
     Parameters
     ----------
@@ -218,7 +223,7 @@ def onset(y: FloatArray, sample_rate_hz: float, strongest_hz: float) -> float:
     best = int(np.argmax(ratio))
     if ratio[best] <= ONSET_RATIO:
         return 0.0
-    # about there, the change of variance of highest likelihood: too early would leave standstill in the decay
+    # refined by the likelihood of a change of variance: an early estimate would include rest in the decay
     low, high = max(k[best] - width, 0), min(k[best] + 2 * width, power.shape[1])
     near = power[:, low:high] + least / width
     cut = np.arange(2, high - low - 2)
@@ -237,7 +242,7 @@ def amplitude_test(
     damping_ratio: FloatArray,
     rates: FloatArray,
 ) -> AmplitudeTest:
-    """Return amplitudes of exp(−at) beside the decays of given modes, tested together.
+    """Return amplitudes of exp(−at) in addition to the decays of given modes, tested together.
 
     Parameters
     ----------
@@ -269,7 +274,7 @@ def _pole(
     damping_ratio: FloatArray,
     test: AmplitudeTest,
 ) -> tuple[RealPole, FloatArray]:
-    """Return the relaxation that leaves least, and its amplitudes at the first sample."""
+    """Return the relaxation of smallest residual, and its amplitudes at the first sample."""
     t = np.arange(y.shape[1]) / sample_rate_hz
     q = _basis(t, frequency_hz, damping_ratio)
     left = y - (y @ q) @ q.T
@@ -283,7 +288,7 @@ def _pole(
         options={"xatol": 1e-7},
     )
     g, amplitude, residual = _left(left, q, t, found.x)
-    # the slope of the residual by ln a, and its information; the sandwich of coloured noise
+    # derivative of the residual by ln a; sandwich variance for coloured noise
     slope = -np.exp(found.x) * t * np.exp(-np.exp(found.x) * t)
     slope = slope - q @ (q.T @ slope)
     slope -= g * (g @ slope) / (g @ g)
@@ -299,7 +304,7 @@ def _pole(
 def _left(
     left: FloatArray, q: FloatArray, t: FloatArray, log_a: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return what modes leave of exp(−at), its amplitudes, and what both leave of the record."""
+    """Return the part g of exp(−at) orthogonal to the modes, its amplitudes, and the residual of the fit."""
     g = np.exp(-np.exp(log_a) * t)
     g = g - q @ (q.T @ g)
     amplitude = left @ g / (g @ g)
@@ -314,7 +319,7 @@ def _basis(t: FloatArray, frequency_hz: FloatArray, damping_ratio: FloatArray) -
 
 
 def _in_noise(g: FloatArray, noise: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the standard deviation of g·e in noise with a sample's spectrum, and its degrees of freedom.
+    """Return the standard deviation of g·e for noise e with a sample's spectrum, and its degrees of freedom.
 
     Parameters
     ----------
@@ -328,9 +333,9 @@ def _in_noise(g: FloatArray, noise: FloatArray) -> tuple[FloatArray, FloatArray]
     weight[1:] *= 2.0
     each = weight * lines
     variance = each.sum(axis=1) / size
-    # two a line of the sample, on as many as g rests on; at least white noise of this power
+    # two degrees of freedom per line of the sample that g rests on; at least white noise of this power
     freedom = max(2.0 * weight.sum() ** 2 / np.sum(weight**2) * n / size, 3.0)
-    # what is left has lost one of them: the fit took all that goes with g
+    # the residual has one fewer: the fit removed the component along g
     variance *= freedom / (freedom - 1.0)
     white = np.mean(noise**2, axis=1) * (g @ g)
     std = np.sqrt(np.maximum(variance, white)) + 1e-300
@@ -338,7 +343,7 @@ def _in_noise(g: FloatArray, noise: FloatArray) -> tuple[FloatArray, FloatArray]
 
 
 def _strongest_hz(y: FloatArray, sample_rate_hz: float) -> float:
-    """Return the frequency of most power, of speeds so that what is slow does not hide it."""
+    """Return the frequency of most power of the velocity, in which slow motion does not hide it."""
     speed = np.diff(y, axis=1)
     lines = np.abs(fft.rfft(speed * np.hanning(speed.shape[1]), axis=1)) ** 2
     k = int(np.argmax(np.mean(lines / (lines.sum(axis=1, keepdims=True) + 1e-300), axis=0)[1:])) + 1

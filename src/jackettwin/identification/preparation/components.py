@@ -1,7 +1,7 @@
 r"""Reduction of many channels to a few principal components.
 
-The work of a subspace method grows with the cube of the number of channels, its information does not:
-a structure moves in few modes, and the rest of the channels is noise.
+The work of a subspace method grows with the cube of the number of channels, but the information does not: a
+structure moves in few modes, and the remaining directions contain noise.
 With U the eigenvectors of the channels' covariance of the largest eigenvalues,
 
 .. math:: z(t) = U^T y(t), \qquad \phi = U \phi_z ,
@@ -35,9 +35,10 @@ COMPONENTS = 12
 
 
 def components(ready: Prepared, settings: IdentificationSettings) -> tuple[Prepared, FloatArray | None]:
-    """Return the data to identify from, and the matrix (n_channels, n_components) back to all channels.
+    """Return the data to identify from, and the matrix (n_channels, n_components) that expands shapes.
 
-    These are the channels themselves and None if there are few, of several kinds, or with chosen references.
+    The channels themselves and None are returned if there are few channels, channels of several kinds, or
+    reference channels were chosen.
     """
     kinds = {channel.quantity for channel in ready.channels}
     if len(ready.channels) <= MAX_CHANNELS or len(kinds) > 1 or settings.reference_channels is not None:

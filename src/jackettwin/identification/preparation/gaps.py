@@ -2,7 +2,7 @@ r"""Missing samples of one channel, predicted from the others.
 
 Covariances of different pairs of channels, each over the samples which that pair has,
 are not the covariance of any one process: the Hankel matrix loses its structure and weak modes are lost.
-However, sensors on one structure are correlated. A missing sample is replaced by its conditional mean
+Since sensors on one structure are correlated, a missing sample is replaced by its conditional mean
 
 .. math:: \hat y_{i,t} = \sum_{j \ne i} \sum_{|k| \le L} b_{ijk}\, y_{j,t+k}
 
@@ -19,7 +19,7 @@ from scipy import linalg, ndimage
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 
 REACH = (5, 2, 0)
-"""Samples before and after that take part; the longest reach with enough data is used."""
+"""Values of L that are tried; the largest with enough data is used."""
 CASES_PER_COEFFICIENT = 15
 """Complete instants needed per coefficient."""
 MIN_EXPLAINED_SHARE = 0.9
@@ -97,7 +97,7 @@ def _gram(y: FloatArray, complete: BoolArray, reach: int) -> FloatArray:
 
 
 def _weights(gram: FloatArray, i: int, there: BoolArray, reach: int) -> FloatArray | None:
-    """Return b (n_channels, shifts), zero for missing channels; None if it explains too little."""
+    """Return b (n_channels, shifts), zero for missing channels; None if the others explain too little."""
     n_shifts = 2 * reach + 1
     size = int(np.count_nonzero(there)) * n_shifts
     a = gram[there][:, :, there].reshape(size, size)

@@ -36,12 +36,12 @@ if TYPE_CHECKING:
 
 
 TONE_RATE_RATIO = 2.0
-"""Rate at which tones are sought, over the rate needed for a band that starts at the lowest peak,
-which may itself be a tone."""
+"""Ratio of the sample rate at which tones are sought to the rate needed for a band that starts at the lowest
+peak, which may itself be a tone."""
 PEAK_CHANNELS = 6
 """Number of channels used to find that peak."""
 MIN_TOP_DEGREE = 10
-"""Lowest limit of the degree of pLSCF."""
+"""Smallest upper limit of the polynomial degree of pLSCF."""
 MIN_REPORTED_SHARE = 0.005
 """Share of filled samples above which a warning is given."""
 
@@ -140,7 +140,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
 def _band_top_hz(level: Record, settings: IdentificationSettings) -> float | None:
     """Return the upper limit of the band, or None without a peak.
 
-    A few channels are examined; if they miss the lowest peak, the limit is merely higher than needed.
+    Only a few channels are examined. If none has the lowest peak, the limit is merely higher than necessary.
     """
     if settings.highest_frequency_hz is not None:
         return GUARD * settings.highest_frequency_hz
@@ -161,14 +161,14 @@ def _decimated(level: Record, top_hz: float, settings: IdentificationSettings) -
 
 
 def _above_tones(level: Record, settings: IdentificationSettings, lowest_hz: float) -> IdentificationSettings:
-    """Start the band at the tones if nothing else stands out."""
+    """Return settings whose band starts below the tones if there is no other clear peak."""
     if settings.lowest_frequency_hz is not None or lowest_peak_hz(welch(level.data, level.sample_rate_hz)):
         return settings
     return settings.model_copy(update={"lowest_frequency_hz": EDGE_BELOW_PEAK * lowest_hz})
 
 
 def _degrees(settings: IdentificationSettings, n_references: int) -> tuple[int, ...]:
-    """Return polynomial degrees with as many poles as SSI's model orders, at most twice that."""
+    """Return polynomial degrees that give at least SSI's numbers of poles, at most twice as many."""
     top = max(2 * (settings.max_order or MAX_ORDER) // n_references, MIN_TOP_DEGREE)
     return tuple(range(2, top + 1))
 

@@ -27,16 +27,15 @@ EDGE_BELOW_PEAK = 0.65
 BAND_RATIO = 25.0
 """Upper edge of the band over its lower edge."""
 SAMPLES_PER_CYCLE = 2.5
-"""Sample rate over the upper edge of the band: the decimation filter passes up to 0.8 of Nyquist."""
+"""Ratio of sample rate to upper edge of the band: the decimation filter passes up to 0.8 of Nyquist."""
 WINDOW_CYCLES = 1.0
 """Block rows in cycles of the lower edge. The lag window is twice that: long enough to separate a pair of
 frequencies a few per cent apart, short enough that the covariances are well determined."""
 SINGLE_CHANNEL_CYCLES = 2.5
-"""Most block rows of a single channel, in the same cycles. Without a second shape,
-one cycle merges two modes an eighth of their frequency apart into one, twice as broad."""
+"""Most block rows of a single channel, in the same cycles. Without a shape to separate them, block rows of
+one cycle merge two modes that differ by an eighth of their frequency into one mode twice as broad."""
 SINGLE_CHANNEL_SHARE = 1.0 / 400.0
-"""Share of the record up to which these block rows are used:
-with hundreds of cycles the covariances are determined."""
+"""Largest share of the record for these block rows: with hundreds of cycles the covariances are accurate."""
 GUARD = 1.25
 """Poles are sought and spectra fitted up to this multiple of the band's upper edge if the sample rate allows:
 a mode near the edge needs its whole peak, and one just beyond must be modelled."""
@@ -45,10 +44,10 @@ WINDOW_SHARE = 0.2
 MAX_ORDER = 60
 """Largest model order."""
 FEW_CHANNELS_ORDER = 40
-"""Model order that few channels must be able to reach; block rows are added for it."""
+"""Model order that must be possible with few channels; block rows are added for it."""
 DENSE_ORDERS = 20
-"""Model orders up to which every step is taken, and every second beyond. Relaxations appear in few orders,
-so that all are taken for them."""
+"""Model order up to which every order of the sweep is used; beyond it every second one is. For relaxations,
+which appear in few orders, all are used."""
 SHORT_RECORD_CYCLES = 60.0
 """Number of cycles of its lowest mode below which a record counts as short."""
 STRONG_RATIO = 0.1
@@ -113,7 +112,7 @@ def resolve(record: Record, settings: IdentificationSettings) -> tuple[ResolvedS
 
 
 def _block_rows(samples_a_cycle: float, n_channels: int, n_samples: float) -> int:
-    """Return the block rows: cycles of the lower edge, and enough for a model of few channels.
+    """Return the number of block rows: cycles of the lower edge, and enough for models of few channels.
 
     Examples
     --------
@@ -140,7 +139,7 @@ def with_orders(resolved: ResolvedSettings, wanted: Iterable[int]) -> ResolvedSe
 
 
 def dense_orders(resolved: ResolvedSettings, step: int) -> ResolvedSettings:
-    """Return the settings with high model orders as dense as low ones: relaxations are in few of them."""
+    """Return the settings with high model orders as dense as low ones: relaxations appear in few orders."""
     return replace(resolved, orders=_orders(step, resolved.orders[-1], resolved.orders[-1]))
 
 
@@ -171,14 +170,14 @@ def shortness(reduced: Record, resolved: ResolvedSettings, *, chosen: bool) -> t
     out: tuple[str, ...] = ()
     if first * duration < SHORT_RECORD_CYCLES:
         out += (
-            f"a short record: {duration:.3g} s hold {first * duration:.0f} cycles of {first:.3g} Hz; "
-            f"distrust modes so low, by hundreds of cycles they are known",
+            f"the record is short: {duration:.3g} s contain {first * duration:.0f} cycles of {first:.3g} Hz; "
+            f"distrust modes of such low frequency, which need hundreds of cycles",
         )
     strongest = _strongest_below(welch(reduced.data, reduced.sample_rate_hz), low) if chosen else None
     if strongest is not None and strongest * duration < SHORT_RECORD_CYCLES:
         out += (
-            f"the band starts at {low:.3g} Hz, yet the record moves strongly near {strongest:.2g} Hz: too "
-            f"few cycles to tell a peak there; use a longer record, or state lowest_frequency_hz",
+            f"the band starts at {low:.3g} Hz, but the record moves strongly near {strongest:.2g} Hz; it "
+            f"has too few cycles there to show a peak; use a longer record, or state lowest_frequency_hz",
         )
     return out
 
@@ -206,11 +205,11 @@ def _band(record: Record, settings: IdentificationSettings) -> tuple[float, floa
         peak = lowest_peak_hz(welch(record.data, record.sample_rate_hz))
         if peak is None:
             raise InputError(
-                "no spectral peak stands out: this is noise, or the record is too short",
+                "no spectral peak is clear: the record is noise, or it is too short",
                 field="lowest_frequency_hz",
                 value=f"a record of {record.duration_s:.0f} s",
-                remedy="see that the sensors are connected and finer than the motion, and measure in more "
-                "wind or for longer; to see the spectra all the same, state lowest_frequency_hz",
+                remedy="check that the sensors are connected and resolve the motion, and measure in more "
+                "wind or for longer; to see the spectra nevertheless, state lowest_frequency_hz",
             )
         low = EDGE_BELOW_PEAK * peak
     limit = 2.0 / SAMPLES_PER_CYCLE * nyquist

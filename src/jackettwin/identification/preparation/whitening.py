@@ -1,8 +1,8 @@
 r"""Whitening: velocities and displacements are differentiated before identification.
 
-The spectrum of a displacement falls as :math:`f^{-4}` above the first mode where that of the acceleration is
-level. Peaks over such a slope, the model orders spent on it and the leakage along it depend on the measured
-quantity, although the modes do not. All channels are converted to acceleration by
+Above the first mode the spectrum of a displacement falls as :math:`f^{-4}`, whereas that of the acceleration
+is level. Such a slope hides peaks, needs model orders of its own and causes leakage, so that the result would
+depend on the measured quantity. All channels are converted to acceleration by
 
 .. math:: \frac{d^n y}{dt^n} \;\leftrightarrow\; (i\omega)^n\, Y(\omega), \qquad
           n = 0, 1, 2 \text{ for acceleration, velocity, displacement}.
@@ -35,11 +35,11 @@ DERIVATIVES = {"acceleration": 0, "velocity": 1, "displacement": 2, "strain": 2,
 """Number of time derivatives from a quantity to acceleration."""
 MAX_DERIVATIVES = 2
 MAX_EXPONENT = 1.5
-"""Exponent of the spectrum over frequency above which there is a derivative too many:
-accelerations under white forces have 0 to 0.7, white sensor noise has 2 per derivative."""
+"""Exponent of the spectrum over frequency above which one derivative is left out: accelerations under white
+forces have 0 to 0.7, white sensor noise has 2 per derivative."""
 MIN_EXPONENT = -3.0
-"""Exponent below which there is a derivative too few: accelerations under turbulence have −1 to −2,
-displacements under white forces −4."""
+"""Exponent below which one derivative is added: accelerations under turbulence have −1 to −2, displacements
+under white forces −4."""
 OCTAVES = 4.0
 """Octaves above the lowest peak over which the exponent is taken."""
 MAX_RATE_SHARE = 0.4
@@ -60,7 +60,7 @@ def accelerated(record: Record, *, as_declared: bool = False) -> tuple[Record, I
     record : Record
         Vibration channels without trend; NaN marks a missing sample.
     as_declared : bool
-        Use the declared quantities alone; the spectrum of a decay is not informative.
+        Use the declared quantities alone, because the spectrum of a decay does not show them.
 
     Examples
     --------
@@ -126,9 +126,7 @@ def _taps() -> FloatArray:
 
 def _more(record: Record, declared: Int64Array) -> int:
     """Return the number of derivatives, beyond the declared ones, that make the spectrum most level."""
-    if (
-        record.data.shape[1] < 2 * HALF_LENGTH
-    ):  # too short to be identified; whoever looks for its band says so
+    if record.data.shape[1] < 2 * HALF_LENGTH:  # too short to be identified, which ``resolve`` reports
         return 0
     spectrum = densities(record.data, record.sample_rate_hz)
     for more in range(MAX_DERIVATIVES - int(declared.min()), -int(declared.max()) - 1, -1):

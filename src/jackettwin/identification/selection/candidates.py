@@ -37,8 +37,7 @@ TONE_REACH = 6.0
 ORDER_REACH = 2.0
 """Distance of a rotor order, in half bandwidths, within which it disturbs a mode."""
 MIN_ORDER_REACH = 0.015
-"""Smallest such distance as a share of the frequency, as the range of an estimated speed is uncertain at its
-ends."""
+"""Smallest such distance as a share of the frequency, since an estimated speed is uncertain at its limits."""
 TONE_WIDENING = 2.0
 """Factor on the standard deviations of a mode that a tone disturbs."""
 
@@ -141,7 +140,7 @@ def find_tones(
     y : (n_channels, n_samples)
         Samples divided by ``scale``.
     drifting : iterable of PhaseTrack
-        Drifting tones already subtracted; their remainders cause poles too.
+        Drifting tones already subtracted; their residuals cause poles too.
     """
     likely = [c.representative for c in found if c.order_share >= settings.min_order_share]
     f, zeta = poles.frequency_hz, poles.damping_ratio
@@ -166,7 +165,7 @@ def find_tones(
 
 
 def beside_orders(mode: ModalEstimate, orders: Iterable[tuple[int, float, float]]) -> ModalEstimate:
-    """Flag a mode that a rotor order crosses, or that may be one.
+    """Flag a mode whose frequency a rotor order crosses, or that may itself be a rotor order.
 
     Parameters
     ----------
@@ -221,8 +220,8 @@ def with_covariance(mode: ModalEstimate, covariance: FloatArray) -> ModalEstimat
 def _mode(poles: Stabilisation, cluster: Cluster, duration_s: float) -> ModalEstimate:
     """Return the representative pole with its uncertainty and the scatter over model orders combined.
 
-    The result is at least the long-data limit: blocks shorter than the memory of a mode underestimate its
-    scatter.
+    The result is at least the long-data limit, since blocks shorter than the decay time of a mode
+    underestimate its scatter.
     """
     k = cluster.representative
     f, zeta = float(poles.frequency_hz[k]), float(poles.damping_ratio[k])

@@ -1,4 +1,4 @@
-"""Choice of the reported modes: sure candidates, refined, and doubtful ones that the spectrum needs."""
+"""Choice of the reported modes: refined sure candidates, and doubtful ones needed to explain the spectrum."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ MAX_MISSING_SHARE = 0.01
 
 MIN_LIMIT_SHARE = 0.8
 """Smallest standard deviations, over the long-data limits.
-The ratios between many channels of low noise hold more information than the lines of a peak:
-for ten modes in eight channels the Cramér-Rao bound is 0.79 of the limit."""
+The ratios between many channels of low noise contain more information than the lines of a peak: for ten modes
+in eight channels the Cramér-Rao bound is 0.79 of the limit."""
 HINT_ORDER_SHARE = 0.25
-"""Share of the model orders in which a possible mode must appear to be worth a hint."""
+"""Share of the model orders in which a rejected candidate must appear for a finding to mention it."""
 SAME_SHAPE = 0.8
 """MAC above which a pole is the same mode as its neighbour."""
 SAME_CANDIDATE = 1e-3
@@ -60,7 +60,7 @@ PAIR_WIDENING = 1.6
 For 75 such modes of simulated jackets in waves the errors of ln ζ were 1.55 times their standard deviations;
 for 50 modes farther apart, 1.16 times."""
 LOST_LINES = 0.75
-"""Lines within this distance of a subtracted tone are lost with it."""
+"""Distance from a subtracted tone, in lines, within which lines contain no other motion any more."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class Choice:
 def chosen_modes(
     judged: Sequence[Candidate], tones: Tones, ready: Prepared, settings: IdentificationSettings
 ) -> Choice:
-    """Refine the candidates and keep those that are modes inside the band."""
+    """Refine the candidates and return those that are modes inside the band."""
     y, scale, resolved = tones.clean, ready.scale, ready.settings
     duration_s = y.shape[1] / resolved.sample_rate_hz
     open_to = [i for i, c in enumerate(judged) if c.objection is None]
@@ -152,14 +152,14 @@ def screened_choice(
     rescue: bool = True,
     drifting: Sequence[PhaseTrack] = (),
 ) -> Choice:
-    """Give modes their statuses, restore those of known frequency, drop those that are no modes.
+    """Assign statuses to the modes, restore those of known frequency, drop those that are no modes.
 
     Parameters
     ----------
     rescue : bool
         Whether modes are restored.
     drifting : sequence of PhaseTrack
-        Tones already subtracted: a peak that remains where one crossed is a mode or a remainder of the tone.
+        Tones already subtracted: a peak where one of them crossed is a mode or the residual of the tone.
     """
     found = dict(zip(chosen.candidate, chosen.modes, strict=True))
     restored: dict[int, ModalEstimate] = {}
@@ -190,7 +190,7 @@ def screened_choice(
 
 
 def _about(refused: Rejected, mode: ModalEstimate) -> bool:
-    """Tell whether a rejected candidate is a restored mode, which refinement may have moved slightly."""
+    """Tell whether a rejected candidate is a restored mode, whose frequency refinement may have changed."""
     return abs(refused.frequency_hz / mode.frequency_hz - 1.0) < SAME_CANDIDATE
 
 
@@ -221,7 +221,7 @@ def _log_damping_std(mode: ModalEstimate) -> float:
 
 
 def _lost_hz(tone_hz: float, duration_s: float) -> tuple[float, float]:
-    """Return the range of the lines lost with a tone: the line it is on, or one on either side."""
+    """Return the range of lines lost with a tone [Hz]: the nearest one, or two if it lies between them."""
     return tone_hz - LOST_LINES / duration_s, tone_hz + LOST_LINES / duration_s
 
 

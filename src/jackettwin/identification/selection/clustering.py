@@ -40,16 +40,16 @@ def clusters(
 
     .. math:: d_{ij} = \frac{|\lambda_i-\lambda_j|}{\max(|\lambda_i|,|\lambda_j|)} + 1 - \mathrm{MAC}_{ij}
 
-    (Reynders, Houbrechts & De Roeck 2012). Two poles of the same order are never one mode: where a
-    group holds both, the one nearer to the group's median stays.
+    (Reynders, Houbrechts & De Roeck 2012). Two poles of the same order are never one mode: if a group
+    contains several, only the one nearest to the group's median is retained.
 
     Parameters
     ----------
     orders : sequence of int
         All model orders, ascending.
     scale : (n_channels,)
-        Standard deviations of the channels, which scale shapes for the MAC,
-        so that channels in other units or at places of little motion count.
+        Standard deviations of the channels. The MAC is computed with shapes divided by them, so that channels
+        in other units or at places of little motion have the same weight.
     """
     n_poles = len(poles.order)
     if n_poles < 2:
@@ -86,7 +86,7 @@ def _cluster(poles: Stabilisation, members: Int64Array, orders: Sequence[int]) -
 
 
 def _one_an_order(poles: Stabilisation, members: Int64Array) -> Int64Array:
-    """Keep the pole nearest to the middle of the group in every model order."""
+    """Return, for every model order, the pole nearest to the median of the group."""
     order = np.lexsort((_away(poles, members), poles.order[members]))
     _, first = np.unique(poles.order[members][order], return_index=True)
     return np.asarray(members[order[first]])

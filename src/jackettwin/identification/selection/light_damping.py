@@ -1,8 +1,8 @@
 r"""Damping of lightly damped modes by the exact likelihood of their lines (``line_likelihood.py``).
 
-The motion of one mode is that of the channels through the filter which passes its shape and suppresses
-those of the modes beside it, the row of :math:`\Phi^+` that belongs to it.
-Modes too close to others keep the estimate of their common fit.
+The motion of one mode is obtained from the channels by a spatial filter that passes its shape and suppresses
+those of neighbouring modes: its row of the pseudo-inverse :math:`\Phi^+`. Modes too close to others retain
+the estimate of their common fit.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ if TYPE_CHECKING:
 
 MAX_KNOWN, MAX_REPLACED = 16.0, 10.0
 """2πζfT below which the likelihood is computed, and below which it replaces the estimate of the damping.
-Above the second, the fit of all modes together is as good and uses what the channels say of one another.
-A lower one would keep fits that happen to be high: of modes with ζfT = 0.45 then 86 % of the intervals hold
-the truth."""
+Above the second value the fit of all modes together is as accurate and also uses the ratios between channels.
+With a lower second value, fits that overestimate the damping by chance would be retained: for modes with
+ζfT = 0.45 only 86 % of the intervals would then contain the true value."""
 HALF_BAND_LINES = 20
 """Lines on either side of the peak."""
 MAX_HALF_BAND = 0.15
@@ -40,14 +40,15 @@ MAX_HALF_BAND = 0.15
 MIN_HALF_BAND_LINES = 8
 """Fewest lines on either side."""
 CLOSE_DISTANCE = 2.0
-"""Distance to another mode, over the sum of half bandwidths, below which one record does not tell the two
-shapes apart; then the fit of both together is kept."""
+"""Distance to another mode, over the sum of half bandwidths, below which one record does not separate the two
+shapes; the fit of both together is then retained."""
 MAX_AMPLIFICATION = 2.0
 """Largest length of the filter over that of one mode alone. Above it the shapes are too alike."""
 MAX_MISSING_SHARE = 0.01
 """Largest share of missing samples."""
 BY_CHANCE = frozenset({"steady_envelope", "narrow_as_a_line", "damping_unknown"})
-"""Reasons that a lightly damped mode has by chance. A mode with another reason has no likelihood."""
+"""Codes of findings that a lightly damped mode may have by chance. A mode with any other finding is given no
+likelihood."""
 MAX_LOG_STD = 1.0
 """Standard deviation of ln ζ above which damping is unknown."""
 
@@ -59,7 +60,7 @@ def with_damping_likelihoods(
     scale: FloatArray,
     derivatives: Sequence[int],
 ) -> tuple[ModalEstimate, ...]:
-    """Return the modes, the lightly damped ones with the likelihood of their damping.
+    """Return the modes, with the likelihood of their damping where they are lightly damped.
 
     Parameters
     ----------
@@ -102,7 +103,7 @@ def _band(frequency_hz: float, duration_s: float, n_lines: int) -> Int64Array:
 def _filter(
     modes: Sequence[ModalEstimate], i: int, scale: FloatArray, width_hz: float
 ) -> ComplexArray | None:
-    """Return the filter of one mode against those within a band; None if their shapes are too alike."""
+    """Return the spatial filter of one mode against others in a band; None if their shapes are too alike."""
     near = [m for m in modes if abs(m.frequency_hz - modes[i].frequency_hz) < width_hz]
     shapes = np.array([m.mode_shape / scale for m in near]).T
     shapes = shapes / np.linalg.norm(shapes, axis=0)

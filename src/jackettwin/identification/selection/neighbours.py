@@ -1,4 +1,4 @@
-r"""Recognise, by shape, force peaks between two modes and modes that were identified twice.
+r"""Recognition, by shape, of force peaks between two modes and of modes that were identified twice.
 
 Between its modes a structure moves in a combination of the modes on either side,
 :math:`y(f) = \sum_i \phi_i h_i(f) p_i(f)`. A peak of the forces p thus makes a peak of y, which can be as
@@ -27,8 +27,8 @@ MAX_OUTSIDE_SHARE = 0.01
 Wave peaks between the first two pairs of a simulated jacket have 0.001;
 of 60 modes of random systems none had less than 0.03."""
 PAIR_DISTANCE, AXIS_SHARE = 2.0, 0.95
-"""Distance over the sum of half bandwidths within which two modes are a pair,
-and the least share of its own axis in the motion of a shape in their plane."""
+"""Distance over the sum of half bandwidths within which two modes are a pair, and the least share of its
+energy along one axis that a shape in their plane must have for each axis."""
 MIN_FREE_DIMENSIONS = 2
 """Dimensions outside the neighbours' span that are required; with fewer,
 almost any shape is a combination."""
@@ -37,17 +37,16 @@ almost any shape is a combination."""
 def combinations_of_neighbours(modes: Sequence[ModalEstimate], scale: FloatArray, close: float) -> list[int]:
     """Return the modes whose shapes are combinations of those of the modes below and above.
 
-    Doubtful modes are not used as neighbours, nor are modes already returned. Two pairs may each lie in the
-    plane of the other and a third: the more damped is returned first, as force peaks are broad.
+    Neither doubtful modes nor modes already returned are used as neighbours. If two modes are each a
+    combination of the other and a third one, the more damped is returned first, since force peaks are broad.
 
     Parameters
     ----------
     modes : by ascending frequency
     scale : (n_channels,)
-        By which shapes are divided.
+        Shapes are divided by it.
     close : float
-        Distance over the sum of half bandwidths within which modes count as close,
-        not as one below and one above.
+        Distance over the sum of half bandwidths within which modes count as close, not as neighbours.
     """
     return _take_in_turn(
         modes, scale, lambda free, i: _either_side(modes, free, i, close), lambda mode: mode.damping_ratio
@@ -64,7 +63,7 @@ def identified_twice(modes: Sequence[ModalEstimate], scale: FloatArray, close: f
     ----------
     modes : by ascending frequency
     scale : (n_channels,)
-        By which shapes are divided.
+        Shapes are divided by it.
     close : float
         Distance over the sum of half bandwidths within which modes are close.
     """
@@ -120,15 +119,15 @@ def _outside(modes: Sequence[ModalEstimate], i: int, beside: Sequence[int], scal
 
 
 def members_of_pairs(modes: Sequence[ModalEstimate], channels: Sequence[Channel]) -> set[int]:
-    """Return the members of close pairs whose plane holds a shape along each of the horizontal axes.
+    """Return the members of close pairs whose plane contains a shape along each of the horizontal axes.
 
-    A structure that is as stiff one way as the other has its modes in such pairs. Where one member is a mode,
-    so is the other: a tone would have to meet its frequency and keep to the other axis.
+    A structure of equal stiffness in two directions has its modes in such pairs. If one member is a mode, so
+    is the other: a tone would need to have nearly the same frequency and to move along the other axis only.
 
     Parameters
     ----------
     channels : (n_channels,)
-        With their directions; channels without one are of no axis.
+        With their directions; channels without a direction belong to no axis.
     """
     along = np.array([(0.0, 0.0, 0.0) if c.direction is None else c.direction for c in channels])[:, :2]
     found: set[int] = set()

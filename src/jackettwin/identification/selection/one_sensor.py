@@ -1,9 +1,9 @@
-r"""Recognise motion of a single sensor close to a mode, by the plane of the two shapes.
+r"""Recognition of the motion of a single sensor close to a mode, by the plane of the two shapes.
 
 A vibrating mount or cable moves its sensor alone, with the shape :math:`e_i`.
 Close to a mode, one record determines the plane of the two shapes but not the shapes in it.
-Neither shape then looks like that of one sensor, but :math:`e_i` lies in their plane, where the unit vector
-of a sensor otherwise lies only by chance. The mode that moves the sensor more is that of the mount.
+Neither shape is then that of one sensor, but :math:`e_i` lies in their plane, whereas the unit vector of
+another sensor lies there only by chance. The mode in which the sensor moves more is that of its mount.
 """
 
 from __future__ import annotations
@@ -22,22 +22,22 @@ if TYPE_CHECKING:
 
 MIN_IN_PLANE = 0.99
 """Share of a sensor's unit vector in the plane of two shapes above which that sensor moves alone.
-It is 0.999 to 1 for sensors that vibrate close to a mode and at most 0.92 for pairs of modes
-of random systems. By chance, four in a hundred random planes of four channels contain one,
-and one in two hundred of five channels."""
+The share is 0.999 to 1 for sensors that vibrate close to a mode and at most 0.92 for pairs of modes of random
+systems. Of random planes, four in a hundred contain a unit vector by chance with four channels, one in two
+hundred with five."""
 MIN_OTHER_SENSORS = 2
-"""Fewest other sensors that could see the motion of a sensor."""
+"""Fewest other sensors that could measure the motion of the same point and direction."""
 
 
 def of_one_sensor(
     modes: Sequence[ModalEstimate], scale: FloatArray, comparable: BoolArray, close: float
 ) -> dict[int, float]:
-    """Return modes that are the motion of one sensor, and the share of that sensor in their motion.
+    """Return the index of each mode that is motion of one sensor, with that sensor's share of its motion.
 
     Parameters
     ----------
     scale : (n_channels,)
-        By which shapes are divided.
+        Shapes are divided by it.
     comparable : (n_channels, n_channels)
         Channels that may show the same motion: those not known to be perpendicular.
     close : float

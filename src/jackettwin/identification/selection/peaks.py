@@ -1,4 +1,4 @@
-"""Prominence of a mode over its surroundings, in frequency and in time, through the filter of its shape."""
+"""Prominence of a mode over its surroundings, in frequency and in time, seen through its spatial filter."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ In noise averaged over fifteen half-overlapping segments one line in ten million
 MEDIAN_WIDTH, MIN_MEDIAN_LINES = 0.3, 21
 """Width of that median as a share of the frequency, and its fewest lines."""
 BESIDE_HALF_BANDWIDTHS = (2.5, 8.0)
-"""Range of distances from a mode, in half bandwidths, over which the power beside it is taken."""
+"""Range of distances from a mode, in half bandwidths, over which the neighbouring power is averaged."""
 BESIDE_LINES = 4
 """Fewest lines per channel in that range."""
 ADDED_NOISE = 1e-4
-"""Noise added to every channel, as a share of the mean power beside the mode."""
+"""Noise added to every channel, as a share of the mean neighbouring power."""
 PARTS = 10
 """Number of parts of a record whose powers are compared."""
 
@@ -41,7 +41,7 @@ def clear_peaks_hz(frequency_hz: FloatArray, density: FloatArray) -> list[float]
 def contrast(
     lines: ComplexArray, duration_s: float, mode: ModalEstimate, shape: ComplexArray
 ) -> tuple[float, float]:
-    """Return the ratio of power at a mode to that beside it, and its excess in standard deviations.
+    """Return the ratio of power at a mode to neighbouring power, and its excess in standard deviations.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def share_of_one_part(
 
 
 def _lines_of(lines: ComplexArray, duration_s: float, mode: ModalEstimate) -> tuple[BoolArray, BoolArray]:
-    """Return the lines at a mode and those beside it, (n_lines,) each."""
+    """Return which lines are at a mode and which are neighbouring, (n_lines,) bool each."""
     f = np.arange(lines.shape[1]) / duration_s
     half = max(mode.damping_ratio * mode.frequency_hz, 1.5 / duration_s)
     far = max(BESIDE_HALF_BANDWIDTHS[1] * half, BESIDE_LINES * len(lines) / duration_s)
@@ -83,7 +83,7 @@ def _lines_of(lines: ComplexArray, duration_s: float, mode: ModalEstimate) -> tu
 
 
 def _through(lines: ComplexArray, beside: BoolArray, shape: ComplexArray) -> ComplexArray:
-    """Return the lines through the filter of a shape against its surroundings, (n_lines,)."""
+    """Return the lines after the spatial filter of a shape against neighbouring lines, (n_lines,)."""
     around = lines[:, beside]
     matrix = around @ around.conj().T / beside.sum()
     matrix += ADDED_NOISE * np.trace(matrix).real / len(lines) * np.eye(len(lines))

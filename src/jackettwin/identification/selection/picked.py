@@ -55,7 +55,7 @@ def picked_clusters(poles: Stabilisation, found: Sequence[Cluster], picks: Seque
 
 
 def with_verdicts(picks: Sequence[Pick], judged: Sequence[Candidate]) -> list[Candidate]:
-    """Return the candidates as picked: without objection, and doubtful only where the pick says so."""
+    """Return the candidates as picked: without objection, and doubtful only if the pick is marked so."""
     return [
         replace(c, objection=None, doubt=(c.doubt or "doubtful by the picks") if pick.doubtful else None)
         for pick, c in zip(picks, judged, strict=True)
@@ -63,7 +63,7 @@ def with_verdicts(picks: Sequence[Pick], judged: Sequence[Candidate]) -> list[Ca
 
 
 def left_out(judged: Sequence[Candidate], picked: Sequence[Cluster]) -> tuple[str, ...]:
-    """Report modes that would be chosen without picks but are not picked; a fit lacks them."""
+    """Warn of modes that would be chosen automatically but are not picked, as the fitted model lacks them."""
     taken = {int(k) for cluster in picked for k in cluster.poles}
     free = [c for c in judged if c.objection is None and c.doubt is None]
     f = [c.mode.frequency_hz for c in free if not taken & {int(k) for k in c.cluster.poles}]
@@ -97,7 +97,7 @@ def _pole(poles: Stabilisation, found: Sequence[Cluster], pick: Pick) -> int:
 
 
 def _nearest(poles: Stabilisation, among: Int64Array, pick: Pick) -> str:
-    """Say where the nearest pole is: in the order picked, and the nearest order that has one."""
+    """Return a text on the nearest pole of the picked order and the nearest order that has a pole there."""
     said = []
     if len(among):
         k = among[np.argmin(np.abs(poles.frequency_hz[among] - pick.frequency_hz))]

@@ -1,19 +1,21 @@
-r"""Screening of reported peaks: a mode, a doubtful one, or forces.
+r"""Screening of reported peaks: each is a mode, a doubtful mode, or a peak of the forces.
 
 Five criteria are applied, none of which alone separates a mode from noise, waves or a slope of the spectrum:
 
-1. a *second look*: subspace identification again, with a shorter lag window, finds the same
-   frequency and shape;
-2. a *peak*: seen through the filter that its shape makes against everything around,
+1. *second look*: a second subspace identification with a shorter lag window finds the same frequency and
+shape;
+2. *peak*: after the spatial filter of its shape against the surroundings,
 
    .. math:: P(f) = w^H \hat S(f)\, w, \qquad w = R^{-1}\phi,
 
-   with R the mean spectral matrix beside the mode, the power at the mode must stand out from that beside it
-   (the peak of FDD, but without its singular values, which follow the strongest motion);
-3. a *shape* that is nearly real, unless a close mode shares its plane;
-4. to be there all the *time* that the others are: a tone that ends, or a blow, is of one part of the record;
-5. not to be *forces*: as broad as a wave spectrum, where waves are; or a peak of forces that is seen through
-   the modes beside it (``neighbours.py``).
+   with R the mean spectral matrix of neighbouring lines, the power at the mode must exceed that of these
+   lines (like a peak of FDD, whose singular values however follow the strongest motion);
+3. *shape*: it must be nearly real, unless a close mode shares its plane;
+4. *time*: the motion must be present as long as that of the other modes; a tone that ends, or an impact, is
+   present in one part of the record only;
+5. *forces*: the peak must not be a peak of the forces, that is, as broad as a wave spectrum in the range of
+the
+   sea, or of a shape that combines those of neighbouring modes (``neighbours.py``).
 """
 
 from __future__ import annotations
@@ -51,20 +53,21 @@ CLOSE_DISTANCE = 2.0
 """Distance over the sum of half bandwidths within which modes are close:
 one record determines the plane of a close pair, not the shapes in it."""
 MIN_CONTRAST = 6.0
-"""Smallest ratio of the power at the peak to that beside it,
-with enough sensors to suppress the other modes or within the range of sea forces. A single mode has 17:
-π/4 of its peak within its half bandwidth, 0.05 of it between 2.5 and 8 half bandwidths. At 6, a tenth of
-the power at the peak is not of the mode. Sea peaks between the modes of simulated jackets have 2 to 6;
-of 530 modes of random systems with four or more sensors 1 in 70 has less than 6."""
+"""Smallest ratio of the power at the peak to the neighbouring power, if there are enough sensors to suppress
+the other modes or the peak is in the range of sea forces. A single mode has 17: its mean power is π/4 of the
+peak within its half bandwidth and 0.05 of the peak between 2.5 and 8 half bandwidths. At a ratio of 6, a
+tenth of the power at the peak is not due to the mode. Sea peaks between the modes of simulated jackets have 2
+to 6; of 530 modes of random systems with four or more sensors, 1 in 70 has less than 6."""
 BROAD_IN_SEA, BROAD_CONTRAST = 0.02, 12.0
-"""Damping ratio above which a peak in the range of sea forces must have the second value, as force peaks are
-broad. None of 180 modes of simulated jackets with such damping has less; sea peaks have 6 to 9."""
+"""Damping ratio above which a peak in the range of sea forces needs a ratio of at least the second value,
+since force peaks are broad. None of 180 modes of simulated jackets with such damping has less; sea peaks have
+6 to 9."""
 MIN_CONTRAST_ELSEWHERE = 1.5
-"""The same ratio elsewhere."""
+"""Smallest ratio of the power at the peak to the neighbouring power in all other cases."""
 MIN_CONTRAST_STD = 3.0
 """Smallest excess of that ratio over 1, in standard deviations."""
 SEA_BAND_HZ = (0.04, 0.4)
-"""Frequency range of sea power."""
+"""Frequency range in which waves may have power."""
 BROAD_DAMPING = 0.04
 """Damping ratio above which a peak is as broad as a wave spectrum: JONSWAP with γ = 3.3,
 transferred to acceleration, is identified with 5 to 10 %."""
@@ -74,7 +77,7 @@ BESIDE_SEA = 0.1
 """Relative distance from 1/Tp within which a peak is doubtful if it may be twice as broad as
 ``BROAD_DAMPING``."""
 SEAS_FORCES = (0.75, 4.0)
-"""Range of sea forces, in multiples of 1/Tp."""
+"""Range of the frequencies of sea forces, in multiples of 1/Tp."""
 MAX_CLEAR_DAMPING = 0.10
 """Damping ratio above which every mode is doubtful."""
 SAME_PEAK_MAC = 0.9
@@ -95,14 +98,14 @@ MIN_ORDER_SHARE = 0.7
 MIN_RESTORED_CONTRAST, MIN_RESTORED_CONTRAST_STD = 3.0, 8.0
 """Smallest contrast, and its standard deviations, of a mode of unknown damping: a record has dozens of such
 candidates, few of which are modes. Those that fit noise have 0.7 to 1.7 with up to 4 standard deviations;
-modes doubted for their damping have 4 to 40."""
+modes that are doubtful because of their damping have 4 to 40."""
 MAX_LOG_DAMPING_STD = 1.0
 """Standard deviation of ln ζ above which damping is unknown."""
 OUTSIDE_PEAK, BESIDE_PEAK = 1.5, 4.0
 """Range of distances from a mode, in half bandwidths, where a second clear peak may have been merged with
 it."""
 LINES_OF_A_PEAK = 8.0
-"""Smallest half bandwidth for that, in lines of the record, equal to the width of the spectrum's lines."""
+"""Smallest half bandwidth used for this range, in lines of the record; it is the width of a Welch line."""
 PERIODS = ("tp_s", "wave_tp_s", "wave_peak_period_s", "peak_period_s", "Tp", "wave_period_s")
 """Names of the peak period of the sea among a record's conditions."""
 MIN_DAMPING_CYCLES = 1.5
@@ -130,7 +133,7 @@ class Evidence:
     peaks_hz : tuple of float
         Clear peaks of any channel.
     sensors : bool
-        Whether channels are sensors; a mode may well move a single one of many components.
+        Whether channels are sensors. If they are principal components, a mode may move a single one.
     """
 
     looks: tuple[SecondLook, ...]
@@ -224,7 +227,7 @@ def screen(
 
 
 def _of_one_part(modes: Sequence[ModalEstimate], known: Evidence) -> dict[int, float]:
-    """Return modes seen in one part of the record only, although the others are seen in all of it."""
+    """Return the modes present in one part of the record only, although the others are present throughout."""
     shares = np.array(
         [share_of_one_part(known.lines, known.duration_s, m, m.mode_shape / known.scale) for m in modes]
     )
@@ -310,7 +313,7 @@ def _shape(mode: ModalEstimate, close: Sequence[ModalEstimate], known: Evidence)
 
 
 def _less_of_a_peak(mode: ModalEstimate, other: ModalEstimate, known: Evidence) -> bool:
-    """Tell which of two modes of one shape is the double: the one whose peak stands out less."""
+    """Tell whether a mode is the duplicate of another of the same shape: the one of lower contrast is."""
     ratio, theirs = (
         contrast(known.lines, known.duration_s, m, m.mode_shape / known.scale)[0] for m in (mode, other)
     )
@@ -352,7 +355,7 @@ def _two_peaks(mode: ModalEstimate, others: Sequence[ModalEstimate], known: Evid
 
 
 def _one_sensor(mode: ModalEstimate, shape: ComplexArray, known: Evidence) -> Iterator[Verdict]:
-    """Flag motion of one sensor; it is no mode if the others, which could see it, show no peak."""
+    """Flag motion of one sensor; it is no mode if sensors that could measure it too show no peak."""
     share = np.abs(shape) ** 2 / np.sum(np.abs(shape) ** 2)
     if not known.sensors or len(share) < MIN_SENSORS or share.max() <= ONE_SENSOR_SHARE:
         return

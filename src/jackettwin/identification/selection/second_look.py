@@ -1,4 +1,4 @@
-"""Second look: subspace identification with a shorter lag window, which finds modes again."""
+"""Second subspace identification with a shorter lag window, to check whether modes are found again."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class SecondLook:
     scale : (n_channels,)
         Standard deviations by which the channels were divided.
     band_hz : (low, high)
-        Range in which this look counts.
+        Frequency range for which this identification is used [Hz].
     """
 
     order: Int64Array
@@ -88,10 +88,10 @@ def seen_again(looks: Sequence[SecondLook], mode: ModalEstimate, others: Sequenc
     the one with the largest share is used.
     """
     there = (look for look in looks if look.band_hz[0] < mode.frequency_hz < look.band_hz[1])
-    return max((_held(look, mode, others) for look in there), default=0.0)
+    return max((_share(look, mode, others) for look in there), default=0.0)
 
 
-def _held(look: SecondLook, mode: ModalEstimate, others: Sequence[ModalEstimate]) -> float:
+def _share(look: SecondLook, mode: ModalEstimate, others: Sequence[ModalEstimate]) -> float:
     shapes = np.array([mode.mode_shape, *(m.mode_shape for m in others)]) / look.scale
     reach = SAME_FREQUENCY * max(mode.damping_ratio, (mode.frequency_std_hz or 0.0) / mode.frequency_hz)
     near = np.abs(look.frequency_hz / mode.frequency_hz - 1.0) < reach

@@ -30,7 +30,7 @@ class Band:
     variance : float
         Relative variance of the squared envelope.
     expected : float
-        Bound that the variance of a Gaussian process with as many independent values rarely falls below.
+        Value below which the variance of a Gaussian process with as many independent values rarely falls.
     """
 
     middle_hz: float
@@ -69,7 +69,7 @@ def overlapping_bands(
 def bands_of(
     lines: ComplexArray, duration_s: float, middle_hz: FloatArray, half_hz: FloatArray
 ) -> list[Band]:
-    """Combine the channels so that the power in each band is largest over that of as many lines around it.
+    """Combine the channels so that the ratio of power in each band to that of lines around it is largest.
 
     The principal direction of the channels is used instead if its envelope is steadier,
     as a tone may move the channels in the same shape as a mode.
@@ -113,7 +113,7 @@ def bands_of(
 
 
 def _batches(n_lines: IntArray) -> Iterator[tuple[IntArray, int]]:
-    """Yield bands of similar numbers of lines, and a length that samples all their envelopes well."""
+    """Yield bands with similar numbers of lines, and a length that samples their envelopes well."""
     length = 2 ** np.ceil(np.log2(2 * n_lines)).astype(np.intp)
     for n in np.unique(length):
         at = np.flatnonzero(length == n)
@@ -126,7 +126,7 @@ def _products(lines: ComplexArray) -> ComplexArray:
 
 
 def _strongest(inside: ComplexArray, noise: ComplexArray) -> ComplexArray:
-    """Return the combinations of channels of largest power over a noise, (n_bands, n_channels)."""
+    """Return the combinations of channels with the largest power over noise, (n_bands, n_channels)."""
     inverse = np.linalg.inv(np.linalg.cholesky(regularised(noise)))
     adjoint = inverse.conj().transpose(0, 2, 1)
     direction = np.linalg.eigh(inverse @ inside @ adjoint)[1][:, :, -1:]

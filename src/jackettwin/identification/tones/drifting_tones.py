@@ -1,9 +1,9 @@
-"""Find and subtract tones that drift with the speed of a rotor, before any other step.
+"""Detection and subtraction of tones that drift with the speed of a rotor, before any other step.
 
 Overlapping bands are scanned. In each, the channels are combined so that motion in the band stands out
 from motion around it, or along their principal direction. A tone makes the envelope of that signal steady,
-which random forces on modes rarely do. The phase of the steadiest bands is tracked (``phase_track.py``),
-which decides whether there is a tone; if so it is subtracted.
+which random forces on modes rarely do. The phase of the steadiest bands is tracked (``phase_track.py``);
+the tracked phase shows whether there is a tone, which is then subtracted.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ STEP = 0.7
 MAX_VARIANCE = 0.5
 """Relative variance of the squared envelope below which the phase of a band is tracked."""
 MAX_VARIANCE_AT_POLE = 0.7
-"""The same limit at a pole, where less suffices: a tone of two thirds of the power leaves 0.55,
+"""The same limit for a band around a pole: with a tone of two thirds of the power the variance is 0.55, with
 a mode nearly 1."""
 STEADY_SHARE = 0.4
-"""Share of the usual D that suffices at a pole if its envelope is steadier than that of a mode."""
+"""Share of the threshold of D that suffices at a pole whose envelope is steadier than that of a mode."""
 MAX_TRACKED = 8
 """Most bands tracked, the steadiest first, until one contains a tone."""
 LOWEST_LINE = 20.0
@@ -106,7 +106,7 @@ def tones_at(lines: ComplexArray, duration_s: float, frequency_hz: FloatArray) -
     """Yield the tone near each pole, None where there is none.
 
     The criteria are weaker than for the bands of a whole record. The bands of all poles are combined at once;
-    a tone is tracked when its pole is reached.
+    tones are tracked one by one as the iterator advances.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-r"""Distinguish the tones of a rotor from modes by the statistics of their envelopes.
+r"""Distinction of the tones of a rotor from modes by the statistics of their envelopes.
 
 The envelope of a mode under random forces varies as that of a Gaussian process; that of a tone does not
 (Jacobsen, Andersen & Brincker 2007 use the kurtosis for this purpose). How much it varies within a record is
@@ -6,7 +6,7 @@ itself random: with n independent values the relative variance of the squared en
 
 .. math:: v_n = e^{-6/\sqrt n}
 
-in one of two thousand records (Gaussian modes of ζfT from 0.4 to 180, the smallest of three bands).
+in one of two thousand records (simulated Gaussian modes of ζfT from 0.4 to 180, smallest of three bands).
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ MIN_LINES = 4.0
 MAX_STEADY_VARIANCE = 0.25
 """Largest relative variance of the squared envelope of a steady tone; a Gaussian process has 1."""
 VARIANCE_COEFFICIENT = 6.0
-"""Coefficient 6 in the exponent of v_n."""
+"""Coefficient in the exponent of v_n."""
 MANY_VALUES = 12.0
-"""2πζfT of a mode above which it is broader than a tone that drifts a little."""
+"""2πζfT above which a mode is broader than a slightly drifting tone."""
 BANDWIDTHS = 3.0
 """Half width, in half bandwidths, of the band in which the envelope of a lightly damped mode is judged."""
 SUSPICIOUS_VARIANCE = 0.3
@@ -42,12 +42,12 @@ def envelope_variance(
     .. math:: v = \mathrm{var}(|a|^2) / \mathrm{mean}(|a|^2)^2
 
     with a the analytic signal of the channels projected on the shape;
-    it is 1 for a Gaussian process observed for long and 0 for a steady tone.
+    it is 1 for a long record of a Gaussian process and 0 for a steady tone.
 
     Parameters
     ----------
     lines : (n_channels, n_lines)
-        Of the channels' transforms, from zero frequency.
+        Fourier transforms of the channels, from zero frequency.
     shape : (n_channels,) complex
     """
     half = max(HALF_WIDTH * frequency_hz, MIN_LINES / duration_s)
@@ -57,15 +57,15 @@ def envelope_variance(
 def is_suspiciously_steady(
     lines: ComplexArray, duration_s: float, frequency_hz: float, damping_ratio: float, shape: ComplexArray
 ) -> bool:
-    """Tell whether a lightly damped mode has the envelope of a tone that swells and drifts a little.
+    """Tell whether a lightly damped mode has the envelope of a tone that varies and drifts slightly.
 
     By chance, a fifth of simulated modes with 2πζfT = 3 have such an envelope, 7 % with 6 and 3 % with 11.
-    Of tones that swell by 30 % and drift by 0.5 to 1 %, at least three quarters have it.
+    Of tones whose amplitude varies by 30 % and frequency by 0.5 to 1 %, at least three quarters have it.
 
     Parameters
     ----------
     lines : (n_channels, n_lines)
-        Of the channels' transforms, from zero frequency.
+        Fourier transforms of the channels, from zero frequency.
     shape : (n_channels,) complex
     """
     line = 1.0 / duration_s
@@ -108,8 +108,8 @@ def _analytic(
 ) -> ComplexArray:
     """Return the analytic signal of the channels projected on a shape, in a band around a frequency.
 
-    The signal is taken relative to the first line of the band, at enough instants that the mean of its fourth
-    power is exact.
+    The first line of the band becomes zero frequency. There are enough instants for the mean of the fourth
+    power to be exact.
     """
     first = max(int(np.ceil((frequency_hz - half_hz) * duration_s)), 0)
     last = min(int((frequency_hz + half_hz) * duration_s), lines.shape[1] - 1)

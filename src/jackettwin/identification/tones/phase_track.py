@@ -1,17 +1,17 @@
-r"""Track the phase of a tone through a record, and test by the residual whether it is one.
+r"""Phase of a tone tracked through a record, with a test by the residual whether it is a tone.
 
-A tone of steady amplitude and drifting frequency becomes one line if its phase is taken off,
+A tone of constant amplitude and drifting frequency becomes a single line if its phase is removed,
 
 .. math:: z(t) = y(t)\,e^{-i\theta(t)}, \qquad
           \theta(t) = 2\pi f t + \sum_k c_k B_k(t),
 
-where B are cubic splines. The phase is that of the best sinusoid in coloured Gaussian noise. The channels
-are combined by :math:`w = R^{-1}a`, with a their amplitudes and R their covariance on the lines around;
-the angle of :math:`w^H z`, weighted by its power, is fitted by the spline, and both steps are repeated.
-The ratio D of ``sinusoid.py`` then decides. Such a phase also straightens a mode,
-but the amplitude of a mode varies whatever its phase. In 1,040 records of lightly damped modes (ζ from 0.2 %)
-no band reached three quarters of ``least_ratio``, and one in a hundred records reached 0.4 of it.
-Tones of 0.3 of the rms of the channels that drift by up to 5 % have D from 1,000 to 60,000.
+where B are cubic splines. The phase is that of the best sinusoid in coloured Gaussian noise. The channels are
+combined by :math:`w = R^{-1}a`, with a their amplitudes and R their covariance on the lines around; the
+spline is fitted to the angle of :math:`w^H z`, weighted by its power, and both steps are repeated. The ratio
+D of ``sinusoid.py`` then decides whether it is a tone. Removing a fitted phase also narrows the peak of a
+mode, but the amplitude of a mode still varies. In 1,040 records of lightly damped modes (ζ from 0.2 %) no
+band reached three quarters of ``least_ratio``, and one in a hundred records reached 0.4 of it. Tones with 0.3
+of the rms of the channels that drift by up to 5 % have D from 1,000 to 60,000.
 """
 
 from __future__ import annotations
@@ -33,18 +33,19 @@ if TYPE_CHECKING:
 INTERVALS = (1, 4, 8, 16, 32)
 """Numbers of intervals of the spline; the smallest that fits nearly as well as the largest is used."""
 MIN_FIRST_SHARE = 0.1
-"""Share of the least ratio below which no simpler phase is tried; bands of modes have 0.02 to 0.07."""
+"""Share of ``least_ratio`` that D of the most flexible phase must reach for simpler ones to be tried; bands
+of modes have 0.02 to 0.07."""
 MAX_LOSS = 3.0
-"""Largest loss of D for a simpler phase, as a factor."""
+"""Largest factor by which D may be smaller for a simpler phase."""
 ITERATIONS = 4
 """Number of corrections of the phase."""
 DEGREE = 3
 END_SHARE = 0.02
-"""Share of the record at each end that is ignored for the range of frequency."""
+"""Share of the record at each end that is ignored in the range of the tone's frequency."""
 LEAST_RATIO = 120.0
-"""Least D of a tone whose phase is a straight line."""
+"""Smallest D of a tone whose phase is a straight line."""
 RATIO_PER_COEFFICIENT = 12.0
-"""Increase of the least D per coefficient of the spline: a more flexible phase straightens more of a mode."""
+"""Increase of the smallest D per spline coefficient: a more flexible phase narrows a mode's peak more."""
 
 
 @dataclass(frozen=True)
@@ -72,9 +73,9 @@ class PhaseTrack:
     ----------
     middle_hz, duration_s : float
     coefficients : (n_coefficients,)
-        Spline coefficients of the phase less 2π times middle frequency times time [rad].
+        Spline coefficients of the phase minus 2π · ``middle_hz`` · time [rad].
     ratio : float
-        D along the phase.
+        D after removal of the phase.
     """
 
     middle_hz: float
@@ -112,7 +113,7 @@ class PhaseTrack:
 
 
 def least_ratio(n_coefficients: int) -> float:
-    """Return the least D of a tone along a phase of ``n_coefficients`` coefficients.
+    """Return the smallest D of a tone whose phase has ``n_coefficients`` coefficients.
 
     Examples
     --------
@@ -141,12 +142,12 @@ def baseband(lines: ComplexArray, duration_s: float, frequency_hz: float, half_h
 
 
 def phase_track(band: Baseband, start: FloatArray, *, share: float = 1.0) -> PhaseTrack | None:
-    """Return the simplest smooth phase of a tone near a first phase, None if there is no tone.
+    """Return the simplest smooth phase of a tone near an initial phase, None if there is no tone.
 
     Parameters
     ----------
     start : (n_instants,)
-        Phase of the baseband signal [rad], within half a turn or so.
+        Initial phase of the baseband signal [rad], accurate to about half a turn.
     share : float
         Share of ``least_ratio`` that D must exceed.
     """
@@ -176,7 +177,7 @@ def phase_track(band: Baseband, start: FloatArray, *, share: float = 1.0) -> Pha
 
 
 def _refine_phase(band: Baseband, start: FloatArray, intervals: int) -> PhaseTrack:
-    """Refine a phase by the angle of the channels' best combination along it."""
+    """Refine a phase by the remaining angle of the best combination of channels."""
     n_coefficients = intervals + DEGREE
     basis = _basis(band.signal.shape[1], intervals)
     coefficients = _fit_spline(basis, start, np.ones(len(start)))
@@ -191,12 +192,12 @@ def _refine_phase(band: Baseband, start: FloatArray, intervals: int) -> PhaseTra
 
 
 def _along(band: Baseband, theta: FloatArray) -> ComplexArray:
-    """Return the lines of the signal after a phase is taken off, (n_channels, n_lines)."""
+    """Return the lines of the signal after removal of a phase, (n_channels, n_lines)."""
     return np.asarray(fft.fft(band.signal * np.exp(-1j * theta), axis=1))
 
 
 def _combine(along: ComplexArray, within: int) -> ComplexArray:
-    """Return wᴴz of the lines up to ``within`` from zero; the lines beyond give the noise."""
+    """Return wᴴz of the lines up to ``within`` from zero; the lines beyond determine the noise covariance."""
     n_channels, n = along.shape
     m = np.arange(within + 1, min(within + lines_around(n_channels), n // 2 - 1) + 1)
     around = along[:, np.concatenate([-m, m])]

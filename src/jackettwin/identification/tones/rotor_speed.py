@@ -1,4 +1,4 @@
-r"""Estimate the speed of a rotor without a speed signal, from tones with coupled phases.
+r"""Speed of a rotor estimated without a speed signal, from tones with coupled phases.
 
 The orders 1P, 3P and 6P of a rotor follow one angle: whatever the speed and the wind, the phase of a higher
 order is a multiple of that of a lower one. In pairs of bands at f and r f, with r = 2 for 3P and 6P and r = 3
@@ -6,9 +6,9 @@ for 1P and 3P, the analytic signals a and b of the channels' best combination ar
 
 .. math:: C = \Bigl|\frac1T \int \frac{b\,\bar a^{\,r}}{|b|\,|a|^r} dt\Bigr| ,
 
-which is 1 for tones, however they drift and swell, and small for two modes,
-whose phases random forces make independent. The same record shows which value occurs by chance:
-shifting b against a in time preserves each signal but destroys what two orders have in common.
+which is 1 for tones, however their frequency and amplitude vary, and small for two modes, whose phases are
+independent under random forces. The value that occurs by chance is found from the same record: shifting b
+against a in time preserves each signal but destroys the relation between two orders.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ PAIRS = ((3, 1, 3), (2, 3, 6))
 ORDERS = (1, 3, 6)
 """Multiples of the speed at which three blades excite a tower."""
 HIGHER = range(9, 31, 3)
-"""Higher multiples, which count only where a tone is found, since most of them are too weak."""
+"""Higher multiples, which are reported only where a tone is detected, since most of them are too weak."""
 MIN_RATIO = 8.0
-"""Least D (``sinusoid.py``) along the phase that the speed gives a higher order.
-At rated speed of an offshore turbine the orders 9 to 24 have 9 to 60, other multiples up to 5;
-modes at the place of an order up to 3."""
+"""Smallest D (``sinusoid.py``) of a higher order after removal of the phase that follows from the speed. At
+rated speed of an offshore turbine the orders 9 to 24 have 9 to 60 and other multiples up to 5; modes at the
+frequency of an order have up to 3."""
 WIDTHS = (0.015, 0.05)
 """Half widths of the bands, as a share of their middle."""
 MIN_LINES = 5.0
@@ -51,9 +51,9 @@ LEAST_SPEED_HZ, MOST_SPEED_HZ = 0.04, 0.6
 SHIFTS = 16
 """Number of shifts of one signal against the other, which show the coherence that arises by chance."""
 LEAST_COHERENCE = 0.6
-"""Least C of two orders; their bands contain modes and noise as well."""
+"""Smallest C of two orders; it is below 1 since their bands also contain modes and noise."""
 MARGIN = 0.3
-"""Least excess of C over that of every shift."""
+"""Smallest excess of C over its value for every shift."""
 CERTAIN_COHERENCE = 0.93
 """C of two orders above which no excess is required: tones that hardly drift are coherent at any shift."""
 PASSING = (2.0, 98.0)
@@ -73,7 +73,7 @@ class EstimatedSpeed:
     coherence : float
         C of the two orders.
     seen : (low, high)
-        The two orders.
+        The two orders from which the speed was estimated.
     higher : tuple of (order, low, high)
         Detected orders above the sixth, and the frequency range of each [Hz].
     """
@@ -130,7 +130,7 @@ def higher_orders(
 ) -> Iterator[tuple[int, float, float]]:
     """Yield the detected orders above the sixth with the frequency range of each [Hz].
 
-    Once the phase derived from the speed is taken off, an order is a single line.
+    After removal of the phase derived from the speed, an order is a single line.
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ def _coherent_speeds(
         a = _analytic(lines, duration_s, [lows[k] for k in at], int(n))
         b = _analytic(lines, duration_s, [highs[k] for k in at], int(n))
         unit_a, unit_b = a / (np.abs(a) + 1e-300), b / (np.abs(b) + 1e-300)
-        # each baseband is relative to its own middle line, which the multiple does not quite meet
+        # each baseband is relative to its own middle line; the multiple of the lower one differs slightly
         low, high = (np.array([_line(band, duration_s) for band in x]) for x in (lows, highs))
         turn = np.exp(2j * np.pi * np.outer(high - ratio * low, np.arange(n))[at] / n)
         product = unit_a.conj() ** ratio * turn
@@ -213,7 +213,7 @@ def _exceeds_chance(b: ComplexArray, product: ComplexArray, coherence: float) ->
 
 
 def _shifted_mean(product: ComplexArray, shift: int, n: int) -> float:
-    """Return the larger mean of the two parts of a shifted product, which are not joined at the wrap."""
+    """Return the larger mean of the two parts of a circularly shifted product, taken separately."""
     parts = [part for part in (product[:shift], product[shift:]) if len(part) > n // 4]
     return max((float(np.abs(np.mean(part))) for part in parts), default=0.0)
 

@@ -1,17 +1,17 @@
-r"""Fit a sinusoid near a line of a Fourier transform, and test whether it is a tone.
+r"""Sinusoid fitted near a line of a Fourier transform, with a test whether it is a tone.
 
 A sinusoid at k + δ lines of a record's Fourier transform gives the lines around it
 
 .. math:: X_{k+m} = a\,\frac{e^{2\pi i\delta} - 1}{2\pi i(\delta - m)}
 
-and nothing else: after subtraction of the best such a and δ, the lines are those of the background.
-A lightly damped mode also has a sharp peak, but one of random shape, most of which remains. The ratio
+and nothing else: after subtraction with the best a and δ only the background remains. A lightly damped mode
+also has a sharp peak, but of random shape, so that most of it remains. The ratio
 
 .. math:: D = a^H R^{-1} a / \max_{1\le|m|\le 4} r_m^H R^{-1} r_m, \qquad r_m = X_{k+m} - \hat X_{k+m},
 
-with R the covariance between channels of the lines around, distinguishes the two.
-In ten minutes of a mode at 0.3 Hz it is above 25 in 5 % of records if ζ = 0.2 % and in 0.1 % if ζ = 0.5 %;
-it was above 90 in none of 4,500 records.
+with R the covariance between channels of the surrounding lines, distinguishes the two. For a mode at 0.3 Hz
+in ten minutes D is above 25 in 5 % of records if ζ = 0.2 % and in 0.1 % if ζ = 0.5 %; it was above 90 in none
+of 4,500 records.
 """
 
 from __future__ import annotations
@@ -24,13 +24,14 @@ from numpy import fft
 from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 
 LINES = 4
-"""Lines on either side that a mode would fill too."""
+"""Number of lines on either side whose residual is tested; the peak of a mode would extend over them."""
 MIN_LINES = 12
 """Fewest lines that give the covariance of the background."""
 LINES_PER_CHANNEL = 1.5
 """Lines per channel for that covariance, if that is more."""
 REACH = 2
-"""Lines on either side with most leakage of a tone; they are no background before the tone is subtracted."""
+"""Number of lines on either side with most of a tone's leakage; they are excluded from the background until
+the tone is subtracted."""
 RIDGE = 1e-3
 """Share of each channel's power added to the covariance of the background, which may be singular."""
 MAX_OFFSET = 0.7
@@ -100,12 +101,12 @@ def _offset(white: ComplexArray, m: Int64Array) -> float:
         middle = delta[k]
         delta = np.linspace(middle - step, middle + step, OFFSETS)
     bend = before - 2.0 * most + after
-    # if an end explains most, the parabola would extrapolate far
+    # at an end of the range a parabola would extrapolate
     return float(middle + (np.clip(0.5 * (before - after) / bend, -1.0, 1.0) * step if bend < 0.0 else 0.0))
 
 
 def lines_around(n_channels: int) -> int:
-    """Return the number of lines on either side that give the background."""
+    """Return the number of lines on either side from which the background is estimated."""
     return max(MIN_LINES, int(np.ceil(LINES_PER_CHANNEL * n_channels)))
 
 

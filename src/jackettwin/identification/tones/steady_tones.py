@@ -1,9 +1,9 @@
-"""Find and subtract steady tones, which leaves the response to random forces.
+"""Detection and subtraction of steady tones, after which the response to random forces remains.
 
-A sinusoid is fitted wherever a line stands out from those around it (``sinusoid.py``).
-With several channels a tone need not exceed a mode to be detected beside it or within its peak,
-because it moves the channels in another shape. If a tone drifts by a few lines,
-subtracting a steady one leaves much of it; then its phase is tracked (``phase_track.py``).
+A sinusoid is fitted wherever a line stands out from those around it (``sinusoid.py``). With several channels
+a tone near or within the peak of a mode is detected even if it is weaker, because it moves the channels in
+another shape. If a tone drifts by a few lines, much of it remains after subtraction of a steady one; its
+phase is then tracked (``phase_track.py``).
 """
 
 from __future__ import annotations
@@ -34,19 +34,19 @@ if TYPE_CHECKING:
 NEAREST_LINE = 8
 """Lowest Fourier line at which tones are sought."""
 MIN_POWER_RATIO = 4.0
-"""Ratio of the whitened power of a line to that of the background from which a sinusoid is fitted."""
+"""Smallest ratio of the whitened power of a line to that of the background at which a sinusoid is fitted."""
 MAX_ELEMENTS = 2**18
 """Most elements of the lines' covariances held in memory at a time."""
 MAX_TONES = 30
 """Most tones that are subtracted."""
 MIN_RATIO_GAIN = 4.0
-"""Least ratio of D along a curved phase to that along a straight one."""
+"""Smallest ratio of D for a curved phase to that for a straight one at which the tone counts as drifting."""
 
 
 def steady_tones(
     y: FloatArray, sample_rate_hz: float
 ) -> tuple[tuple[float, ...], tuple[PhaseTrack, ...], FloatArray]:
-    """Return steady tones [Hz], tracks of tones that drift a little, and the samples without both.
+    """Return steady tones [Hz], tracks of slightly drifting tones, and the samples without both.
 
     Parameters
     ----------
@@ -138,14 +138,14 @@ def _clear_tones(spectrum: ComplexArray) -> list[Sinusoid]:
 
 
 def _apart(position: float, others: Iterable[float]) -> bool:
-    """Tell whether a tone is neither one of the others nor the remainder of one."""
+    """Tell whether a tone is neither one of the others nor the residual of one."""
     return all(abs(position - other) > LINES for other in others)
 
 
 def _over_background(spectrum: ComplexArray) -> FloatArray:
     """Return the whitened power of every line over that of the lines around it, (n_lines,).
 
-    Its expectation is 1 where channels and lines are alike. It is 0 at the ends, which lack lines around.
+    Its expectation is 1 in white noise. It is 0 near the ends, where there are too few lines around.
     """
     n_channels, n_lines = spectrum.shape
     reach = lines_around(n_channels)
