@@ -121,7 +121,7 @@ def test_a_short_baseline_is_refused(quiet: History) -> None:
 
 def test_a_day_that_is_over_is_refused(quiet: History) -> None:
     watch = start(quiet.between(0.0, 100.0))
-    with pytest.raises(InputError, match="over already"):
+    with pytest.raises(InputError, match="not after the last day"):
         step(watch, quiet.between(50.0, 51.0))
 
 

@@ -17,7 +17,7 @@ from jackettwin.watching.memory import Bank, Belief, Filtered, Memory, empty_ban
 from jackettwin.watching.scatter import log_ratios, steadiness
 
 WINDOW_DAYS = 1.0 / 24.0
-"""Averaging window: one hour of the clock [days]."""
+"""Length of the averaging window: one clock hour [days]."""
 _LEAST_STD, _MOST_STD = 0.3, 5.0
 """Limits of stated standard deviations, as factors of their median."""
 BROAD = {"frequency": 0.03, "damping": 0.5, "angle": 0.5}
@@ -26,10 +26,10 @@ _MAD = 1.4826
 _NEGLIGIBLE = -20.0
 """Logarithm of the weight below which a model is not evaluated."""
 _NO_WEIGHT = -1e9
-"""Logarithm of the weight of a model that is not to be evaluated, whatever it says."""
+"""Logarithm of the weight assigned to a model to exclude it."""
 _FEWEST, _STILL = 30, 1e-9
-"""Fewest values of a quantity in the baseline for it to be monitored, and their smallest relative range:
-a constant is no measurement."""
+"""Fewest baseline values of a monitored quantity, and their smallest relative range: constants are
+excluded."""
 
 
 @dataclass(frozen=True)
@@ -38,19 +38,19 @@ class Block:
 
     Attributes
     ----------
-    kind : of the quantities
-    kept : (m,) columns of the history that are watched
-    typical : (m,) values of the baseline
-    std_power : (m,) by which stated standard deviations follow values
+    kind : kind of the quantities
+    kept : (m,) indices of the monitored columns of the history
+    typical : (m,) median values over the baseline
+    std_power : (m,) power of the value to which stated standard deviations are proportional
     usual_std : (m,) relative standard deviation where none is stated
     spread : (m,) standard deviation over the baseline, by which priors of coefficients are scaled
-    memories, beliefs, banks, log_weights : models, and what each knows
-    log_prior : of the models, at the end of the baseline
+    memories, beliefs, banks, log_weights : per model, its parameters, state, possible steps and log weight
+    log_prior : (n_models,) log weights at the end of the baseline
     louder : (m,) factors on the noise, above 1 while a sensor is known to fail
-    tail : (NEIGHBOURS, m) last values less what conditions explain
-    steadiness : (m,) of the scatter from day to day
-    reference : coefficients (m, p) at the end of the baseline, by which remainders are drawn
-    directions : steps that are bet on
+    tail : (NEIGHBOURS, m) last residuals, that is, values minus the part explained by conditions
+    steadiness : (m,) ν of :mod:`jackettwin.watching.scatter`
+    reference : (m, p) coefficients at the end of the baseline, from which plotted residuals are computed
+    directions : directions of steps that are tested
     """
 
     kind: Kind
@@ -77,10 +77,10 @@ class Spoken:
 
     Attributes
     ----------
-    rest : (m,) the day's mean less what conditions explain by the baseline's coefficients
+    rest : (m,) the day's mean minus the part explained by conditions with the baseline's coefficients
     rest_std : (m,) its standard deviation if nothing has changed
     chi2, freedom : (m,) scatter in units of the noise's variance, and its degrees of freedom
-    z : (n_hours, m) innovations over their standard deviations, of the likeliest model
+    z : (n_hours, m) innovations of the most likely model over their standard deviations
     """
 
     rest: FloatArray
@@ -91,7 +91,7 @@ class Spoken:
 
 
 def watched(baseline: History, kind: Kind) -> IntArray:
-    """Tell which columns have enough values to be monitored and are not constant."""
+    """Return the indices of the columns that have enough values to be monitored and are not constant."""
     columns = [x[np.isfinite(x) & ((x > 0.0) | (kind == "angle"))] for x in baseline.seen(kind)[0].T]
     alive = [x.size >= _FEWEST and np.ptp(x) > _STILL * np.max(np.abs(x)) for x in columns]
     return np.flatnonzero(np.array(alive, dtype=np.bool_))
@@ -106,9 +106,12 @@ def begin(
     kept: IntArray,
     slopes: Sequence[Slope] = (),
 ) -> tuple[Block, Hours]:
-    """Return the state learnt from a baseline, and its hours; ``slopes`` are of the monitored columns."""
+    """Return the state learnt from a baseline, and its hourly averages.
+
+    ``slopes`` are prior effects of conditions on the monitored columns.
+    """
     middle = middles(baseline, kind, kept)
-    # the noise of a frequency is too small for its power to matter
+    # the noise of a frequency is too small for its dependence on the value to matter
     power = std_power(baseline, kind, kept) if kind == "damping" else np.ones(len(kept))
     y, relative = deviations(baseline, kind, kept, middle, power)
     y[~np.isfinite(rows).all(axis=1)] = np.nan
@@ -199,7 +202,7 @@ def _variance(relative: FloatArray, usual: FloatArray) -> FloatArray:
 def _set_apart(
     baseline: History, rest: FloatArray, variance: FloatArray
 ) -> tuple[BoolArray, FloatArray, FloatArray]:
-    """Return the outliers of a baseline, doubt factors of the other values, and the last values."""
+    """Return the outliers of a baseline, variance factors of the other values, and the last values."""
     m = rest.shape[1]
     scale = np.array([_robust(r[np.isfinite(r)] / np.sqrt(v[np.isfinite(r)]))
                       for r, v in zip(rest.T, variance.T, strict=True)])  # fmt: skip
@@ -214,7 +217,7 @@ def _set_apart(
 
 
 def hours_of(block: Block, history: History, rows: FloatArray) -> tuple[Hours, FloatArray, Block]:
-    """Return a day's hours, the count of rejected values (m,), and the updated block."""
+    """Return a day's hourly averages, the number of rejected values (m,), and the updated block."""
     y, rest, variance, moving = residuals(block, history, rows)
     apart, doubt, tail = outliers(rest, moving, block.tail)
     told = _rejected_by_others(apart, y)
@@ -226,9 +229,9 @@ def hours_of(block: Block, history: History, rows: FloatArray) -> tuple[Hours, F
 def residuals(
     block: Block, history: History, rows: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return values, what conditions do not explain of them, their noise and what moves in a day, (n, m).
+    """Return values, residuals after conditions, noise variance, and variance within a day, (n, m) each.
 
-    The last two are variances; the latter contains the former.
+    The variance within a day includes that of the noise.
     """
     y, relative = deviations(history, block.kind, block.kept, block.typical, block.std_power)
     y[~np.isfinite(rows).all(axis=1)] = np.nan
@@ -249,18 +252,18 @@ def _coefficients(block: Block) -> tuple[FloatArray, FloatArray]:
 
 
 def _unsure(cov: FloatArray, x: FloatArray) -> FloatArray:
-    """Return the variances of what conditions explain, (n, m), in excess of those of the baseline."""
+    """Return the variances of the part explained by conditions, (n, m), in excess of the baseline's."""
     return np.asarray(np.einsum("np,qpr,nr->nq", x, cov, x))
 
 
 def _rejected_by_others(apart: BoolArray, values: FloatArray) -> FloatArray:
-    """Return the number of rejected values that a day's other values identify, (m,)."""
+    """Return the number of values rejected by comparison with other values of the same day, (m,)."""
     enough = np.isfinite(values).sum(axis=0) >= ENOUGH
     return np.where(enough, apart.sum(axis=0), 0).astype(np.float64)
 
 
 def with_hours(block: Block, hours: Hours, apart: FloatArray, last_day: float) -> tuple[Block, Spoken]:
-    """Return the block after some hours and their result; its banks have one more possible onset."""
+    """Return the block after some hours, with one more possible onset, and their result."""
     beliefs, banks, likelihoods, spoken = [], [], [], None
     for memory, belief, bank in zip(block.memories, block.beliefs, block.banks, strict=True):
         done = filtered(memory, belief, bank.with_begin(), hours, last_day)
@@ -286,8 +289,8 @@ def _spoken(block: Block, hours: Hours, apart: FloatArray, done: Filtered) -> Sp
         mean = np.where(total > 0.0, np.nansum(weight * np.nan_to_num(rest), axis=0) / total, np.nan)
         std = np.sqrt(1.0 / total + memory.std**2 + _unsure(_coefficients(block)[1], hours.rows).mean(axis=0))
     z = done.innovation / np.sqrt(done.spread)
-    # hourly means also inform on the noise, through their unpredicted part except what all hours of a day
-    # share, since a step is not scatter
+    # the scatter of hourly innovations about their daily mean also informs on the noise; the mean itself does
+    # not, since a step is not scatter
     share = np.nan_to_num(noise / done.spread)
     pull, nu = share / np.nan_to_num(done.spread, nan=1.0), np.nan_to_num(done.innovation)
     shared = np.sum(pull * nu, axis=0) / np.maximum(pull.sum(axis=0), 1e-300)
@@ -300,7 +303,7 @@ def _spoken(block: Block, hours: Hours, apart: FloatArray, done: Filtered) -> Sp
 def with_weights_reset(block: Block, share: float) -> Block:
     """Return the block with part of the models' weights reset to those at the end of the baseline.
 
-    The unexplained variation may change its character, so that a model of low weight may become right again
+    The statistics of unexplained variation may change, so that a model of low weight may become likely again
     (fixed share, Herbster & Warmuth 1998).
     """
     weights = np.logaddexp(block.log_weights + np.log1p(-share), block.log_prior + np.log(share))
@@ -329,13 +332,13 @@ def thinned(block: Block, keep: BoolArray) -> Block:
 def with_change_accepted(block: Block, onset: int, size: FloatArray, states: int) -> Block:
     """Return the block with a change accepted, its size as uncertain as estimated, and without onsets.
 
-    The filter assumed no change. If y jumped by δ, its state is off by response·δ, and the intercepts of all
-    operating states moved by δ. Further changes are measured relative to the changed structure.
+    The filter assumed no change. If the values changed by δ, its state is in error by response·δ, and the
+    intercepts of all operating states by δ. Later changes are measured relative to the changed structure.
 
     Parameters
     ----------
-    onset : number of the onset
-    size : (m,) which quantities move at all
+    onset : index of the onset
+    size : (m,) non-zero for the quantities that changed
     states : number of intercepts
     """
     m, p = block.reference.shape
@@ -360,14 +363,14 @@ def with_change_accepted(block: Block, onset: int, size: FloatArray, states: int
 
 
 def model_of_change(block: Block, log_stake: FloatArray) -> int:
-    """Return the number of the model that is likeliest if there was a step of any direction.
+    """Return the index of the model that is most likely if there was a step in any direction.
 
-    Those that are likeliest if nothing changed take the step for slow variation, the more so the longer it
-    lasts.
+    The models that are most likely without a change explain a step as slow variation, increasingly with its
+    duration.
 
     Parameters
     ----------
-    log_stake : (n_begins,) ln of the weights of onsets
+    log_stake : (n_begins,) ln of the prior weights of onsets
     """
     prior = np.full(len(block.kept), BROAD[block.kind] ** -2.0)
     found = []
@@ -380,7 +383,7 @@ def model_of_change(block: Block, log_stake: FloatArray) -> int:
 
 
 def with_one_model(block: Block, model: int) -> Block:
-    """Return the block with one model; the first stays beside it for dating and scatter, without weight."""
+    """Return the block with one model; the first is retained without weight for dating and scatter."""
     chosen = (0,) if model == 0 else (0, model)
     weights = np.where(np.array(chosen) == model, 0.0, _NO_WEIGHT)
     return replace(

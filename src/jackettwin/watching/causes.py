@@ -1,4 +1,4 @@
-"""Causes of change as directions: their effect on all quantities, and their usual size."""
+"""Causes of change: the direction of their effect on all quantities, and their usual size."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from jackettwin.watching.directions import PAIR, SIZES
 
 SOMETHING_ELSE = "something else"
 SENSOR = "sensor"
-"""Prefix of the names of sensors' causes."""
+"""Prefix of the names of causes that concern a sensor."""
 _SENSOR_SHIFT = 0.002
-"""Standard deviation by which modes shift at a failing sensor, besides scattering, in ln f;
-two hundred times as much in ln ζ."""
+"""Standard deviation of the shift of ln f at a failing sensor, in addition to increased scatter; that of ln ζ
+is two hundred times as large."""
 _DAMPING_OVER_FREQUENCY = 200.0
 REACH = 2.0
-"""Range of ln size considered, in spreads on either side; a factor of 5 for an arbitrary size."""
+"""Range of ln size considered on either side of its middle, in spreads."""
 _STEP = 0.025
-"""Step of ln size: a third of the accuracy of a size if a direction is as exact as that of the best model."""
+"""Step of ln size: a third of the accuracy of a size whose direction is that of the best available model."""
 MISFIT = 0.12
 """Error of a direction in any quantity, relative to its length, if its model's accuracy is unknown."""
 _LARGEST = 4.0
-"""Largest size of a pattern without a model, in the largest that is bet on: a fifth off a frequency."""
+"""Largest size of a pattern without a model, in multiples of the largest tested size: 20 % of a frequency."""
 _SENSOR_PRIOR = 5.0
 """Prior weight of sensor and cable failures relative to that of a structural cause."""
 
@@ -36,21 +36,19 @@ class Cause:
 
     Attributes
     ----------
-    name : as it is reported
-    draws : (n_draws, m) change of the logarithms of all quantities by one unit of size: draws from what is
-        known of the structure, so that a direction is as uncertain as the model is
-    sizes : (n_sizes,) in ``unit``, negative ones as well where a cause has two ways
+    name : name in reports
+    draws : (n_draws, m) change of the logarithms of all quantities per unit of size, for draws from the
+        posterior of the structural model, so that the direction is as uncertain as the model
+    sizes : (n_sizes,) in ``unit``; negative ones are included where a cause can act in both senses
     log_size_weights : (n_sizes,) ln of their prior probabilities
-    unit : of the size
-    louder : (m,) the mode of each quantity if any of the modes may scatter more, else empty; then the
-        draws are
-        the square root of the covariance of what moves besides
-    prior : weight before the data; of all causes they need not add up to one
-    bent_at, bend : (n_bent,) sizes from 0 on, and (n_bent, m) by how much the change by a unit differs from
-        that of the draws there, if a large one is not many small ones: a brace that carries less and less
-    alike : names of causes that do the same and are meant as well, without this one's
-    misfit : a model's direction is not the structure's: share of its length by which it may miss in any
-        quantity
+    unit : unit of the size
+    louder : (m,) mode of each quantity if the scatter of any mode may increase, else empty; ``draws`` is then
+        the square root of the covariance of the accompanying shift
+    prior : prior weight; the weights of all causes need not sum to one
+    bent_at, bend : (n_bent,) sizes from 0 on, and (n_bent, m) deviation of the change per unit of size from
+        ``draws`` there, for effects that are not proportional to the size, e.g. a brace that loses stiffness
+    alike : names of other causes of the same effect, which this one represents
+    misfit : error of the model's direction in any quantity, as a share of its length
     """
 
     name: str
@@ -66,9 +64,9 @@ class Cause:
     alike: tuple[str, ...] = ()
 
     def steps(self, sizes: FloatArray) -> FloatArray:
-        """Return the mean change of all quantities, (n_sizes, m); beyond the last size the bend is constant.
+        """Return the mean change of all quantities, (n_sizes, m).
 
-        The bend of a negative size is the mirror image of that of a positive one.
+        The deviation ``bend`` is constant beyond the last size and antisymmetric in the size.
         """
         sizes, J = np.asarray(sizes, dtype=np.float64), self.draws.mean(axis=0)
         if self.bent_at.size:
@@ -81,7 +79,7 @@ class Cause:
 def sizes_about(middle: float, spread: float, *, both_ways: bool = False) -> tuple[FloatArray, FloatArray]:
     """Return sizes within ``REACH`` spreads of ln size about a middle, and equal ln weights.
 
-    Only the order of magnitude of a size is known. Equal odds for each factor favour no cause whose usual
+    Only the order of magnitude of a size is known. A uniform prior of ln size favours no cause whose usual
     size happens to explain a change (Jeffreys 1961, section 3.1).
     """
     reach = REACH * spread
@@ -97,8 +95,8 @@ def general_causes(
 
     Parameters
     ----------
-    quantities : (m,) kind and mode
-    frequency_hz : (n_modes,) by which pairs are found
+    quantities : (m,) kind and mode of each quantity
+    frequency_hz : (n_modes,) frequencies, from which pairs are recognised
     """
     kinds = np.array([kind for kind, _ in quantities])
     modes = np.array([mode for _, mode in quantities])
@@ -125,7 +123,7 @@ def general_causes(
 
 
 def sensor_noise(quantities: Sequence[tuple[str, int]]) -> Cause:
-    """Return the cause of a failing sensor: some of the modes scatter more and shift a little."""
+    """Return the cause "failing sensor": the scatter of some modes increases, and they shift slightly."""
     kinds = np.array([kind for kind, _ in quantities])
     modes = np.array([mode for _, mode in quantities], dtype=np.intp)
     spread = np.where(kinds == "frequency", _SENSOR_SHIFT, _DAMPING_OVER_FREQUENCY * _SENSOR_SHIFT)

@@ -1,4 +1,4 @@
-"""The change for which evidence is sufficient: its kind, onset and size."""
+"""A detected change: its kind, onset and size."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ from jackettwin.watching.scatter import STRONGER
 from jackettwin.watching.state import Watch
 
 _LOOSE = 1.0
-"""Precision of the other quantities while some are evaluated: they may change by any amount."""
+"""Prior precision of the changes of all other quantities while some are evaluated; it leaves them free."""
 
 
 @dataclass(frozen=True)
 class Change:
-    """A change for which evidence is sufficient.
+    """A detected change.
 
     Attributes
     ----------
-    day : of the alarm
+    day : day of the alarm
     kind : "frequency", "damping" or "scatter"
-    direction : its name
-    began, began_interval_90 : days
-    members : (m_all,) which quantities move
-    size, size_std : (m_all,) change of the logarithms and its standard deviation; of the noise's if scatter
-    info, score, log_stake : (n, m_all, m_all), (n, m_all), (n,) what each begin says of steps of all
-        quantities: that causes are judged by
-    log_scatter : (n, m_all, n_factors)
-    log_r : ln of the statistic
-    by_mode : (m_all,) squared distance of each quantity from no change, over its variance
+    direction : name of the direction
+    began, began_interval_90 : onset and its 90 % interval [days]
+    members : (m_all,) bool, which quantities changed
+    size, size_std : (m_all,) change of the logarithms and its standard deviation; for scatter, of the noise
+    info, score, log_stake : (n, m_all, m_all), (n, m_all), (n,) for each onset, the information A and score b
+        of a step of all quantities, and ln of its weight; the diagnosis uses them
+    log_scatter : (n, m_all, n_factors) ln of the likelihood ratios of increased noise
+    log_r : ln of the detection statistic
+    by_mode : (m_all,) squared change of each quantity over its variance
     """
 
     day: float
@@ -51,7 +51,7 @@ class Change:
     by_mode: FloatArray
 
     def restricted(self, chosen: BoolArray) -> Change:
-        """Return the information on some quantities, whatever the others do."""
+        """Return the information on some quantities, with the changes of the others left free."""
         if chosen.all():
             return self
         other = ~chosen
@@ -71,12 +71,12 @@ class Change:
 
 
 def change_of(watch: Watch, worth: FloatArray, log_r: float, begun_by: float = np.inf) -> tuple[Change, int]:
-    """Return the most likely change, and its onset if it is a step; it had begun by some day."""
+    """Return the most likely change with an onset by ``begun_by``, and the onset's index if it is a step."""
     begins = watch.begins
     posterior = np.exp(begins.log_stake[:, None] + worth - log_r)
     bet = int(np.argmax(posterior.sum(axis=0)))
     kind, direction, members = _bet(watch, bet)
-    # the onset follows from all bets that agree with the likeliest on the kind
+    # the onset follows from all tested changes of the same kind as the most likely one
     same = [b for b in range(worth.shape[1]) if _bet(watch, b)[0] == kind]
     by_begin = posterior[:, same].sum(axis=1)
     low, mid, high = _quantiles(_gradual(watch, kind, direction, by_begin))
@@ -126,7 +126,7 @@ def _along(block: Block, direction: str, begun: int) -> FloatArray:
 
 
 def _bet(watch: Watch, bet: int) -> tuple[str, str, BoolArray]:
-    """Return kind, name and members of a bet."""
+    """Return kind, direction and members of a tested change."""
     total = sum(len(block.kept) for block in watch.blocks)
     members = np.zeros(total, dtype=np.bool_)
     first = 0
@@ -143,7 +143,7 @@ def _bet(watch: Watch, bet: int) -> tuple[str, str, BoolArray]:
 
 
 def _all_info(watch: Watch) -> tuple[FloatArray, FloatArray]:
-    """Return A and b of steps of all quantities under the models that are likeliest given a change."""
+    """Return A and b of steps of all quantities under the models that are most likely given a change."""
     n, m = watch.begins.log_scatter.shape[:2]
     info, score = np.zeros((n, m, m)), np.zeros((n, m))
     first = 0
@@ -162,7 +162,7 @@ def _prior_precision(watch: Watch) -> FloatArray:
 def _sizes(
     info: FloatArray, score: FloatArray, by_begin: FloatArray, prior: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return mean and standard deviation of the change of each quantity, over onsets."""
+    """Return mean and standard deviation of the change of each quantity, averaged over onsets."""
     share = by_begin / by_begin.sum()
     covariance = np.linalg.inv(info + np.diag(prior))
     each = np.einsum("tij,tj->ti", covariance, score)
@@ -172,7 +172,7 @@ def _sizes(
 
 
 def _louder(watch: Watch, by_begin: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return ln of the mean noise factor of each quantity, over the factors bet on, which include 1."""
+    """Return ln of the mean noise factor of each quantity over the tested factors, which include 1."""
     share = by_begin / by_begin.sum()
     m = watch.begins.log_scatter.shape[1]
     logs = np.concatenate(

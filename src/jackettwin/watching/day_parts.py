@@ -1,11 +1,11 @@
-r"""A day within which a structure changed, in two parts.
+r"""Division of a day within which a structure changed.
 
-A step in the middle of a day is scatter to whoever takes the day as a whole, and half as large. The day is
-divided at the record where the two sides lie furthest apart,
+If a day is evaluated as a whole, a step in its middle appears as scatter and as a step of half its size. The
+day is therefore divided at the record where the squared distance between both parts is largest,
 
 .. math:: d^2(k) = \sum_q \frac{(\bar y_{q,>k} - \bar y_{q,\le k})^2}{v_q (1/n_{\le k} + 1/n_{>k})}
 
-if their medians say so as well, which single outliers do not move.
+provided that their medians, which single outliers do not affect, differ as well.
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.watching.hours import ENOUGH
 
 APART = 30.0
-"""Squared distance of two sides, in variances and beyond one for each quantity, from which a day is divided:
-where nothing changes, of one day in some thousands."""
+"""Squared distance of both parts, minus the number of quantities, above which a day is divided. Without a
+change one day in some thousands exceeds it."""
 _CLIPPED = 8.0
-"""Distance from the day's median, in standard deviations, beyond which a value counts as no farther off."""
+"""Distance from the day's median, in standard deviations, to which larger ones are limited."""
 _MEDIAN_VARIANCE = 0.5 * np.pi
-"""Variance of a median over that of the mean of as many normal values."""
+"""Ratio of the variance of a median to that of the mean of as many normal values."""
 INSIDE = 0.1
-"""Share of a day's stake on a change within it."""
+"""Share of a day's prior weight that is assigned to an onset within it."""
 
 
 def divided(rest: FloatArray, variance: FloatArray) -> tuple[int, int] | None:
-    """Return before which record of a day it is divided, and between how many places was chosen; or None.
+    """Return the index of the record before which a day is divided and the number of places tried, or None.
 
     Parameters
     ----------
-    rest : (n, m) values less what conditions explain, NaN where missing
-    variance : (n, m) of their noise and of what moves within a day
+    rest : (n, m) residuals after conditions, NaN where missing
+    variance : (n, m) variances of their noise and of variation within a day
     """
     seen = np.isfinite(rest)
     n = len(rest)
@@ -55,7 +55,7 @@ def divided(rest: FloatArray, variance: FloatArray) -> tuple[int, int] | None:
     for q in chosen:
         x, good = rest[:, q] * np.sign(gap[place, q]), seen[:, q]
         low, high = np.sort(x[:cut][good[:cut]]), np.sort(x[cut:][good[cut:]])
-        # of an even number the middle one that is nearer: not more than half of a side is off by chance
+        # the middle value nearer to zero, so that at most half of a part is off by chance
         between = max(high[(high.size - 1) // 2] - low[low.size // 2], 0.0)
         spread = std[q] ** 2 * _MEDIAN_VARIANCE * (1.0 / low.size + 1.0 / high.size)
         distance += float(between**2 / spread)
@@ -63,5 +63,5 @@ def divided(rest: FloatArray, variance: FloatArray) -> tuple[int, int] | None:
 
 
 def _medians(x: FloatArray, seen: BoolArray) -> FloatArray:
-    """Return the median of each column's values that were seen; 0 where none was."""
+    """Return the median of the available values of each column; 0 where there is none."""
     return np.array([np.median(a[s]) if s.any() else 0.0 for a, s in zip(x.T, seen.T, strict=True)])

@@ -1,4 +1,4 @@
-"""Regressors: effects of conditions on modes, with the thermal lag of the steel, for each operating state."""
+"""Regressors of each operating state: conditions, some of them delayed by the thermal lag of the steel."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.watching.history import History
 
 LAGS_DAYS = (0.25, 1.5)
-"""Time constants with which steel and ground follow the air.
-The estimated weights of three regressors represent any lag between none, a quarter day and some days."""
+"""Time constants with which the temperatures of steel and ground follow the air [days]. The weights of the
+three regressors (no lag and these two) represent lags from none to some days."""
 _TEMPERATURE = re.compile(r"temp|^t_?air|^t_?steel|°c|_c$|deg_?c", re.IGNORECASE)
 _FEWEST_COLD = 0.02
-"""Share of the baseline below freezing from which frozen soil or asphalt is given its own slope."""
+"""Share of the baseline below freezing from which temperatures below zero have a separate slope, for frozen
+soil or asphalt."""
 _FEWEST_OF_STATE = 50
 """Fewest rows of an operating state for its own slopes, and for an intercept."""
 YEAR_DAYS, WHOLE_YEAR_DAYS = 365.25, 330.0
-"""Length of a year, and of a baseline that covers the seasons, which then replace a missing temperature
-[days]."""
+"""Length of a year, and of a baseline from which the time of year replaces a missing temperature [days]."""
 _CURVED, _LINEAR, _LEVEL = 0.5, 1.0, 20.0
 """Prior standard deviations of coefficients, in standard deviations of the quantity over the baseline.
-A linear term may explain all of it, a curved one half; the level is unknown."""
+A linear term may explain all of it, a quadratic one half; the intercept is unknown."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class RegressionPrior(NamedTuple):
     std: FloatArray
 
     def of(self, chosen: list[int]) -> RegressionPrior:
-        """Return those of some of the quantities."""
+        """Return the prior of some of the quantities."""
         return RegressionPrior(self.mean[chosen], self.std[chosen])
 
 
@@ -54,13 +54,14 @@ class Column:
 
     Attributes
     ----------
-    name : of the condition
-    source : its column
-    lag_days : 0 for none
-    shape : "line", "square" (of the standardised condition, less one) or "frost" (what it is below zero),
-        "sine" and "cosine" (of the time of day, or of the year)
-    centre, scale : of the baseline; the period [days], of times of day or year
-    prior : standard deviation of the coefficient in those of the quantity
+    name : name of the condition
+    source : its column in the history
+    lag_days : time constant of the lag; 0 for none
+    shape : "line", "square" (of the standardised condition, minus one), "frost" (the part below zero), or
+        "sine" and "cosine" (of the time of day or of the year)
+    centre, scale : mean and standard deviation over the baseline; ``scale`` is the period [days] of a sine or
+        cosine
+    prior : prior standard deviation of the coefficient, in standard deviations of the quantity
     """
 
     name: str
@@ -78,9 +79,9 @@ class Design:
 
     Attributes
     ----------
-    columns : of one state
-    states : numbers of the states that are known, each with intercept
-    sloped : how many of them, from the first on, have slopes of their own; the others use the first's
+    columns : regressors of one state
+    states : numbers of the known states, each of which has an intercept
+    sloped : number of states, counted from the first, with separate slopes; the others use those of the first
     """
 
     columns: tuple[Column, ...]
@@ -89,7 +90,7 @@ class Design:
 
     @property
     def hidden(self) -> bool:
-        """Whether no conditions are given, so that their effects are part of the unexplained variation."""
+        """Whether no conditions are given, so that their effects belong to the unexplained variation."""
         return all(column.source < 0 for column in self.columns)
 
     @property
@@ -104,14 +105,14 @@ class Design:
 
     @property
     def priors(self) -> FloatArray:
-        """Prior standard deviations of the coefficients in those of the quantity, (p,)."""
+        """Prior standard deviations of the coefficients, in standard deviations of the quantity, (p,)."""
         slopes = [c.prior for _ in range(self.sloped) for c in self.columns]
         return np.array([_LEVEL] * len(self.states) + slopes)
 
     def coefficients(self, spread: FloatArray, slopes: Sequence[Slope] = ()) -> RegressionPrior:
         """Return the prior of the coefficients of quantities of given standard deviations, (m,) each.
 
-        A model's slope is that of the line in its condition.
+        The slope from a model is the prior mean of the linear term of its condition.
         """
         std = np.outer(spread, self.priors)
         mean = np.zeros_like(std)
@@ -125,7 +126,7 @@ class Design:
 
 @dataclass(frozen=True)
 class Lagged:
-    """Memory of lagged regressors: ``values`` by column of a design, at ``day``."""
+    """State of lagged regressors: ``values`` by column of a design, at ``day``."""
 
     day: float
     values: FloatArray
@@ -167,7 +168,7 @@ def design_of(baseline: History) -> Design:
 
 
 def with_time_of_year(design: Design) -> Design:
-    """Return the design with the time of year, where no temperature is told: it may move all there is."""
+    """Return the design with the time of year as regressor, which replaces a missing temperature."""
     if any(c.lag_days > 0.0 or c.name == "time of year" for c in design.columns):
         return design
     year = [Column("time of year", -1, 0.0, shape, 0.0, YEAR_DAYS, _LINEAR) for shape in ("sine", "cosine")]
@@ -180,15 +181,15 @@ def _whole_days(baseline: History) -> bool:
 
 
 def fresh(design: Design) -> Lagged:
-    """Return the memory before the first row."""
+    """Return the state of lagged regressors before the first row."""
     return Lagged(-np.inf, np.zeros(len(design.columns)))
 
 
 def regressors(design: Design, history: History, lagged: Lagged) -> tuple[FloatArray, Lagged]:
-    """Return the regressors (n, p) of some rows and the memory of lagged ones after them.
+    """Return the regressors (n, p) of some rows and the state of lagged ones after them.
 
-    A missing condition counts as its mean over the baseline and does not change the memory.
-    A row in an operating state without a baseline is NaN.
+    A missing condition is replaced by its mean over the baseline and does not change the state. The
+    regressors are NaN in operating states that do not occur in the baseline.
     """
     standard = [_standard(column, history) for column in design.columns]
     values, day = lagged.values.copy(), lagged.day
@@ -209,7 +210,7 @@ def regressors(design: Design, history: History, lagged: Lagged) -> tuple[FloatA
 
 
 def _standard(column: Column, history: History) -> FloatArray:
-    """Return a condition in standard units, nonlinear but without lag."""
+    """Return a standardised condition after its nonlinearity, without lag."""
     if column.shape in ("sine", "cosine"):
         turn = 2.0 * np.pi * history.days / column.scale
         return np.asarray(np.sin(turn) if column.shape == "sine" else np.cos(turn))

@@ -1,13 +1,14 @@
-r"""What a watch would find: the chance that a change raises an alarm within some days.
+r"""Probability of detection: the probability that a change raises an alarm within some days.
 
-What the innovations say of a step, A, does not depend on measured values but on when and how well was
-measured, on the unexplained variation and on what the baseline left open. A step s of all quantities of a
-kind is looked for along directions u, with
+The information A of the innovations on a step does not depend on the measured values but on the times and
+accuracy of the measurements, on the unexplained variation and on the uncertainty left by the baseline. A step
+s of all quantities of a kind is tested along directions u, with
 
 .. math:: a = u^T A u, \quad c \sim N(u^T A s, a)
 
-and raises an alarm if the stake on it times the Bayes factor of a and c reaches the threshold. The records to
-come are taken to be as many and as good as those of as many last days of the baseline.
+and raises an alarm if its prior weight times the Bayes factor of a and c reaches the threshold. Future
+records are assumed to be as many and as accurate as those of the same number of days at the end of the
+baseline.
 """
 
 from __future__ import annotations
@@ -29,28 +30,29 @@ from jackettwin.watching.memory import empty_bank, filtered
 from jackettwin.watching.state import Watch
 
 CHANCE = 0.95
-"""Probability with which a change of the size that is told is found."""
+"""Probability of detection that defines the smallest detectable change."""
 _WHOLE = 0.9
-"""Share of some days that a baseline must cover to stand for them."""
+"""Share of the days considered that the end of a baseline must cover."""
 _LEAST = 0.01
-"""Smallest weight of a model that counts."""
+"""Weight below which a model is ignored."""
 _Z = np.linspace(-4.0, 4.0, 65)
-"""Normal values over which the chance is summed."""
+"""Standard normal values over which the probability is summed."""
 _HALVINGS = 14
-"""Halvings of ln size: to a thousandth of a range of a factor of twenty."""
+"""Number of halvings of the range of ln size; the error is below a thousandth for a range of a factor of
+twenty."""
 
 
 @dataclass(frozen=True)
 class Sight:
-    """What some days of records would say of a step.
+    """Information that some days of records would give on a step.
 
     Attributes
     ----------
-    days : how many
-    directions : of each block that are looked for, with their stakes
-    info : of each block, (n_models, m, m) A of a step at the beginning of these days
-    weights : of each block, (n_models,) of the models
-    log_needed : ln of the Bayes factor that suffices, over the power to which evidence counts
+    days : number of days
+    directions : for each block, the tested directions with their weights
+    info : for each block, (n_models, m, m) A of a step at the beginning of these days
+    weights : for each block, (n_models,) weights of the models
+    log_needed : ln of the Bayes factor that raises an alarm, divided by the power applied to the evidence
     """
 
     days: float
@@ -61,7 +63,7 @@ class Sight:
     power: float
 
     def chance(self, step: FloatArray) -> float:
-        """Return the probability that a step of all quantities (m_all,) is found by its clearest kind."""
+        """Return the probability that a step of all quantities (m_all,) is detected by its clearest kind."""
         found, first = [0.0], 0
         for directions, info, weights in zip(self.directions, self.info, self.weights, strict=True):
             m = info.shape[1]
@@ -70,7 +72,7 @@ class Sight:
         return max(found)
 
     def _each(self, directions: Directions, info: FloatArray, step: FloatArray) -> FloatArray:
-        """Return the chance under each model."""
+        """Return the probability of detection under each model."""
         u = directions.vectors
         a = np.einsum("di,kij,dj->kd", u, info, u)
         c = np.einsum("di,kij,j->kd", u, info, step)
@@ -82,11 +84,11 @@ class Sight:
         return np.asarray((best >= self.log_needed) @ mass)
 
     def smallest(self, step: Callable[[float], FloatArray], low: float, high: float) -> float | None:
-        """Return the smallest size between two that is found with ``CHANCE``; None if not even the largest.
+        """Return the smallest size within limits detected with ``CHANCE``; None if the largest is not.
 
         Parameters
         ----------
-        step : the change of all quantities (m_all,) by a size
+        step : function that returns the change of all quantities (m_all,) at a size
         """
         if self.chance(step(high)) < CHANCE:
             return None
@@ -98,11 +100,11 @@ class Sight:
 
 
 def sight(watch: Watch, baseline: History, days: float) -> Sight | None:
-    """Return what some days of records after a baseline would say of a step; None if it is too short to tell.
+    """Return the information of some days after a baseline on a step; None if the baseline is too short.
 
     Parameters
     ----------
-    watch : at the end of the baseline
+    watch : state at the end of the baseline
     """
     last = float(baseline.days[-1])
     if last - float(baseline.days[0]) < _WHOLE * days or days <= watch.patience_days:
@@ -127,7 +129,7 @@ def sight(watch: Watch, baseline: History, days: float) -> Sight | None:
 def _informed(
     block: Block, records: History, rows: FloatArray, last_day: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return A of a step before some records as they come again, and the weight, by model."""
+    """Return, by model, A of a step before a repetition of some records, and the weight."""
     y, _, variance, _ = residuals(block, records, rows)
     hours = by_hour(records.days, records.states, np.nan_to_num(rows), y, variance, WINDOW_DAYS)
     later = _shifted(hours, last_day)
@@ -142,5 +144,5 @@ def _informed(
 
 
 def _shifted(hours: Hours, last_day: float) -> Hours:
-    """Return hours that follow a day."""
+    """Return hourly averages shifted in time to follow a day."""
     return replace(hours, days=hours.days - hours.days[0] + last_day + 1.0)

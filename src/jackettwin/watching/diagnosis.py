@@ -5,9 +5,9 @@ A = Σ hhᵀ/s and b = Σ hν/s. A cause with direction J and size θ has the li
 
 .. math:: Λ = \exp(θ J^T b - \tfrac12 θ^2 J^T A J)
 
-relative to no change. Its evidence is the mean over its sizes, over the draws of J and over onsets.
-"Something else" is a step in an arbitrary direction. Further measurements are ranked by the information that
-their values are expected to give on the cause.
+relative to no change. Its evidence is the mean of Λ over its sizes, over the draws of J and over onsets. The
+alternative "something else" is a step in an arbitrary direction. Further measurements are ranked by the
+information that their values are expected to give on the cause.
 """
 
 from __future__ import annotations
@@ -27,13 +27,14 @@ INSEPARABLE = 2.0
 """Distance in standard deviations of data and model below which causes cannot be distinguished."""
 _OTHER_PRIOR = 1.0
 TAIL = {1.0: 0.68, 3.0: 0.22, 9.0: 0.1}
-"""Errors of directions, as multiples of the usual one, and their probabilities: of some five hundred measured
-ones 68 % are within the usual error, 90 % within three times it (docs/verification/directions.md)."""
+"""Errors of a model's directions, as multiples of the usual error, and their probabilities. Of some five
+hundred directions compared, 68 % were within the usual error and 90 % within three times it
+(docs/verification/directions.md)."""
 _LOUDER_TOO, _NO_SIGN = 0.05, -3.0
-"""Probability that records of a changed structure scatter more as well, and ln of the evidence of that below
-which it is not considered."""
+"""Probability that the scatter of a changed structure's records increases too, and ln of the evidence for it
+below which this is not considered."""
 SHIFTS = (0.1, 0.3, 1.0)
-"""What moves beside louder noise, as shares of the most: how much of it there is depends on the sensor."""
+"""Shares of the largest shift that may accompany increased noise; the shift depends on the sensor."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +43,8 @@ class CauseVerdict:
 
     Attributes
     ----------
-    size, interval_90 : in ``unit`` if it is the cause; NaN for what has no size
-    alike : names of further causes that do the same
+    size, interval_90 : size in ``unit``, given that this is the cause; NaN for a cause without a size
+    alike : names of further causes of the same effect
     """
 
     cause: str
@@ -61,12 +62,12 @@ class CauseVerdict:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What a change was.
+    """Probable causes of a change.
 
     Attributes
     ----------
-    verdicts : the likeliest first; something else among them
-    inseparable : groups of causes, likely ones, that these quantities do not tell apart
+    verdicts : causes in order of probability, including "something else"
+    inseparable : groups of likely causes that these quantities do not distinguish
     """
 
     verdicts: tuple[CauseVerdict, ...]
@@ -78,7 +79,7 @@ def diagnose(change: Change, causes: Sequence[Cause], kinds: Sequence[str]) -> D
 
     Parameters
     ----------
-    kinds : (m,) of each quantity
+    kinds : (m,) kind of each quantity
     """
     sensor = next((cause for cause in causes if cause.louder.size), None)
     states = [(0.0, change), *([] if sensor is None else _in_noise(change, sensor))]
@@ -104,7 +105,7 @@ def _judge(
 
     Parameters
     ----------
-    states : ln of the weight, and the change, as usual first and then as in increased noise
+    states : pairs of ln weight and change, first for the usual noise and then for increased noise
     """
     if cause.louder.size:
         change = states[0][1]
@@ -133,15 +134,15 @@ def _begins(change: Change) -> FloatArray:
 
 
 def _in_noise(change: Change, sensor: Cause) -> list[tuple[float, Change]]:
-    r"""Return ln of the weight and the change if noise increased as well, if there is any sign of that.
+    r"""Return ln of the weight and the change under increased noise, if there is evidence of it.
 
-    Records of a structure that was damaged may scatter more, too: louder noise alone does not make a change
-    of frequencies that of a sensor. With the estimate X = A⁻¹b, the noise's factors G and A' = G⁻¹AG⁻¹,
+    The scatter of a damaged structure's records may increase as well, so that increased noise alone does not
+    attribute a change of frequencies to a sensor. With X = A⁻¹b, the noise factors G and A' = G⁻¹AG⁻¹,
 
     .. math:: \frac{p(X|θ, G)}{p(X|0, 1)} = \frac{N(X; 0, GA^{-1}G)}{N(X; 0, A^{-1})}
               \exp(θ J^T A'X - \tfrac12 θ^2 J^T A'J)
 
-    Its first factor and that of the scatter are the weights of onsets.
+    The first factor and the likelihood ratio of the scatter are the weights of the onsets.
     """
     total, louder = _loudness(change, sensor)
     if total.max() < _NO_SIGN:
@@ -178,8 +179,8 @@ def _likelihood(
 def _misfit(cause: Cause, kinds: Sequence[str], times: float = 1.0) -> FloatArray:
     """Return R, (m, r), with RRᵀ the covariance of a cause's direction per unit of size.
 
-    Draws of the structure's state give correlated errors of quantities;
-    the error that no state explains is independent, and ``times`` the usual one.
+    The draws of the structural model give errors that are correlated between quantities; the remaining error
+    of the model is independent and ``times`` the usual one.
     """
     draws = cause.draws
     kind, J = np.array(kinds), draws.mean(axis=0)
@@ -221,8 +222,8 @@ def _loudness(change: Change, cause: Cause) -> tuple[FloatArray, FloatArray]:
 def _moved(change: Change, louder: FloatArray, std: FloatArray) -> FloatArray:
     """Return ln of the evidence of δ ~ N(0, std²) in increased noise, relative to normal noise, (n_begins,).
 
-    The estimate of a step from the data, A⁻¹b, has the covariance A⁻¹ if nothing happened,
-    and GA⁻¹G + std² here: under increased noise the mean deviates more, which is evidence of it.
+    The estimate of a step, A⁻¹b, has the covariance A⁻¹ without a change and GA⁻¹G + std² here; under
+    increased noise the mean deviates more, which is evidence for it.
     """
     unsure = _inverse(change.info)
     seen = np.einsum("tij,tj->ti", unsure, change.score)
@@ -233,13 +234,13 @@ def _moved(change: Change, louder: FloatArray, std: FloatArray) -> FloatArray:
 
 
 def _inverse(info: FloatArray) -> FloatArray:
-    """Return A⁻¹ by onset, with a ridge for what was hardly seen."""
+    """Return A⁻¹ by onset, with a ridge for quantities of which there is little information."""
     ridge = 1e-9 * np.trace(info, axis1=1, axis2=2)[:, None, None] * np.eye(info.shape[-1])
     return np.asarray(np.linalg.inv(info + ridge))
 
 
 def _free(info: FloatArray, score: FloatArray, std: FloatArray) -> FloatArray:
-    """Return ln of the evidence of δ ~ N(0, std²) by begin, (n_begins,)."""
+    """Return ln of the evidence of δ ~ N(0, std²) by onset, (n_begins,)."""
     wide = np.eye(len(std)) + std[:, None] * info * std
     turned = std * score
     solved = np.linalg.solve(wide, turned[..., None])[..., 0]
@@ -285,7 +286,7 @@ def _groups(
 
 
 def _best(change: Change) -> int:
-    """Return the onset that best fits a free step."""
+    """Return the index of the onset that best fits an arbitrary step."""
     m = change.info.shape[-1]
     scale = 1e-6 * np.trace(change.info, axis1=1, axis2=2).max() * np.eye(m)
     solved = np.linalg.solve(change.info + scale, change.score[..., None])[..., 0]
@@ -305,13 +306,14 @@ def expected_information(probability: FloatArray, mean: FloatArray, std: FloatAr
 
     Parameters
     ----------
-    probability : (n_causes,) adding up to one
-    mean, std : (n_causes,) what each cause predicts, with the scatter of the measurement
+    probability : (n_causes,) probabilities that sum to one
+    mean, std : (n_causes,) value predicted by each cause, and its standard deviation including the
+        measurement's
 
     Examples
     --------
     >>> two = np.array([0.5, 0.5])
-    >>> round(expected_information(two, np.array([0.0, 100.0]), np.ones(2)), 3)  # ln 2: it settles the matter
+    >>> round(expected_information(two, np.array([0.0, 100.0]), np.ones(2)), 3)  # ln 2: the value decides
     0.693
     >>> round(expected_information(two, np.zeros(2), np.ones(2)), 3)
     0.0

@@ -1,13 +1,9 @@
 r"""Directions and sizes of possible changes, chosen before any is seen.
 
-The weights of all directions, of both kinds and of the scatter, add up to one: they are the stakes of one
-bet. A ramp that began at τ and continues is a sum of small steps at the onsets kept since. With increments w,
-:math:`a = \sum_{jk} w_j w_k u^T A_{jk} u` and :math:`c = \sum_j w_j u^T b_j` of a ramp along u take the place
-of a and c of a step. If it were dated as a step, a ramp would seem to begin in its middle.
-
-A ramp that began at τ and goes on is a sum of small steps at the begins that are kept since: with increments
-w, :math:`a = \sum_{jk} w_j w_k u^T A_{jk} u` and :math:`c = \sum_j w_j u^T b_j` of a ramp along u are what a
-and c of a step are. Dated as a step, a ramp seems to begin in its middle.
+The prior weights (``stakes``) of all directions of all kinds and of the scatter sum to one. A ramp that began
+at τ and continues is a sum of small steps at the onsets retained since τ. With increments w,
+:math:`a = \sum_{jk} w_j w_k u^T A_{jk} u` and :math:`c = \sum_j w_j u^T b_j` of a ramp along u replace a and
+c of a step. A ramp dated as a step would appear to begin in its middle.
 """
 
 from __future__ import annotations
@@ -29,42 +25,43 @@ SIZES = {
     "damping": (0.12, 0.24, 0.48, 0.96),
     "angle": (0.04, 0.08, 0.16, 0.32),
 }
-"""Sizes of steps in the logarithm, or of rotations [rad], that are bet on, each within about a third.
-Smaller steps are not worth an alarm; larger ones are found with any prior."""
+"""Tested sizes of steps of the logarithm, or of rotations [rad], each with a spread of about a third. Smaller
+steps do not merit an alarm; larger ones are detected with any prior."""
 SIZE_WEIGHTS = {
     "frequency": (0.12, 0.26, 0.24, 0.16, 0.1, 0.07, 0.05),
     "damping": (0.3, 0.4, 0.2, 0.1),
     "angle": (0.3, 0.3, 0.2, 0.2),
 }
-"""Weights of the sizes; small steps take longest to detect and have most of the stake."""
+"""Weights of the sizes; small steps take longest to detect and therefore have the largest weights."""
 _WIDTH = 1.0 / 3.0
 SHARES = {"frequency": 0.7, "damping": 0.2, "angle": 0.1, "scatter": 0.1}
-"""Stakes of the kinds of change, relative to those of the kinds that are monitored."""
+"""Prior weights of the kinds of change, normalised over the kinds that are monitored."""
 _FALLING = {"frequency": 0.7, "damping": 0.4, "angle": 0.5}
-"""Share of the stake on falling values: damage and scour soften a structure and raise its damping."""
+"""Share of the weight given to falling values: damage and scour reduce the stiffness of a structure and raise
+its damping."""
 _ANY = 0.1
-"""Share of a kind's stake on a change in an arbitrary direction."""
+"""Share of a kind's weight given to a change in an arbitrary direction."""
 _PATTERNED = 0.4
-"""Share of the rest on a model's causes, if given."""
+"""Share of the remaining weight given to the causes of a model, if there is one."""
 _ALIKE = 0.9
-"""Cosine above which patterns count as one direction; the Bayes factor hardly suffers."""
+"""Cosine above which patterns are merged into one direction, with little effect on the Bayes factor."""
 _MOVES = 0.1
-"""Share of the largest change in a pattern below which a quantity does not count as moving."""
+"""Share of the largest change in a pattern below which a quantity counts as unchanged."""
 
 
 @dataclass(frozen=True)
 class Directions:
-    """Steps that are bet on.
+    """Directions and sizes of the steps that are tested.
 
     Attributes
     ----------
     kind : "frequency", "damping" or "angle"
-    names : (n,) of the directions; the last is "any"
-    members : (n, m) which quantities move
-    vectors : (n − 1, m) of those with a direction
-    log_weights : (n,) ln of the stakes
-    sizes, widths : (n_sizes,) steps δ ~ N(size, width²) along a vector, with
-    log_size_weights : (n_sizes,)
+    names : (n,) names of the directions; the last is "any"
+    members : (n, m) bool, which quantities change
+    vectors : (n − 1, m) directions, without "any"
+    log_weights : (n,) ln of the prior weights
+    sizes, widths : (n_sizes,) steps δ ~ N(size, width²) along a vector
+    log_size_weights : (n_sizes,) ln of the weights of the sizes
     """
 
     kind: str
@@ -96,8 +93,8 @@ def directions_of(
 
     Parameters
     ----------
-    typical_hz : (m,) frequencies, by which pairs are found
-    patterns : that a model expects
+    typical_hz : (m,) frequencies, from which pairs are recognised
+    patterns : changes that a model expects
     """
     m = len(labels)
     named = [Pattern(label, np.eye(m)[q], 1.0) for q, label in enumerate(labels)]
@@ -131,7 +128,8 @@ def directions_of(
 def _joined(patterns: Sequence[Pattern]) -> tuple[Pattern, ...]:
     """Return distinct patterns, scaled to a largest change of one, with the weights of similar ones added.
 
-    They point upwards, as the directions of modes do; the odds of the sizes account for falling values.
+    Their signs are chosen so that values rise, as for single modes; the weights of the sizes account for
+    falling values.
     """
     groups: list[list[Pattern]] = []
     for one in sorted(patterns, key=lambda p: -p.weight):
@@ -162,7 +160,7 @@ def log_bayes_factors(directions: Directions, info: FloatArray, score: FloatArra
 
     Parameters
     ----------
-    info, score : (n_begins, m, m), (n_begins, m) A and b of the steps of each quantity
+    info, score : (n_begins, m, m), (n_begins, m) A and b of steps at each onset
     """
     u = directions.vectors
     along = log_along(directions, np.einsum("di,tij,dj->td", u, info, u), score @ u.T)
@@ -174,7 +172,7 @@ def log_bayes_factors(directions: Directions, info: FloatArray, score: FloatArra
 
 
 def log_along(directions: Directions, a: FloatArray, c: FloatArray) -> FloatArray:
-    """Return ln of the Bayes factors of changes whose shape has a and c, over the sizes; of any shape."""
+    """Return ln of the Bayes factors of changes with given a and c, averaged over sizes, shaped like a."""
     out = np.empty(a.shape)
     log_mixed(
         a.ravel(), c.ravel(), directions.sizes, directions.widths**2, directions.log_size_weights, out.ravel()
@@ -183,11 +181,11 @@ def log_along(directions: Directions, a: FloatArray, c: FloatArray) -> FloatArra
 
 
 def increments(days: FloatArray, now: float) -> FloatArray:
-    """Return the steps that form a ramp from each onset until now, (n, n): w[i, j] at j, of a ramp from i.
+    """Return the increments of ramps from each onset until now, (n, n): w[i, j] at onset j of a ramp from i.
 
     Examples
     --------
-    >>> increments(np.array([0.0, 1.0, 3.0]), 4.0)[0]  # at half past each span: 1/8, 4/8, 7/8
+    >>> increments(np.array([0.0, 1.0, 3.0]), 4.0)[0]  # the ramp at mid-span: 1/8, 4/8, 7/8
     array([0.125, 0.375, 0.375])
     """
     middle = 0.5 * (days + np.append(days[1:], now))
@@ -197,7 +195,7 @@ def increments(days: FloatArray, now: float) -> FloatArray:
 
 
 def log_ramps(directions: Directions, u: FloatArray, bank: Bank, days: FloatArray, now: float) -> FloatArray:
-    """Return ln of the Bayes factors of ramps and of steps along u by onset, (2, n)."""
+    """Return ln of the Bayes factors of ramps and of steps along u, by onset, (2, n)."""
     if bank.cross is None:
         raise ValueError("a bank without what ramps are judged by")
     lower = np.einsum("i,tbij,j->tb", u, bank.cross, u)

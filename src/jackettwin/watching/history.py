@@ -1,4 +1,4 @@
-"""Data to be monitored: modes through time with their conditions, as arrays."""
+"""Monitored data: time series of modes and conditions, as arrays."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jackettwin.arrays import BoolArray, FloatArray, IntArray
 Kind = Literal["frequency", "damping", "angle"]
 
 _NEAR_DAYS = 0.25
-"""Records closer in time than this saw the same structure [days]."""
+"""Difference in time below which two records are of the same structure [days]."""
 _FEWEST_PAIRS = 30
 
 
@@ -24,20 +24,20 @@ def typical(values: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class History:
-    """Modes through time.
+    """Time series of modes and conditions.
 
     Attributes
     ----------
     days : (n,) times in days from any origin, ascending; whole numbers are midnights
-    labels : of the m modes
-    frequency, damping : (n, m) in Hz and as ratios; NaN where a mode was not seen
+    labels : names of the m modes
+    frequency, damping : (n, m) frequencies [Hz] and damping ratios; NaN where a mode was not identified
     frequency_std, damping_std : (n, m) stated standard deviations; NaN where none is stated
-    conditions : (n, k) what was measured beside; NaN where missing
-    condition_names : of the k columns
+    conditions : (n, k) measured conditions; NaN where missing
+    condition_names : names of the k conditions
     states : (n,) number of the operating state of each row
-    state_names : of the operating states
-    angle, angle_std : (n, m) [rad] the horizontal direction in which the lower mode of a pair moves, from x
-        towards y and as good as its opposite; NaN where none is known. None for a table without any
+    state_names : names of the operating states
+    angle, angle_std : (n, m) horizontal direction in which the lower mode of a pair moves, from x towards y,
+        modulo π, and its standard deviation [rad]; NaN where unknown. None for a table without directions
     """
 
     days: FloatArray
@@ -89,19 +89,19 @@ def middles(history: History, kind: Kind, kept: IntArray) -> FloatArray:
 def deviations(
     history: History, kind: Kind, kept: IntArray, typical: FloatArray, power: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return ln of the values over typical ones, and relative standard deviations, both (n, m).
+    """Return ln of the ratios to typical values, and relative standard deviations, both (n, m).
 
-    For directions it is the rotation from the typical one [rad], at most a right angle.
+    For directions it returns the rotation from the typical direction [rad], at most a right angle.
 
     A stated standard deviation may depend on its value: that of ζ is proportional to √ζ by Au's law (2014),
-    or to ζ if a coefficient of variation was stated. A record whose ζ happens to be low must not gain weight
-    from that, so that this part is evaluated at the typical value.
+    or to ζ if a coefficient of variation was stated. So that a record whose ζ happens to be low gains no
+    weight, this dependence is evaluated at the typical value.
 
     Parameters
     ----------
-    kept : (m,) columns
-    typical : (m,) values of the baseline
-    power : (m,) by which standard deviations follow values
+    kept : (m,) indices of columns
+    typical : (m,) typical values over the baseline
+    power : (m,) power of the value to which stated standard deviations are proportional
     """
     value, std = (x[:, kept] for x in history.seen(kind))
     if kind == "angle":

@@ -1,6 +1,6 @@
 """Hourly averages of rows without outliers, and the scatter within each hour.
 
-Nothing that is modelled varies within an hour, so that mean and scatter of its records are independent:
+The model has no variation within an hour, so that mean and scatter of an hour's records are independent:
 means inform on the level, scatter on the noise.
 """
 
@@ -18,11 +18,11 @@ one in 150,000 of normal noise."""
 DOUBTED = 2.2
 """Distance in standard deviations above which a value is down-weighted: one in 36 of normal noise."""
 NEIGHBOURS = 9
-"""Number of values around whose median one is assessed."""
+"""Number of neighbouring values with whose median a value is compared."""
 ENOUGH = 3
-"""Fewest values of a day that are compared with each other. Fewer are compared with earlier days,
-from which a step is also distant; rejection then does not count as scatter,
-and after five values the neighbourhood is replaced."""
+"""Fewest values of a day that are compared with each other. Fewer values are compared with earlier days.
+Since a step is distant from these too, a rejection then does not count as scatter, and after five values the
+neighbours are replaced."""
 
 
 @dataclass(frozen=True)
@@ -31,11 +31,11 @@ class Hours:
 
     Attributes
     ----------
-    days : (n,) mean times
+    days : (n,) mean times [days]
     rows : (n, p) regressors
-    values : (n, m) NaN where nothing was seen
-    noise : (n, m) variances as stated
-    chi2, freedom : (n, m) scatter inside the hour over stated variances, and its degrees of freedom
+    values : (n, m) mean values, NaN where there is none
+    noise : (n, m) stated variances of the means
+    chi2, freedom : (n, m) scatter within the hour over stated variances, and its degrees of freedom
     """
 
     days: FloatArray
@@ -55,17 +55,17 @@ class Hours:
 def outliers(
     rest: FloatArray, variance: FloatArray, tail: FloatArray
 ) -> tuple[BoolArray, FloatArray, FloatArray]:
-    """Return which values of a day are outliers, doubt factors, and the neighbours of the next day.
+    """Return which values of a day are outliers, factors on variances, and the neighbours of the next day.
 
-    A common step of all neighbours does not affect rejection, so that no change is hidden.
-    A distant value that is not rejected is down-weighted: the factor on its variance limits its influence to
-    that at ``DOUBTED`` (Huber 1964).
+    A common step of all neighbours does not affect rejection, so that no change is hidden. The variance of a
+    distant value that is not rejected is multiplied by a factor that limits its influence to that at
+    ``DOUBTED`` (Huber 1964).
 
     Parameters
     ----------
-    rest : (n, m) values less what conditions explain, NaN where missing
-    variance : (n, m) of their noise and of what moves within a day
-    tail : (NEIGHBOURS, m) the last values before
+    rest : (n, m) residuals after conditions, NaN where missing
+    variance : (n, m) variances of their noise and of variation within a day
+    tail : (NEIGHBOURS, m) preceding residuals
     """
     apart, doubt = np.zeros(rest.shape, dtype=np.bool_), np.ones(rest.shape)
     after = tail.copy()
@@ -87,7 +87,7 @@ def outliers(
 
 
 def _running_median(x: FloatArray) -> FloatArray:
-    """Return the median of the nearest values of each; slow variation in a storm rejects none of them."""
+    """Return the median of the values nearest in time to each, so that slow variation causes no rejection."""
     width = min(NEIGHBOURS, x.size)
     medians = np.median(np.lib.stride_tricks.sliding_window_view(x, width), axis=1)
     return np.asarray(medians[np.clip(np.arange(x.size) - width // 2, 0, medians.size - 1)])
@@ -105,10 +105,11 @@ def by_hour(
 
     Parameters
     ----------
-    days : (n,) ascending
-    states : (n,) operating states, averaged apart
-    rows : (n, p); values, noise : (n, m), NaN where missing
-    window_days : 1/24 for an hour
+    days : (n,) times [days], ascending
+    states : (n,) operating states, averaged separately
+    rows : (n, p) regressors
+    values, noise : (n, m) values and variances of their noise, NaN where missing
+    window_days : length of a window [days]
     """
     key = np.floor(days / window_days + 1e-9) * (states.max(initial=0) + 1) + states
     _, first, group = np.unique(key, return_index=True, return_inverse=True)

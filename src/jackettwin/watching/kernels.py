@@ -1,12 +1,12 @@
-"""Compiled filter that removes the effects of conditions and slow processes, and evaluates bets on steps.
+"""Compiled Kalman filter that removes the effects of conditions and slow processes, and tests for steps.
 
 The state of m quantities with p regressors each is
 
     coefficients (m·p), quantity after quantity · slow processes, from fast to slow (m each)
 
-and a row of a table observes quantity q as X·β_q + Σ process_q + noise. Rows are taken one after
-the other and quantities one after the other: the innovations over their standard deviations are z = L⁻¹r of
-the Cholesky factor of the whole series' covariance, without ever making it.
+and a row of a table observes quantity q as X·β_q + Σ process_q + noise. Rows and, within a row, quantities
+are processed one by one. The innovations over their standard deviations are z = L⁻¹r, with L the Cholesky
+factor of the covariance of the whole series, which is never formed.
 """
 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call, untyped-decorator"
@@ -21,7 +21,7 @@ compiled = njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"
 
 @compiled
 def _age(mean, cov, response, first, keep, drive):
-    """Advance one process of all quantities, from state ``first`` on, in time: x ← keep·x + noise."""
+    """Advance one process of all quantities, stored from index ``first`` on: x ← keep·x + noise."""
     m, n = drive.shape[0], mean.size
     for i in range(first, first + m):
         mean[i] *= keep
@@ -53,7 +53,7 @@ def _through(vector, x, q, m):
 
 @compiled
 def _covariance_with(cov, x, q, m, g):
-    """Fill g with the covariance of the state with quantity q."""
+    """Fill g with the covariance between the state and quantity q."""
     for i in range(g.size):
         g[i] = _through(cov[i], x, q, m)
 
@@ -94,20 +94,20 @@ def learn_value(mean, cov, g, nu, s):
 def filter_rows(
     mean, cov, response, info, score, cross, rows, values, noise, gaps, rates, slow, innovation, spread
 ):
-    """Filter some rows; the state is changed in place and the log likelihood of the rows returned.
+    """Filter some rows in place and return their log likelihood.
 
     Parameters
     ----------
     mean, cov : (n,), (n, n) state
-    response : (n_begins, m, n) how the state has followed a unit step of each quantity since each begin
-    info, score : (n_begins, m, m), (n_begins, m) Σ hhᵀ/s and Σ hν/s of these steps, added to
-    cross : (n_begins, n_begins, m, m) Σ hhᵀ/s of a later and an earlier step, added to where the second began
-        no later; of no size if nobody asks
+    response : (n_begins, m, n) response of the state to a unit step of each quantity at each onset
+    info, score : (n_begins, m, m), (n_begins, m) Σ hhᵀ/s and Σ hν/s of these steps, updated in place
+    cross : (n_begins, n_begins, m, m) Σ hhᵀ/s of pairs of steps whose second is not the later one, updated in
+        place; of size zero if not needed
     rows : (n_rows, p) regressors
     values, noise : (n_rows, m) observations, NaN where missing, and the variances of their noise
-    gaps : (n_rows,) days since the row before
+    gaps : (n_rows,) days since the previous row
     rates : (k,) inverse time constants of the processes [1/day]
-    slow : (k, m, m) their stationary covariances
+    slow : (k, m, m) stationary covariances of the processes
     innovation, spread : (n_rows, m) filled with ν and its variance s, NaN where missing
     """
     m, p = slow.shape[1], rows.shape[1]
@@ -146,11 +146,11 @@ def _log_sum(x):
 
 @compiled
 def log_mixed(a, c, mu, square, log_weight, out):
-    """Fill out (n,) with ln of the Bayes factors of steps δ ~ N(μ, v²), mixed over sizes.
+    """Fill ``out`` (n,) with ln of the Bayes factors of steps δ ~ N(μ, v²), averaged over sizes.
 
     Parameters
     ----------
-    a, c : (n,) uᵀAu and uᵀb of each
+    a, c : (n,) uᵀAu and uᵀb of each direction
     mu, square, log_weight : (n_sizes,) μ, v², and ln of the weights
     """
     each = np.empty(mu.size)
@@ -164,9 +164,9 @@ def log_mixed(a, c, mu, square, log_weight, out):
 
 @compiled
 def log_any(info, score, std, log_weight, out):
-    """Fill out (n,) with ln of the Bayes factors of δ ~ N(0, s²I), mixed over sizes.
+    """Fill ``out`` (n,) with ln of the Bayes factors of δ ~ N(0, s²I), averaged over sizes.
 
-    ½ s²bᵀ(I + s²A)⁻¹b − ½ ln det (I + s²A), by Cholesky factors.
+    Each is ½ s²bᵀ(I + s²A)⁻¹b − ½ ln det (I + s²A), computed by Cholesky factors.
 
     Parameters
     ----------

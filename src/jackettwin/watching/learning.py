@@ -1,8 +1,8 @@
-"""Models of unexplained variation that a baseline makes likely, with their uncertainty.
+"""Models of unexplained variation estimated from a baseline, with their uncertainty.
 
 Time constants and shares of the Ornstein-Uhlenbeck processes come from a family of spectra, from a single
-process of hours to 1/f noise from hours to a season. No single one is certain. Several are combined,
-weighted by how well they predicted the baseline and later data; a single estimate would be overconfident.
+process of hours to 1/f noise from hours to a season. Since a single estimate would be overconfident, several
+models are combined, weighted by how well they predicted the baseline and later data.
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ of which a year's baseline contains few independent values."""
 LONG_SHARES = (0.02, 0.003, 0.06, 0.2)
 """Shares of the long process in the variance; the first is tried with every short one."""
 OCTAVES = (0.1, 0.4, 1.6, 6.4, 25.6, 100.0)
-"""Time constants of a power law's processes."""
+"""Time constants of the processes that form a power law [days]."""
 SLOPES = (-0.35, 0.0, 0.35)
-"""Exponents of the shares over the time constant; 0 is 1/f noise over these times."""
+"""Exponents of the shares as a power of the time constant; 0 gives 1/f noise over these times."""
 _SCALE_STD, _SLOW_STD = 0.5, 1.5
 """Prior spread in ln of the factor on stated standard deviations, and of the slow processes' size."""
 _LEAST = 1e-3
-"""Smallest standard deviation of a process, in those of the quantity."""
+"""Smallest standard deviation of a process, in standard deviations of the quantity."""
 SLOW_DAYS = 1.0
-"""Time constant [days] from which processes have their own correlation if no conditions are given:
-they then include the weather, which all modes share, whereas variation within a day is independent."""
+"""Time constant [days] from which processes have a separate correlation if no conditions are given: they then
+include the effect of weather, common to all modes, whereas variation within a day is independent."""
 AGREEMENT = (1.0, 0.7)
 """Shares of the estimated correlation between quantities that are tried."""
 CORRELATIONS = np.array([-0.8, -0.5, -0.2, 0.1, 0.35, 0.6, 0.75, 0.85, 0.93, 0.98])
@@ -46,21 +46,21 @@ CORRELATIONS = np.array([-0.8, -0.5, -0.2, 0.1, 0.35, 0.6, 0.75, 0.85, 0.93, 0.9
 SHARED = np.append(CORRELATIONS, 0.995)
 """Correlations tried for slow processes if all modes share unmeasured weather."""
 _LEAST_OWN, _LEAST_OWN_SHARED = 0.02, 0.005
-"""Smallest eigenvalue of a correlation, and the one if modes share unmeasured weather."""
+"""Smallest eigenvalue of a correlation matrix, and its value if modes share unmeasured weather."""
 MOST_SPECTRA, MOST_TRIED = 3, 10
 _HANDICAP = 1.5
-"""Handicap, in log likelihood, of a model with the same time constants,
-so that models differ in what they predict."""
+"""Reduction of the log likelihood of a model with the time constants of a better one, so that the selected
+models differ in their predictions."""
 LARGER = (1.0, 1.3, 1.7)
 """Factors on the standard deviations of all slow processes, which a baseline may underestimate."""
 STORMY = (1.0, 1.7, 3.0)
-"""The same if no conditions are given: storms are rare and exceed the usual variation by far."""
+"""The same factors if no conditions are given: storms are rare and exceed the usual variation by far."""
 _LEAST_FREEDOM = 4.0
 ONE_LARGER = (2.0, 0.1)
 """Number of standard deviations of ln size by which the slow processes of one quantity may be larger,
 and its probability."""
 _LEAST_APART = 0.25
-"""Smallest such difference; a smaller one would predict the same."""
+"""Smallest such difference; a smaller one hardly changes the predictions."""
 _MOST_APART = 4
 """Number of quantities with such a model, the most uncertain first."""
 _USUAL_APART = 0.2
@@ -86,7 +86,7 @@ class Learnt:
 
 
 def _beside(short: float, share: float) -> Spectrum:
-    """Return a short process with some of a long one."""
+    """Return the spectrum of a short process plus a share of the long one."""
     return (short, *LONG_DAYS), (1.0 - share, share / 2.0, share / 2.0)
 
 
@@ -98,16 +98,17 @@ def _power_law(slope: float) -> Spectrum:
 def learn(
     hours: Hours, prior: RegressionPrior, *, told: tuple[Spectrum, ...] = (), hidden: bool = False
 ) -> Learnt:
-    """Return the models that a baseline makes likely.
+    """Return the most likely models of a baseline.
 
-    Scale and size of each quantity are estimated alone under every spectrum, which is common to all.
-    The models are then weighted by all quantities together.
+    Under every spectrum, which is common to all quantities, the noise scale and the size of the slow
+    processes are estimated for each quantity separately. The models are then weighted by all quantities
+    together.
 
     Parameters
     ----------
-    prior : what is known of the coefficients
-    told : the spectra that it can be, if that is known
-    hidden : whether no conditions are given, so that what they do is part of the unexplained
+    prior : prior of the coefficients
+    told : spectra to choose from, if they are known
+    hidden : whether no conditions are given, so that their effects belong to the unexplained variation
     """
     m = len(prior.std)
     single = [hours.of([q]) for q in range(m)]
@@ -171,10 +172,10 @@ def _weighed(bases: list[Memory], hours: Hours, prior: RegressionPrior, hidden: 
 
 
 def _pooled(log_std: FloatArray, variance: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the shift of ln size of each quantity towards the common one, and its remaining uncertainty.
+    """Return the shift of ln size of each quantity towards the common size, and its remaining uncertainty.
 
     Sizes are assumed to scatter about a common one, by moments (DerSimonian & Laird 1986),
-    so that a quantity whose size the baseline hardly determines takes that of the others.
+    so that a quantity whose size the baseline hardly determines is given that of the others.
     """
     weight = 1.0 / variance
     middle = weight @ log_std / weight.sum()
@@ -194,7 +195,7 @@ def _one_larger(memory: Memory, q: int, spread: float) -> Memory:
 
 
 def _different(scored: list[tuple[float, Memory]]) -> list[tuple[float, Memory]]:
-    """Return the most likely models; those of equal time constants have a handicap."""
+    """Return the most likely models; those with the time constants of a better one are penalised."""
     left = list(scored)
     kept: list[tuple[float, Memory]] = []
     while left and len(kept) < MOST_SPECTRA:
@@ -208,8 +209,8 @@ def _different(scored: list[tuple[float, Memory]]) -> list[tuple[float, Memory]]
 def _larger(freedom: float, factors: tuple[float, ...]) -> FloatArray:
     """Return the probabilities that slow processes are larger than estimated by these factors.
 
-    If the covariance of processes is known from ν independent values, their excursions follow Student's t
-    with ν degrees of freedom: the estimated covariance times ν/χ²_ν, with one factor for all quantities.
+    If the covariance of processes is estimated from ν independent values, their deviations follow Student's t
+    distribution with ν degrees of freedom: a normal one whose covariance is multiplied by ν/χ²_ν.
     """
     between = np.sqrt(np.array(factors[1:]) * np.array(factors[:-1]))
     above = np.append(chdtr(freedom, freedom / between**2), 0.0)
@@ -220,7 +221,7 @@ def _larger(freedom: float, factors: tuple[float, ...]) -> FloatArray:
 def _freedom(hours: Hours, q: int, memory: Memory, prior: RegressionPrior) -> float:
     """Return the number of independent values of a quantity's slow processes in the baseline.
 
-    The logarithm of a standard deviation from ν values has the variance 1/(2ν).
+    It follows from the variance 1/(2ν) of the logarithm of a standard deviation estimated from ν values.
     """
     own, of = hours.of([q]), memory.of([q])
     at = [
@@ -246,7 +247,7 @@ class _Fit:
 
 
 def _alone(own: Hours, prior: RegressionPrior, spectrum: Spectrum, near: _Fit | None) -> _Fit:
-    """Return the most likely scale and size of one quantity; ``near`` is where to start from."""
+    """Return the most likely scale and size of one quantity; the search starts from ``near``."""
     spread = float(np.std(own.values))
     typical = float(np.sqrt(np.median(own.noise)))
     usual = np.log([1.0, max(0.3 * spread, 0.1 * typical)])
@@ -278,7 +279,8 @@ def _correlations(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the correlations of fast and of slow processes, equal unless ``hidden``.
 
-    Each is the posterior mean of a pair; fast and slow ones alternate twice, with the others held.
+    Each is the posterior mean of a pair. Fast and slow correlations are estimated in turn, twice, with the
+    others fixed.
     """
     m = len(memory.scale)
     slow = memory.days >= SLOW_DAYS
@@ -298,10 +300,10 @@ def _pair_mean(
     own: Hours, pair: Memory, prior: RegressionPrior, correlation: FloatArray, chosen: BoolArray,
     tried: FloatArray,
 ) -> FloatArray:  # fmt: skip
-    """Return the correlations of two quantities' processes, (k,): for chosen ones the posterior's mean.
+    """Return the correlations of two quantities' processes, (k,), chosen ones replaced by posterior means.
 
     The prior falls with 1 − ρ² (Lewandowski, Kurowicka & Joe 2009):
-    quantities dominated by noise count as nearly independent.
+    quantities dominated by noise are therefore nearly independent.
     """
     if not chosen.any():
         return correlation
@@ -315,7 +317,7 @@ def _pair_mean(
 
 
 def _positive(correlation: FloatArray, least: float) -> FloatArray:
-    """Return the nearest correlation with no eigenvalue below the least."""
+    """Return the nearest correlation matrix with no eigenvalue below ``least``."""
     values, vectors = np.linalg.eigh(correlation)
     mended = (vectors * np.maximum(values, least)) @ vectors.T
     size = np.sqrt(np.diag(mended))

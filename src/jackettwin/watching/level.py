@@ -1,13 +1,13 @@
-r"""A level that moves all quantities along known directions, followed through what weather does to them.
+r"""Tracking of a common level that changes all quantities in known proportions, in the presence of weather.
 
 .. math:: y_q(t) = X(t) β_q + u_q(t) + u(t) + s_q ℓ(t) + e_q(t)
 
 with y the logarithms of frequencies, X the conditions' regressors (:mod:`jackettwin.watching.design`), β
-unknown coefficients, u what no condition explains (own and common, of days and of weeks), s known slopes, e
-the stated noise, and ℓ a random walk that may jump. Given hyperparameters and the days of jumps all is linear
-and normal: each such hypothesis is a Kalman filter, exact, and the answer is their mixture by evidence.
-Hypotheses of one set of hyperparameters whose jumps lie long ago are merged by their moments (Blom & Bar-
-Shalom 1988), so that a row's cost does not depend on how many there were.
+unknown coefficients, u the unexplained variation (per quantity and common, of days and of weeks), s known
+slopes, e the stated noise, and ℓ a random walk with jumps. For given hyperparameters and days of jumps the
+model is linear and Gaussian, so that a Kalman filter is exact; each such hypothesis is filtered, and the
+result is their mixture weighted by evidence. Hypotheses with the same hyperparameters whose jumps are old are
+merged by their moments (Blom & Bar-Shalom 1988), so that the cost per row is bounded.
 """
 
 from __future__ import annotations
@@ -32,26 +32,26 @@ from jackettwin.watching.level_kernels import (
 UNEXPLAINED = (1e-4, 3e-4, 1e-3, 3e-3)
 """Standard deviations of ln f that no condition explains."""
 WALKS = (1e-4, 5e-4, 3e-3)
-"""Standard deviations of a day's step of the level: a fifth of a per cent, one, or six, in a year."""
+"""Standard deviations of the daily step of the level; they accumulate to 0.2, 1 or 6 % in a year."""
 SCALES = (1.0, 2.5)
 """Factors on stated variances."""
 _GRID = np.array(list(product(UNEXPLAINED, WALKS, SCALES)))
 FAST_DAYS, SLOW_DAYS = 2.0, 30.0
-"""Memories of what is unexplained. A third of its variance is white, a third fast, a third slow; of the
-latter half is common to all quantities."""
+"""Time constants of the unexplained variation. A third of its variance is white, a third fast, a third slow;
+half of the fast and of the slow part is common to all quantities."""
 JUMPS = (0.05, 0.3)
 """Standard deviations of a jump."""
 JUMPS_A_DAY = 1e-3
 _MOST, _YOUNG_ROWS, _OLD_ROWS, _PARENTS = 40, 6, 40, 3
-"""Hypotheses kept by weight; rows for which a new one is kept anyhow; rows after which one's jump is merged
-with others; and hypotheses that may jump on a day."""
+"""Largest number of hypotheses; rows for which a new one is retained regardless of its weight; rows after
+which its jump is merged with others; and number of hypotheses that may branch into a jump on a day."""
 _MOST_ROOTS = 8
-"""Hypotheses that are kept where a window begins."""
+"""Number of hypotheses retained at the beginning of a window."""
 _NEGLIGIBLE = 16.0
-"""Below the likeliest, in ln of the weight: what is dropped."""
+"""Hypotheses whose ln weight is this far below the largest are dropped."""
 _DOUBTFUL = 3.0
 _SMOOTHED = 6
-"""Hypotheses, the likeliest, that the past is smoothed by."""
+"""Number of most likely hypotheses used for smoothing."""
 
 
 @dataclass(frozen=True)
@@ -60,9 +60,9 @@ class Readings:
 
     Attributes
     ----------
-    days : (n,)
+    days : (n,) times [days]
     rows : (n, p) regressors
-    values, noise : (n, m) logarithms less typical ones, NaN where missing, and their stated variances
+    values, noise : (n, m) ln of ratios to typical values, NaN where missing, and their stated variances
     copied : (n,) bool, whether the mean level becomes the reference after the row
     """
 
@@ -80,7 +80,7 @@ class Readings:
 
 @dataclass(frozen=True)
 class Mixture:
-    """Normal distributions with weights: of the level, and of the level less its reference."""
+    """Mixtures of normal distributions: of the level, and of the level minus its reference."""
 
     weights: FloatArray
     level: FloatArray
@@ -91,7 +91,7 @@ class Mixture:
 
 @dataclass(frozen=True)
 class Jump:
-    """That the level jumped lately: how probable, since when, by how much; quantiles of 5, 50 and 95 %."""
+    """A recent jump of the level: its probability, and 5, 50 and 95 % quantiles of its day and size."""
 
     probability: float
     days: tuple[float, float, float]
@@ -100,18 +100,18 @@ class Jump:
 
 @dataclass(frozen=True)
 class Hypotheses:
-    """What is known after some rows.
+    """State after some rows: weighted hypotheses.
 
     Attributes
     ----------
-    mean, cov, log_weight : (h, n), (h, n, n), (h,)
-    model : (h,) which hyperparameters
-    row, jumped : (h,) row and day on which each last jumped; −1 and NaN for never or long ago
-    root : (h,) number at the last :func:`rooted`
-    paths : of each, (row, place in ``JUMPS``) of its jumps since then
-    slopes : (m,) of the quantities with the level
-    n_rows, day : how many rows it knows, and the day of the last
-    taken : Σ of rows' weights in the mean of the level
+    mean, cov, log_weight : (h, n), (h, n, n), (h,) state, its covariance and ln weight of each hypothesis
+    model : (h,) index of its hyperparameters
+    row, jumped : (h,) row and day of its last jump; −1 and NaN if there is none or it is old
+    root : (h,) index of its ancestor at the last :func:`rooted`
+    paths : for each, (row, index in ``JUMPS``) of its jumps since then
+    slopes : (m,) change of each quantity per unit of the level
+    n_rows, day : number of rows processed, and day of the last
+    taken : sum of the rows' weights in the mean of the level
     """
 
     mean: FloatArray
@@ -129,12 +129,12 @@ class Hypotheses:
 
     @property
     def weights(self) -> FloatArray:
-        """Of the hypotheses, (h,); they sum to one."""
+        """Weights of the hypotheses, (h,); they sum to one."""
         return np.asarray(np.exp(self.log_weight - np.logaddexp.reduce(self.log_weight)))
 
     @property
     def mixture(self) -> Mixture:
-        """Where the level is."""
+        """Distribution of the level."""
         level, reference = self.mean[:, LEVEL], self.mean[:, REFERENCE]
         var = self.cov[:, LEVEL, LEVEL]
         apart = var - 2.0 * self.cov[:, LEVEL, REFERENCE] + self.cov[:, REFERENCE, REFERENCE]
@@ -142,7 +142,7 @@ class Hypotheses:
 
     @property
     def jump(self) -> Jump | None:
-        """The last jump, if any hypothesis has one that is not long ago."""
+        """The last jump, if any hypothesis has a recent one."""
         chosen = self.row >= 0
         if not chosen.any():
             return None
@@ -174,7 +174,7 @@ def _root(x: FloatArray) -> FloatArray:
 def mixture_quantiles(
     weights: FloatArray, mean: FloatArray, std: FloatArray, levels: tuple[float, ...]
 ) -> FloatArray:
-    """Return quantiles of a mixture of normal distributions, by halving intervals.
+    """Return quantiles of a mixture of normal distributions, by bisection.
 
     >>> mixture_quantiles(np.ones(1), np.zeros(1), np.ones(1), (0.05, 0.975)).round(3)
     array([-1.645,  1.96 ])
@@ -191,11 +191,11 @@ def mixture_quantiles(
 
 
 def no_rows(slopes: FloatArray, coefficient_std: FloatArray) -> Hypotheses:
-    """Return what is known before the first row: every set of hyperparameters alike, the level at nought.
+    """Return the state before the first row: equal weights of all hyperparameters, and a level of zero.
 
     Parameters
     ----------
-    slopes : (m,) of the quantities with the level
+    slopes : (m,) change of each quantity per unit of the level
     coefficient_std : (m, p) prior standard deviations of the coefficients
     """
     m, p = coefficient_std.shape
@@ -213,18 +213,18 @@ def no_rows(slopes: FloatArray, coefficient_std: FloatArray) -> Hypotheses:
 
 
 def _process_variance(unexplained: FloatArray) -> FloatArray:
-    """Return the variance of each of the four processes: a third of all, halved between own and common."""
+    """Return the variance of each of the four processes: a sixth of the unexplained variance."""
     return np.asarray(unexplained**2 / 6.0)
 
 
 def _decay(gap: float) -> tuple[FloatArray, FloatArray]:
-    """Return what of own and common, fast and slow processes is left after a gap, and what is new."""
+    """Return the factor on each process over a gap, and its new variance as a share of the stationary one."""
     keep = np.exp(-gap / np.array([FAST_DAYS, SLOW_DAYS, FAST_DAYS, SLOW_DAYS]))
     return keep, 1.0 - keep**2
 
 
 def after_row(known: Hypotheses, readings: Readings, r: int) -> tuple[Hypotheses, FloatArray]:
-    """Return what is known after one more row, and the noise (m,) that its values were taken to have."""
+    """Return the state after one more row, and the noise variances (m,) used for its values."""
     day, m = float(readings.days[r]), known.slopes.size
     p = readings.rows.shape[1]
     gap = 0.0 if known.n_rows == 0 else max(day - known.day, 0.0)
@@ -249,7 +249,7 @@ def after_row(known: Hypotheses, readings: Readings, r: int) -> tuple[Hypotheses
 
 
 def _mean_step(taken: float, readings: Readings, r: int, slopes: FloatArray) -> tuple[float, float]:
-    """Return the weight of all rows so far in the mean of the level, and the share of this one."""
+    """Return the weight of all rows so far in the mean of the level, and the share of the current row."""
     seen = np.isfinite(readings.values[r])
     own = float(np.sum(slopes[seen] ** 2 / readings.noise[r][seen]))
     total = taken + own
@@ -257,7 +257,7 @@ def _mean_step(taken: float, readings: Readings, r: int, slopes: FloatArray) -> 
 
 
 def _branched(known: Hypotheses, day: float, gap: float) -> Hypotheses:
-    """Return the hypotheses with those beside them in which the level jumped since the last row."""
+    """Return the hypotheses, extended by those in which the level jumped since the last row."""
     best = np.argsort(-known.log_weight, kind="stable")[:_PARENTS]
     parents, sizes = np.repeat(best, len(JUMPS)), np.tile(np.arange(len(JUMPS)), best.size)
     mean, cov = known.mean[parents], known.cov[parents]
@@ -281,7 +281,7 @@ def _branched(known: Hypotheses, day: float, gap: float) -> Hypotheses:
 
 
 def _pruned(known: Hypotheses) -> Hypotheses:
-    """Return the hypotheses that are worth their cost."""
+    """Return the hypotheses without those of negligible weight."""
     old = (known.row < 0) | (known.n_rows - known.row > _OLD_ROWS)
     if (old & (known.row >= 0)).any():
         known = _merged(known, old)
@@ -308,7 +308,7 @@ def _chosen(known: Hypotheses, kept: IntArray) -> Hypotheses:
 
 
 def _merged(known: Hypotheses, old: BoolArray) -> Hypotheses:
-    """Return the hypotheses with one for each set of hyperparameters that has no jump of late."""
+    """Return the hypotheses with those without a recent jump merged, one per set of hyperparameters."""
     mean, cov = known.mean.copy(), known.cov.copy()
     weight, row, jumped = known.log_weight.copy(), known.row.copy(), known.jumped.copy()
     kept = list(np.flatnonzero(~old))
@@ -328,7 +328,7 @@ def _merged(known: Hypotheses, old: BoolArray) -> Hypotheses:
 
 
 def forecast(known: Hypotheses, days: float) -> Mixture:
-    """Return where the level will be so many days later: it walks on, and may jump once."""
+    """Return the distribution of the level some days later, after a random walk with at most one jump."""
     now = known.mixture
     walked = _GRID[known.model, 1] ** 2 * days
     chance = -np.expm1(-JUMPS_A_DAY * days)
@@ -345,11 +345,11 @@ def forecast(known: Hypotheses, days: float) -> Mixture:
 
 
 def rooted(known: Hypotheses, later: Hypotheses | None = None) -> Hypotheses:
-    """Return hypotheses as roots of those to come: what is smoothed starts here.
+    """Return the hypotheses as roots of later ones, from which smoothing can start.
 
     Parameters
     ----------
-    later : what became of them, rooted there: few of those that are likely then are taken
+    later : later state, descended from these; only the most likely of its roots are returned
     """
     if later is not None:
         weight = np.bincount(later.root, later.weights, known.log_weight.size)
@@ -359,11 +359,11 @@ def rooted(known: Hypotheses, later: Hypotheses | None = None) -> Hypotheses:
 
 
 def smoothed(start: Hypotheses, end: Hypotheses, readings: Readings) -> tuple[Mixture, ...]:
-    """Return what all rows say of the level after each of those since ``start``, where ``end`` is rooted.
+    """Return the level after each row since ``start``, given all rows; ``end`` must be rooted at ``start``.
 
     Parameters
     ----------
-    readings : of the rows between, their noise as it was taken
+    readings : rows between ``start`` and ``end``, with the noise variances that were used
     """
     best = np.argsort(-end.log_weight, kind="stable")[:_SMOOTHED]
     weights = end.weights[best] / end.weights[best].sum()

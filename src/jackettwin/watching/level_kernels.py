@@ -1,4 +1,4 @@
-"""Kalman filters of many hypotheses on one level side by side, and the smoother of one, compiled.
+"""Compiled Kalman filters of many hypotheses on one level in parallel, and the smoother of one hypothesis.
 
 The state of m quantities with p regressors each is
 
@@ -6,7 +6,7 @@ The state of m quantities with p regressors each is
     before
 
 and a row observes quantity q as X·β_q + own_q + common + slope_q·level + noise. ``mean`` is the weighted mean
-of the level so far, ``reference`` a copy of it that was taken once, ``before`` the level before its last
+of the level so far, ``reference`` a copy of the mean made at one row, ``before`` the level before its last
 jump.
 """
 
@@ -19,12 +19,12 @@ import numpy as np
 from jackettwin.watching.kernels import compiled, learn_value
 
 LEVEL, MEAN, REFERENCE, BEFORE = -4, -3, -2, -1
-"""Places in the state, from its end."""
+"""Indices in the state, from its end."""
 
 
 @compiled
 def _age(mean, cov, gap, m, p, keep, grown, walk):
-    """Let processes grow older and the level walk; ``keep``, ``grown`` are as in :func:`smooth_one`."""
+    """Advance the processes and the random walk in time; ``keep``, ``grown`` are as in :func:`smooth_one`."""
     n = mean.size
     first = m * p
     for i in range(first, n - 4):
@@ -40,7 +40,7 @@ def _age(mean, cov, gap, m, p, keep, grown, walk):
 
 @compiled
 def _jump(mean, cov, variance):
-    """Remember the level as it was, and let it jump by anything of a variance."""
+    """Copy the level to ``before``, and add the variance of a jump to it."""
     _copy(mean, cov, mean.size + LEVEL, mean.size + BEFORE)
     cov[mean.size + LEVEL, mean.size + LEVEL] += variance
 
@@ -69,7 +69,7 @@ def _average(mean, cov, share):
 
 @compiled
 def _through(v, x, q, m, slope):
-    """Return h·v, with h how quantity q depends on the state."""
+    """Return h·v, with h the observation vector of quantity q."""
     p = x.size
     first = m * p
     total = slope * v[v.size + LEVEL]
@@ -92,7 +92,7 @@ def _add_h(v, x, q, m, slope, factor):
 
 @compiled
 def age_all(mean, cov, gap, m, p, keep, grown, walk):
-    """Let all hypotheses grow older by a gap of days, in place."""
+    """Advance all hypotheses by a gap of days, in place."""
     for h in range(mean.shape[0]):
         _age(mean[h], cov[h], gap, m, p, keep, grown[h], walk[h])
 
@@ -106,7 +106,7 @@ def jump_all(mean, cov, variance):
 
 @compiled
 def average_all(mean, cov, share, copied):
-    """Let the mean of the level follow, and be the reference from now on if ``copied``, in place."""
+    """Update the mean of the level, and copy it to the reference if ``copied``, in place."""
     for h in range(mean.shape[0]):
         _average(mean[h], cov[h], share)
         if copied:
@@ -115,19 +115,18 @@ def average_all(mean, cov, share, copied):
 
 @compiled
 def learn_all(mean, cov, x, y, noise, slopes, scale, white, weights, doubtful):
-    """Let all hypotheses learn from a row; return their log likelihoods.
+    """Update all hypotheses with a row and return their log likelihoods.
 
-    ``noise`` is filled with what it was taken to be.
-
-    A value that lies more than ``doubtful`` standard deviations from what every likely hypothesis foresees
-    weighs as one that lies so far would (Huber 1964).
+    The noise variance of a value that is more than ``doubtful`` standard deviations from the predictions of
+    all likely hypotheses is increased to limit its influence (Huber 1964); ``noise`` is filled with the
+    variances used.
 
     Parameters
     ----------
     mean, cov : (h, n), (h, n, n), changed in place
     x, y, noise, slopes : (p,), (m,), (m,), (m,); y is NaN where missing, noise a variance, changed in place
-    scale, white : (h,) factors on noise, and variances beside it
-    weights : (h,) of the hypotheses, by which one counts as likely
+    scale, white : (h,) factors on the noise, and additional white variances
+    weights : (h,) weights of the hypotheses, which decide whether one is likely
     """
     m, n = y.size, mean.shape[1]
     out = np.zeros(mean.shape[0])
@@ -155,15 +154,16 @@ def learn_all(mean, cov, x, y, noise, slopes, scale, white, weights, doubtful):
 def smooth_one(
     mean, cov, rows, values, noise, slopes, gaps, jumps, shares, copied, keep, grown, walk, scale, white
 ):
-    """Return what all rows say of the level after each (Bryson & Frazier 1963).
+    """Return the level after each row, given all rows (Bryson & Frazier 1963).
 
     Parameters
     ----------
-    mean, cov : before the first row, changed in place
+    mean, cov : state before the first row, changed in place
     rows, values, noise : (r, p), (r, m), (r, m)
-    gaps, jumps, shares : (r,) days before each row, variance of a jump before it, step of the mean
-    copied : (r,) whether the mean becomes the reference
-    keep, grown : (r, 4), (r, 4) of the processes
+    gaps, jumps, shares : (r,) days before each row, variance of a jump before it, share of the step of the
+        mean
+    copied : (r,) bool, whether the mean becomes the reference
+    keep, grown : (r, 4), (r, 4) factor on each process over the gap, and its new variance
 
     Returns
     -------
@@ -231,7 +231,7 @@ def _back_mean(v, share, copied):
 
 @compiled
 def _back_jump(pull, bend, last, variance):
-    """Take the adjoints back through a jump, if there was one: the level before it counts as the level."""
+    """Propagate the adjoints back through a jump, if there was one; ``before`` then is the level."""
     if variance == 0.0:
         return
     n = pull.size
@@ -250,7 +250,7 @@ def _back_jump(pull, bend, last, variance):
 
 @compiled
 def _back_age(pull, bend, last, first, m, keep):
-    """Take the adjoints back through the time before a row."""
+    """Propagate the adjoints back through the gap before a row."""
     n = pull.size
     for i in range(first, n - 4):
         which = (i - first) // m if i < first + 2 * m else 2 + i - first - 2 * m
@@ -264,7 +264,7 @@ def _back_age(pull, bend, last, first, m, keep):
 
 @compiled
 def _back_value(pull, bend, last, gain, nu, s, x, q, m, slope):
-    """Take the adjoints back through one value: λ ← (I − hKᵀ)λ − hν/s, Λ ← (I − hKᵀ)Λ(I − Khᵀ) + hhᵀ/s."""
+    """Update the adjoints backwards by one value: λ ← (I − hKᵀ)λ − hν/s, Λ ← (I − hKᵀ)Λ(I − Khᵀ) + hhᵀ/s."""
     n = pull.size
     _add_h(pull, x, q, m, slope, -(gain @ pull) - nu / s)
     _add_h(last, x, q, m, slope, -(gain @ last))

@@ -1,4 +1,4 @@
-"""Model of unexplained variation, noise and Ornstein-Uhlenbeck processes, and its filter."""
+"""Model of unexplained variation as noise plus Ornstein-Uhlenbeck processes, and its filter."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Memory:
     scale : (m,) factors on stated standard deviations
     std : (m,) standard deviations of all slow processes together
     days, shares : (k,) time constants of the processes, and their shares of the variance
-    correlation : (k, m, m) of each process between quantities
+    correlation : (k, m, m) correlation of each process between quantities
     """
 
     scale: FloatArray
@@ -69,13 +69,12 @@ def prior_belief(memory: Memory, prior: RegressionPrior) -> Belief:
 
 @dataclass(frozen=True)
 class Bank:
-    """Possible steps: the response of the state to each, and the information of the innovations on them.
+    """Possible steps: response of the state to each, and information of the innovations on each.
 
     Attributes
     ----------
-    response : (n_begins, m, n)
-    info, score : (n_begins, m, m), (n_begins, m) of :func:`jackettwin.watching.kernels.filter_rows`
-    cross : (n_begins, n_begins, m, m) of the same, if ramps are to be judged; else None
+    response, info, score, cross : arrays of :func:`jackettwin.watching.kernels.filter_rows`; ``cross`` is
+        None unless ramps are tested
     """
 
     response: FloatArray
@@ -113,7 +112,7 @@ class Filtered:
     Attributes
     ----------
     innovation, spread : (n_rows, m) ν and its variance
-    log_likelihood : of rows and of the scatter inside hours
+    log_likelihood : log likelihood of the rows and of the scatter within hours
     """
 
     belief: Belief
@@ -127,7 +126,7 @@ def filtered(memory: Memory, belief: Belief, bank: Bank, hours: Hours, last_day:
     """Return state and bank after some hours; ``last_day`` is the time of the previous state."""
     m = hours.values.shape[1]
     if bank.response.shape[1:] != (m, belief.mean.size) or memory.slow.shape != (len(memory.days), m, m):
-        raise ValueError("bank, belief and memory are not of one model")  # compiled code does not look
+        raise ValueError("bank, belief and memory are not of one model")  # compiled code does not check
     if belief.mean.size != m * (hours.rows.shape[1] + len(memory.days)):
         raise ValueError("belief and rows are not of one model")
     mean, cov = belief.mean.copy(), belief.cov.copy()

@@ -1,8 +1,9 @@
-r"""Increased scatter: a failing sensor scatters its modes before it shifts them.
+r"""Increased scatter: a failing sensor increases the scatter of its modes before it shifts them.
 
-The scatter within hours is χ² times the noise variance, which varies a little from day to day,
-as the baseline shows. With a factor distributed as the inverse of χ²_ν/ν, a day's χ²/n over n degrees of
-freedom has Fisher's distribution F(n, ν), and noise increased by g has the likelihood ratio
+The scatter within hours is χ² times the noise variance, which varies slightly from day to day. If this
+variation is a factor distributed as the inverse of χ²_ν/ν, a day's χ²/n over n degrees of freedom has
+Fisher's distribution F(n, ν), and a noise standard deviation increased by the factor g has the likelihood
+ratio
 
 .. math:: \ln L = -\tfrac{n}{2} \ln g^2 - \tfrac{n + ν}{2} \ln \frac{1 + χ^2/(ν g^2)}{1 + χ^2/ν}
 """
@@ -15,19 +16,19 @@ from scipy.special import gammaln
 from jackettwin.arrays import FloatArray
 
 STRONGER = (1.6, 2.5, 4.0)
-"""Factors on the noise's standard deviation that are bet on."""
+"""Tested factors on the standard deviation of the noise."""
 _STEADINESS = np.array([4.0, 6.0, 10.0, 16.0, 30.0, 60.0, 200.0])
 """Degrees of freedom ν that are tried."""
 _DOUBT = 1.0
-"""Log likelihood over the baseline that may be lost for a lower ν."""
+"""Reduction of the baseline's log likelihood that is accepted for a lower ν."""
 
 
 def steadiness(chi2: FloatArray, freedom: FloatArray) -> float:
-    """Return ν from the days of a baseline, the lowest one they allow.
+    """Return the lowest ν that is compatible with the days of a baseline.
 
     Parameters
     ----------
-    chi2, freedom : (n_days,) of one quantity, in units of the noise's mean variance
+    chi2, freedom : (n_days,) scatter of one quantity over the mean noise variance, and its degrees of freedom
     """
     kept = freedom > 0.0
     x, n = chi2[kept], freedom[kept]
@@ -41,7 +42,7 @@ def steadiness(chi2: FloatArray, freedom: FloatArray) -> float:
 
 
 def log_ratios(chi2: FloatArray, freedom: FloatArray, nu: FloatArray) -> FloatArray:
-    """Return ln L of one day for each quantity and factor, (m, n_factors); 0 where nothing was seen.
+    """Return ln L of one day for each quantity and factor, (m, n_factors); 0 where there is no value.
 
     Parameters
     ----------

@@ -20,8 +20,8 @@ class Begins:
     ----------
     days : (n,) first day with records after the change
     since : (n,) last day with records before it
-    log_stake : (n,) ln of what is staked on each
-    log_scatter : (n, m_all, n_factors) ln of the likelihood ratios of louder noise since then
+    log_stake : (n,) ln of the prior weight (stake) of each
+    log_scatter : (n, m_all, n_factors) ln of the likelihood ratios of increased noise since then
     """
 
     days: FloatArray
@@ -36,16 +36,16 @@ class Watch:
 
     Attributes
     ----------
-    labels : of the modes
-    design, lagged : regressors and what late ones remember
-    blocks : of frequencies, and of damping if there is any
-    begins : of changes that are bet on
-    last_day : of the last records
-    accounted : day up to which begins are staked
-    considered : day on which the models' weights were reconsidered
-    arl_years : mean time between false alarms that is promised, at least
-    patience_days : for how long a change has to last
-    power : to which evidence counts
+    labels : names of the modes
+    design, lagged : regressors, and state of the lagged ones
+    blocks : one for each kind of quantity that is monitored
+    begins : possible onsets
+    last_day : day of the last records
+    accounted : day up to which onsets have prior weights
+    considered : day on which the models' weights were last reset in part
+    arl_years : guaranteed lower limit of the mean time between false alarms
+    patience_days : time that a change must last
+    power : power applied to the evidence
     """
 
     labels: tuple[str, ...]
@@ -62,10 +62,10 @@ class Watch:
 
     @property
     def log_threshold(self) -> float:
-        """Ln of A, the days between false alarms."""
+        """Ln of A, the mean days between false alarms."""
         return float(np.log(self.arl_years * YEAR_DAYS))
 
     @property
     def quantities(self) -> tuple[tuple[Kind, int], ...]:
-        """Kind and mode of each watched quantity."""
+        """Kind and mode of each monitored quantity."""
         return tuple((block.kind, int(q)) for block in self.blocks for q in block.kept)

@@ -14,13 +14,14 @@ def shares(
 ) -> tuple[dict[str, float], ...]:
     """Return for each quantity the share of its variance over the baseline by condition.
 
-    The share of a condition is the covariance of its part with the whole (the parts add up to what all
-    explain together). "slow" is the share of unexplained slow processes, "noise" that of identification.
+    The share of a condition is the covariance of its contribution with the quantity, so that the shares add
+    up to the part explained by all conditions. "slow" is the share of unexplained slow processes, "noise"
+    that of identification.
 
     Parameters
     ----------
     rows : (n, p) regressors of the baseline
-    values : (n, m) logarithms, NaN where missing
+    values : (n, m) logarithms of the quantities, NaN where missing
     """
     names = np.array(design.names)
     out = []
@@ -43,7 +44,7 @@ def shares(
 
 
 def slopes(block: Block, design: Design) -> tuple[dict[str, float], ...]:
-    """Return the lasting effect of a unit of each condition on each quantity, about the baseline's mean.
+    """Return the steady-state effect of a unit of each condition on each quantity, about the baseline's mean.
 
     The effects are on logarithms, or directions [rad], in the most frequent operating state, after all lags.
     """

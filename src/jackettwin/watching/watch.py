@@ -1,13 +1,13 @@
-r"""Sequential monitoring: a state that is updated by each day with records, and the result of the day.
+r"""Sequential monitoring: the state is updated with each day's records, which gives a result for the day.
 
 The statistic is that of Shiryaev and Roberts as an e-detector (Shin, Ramdas & Rinaldo 2024),
 
 .. math:: R_t = \sum_{τ \le t} w_τ \, BF(τ, t)
 
-with w_τ the days since the previous onset, so that R_t − t is a martingale while nothing changes.
-The mean time to R_t ≥ A is then at least A days, whatever is bet on and however often it is evaluated.
-BF is the mean over models, directions and sizes. Old onsets are merged:
-the value of one is added to its neighbour's, and R is unchanged.
+with w_τ the days since the previous onset, so that R_t − t is a martingale while nothing changes. The mean
+time to R_t ≥ A is then at least A days, for any choice of tested changes and of times of evaluation. BF is
+the mean over models, directions and sizes. Old onsets are merged: the contribution of one is added to its
+neighbour's, so that R is unchanged.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from jackettwin.watching.scatter import STRONGER
 from jackettwin.watching.state import Begins, Watch
 
 MOST_BEGINS = 26
-"""Number of onsets kept; the work per day grows with it."""
+"""Largest number of onsets; the work per day grows with it."""
 _RECENT = 8
 """Number of latest onsets that are never merged."""
 RECONSIDERED_DAYS, STEADY_DAYS = 10.0, 90.0
@@ -55,15 +55,15 @@ FEWEST_DAYS = 7
 """Fewest days with records in a baseline."""
 PATIENCE, MOST_PATIENCE_DAYS = 1.0 / 36.0, 10.0
 """Time that a change must last if no conditions are given, as a share of the baseline, and its limit in days:
-shorter deviations may be successive storms. Omitting later onsets only lowers R,
-so that the promised rate of false alarms is kept."""
+shorter deviations may be successive storms. Omitting later onsets only lowers R, so that the rate of false
+alarms remains guaranteed."""
 GUARDED = 0.8
-"""Power applied to the evidence if no conditions are given after a baseline of a year,
-when the models are sure of the effects of weather, whose tail is longer than that of any normal process.
-The mean of a Bayes factor does not rise by that (Jensen), so that the promise is kept.
-After a shorter baseline the models are uncertain enough."""
+"""Power applied to the evidence if no conditions are given after a baseline of a year. The estimated models
+are then certain of the effects of weather, whose distribution has longer tails than their normal processes.
+The mean of a Bayes factor does not increase thereby (Jensen's inequality), so that the guarantee holds. After
+a shorter baseline the models are sufficiently uncertain."""
 AGAIN_DAYS = (1.0, 2.0, 3.0, 5.0, 8.0, 13.0, 21.0, 30.0)
-"""Times after an alarm at which its change is looked at again [days]."""
+"""Times after an alarm at which its change is estimated again [days]."""
 KINDS: tuple[Kind, ...] = ("frequency", "damping", "angle")
 
 
@@ -73,12 +73,12 @@ class Look:
 
     Attributes
     ----------
-    day : its last record
-    rest, rest_std : (m_all,) means less what conditions explain, and their standard deviation if nothing has
-        changed
-    log_r : ln of the statistic
+    day : time of the last record
+    rest, rest_std : (m_all,) daily means minus the part explained by conditions, and their standard
+        deviations without a change
+    log_r : ln of the detection statistic
     change : Change or None
-    pending : if there is a change, what is needed to look at it again
+    pending : if there is a change, the data for estimating it again later
     """
 
     day: float
@@ -106,7 +106,7 @@ def columns_to_watch(baseline: History) -> dict[Kind, IntArray]:
             field="baseline",
             value=f"{n_days} days with records, {baseline.days.size} rows",
             allowed=f"at least {FEWEST_DAYS} days with records and 30 values of a mode",
-            remedy="watch for longer, or set --baseline-days so that it covers the healthy time",
+            remedy="monitor for longer, or set --baseline-days so that it covers the time without a change",
         )
     return kept
 
@@ -118,12 +118,13 @@ def start(
     patterns: Sequence[Pattern] = (),
     slopes: Sequence[Slope] = (),
 ) -> Watch:
-    """Return the watch at the end of a baseline.
+    """Return the state of the monitoring at the end of a baseline.
 
     Parameters
     ----------
-    patterns : by which a model's causes would show in the frequencies; they are bet on beside the others
-    slopes : of the frequencies with conditions, as far as a model knows them
+    patterns : changes of the frequencies by the causes of a model; they are tested in addition to general
+        ones
+    slopes : effects of conditions on the frequencies, as far as a model predicts them
 
     Raises
     ------
@@ -168,7 +169,7 @@ def _no_begins(m: int) -> Begins:
 
 
 def step(watch: Watch, day: History) -> tuple[Watch, Look]:
-    """Return the watch after one day's records, and what the day says.
+    """Return the state after one day's records, and the day's result.
 
     Raises
     ------
@@ -176,7 +177,7 @@ def step(watch: Watch, day: History) -> tuple[Watch, Look]:
         If the day lies before the last one.
     """
     if not day.days.size or day.days[0] < watch.last_day:
-        raise InputError("a day that is over already, or without records", field="days", value=watch.last_day)
+        raise InputError("is not after the last day, or has no records", field="days", value=watch.last_day)
     after, spoken = _with_day(watch, day)
     worth = _worth(after)
     log_r = _log_r(after, worth)
@@ -193,12 +194,12 @@ def step(watch: Watch, day: History) -> tuple[Watch, Look]:
 
 @dataclass(frozen=True)
 class PendingChange:
-    """A change that is looked at again as further days come.
+    """A detected change that is estimated again with the records of further days.
 
     Attributes
     ----------
-    watch : the state that has not accepted it
-    alarmed, looked : days of the alarm, and of the last look
+    watch : state of the monitoring in which the change is not accepted
+    alarmed, looked : day of the alarm, and of the last estimate
     """
 
     watch: Watch
@@ -207,15 +208,15 @@ class PendingChange:
 
 
 def look_again(pending: PendingChange, day: History) -> tuple[PendingChange | None, Change | None]:
-    """Return what is still pending after one more day, and the change as it looks now if a look is due.
+    """Return the pending change after one more day, and a new estimate of the change if one is due.
 
-    On the day of the alarm a change is known no better than suffices for an alarm; ``AGAIN_DAYS`` after it
-    it is dated, measured and named anew. No further alarm comes of it.
+    On the day of the alarm onset, size and kind of a change are uncertain; they are estimated again
+    ``AGAIN_DAYS`` later. This raises no further alarm.
     """
     before = pending.watch
     after, _ = _with_day(before, day)
     blocks = (replace(b, log_weights=a.log_weights) for a, b in zip(before.blocks, after.blocks, strict=True))
-    # it had begun by the day of the alarm
+    # the onset is not after the day of the alarm
     after = _thinned(replace(after, blocks=tuple(blocks)), after.begins.since < pending.alarmed)
     worth = _worth(after)
     age, looked = after.last_day - pending.alarmed, pending.looked - pending.alarmed
@@ -228,22 +229,22 @@ def look_again(pending: PendingChange, day: History) -> tuple[PendingChange | No
 
 
 def _pending(watch: Watch) -> PendingChange:
-    """Return what is needed to look at a change again: onsets, and the model that is likeliest with it."""
+    """Return the data for estimating a change again: onsets, and the model most likely with the change."""
     blocks = tuple(with_one_model(b, model_of_change(b, watch.begins.log_stake)) for b in watch.blocks)
     return PendingChange(replace(watch, blocks=blocks), watch.last_day, watch.last_day)
 
 
 def _log_r(watch: Watch, worth: FloatArray) -> float:
-    """Return ln of the statistic."""
+    """Return ln of the detection statistic R."""
     old = watch.begins.days <= watch.last_day - watch.patience_days
     return float(np.logaddexp.reduce((watch.begins.log_stake[:, None] + worth)[old].ravel(), initial=-np.inf))
 
 
 def _with_day(watch: Watch, day: History) -> tuple[Watch, tuple[Spoken, ...]]:
-    """Return the watch with a day's records, and what they say: of its last part if it is divided.
+    """Return the state after a day's records, and their results (of the last part if the day is divided).
 
-    A day has one onset, its first record, and the place that divides it as another. That place is chosen
-    after it was seen, hence only has its share of what is staked on all that might have been chosen.
+    Possible onsets are the first record of the day and the record that divides it. As the latter is chosen
+    from the data, it only has its share of the prior weight of all records that might have been chosen.
     """
     rows, lagged = regressors(watch.design, day, watch.lagged)
     cut = _cut(watch, day, rows)
@@ -266,7 +267,7 @@ def _with_day(watch: Watch, day: History) -> tuple[Watch, tuple[Spoken, ...]]:
 
 
 def _cut(watch: Watch, day: History, rows: FloatArray) -> tuple[int, int] | None:
-    """Return before which record a day is divided, if it is, and between how many places was chosen."""
+    """Return the index of the record before which a day is divided and the number tried, or None."""
     if day.days.size < 2 * ENOUGH:
         return None
     each = [residuals(block, day, rows) for block in watch.blocks]
@@ -277,7 +278,7 @@ def _cut(watch: Watch, day: History, rows: FloatArray) -> tuple[int, int] | None
 def _with_records(
     watch: Watch, records: History, rows: FloatArray, begin: float, log_stake: float
 ) -> tuple[Watch, tuple[Spoken, ...]]:
-    """Return the watch after some records of a day, with an onset before the first of them."""
+    """Return the state after some records of a day, with an onset before the first of them."""
     blocks, spoken = [], []
     for block in watch.blocks:
         hours, apart, block = hours_of(block, records, rows)
@@ -298,9 +299,9 @@ def _with_records(
 
 
 def _worth(watch: Watch) -> FloatArray:
-    """Return ln of the value of a unit stake on each onset, by bet, (n_begins, n_bets).
+    """Return ln of the weighted Bayes factors of each onset and tested change, (n_begins, n_bets).
 
-    The bets are the directions of each block, then the scatter of each quantity by its factor.
+    The tested changes are the directions of each block, then the scatter of each quantity by each factor.
     """
     scatter = watch.begins.log_scatter
     n, m, g = scatter.shape
@@ -312,7 +313,7 @@ def _worth(watch: Watch) -> FloatArray:
 
 
 def _merged(watch: Watch, worth: FloatArray) -> Watch:
-    """Return the state with limited onsets; those closest to a neighbour relative to their age are merged."""
+    """Return the state with at most ``MOST_BEGINS`` onsets; the nearest to another for its age is merged."""
     begins = watch.begins
     if begins.days.size <= MOST_BEGINS:
         return watch
@@ -328,14 +329,14 @@ def _merged(watch: Watch, worth: FloatArray) -> Watch:
 
 
 def _thinned(watch: Watch, keep: BoolArray) -> Watch:
-    """Return the watch with only some of its onsets."""
+    """Return the state with only some of its onsets."""
     begins = watch.begins
     kept = Begins(begins.days[keep], begins.since[keep], begins.log_stake[keep], begins.log_scatter[keep])
     return replace(watch, begins=kept, blocks=tuple(thinned(block, keep) for block in watch.blocks))
 
 
 def _reconsidered(watch: Watch) -> Watch:
-    """Return the state with the models' weights partly reset at intervals; values of onsets are kept."""
+    """Return the state with the models' weights partly reset at intervals; R is unchanged."""
     elapsed = watch.last_day - watch.considered
     if elapsed < RECONSIDERED_DAYS:
         return watch
@@ -351,7 +352,7 @@ def _reconsidered(watch: Watch) -> Watch:
 
 
 def _without(watch: Watch, change: Change, onset: int) -> Watch:
-    """Return the state without bets, ready for the next change; a change is accepted as a step."""
+    """Return the state without onsets, ready for the next change, with this change accepted as a step."""
     blocks, first = [], 0
     for block in watch.blocks:
         m = len(block.kept)
