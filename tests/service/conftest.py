@@ -16,6 +16,7 @@ import pyarrow.parquet as pq
 import pytest
 from fastapi.testclient import TestClient
 from scipy.signal import lfilter
+from tests.service.alerting import Receiver
 from tests.support.observations import estimate, observation
 
 from jackettwin.service import ServiceSettings
@@ -219,6 +220,22 @@ def stranger(users: Service) -> Iterator[TestClient]:
         create_app(users), base_url="http://127.0.0.1:8470", client=HERE, follow_redirects=False
     ) as client:
         yield client
+
+
+@pytest.fixture
+def receiver() -> Iterator[Receiver]:
+    made = Receiver()
+    yield made
+    made.server.shutdown()
+    made.server.server_close()
+
+
+@pytest.fixture
+def clock(service: Service) -> list[datetime]:
+    """The time of the service, which a test sets."""
+    time = [NOON]
+    service.now = lambda: time[0]
+    return time
 
 
 def upload(

@@ -1,15 +1,19 @@
 """A store of every released version is opened by this one, says what it said, and is rebuilt to the same."""
 
 import json
+import sqlite3
+import tarfile
+from contextlib import closing
 from pathlib import Path
 
 import pytest
-from sqlalchemy import select
+from sqlalchemy import MetaData, create_engine, select
 from tests.service.servers import opened
+from tests.store.conftest import fresh
 from tests.store.old_stores import documents, lay_out, schemas
 
 from jackettwin.service.store_commands import rebuild
-from jackettwin.store import backup, people, reading, results, sqlite_url, tables, writing
+from jackettwin.store import backup, handling, people, reading, results, sqlite_url, tables, writing
 from jackettwin.store.columns import rounded
 
 
@@ -33,7 +37,7 @@ def test_an_old_store_says_what_it_said(schema: str, tmp_path: Path) -> None:
                 "viewer_1",
             ]
             assert all(user.scope is None for user in people.list_users(connection))  # they see all
-            assert results.unacknowledged_alarms(connection) == {"wtg_01": 0}
+            assert results.open_alarms(connection) == {"wtg_01": 0}
             before = connection.execute(select(tables.states)).one()
         assert rebuild(database, store, None, None)["days"] == 1
         with reading(database) as connection:
@@ -73,6 +77,58 @@ def test_a_backup_of_it_restores_into_this_version(tmp_path: Path) -> None:
                 for table in (tables.observations, tables.users, tables.states):
                     rows = select(table).order_by(*table.primary_key.columns)
                     assert one.execute(rows).all() == two.execute(rows).all()
+
+
+def test_who_took_note_of_an_alarm_is_known_whatever_its_key(tmp_path: Path) -> None:
+    """0.1.0 kept keys as long as they were; they are shortened since, and must still match."""
+    store = lay_out("0100", tmp_path / "store")
+    finding = {"asset": "wtg_01", "day": "2025-03-01", "code": "changed", "subject": "ü" * 240}
+    with closing(sqlite3.connect(store / "jackettwin.sqlite")) as old, old:
+        key = "/".join(finding.values())
+        row = ("wtg_01", key, "anna", "2025-03-02 08:00:00.000000", "seen")
+        old.execute(
+            'insert into acknowledgements (asset, alarm_key, "by", time_utc, comment) values (?,?,?,?,?)', row
+        )
+    with opened(sqlite_url(store)) as database, reading(database) as connection:
+        (act,) = handling.handled(connection, "wtg_01").history(finding)
+        assert (act.action, act.by, act.comment) == ("acknowledge", "anna", "seen")
+
+
+@pytest.mark.parametrize("kind", ["sqlite", "postgresql"])
+def test_a_backup_that_an_old_version_wrote_is_restored(
+    kind: str, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
+    """Its tables are those of then: some there are no more, some there were not yet."""
+    written = _backup_of("0100", tmp_path)
+    url = sqlite_url(tmp_path) if kind == "sqlite" else fresh(request.getfixturevalue("postgresql_url"))
+    with opened(url) as database:
+        counts = backup.restore(written, database, tmp_path / "new")
+        assert counts["acknowledgements"] == 1
+        with reading(database) as connection:
+            kept = connection.scalars(select(tables.observations.c.document))
+            assert sorted(kept) == sorted(documents("0100"))
+            assert results.open_alarms(connection) == {"wtg_01": 0}
+
+
+def _backup_of(schema: str, folder: Path) -> Path:
+    """Write a backup of an old store as its version did: every table but that of the servers."""
+    engine = create_engine(sqlite_url(lay_out(schema, folder / "old")))
+    there = MetaData()
+    there.reflect(engine)
+    with engine.connect() as connection, tarfile.open(folder / "old.tar.gz", "w:gz") as out:
+        counts = {}
+        for table in there.sorted_tables:
+            if table.name in ("servers", "alembic_version"):
+                continue
+            rows = connection.execute(select(table)).mappings().all()
+            lines = [{k: backup._plain(v) for k, v in row.items()} for row in rows]
+            content = "".join(json.dumps(line) + "\n" for line in lines)
+            backup._add(out, f"tables/{table.name}.jsonl", content.encode())
+            counts[table.name] = len(lines)
+        manifest = {"schema_version": schema, "tables": counts}
+        backup._add(out, "manifest.json", json.dumps(manifest).encode())
+    engine.dispose()
+    return folder / "old.tar.gz"
 
 
 def _numbers(value: object) -> list[float]:

@@ -9,7 +9,7 @@ from typing import Any
 
 from sqlalchemy import Connection, func, select, update
 
-from jackettwin.store import results
+from jackettwin.store import handling
 from jackettwin.store.database import insert_new
 from jackettwin.store.tables import alerts, assets, findings, versions
 
@@ -103,9 +103,14 @@ def findings_after(connection: Connection, last: int) -> list[dict[str, Any]]:
     return [dict(row._mapping) for row in connection.execute(query.where(*new).order_by(findings.c.id))]
 
 
+def finding_of(alert: Alert) -> dict[str, Any]:
+    """Return what the finding that an alert tells is known by."""
+    return {"asset": alert.asset, **{name: alert.message[name] for name in ("day", "code", "subject")}}
+
+
 def still_found(connection: Connection, alert: Alert) -> bool:
     """Tell whether what an alert says is still found: a late record may have undone it."""
     query = select(findings).filter_by(asset=alert.asset, code=alert.message["code"])
     query = query.where(findings.c.day == alert.message["day"])
     key = alert.message["key"]
-    return any(results.alarm_key(dict(row._mapping)) == key for row in connection.execute(query))
+    return any(handling.finding_key(dict(row._mapping)) == key for row in connection.execute(query))

@@ -36,8 +36,8 @@ from jackettwin.store import tables
 from jackettwin.store.database import bring_to, check_schema, writing
 from jackettwin.store.tables import SCHEMA_VERSION, Packed
 
-_LEFT_OUT = ("servers",)
-"""Who serves is not part of what is kept; leases are given back when a restored store is opened."""
+_LEFT_OUT = ("servers", "alembic_version")
+"""Who serves is not part of what is kept, nor what tells the schema; leases are given back when a restored store is opened."""
 _ROWS = 500
 """Rows that are inserted at once."""
 
@@ -155,8 +155,8 @@ def _schema(archive: tarfile.TarFile, source: Path) -> str:
 def _tables_of(connection: Connection) -> list[Table]:
     """Return the tables as they are in the database, which may be of an older schema."""
     there = MetaData()
-    there.reflect(connection, only=[table.name for table in _tables()])
-    return [there.tables[table.name] for table in _tables()]
+    there.reflect(connection, only=lambda name, _: name not in _LEFT_OUT)
+    return there.sorted_tables
 
 
 def _insert(connection: Connection, table: Table, archive: tarfile.TarFile) -> int:

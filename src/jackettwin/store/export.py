@@ -29,7 +29,6 @@ Exported = Literal[
     "assets",
     "work",
     "handling",
-    "acknowledgements",
 ]
 """Tables of whose every row it is known which asset it is of; the first is what is asked for most."""
 EXPORTED: tuple[Exported, ...] = get_args(Exported)

@@ -10,9 +10,9 @@ from typing import Any
 
 from sqlalchemy import ColumnElement, Connection, Delete, Select, Table, delete, func, insert, select
 
+from jackettwin.store import handling
 from jackettwin.store.records import between
 from jackettwin.store.tables import (
-    acknowledgements,
     assets,
     findings,
     knowledge,
@@ -193,8 +193,8 @@ def put_watched(
     What was said before and holds no more, since a late record changed a day, is taken away.
     """
     own = select(findings).filter_by(asset=asset, model_hash=model_hash, origin="watch")
-    before = {(alarm_key(row), row["text"]): row["id"] for row in _rows(connection, own)}
-    now = {(alarm_key(row), row["text"]): row for row in rows}
+    before = {(handling.finding_key(row), row["text"]): row["id"] for row in _rows(connection, own)}
+    now = {(handling.finding_key(row), row["text"]): row for row in rows}
     gone = [number for key, number in before.items() if key not in now]
     connection.execute(delete(findings).where(findings.c.id.in_(gone)))
     new = [row for key, row in now.items() if key not in before]
@@ -242,35 +242,6 @@ def list_findings(
 
 def _rows(connection: Connection, query: Select[Any]) -> list[Mapping[str, Any]]:
     return [dict(row._mapping) for row in connection.execute(query)]
-
-
-_KEY = 240
-"""Characters of a key: the tables have room for 255, and something is put before some."""
-
-
-def alarm_key(row: Mapping[str, Any]) -> str:
-    """Return what an alarm is known by: it keeps its acknowledgement when its day is advanced anew."""
-    key = f"{row['asset']}/{row['day']}/{row['code']}/{row['subject'] or ''}"
-    return key if len(key) <= _KEY else f"{key[: _KEY - 65]} {hashlib.sha256(key.encode()).hexdigest()}"
-
-
-def acknowledge(connection: Connection, row: Mapping[str, Any], by: str, comment: str, now: datetime) -> None:
-    """Note that somebody took note of an alarm; a second time replaces the first."""
-    key = alarm_key(row)
-    connection.execute(delete(acknowledgements).where(acknowledgements.c.alarm_key == key))
-    note = {"asset": row["asset"], "alarm_key": key, "by": by, "time_utc": now, "comment": comment}
-    connection.execute(insert(acknowledgements).values(**note))
-
-
-def acknowledgements_of(connection: Connection, asset: str) -> dict[str, Mapping[str, Any]]:
-    """Return who took note of which alarm, {alarm key: note}."""
-    notes = _rows(connection, select(acknowledgements).filter_by(asset=asset))
-    return {note["alarm_key"]: note for note in notes}
-
-
-def acknowledged_keys(connection: Connection) -> set[str]:
-    """Return the keys of all alarms that somebody took note of."""
-    return set(connection.scalars(select(acknowledgements.c.alarm_key)))
 
 
 def silent_assets(connection: Connection) -> dict[str, str]:
@@ -329,14 +300,16 @@ def _of_version(asset: str, version: int) -> tuple[ColumnElement[bool], ...]:
     return knowledge.c.asset == asset, knowledge.c.version == version
 
 
-def unacknowledged_alarms(connection: Connection, asset: str | None = None) -> dict[str, int]:
-    """Return how many alarms of the adopted versions nobody took note of, {asset: number}."""
+def open_alarms(connection: Connection, asset: str | None = None) -> dict[str, int]:
+    """Return how many alarms of the adopted versions wait for somebody, {asset: number}.
+
+    Those that are muted do not, nor those that somebody acknowledged or closed.
+    """
     columns = (findings.c.asset, findings.c.day, findings.c.code, findings.c.subject)
     query = _adopted(select(*columns), asset).where(findings.c.severity == "alarm")
-    noted = acknowledged_keys(connection)
-    counts: dict[str, int] = {}
+    handled, counts = handling.handled(connection, asset), dict[str, int]()
     for row in _rows(connection, query):
-        counts[row["asset"]] = counts.get(row["asset"], 0) + (alarm_key(row) not in noted)
+        counts[row["asset"]] = counts.get(row["asset"], 0) + handled.standing(row).open
     return counts
 
 

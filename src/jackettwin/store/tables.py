@@ -254,18 +254,6 @@ findings = Table(
 """``origin``: observe, advance or watch. Those of advance are written anew when a day is advanced anew, those
 of watch, which are of no single record (``record_id`` is empty), when the days are judged anew."""
 
-acknowledgements = Table(
-    "acknowledgements",
-    metadata,
-    Column("id", BigId, primary_key=True, autoincrement=True),
-    Column("asset", ForeignKey("assets.name"), nullable=False),
-    Column("alarm_key", String(255), nullable=False, unique=True),
-    Column("by", String(64), nullable=False),
-    Column("time_utc", Utc, nullable=False),
-    Column("comment", Text, nullable=False),
-)
-"""Who took note of an alarm; an alarm is a finding of severity alarm, known by its content."""
-
 handling = Table(
     "handling",
     metadata,

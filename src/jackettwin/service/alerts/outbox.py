@@ -19,7 +19,18 @@ from jackettwin.findings import Finding
 from jackettwin.service.alerts.channels import AnyChannel
 from jackettwin.service.alerts.notice import NotDelivered, Notice
 from jackettwin.service.alerts.rules import Alerts, Rule, is_fresh, read_alerts
-from jackettwin.store import alerts, assets, journal, reading, results, rights, settings, work, writing
+from jackettwin.store import (
+    alerts,
+    assets,
+    handling,
+    journal,
+    reading,
+    results,
+    rights,
+    settings,
+    work,
+    writing,
+)
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Service
@@ -114,7 +125,7 @@ class Outbox(Thread):
             settings.put(connection, settings.ALERTED, {**seen, "last": new[-1]["id"]})
 
     def _add(self, connection: Connection, rule: Rule, finding: dict[str, Any]) -> None:
-        now, key = self._service.now(), results.alarm_key(finding)
+        now, key = self._service.now(), handling.finding_key(finding)
         named = ("asset", "code", "severity", "subject", "text", "day", "params")
         message = {name: finding[name] for name in named}
         message |= {"time_utc": finding["time_utc"].isoformat(), "key": key}
@@ -126,22 +137,26 @@ class Outbox(Thread):
             alerts.add(connection, to, f"unanswered {key}", finding["asset"], later, now, due)
 
     def _due(self) -> list[alerts.Alert]:
-        """Return what is to be sent now; what somebody dealt with, or what holds no more, is withdrawn."""
+        """Return what is to be sent now.
+
+        What somebody dealt with, or what holds no more, is withdrawn; what is muted waits.
+        """
         now = self._service.now()
         with reading(self._service.database) as connection:
             found = alerts.due(connection, now)
             if not found:
                 return []
-            noted = results.acknowledged_keys(connection)
-            gone = [
+            handled = handling.handled(connection)
+            stands = {alert.id: handled.standing(alerts.finding_of(alert)) for alert in found}
+            gone = {
                 alert.id
                 for alert in found
-                if alert.message["key"] in noted or not alerts.still_found(connection, alert)
-            ]
+                if stands[alert.id].answered or not alerts.still_found(connection, alert)
+            }
         if gone:
             with writing(self._service.database) as connection:
                 alerts.end(connection, gone, alerts.WITHDRAWN, now)
-        return [alert for alert in found if alert.id not in set(gone)]
+        return [alert for alert in found if stands[alert.id].open and alert.id not in gone]
 
     def _send(self, name: str, group: Sequence[alerts.Alert]) -> None:
         channel = self._told.channels.get(name)

@@ -14,7 +14,7 @@ from jackettwin.errors import InputError
 from jackettwin.service import workers
 from jackettwin.service.intake.examination import profile
 from jackettwin.service.web.schemas import (
-    AlarmOut,
+    ActOut,
     ChangeOut,
     ComparisonOut,
     FindingOut,
@@ -23,7 +23,7 @@ from jackettwin.service.web.schemas import (
     SupportsOut,
     TwinOut,
 )
-from jackettwin.store import assets, results
+from jackettwin.store import assets, handling, results
 from jackettwin.store.records import read_cursor, write_cursor
 from jackettwin.version import __version__
 
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from jackettwin.service.context import Service
 
 T = TypeVar("T")
+F = TypeVar("F", bound=FindingOut)
 RowNumber = Path(ge=1, le=2**53)
 """A row's number, as JavaScript can hold it."""
 
@@ -78,37 +79,38 @@ def _mode_out(row: Mapping[str, Any]) -> ModeOut:
 
 
 def findings(
-    connection: Connection, version: assets.Version, severity: str | None, cursor: str | None, limit: int
-) -> Page[FindingOut]:
-    """Return a page of findings, newest first."""
-    rows = _findings(connection, version, severity, cursor, limit)
-    return _page(rows, limit, lambda row: FindingOut(**{k: row[k] for k in FindingOut.model_fields}))
-
-
-def _findings(
-    connection: Connection, version: assets.Version, severity: str | None, cursor: str | None, limit: int
-) -> list[Mapping[str, Any]]:
+    connection: Connection,
+    version: assets.Version,
+    severity: str | None,
+    cursor: str | None,
+    limit: int,
+    kind: type[F],
+) -> Page[F]:
+    """Return a page of findings, newest first, with how they stand."""
     chosen: dict[str, Any] = {"severity": severity, "before": _row(cursor), "limit": limit + 1}
-    return results.list_findings(connection, version.asset, version.model_hash, **chosen)
+    rows = results.list_findings(connection, version.asset, version.model_hash, **chosen)
+    handled = handling.handled(connection, version.asset)
+    return _page(rows, limit, lambda row: finding_out(row, handled, kind))
 
 
-def alarms(connection: Connection, version: assets.Version, cursor: str | None, limit: int) -> Page[AlarmOut]:
-    """Return a page of alarms with who took note of them."""
-    rows = _findings(connection, version, "alarm", cursor, limit)
-    notes = results.acknowledgements_of(connection, version.asset)
-    return _page(rows, limit, lambda row: alarm_out(row, notes))
-
-
-def alarm_out(row: Mapping[str, Any], notes: Mapping[str, Mapping[str, Any]]) -> AlarmOut:
-    """Return an alarm as the API speaks of it."""
-    note = notes.get(results.alarm_key(row), {})
-    known = {name: row[name] for name in FindingOut.model_fields}
-    return AlarmOut(
-        **known,
-        acknowledged_by=note.get("by"),
-        acknowledged_utc=note.get("time_utc"),
-        comment=note.get("comment"),
-    )
+def finding_out(row: Mapping[str, Any], handled: handling.Handled, kind: type[F]) -> F:
+    """Return a finding as the API speaks of it."""
+    standing, named = handled.standing(row), kind.model_fields
+    noted, closed = standing.acknowledged, standing.closed
+    known = {
+        **row,
+        "acknowledged_by": noted and noted.by,
+        "acknowledged_utc": noted and noted.time_utc,
+        "comment": noted and noted.comment,
+        "assigned_to": standing.assigned_to,
+        "muted_until_utc": standing.muted_until_utc,
+        "closed_by": closed and closed.by,
+        "closed_utc": closed and closed.time_utc,
+        "close_reason": closed and closed.comment,
+    }
+    if "history" in named:
+        known["history"] = [ActOut.model_validate(act, from_attributes=True) for act in handled.history(row)]
+    return kind(**{name: known[name] for name in named})
 
 
 def twin(

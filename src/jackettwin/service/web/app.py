@@ -19,7 +19,7 @@ from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 from jackettwin.service.context import Service
 from jackettwin.service.web import auth, pages, problems
 from jackettwin.service.web.dependencies import KnownAnswer, sent
-from jackettwin.service.web.routes import assets, health, jobs, modes, oidc, people, records
+from jackettwin.service.web.routes import assets, findings, health, jobs, modes, oidc, people, records
 from jackettwin.version import __version__
 
 API = "/api/v1"
@@ -31,6 +31,7 @@ ROUTERS = (
     assets.router,
     records.router,
     modes.router,
+    findings.router,
     jobs.router,
     health.router,
 )

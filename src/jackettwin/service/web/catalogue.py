@@ -150,7 +150,7 @@ def overview(
     It takes the same few queries however many there are.
     """
     counts, said = records.count_by_status(connection, name), results.count_findings(connection, name)
-    unseen = results.unacknowledged_alarms(connection, name)
+    unseen = results.open_alarms(connection, name)
     return [
         _asset_out(row, counts.get(row.name, {}), said.get(row.name, {}), unseen.get(row.name, 0))
         for row in assets.summaries(connection, name, archived=archived)

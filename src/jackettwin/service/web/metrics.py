@@ -119,7 +119,7 @@ def _measure_assets(measures: _Measures, connection: Connection, seen: rights.As
     for name, said in _seen(results.count_findings(connection), seen):
         for severity, n in said.items():
             gauge("findings", "Findings by asset and severity", n, asset=name, severity=severity)
-    for name, n in _seen(results.unacknowledged_alarms(connection), seen):
+    for name, n in _seen(results.open_alarms(connection), seen):
         gauge("alarms_open", "Alarms that nobody took note of", n, asset=name)
     for name, last in _seen({a.name: a.last_record_utc for a in assets.summaries(connection)}, seen):
         if last is not None:

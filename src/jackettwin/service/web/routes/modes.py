@@ -1,9 +1,9 @@
-"""What the twin says: modes, state, findings, alarms."""
+"""What the twin says: modes, states, tables for other programs."""
 
 from __future__ import annotations
 
 from datetime import datetime
-from typing import Annotated, Literal
+from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
 from fastapi.responses import StreamingResponse
@@ -18,25 +18,21 @@ from jackettwin.service.web.dependencies import (
     Parts,
     Route,
     Told,
-    Writes,
     known_asset,
     known_version,
 )
-from jackettwin.service.web.problems import ApiError, answers
+from jackettwin.service.web.problems import answers
 from jackettwin.service.web.schemas import (
-    Acknowledgement,
-    AlarmOut,
     BudgetOut,
     ComparisonOut,
     ExploredOut,
-    FindingOut,
     ModeOut,
     Page,
     SensitivityOut,
     SupportsOut,
     TwinOut,
 )
-from jackettwin.store import Exported, exported, journal, people, results, writing
+from jackettwin.store import Exported, exported, people, results, writing
 
 router = APIRouter(tags=["answers"], route_class=Route)
 
@@ -122,46 +118,6 @@ def life(asset: AssetName, connection: Told) -> Page[dict[str, object]]:
     """Return the life at every joint; empty until the twin computes fatigue."""
     known_asset(connection, asset)
     return Page(items=[])
-
-
-@router.get("/assets/{asset}/findings", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def findings(
-    asset: AssetName,
-    connection: Told,
-    severity: Literal["info", "warning", "alarm"] | None = None,
-    cursor: Cursor = None,
-    limit: Limit = 100,
-) -> Page[FindingOut]:
-    """List what was worth saying, newest first."""
-    return said.findings(connection, known_asset(connection, asset), severity, cursor, limit)
-
-
-@router.get("/assets/{asset}/alarms", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def alarms(asset: AssetName, connection: Told, cursor: Cursor = None, limit: Limit = 100) -> Page[AlarmOut]:
-    """List the findings that ask for a person, newest first, and who took note."""
-    return said.alarms(connection, known_asset(connection, asset), cursor, limit)
-
-
-@router.post(
-    "/alarms/{alarm_id}/acknowledge", dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 404, 422)
-)
-def acknowledge(
-    alarm_id: Annotated[int, said.RowNumber],
-    body: Acknowledgement,
-    who: Asker,
-    parts: Parts,
-    connection: Writes,
-) -> AlarmOut:
-    """Note that somebody took note of an alarm."""
-    row = results.find_finding(connection, alarm_id)
-    if row is None or row["severity"] != "alarm" or not who.sees(row["asset"]):
-        raise ApiError(404, "no such alarm", field="alarm_id", value=str(alarm_id))
-    results.acknowledge(connection, row, who.name, body.comment, parts.now())
-    people.note_down(connection, who.name, "acknowledge", results.alarm_key(row), "ok", parts.now())
-    journal.tell(
-        connection, "finding", row["asset"], {"id": alarm_id, "acknowledged_by": who.name}, parts.now()
-    )
-    return said.alarm_out(row, results.acknowledgements_of(connection, row["asset"]))
 
 
 @router.get(

@@ -1,5 +1,7 @@
 """Rights by asset, findings that people deal with, alerts, shared posts of servers, observations in columns."""
 
+import hashlib
+
 import sqlalchemy as sa
 from alembic import op
 
@@ -38,6 +40,7 @@ def upgrade() -> None:
         sa.Column("until_utc", sa.DateTime()),
     )
     op.create_index("ix_handling_finding", "handling", ["asset", "alarm_key", "id"])
+    _acknowledgements_become_lines()
     op.create_table(
         "alerts",
         sa.Column("id", ROW_NUMBER, primary_key=True),
@@ -63,10 +66,33 @@ def upgrade() -> None:
         op.execute("update observations set document = cast(document as blob)")
 
 
+def _acknowledgements_become_lines() -> None:
+    """Keep who took note of what among all that people did; long keys end in a hash from now on."""
+    named = ("asset", "alarm_key", "by", "time_utc", "comment")
+    handling = sa.table("handling", *(sa.column(name) for name in (*named, "action")))
+    known = sa.table("acknowledgements", *(sa.column(name) for name in ("id", *named)))
+    query = sa.select(*(known.c[name] for name in named)).order_by(known.c.id)
+    for row in op.get_bind().execute(query).mappings().all():
+        key = row["alarm_key"]
+        short = key if len(key) <= 240 else f"{key[:175]} {hashlib.sha256(key.encode()).hexdigest()}"
+        line = {**row, "alarm_key": short, "action": "acknowledge"}
+        op.get_bind().execute(sa.insert(handling).values(**line))
+    op.drop_table("acknowledgements")
+
+
 def downgrade() -> None:
     """Take an empty database back, into which a backup of the version before is to be restored."""
     if op.get_bind().scalar(sa.text("select count(*) from observations")):
         raise NotImplementedError("put back the copy that was made before the upgrade")
+    op.create_table(
+        "acknowledgements",
+        sa.Column("id", ROW_NUMBER, primary_key=True),
+        sa.Column("asset", sa.String(64), sa.ForeignKey("assets.name"), nullable=False),
+        sa.Column("alarm_key", sa.String(255), nullable=False, unique=True),
+        sa.Column("by", sa.String(64), nullable=False),
+        sa.Column("time_utc", sa.DateTime(), nullable=False),
+        sa.Column("comment", sa.Text(), nullable=False),
+    )
     op.drop_index("ix_work_fair", "work")
     for table in ("alerts", "handling", "posts", "asset_groups"):
         op.drop_table(table)
