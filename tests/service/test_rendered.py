@@ -18,8 +18,8 @@ from jackettwin.service.answer_cache import Answer, AnswerCache, has_tag
 from jackettwin.service.context import Service
 from jackettwin.service.web.app import create_app
 from jackettwin.service.web.dependencies import Told
-from jackettwin.service.web.routes import assets, modes, records
-from jackettwin.service.work.housekeeping import Housekeeping, prune
+from jackettwin.service.web.routes import assets, findings, modes, records
+from jackettwin.service.work.housekeeping import Housekeeping, end_mutes, prune
 from jackettwin.store import journal, results, writing
 from jackettwin.store.tables import events
 
@@ -37,7 +37,7 @@ QUERIES = {
     "/assets/{asset}/explore": 4,
     "/assets/{asset}/comparison": 12,
     "/assets/{asset}/life": 3,
-    "/assets/{asset}/findings": 4,
+    "/assets/{asset}/findings": 5,
     "/assets/{asset}/alarms": 5,
 }
 """The most statements that an answer made anew may cost: who asks, which version, and what is asked for."""
@@ -47,7 +47,7 @@ AGAIN = 2
 
 def told() -> list[str]:
     """Return the paths of all routes whose answers change with an event only."""
-    routes = [route for module in (assets, modes, records) for route in module.router.routes]
+    routes = [route for module in (assets, findings, modes, records) for route in module.router.routes]
     hints = [(r.path, get_type_hints(inspect.unwrap(r.endpoint), include_extras=True)) for r in routes]
     return [path for path, found in hints if Told in found.values()]
 
@@ -149,6 +149,17 @@ def test_no_change_leaves_an_old_answer(client: TestClient, service: Service) ->
         Housekeeping(service)
         assert prune(service) > 0
 
+    def muted() -> None:
+        number = client.get("/api/v1/assets/wtg/alarms").json()["items"][0]["id"]
+        until = (service.now() + timedelta(days=1)).isoformat()
+        answer = client.post(f"/api/v1/findings/{number}/mute", json={"until_utc": until})
+        assert answer.status_code == 200
+
+    def mute_over() -> None:
+        now = service.now()
+        service.now = lambda: now + timedelta(days=2)
+        end_mutes(service)
+
     steps: list[Callable[[], object]] = [
         lambda: upload(client, 1),
         remember,
@@ -166,6 +177,8 @@ def test_no_change_leaves_an_old_answer(client: TestClient, service: Service) ->
         lambda: client.post("/api/v1/assets", json={"name": "other", "twin": TWIN}),
         lambda: client.delete("/api/v1/assets/other?confirm=other"),
         alarm,
+        muted,
+        mute_over,
         acknowledged,
         lambda: rebuild(service.database, service.settings.store, None, None),
         forgotten,

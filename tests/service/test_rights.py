@@ -101,6 +101,7 @@ def at(path: str, of: dict[str, str]) -> str:
 def test_nothing_of_another_asset_is_reached_by_any_route(customer: TestClient, users: Service) -> None:
     theirs = owned(users, OTHERS)
     bodies = {"comment": "x", "picks": [], "values": {}, "time_utc": [], "twin": TWIN}
+    bodies |= {"to": None, "until_utc": "2100-01-01T00:00:00Z", "reason": "x"}
     walked = 0
     for method, path, role in routes():
         named = set(re.findall(r"{(\w+)}", path)) & {"asset", "record_id", "job_id", "alarm_id", "finding_id"}
