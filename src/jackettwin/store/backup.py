@@ -37,7 +37,7 @@ from jackettwin.store.database import bring_to, check_schema, writing
 from jackettwin.store.tables import SCHEMA_VERSION, Packed
 
 _LEFT_OUT = ("servers", "alembic_version")
-"""Who serves is not part of what is kept, nor what tells the schema; leases are given back when a restored store is opened."""
+"""Neither who serves is kept, nor which schema: a restored store gives leases back when it is opened."""
 _ROWS = 500
 """Rows that are inserted at once."""
 
