@@ -53,8 +53,8 @@ class Act:
 
 
 @dataclass(frozen=True)
-class Standing:
-    """How a finding stands, after all that was done with it."""
+class HandlingStatus:
+    """How a finding stands after all that was done with it."""
 
     acknowledged: Act | None = None
     closed: Act | None = None
@@ -71,7 +71,7 @@ class Standing:
         """Whether it waits for somebody to take note of it."""
         return not self.answered and self.muted_until_utc is None
 
-    def after(self, act: Act) -> Standing:
+    def after(self, act: Act) -> HandlingStatus:
         """Return how it stands after one more act."""
         match act.action:
             case "acknowledge":
@@ -103,9 +103,9 @@ class Handled:
         mine = self._acts.get(finding_key(row), []) + self._acts.get(topic_key(row), [])
         return [act for _, act in sorted(mine, key=lambda numbered: numbered[0])]
 
-    def standing(self, row: Mapping[str, Any]) -> Standing:
+    def standing(self, row: Mapping[str, Any]) -> HandlingStatus:
         """Return how a finding stands."""
-        found = Standing()
+        found = HandlingStatus()
         for act in self.history(row):
             found = found.after(act)
         return found
