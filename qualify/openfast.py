@@ -176,14 +176,21 @@ def reduced_to_interface(asset: Asset) -> Superelement:
     return superelement(base, number=MODES, band_hz=BAND_HZ)
 
 
-def at_rest(structure: Structure, element: Superelement) -> tuple[float, ...]:
-    """Return the motions of the interface and of the tower top under the weight, on the element's springs."""
+def at_rest(
+    structure: Structure, element: Superelement, *, thrust: FloatArray | None = None
+) -> tuple[float, ...]:
+    """Return the motions of the interface and of the tower top under the weight, on the element's springs.
+
+    ``thrust`` (6,) are forces and moments at the tower top beside it [N, N·m].
+    """
     _, tower = at_interface(structure)
     assert tower is not None
     base = structure.interface_nodes[0]
     assembly = assemble(replace(tower, reactions=(Reaction(base),)), gravity=True)
     load = self_weight(assembly)
     load[assembly.dofs(base)] += element.weight_n[:INTERFACE]
+    if thrust is not None:
+        load[assembly.dofs(structure.top_node)] += thrust
     springs = Support(springs=(Spring(base, element.interface_stiffness),))
     u = static_displacement(build_system(assembly, springs), load)
     return tuple(float(v) for node in (base, structure.top_node) for v in u[assembly.dofs(node)])

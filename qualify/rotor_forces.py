@@ -40,6 +40,7 @@ SLOPE_1_M = 0.012
 """Turn of the tower top over its way in the first modes of the records' asset."""
 BANDS = {"0.02–0.12 Hz": (0.02, 0.12), "0.14–0.21 Hz": (0.14, 0.21), "0.3–0.6 Hz": (0.3, 0.6)}
 DEPTH_M = 72.0
+_STANDING = {"Wake_Mod": "0", "UA_Mod": "0"}
 
 
 def main() -> None:
@@ -150,20 +151,7 @@ def aerodyn(program: str, decks: Path, folder: Path, scenario: Scenario) -> tupl
     primary = write_case(
         folder, scenario.asset.structure, turbine(), run, foundation="unused", depth_m=DEPTH_M
     )
-    inflow = (decks / "IEA-15-240-RWT" / "IEA-15-240-RWT_InflowFile.dat").read_text()
-    inflow = _set(inflow, "WindType", "3")
-    (folder / "inflow.dat").write_text(_set(inflow, "FileName_BTS", '"wind.bts"'))
-    deck = decks / "IEA-15-240-RWT-Monopile" / "IEA-15-240-RWT-Monopile_AeroDyn15.dat"
-    text = deck.read_text().replace("../IEA-15-240-RWT/", f"{decks.resolve()}/IEA-15-240-RWT/")
-    for keyword, value in (("Wake_Mod", "0"), ("UA_Mod", "0"), ("NumTwrNds", "18")):
-        text = _set(text, keyword, value)
-    kept = []
-    for line in text.splitlines():
-        table = re.match(r"^ *\d+\.\d{3} +\d", line)
-        # version 5 knows no Buoyancy, and seven columns; its tower stands on ours and ends below our top
-        if not (" Buoyancy " in line or line.startswith("  15.000") or " 144.386 " in line):
-            kept.append(line + ("   0.0   0.0" if table else ""))
-    (folder / "aero.dat").write_text("\n".join(kept))
+    aero_files(decks, folder, inflow={"WindType": "3", "FileName_BTS": '"wind.bts"'}, aero=_STANDING)
     log = folder / "log.txt"
     with log.open("w") as stream:
         subprocess.run([program, primary.name], cwd=folder, stdout=stream, stderr=stream, check=True)
@@ -177,6 +165,26 @@ def aerodyn(program: str, decks: Path, folder: Path, scenario: Scenario) -> tupl
     force, moment = turn @ hub[:3], turn @ hub[3:]
     arm = np.array([-rotor.overhang, 0.0, rotor.hub_height])
     return np.vstack([force, moment + np.cross(arm, force.T).T]), step
+
+
+def aero_files(decks: Path, folder: Path, *, inflow: dict[str, str], aero: dict[str, str]) -> None:
+    """Write the public inflow and AeroDyn files as version 5 reads them, some values changed."""
+    public = decks / "IEA-15-240-RWT"
+    text = (public / "IEA-15-240-RWT_InflowFile.dat").read_text()
+    for keyword, value in inflow.items():
+        text = _set(text, keyword, value)
+    (folder / "inflow.dat").write_text(text)
+    deck = decks / "IEA-15-240-RWT-Monopile" / "IEA-15-240-RWT-Monopile_AeroDyn15.dat"
+    text = deck.read_text().replace("../IEA-15-240-RWT/", f"{public.resolve()}/")
+    for keyword, value in (aero | {"NumTwrNds": "18"}).items():
+        text = _set(text, keyword, value)
+    kept = []
+    for line in text.splitlines():
+        table = re.match(r"^ *\d+\.\d{3} +\d", line)
+        # version 5 knows no Buoyancy, and seven columns; its tower stands on ours and ends below our top
+        if not (" Buoyancy " in line or line.startswith("  15.000") or " 144.386 " in line):
+            kept.append(line + ("   0.0   0.0" if table else ""))
+    (folder / "aero.dat").write_text("\n".join(kept))
 
 
 def _set(text: str, keyword: str, value: str) -> str:

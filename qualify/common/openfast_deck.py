@@ -82,6 +82,8 @@ class Run:
     """Whether inflow.dat and aero.dat blow on it."""
     fixed: bool = False
     """Whether nothing of it moves."""
+    rotor_rpm: float = 0.0
+    """At which the rotor turns, whatever it is blown with."""
     water: bool = False
     """Whether it stands in the sea of seastate.dat, with the members of hydrodyn.dat."""
 
@@ -182,7 +184,7 @@ def _elastodyn(structure: Structure, turbine: Turbine, run: Run, base: float) ->
     rows += [(str(not run.fixed), f"Ptfm{key}DOF") for key in ("Sg", "Sw", "Hv", "R", "P", "Y")]
     rows += ["INITIAL CONDITIONS", (0.0, "OoPDefl"), (0.0, "IPDefl")]
     rows += [(np.degrees(r.pitch), f"BlPitch({k})") for k in (1, 2, 3)]
-    rows += [(0.0, key) for key in ("TeetDefl", "Azimuth", "RotSpeed", "NacYaw")]
+    rows += [(0.0, "TeetDefl"), (0.0, "Azimuth"), (run.rotor_rpm, "RotSpeed"), (0.0, "NacYaw")]
     bend = np.subtract(run.rest[6:8], run.rest[:2]) - (top - base) * np.array([run.rest[4], -run.rest[3]])
     rows += [(run.offset_m + bend[0], "TTDspFA"), (run.offset_m + bend[1], "TTDspSS")]
     rows += [(run.rest[k], f"Ptfm{key}") for k, key in enumerate(("Surge", "Sway", "Heave"))]

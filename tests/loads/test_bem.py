@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.loads.aerodynamics.bem import operating_damping, operating_point, steady_operation
 from jackettwin.loads.aerodynamics.rotor import rotor_loads
 from jackettwin.loads.aerodynamics.turbine_files import read_rotor
+from jackettwin.loads.operation.bem import operating_point, steady_operation
+from jackettwin.loads.operation.dynamic_inflow import operating_damping
 
 
 @pytest.fixture(scope="module")

@@ -29,6 +29,7 @@ GROUPS = {
         "soil": "Compute curves, stiffness, capacity of a pile of FOUNDATION.",
         "law": "Draw creep, relaxation, storage and loss of support laws.",
         "check": "Check members and joints of STRUCTURE, or of a scenario.",
+        "operation": "Compute what the rotor at work damps and shakes, by wind.",
         "fatigue": "Count cycles, and tell damage and life of welds.",
     },
     "Simulated": {

@@ -1,9 +1,3 @@
-from .aerodynamics.bem import (
-    Control as Control,
-    OperatingPoint as OperatingPoint,
-    operating_damping as operating_damping,
-    operating_point as operating_point,
-)
 from .aerodynamics.rotor import (
     AIR_KG_M3 as AIR_KG_M3,
     CompiledRotor as CompiledRotor,
@@ -54,6 +48,19 @@ from .members.water_files import (
     depth_of as depth_of,
     water_members as water_members,
 )
+from .operation.bem import (
+    Control as Control,
+    OperatingPoint as OperatingPoint,
+    operating_point as operating_point,
+)
+from .operation.dynamic_inflow import operating_damping as operating_damping
+from .operation.excitation import (
+    TowerOutline as TowerOutline,
+    Turbulent as Turbulent,
+    passing_loads as passing_loads,
+    turbulent_loads as turbulent_loads,
+)
+from .operation.schedule import read_schedule as read_schedule
 from .sea.current import Current as Current
 from .sea.given_kinematics import (
     Kinematics as Kinematics,

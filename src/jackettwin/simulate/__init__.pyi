@@ -1,8 +1,11 @@
+from .at_work import LEFT_OUT as LEFT_OUT, at_work as at_work, work_row as work_row
 from .batch import pending_cases as pending_cases, record_path as record_path, run_set as run_set
 from .members import scenario_uses as scenario_uses, water_notes as water_notes
+from .motion.model import asset_model as asset_model
 from .record import Simulation as Simulation, simulate as simulate
 from .resultant import loads_document as loads_document
 from .scenario.air import rotor_notes as rotor_notes
+from .scenario.asset import Asset as Asset
 from .scenario.files import read_scenario as read_scenario, shipped_scenarios as shipped_scenarios
 from .scenario.scenario import Scenario as Scenario
 from .scenario.sets import read_set as read_set, shipped_sets as shipped_sets

@@ -12,9 +12,9 @@ from scipy.interpolate import PchipInterpolator
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import Part, WindIO, find_file, read_yaml, windio
-from jackettwin.loads.aerodynamics.bem import Control
 from jackettwin.loads.aerodynamics.blades import Blade, Polar, blend_polars, stall_delay
 from jackettwin.loads.aerodynamics.rotor import Rotor
+from jackettwin.loads.operation.bem import Control
 
 _STEEPEST = radians(30.0)
 """Of a shaft or a cone: steeper ones are degrees where radians belong."""

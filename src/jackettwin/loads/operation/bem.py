@@ -1,4 +1,4 @@
-r"""Power production: steady blade element momentum theory, and its damping.
+r"""Power production: steady blade element momentum theory.
 
 Each ring's inflow angle φ solves sin φ/(1 − a) = (V/Ωr) cos φ/(1 + a′) (Ning 2014, Wind Energy 17:1327),
 with Prandtl's losses at tip and hub and Buhl's (2005) thrust at high induction. The ring is taken normal to
@@ -15,7 +15,8 @@ from scipy.optimize import brentq
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
-from jackettwin.loads.aerodynamics.rotor import AIR_KG_M3, Linearised, Rotor, linearise
+from jackettwin.loads.aerodynamics.rotor import AIR_KG_M3, Rotor
+from jackettwin.loads.operation.schedule import Schedule
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,8 @@ class Control:
     """Generator power over aerodynamic power (IEA 15 MW: 95.756 %)."""
     wind_speeds_m_s: tuple[float, float] | None = None
     """Cut-in and cut-out; None if not known."""
+    schedule: Schedule | None = None
+    """Speed and pitch by wind speed; None holds the tip-speed ratio, then the power."""
 
 
 class OperatingPoint(NamedTuple):
@@ -68,24 +71,54 @@ def steady_operation(
             value=(wind_speed, rotor_speed),
             allowed="> 0",
         )
-    blade = rotor.blade
-    r = (rotor.hub_radius + blade.z) * np.cos(rotor.cone) + blade.prebend * np.sin(rotor.cone)
-    tangential = rotor_speed * r
+    r = ring_radius(rotor)
+    wind = np.full(r.size, wind_speed)
+    induced = balanced_wake(rotor, wind, rotor_speed * r, pitch)
+    axial, tangential = ring_forces(rotor, wind, rotor_speed * r, pitch, induced, density=density)
+    return OperatingPoint(wind_speed, rotor_speed, pitch, float(axial.sum()), float(r @ tangential), induced)
+
+
+def ring_radius(rotor: Rotor) -> FloatArray:
+    """Return the distance (n,) of the blade's stations from the shaft [m]."""
+    return np.asarray(
+        (rotor.hub_radius + rotor.blade.z) * np.cos(rotor.cone) + rotor.blade.prebend * np.sin(rotor.cone)
+    )
+
+
+def balanced_wake(rotor: Rotor, wind: FloatArray, swirl: FloatArray, pitch: float) -> FloatArray:
+    """Return the induced velocities (n, 2), axial and tangential [m/s], that balance each ring's momentum.
+
+    ``wind`` and ``swirl`` (n,) are the air's velocity along the shaft and around it, relative to the blade
+    and without the wake [m/s].
+    """
+    r = ring_radius(rotor)
     low, high = np.full(r.size, 1e-6), np.full(r.size, 0.5 * np.pi)
     for _ in range(50):
         phi = 0.5 * (low + high)
         a, da = _induction(rotor, r, phi, pitch)
-        residual = np.sin(phi) / (1.0 - a) - wind_speed / tangential * np.cos(phi) / (1.0 + da)
+        residual = np.sin(phi) / (1.0 - a) - wind / swirl * np.cos(phi) / (1.0 + da)
         low, high = np.where(residual < 0.0, phi, low), np.where(residual < 0.0, high, phi)
-    a, da = _induction(rotor, r, phi, pitch)
-    axial, swirl = wind_speed * (1.0 - a), tangential * (1.0 + da)
-    cl, cd = blade.coefficients(phi - pitch - blade.twist)
-    scale = 0.5 * density * (axial**2 + swirl**2) * blade.chord * blade.weight * rotor.n_blades
-    thrust = scale @ (cl * np.cos(phi) + cd * np.sin(phi))
-    torque = (scale * r) @ (cl * np.sin(phi) - cd * np.cos(phi))
+    a, da = _induction(rotor, r, 0.5 * (low + high), pitch)
     # swirl turns against the rotor: it adds to the tangential wind
-    induced = np.stack([wind_speed * a, tangential * da], axis=1)
-    return OperatingPoint(wind_speed, rotor_speed, pitch, float(thrust), float(torque), induced)
+    return np.stack([wind * a, swirl * da], axis=1)
+
+
+def ring_forces(
+    rotor: Rotor,
+    wind: FloatArray,
+    swirl: FloatArray,
+    pitch: float,
+    induced: FloatArray,
+    *,
+    density: float = AIR_KG_M3,
+) -> tuple[FloatArray, FloatArray]:
+    """Return the forces of all blades (n,) along the shaft and around it, as the rotor turns [N]."""
+    blade = rotor.blade
+    axial, tangential = wind - induced[:, 0], swirl + induced[:, 1]
+    phi = np.arctan2(axial, tangential)
+    cl, cd = blade.coefficients(phi - pitch - blade.twist)
+    scale = 0.5 * density * (axial**2 + tangential**2) * blade.chord * blade.weight * rotor.n_blades
+    return scale * (cl * np.cos(phi) + cd * np.sin(phi)), scale * (cl * np.sin(phi) - cd * np.cos(phi))
 
 
 def _induction(rotor: Rotor, r: FloatArray, phi: FloatArray, pitch: float) -> tuple[FloatArray, FloatArray]:
@@ -114,7 +147,16 @@ def _induction(rotor: Rotor, r: FloatArray, phi: FloatArray, pitch: float) -> tu
 def operating_point(
     rotor: Rotor, control: Control, wind_speed: float, *, density: float = AIR_KG_M3
 ) -> OperatingPoint:
-    """Return the point the controller holds: optimal speed and zero pitch, then rated power by pitching."""
+    """Return the point the controller holds: its schedule's, or optimal speed and no pitch, then rated power.
+
+    Raises
+    ------
+    InputError
+        If a schedule does not reach that wind.
+    """
+    if control.schedule is not None:
+        speed, pitch = control.schedule.at(wind_speed)
+        return steady_operation(rotor, wind_speed, rotor_speed=speed, pitch=pitch, density=density)
     speed = float(
         np.clip(
             control.tip_speed_ratio * wind_speed / rotor.radius,
@@ -130,22 +172,3 @@ def operating_point(
     if at(0.0).power <= wanted:
         return at(0.0)
     return at(float(brentq(lambda pitch: at(pitch).power - wanted, 0.0, np.radians(45.0), xtol=1e-8)))
-
-
-def operating_damping(
-    rotor: Rotor, operation: OperatingPoint, *, yaw_error: float = 0.0, density: float = AIR_KG_M3
-) -> Linearised:
-    """Return the rotor linearised about an operating point with its wake frozen.
-
-    The wake answers within R/V, about ten seconds for a large rotor: slow against the tower's modes. Pitch
-    and speed are held.
-    """
-    return linearise(
-        rotor,
-        operation.wind_speed,
-        pitch=operation.pitch,
-        yaw_error=yaw_error,
-        rotor_speed=operation.rotor_speed,
-        induced=operation.induced,
-        density=density,
-    )

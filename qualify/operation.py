@@ -1,0 +1,178 @@
+"""The rotor at work: our damping and thrust by wind against OpenFAST's free decays.
+
+Writes docs/verification/operation.md where ``OPENFAST=/path/to/openfast`` is set, and ``IEA15=/path`` to the
+folder ``OpenFAST`` of the public repository IEAWindSystems/IEA-15-240-RWT, whose AeroDyn files are used as
+they are but for what OpenFAST 5 reads otherwise. jacket15 as a superelement under an ElastoDyn tower;
+steady even wind, speed and pitch held at what we compute; the tower is drawn aside and let go.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from common.openfast_deck import Run
+from common.page import write_page
+from openfast import (
+    KELVIN_VOIGT,
+    Asset,
+    ComplexArray,
+    FloatArray,
+    _poles_of_decay,
+    at_rest,
+    execute,
+    on_feet,
+    ready,
+    reduced_to_interface,
+)
+from rotor_forces import aero_files
+
+from jackettwin.loads import Linearised, OperatingPoint, operating_damping, operating_point, read_rotor
+from jackettwin.records.readers.openfast import read_text
+from jackettwin.response.superelement.files import write_superelement
+from jackettwin.simulate import Asset as StandingAsset, asset_model
+from jackettwin.simulate.motion.model import TrueMode, true_modes, with_aerodynamics
+
+WINDS = (4.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0)
+BENDING = (8.0, 12.0, 20.0)
+"""Winds in which the blades bend and the airflow about them lags, too."""
+DURATION_S, OFFSET_M, STEP_S = 100.0, 0.3, 0.01
+STARTED_S = {"fore-aft": 4.0, "side-side": 4.0}
+LASTS_S = {"fore-aft": 45.0, "side-side": 96.0}
+"""Of the decays: fore-aft nothing is left after seven periods."""
+STEADY = {"fore-aft": "YawBrTAxp", "side-side": "YawBrTAyp"}
+LABELS = {"fore-aft": "fore_aft_1", "side-side": "side_side_1"}
+RIGID = {"TwrPotent": "0", "TwrShadow": "0", "TwrAero": "False", "UA_Mod": "0", "DBEMT_Mod": "2"}
+UNSTEADY = RIGID | {"UA_Mod": "3"}
+
+
+@dataclass(frozen=True)
+class Decay:
+    """Poles of the first pair by direction, and mean thrust and torque at the hub, of OpenFAST."""
+
+    poles: dict[str, complex]
+    thrust_n: float
+
+
+def main() -> None:
+    program, decks = os.environ.get("OPENFAST", ""), Path(os.environ.get("IEA15", ""))
+    if not (Path(program).is_file() and (decks / "IEA-15-240-RWT").is_dir()):
+        sys.stderr.write("OPENFAST and IEA15 are not set: nothing is run (docs/verification/operation.md)\n")
+        return
+    chosen = tuple(float(v) for v in sys.argv[1:]) or WINDS
+    lines = introduction()
+    rotor, control = read_rotor("iea15")
+    for flexible, winds in ((False, chosen), (True, tuple(v for v in chosen if v in BENDING))):
+        if winds:
+            lines += heading(flexible=flexible)
+        for wind in winds:
+            sys.stderr.write(f"{wind:g} m/s, {'bending' if flexible else 'rigid'} blades\n")
+            at = operating_point(rotor, control, wind)
+            lines.append(row(program, decks, at, flexible=flexible))
+        lines.append("")
+    write_page("operation", lines)
+
+
+def introduction() -> list[str]:
+    return [
+        "# The rotor at work, against OpenFAST",
+        "",
+        "`jacket15` on Kelvin–Voigt feet as an ExtPtfm superelement under an ElastoDyn tower with the IEA",
+        "15 MW rotor of its public AeroDyn files: OpenFAST 5.0.0, blade element momentum with Øye's dynamic",
+        "wake (`DBEMT_Mod 2`), steady even wind, rotor speed and pitch held at ours, tower drawn aside by",
+        "0.3 m and let go. ζ is the whole mode's. Ours: `operating_damping`, shaft locked as there. Bars:",
+        "fore-aft ζ within 10 %, side-side within 15 %.",
+        "`OPENFAST=… IEA15=… python qualify/operation.py` writes this page.",
+        "",
+    ]
+
+
+def heading(*, flexible: bool) -> list[str]:
+    what = "Bending blades, unsteady aerodynamics (`UA_Mod 3`)" if flexible else "Rigid blades, quasi-steady"
+    return [
+        f"**{what}**",
+        "",
+        "| wind [m/s] | rpm, pitch [°] | thrust ours, theirs [MN] | Δ [%] "
+        "| fore-aft f, ζ [%] ours | theirs | Δζ/ζ [%] | side-side f, ζ [%] ours | theirs | Δζ/ζ [%] |",
+        "|---" * 10 + "|",
+    ]
+
+
+def row(program: str, decks: Path, at: OperatingPoint, *, flexible: bool) -> str:
+    rotor, _ = read_rotor("iea15")
+    asset = on_feet("at work", KELVIN_VOIGT, np.degrees(at.pitch))
+    first = 2.0 * np.pi * 0.166
+    mean = operating_damping(rotor, at, omega=first)
+    with tempfile.TemporaryDirectory() as folder:
+        theirs = decayed(program, decks, Path(folder), asset, at, mean, flexible=flexible)
+    ours = {mode.label: mode for mode in our_modes(asset, mean)}
+    d = rotor.shaft
+    thrust = float(d @ mean.load[:3])
+    cells = [f"{at.wind_speed:g}", f"{at.rotor_speed * 30.0 / np.pi:.2f}, {np.degrees(at.pitch):.2f}"]
+    cells += [
+        f"{thrust / 1e6:.3f}, {theirs.thrust_n / 1e6:.3f}",
+        f"{100 * (thrust / theirs.thrust_n - 1):+.1f}",
+    ]
+    for side, label in LABELS.items():
+        pole, mode = theirs.poles[side], ours[label]
+        f, zeta = abs(pole) / 2.0 / np.pi, -pole.real / abs(pole)
+        cells += [f"{mode.frequency_hz:.4f}, {100 * mode.damping_ratio:.2f}", f"{f:.4f}, {100 * zeta:.2f}"]
+        cells.append(f"{100 * (mode.damping_ratio / zeta - 1.0):+.1f}")
+    return f"| {' | '.join(cells)} |"
+
+
+def our_modes(asset: Asset, mean: Linearised) -> tuple[TrueMode, ...]:
+    model = asset_model(StandingAsset(asset.structure, asset.support))
+    return true_modes(with_aerodynamics(model, mean), below_hz=0.5)
+
+
+def decayed(
+    program: str,
+    decks: Path,
+    folder: Path,
+    asset: Asset,
+    at: OperatingPoint,
+    mean: Linearised,
+    *,
+    flexible: bool,
+) -> Decay:
+    """Return what OpenFAST's tower does once it is let go beside where it stands in the wind."""
+    element = reduced_to_interface(asset)
+    write_superelement(element, folder / "jacket.dat")
+    wind = {"WindType": "1", "HWindSpeed": f"{at.wind_speed}", "PLExp": "0.0", "RefHt": "150.0"}
+    aero_files(decks, folder, inflow=wind, aero=UNSTEADY if flexible else RIGID)
+    run = Run(
+        flexible=flexible,
+        duration_s=DURATION_S,
+        step_s=STEP_S,
+        offset_m=OFFSET_M,
+        rest=at_rest(asset.structure, element, thrust=mean.load),
+        wind=True,
+        rotor_rpm=at.rotor_speed * 30.0 / np.pi,
+    )
+    execute(program, ready(folder, asset, run))
+    found = read_text(folder / "case.out")
+    poles = {
+        side: _first(found.times_s, found.data[found.names.index(name)], side)
+        for side, name in STEADY.items()
+    }
+    thrust = found.data[found.names.index("RtFldFxh")]
+    return Decay(poles, float(thrust[found.times_s > 0.6 * DURATION_S].mean()))
+
+
+def _first(t: FloatArray, x: FloatArray, side: str) -> complex:
+    """Return the pole of a decay that is the first mode's: the nearest to 0.17 Hz that is damped."""
+    inside = (t >= STARTED_S[side]) & (t <= LASTS_S[side] + STARTED_S[side])
+    every = round(0.2 / float(t[1] - t[0]))
+    signal = x[inside][::every]
+    poles: ComplexArray = _poles_of_decay(signal - signal.mean(), 0.2, order=14, rows=signal.size // 3)
+    damped = poles[-poles.real > 1e-4]
+    return complex(damped[np.argmin(np.abs(np.abs(damped) - 2.0 * np.pi * 0.17))])
+
+
+if __name__ == "__main__":
+    main()
