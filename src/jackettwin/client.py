@@ -111,6 +111,10 @@ class Client:
         """Return by how much every updated parameter moves each measured mode."""
         return list(self._pages(f"/assets/{asset}/sensitivity"))
 
+    def structure(self, asset: str) -> dict[str, Any]:
+        """Return the structure to draw, its updated complex modes and what was measured of each."""
+        return self._asked("GET", f"/assets/{asset}/structure")
+
     def explored(self, asset: str) -> dict[str, Any]:
         """Return cost surface, cost curves and root loci of the updated law around its medians."""
         return self._asked("GET", f"/assets/{asset}/explore")

@@ -22,7 +22,7 @@ from tests.support.observations import estimate, observation
 from jackettwin.service import ServiceSettings
 from jackettwin.service.context import Service
 from jackettwin.service.web import auth
-from jackettwin.service.web.app import create_app
+from jackettwin.service.web.app import EXAMPLES, create_app
 from jackettwin.service.web.catalogue import add_text_version
 from jackettwin.service.work.dispatch import Dispatcher
 from jackettwin.service.workers import engine, verdict
@@ -166,11 +166,8 @@ def known(twin: Any, sums: Any, newest: Any, in_all: tuple[int, float]) -> tuple
         "damping_sensitivity": {"k": -0.01},
     }
     found = {"status": "ok", "parameters": parameters, "records": in_all[0], "budget": budget}
-    explored = {
-        "law": "kelvin-voigt",
-        "curves": [{"parameter": "k", "value": k, "factor": [1.0], "cost": [None]}],
-    }
-    return {**found, "sensitivity": [moved], "explored": explored}, None
+    drawn = {"explored": EXAMPLES["ExploredOut"], "structure": EXAMPLES["StructureOut"]}
+    return {**found, "sensitivity": [moved], **drawn}, None
 
 
 @pytest.fixture

@@ -35,7 +35,7 @@ def test_records_in_and_answers_out(twin: Client, service: Service, tmp_path: Pa
     assert twin.twin("wtg")["records"] == 3
     assert twin.damping_budget("wtg")[0]["sources"]["soil"]["value"] == 0.01
     assert twin.sensitivity("wtg")[0]["frequency_sensitivity"] == {"k": 0.02}
-    assert twin.explored("wtg")["curves"][0]["cost"] == [None]
+    assert twin.explored("wtg")["curves"][0]["cost"] == [9.1, 0.4, 2.2]
     assert "explored" not in twin.twin("wtg")["parameters"]
 
 

@@ -30,6 +30,8 @@ PAGES = (
     "/start",
     "/assets/wtg",
     "/assets/wtg/timeline",
+    "/assets/wtg/structure",
+    "/assets/wtg/explore",
     "/assets/wtg/records",
     "/assets/wtg/records/ID",
     "/assets/wtg/alarms",
@@ -257,6 +259,34 @@ def test_a_place_is_in_its_address(opened: Open) -> None:
         page.get_by_role("button", name="CSV").click()
     lines = download.value.path().read_text().splitlines()
     assert len(lines) >= 5 and lines[0].startswith("series,time_utc,")
+    page.context.close()
+
+
+def test_the_structure_moves_and_stops(opened: Open) -> None:
+    """Its picture changes from frame to frame, until the button is pressed; colours follow the theme."""
+    page = opened.page("/assets/wtg/structure")
+    picture = page.locator(".picture canvas")
+    assert page.get_by_label("Motion").locator("option").all_inner_texts() == ["still", "fore-aft 1"]
+    expect(page.get_by_text("0.2500 Hz")).to_be_visible()
+    before = picture.screenshot()
+    page.wait_for_timeout(300)
+    assert picture.screenshot() != before
+    page.get_by_role("button", name="Pause").click()
+    before = picture.screenshot()
+    page.wait_for_timeout(300)
+    assert picture.screenshot() == before
+    page.get_by_role("button", name="Show in dark colours").click()
+    assert picture.screenshot() != before
+    page.context.close()
+
+
+def test_a_parameter_is_moved_by_keyboard_and_the_modes_follow(opened: Open) -> None:
+    page = opened.page("/assets/wtg/explore")
+    cell = page.get_by_label("Modes here").locator("tbody tr td").nth(1)
+    expect(cell).to_have_text("0.1810")
+    page.get_by_role("slider").press("ArrowRight")
+    expect(cell).to_have_text("0.1880")
+    expect(page.get_by_text("4000 × the median")).to_be_visible()
     page.context.close()
 
 

@@ -23,6 +23,8 @@ const PAGES: Record<string, ComponentType<PageProps>> = {
   fleet: Fleet,
   turbine: Turbine,
   timeline: later(() => import("../pages/Timeline")),
+  structure: later(() => import("../pages/Structure")),
+  explore: later(() => import("../pages/Explore")),
   records: later(() => import("../pages/Records")),
   record: later(() => import("../pages/Record")),
   alarms: later(() => import("../pages/Alarms")),
@@ -35,6 +37,8 @@ const PAGES: Record<string, ComponentType<PageProps>> = {
 const TABS: readonly (readonly [string, string])[] = [
   ["", "Turbine"],
   ["timeline", "Timeline"],
+  ["structure", "Structure"],
+  ["explore", "Explore"],
   ["records", "Records"],
   ["alarms", "Alarms"],
   ["model", "Model"],

@@ -275,9 +275,9 @@ def find_supports(connection: Connection, asset: str, version: int) -> dict[str,
     return _part(connection, asset, version, "known")
 
 
-def find_explored(connection: Connection, asset: str, version: int) -> dict[str, Any]:
-    """Return what the law's parameters do to cost and modes, empty if nothing yet."""
-    return _part(connection, asset, version, ("together", "known", "explored"))
+def find_drawn(connection: Connection, asset: str, version: int, name: str) -> dict[str, Any]:
+    """Return what is kept for a page of its own, ``explored`` or ``structure``, empty if nothing yet."""
+    return _part(connection, asset, version, ("together", "known", name))
 
 
 def find_stiffness(connection: Connection, asset: str, version: int) -> dict[str, Any]:

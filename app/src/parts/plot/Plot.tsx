@@ -104,19 +104,24 @@ function options(
     legend: { show: false },
     tzDate: (at) => uPlot.tzDate(new Date(at * 1e3), "Etc/UTC"),
     scales: {
-      x: { time: data.time, range: () => shown() },
+      x: { time: data.time, distr: data.logX ? 3 : 1, range: () => shown() },
       y: {
         distr: data.log ? 3 : 1,
         range: () => spanOf(data, shown()),
       },
     },
     axes: [
-      { ...axis, ...(data.time ? { values: TIMES } : {}), space: 70 },
+      {
+        ...axis,
+        ...(data.time ? { values: TIMES } : data.logX ? { values: (_u, ticks) => decades(ticks) } : {}),
+        space: 70,
+      },
       {
         ...axis,
         size: 62,
         space: 24,
-        values: (_u, ticks) => ticks.map((v) => (v === null ? "" : axisNumber(v))),
+        values: (_u, ticks) =>
+          ticks.map((v) => (v === null || (data.log && !isRound(v)) ? "" : axisNumber(v))),
       },
     ],
     ...more,
@@ -318,8 +323,15 @@ export function Plot({ data, height = 220, range = null, onRange, onPick, togeth
   );
 }
 
+/** Whether a number has one digit: a logarithmic axis begins anywhere. */
+const isRound = (v: number): boolean => Number(v.toPrecision(1)) === Number(v.toPrecision(6));
+/** Whole decades are named, what lies between them is not. */
+const decades = (ticks: (number | null)[]): string[] =>
+  ticks.map((v) => (v !== null && Number.isInteger(Number(Math.log10(v).toFixed(6))) ? axisNumber(v) : ""));
 const axisNumber = (v: number): string =>
-  v !== 0 && Math.abs(v) < 1e-3 ? scientific(v, 1).replace(/^1 × /, "") : String(Number(v.toPrecision(6)));
+  v !== 0 && (Math.abs(v) < 1e-3 || Math.abs(v) >= 1e6)
+    ? scientific(v, 1).replace(/^1 × /, "")
+    : String(Number(v.toPrecision(6)));
 const digits = (value: number): string => String(Number(value.toPrecision(5)));
 
 const REACH_PX = 14;

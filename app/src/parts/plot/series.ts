@@ -30,6 +30,8 @@ export interface PlotData {
   xName: string;
   yName: string;
   log?: boolean;
+  /** Whether the x axis counts decades; never with time. */
+  logX?: boolean;
   series: Series[];
   marks?: Mark[];
 }
@@ -84,7 +86,8 @@ export function extentOf(plot: PlotData): Range {
   for (const s of plot.series)
     for (const x of [s.x[0], s.x[s.x.length - 1]])
       if (x !== undefined) [first, last] = [Math.min(first, x), Math.max(last, x)];
-  if (first > last) return [0, 1];
+  if (first > last) return plot.logX ? [0.1, 1] : [0, 1];
+  if (plot.logX) return [first, last];
   const room = (last - first || (plot.time ? 86_400 : 1)) * 0.02;
   return [first - room, last + room];
 }

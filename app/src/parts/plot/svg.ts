@@ -10,7 +10,9 @@ export function svgOf(plot: PlotData, range: Range, paint: (name: string) => str
   const span = spanOf(plot, range);
   const scale = plot.log ? Math.log10 : (v: number) => v;
   const [y0, y1] = [scale(span[0]), scale(span[1])];
-  const px = (x: number): number => LEFT + ((x - range[0]) / (range[1] - range[0])) * (WIDTH - LEFT - RIGHT);
+  const along = plot.logX ? Math.log10 : (v: number) => v;
+  const [x0, x1] = [along(range[0]), along(range[1])];
+  const px = (x: number): number => LEFT + ((along(x) - x0) / (x1 - x0)) * (WIDTH - LEFT - RIGHT);
   const py = (y: number): number => HEIGHT - BOTTOM - ((scale(y) - y0) / (y1 - y0)) * (HEIGHT - TOP - BOTTOM);
   const at = (v: number): string => v.toFixed(1);
   const parts: string[] = [];
@@ -20,7 +22,7 @@ export function svgOf(plot: PlotData, range: Range, paint: (name: string) => str
     parts.push(`<path d="M${LEFT} ${at(py(v))}H${WIDTH - RIGHT}" stroke="${paint("line")}"/>`);
     text(LEFT - 6, py(v) + 4, String(v), "end");
   }
-  for (const v of ticksOf(range, 6))
+  for (const v of ticksOf(range, 6, plot.logX))
     text(px(v), HEIGHT - BOTTOM + 18, readX(plot, v, range[1] - range[0]), "middle");
   text(LEFT, 18, plot.title);
   text(LEFT, 34, plot.yName);

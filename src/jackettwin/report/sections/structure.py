@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from jackettwin.arrays import ComplexArray
 from jackettwin.report.pages.page import Block, Embedded
 from jackettwin.report.table import Table
 from jackettwin.report.tables.numbers import UNKNOWN, fixed, words
-from jackettwin.report.view.motions import damped_motion
+from jackettwin.report.view.motions import MeasuredShape, damped_motion, measured_shape
 from jackettwin.report.view.page import View, render_view
 from jackettwin.report.view.quantities import thickness_quantities
-from jackettwin.study import TwinResult
+from jackettwin.study import MeasuredMode, TwinResult
 from jackettwin.updating import recommended
 
 _STEEL = (210e9, 7850.0)
@@ -22,22 +23,44 @@ def the_structure(result: TwinResult) -> list[Block]:
     caption = (
         "What does it look like, and how does it move? Turn it, colour it, set its updated modes in motion."
     )
-    page = Embedded("structure", caption, render_view(_view(result)), "Show the structure and its modes")
+    page = Embedded(
+        "structure", caption, render_view(structure_view(result)), "Show the structure and its modes"
+    )
     return [page, structure_table(result)]
 
 
-def _view(result: TwinResult) -> View:
+def structure_view(result: TwinResult) -> View:
+    """Return the structure with its updated modes, each beside what was measured of it."""
     u = recommended(result.updates)
     motions = (
         []
         if u is None
         else [
-            damped_motion(result.assembly, words(m.label), complex(pole), u.modes.shapes[:, i])
+            damped_motion(
+                result.assembly,
+                words(m.label),
+                complex(pole),
+                u.modes.shapes[:, i],
+                _measured(result, m, u.modes.shapes[:, i]),
+            )
             for i, (m, pole) in enumerate(zip(result.measured, u.modes.poles, strict=True))
             if np.isfinite(pole) and np.isfinite(u.modes.shapes[:, i]).all()
         ]
     )
     return View(result.assembly, thickness_quantities(result.assembly), tuple(motions), result.sensors)
+
+
+def _measured(result: TwinResult, mode: MeasuredMode, shape: ComplexArray) -> MeasuredShape | None:
+    """Return the shape that was measured of a mode, if the record it is of says where its sensors are."""
+    for seen in result.observations:
+        if not any(mode.estimate is one for one in seen.identification.modes):
+            continue
+        placed = {sensor.channel: sensor for sensor in seen.sensors}
+        names = [channel.name for channel in seen.identification.channels]
+        if mode.estimate is not None and all(name in placed for name in names):
+            sensors = [placed[name] for name in names]
+            return measured_shape(result.assembly, sensors, mode.estimate.mode_shape, shape)
+    return None
 
 
 def structure_table(result: TwinResult) -> Table:

@@ -2,14 +2,45 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
-from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.response import Passage, Playback
+from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
+from jackettwin.response import Passage, Playback, Sensor, observation_matrix, sensor_positions
 from jackettwin.structure import Assembly
+
+_MOTION = "motion"
+"""The kind of sensors whose way can be drawn: not strains, not inclinations."""
+
+
+@dataclass(frozen=True)
+class MeasuredShape:
+    """Where the sensors went in a mode, beside the model's own places in the same phase.
+
+    Attributes
+    ----------
+    places : (n_places, 3)
+        Of the sensors at rest [m], z above the mean sea level.
+    nodes : (n_places,) int
+        The model's nearest node to each.
+    shapes : (2, 3·n_places)
+        Displacements on the shapes of the motion, in its scale.
+    """
+
+    places: FloatArray
+    nodes: Int64Array
+    shapes: FloatArray
+
+    def document(self, scale: float) -> dict[str, Any]:
+        """Return plain data, displacements times a scale."""
+        drawn = zip(np.round(self.places, 3).tolist(), self.nodes.tolist(), strict=True)
+        return {
+            "places": [{"at": at, "node": node} for at, node in drawn],
+            "shapes": np.round(self.shapes * scale, 5).tolist(),
+        }
 
 
 @dataclass(frozen=True)
@@ -32,6 +63,7 @@ class DrawnMotion:
     wave : dict, optional
         ``height_m``, ``length_m``, ``direction_rad``: the surface, with its crest at the origin in frame 0.
     load_kn_m : (n_frames, n_elements), optional
+    measured : MeasuredShape, optional
     """
 
     name: str
@@ -44,6 +76,7 @@ class DrawnMotion:
     start_s: float = 0.0
     wave: dict[str, float] | None = None
     load_kn_m: FloatArray | None = None
+    measured: MeasuredShape | None = None
 
     def document(self) -> dict[str, Any]:
         """Return plain data; shapes are scaled so that the largest translation ever is one."""
@@ -60,6 +93,7 @@ class DrawnMotion:
             "start_s": self.start_s,
             "cyclic": self.cyclic,
             "wave": self.wave,
+            "measured": None if self.measured is None else self.measured.document(scale),
             "load": None if self.load_kn_m is None else np.round(self.load_kn_m, 3).tolist(),
         }
 
@@ -83,7 +117,13 @@ def undamped_motion(assembly: Assembly, name: str, frequency_hz: float, shape: F
     )
 
 
-def damped_motion(assembly: Assembly, name: str, eigenvalue: complex, shape: ComplexArray) -> DrawnMotion:
+def damped_motion(
+    assembly: Assembly,
+    name: str,
+    eigenvalue: complex,
+    shape: ComplexArray,
+    measured: MeasuredShape | None = None,
+) -> DrawnMotion:
     """Return a complex mode: its parts do not pass through rest together. Its decay is not drawn."""
     f = abs(eigenvalue) / (2.0 * np.pi)
     theta = 2.0 * np.pi * np.arange(_FRAMES) / _FRAMES
@@ -96,7 +136,41 @@ def damped_motion(assembly: Assembly, name: str, eigenvalue: complex, shape: Com
         _translations(assembly, parts),
         np.stack([np.cos(theta), np.sin(theta)], axis=1),
         1.0 / (f * _FRAMES),
+        measured=measured,
     )
+
+
+def measured_shape(
+    assembly: Assembly, sensors: Sequence[Sensor], measured: ComplexArray, shape: ComplexArray
+) -> MeasuredShape | None:
+    r"""Return a measured shape in the model's amplitude and phase; None if no sensor measures motion.
+
+    A measured shape has any amplitude and phase: it is multiplied by
+    :math:`a = \varphi_m^H \varphi / \varphi_m^H \varphi_m`, which brings it as near to the model's
+    :math:`\varphi` at the sensors as a factor can. Where nothing was measured the model's motion is drawn.
+
+    Parameters
+    ----------
+    measured : (n_sensors,)
+    shape : (assembly.n_dof,)
+        Of the model.
+    """
+    moving = [k for k, sensor in enumerate(sensors) if sensor.quantity == _MOTION]
+    if not moving:
+        return None
+    chosen, found = [sensors[k] for k in moving], measured[moving]
+    own = np.asarray(observation_matrix(assembly, tuple(chosen)) @ shape)
+    found = found * (np.vdot(found, own) / np.vdot(found, found).real)
+    at = sensor_positions(assembly, chosen)
+    nodes = assembly.mesh.coordinates - [0.0, 0.0, assembly.structure.sea_level_z_m]
+    near = np.argmin(np.linalg.norm(nodes[None] - at[:, None], axis=2), axis=1)
+    places, of = np.unique(np.column_stack([near, at]), axis=0, return_inverse=True)
+    index = places[:, 0].astype(np.int64)
+    moved = np.asarray(assembly.expand @ shape).reshape(-1, 6)[index, :3].astype(complex)
+    for k, sensor in enumerate(chosen):
+        direction = np.asarray(sensor.direction) / np.linalg.norm(sensor.direction)
+        moved[of[k]] += (found[k] - moved[of[k]] @ direction) * direction
+    return MeasuredShape(places[:, 1:], index, np.stack([moved.real.ravel(), -moved.imag.ravel()]))
 
 
 def wave_motion(assembly: Assembly, passage: Passage) -> DrawnMotion:

@@ -81,20 +81,17 @@ def render_view(view: View) -> str:
         title=view.assembly.structure.name,
         facts=view.facts,
         data=Markup(text.replace("</", "<\\/")),
-        has_growth=view.coefficients is not None and bool(view.coefficients.growth),
-        has_flooded=bool(view.flooded),
-        has_sensors=bool(view.sensors),
-        others=sorted({one["kind"] for one in _others(view.assembly)}),
     )
 
 
 def view_document(view: View) -> dict[str, Any]:
-    """Return everything the page's script needs, as plain data."""
+    """Return everything that ``view.js`` needs to draw a structure and its motions, as plain data."""
     assembly, mesh = view.assembly, view.assembly.mesh
     structure = assembly.structure
     points = mesh.coordinates - [0.0, 0.0, structure.sea_level_z_m]
     flooded = [m.name in view.flooded or m.part in view.flooded for m in structure.members]
     return {
+        "title": structure.name,
         "nodes": _rounded(points, 3),
         "start": mesh.start,
         "end": mesh.end,

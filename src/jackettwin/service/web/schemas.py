@@ -531,6 +531,68 @@ class ExploredOut(BaseModel):
     curves: list[CurveOut] = []
 
 
+class PlaceOut(BaseModel):
+    """A sensor's place at rest [m], z above the mean sea level, and the nearest node."""
+
+    at: list[float]
+    node: int
+
+
+class MeasuredShapeOut(BaseModel):
+    """Displacements of the sensors in a mode, x, y, z of each, on the shapes of the motion."""
+
+    places: list[PlaceOut]
+    shapes: list[list[float]]
+
+
+class MotionOut(BaseModel):
+    """A motion: displacements of the nodes (x, y, z of each) by shape times the coordinates of each frame."""
+
+    name: str
+    note: str
+    group: str
+    shapes: list[list[float]]
+    q: list[list[float]]
+    step_s: float
+    start_s: float
+    cyclic: bool
+    largest_m: float | None
+    measured: MeasuredShapeOut | None
+
+
+class ColourOut(BaseModel):
+    """A number for every element to colour by; ``log`` spreads values that span decades."""
+
+    name: str
+    unit: str
+    log: bool
+    from_zero: bool
+    values: list[float | None]
+
+
+class StructureOut(BaseModel):
+    """A structure to draw: nodes (x, y, z of each [m], z above sea level), elements, colours, motions.
+
+    Empty until supports have been updated.
+    """
+
+    title: str = ""
+    nodes: list[float] = []
+    start: list[int] = []
+    end: list[int] = []
+    diameter: list[float] = Field(default=[], description="[m]")
+    growth: list[float] = Field(default=[], description="[m]")
+    flooded: list[int] = []
+    text: list[str] = []
+    quantities: list[ColourOut] = []
+    motions: list[MotionOut] = []
+    sensors: list[dict[str, Any]] = []
+    masses: list[dict[str, Any]] = []
+    others: list[dict[str, Any]] = []
+    dimensions: dict[str, Any] = {}
+    mud_z: float = 0.0
+
+
 class ChangeOut(BaseModel):
     """A quantity under two versions; null where one does not know it.
 

@@ -19,7 +19,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.change import JUDGED, Days, Ground, corrections, finding_of, judge, sight_of
 from jackettwin.errors import JackettwinError
 from jackettwin.files import null_for_nan
-from jackettwin.report import PageSection, span_words, stiffness_section
+from jackettwin.report import PageSection, span_words, stiffness_section, structure_view, view_document
 from jackettwin.report.build import report_sections
 from jackettwin.report.pages.page import page_text
 from jackettwin.service.workers import engine, stiffness
@@ -48,6 +48,8 @@ CANNOT_MEET = "the model cannot meet what was measured on any ground: no interva
 """What is said of parameters that come nearest to the data and do not explain them."""
 _GRID = 33
 """Points a side of the cost surface that is kept."""
+DRAWN = ("explored", "structure")
+"""What is kept of an answer for pages of their own, beside what is known."""
 NO_MODE = "no mode of the model has been seen"
 FEW, GROWN, MOST_DAYS = 24, 1.3, 30
 """Records up to which all together are asked whenever there is a new one; then their growth, and the days,
@@ -83,7 +85,7 @@ def of_today(known: Mapping[str, Any], followed: Followed | None) -> dict[str, A
     Of a parameter that is followed from day to day, the day stands beside it.
     """
     parameters = {name: dict(p) for name, p in known["parameters"].items()}
-    found = {name: value for name, value in known.items() if name != "explored"}
+    found = {name: value for name, value in known.items() if name not in DRAWN}
     said = "" if followed is None else followed.stiffness_statement
     if followed is not None and said and known["status"] != CANNOT_MEET:
         last = followed.days[-1]
@@ -172,6 +174,7 @@ def known(
         "budget": [_budget(mode) for mode in answers.modes],
         "sensitivity": _sensitivity(u, median, result),
         "explored": _explored(u, median, result.name),
+        "structure": null_for_nan(view_document(structure_view(result))),
     }, sections
 
 

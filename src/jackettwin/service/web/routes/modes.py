@@ -29,6 +29,7 @@ from jackettwin.service.web.schemas import (
     ModeOut,
     Page,
     SensitivityOut,
+    StructureOut,
     SupportsOut,
     TwinOut,
 )
@@ -110,7 +111,14 @@ def sensitivity(
 def explored(asset: AssetName, connection: Told, version: AnyVersion = None) -> ExploredOut:
     """Return what the law's parameters do: cost over two of them and over each, root loci along each."""
     asked = known_version(connection, asset, version)
-    return ExploredOut(**results.find_explored(connection, asset, asked.version))
+    return ExploredOut(**results.find_drawn(connection, asset, asked.version, "explored"))
+
+
+@router.get("/assets/{asset}/structure", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def structure(asset: AssetName, connection: Told, version: AnyVersion = None) -> StructureOut:
+    """Return the structure to be drawn, its updated complex modes, and what was measured of each."""
+    asked = known_version(connection, asset, version)
+    return StructureOut(**results.find_drawn(connection, asset, asked.version, "structure"))
 
 
 @router.get("/assets/{asset}/life", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))

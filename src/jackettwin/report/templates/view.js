@@ -1,8 +1,62 @@
-(function () {
-  "use strict";
-  const D = JSON.parse(document.getElementById("data").textContent);
-  const $ = id => document.getElementById(id);
-  const canvas = $("canvas"), pen = canvas.getContext("2d"), tip = $("tip");
+/* A structure to turn, colour and set in motion: one widget for the report, `jackettwin view` and the window.
+
+   show(root, D) makes the picture and its controls inside root; D is what view_document() of
+   report/view/page.py returns. Colours are the page's own (tokens.css). */
+export function show(root, D, asked = new Map()) {
+  const make = (tag, more = {}, ...inside) => {
+    const made = Object.assign(document.createElement(tag), more);
+    made.append(...inside);
+    return made;
+  };
+  const parts = {};
+  const part = (id, element) => (parts[id] = element);
+  const $ = id => parts[id];
+  const titled = (id, text, element, note) => make("label", {}, make("b", {}, text), " ",
+    ...(note ? [part(note, make("span"))] : []), part(id, element));
+  const slider = (low, high, step, value) => Object.assign(make("input", {type: "range"}), {min: low, max: high, step, value});
+  const box = (id, text, key) => make("label", {className: "tick"},
+    part(id, make("input", {type: "checkbox", checked: true})), " ",
+    ...(key ? [make("i", {className: `key ${key}`})] : []), text);
+  const canvas = make("canvas", {tabIndex: 0});
+  canvas.setAttribute("role", "img");
+  canvas.setAttribute("aria-label", `${D.title}, drawn in space: arrow keys turn it, space stops it`);
+  const tip = make("div", {className: "tip", hidden: true});
+  const others_there = [...new Set(D.others.map(o => o.kind))].sort();
+  const time = slider(0, 1, 0.001, 0);
+  time.setAttribute("aria-label", "Time");
+  const side = make("div", {className: "controls"},
+    titled("quantity", "Colour", make("select")),
+    make("div", {className: "bar"}, part("scale", make("canvas", {width: 232, height: 14})), part("ticks", make("div"))),
+    titled("motion", "Motion", make("select"), "clock"),
+    part("note", make("p", {className: "fact"})),
+    make("div", {className: "row"}, part("play", make("button", {type: "button"}, "Pause")), part("time", time)),
+    titled("size", "Drawn", slider(-1, 1, 0.01, 0), "factor"),
+    titled("speed", "Speed", slider(-1, 1.3, 0.01, 0), "pace"),
+    make("fieldset", {}, make("legend", {}, "Show"),
+      box("water", "sea level and mud line"),
+      ...(D.growth.some(t => t > 0) ? [box("growth", "marine growth", "growth")] : []),
+      ...(D.flooded.some(f => f) ? [box("flooded", "flooded members", "flooded")] : []),
+      ...(D.sensors.length ? [box("sensors", "sensors", "sensors")] : []),
+      ...(D.motions.some(o => o.measured) ? [box("measured", "measured shape", "measured")] : []),
+      box("dimensions", "dimensions", "dimensions"),
+      box("ghost", "position at rest", "ghost"),
+      ...others_there.map(kind => make("p", {className: "fact"}, make("i", {className: `key ${kind.replace(" ", "-")}`}), `${kind}s`))),
+    make("p", {className: "help"}, "Drag to turn, click and wheel to zoom, shift-drag to move, double-click to look from the start again. Point at a member to read it."));
+  root.classList.add("structure");
+  root.append(make("div", {className: "picture"}, canvas, tip), side);
+  const pen = canvas.getContext("2d");
+  let look = {};
+  function looks() {
+    const said = getComputedStyle(root), rgb = name => {
+      pen.fillStyle = said.getPropertyValue(`--${name}`);
+      const hex = pen.fillStyle;  // of six digits, however it is written
+      return [1, 3, 5].map(k => parseInt(hex.slice(k, k + 2), 16));
+    };
+    look = {paper: rgb("paper"), ink: said.getPropertyValue("--ink"), quiet: said.getPropertyValue("--quiet"),
+      line: said.getPropertyValue("--line"), measured: said.getPropertyValue("--green"), sensor: said.getPropertyValue("--vermillion"),
+      sea: rgb("blue"), ground: rgb("orange")};
+  }
+  looks();
   // Cividis (Nuñez, Anderton & Renslow 2018): even in grey, the same to colour-blind eyes
   const CIVIDIS = [[0,34,78],[18,53,112],[59,73,108],[87,93,109],[112,113,115],[138,134,120],[165,156,116],[195,179,105],[225,204,85],[254,232,56]];
   const n = D.nodes.length / 3, m = D.start.length;
@@ -11,8 +65,8 @@
   const centre = low.map((v, k) => 0.5 * (v + high[k])), height = high[2] - low[2];
   const reach = 0.75 * Math.max(high[0] - low[0], high[1] - low[1], 0.2 * height);
   const home = {turn: -0.62, tilt: 0.2, zoom: 1, x: 0, y: 0};
-  const eye = Object.assign({}, home);
-  const state = {frame: 0, playing: true, last: 0, motion: null, quantity: null};
+  const eye = Object.assign({}, home), linked = new Set();
+  const state = {frame: 0, playing: true, last: 0, motion: null, quantity: null, gone: false};
   let at = D.nodes.slice(), scale = 1, size = [1, 1], pixel = 1, screen = [], hover = -1;
 
   function shown(id) { const box = $(id); return box ? box.checked : false; }
@@ -63,7 +117,7 @@
     const k = Math.min(Math.floor(t), CIVIDIS.length - 2), part = t - k;
     return CIVIDIS[k].map((c, i) => c + part * (CIVIDIS[k + 1][i] - c));
   }
-  function css(c, fade) { return `rgb(${c.map(v => Math.round(v + fade * (255 - v))).join(",")})`; }
+  function css(c, fade) { return `rgb(${c.map((v, k) => Math.round(v + fade * (look.paper[k] - v))).join(",")})`; }
   function number(v) {
     const a = Math.abs(v);
     return a !== 0 && (a < 0.01 || a >= 1e5) ? v.toExponential(1) : String(Number(v.toPrecision(3)));
@@ -76,7 +130,7 @@
       p.fillRect(i, 0, 1, c.height);
     }
     const ends = [0, 0.5, 1].map(t => q.low + t * (q.high - q.low)).map(v => q.log ? Math.pow(10, v) : v);
-    $("ticks").innerHTML = ends.map(v => `<span>${number(v)}</span>`).join("");
+    $("ticks").replaceChildren(...ends.map(v => make("span", {}, number(v))));
   }
 
   /* ---- drawing ---- */
@@ -119,7 +173,7 @@
     }
     const deep = (0.5 * (a[2] + b[2]) / (0.6 * height)), fade = Math.min(0.35, Math.max(0, 0.12 + 0.35 * deep));
     pen.lineCap = "butt";  // outlines along the sides only: pieces of one tube run on
-    line(a, b, width + (e === hover ? 5 : 1.6), e === hover ? "#d55e00" : css([60, 60, 60], fade));
+    line(a, b, width + (e === hover ? 5 : 1.6), e === hover ? look.sensor : css([60, 60, 60], fade));
     pen.lineCap = width < 8 ? "round" : "butt";  // round ends of a wide tube would cover its neighbour when bent
     line(a, b, width, css(colour(now[e]), fade));
     if (shown("flooded") && D.flooded[e]) {
@@ -137,15 +191,16 @@
     const order = [...Array(m).keys()].sort((p, q) => depth(q) - depth(p));
     const wet = e => { const i = 3 * D.start[e], j = 3 * D.end[e]; return 0.5 * (at[i + 2] + at[j + 2]) < wave(at[i], at[i + 1]); };
     const now = values(), seen = shown("water"), above = eye.tilt >= 0;
-    if (seen && above) { plane(D.mud_z, "139,90,43", 0.1, 1); }
+    if (seen && above) { plane(D.mud_z, look.ground, 0.1, 1); }
     if (state.motion && shown("ghost")) { ghost(); }
     order.filter(e => wet(e) === above).forEach(e => member(e, now));
-    if (seen) { plane(0, "0,114,178", 0.13, state.motion && state.motion.wave ? 28 : 1, state.motion && state.motion.wave ? wave : null); }
+    if (seen) { plane(0, look.sea, 0.13, state.motion && state.motion.wave ? 28 : 1, state.motion && state.motion.wave ? wave : null); }
     order.filter(e => wet(e) !== above).forEach(e => member(e, now));
-    if (seen && !above) { plane(D.mud_z, "139,90,43", 0.1, 1); }
+    if (seen && !above) { plane(D.mud_z, look.ground, 0.1, 1); }
     others();
     bodies();
-    if (shown("dimensions")) { dimensions(); }
+    measured();
+    if (shown("dimensions")) { measures(); }
     axes();
   }
   function depth(e) { return screen[D.start[e]][2] + screen[D.end[e]][2]; }
@@ -153,15 +208,27 @@
     pen.setLineDash([3, 4]);
     for (let e = 0; e < m; e++) {
       const a = 3 * D.start[e], b = 3 * D.end[e];
-      line(project(D.nodes[a], D.nodes[a + 1], D.nodes[a + 2]), project(D.nodes[b], D.nodes[b + 1], D.nodes[b + 2]), 1, "#bdbdbd");
+      line(project(D.nodes[a], D.nodes[a + 1], D.nodes[a + 2]), project(D.nodes[b], D.nodes[b + 1], D.nodes[b + 2]), 1, look.line);
     }
     pen.setLineDash([]);
+  }
+  function measured() {  // where the sensors went: beside the model's own place in the same phase
+    const mo = state.motion;
+    if (!mo || !mo.measured || !shown("measured")) { return; }
+    const k = Math.floor(state.frame), next = (k + 1) % mo.q.length, part = state.frame - k;
+    mo.measured.places.forEach((place, i) => {
+      const moved = [0, 1, 2].map(c => place.at[c] + mo.measured.shapes.reduce((sum, shape, j) =>
+        sum + factor() * shape[3 * i + c] * (mo.q[k][j] * (1 - part) + mo.q[next][j] * part), 0));
+      const p = project(...moved), own = carried(place);
+      line(own, p, 1.5, look.measured);
+      pen.beginPath(); pen.arc(p[0], p[1], 5, 0, 2 * Math.PI); pen.fillStyle = look.measured; pen.fill();
+    });
   }
   function carried(item) {
     const i = 3 * item.node;
     return project(...[0, 1, 2].map(k => item.at[k] + at[i + k] - D.nodes[i + k]));
   }
-  const OTHERS = {cable: [2, "#0072b2", []], spring: [3, "#cc79a7", [3, 3]], "rigid link": [2, "#222222", [1, 4]], beam: [4, "#777777", []]};
+  const OTHERS = {cable: [2, "#0072b2", []], spring: [3, "#cc79a7", [3, 3]], "rigid link": [2, "#767676", [1, 4]], beam: [4, "#777777", []]};
   function others() {
     pen.lineCap = "butt";
     D.others.forEach(one => {
@@ -172,8 +239,8 @@
   function bodies() {
     D.masses.forEach(body => {
       const p = carried(body), i = body.node;
-      line(screen[i], p, 1.5, "#222");
-      pen.beginPath(); pen.arc(p[0], p[1], 6, 0, 2 * Math.PI); pen.fillStyle = "#222"; pen.fill();
+      line(screen[i], p, 1.5, look.ink);
+      pen.beginPath(); pen.arc(p[0], p[1], 6, 0, 2 * Math.PI); pen.fillStyle = look.ink; pen.fill();
       if (D.masses.length > 4) { return; }
       pen.font = "11px system-ui, sans-serif"; pen.textAlign = "center";
       pen.fillText(body.text, p[0], p[1] - 12);  // over what points sideways from the node
@@ -182,9 +249,9 @@
     D.sensors.forEach(s => {
       const p = carried(s), far = s.at.map((v, k) => v + 0.07 * height * s.direction[k]);
       const tail = carried({node: s.node, at: far});
-      line(p, tail, 2.5, "#d55e00");
+      line(p, tail, 2.5, look.sensor);
       const angle = Math.atan2(tail[1] - p[1], tail[0] - p[0]);
-      pen.fillStyle = "#d55e00"; pen.beginPath(); pen.moveTo(tail[0], tail[1]);
+      pen.fillStyle = look.sensor; pen.beginPath(); pen.moveTo(tail[0], tail[1]);
       [2.6, -2.6].forEach(t => pen.lineTo(tail[0] + 9 * Math.cos(angle + t), tail[1] + 9 * Math.sin(angle + t)));
       pen.fill(); pen.fillRect(p[0] - 3.5, p[1] - 3.5, 7, 7);
     });
@@ -195,18 +262,18 @@
     const box = [left - 2, y - 11, left + wide + 2, y + 3];
     if (labels.some(o => box[0] < o[2] && o[0] < box[2] && box[1] < o[3] && o[1] < box[3])) { return false; }
     labels.push(box);
-    pen.fillStyle = "rgba(255,255,255,0.8)"; pen.fillRect(box[0], box[1], wide + 4, 14);
-    pen.fillStyle = "#222"; pen.fillText(text, x, y);
+    pen.fillStyle = `rgba(${look.paper},0.8)`; pen.fillRect(box[0], box[1], wide + 4, 14);
+    pen.fillStyle = look.ink; pen.fillText(text, x, y);
     return true;
   }
-  function measured(a, b, text) {  // a line with ticks at its ends, its length beneath the middle
+  function span(a, b, text) {  // a line with ticks at its ends, its length beneath the middle
     const along = Math.hypot(b[0] - a[0], b[1] - a[1]);
     if (along < 1 || !written(text, 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]) + 18)) { return; }
     const tx = 5 * (b[1] - a[1]) / along, ty = -5 * (b[0] - a[0]) / along;
-    line(a, b, 1, "#444");
-    [a, b].forEach(p => line([p[0] - tx, p[1] - ty], [p[0] + tx, p[1] + ty], 1, "#444"));
+    line(a, b, 1, look.quiet);
+    [a, b].forEach(p => line([p[0] - tx, p[1] - ty], [p[0] + tx, p[1] + ty], 1, look.quiet));
   }
-  function dimensions() {
+  function measures() {
     pen.font = "12px system-ui, sans-serif"; labels = [];
     const levels = D.dimensions.levels, ends = [levels[0], levels[levels.length - 1]];
     const high = z => project(centre[0], centre[1], z)[1];
@@ -214,27 +281,27 @@
       pen.textAlign = "right";
       const x = Math.max(76, Math.min(...screen.map(p => p[0])) - 34);
       [...ends, ...levels.slice(1, -1)].forEach(z => {
-        if (written(`${z >= 0 ? "+" : "−"}${Math.abs(z).toFixed(2)} m`, x - 10, high(z) + 4)) { line([x - 6, high(z)], [x + 6, high(z)], 1, "#444"); }
+        if (written(`${z >= 0 ? "+" : "−"}${Math.abs(z).toFixed(2)} m`, x - 10, high(z) + 4)) { line([x - 6, high(z)], [x + 6, high(z)], 1, look.quiet); }
       });
-      line([x, high(ends[0])], [x, high(ends[1])], 1, "#444");
+      line([x, high(ends[0])], [x, high(ends[1])], 1, look.quiet);
     }
     pen.textAlign = "center";
-    D.dimensions.widths.forEach(w => measured(project(...w.a), project(...w.b), w.text));
+    D.dimensions.widths.forEach(w => span(project(...w.a), project(...w.b), w.text));
     pen.textAlign = "left";
     D.dimensions.diameters.forEach(d => {
       const p = project(...d.at);
-      if (written(d.text, p[0] + 38, p[1] + 4)) { line(p, [p[0] + 34, p[1]], 1, "#444"); }
+      if (written(d.text, p[0] + 38, p[1] + 4)) { line(p, [p[0] + 34, p[1]], 1, look.quiet); }
     });
   }
   function axes() {
     const o = [54, size[1] - 50], c = Math.cos(eye.turn), s = Math.sin(eye.turn), ct = Math.cos(eye.tilt), st = Math.sin(eye.tilt);
     pen.font = "12px system-ui, sans-serif"; pen.textAlign = "center";
     [["x", c, s * st], ["y", s, -c * st], ["z", 0, -ct]].forEach(([name, dx, dy]) => {
-      line(o, [o[0] + 34 * dx, o[1] + 34 * dy], 1.6, "#444");
-      pen.fillStyle = "#222"; pen.fillText(name, o[0] + 44 * dx, o[1] + 44 * dy + 4);
+      line(o, [o[0] + 34 * dx, o[1] + 34 * dy], 1.6, look.quiet);
+      pen.fillStyle = look.ink; pen.fillText(name, o[0] + 44 * dx, o[1] + 44 * dy + 4);
     });
     const steps = [1, 2, 5, 10, 20, 50, 100], metres = steps.filter(v => v * scale < 130).pop() || 1, x = size[0] - 20, y = size[1] - 12;
-    line([x, y], [x - metres * scale, y], 2, "#444");
+    line([x, y], [x - metres * scale, y], 2, look.quiet);
     pen.textAlign = "right"; pen.fillText(`${metres} m`, x, y - 6);
   }
 
@@ -253,6 +320,7 @@
   }
   function tick(time) {
     const gap = Math.min(0.1, (time - state.last) / 1000);
+    if (state.gone) { return; }
     state.last = time;
     if (state.playing && state.motion) {
       state.frame = (state.frame + gap * pace() / state.motion.step_s) % state.motion.q.length;
@@ -307,21 +375,25 @@
     if (!state.playing || !state.motion) { draw(); }
   }
   let grip = null;
-  canvas.addEventListener("pointerdown", e => { grip = [e.clientX, e.clientY, e.shiftKey]; canvas.setPointerCapture(e.pointerId); });
+  function turned() { fit(); linked.forEach(other => other.lookFrom(eye)); }
+  canvas.addEventListener("pointerdown", e => { canvas.focus({preventScroll: true}); grip = [e.clientX, e.clientY, e.shiftKey]; canvas.setPointerCapture(e.pointerId); });
   canvas.addEventListener("pointerup", () => { grip = null; });
   canvas.addEventListener("pointermove", e => {
     if (!grip) { point(e); return; }
     const dx = e.clientX - grip[0], dy = e.clientY - grip[1];
     if (grip[2]) { eye.x += dx; eye.y += dy; }
     else { eye.turn += 0.008 * dx; eye.tilt = Math.max(-1.55, Math.min(1.55, eye.tilt + 0.008 * dy)); }
-    grip = [e.clientX, e.clientY, grip[2]]; draw();
+    grip = [e.clientX, e.clientY, grip[2]]; turned();
   });
   canvas.addEventListener("pointerleave", () => { hover = -1; tip.hidden = true; });
-  canvas.addEventListener("wheel", e => { e.preventDefault(); eye.zoom = Math.max(0.3, Math.min(20, eye.zoom * Math.exp(-0.0012 * e.deltaY))); fit(); }, {passive: false});
-  canvas.addEventListener("dblclick", () => { Object.assign(eye, home); fit(); });
+  canvas.addEventListener("wheel", e => {  // a page that is scrolled past it must not stop here
+    if (document.activeElement !== canvas && !e.ctrlKey) { return; }
+    e.preventDefault(); eye.zoom = Math.max(0.3, Math.min(20, eye.zoom * Math.exp(-0.0012 * e.deltaY))); turned();
+  }, {passive: false});
+  canvas.addEventListener("dblclick", () => { Object.assign(eye, home); turned(); });
   canvas.addEventListener("keydown", e => {
     const step = {ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, 0.08], ArrowDown: [0, -0.08]}[e.key];
-    if (step) { eye.turn += step[0]; eye.tilt += step[1]; draw(); e.preventDefault(); }
+    if (step) { eye.turn += step[0]; eye.tilt += step[1]; turned(); e.preventDefault(); }
     if (e.key === " ") { $("play").click(); e.preventDefault(); }
   });
   $("play").addEventListener("click", () => { state.playing = !state.playing; $("play").textContent = state.playing ? "Pause" : "Play"; });
@@ -333,7 +405,7 @@
   });
   $("speed").addEventListener("input", told);
   $("size").addEventListener("input", () => { named(); draw(); });
-  ["water", "growth", "flooded", "sensors", "dimensions", "ghost"].forEach(id => { if ($(id)) { $(id).addEventListener("change", draw); } });
+  ["water", "growth", "flooded", "sensors", "measured", "dimensions", "ghost"].forEach(id => { if ($(id)) { $(id).addEventListener("change", draw); } });
 
   /* ---- lists, and what the address asks for: #motion=2&quantity=1&phase=0.25&play=0 ---- */
   if (D.motions.some(o => o.load)) { D.quantities.push({name: "wave load, mean of member", unit: "kN/m", log: false, frames: true, from_zero: true}); }
@@ -345,7 +417,6 @@
     D.motions.forEach((o, k) => { if (o.group === group) { part.append(new Option(o.name, k)); } });
     $("motion").append(part);
   });
-  const asked = new URLSearchParams(location.hash.slice(1));
   $("motion").value = asked.get("motion") || (D.motions.length ? 0 : -1);
   $("quantity").value = asked.get("quantity") || 0;
   ["turn", "tilt"].forEach(k => { if (asked.has(k)) { eye[k] = Number(asked.get(k)); } });
@@ -354,6 +425,16 @@
   fit(); colourBy(); choose();
   if (asked.get("play") === "0") { $("play").click(); }
   if (asked.has("phase") && state.motion) { state.frame = Number(asked.get("phase")) * state.motion.q.length; told(); draw(); }
-  window.addEventListener("resize", fit);
+  const observer = new ResizeObserver(fit);
+  observer.observe(canvas);
   requestAnimationFrame(tick);
-})();
+  return {
+    focus() { canvas.focus({preventScroll: true}); },
+    /** The colours of the page changed. */
+    repaint() { looks(); colourBy(); },
+    lookFrom(other) { Object.assign(eye, other); fit(); },
+    /** Turn another picture as this one is turned. */
+    link(other) { linked.add(other); },
+    gone() { state.gone = true; observer.disconnect(); root.replaceChildren(); },
+  };
+}

@@ -1,0 +1,293 @@
+// What the ground's parameters do: move one and see every mode follow; how sharply the data decide.
+import { useMemo, useState } from "preact/hooks";
+import { useAnswer } from "../api/answer";
+import { api, type Schemas, told } from "../api/client";
+import { Card } from "../parts/Bits";
+import { modeColour } from "../parts/modes";
+import { Plot } from "../parts/plot/Plot";
+import type { Mark, PlotData, Range, Series } from "../parts/plot/series";
+import { Empty, Shown } from "../parts/Shown";
+import { Surface } from "../parts/Surface";
+import { Table } from "../parts/Table";
+import type { PageProps } from "../shell/App";
+import { asked, keep } from "../shell/place";
+import { fixed, frequency, percent, quantity, words } from "../words/numbers";
+
+type Explored = Schemas["ExploredOut"];
+type Locus = Schemas["LocusOut"];
+type Branch = Schemas["BranchOut"];
+const MOST_DAMPED = 0.3;
+
+/** Along the parameter: what a branch shows at each of its values, while it swings. */
+function along(
+  locus: Locus,
+  title: string,
+  yName: string,
+  of: (b: Branch, i: number) => number | null,
+): PlotData {
+  const lively = (b: Branch, i: number): boolean => (b.damping_ratio[i] ?? 1) < MOST_DAMPED;
+  return {
+    title,
+    time: false,
+    xName: `${locus.parameter} [${locus.unit}]`,
+    yName,
+    logX: true,
+    log: title.startsWith("Damping"),
+    series: locus.branches.map((b) => ({
+      name: words(b.label),
+      colour: modeColour(b.label),
+      kind: "line",
+      dashed: !b.label.endsWith("_1"),
+      x: locus.values,
+      y: locus.values.map((_, i) => (lively(b, i) ? of(b, i) : null)),
+    })),
+  };
+}
+
+/** Where the poles go; the point that the slider stands at, in ink. */
+function poles(locus: Locus, index: number): PlotData {
+  const points = (b: Branch): number[] =>
+    locus.values.flatMap((_, i) => ((b.damping_ratio[i] ?? 1) < MOST_DAMPED ? [i] : []));
+  const series = locus.branches.map((b): Series => {
+    const shown = points(b);
+    return {
+      name: words(b.label),
+      colour: modeColour(b.label),
+      kind: "points",
+      x: shown.map((i) => b.pole_real_rad_s[i] ?? 0),
+      y: shown.map((i) => b.pole_imag_rad_s[i] ?? null),
+    };
+  });
+  const now = locus.branches.filter((b) => (b.damping_ratio[index] ?? 1) < MOST_DAMPED);
+  const here: Series = {
+    name: "here",
+    colour: "ink",
+    kind: "points",
+    x: now.map((b) => b.pole_real_rad_s[index] ?? 0),
+    y: now.map((b) => b.pole_imag_rad_s[index] ?? null),
+  };
+  return {
+    title: "Root locus",
+    time: false,
+    xName: "real part [rad/s]",
+    yName: "imaginary part of the poles [rad/s]",
+    series: [...series, here],
+  };
+}
+
+function Along({ locus }: { locus: Locus }) {
+  const [index, setIndex] = useState(locus.origin);
+  const [range, setRange] = useState<Range | null>(null);
+  const [region, setRegion] = useState<Range | null>(null);
+  const value = locus.values[index] ?? 0;
+  const mark: Mark[] = [{ x: value, words: quantity(value, locus.unit), colour: "ink" }];
+  const f = useMemo(
+    () =>
+      along(locus, "Frequencies", "frequency over that at the median [%]", (b, i) => {
+        const [here, there] = [b.frequency_hz[i], b.frequency_hz[locus.origin]];
+        return here && there ? 100 * (here / there) : null;
+      }),
+    [locus],
+  );
+  const zeta = useMemo(
+    () =>
+      along(
+        locus,
+        "Damping ratios",
+        "damping ratio [%]",
+        (b, i) => 100 * (b.damping_ratio[i] ?? NaN) || null,
+      ),
+    [locus],
+  );
+  const root = useMemo(() => poles(locus, index), [locus, index]);
+  const plots = useMemo(() => [f, zeta].map((plot) => ({ ...plot, marks: mark })), [f, zeta, value]);
+  return (
+    <>
+      <Card
+        title={`Along ${locus.parameter}`}
+        wide
+        note="One parameter moves, the others stay where the data put them."
+      >
+        <label class="slide">
+          <span>
+            {locus.parameter} <b>{quantity(value, locus.unit, 3)}</b>
+            {index === locus.origin
+              ? " (median)"
+              : ` (${quantity(value / (locus.values[locus.origin] ?? 1), "", 3)} × the median)`}
+          </span>
+          <input
+            type="range"
+            min={0}
+            max={locus.values.length - 1}
+            value={index}
+            onInput={(event) => setIndex(Number(event.currentTarget.value))}
+          />
+        </label>
+        <div class="pair">
+          {plots.map((plot) => (
+            <Plot
+              key={plot.title}
+              data={plot}
+              height={240}
+              range={range}
+              onRange={setRange}
+              together="explore"
+            />
+          ))}
+        </div>
+      </Card>
+      <Card title="Modes here" note={`At ${locus.parameter} = ${quantity(value, locus.unit, 3)}.`}>
+        <Table
+          label="Modes here"
+          rows={locus.branches}
+          id={(b) => b.label}
+          columns={[
+            { title: "Mode", show: (b) => words(b.label) },
+            { title: "Frequency", unit: "Hz", numeric: true, show: (b) => frequency(b.frequency_hz[index]) },
+            {
+              title: "Damping ratio",
+              unit: "%",
+              numeric: true,
+              show: (b) => percent(b.damping_ratio[index]),
+            },
+            {
+              title: "Most damping",
+              unit: `% at ${locus.parameter}`,
+              numeric: true,
+              show: (b) =>
+                b.most_damped_at === null || b.most_damped_at === undefined
+                  ? "–"
+                  : `${percent(b.most_damping_ratio)} at ${quantity(b.most_damped_at, locus.unit)}`,
+            },
+          ]}
+        />
+      </Card>
+      <Card title="Poles" note="Further left is more damped. Black: where the slider stands.">
+        <Plot data={root} height={300} range={region} onRange={setRegion} />
+      </Card>
+    </>
+  );
+}
+
+function Sensitivity({ asset }: { asset: string }) {
+  const found = useAnswer(asset, `sensitivity ${asset}`, () =>
+    told(api.GET("/api/v1/assets/{asset}/sensitivity", { params: { path: { asset } } })),
+  );
+  return (
+    <Card
+      title="Sensitivities"
+      wide
+      note="Change of the mode if the parameter grows by one per cent: of its frequency in ‰, of its damping ratio in 0.001 %."
+    >
+      <Shown of={found} empty={(data) => (data.items.length ? null : <Empty title="Not estimated yet" />)}>
+        {(data) => (
+          <Table
+            label="Sensitivities"
+            rows={data.items}
+            id={(m) => m.label}
+            columns={[
+              { title: "Mode", show: (m) => words(m.label) },
+              ...Object.keys(data.items[0]?.frequency_sensitivity ?? {}).map((name) => ({
+                title: name,
+                unit: "f ‰ · ζ 0.001 %",
+                numeric: true,
+                show: (m: Schemas["SensitivityOut"]) =>
+                  `${fixed(10 * (m.frequency_sensitivity[name] ?? NaN), 2)} · ${fixed(1e3 * (m.damping_sensitivity[name] ?? NaN), 1)}`,
+              })),
+            ]}
+          />
+        )}
+      </Shown>
+    </Card>
+  );
+}
+
+function Curves({ explored }: { explored: Explored }) {
+  const [range, setRange] = useState<Range | null>(null);
+  const plot = useMemo((): PlotData => {
+    const colours = ["blue", "vermillion", "green", "purple", "orange", "sky"];
+    return {
+      title: "Cost along each parameter",
+      time: false,
+      xName: "factor on the median",
+      yName: "cost",
+      log: true,
+      series: (explored.curves ?? []).map((c, i) => ({
+        name: c.parameter,
+        colour: colours[i % colours.length] ?? "blue",
+        kind: "line",
+        x: c.factor,
+        y: c.cost,
+      })),
+    };
+  }, [explored]);
+  return (
+    <Card title="How sharply the data decide" note="A flat curve: the data say little of this parameter.">
+      <Plot data={plot} height={300} range={range} onRange={setRange} />
+    </Card>
+  );
+}
+
+function Drawn({ asset, explored }: { asset: string; explored: Explored }) {
+  const loci = explored.loci ?? [];
+  const locus = loci.find((l) => l.parameter === asked("parameter")) ?? loci[0];
+  const named = Object.fromEntries((explored.parameters ?? []).map((p) => [p.name, p]));
+  const at = Object.fromEntries((explored.parameters ?? []).map((p) => [p.name, p.value]));
+  return (
+    <>
+      <div class="tools">
+        <label>
+          Parameter{" "}
+          <select value={locus?.parameter ?? ""} onChange={(e) => keep({ parameter: e.currentTarget.value })}>
+            {loci.map((l) => (
+              <option key={l.parameter} value={l.parameter}>
+                {l.parameter}
+              </option>
+            ))}
+          </select>
+        </label>
+        <span class="quiet">Law {explored.law}</span>
+      </div>
+      <div class="grid">
+        {locus && <Along key={locus.parameter} locus={locus} />}
+        {explored.surface && (
+          <Card
+            title="Where the data point"
+            note="The cross is where the medians are; a long bright valley means that only a combination is known."
+          >
+            <Surface surface={explored.surface} at={at} unit={(name) => named[name]?.unit ?? ""} />
+          </Card>
+        )}
+        <Curves explored={explored} />
+        <Sensitivity asset={asset} />
+      </div>
+    </>
+  );
+}
+
+export default function Explore({ asset }: PageProps) {
+  const found = useAnswer(asset, `explore ${asset}`, () =>
+    told(api.GET("/api/v1/assets/{asset}/explore", { params: { path: { asset } } })),
+  );
+  return (
+    <>
+      <div class="head">
+        <h1>Explore</h1>
+        <p>What each parameter of the ground does to the modes, and how well the records tell it.</p>
+      </div>
+      <Shown
+        of={found}
+        lines={12}
+        empty={(data) =>
+          data.loci?.length ? null : (
+            <Empty title="Nothing to explore yet">
+              <p>This comes with the first estimate of the ground, when no record waits.</p>
+            </Empty>
+          )
+        }
+      >
+        {(data) => <Drawn asset={asset} explored={data} />}
+      </Shown>
+    </>
+  );
+}
