@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from jackettwin.answers import Answers, Span
 from jackettwin.answers.result import Clearance, FitAnswer, GroundAnswer, LawAnswer, ModeAnswer, NextStep
 from jackettwin.report.tables.answers import ground_table
 from jackettwin.report.tables.sentences import _model, percent_words, sentences, span_words
 from jackettwin.study.scrutiny import Scrutiny
-from jackettwin.updating import DatumCheck, Objection, Tolerance
+from jackettwin.updating import DatumCheck, Objection, OrderCheck, ShapeCheck, Tolerance, Unseen
 
 MODE = ModeAnswer(
     "fore_aft_1", Span(0.2, 0.199, 0.201), Span(0.012, 0.01, 0.014), True, True, Span(0.201, 0.195, 0.204),
@@ -245,12 +247,32 @@ def test_what_the_objections_name_is_not_said_twice() -> None:
 
 def test_what_these_data_would_not_show_is_said_with_its_size() -> None:
     nothing = replace(SOFT, name="weak_leg", words="one foot softer than the others")
-    found = Objection((), 8.0, 8, 0.4, unseen=(SOFT, nothing), seen_from=(0.95, float("inf")))
+    found = Objection(
+        (),
+        8.0,
+        8,
+        0.4,
+        unseen=(Unseen(SOFT, 0.95, np.array([-0.1, 0.0])), Unseen(nothing, np.inf, np.zeros(2))),
+    )
     shorts = sentences(replace(ANSWERS, scrutiny=Scrutiny(found))).questions[0].short
     assert (
-        "These data would not show feet softer sideways than lengthwise (30 %; they would from 95 %) and one "
+        "These data would not show feet softer sideways than lengthwise (30 %, with which "
+        "stiffness is 9.5 % less than said; they would from 95 %) and one "
         "foot softer than the others (30 %; nor of any size that is likely)." in shorts
     )
+
+
+def test_a_strange_shape_and_another_order_have_sentences() -> None:
+    found = replace(
+        Objection((), 8.0, 8, 0.4),
+        shapes=(ShapeCheck(1, 0.12, 0.002, 0.01, True), ShapeCheck(10, 0.002, 0.001, 0.01, False)),
+        orders=(OrderCheck(10, 1, 0.03, -0.02, 0.005, True),),
+    )
+    a = replace(objected_answers(), scrutiny=Scrutiny(found))
+    text = " ".join(sentences(a).questions[0].short)
+    assert "12 % of fore-aft 1's shape lies outside the model's (expected 0.2 %, ± 1 %)" in text
+    assert "fore-aft 3 lies 3 % below fore-aft 1, and in the model 2 % above it (± 0.5 %)" in text
+    assert "fore-aft 3's shape" not in text
 
 
 def test_a_turned_pair_and_a_suspect_have_sentences() -> None:

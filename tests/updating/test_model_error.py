@@ -344,13 +344,50 @@ def test_what_is_not_seen_says_from_which_size_it_would_be(model: SupportModel, 
         return Direction(tolerance("weak", size), feet=foot), nothing
 
     first = objection(problem, z, suspects=suspects(0.001), pairs=(pair,))
-    assert first is not None and [t.name for t in first.unseen] == ["weak", "nothing"]
-    size, never = first.seen_from
+    assert first is not None and [one.tolerance.name for one in first.unseen] == ["weak", "nothing"]
+    size, never = (one.seen_from for one in first.unseen)
     assert size > 0.001 and never == np.inf
     for part, seen in ((0.99, False), (1.01, True)):
         found = objection(problem, z, suspects=suspects(part * size), pairs=(pair,))
-        assert found is not None and ("weak" not in {t.name for t in found.unseen}) == seen
-        assert seen or found.seen_from[0] == pytest.approx(size, rel=1e-6)
+        assert found is not None and ("weak" not in {one.tolerance.name for one in found.unseen}) == seen
+        assert seen or found.unseen[0].seen_from == pytest.approx(size, rel=1e-6)
+
+
+def test_what_is_not_seen_says_what_it_does_to_the_ground(model: SupportModel, errors: ErrorModel) -> None:
+    """A tower 1 % stiffer that nobody allowed for: the true k is off the fitted one by as much as is said."""
+    stiff = model_of(tower=1.01).assembly
+    tower = Direction(tolerance("tower", 0.01), stiffness=stiff.stiffness - model.assembly.stiffness)
+    own = ErrorModel(replace(errors.directions, each=()), {}, 0.02, 0.05)
+    data = targets(model_of(tower=1.01).predict(THETA, MODES).poles)
+    problem = problem_of(model, data, own)
+    near = problem.anchor(np.log(THETA))
+    assert near is not None
+    fitted = bottom(problem, np.log(THETA), near)
+    found = objection(problem, fitted, suspects=(tower,))
+    assert found is not None and [one.tolerance.name for one in found.unseen] == ["tower"]
+    # 10 %: second order in a change of k by some per cent
+    assert found.unseen[0].effect[0] == pytest.approx(np.log(THETA[0]) - fitted[0], rel=0.1)
+    assert found.unseen[0].effect[0] < -0.01
+
+
+def test_a_suspect_is_judged_without_the_tolerance_for_it(model: SupportModel, errors: ErrorModel) -> None:
+    """Loss that grows with frequency as a dashpot's: a tolerance explains it, the suspect sees it."""
+    law = Direction(replace(tolerance("law", 1.0), beyond="loss_growth"), loss_growth=1.0)
+    open_ = Direction(tolerance("loss_growth", 1.0), loss_growth=1.0)
+    viscous = np.asarray(model.predict(THETA, MODES).poles)
+    known = ErrorModel(replace(errors.directions, each=(open_,)), {}, 0.001, 0.02)
+    found = model.predict_many(THETA[None], MODES)
+    grown = viscous + ToleranceDirections(model.assembly, model.condensed, (open_,), 1).slopes(found)[0, :, 0]
+    for poles, asked in ((viscous, False), (grown, True)):
+        problem = problem_of(model, targets(poles), known)
+        near = problem.anchor(np.log(THETA))
+        assert near is not None
+        said = objection(problem, bottom(problem, np.log(THETA), near), suspects=(law,))
+        assert said is not None and said.probability > 0.5
+        assert ("law" in {t.name for t in said.suspected}) == asked
+        hidden = replace(law, tolerance=replace(law.tolerance, beyond=""))
+        said = objection(problem, bottom(problem, np.log(THETA), near), suspects=(hidden,))
+        assert said is not None and not said.suspected
 
 
 def test_ten_turbines_know_their_tower_better_than_one(

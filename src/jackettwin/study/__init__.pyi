@@ -35,7 +35,7 @@ from .life.updated_system import (
 )
 from .many_records.export import WRITERS as WRITERS, export_modes as export_modes
 from .many_records.long_records import LONG as LONG, PIECE_S as PIECE_S
-from .measurements import MeasuredMode as MeasuredMode
+from .measurements import MeasuredMode as MeasuredMode, sensors_of as sensors_of
 from .modes_in_time import MODES_IN_TIME as MODES_IN_TIME, write_modes_in_time as write_modes_in_time
 from .result import DampingExcess as DampingExcess, TwinResult as TwinResult
 from .run import count_steps as count_steps, run_twin as run_twin

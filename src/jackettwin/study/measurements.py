@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from jackettwin.arrays import ComplexArray
 from jackettwin.identification import ModalEstimate
+from jackettwin.response import Sensor
+from jackettwin.twin import Observation
 
 
 @dataclass(frozen=True)
@@ -63,3 +66,16 @@ class MeasuredRelaxation:
     channels: tuple[str, ...]
     shape: ComplexArray
     records: int
+
+
+def sensors_of(
+    m: MeasuredMode, observations: Sequence[Observation]
+) -> tuple[tuple[Sensor, ...], list[int]] | None:
+    """Return the sensors that a mode's shape was seen at, and their rows in it; None without a record."""
+    for one in observations:
+        estimate, _ = one.modes.get(m.mode, (None, None))
+        if estimate is not None and estimate is m.estimate:
+            order = {c.name: i for i, c in enumerate(one.identification.channels)}
+            sensors = tuple(sensor for sensor in one.sensors if sensor.channel in order)
+            return (sensors, [order[sensor.channel] for sensor in sensors]) if sensors else None
+    return None

@@ -132,6 +132,7 @@ def updated_twin(
     others = suspects(config, assembly) if any(u.problem.weighted for u in updates) else ()
     sensors = () if found is None else found.sensors
     pairs = measured_directions(state, sensors, assembly, measured)
+    seen = () if found is None else found.observations
     left_out = tuple(law for law in wanted if law not in [u.law for u in updates])
     return TwinResult(
         name=config.name,
@@ -139,7 +140,7 @@ def updated_twin(
         sensors=sensors,
         numbered=numbered,
         labels=labels,
-        observations=() if found is None else found.observations,
+        observations=seen,
         shown=None if found is None else found.shown,
         measured=measured,
         updates=tuple(updates),
@@ -150,7 +151,7 @@ def updated_twin(
         rotor_speed_hz=speed,
         blades=blades,
         in_all=None if found is None else found.in_all,
-        scrutiny=tuple(scrutiny(u, measured, others, pairs) for u in updates),
+        scrutiny=tuple(scrutiny(u, measured, others, pairs, seen) for u in updates),
     )
 
 

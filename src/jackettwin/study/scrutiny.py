@@ -3,25 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import degrees, exp, isfinite, log
 from typing import Any
 
 import numpy as np
 
-from jackettwin.study.measurements import MeasuredMode
+from jackettwin.files import named
+from jackettwin.response import observation_matrix
+from jackettwin.study.measurements import MeasuredMode, sensors_of
+from jackettwin.twin import Observation
 from jackettwin.updating import (
     USABLE,
     DatumCheck,
     Direction,
     Influence,
+    MeasuredShape,
     Objection,
+    OrderCheck,
     PairDirection,
+    ShapeCheck,
     Target,
     Tolerance,
     Update,
     influences,
     objection,
+    order_checks,
+    shape_checks,
 )
 
 
@@ -78,6 +86,7 @@ def scrutiny(
     measured: Sequence[MeasuredMode],
     suspects: Sequence[Direction],
     pairs: Sequence[PairDirection] = (),
+    observations: Sequence[Observation] = (),
 ) -> Scrutiny:
     """Return what stands behind a fit.
 
@@ -85,6 +94,7 @@ def scrutiny(
     ----------
     suspects : what else may be wrong with the structure, to explain what the tolerances do not
     pairs : measured directions of bending pairs
+    observations : records that show shapes
     """
     beside = [
         Target(m.mode, m.frequency_hz, m.frequency_std_hz)
@@ -94,7 +104,46 @@ def scrutiny(
     z = np.log(u.best.theta)
     known = u.uncertainty
     found = () if known is None else influences(u.problem, np.median(known.log_theta, axis=0))
-    return Scrutiny(objection(u.problem, z, beside, suspects, pairs), found, _conditions(u, found))
+    said = objection(u.problem, z, beside, suspects, pairs)
+    if said is not None:
+        said = replace(said, shapes=_shapes(u, measured, observations), orders=_orders(u, measured))
+    return Scrutiny(said, found, _conditions(u, found))
+
+
+def _shapes(
+    u: Update, measured: Sequence[MeasuredMode], observations: Sequence[Observation]
+) -> tuple[ShapeCheck, ...]:
+    """Return the check of each measured shape whose record knows how sure it is, fitted or not."""
+    modes, shapes, own_hz = [], [], []
+    every = u.modes.damped
+    for m, hz in zip(measured, u.modes.frequency_hz, strict=True):
+        seen, e = sensors_of(m, observations), m.estimate
+        std = None if e is None else e.mode_shape_std
+        if std is None and e is not None and e.unrefined is not None:
+            # a refined shape has none of its own: that of the one before is no smaller
+            std = e.unrefined.mode_shape_std
+        if seen is None or e is None or std is None or not np.isfinite(hz):
+            continue
+        sensors, rows = seen
+        modes.append(MeasuredShape(m.mode, e.mode_shape[rows], std[rows]))
+        shapes.append(np.asarray(observation_matrix(u.model.assembly, sensors) @ every.shapes))
+        own_hz.append(float(hz))
+    return shape_checks(modes, shapes, every.frequency_hz, own_hz)
+
+
+def _orders(u: Update, measured: Sequence[MeasuredMode]) -> tuple[OrderCheck, ...]:
+    """Return the check of the order of the measured modes that the posterior predicts."""
+    q = None if u.uncertainty is None else u.uncertainty.predictive
+    known = [
+        m for m in measured
+        if q is not None and m.mode in q.modes and m.frequency_hz and m.frequency_std_hz
+    ]  # fmt: skip
+    if q is None or len(known) < 2:
+        return ()
+    f, std = np.array([[m.frequency_hz, m.frequency_std_hz] for m in known], dtype=np.float64).T
+    draws = np.log(q.frequency_hz[:, [q.modes.index(m.mode) for m in known]])
+    whole = draws[np.isfinite(draws).all(axis=1)]
+    return order_checks([m.mode for m in known], np.log(f), std / f, whole) if len(whole) else ()
 
 
 def _conditions(u: Update, found: tuple[Influence, ...]) -> tuple[Condition, ...]:
@@ -114,7 +163,7 @@ def _conditions(u: Update, found: tuple[Influence, ...]) -> tuple[Condition, ...
 def scrutiny_document(s: Scrutiny, parameters: Sequence[str]) -> dict[str, Any]:
     """Return what stands behind a fit as plain JSON data."""
     return {
-        "objection": None if s.objection is None else _objection_document(s.objection),
+        "objection": None if s.objection is None else _objection_document(s.objection, parameters),
         "tolerances": [
             {
                 **_tolerance_document(one.tolerance),
@@ -140,7 +189,7 @@ def scrutiny_document(s: Scrutiny, parameters: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def _objection_document(o: Objection) -> dict[str, Any]:
+def _objection_document(o: Objection, parameters: Sequence[str]) -> dict[str, Any]:
     return {
         "objects": o.objects,
         "chi2": o.chi2,
@@ -159,11 +208,29 @@ def _objection_document(o: Objection) -> dict[str, Any]:
             {**_tolerance_document(e.tolerance), "size": e.size, "chi2_less": e.gain} for e in o.explanations
         ],
         "asked_for_by_these_data": [tolerance.name for tolerance in o.suspected],
-        "not_seen_by_these_data": [tolerance.name for tolerance in o.unseen],
+        "not_seen_by_these_data": [one.tolerance.name for one in o.unseen],
         "seen_from": {
-            tolerance.name: size if isfinite(size) else None
-            for tolerance, size in zip(o.unseen, o.seen_from, strict=True)
+            one.tolerance.name: one.seen_from if isfinite(one.seen_from) else None for one in o.unseen
         },
+        "unseen": [
+            {
+                **_tolerance_document(one.tolerance),
+                "seen_from": one.seen_from if isfinite(one.seen_from) else None,
+                "log_effect_at_its_size": _named(parameters, one.effect.tolist()),
+                "settled_by": one.tolerance.settled_by,
+            }
+            for one in o.unseen
+        ],
+        "shapes": [named(one, "mode", "outside", "expected", "std", "objects") for one in o.shapes],
+        "orders": [
+            named(one, "lower", "upper", "objects")
+            | {
+                "log_frequency_ratio_measured": one.apart,
+                "log_frequency_ratio_predicted": one.predicted,
+                "std": one.std,
+            }
+            for one in o.orders
+        ],
     }
 
 

@@ -34,7 +34,12 @@ from .law_choice import (
     series as series,
 )
 from .model import SupportModel as SupportModel
-from .model_error.checks import DatumCheck as DatumCheck, Objection as Objection, objection as objection
+from .model_error.checks import (
+    DatumCheck as DatumCheck,
+    Objection as Objection,
+    Unseen as Unseen,
+    objection as objection,
+)
 from .model_error.directions import (
     Direction as Direction,
     Tolerance as Tolerance,
@@ -42,6 +47,13 @@ from .model_error.directions import (
 )
 from .model_error.error_model import ErrorModel as ErrorModel
 from .model_error.influence import Influence as Influence, influences as influences
+from .model_error.mode_checks import (
+    MeasuredShape as MeasuredShape,
+    OrderCheck as OrderCheck,
+    ShapeCheck as ShapeCheck,
+    order_checks as order_checks,
+    shape_checks as shape_checks,
+)
 from .model_error.pair_directions import PairDirection as PairDirection
 from .model_error.turbines import (
     StackedErrors as StackedErrors,

@@ -14,7 +14,7 @@ from jackettwin.report.figures.svg import Canvas
 from jackettwin.report.tables.numbers import fixed, words
 from jackettwin.response import Sensor, observation_matrix, sensor_positions
 from jackettwin.structure import Assembly
-from jackettwin.study import MeasuredMode, TwinResult
+from jackettwin.study import MeasuredMode, TwinResult, sensors_of
 from jackettwin.updating import Update
 
 Seen = tuple[tuple[Sensor, ...], ComplexArray]
@@ -37,14 +37,8 @@ def shape_drawings(result: TwinResult, u: Update) -> list[Markup]:
 
 def _seen(result: TwinResult, m: MeasuredMode) -> Seen | None:
     """Return the sensors of the record that a mode's shape is of, and the shape there; None without one."""
-    for one in result.observations:
-        estimate, _ = one.modes.get(m.mode, (None, None))
-        if estimate is not None and estimate is m.estimate:
-            order = {c.name: i for i, c in enumerate(one.identification.channels)}
-            sensors = tuple(sensor for sensor in one.sensors if sensor.channel in order)
-            rows = [order[sensor.channel] for sensor in sensors]
-            return (sensors, estimate.mode_shape[rows]) if rows else None
-    return None
+    at = sensors_of(m, result.observations)
+    return None if at is None or m.estimate is None else (at[0], m.estimate.mode_shape[at[1]])
 
 
 def _drawing(

@@ -8,7 +8,7 @@ from math import degrees, expm1
 from jackettwin.answers import Answers, GroundAnswer
 from jackettwin.report.tables.numbers import listed, words
 from jackettwin.soil import parameter_words
-from jackettwin.updating import DatumCheck, Tolerance
+from jackettwin.updating import DatumCheck, OrderCheck, ShapeCheck, Tolerance, Unseen
 
 _NAMED = 3
 """Values and tolerances that a sentence names: the table has all."""
@@ -65,6 +65,8 @@ def objection_sentences(a: Answers) -> list[str]:
         return []
     o, labels = a.scrutiny.objection, {m.number: m.label for m in a.modes}
     said = [_stray(check, labels) for check in objected(a)]
+    said += [_shape(check, labels) for check in o.shapes if check.objects]
+    said += [_order(check, labels) for check in o.orders if check.objects]
     if not said and o.suspected:
         said = [f"the measured modes lie as {listed([t.words for t in o.suspected])} would move them"]
     together = "the measured modes together are farther from any model within the tolerances than chance goes"
@@ -88,6 +90,21 @@ def _stray(check: DatumCheck, labels: Mapping[int, str]) -> str:
     return (
         f"{label}'s {what} is {100 * abs(check.miss):.2g} % {side} what the other modes allow "
         f"(± {100 * check.std:.2g} %)"
+    )
+
+
+def _shape(check: ShapeCheck, labels: Mapping[int, str]) -> str:
+    return (
+        f"{100 * check.outside:.2g} % of {words(labels.get(check.mode, f'mode {check.mode}'))}'s shape lies "
+        f"outside the model's (expected {100 * check.expected:.2g} %, ± {100 * check.std:.2g} %)"
+    )
+
+
+def _order(check: OrderCheck, labels: Mapping[int, str]) -> str:
+    lower, upper = (words(labels.get(mode, f"mode {mode}")) for mode in (check.lower, check.upper))
+    return (
+        f"{lower} lies {100 * expm1(check.apart):.2g} % below {upper}, and in the model "
+        f"{100 * expm1(-check.predicted):.2g} % above it (± {100 * check.std:.2g} %)"
     )
 
 
@@ -130,12 +147,26 @@ def unseen_sentence(a: Answers) -> str:
     """Return what may be wrong with the structure and would not show in these data, and how large."""
     if a.scrutiny is None or a.scrutiny.objection is None:
         return ""
-    o = a.scrutiny.objection
-    said = [
-        f"{t.words} ({size_words(t, t.std).lstrip('+')}; {_seen_from(t, size)})"
-        for t, size in zip(o.unseen, o.seen_from, strict=True)
-    ]
+    said = [_unseen(a, one) for one in a.scrutiny.objection.unseen]
     return f"These data would not show {listed(said)}." if said else ""
+
+
+def _unseen(a: Answers, one: Unseen) -> str:
+    """Return a suspect with its size, what it would do to the ground, and from where it would be seen."""
+    t = one.tolerance
+    size = size_words(t, t.std).lstrip("+")
+    moved = _moved_most(a, one)
+    return f"{t.words} ({size}{moved}; {_seen_from(t, one.seen_from)})"
+
+
+def _moved_most(a: Answers, one: Unseen) -> str:
+    """Return the parameter of the ground that an unseen suspect moves most, and by how much."""
+    felt = [(abs(float(e)), float(e), g.name) for e, g in zip(one.effect, a.ground, strict=False)]
+    most, effect, name = max(felt, default=(0.0, 0.0, ""))
+    if most < _FELT:
+        return ""
+    side = "more" if effect > 0.0 else "less"
+    return f", with which {parameter_words(name)} is {100.0 * abs(expm1(effect)):.2g} % {side} than said"
 
 
 def _seen_from(t: Tolerance, size: float) -> str:

@@ -327,6 +327,12 @@ def _table() -> tuple[KnownTolerance, ...]:
             _steel(lambda s, x: with_braces(s, stiffer(1.0 - x))), suspected=True,
         ),
         KnownTolerance(
+            Tolerance("law", "loss of the ground that grows otherwise with frequency", 1.0, "power",
+                      "from hysteretic ground (0) to a dashpot (1)",
+                      "fit the other laws (update.laws), and damping of more modes", beyond="loss_growth"),
+            _loss_growth, suspected=True,
+        ),
+        KnownTolerance(
             Tolerance("bending_blades", "bending of the blades, lumped in the model", 1.0, "rotors",
                       "the IEA 15 MW rotor's first modes (5 % of the mass, 45 % of the inertia, 0.6 Hz)",
                       "model the blades (blades:)"),

@@ -11,7 +11,7 @@ a suspect that is asked for by its name this is a test of its own. The direction
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import exp, sqrt
 
@@ -24,6 +24,7 @@ from jackettwin.updating.data.targets import Target
 from jackettwin.updating.model_error.checked_data import CheckedData, Column, checked_data
 from jackettwin.updating.model_error.directions import Direction, Tolerance
 from jackettwin.updating.model_error.marginal import covariance
+from jackettwin.updating.model_error.mode_checks import OrderCheck, ShapeCheck
 from jackettwin.updating.model_error.pair_directions import PairDirection
 from jackettwin.updating.problem import Problem
 
@@ -87,6 +88,25 @@ class Explanation:
     gain: float
 
 
+@dataclass(frozen=True, eq=False)
+class Unseen:
+    """A suspect that at its size would be objected to less than every second time.
+
+    Attributes
+    ----------
+    tolerance : Tolerance
+    seen_from : float
+        Size in its unit from which it would be every second time or more, as far as the first order holds;
+        infinite if it moves nothing.
+    effect : (n_parameters,)
+        By how much ln θ is another than it is said to be, where the suspect is true at its size.
+    """
+
+    tolerance: Tolerance
+    seen_from: float
+    effect: FloatArray
+
+
 @dataclass(frozen=True)
 class Objection:
     """What a fitted model does not explain.
@@ -99,13 +119,13 @@ class Objection:
         Of all values that are fitted, and of frequencies and directions that are not.
     explanations : tuple of Explanation
         The best first; empty where nothing is to be explained.
-    unseen : tuple of Tolerance
-        Suspects that at their size would be objected to less than every second time.
-    seen_from : tuple of float
-        Of each of these, the size in its unit from which it would be every second time or more, as far as the
-        first order holds; infinite if it moves nothing.
+    unseen : tuple of Unseen
     suspected : tuple of Tolerance
         Suspects that the data ask for, beyond chance.
+    shapes : tuple of ShapeCheck
+        Of modes whose shape was measured.
+    orders : tuple of OrderCheck
+        Of neighbours among the measured modes.
     """
 
     checks: tuple[DatumCheck, ...]
@@ -113,15 +133,16 @@ class Objection:
     freedom: int
     probability: float
     explanations: tuple[Explanation, ...] = ()
-    unseen: tuple[Tolerance, ...] = ()
+    unseen: tuple[Unseen, ...] = ()
     suspected: tuple[Tolerance, ...] = ()
-    seen_from: tuple[float, ...] = ()
+    shapes: tuple[ShapeCheck, ...] = ()
+    orders: tuple[OrderCheck, ...] = ()
 
     @property
     def objects(self) -> bool:
         """Whether chance does not explain what was measured."""
-        stray = any(check.objects for check in self.checks)
-        return self.probability < UNLIKELY or stray or bool(self.suspected)
+        each = [check.objects for checks in (self.checks, self.shapes, self.orders) for check in checks]
+        return self.probability < UNLIKELY or any(each) or bool(self.suspected)
 
 
 def objection(
@@ -146,46 +167,58 @@ def objection(
         return None
     flat = np.array([p.median is None for p in problem.parameters])
     precision = np.diag(np.where(flat, problem.prior.std**-2.0, 0.0))
-    inverse = np.linalg.inv(covariance(rows.gains))
-    information = rows.J.T @ inverse @ rows.J + precision
-    W = inverse - inverse @ rows.J @ np.linalg.solve(information, rows.J.T @ inverse)
+    W, _ = _left(rows, precision)
     Wr = W @ rows.r
     chi2 = float(rows.r @ Wr)
     used = int((np.linalg.svd(rows.J * problem.prior.std, compute_uv=False) > 0.5).sum())
     freedom = max(rows.r.size - used, 1)
     limit = -float(ndtri(0.5 * UNLIKELY / max(len(rows.names) + len(rows.asked), 1)))
-    unseen = _unseen(rows.asked, W, limit)
+    unseen, suspected = _suspects(rows, precision, limit)
     result = Objection(
         _checks(rows, set(problem.data_names), W, Wr, limit),
         chi2,
         freedom,
         float(chdtrc(freedom, max(chi2, 0.0))),
-        unseen=tuple(tolerance for tolerance, _ in unseen),
-        seen_from=tuple(size for _, size in unseen),
-        suspected=_each_once(
-            c.tolerance
-            for c, gamma in rows.asked
-            if float(gamma @ Wr) ** 2 > limit**2 * max(float(gamma @ W @ gamma), _TOLD)
-        ),
+        unseen=unseen,
+        suspected=suspected,
     )
     if not result.objects:
         return result
     return replace(result, explanations=_explanations([*rows.known, *rows.asked], W, Wr))
 
 
-def _unseen(asked: Sequence[Column], W: FloatArray, limit: float) -> list[tuple[Tolerance, float]]:
-    """Return the suspects that would not be seen at their size, and from which size each would, wherever."""
-    found: dict[str, tuple[Tolerance, float]] = {}
-    for direction, gamma in asked:
-        tolerance, power = direction.tolerance, sqrt(max(float(gamma @ W @ gamma), 0.0))
-        size = tolerance.std * (limit / power if power > 0.0 else np.inf)
-        if size > tolerance.std and size > found.get(tolerance.name, (tolerance, 0.0))[1]:
-            found[tolerance.name] = tolerance, float(size)
-    return list(found.values())
+def _left(rows: CheckedData, precision: FloatArray, without: str = "") -> tuple[FloatArray, FloatArray]:
+    """Return W (n_data, n_data), and what residuals move ln θ by, (n_parameters, n_data).
+
+    Parameters
+    ----------
+    without : tolerance that counts as settled
+    """
+    closed = [place for place, (one, _) in enumerate(rows.known) if one.tolerance.name == without]
+    inverse = np.linalg.inv(covariance(np.delete(rows.gains, closed, axis=1)))
+    information = rows.J.T @ inverse @ rows.J + precision
+    moved = np.linalg.solve(information, rows.J.T @ inverse)
+    return np.asarray(inverse - inverse @ rows.J @ moved), np.asarray(-moved)
 
 
-def _each_once(tolerances: Iterable[Tolerance]) -> tuple[Tolerance, ...]:
-    return tuple({tolerance.name: tolerance for tolerance in tolerances}.values())
+def _suspects(
+    rows: CheckedData, precision: FloatArray, limit: float
+) -> tuple[tuple[Unseen, ...], tuple[Tolerance, ...]]:
+    """Return the suspects that would not be seen at their size, wherever, and those that are asked for."""
+    unseen: dict[str, Unseen] = {}
+    suspected: dict[str, Tolerance] = {}
+    _, moved = _left(rows, precision)
+    for direction, gamma in rows.asked:
+        tolerance = direction.tolerance
+        W, _ = _left(rows, precision, tolerance.beyond)
+        power = max(float(gamma @ W @ gamma), 0.0)
+        if float(gamma @ W @ rows.r) ** 2 > limit**2 * max(power, _TOLD):
+            suspected[tolerance.name] = tolerance
+        size = tolerance.std * (limit / sqrt(power) if power > 0.0 else np.inf)
+        known = unseen.get(tolerance.name)
+        if size > tolerance.std and (known is None or size > known.seen_from):
+            unseen[tolerance.name] = Unseen(tolerance, size, moved @ gamma)
+    return tuple(unseen.values()), tuple(suspected.values())
 
 
 def _checks(

@@ -44,6 +44,9 @@ class Tolerance:
         Where the size comes from.
     settled_by : str
         What would settle it, as an imperative.
+    beyond : str
+        Of a suspect, the tolerance that allows for some of the same: whether the data ask for the suspect, or
+        would show it, is judged as if nobody had allowed for it.
     """
 
     name: str
@@ -52,6 +55,7 @@ class Tolerance:
     unit: str
     source: str
     settled_by: str
+    beyond: str = ""
 
 
 @dataclass(frozen=True)
