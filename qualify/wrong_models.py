@@ -383,9 +383,10 @@ def chance_lines(found: list[Result]) -> list[str]:
     objects, said = sum(r["product"]["objects"] for r in far), sum(map(told, far))
     return [
         f"Outside the tolerances {of - hits} of {of} intervals of 90 % miss; chance alone lets",
-        f"{0.1 * of:.0f} miss, and as many or more once in {1.0 / more:.2g}. A miss by chance alone is nothing",
-        f"that data could object to. Of intervals of 99 % {misses} of {of} miss (chance {0.01 * of:.0f}),",
-        f"in {len(far)} twins: {objects} of these object, {said} object or say that their data would not show it.",
+        f"{0.1 * of:.0f} miss, and as many or more once in {1.0 / more:.2g}. A miss by chance alone is",
+        f"nothing that data could object to. Of intervals of 99 % {misses} of {of} miss (chance",
+        f"{0.01 * of:.0f}), in {len(far)} twins: {objects} of these object, {said} object or say that their",
+        "data would not show it.",
         f"Of {len(true)} twins",
         "with nothing wrong "
         + ", ".join(f"{number} say so of `{name}`" for name, number in named.items())

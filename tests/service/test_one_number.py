@@ -6,6 +6,7 @@ import gzip
 import html
 import json
 import re
+from base64 import b64decode
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -47,6 +48,7 @@ class Outlets:
     document: dict[str, Any]
     terminal: str
     page: str
+    figures: dict[str, Any]
     known: dict[str, Any]
     modes: list[dict[str, Any]]
 
@@ -74,6 +76,7 @@ def outlets(tmp_path_factory: pytest.TempPathFactory) -> Outlets:
         encode(run_document(told, report=None) | answers_document(answers)),
         re.sub(r"\s+", " ", printed.get()),
         _text(gzip.decompress(outcome.page).decode()),
+        _figures(gzip.decompress(outcome.page).decode()),
         json.loads(outcome.document)["known"],
         engine.knowledge(twin.model, sums)["modes"],
     )
@@ -83,6 +86,13 @@ def _text(page: str) -> str:
     """Return what a page shows: its words, without scripts, styles and packed figures."""
     bare = re.sub(r"(?s)<(script|style)\b.*?</\1>|<[^>]+>", " ", page)
     return re.sub(r"\s+", " ", html.unescape(bare))
+
+
+def _figures(page: str) -> dict[str, Any]:
+    """Return the data of a page's figures by name, unpacked as its script does."""
+    found = re.findall(r'<script type="text/plain" class="packed" id="data-(\w+)">([^<]+)</script>', page)
+    texts = {name: gzip.decompress(b64decode(text)).decode() for name, text in found}
+    return {name: json.loads(text) for name, text in texts.items() if text.startswith("{")}
 
 
 def values(o: Outlets) -> Iterator[tuple[str, str, Value | float]]:
@@ -109,6 +119,24 @@ def of_parameters(o: Outlets) -> Iterator[tuple[str, str, Value | float]]:
         yield g["name"], "result.json, answers", _span(g["value"])
     for name, p in o.known["parameters"].items():
         yield name, "API", (p["median"], *p["interval_90"])
+    yield from of_corner(o)
+
+
+def of_corner(o: Outlets) -> Iterator[tuple[str, str, Value | float]]:
+    """Yield what the figure of the posterior marks: medians in its cells, ends of intervals as lines."""
+    figure = o.figures["posterior"]
+    names = list(o.document["updates"][0]["parameters"])
+    n = len(names)
+    for trace in (t for t in figure["data"] if t.get("name") == "medians"):
+        cell = int(trace["xaxis"].removeprefix("x") or 1) - 1
+        for name, axis in ((names[cell % n], "x"), (names[cell // n], "y")):
+            yield name, f"posterior, cell {cell}, {axis}", 10.0 ** trace[axis][0]
+    lines = figure["layout"]["shapes"]
+    for i, name in enumerate(names):
+        number = i * (n + 1) + 1
+        own = "x" if number == 1 else f"x{number}"
+        ends = sorted(10.0 ** line["x0"] for line in lines if line["xref"] == own)
+        yield name, "posterior, ends", (o.known["parameters"][name]["median"], *ends)
 
 
 def of_mode(m: dict[str, Any]) -> Iterator[tuple[str, str, Value | float]]:
@@ -163,6 +191,25 @@ def test_a_parameter_reads_alike_on_terminal_page_and_api(outlets: Outlets) -> N
         assert not re.search(r"\d(e\+\d|\s*×\s*10[⁰-⁹])\d*\s*N", place)
 
 
+def test_tables_and_drawings_of_the_page_say_what_the_document_says(outlets: Outlets) -> None:
+    """The model's frequencies and damping ratios as the page's tables and drawings print them."""
+    for m in outlets.document["updates"][0]["modes"]:
+        assert (
+            f"{m['frequency_hz']:.4f}" in outlets.page and f"{100 * m['damping_ratio']:.2f}" in outlets.page
+        )
+        assert f"{m['frequency_hz']:.3f} Hz" in outlets.page
+
+
+def test_shares_of_damping_are_of_what_was_measured(outlets: Outlets) -> None:
+    told = {m["label"]: m for m in outlets.document["answers"]["modes"]}
+    for row in outlets.document["updates"][0]["damping_budget"]:
+        m = told[row["label"]]
+        assert row["share_of"] == "measured"
+        for source, span in m["sources"].items():
+            part = row["share"][source] * m["measured_damping"]["value"]
+            assert part == pytest.approx(span["value"], rel=1e-9)
+
+
 def test_modes_are_named_and_counted_alike(outlets: Outlets) -> None:
     for m in outlets.modes:
         words = m["label"].replace("_", "-", m["label"].count("_") - 1).replace("_", " ")
@@ -177,4 +224,6 @@ def test_what_no_source_explains_is_said_drawn_and_told(outlets: Outlets) -> Non
     for m in beyond:
         parts = [span["value"] for span in m["sources"].values()]
         assert sum(parts) + m["unexplained"] == pytest.approx(m["measured"]["value"])
+    told = {m["label"]: m["unexplained"] for m in outlets.document["answers"]["modes"]}
+    assert told == pytest.approx({m["label"]: m["unexplained"] for m in outlets.known["budget"]})
     assert ("unexplained" in outlets.page) == bool(beyond)

@@ -46,7 +46,6 @@ def test_the_budget_adds_up_to_the_damping_of_the_full_model(model: SupportModel
     budget = damping_budget(model, TRUTH, MODES)
     exact = model.exact_modes(TRUTH, MODES)
     np.testing.assert_allclose(budget.damping_ratio.sum(axis=1), exact.damping_ratio, rtol=1e-8)
-    np.testing.assert_allclose(budget.share.sum(axis=1), 1.0, rtol=1e-12)
 
 
 @pytest.mark.parametrize(("source", "without"), [(1, (1, 1e-4)), (2, (3, 1e2))])
@@ -81,12 +80,12 @@ def test_the_first_pair_is_met_in_both_assignments(
     fit = update(single(model, residuals), starts=4, particles=40)
     np.testing.assert_allclose(fit.modes.damping_ratio[:2], [first, second], rtol=0.05)
     np.testing.assert_allclose(fit.modes.frequency_hz, [0.1819, 0.1838, 0.7362], rtol=0.01)
-    budget = fit.budget
-    assert budget.share_interval_90 is not None
-    strong = int(second > first)
-    assert budget.share[strong, 2] > 0.6
-    low, high = np.moveaxis(budget.share_interval_90, -1, 0)
-    assert 0.6 < low[strong, 2] < high[strong, 2] <= 1.0
+    assert fit.budget.damping_ratio_interval_90 is not None
+    strong, measured = int(second > first), (first, second)
+    assert fit.budget.damping_ratio[strong, 2] > 0.6 * measured[strong]
+    low, high = fit.budget.damping_ratio_interval_90[strong, 2] / measured[strong]
+    # the dashpot gives it all but the steel's part, with the 10 % that the ratio is known to
+    assert 0.6 < low < high < 1.2
 
 
 def test_unknown_dashpot() -> None:

@@ -13,6 +13,9 @@ from jackettwin.study import Scrutiny
 LEAST_MODEL_ERROR = 0.01
 """Standard deviation by which a model of beams misses frequencies, where the twin states less."""
 
+_TRACE = 0.01
+"""Share of a measured damping ratio below which what is beyond all sources is none: medians do not add up."""
+
 
 @dataclass(frozen=True)
 class Span:
@@ -90,8 +93,9 @@ class ModeAnswer:
         """Measured damping ratio beyond that of all sources; None if nothing is, or was not measured."""
         if self.measured_damping is None or not self.sources:
             return None
-        beyond = self.measured_damping.value - sum(span.value for span in self.sources.values())
-        return beyond if beyond > 0.0 else None
+        measured = self.measured_damping.value
+        beyond = measured - sum(span.value for span in self.sources.values())
+        return beyond if beyond > _TRACE * measured else None
 
     @property
     def as_designed(self) -> bool | None:

@@ -32,10 +32,12 @@ def answers_document(answers: Answers) -> dict[str, Any]:
     from jackettwin.files import encode
     from jackettwin.report import light, sentences
 
-    said = sentences(answers)
+    said, plain = sentences(answers), encode(answers)
+    for mode, own in zip(plain["modes"], answers.modes, strict=True):
+        mode["unexplained"] = own.unexplained
     return {
         "light": encode(light(answers)),
-        "answers": encode(answers),
+        "answers": plain,
         "headline": list(said.headline),
         "questions": {q.title: [*q.short, *q.more] for q in said.questions},
     }

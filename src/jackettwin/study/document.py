@@ -244,8 +244,15 @@ def _quantiles(draws: FloatArray) -> dict[str, Any]:
 
 
 def _budget(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, Any]]:
-    """Return each mode's damping ratio by source; where no drag is modelled, water's part is not known."""
+    """Return each mode's damping ratio by source; where no drag is modelled, water's part is not known.
+
+    Shares are of the measured damping ratio; of the model's where none was measured.
+    """
     b = u.budget
+    whole = [
+        float(b.damping_ratio[i].sum()) if m.damping_ratio is None else m.damping_ratio
+        for i, m in enumerate(measured)
+    ]
 
     def by_source(values: FloatArray | None, i: int) -> dict[str, Any] | None:
         if values is None:
@@ -260,8 +267,11 @@ def _budget(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, Any
             "beyond_literature": beyond_literature(
                 m.label, dict(zip(SOURCES, map(float, b.damping_ratio[i]), strict=False))
             ),
-            "share": by_source(b.share, i),
-            "share_interval_90": by_source(b.share_interval_90, i),
+            "share": by_source(b.damping_ratio / whole[i], i),
+            "share_interval_90": by_source(
+                None if b.damping_ratio_interval_90 is None else b.damping_ratio_interval_90 / whole[i], i
+            ),
+            "share_of": "model" if m.damping_ratio is None else "measured",
         }
         for i, m in enumerate(measured)
     ]

@@ -37,15 +37,12 @@ class Budget:
     ----------
     modes : mode numbers
     damping_ratio : (n_modes, n_sources) sums to ζ; the first of ``SOURCES``
-    share : (n_modes, n_sources) of the whole
-    damping_ratio_interval_90, share_interval_90 : (n_modes, n_sources, 2), or None without draws
+    damping_ratio_interval_90 : (n_modes, n_sources, 2), or None without draws
     """
 
     modes: tuple[int, ...]
     damping_ratio: FloatArray
-    share: FloatArray
     damping_ratio_interval_90: FloatArray | None
-    share_interval_90: FloatArray | None
 
 
 def damping_budget(
@@ -61,10 +58,10 @@ def damping_budget(
     here = model.predict_many(theta[None], modes)
     ratio = _ratios(model, model.points(theta[None]), here)[0]
     if draws is None:
-        return Budget(modes, ratio, _shares(ratio), None, None)
+        return Budget(modes, ratio, None)
     near = None if np.isnan(here.poles).any() else here
     around = _ratios(model, model.points(draws), model.predict_many(draws, modes, near=near, slopes=False))
-    return Budget(modes, ratio, _shares(ratio), _interval_90(around), _interval_90(_shares(around)))
+    return Budget(modes, ratio, _interval_90(around))
 
 
 def _interval_90(draws: FloatArray) -> FloatArray:
@@ -96,10 +93,6 @@ def beyond_literature(label: str, ratios: Mapping[str, float | None]) -> tuple[s
             f"{side} than the {100 * low:g} to {100 * high:g} % of the literature"
         )
     return tuple(found)
-
-
-def _shares(ratio: FloatArray) -> FloatArray:
-    return np.asarray(ratio / ratio.sum(axis=-1, keepdims=True))
 
 
 def _ratios(model: SupportModel, points: Points, found: NumberedModes) -> FloatArray:

@@ -257,9 +257,10 @@ def with_posterior(
     )
     progress.within("verdicts, profiles and predictions")
     uncertainty = _uncertainty(problem, model, shown, fitted.best, posterior, status, seed)
-    theta = _first(problem, np.log(fitted.best.theta)[None])[0]
+    # of the parameters as they are told: at their medians
+    middle = _first(problem, np.log(uncertainty.median)[None])[0]
     draws = _first(problem, _thinned(uncertainty.log_theta))
-    budget = damping_budget(model, theta, shown, draws=draws)
+    budget = damping_budget(model, middle, shown, draws=draws)
     return replace(fitted, fit=replace(fitted.fit, budget=budget, uncertainty=uncertainty))
 
 

@@ -28,7 +28,7 @@ def corner(update: Update, known: Uncertainty) -> go.Figure:
     figure = make_subplots(rows=n, cols=n, horizontal_spacing=0.02, vertical_spacing=0.02)
     colour = style.law_look(update.law).colour
     some = z[:: max(1, len(z) // _POINTS)]
-    best = np.log10(update.best.theta)
+    middle = np.log10(known.median)
     prior = _prior_draws(update)
     for i in range(n):
         _histogram(figure, z[:, i], prior[:, i], i, colour)
@@ -45,10 +45,10 @@ def corner(update: Update, known: Uncertainty) -> go.Figure:
                 **cell,
             )
             figure.add_scatter(
-                x=[best[j]],
-                y=[best[i]],
+                x=[middle[j]],
+                y=[middle[i]],
                 mode="markers",
-                name="best solution",
+                name="medians",
                 showlegend=(i, j) == (1, 0),
                 marker={
                     "symbol": "x",
@@ -56,7 +56,7 @@ def corner(update: Update, known: Uncertainty) -> go.Figure:
                     "color": style.INK,
                     "line": {"width": 1.5, "color": "white"},
                 },
-                hovertemplate="best solution<extra></extra>",
+                hovertemplate="medians<extra></extra>",
                 **cell,
             )
     _corner_axes(figure, parameters, z)

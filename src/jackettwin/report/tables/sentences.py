@@ -241,20 +241,21 @@ def _range(g: GroundAnswer) -> str:
 
 
 def _shares(m: ModeAnswer) -> dict[str, float]:
-    """Return each source's part of a mode's damping ratio, and what is measured beyond all of them."""
+    """Return each source's share of a mode's measured damping, and what is measured beyond all of them."""
+    if m.measured_damping is None:
+        return {}
     parts = {source: span.value for source, span in m.sources.items()}
-    return parts | ({} if m.unexplained is None else {_UNEXPLAINED: m.unexplained})
+    parts |= {} if m.unexplained is None else {_UNEXPLAINED: m.unexplained}
+    return {name: part / m.measured_damping.value for name, part in parts.items()}
 
 
 def _owner_headline(a: Answers) -> str:
     """Return which source gives more than half of the measured damping of each first bending mode."""
     by_owner: dict[str, list[str]] = {}
     for m in _firsts(a):
-        shares = _shares(m) if m.measured_damping is not None else {}
-        for owner, part in shares.items():
-            if part > 0.5 * sum(shares.values()):
-                share = f"{100 * part / sum(shares.values()):.0f} % in {words(m.label)}"
-                by_owner.setdefault(owner, []).append(share)
+        for owner, share in _shares(m).items():
+            if share > 0.5:
+                by_owner.setdefault(owner, []).append(f"{100 * share:.0f} % in {words(m.label)}")
     if not by_owner:
         by_owner = _largest(a)
     parts = [
@@ -268,11 +269,10 @@ def _largest(a: Answers) -> dict[str, list[str]]:
     """Return the source that gives most of the measured damping of each first bending mode."""
     found: dict[str, list[str]] = {}
     for m in _firsts(a):
-        shares = _shares(m) if m.measured_damping is not None else {}
+        shares = _shares(m)
         if shares:
             owner = max(shares, key=lambda name: shares[name])
-            share = f"{100 * shares[owner] / sum(shares.values()):.0f} % in {words(m.label)}"
-            found.setdefault(owner, []).append(share)
+            found.setdefault(owner, []).append(f"{100 * shares[owner]:.0f} % in {words(m.label)}")
     return found
 
 

@@ -35,11 +35,14 @@ def key_table(result: TwinResult) -> Table:
     for i, m in enumerate(result.measured):
         measured_hz = frequency(m.frequency_hz, m.frequency_std_hz)
         row = [words(m.label), str(m.mode), _mark(measured_hz, m.fits_frequency)]
-        row += [frequency(float(u.modes.frequency_hz[i])) for u in result.updates]
+        row += [frequency(float(u.central_hz[i])) for u in result.updates]
         row += [_mark(percent(m.damping_ratio, m.damping_ratio_std), m.fits_damping)]
-        row += [percent(float(u.modes.damping_ratio[i])) for u in result.updates]
+        row += [percent(float(u.central_damping[i])) for u in result.updates]
         rows.append(tuple(row))
-    caption = "Does each law meet the modes (best fit)? In brackets: not fitted; ± one standard deviation."
+    caption = (
+        "Does each law meet the modes? Medians of the posterior where there is one, else the best fit; in "
+        "brackets: not fitted; ± one standard deviation."
+    )
     return Table(caption, tuple(columns), tuple(rows), text_columns=1)
 
 
