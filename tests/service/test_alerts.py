@@ -186,7 +186,7 @@ def test_a_receiver_that_fails_is_tried_later_and_given_up_in_the_end(
 def test_one_dead_channel_holds_up_no_other(service: Service, clock: list, receiver: Receiver) -> None:
     dead = {"kind": "webhook", "url": f"http://127.0.0.1:{free_port()}/"}
     mail = {
-        "kind": "email",
+        "kind": "mail",
         "host": "127.0.0.1",
         "port": free_port(),
         "security": "none",
@@ -316,7 +316,7 @@ def test_mail_arrives_at_a_real_sink(service: Service, clock: list, tmp_path: Pa
     sink.start()
     try:
         mail = {
-            "kind": "email",
+            "kind": "mail",
             "host": "127.0.0.1",
             "port": sink.port,
             "security": "none",

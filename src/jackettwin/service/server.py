@@ -20,8 +20,8 @@ import uvicorn
 from sqlalchemy.exc import SQLAlchemyError
 
 from jackettwin.errors import InputError
+from jackettwin.service.alerts.kept_channels import of_file
 from jackettwin.service.alerts.outbox import Outbox
-from jackettwin.service.alerts.rules import read_alerts
 from jackettwin.service.context import Service, open_service
 from jackettwin.service.intake.files import Accepted, parse_here, take_file
 from jackettwin.service.intake.folder import watch_folders
@@ -54,7 +54,7 @@ def running(settings: ServiceSettings) -> Iterator[Service]:
         without users or TLS.
     """
     one_heap()
-    told = None if settings.alerts is None else read_alerts(settings.alerts)
+    told = of_file(settings.alerts)
     with ExitStack() as in_the_end:
         service = open_service(settings)
         in_the_end.callback(service.database.dispose)
@@ -75,10 +75,9 @@ def running(settings: ServiceSettings) -> Iterator[Service]:
             service.packets_refused = lambda: mqtt.refused
             in_the_end.callback(mqtt.stop)
         dispatcher.start()
-        if told is not None and settings.alerts is not None:
-            outbox = Outbox(service, told, settings.alerts.parent)
-            outbox.start()
-            in_the_end.callback(outbox.stop)
+        outbox = Outbox(service, told, settings.alerts_folder)
+        outbox.start()
+        in_the_end.callback(outbox.stop)
         Thread(target=_watch_inbox, args=(service, stop.is_set), name="inbox", daemon=True).start()
         in_the_end.callback(stop.set)
         yield service

@@ -11,7 +11,6 @@ from pydantic import AfterValidator, Field, SecretStr, ValidationError
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from jackettwin.errors import InputError, require
-from jackettwin.files import read_text
 from jackettwin.store import sqlite_url
 
 LOOPBACK = ("127.0.0.1", "::1")
@@ -133,6 +132,11 @@ class ServiceSettings(BaseSettings):
         return self.store / "inbox"
 
     @property
+    def alerts_folder(self) -> Path:
+        """Folder in which what the alerts file names is looked for."""
+        return self.store if self.alerts is None else self.alerts.parent
+
+    @property
     def models(self) -> Path:
         """Folder in which the twins' files are laid out for workers."""
         return self.store / "models"
@@ -154,19 +158,6 @@ def read_settings(**given: Any) -> ServiceSettings:
         raise InputError(
             first["msg"], field=name, value=first["input"], remedy=f"see JACKETTWIN_SERVE_{name.upper()}"
         ) from None
-
-
-def secret_of(file: Path | None, given: SecretStr | None, *, what: str) -> str:
-    """Return the first line of a secret's file, else what the environment gave, else nothing.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read; ``what`` names it.
-    """
-    if file is not None:
-        return read_text(file, what=what).partition("\n")[0].rstrip("\r")
-    return "" if given is None else given.get_secret_value()
 
 
 def checked_url(url: str, field: str) -> str:

@@ -18,6 +18,9 @@ MQTT_CLIENT = "mqtt_client"
 ALERTED = "alerted"
 """The numbers of the newest finding when alerts began, and of the last one that was looked at."""
 
+ALERT_CHANNELS = "alert_channels"
+"""Channels that were added to a running server, and the rules of each; their secrets lie in files."""
+
 
 def get(connection: Connection, name: str) -> Any:
     """Return a setting, or None."""

@@ -13,25 +13,35 @@ from pydantic import Field
 
 from jackettwin.errors import require
 from jackettwin.files import Schema
-from jackettwin.service.alerts.mail import trusted
-from jackettwin.service.alerts.notice import NotDelivered, Notice, secret
+from jackettwin.service.alerts.notice import NotDelivered, Notice
+from jackettwin.service.credentials import secret_in, tls_context
 
 _TIMEOUT_S = 15.0
 
 
-class Broker(Schema):
+class Topic(Schema):
     """A broker and the topic below which each finding is published, retained by nobody, QoS 1."""
 
-    kind: Literal["mqtt"]
     host: str = Field(min_length=1)
     port: int | None = Field(default=None, ge=1, le=65535)
     """Without it 8883 with TLS, 1883 without."""
     tls: bool = True
-    ca: Path | None = None
     user: str | None = None
-    password_file: Path | None = None
     topic: str = "jackettwin-alerts"
     """``/ASSET/SEVERITY`` is put behind it."""
+
+
+class Broker(Topic):
+    """A topic of a broker, its secrets in files."""
+
+    kind: Literal["mqtt"]
+    ca: Path | None = None
+    password_file: Path | None = None
+
+    @property
+    def about(self) -> str:
+        """Where it leads, without what is secret."""
+        return f"{self.topic} at {self.host}"
 
     def check(self, folder: Path) -> None:
         """Refuse what could not be sent.
@@ -53,9 +63,9 @@ class Broker(Schema):
         require(
             self.tls or self.user is None, "a password would travel unencrypted", field="tls", value=self.tls
         )
-        secret(folder, self.password_file, "password_file")
+        secret_in(folder, self.password_file, "password_file")
         if self.ca is not None:
-            trusted(folder, self.ca)
+            tls_context(self.ca and folder / self.ca)
 
     def send(self, notice: Notice, folder: Path) -> None:
         """Publish every finding of a message.
@@ -68,9 +78,9 @@ class Broker(Schema):
         client = mqtt.Client(CallbackAPIVersion.VERSION2)
         client.connect_timeout = _TIMEOUT_S
         if self.user is not None:
-            client.username_pw_set(self.user, secret(folder, self.password_file, "password_file"))
+            client.username_pw_set(self.user, secret_in(folder, self.password_file, "password_file"))
         if self.tls:
-            context: ssl.SSLContext = trusted(folder, self.ca)
+            context: ssl.SSLContext = tls_context(self.ca and folder / self.ca)
             client.tls_set_context(context)
         client.connect(self.host, self.port or (8883 if self.tls else 1883))
         client.loop_start()

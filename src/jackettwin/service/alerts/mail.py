@@ -11,29 +11,40 @@ from typing import Literal
 
 from pydantic import Field
 
-from jackettwin.errors import InputError, require
+from jackettwin.errors import require
 from jackettwin.files import Schema
-from jackettwin.service.alerts.notice import NotDelivered, Notice, secret
+from jackettwin.service.alerts.notice import NotDelivered, Notice
+from jackettwin.service.credentials import secret_in, tls_context
 
 _TIMEOUT_S = 20.0
 _PORTS = {"starttls": 587, "tls": 465, "none": 25}
 
 
-class Mail(Schema):
+class MailServer(Schema):
     """A server that takes mail by SMTP, and who is written to."""
 
-    kind: Literal["email"]
     host: str = Field(min_length=1)
     port: int | None = Field(default=None, ge=1, le=65535)
     """Without it 587 with STARTTLS, 465 with TLS, 25 without."""
     security: Literal["starttls", "tls", "none"] = "starttls"
+    user: str | None = None
+    sender: str
+    to: list[str] = Field(min_length=1, max_length=100)
+
+
+class Mail(MailServer):
+    """Mail, its secrets in files."""
+
+    kind: Literal["mail", "email"]
     ca: Path | None = None
     """Certificates by which the server is known; without it those that the system trusts."""
-    user: str | None = None
     password_file: Path | None = None
     """Its first line is the user's password; beside the alerts file if the path is not absolute."""
-    sender: str
-    to: list[str] = Field(min_length=1)
+
+    @property
+    def about(self) -> str:
+        """Where it leads, without what is secret."""
+        return f"{', '.join(self.to)} by {self.host}"
 
     def check(self, folder: Path) -> None:
         """Refuse what could not be sent.
@@ -65,9 +76,9 @@ class Mail(Schema):
             field="password_file" if self.password_file is None else "user",
             remedy="give both or neither",
         )
-        secret(folder, self.password_file, "password_file")
+        secret_in(folder, self.password_file, "password_file")
         if self.ca is not None:
-            trusted(folder, self.ca)
+            tls_context(self.ca and folder / self.ca)
 
     def send(self, notice: Notice, folder: Path) -> None:
         """Send a message.
@@ -79,13 +90,13 @@ class Mail(Schema):
         """
         message = self._written(notice)
         port = self.port or _PORTS[self.security]
-        context = None if self.security == "none" else trusted(folder, self.ca)
+        context = None if self.security == "none" else tls_context(self.ca and folder / self.ca)
         try:
             with self._connected(port, context) as server:
                 if self.security == "starttls":
                     server.starttls(context=context)
                 if self.user is not None:
-                    server.login(self.user, secret(folder, self.password_file, "password_file") or "")
+                    server.login(self.user, secret_in(folder, self.password_file, "password_file") or "")
                 refused = server.send_message(message)
         except smtplib.SMTPException as error:
             raise NotDelivered(f"the mail server refuses it: {error}") from None
@@ -108,18 +119,3 @@ class Mail(Schema):
             message["Importance"] = "high"
         message.set_content("\n".join(notice.lines) + "\n")
         return message
-
-
-def trusted(folder: Path, ca: Path | None) -> ssl.SSLContext:
-    """Return how the other side of a connection is known.
-
-    Raises
-    ------
-    InputError
-        If the file is no certificate.
-    """
-    try:
-        return ssl.create_default_context(cafile=None if ca is None else folder / ca)
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise InputError(f"not certificates in PEM ({reason})", field="ca", value=str(ca)) from None

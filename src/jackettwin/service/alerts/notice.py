@@ -6,11 +6,7 @@ import hashlib
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
-
-from jackettwin.errors import InputError, require
-from jackettwin.files import read_text
 
 MOST_LINES = 50
 """Findings that a message says one by one; of more it says how many."""
@@ -95,29 +91,3 @@ def _line(text: str, most: int) -> str:
     """Return a text as one line: what strangers name things must not begin another one."""
     one = " ".join("".join(c if c.isprintable() else " " for c in text).split())
     return one if len(one) <= most else one[: most - 1] + "…"
-
-
-def secret(folder: Path, file: Path | None, field: str) -> str | None:
-    """Return the first line of a file of a secret; None without one.
-
-    A path that is not absolute is one in ``folder``.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, or is empty.
-    """
-    if file is None:
-        return None
-    try:
-        found = read_text(folder / file, what="file of a secret").partition("\n")[0].strip()
-    except InputError as error:
-        raise error.at(field=field) from None
-    require(
-        found,
-        "the file of a secret is empty",
-        field=field,
-        value=str(file),
-        remedy="put it into its first line",
-    )
-    return found

@@ -17,6 +17,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from jackettwin.errors import InputError
 from jackettwin.findings import Finding
 from jackettwin.service.alerts.channels import AnyChannel
+from jackettwin.service.alerts.kept_channels import merged
 from jackettwin.service.alerts.notice import NotDelivered, Notice
 from jackettwin.service.alerts.rules import Alerts, Rule, is_fresh, read_alerts
 from jackettwin.store import (
@@ -50,9 +51,10 @@ _SILENCE = "silence"
 class Outbox(Thread):
     """A thread that tells people what was found, of several servers on one store one's."""
 
-    def __init__(self, service: Service, told: Alerts, folder: Path) -> None:
+    def __init__(self, service: Service, file: Alerts | None, folder: Path) -> None:
         super().__init__(name="alerts", daemon=True)
-        self._service, self._told, self._folder = service, told, folder
+        self._service, self._file, self._folder = service, file, folder
+        self._told = file or Alerts(channels={}, rules=[])
         self._stop_asked = Event()
         self._looked_at: set[int] = set()
 
@@ -61,7 +63,7 @@ class Outbox(Thread):
         while not self._stop_asked.wait(_TURN_S):
             try:
                 self.turn()
-            except (SQLAlchemyError, OSError) as error:
+            except (SQLAlchemyError, OSError, InputError) as error:
                 log.warning("alerts wait: %s", str(error).partition("\n")[0])
             except Exception:
                 log.exception("alerts go on after a fault of ours")
@@ -72,6 +74,11 @@ class Outbox(Thread):
 
     def turn(self) -> None:
         """Look for what is new, and send what is due."""
+        with reading(self._service.database) as connection:
+            told = merged(connection, self._service.settings.store, self._file)
+        if told is None:
+            return
+        self._told = told
         with writing(self._service.database) as connection:
             if not work.hold_post(connection, "alerts", self._service.server_id):
                 return
@@ -186,6 +193,18 @@ def tried_channels(file: Path) -> dict[str, str | None]:
     InputError
         If the file is not what it must be.
     """
+    told = read_alerts(file)
+    return {name: tried(channel, told.address, file.parent) for name, channel in told.channels.items()}
+
+
+def tried(channel: AnyChannel, address: str | None, folder: Path) -> str | None:
+    """Send a message by a channel that says nothing but that it is one; return why it was not taken, or None.
+
+    Parameters
+    ----------
+    address : of the server as people reach it, or None
+    folder : in which the files lie that the channel names
+    """
     now = datetime.now(UTC)
     said: dict[str, Any] = {
         "asset": "none",
@@ -198,11 +217,7 @@ def tried_channels(file: Path) -> dict[str, str | None]:
         "params": {},
         "key": f"try {now.isoformat()}",
     }
-    told = read_alerts(file)
-    return {
-        name: _sent(channel, Notice([said], told.address), file.parent)
-        for name, channel in told.channels.items()
-    }
+    return _sent(channel, Notice([said], address), folder)
 
 
 def _sent(channel: AnyChannel, notice: Notice, folder: Path) -> str | None:

@@ -64,10 +64,9 @@ class Escalation(Schema):
     after_minutes: float = Field(gt=0.0, le=100_000.0)
 
 
-class Rule(Schema):
+class ChannelRule(Schema):
     """Which findings are told through a channel, and when."""
 
-    channel: str
     severity: Literal["info", "warning", "alarm"] = "alarm"
     """The least that is told."""
     assets: list[str] | None = None
@@ -97,6 +96,12 @@ class Rule(Schema):
         )
         silent = self.quiet is not None and (finding["severity"] != "alarm" or self.quiet.also_alarms)
         return self.quiet.after(at) if silent and self.quiet is not None else at
+
+
+class Rule(ChannelRule):
+    """A rule of the alerts file, which says whose it is."""
+
+    channel: str
 
 
 _EPOCH = datetime(2020, 1, 6, tzinfo=UTC)

@@ -16,8 +16,8 @@ import httpx
 
 from jackettwin.errors import require
 from jackettwin.files import Schema
-from jackettwin.service.alerts.mail import trusted
-from jackettwin.service.alerts.notice import NotDelivered, Notice, said, secret
+from jackettwin.service.alerts.notice import NotDelivered, Notice, said
+from jackettwin.service.credentials import secret_in, tls_context
 
 _TIMEOUT_S = 15.0
 
@@ -93,18 +93,29 @@ SHAPES: dict[str, Callable[[Notice], dict[str, Any]]] = {
 """What a body looks like, by the name of the shape."""
 
 
-class Webhook(Schema):
-    """An address that messages are posted to."""
+class Hook(Schema):
+    """An address that messages are posted to, and in which shape."""
+
+    url: str | None = None
+    shape: Literal["plain", "slack", "teams", "alertmanager"] = "plain"
+
+
+class Webhook(Hook):
+    """A webhook, its secrets in files."""
 
     kind: Literal["webhook"]
-    url: str | None = None
     url_file: Path | None = None
     """Whose first line is the address: those of Slack and Teams are secrets themselves."""
-    shape: Literal["plain", "slack", "teams", "alertmanager"] = "plain"
     secret_file: Path | None = None
     """Whose first line is the secret that bodies are signed with; ``whsec_`` before one in base64."""
     ca: Path | None = None
     """Certificates by which the other side is known; without it those that the system trusts."""
+
+    @property
+    def about(self) -> str:
+        """Where it leads, without what is secret."""
+        known = "an address that is a secret" if self.url is None else urlsplit(self.url).hostname
+        return f"{known} as {self.shape}"
 
     def check(self, folder: Path) -> None:
         """Refuse what could not be sent.
@@ -128,11 +139,11 @@ class Webhook(Schema):
             value=self.url,
             allowed="https://HOST/PATH",
         )
-        key = secret(folder, self.secret_file, "secret_file")
+        key = secret_in(folder, self.secret_file, "secret_file")
         if key is not None:
             signing_key(key)
         if self.ca is not None:
-            trusted(folder, self.ca)
+            tls_context(self.ca and folder / self.ca)
 
     def send(self, notice: Notice, folder: Path) -> None:
         """Post a message.
@@ -144,18 +155,20 @@ class Webhook(Schema):
         """
         body = json.dumps(SHAPES[self.shape](notice), ensure_ascii=False).encode()
         headers = {"Content-Type": "application/json", "webhook-id": notice.id}
-        key = secret(folder, self.secret_file, "secret_file")
+        key = secret_in(folder, self.secret_file, "secret_file")
         if key is not None:
             stamp = int(time.time())
             signature = signed(signing_key(key), notice.id, stamp, body)
             headers |= {"webhook-timestamp": str(stamp), "webhook-signature": signature}
-        with httpx.Client(timeout=_TIMEOUT_S, verify=trusted(folder, self.ca), trust_env=False) as client:
+        with httpx.Client(
+            timeout=_TIMEOUT_S, verify=tls_context(self.ca and folder / self.ca), trust_env=False
+        ) as client:
             answer = client.post(self._url(folder), content=body, headers=headers)
         if not answer.is_success:
             raise NotDelivered(f"the other side answers {answer.status_code}")
 
     def _url(self, folder: Path) -> str:
-        return self.url or secret(folder, self.url_file, "url_file") or ""
+        return self.url or secret_in(folder, self.url_file, "url_file") or ""
 
 
 def signed(key: bytes, message_id: str, stamp: int, body: bytes) -> str:

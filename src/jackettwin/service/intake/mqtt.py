@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import queue
 import secrets
-import ssl
 import time
 from collections.abc import Iterable
 from contextlib import suppress
@@ -16,13 +15,12 @@ import paho.mqtt.client as mqtt
 from paho.mqtt.enums import CallbackAPIVersion, MQTTProtocolVersion
 
 from jackettwin.errors import InputError
+from jackettwin.service.credentials import secret_of, tls_context
 from jackettwin.service.intake.packets import TOPIC, read_packets
-from jackettwin.service.settings import secret_of
 from jackettwin.store import Packet, assets, settings, streams, writing
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Service
-    from jackettwin.service.settings import ServiceSettings
 
 log = logging.getLogger(__name__)
 
@@ -69,12 +67,13 @@ class MqttIntake:
             clean_session=False,
             manual_ack=True,
         )
+        given = service.settings
         if place.username:
-            given = service.settings
             password = secret_of(given.mqtt_password_file, given.mqtt_password, what="password file")
             self._client.username_pw_set(unquote(place.username), password)
         if place.scheme == "mqtts":
-            self._client.tls_set_context(_tls(service.settings))
+            own = (given.mqtt_ca, given.mqtt_certificate, given.mqtt_key)
+            self._client.tls_set_context(tls_context(*own, option="mqtt-"))
         self._client.reconnect_delay_set(1, 30)
         self._client.on_connect = self._subscribe
         self._client.on_connect_fail = lambda *_: log.warning("the broker does not answer; it is asked again")
@@ -165,28 +164,6 @@ def _client_id(service: Service) -> str:
             found = f"jackettwin-{secrets.token_hex(4)}"
             settings.put(connection, settings.MQTT_CLIENT, found)
     return str(found)
-
-
-def _tls(given: ServiceSettings) -> ssl.SSLContext:
-    """Return how the broker is known to us, and we to it.
-
-    Raises
-    ------
-    InputError
-        If a file is no certificate, or its key does not fit.
-    """
-    file, field = given.mqtt_ca, "mqtt-ca"
-    try:
-        context = ssl.create_default_context(cafile=file)
-        if given.mqtt_certificate is not None:
-            file, field = given.mqtt_certificate, "mqtt-certificate"
-            context.load_cert_chain(file, given.mqtt_key)
-    except OSError as error:  # an SSLError is one
-        reason = error.strerror or str(error)
-        raise InputError(
-            f"not a certificate in PEM with its key ({reason})", file=file, field=field
-        ) from None
-    return context
 
 
 def _waiting(inbox: queue.Queue[mqtt.MQTTMessage], most: int) -> Iterable[mqtt.MQTTMessage]:

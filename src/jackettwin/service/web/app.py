@@ -19,7 +19,17 @@ from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 from jackettwin.service.context import Service
 from jackettwin.service.web import auth, pages, problems
 from jackettwin.service.web.dependencies import KnownAnswer, sent
-from jackettwin.service.web.routes import assets, findings, health, jobs, modes, oidc, people, records
+from jackettwin.service.web.routes import (
+    alert_channels,
+    assets,
+    findings,
+    health,
+    jobs,
+    modes,
+    oidc,
+    people,
+    records,
+)
 from jackettwin.version import __version__
 
 API = "/api/v1"
@@ -32,6 +42,7 @@ ROUTERS = (
     records.router,
     modes.router,
     findings.router,
+    alert_channels.router,
     jobs.router,
     health.router,
 )

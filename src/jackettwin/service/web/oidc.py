@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote, urlencode
 
 from jackettwin.errors import InputError, require
-from jackettwin.service.settings import ServiceSettings, checked_url, secret_of
+from jackettwin.service.credentials import secret_of
+from jackettwin.service.settings import ServiceSettings, checked_url
 from jackettwin.service.web import auth
 from jackettwin.service.web.problems import ApiError
 from jackettwin.store import people, writing
