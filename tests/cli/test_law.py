@@ -57,7 +57,7 @@ def test_tables_say_the_regime(tmp_path: Path) -> None:
         (("zener:k0=1",), "argument is missing"),
         (("maxwell-3:k=1,loss_factor=0.1",), "give f0="),
         (("kelvin-voigt:k=1,c=-1",), "feed energy in"),
-        (("elastic:k=0", "--mass", "1"), "holds no mass"),
+        (("elastic:k=0", "--mass", "1"), "without stiffness and damping"),
         (("elastic:k=1", "--mass", "0"), "--mass"),
         (("elastic:k=1", "--mass", "nan"), "--mass"),
         (("elastic:k=1", "--band-hz", "1,1"), "0 < LOW < HIGH"),

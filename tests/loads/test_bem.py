@@ -67,5 +67,5 @@ def test_operating_rotor_damps_fore_aft_far_more_than_parked(turbine) -> None:
 
 
 def test_standing_rotors_have_no_operation(turbine) -> None:
-    with pytest.raises(InputError, match="turning rotor"):
+    with pytest.raises(InputError, match="rotating rotor"):
         steady_operation(turbine[0], 10.0, rotor_speed=0.0, pitch=0.0)

@@ -68,7 +68,7 @@ def test_files_that_are_no_kinematics_are_refused(file: Path, tmp_path: Path) ->
     }
     wrong = {message: [header, ",".join(row), *rows[1:]] for message, row in first.items()}
     wrong["columns are missing"] = [header.replace("velocity_m_s", "speed"), *rows]
-    wrong["no grid"] = [header, *rows[:-1]]
+    wrong["do not form a grid"] = [header, *rows[:-1]]
     wrong["no rows"] = [header]
     wrong["a gap after 0 s"] = [header, *rows[:85], *rows[85 * 25 :]]
     for message, lines in wrong.items():

@@ -59,7 +59,7 @@ def test_a_short_elevation_is_refused() -> None:
             "a gap after 9.9 s",
         ),
         (lambda t, eta: (1000.0 * t, eta), "times in seconds"),
-        (lambda t, eta: (t[::-1], eta[::-1]), "do not grow"),
+        (lambda t, eta: (t[::-1], eta[::-1]), "do not increase"),
         (lambda t, eta: (t, np.where(t == 5.0, np.nan, eta)), "no elevation of water .got nan"),
         (lambda t, eta: (t, 1000.0 * eta), "no elevation of water .got 1000"),
     ],

@@ -97,7 +97,7 @@ def test_breaking_waves_are_refused(theory: str, height: float, period: float, d
 )
 def test_stokes_is_refused_where_it_does_not_hold(height: float, period: float, depth: float) -> None:
     """There its own crests and troughs lie up to twice the asked height apart."""
-    with pytest.raises(InputError, match="Ursell.*take the stream function"):
+    with pytest.raises(InputError, match="Ursell.*use the stream function"):
         regular_wave("stokes-5", height=height, period=period, depth=depth)
 
 

@@ -104,7 +104,7 @@ def test_six_by_six_supports(monopile) -> None:
 
 
 def test_pinned_supports_leave_no_boundary(jacket15) -> None:
-    with pytest.raises(InputError, match="no support to keep as boundary"):
+    with pytest.raises(InputError, match="no support has a law"):
         condense(build_system(jacket15, pinned(jacket15.structure)), below_hz=1.0)
 
 

@@ -50,10 +50,10 @@ def test_it_takes_energy_out_of_every_motion(assembly: Assembly) -> None:
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({1: -0.01}, "damping.modes.1: a ratio by mode is out of range"),
+        ({1: -0.01}, "damping.modes.1: a modal damping ratio is out of range"),
         ({0: 0.01}, "damping.modes.0"),
         ({1: float("nan")}, "out of range"),
-        ({1: 0.001}, "damping.modes.1: less damping than Rayleigh's"),
+        ({1: 0.001}, "damping.modes.1: is less than the Rayleigh damping"),
     ],
 )
 def test_wrong_ratios_are_refused(assembly: Assembly, given: dict[int, float], message: str) -> None:

@@ -58,5 +58,5 @@ def test_gaps_are_bridged_and_places_are_needed(jacket) -> None:
     holed = record.data.copy()
     holed[0, 100:120] = np.nan
     assert np.isfinite(playback(assembly, modes, Record(holed, RATE, CHANNELS)).q).all()
-    with pytest.raises(InputError, match="says where it sits"):
+    with pytest.raises(InputError, match="has a position"):
         record_sensors(Record(np.zeros((1, 9)), RATE, (Channel("a", direction=(1.0, 0.0, 0.0)),)))

@@ -61,12 +61,12 @@ def test_its_poles_are_the_models_and_its_rest_the_static_displacement(support: 
 def test_a_springpot_has_none() -> None:
     assembly = assemble(read_structure("jacket15"))
     support = read_support("springpot:k=1e9,alpha=0.1,f0=0.18", assembly.structure)
-    with pytest.raises(InputError, match="springpot has no finite state"):
+    with pytest.raises(InputError, match="springpot has no finite number of states"):
         state_model(build_system(assembly, support))
 
 
 def test_a_massless_node_is_named() -> None:
     massless = read_structure("jacket15").with_material("transition_piece", density=0.0)
     assembly = assemble(massless, subdivide=2)
-    with pytest.raises(InputError, match="a motion without mass has no state"):
+    with pytest.raises(InputError, match="a degree of freedom without mass has no state"):
         state_model(build_system(assembly, read_support("pinned", massless)))

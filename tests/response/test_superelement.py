@@ -215,5 +215,5 @@ def test_bad_files_are_refused(tmp_path: Path, text: str, message: str) -> None:
 def test_a_held_interface_is_refused() -> None:
     base = at_interface(read_structure("jacket15"))[0]
     system = build_system(assemble(base), Support(fixed=(("tp_top", (0, 1, 2)), ("foot_1", (0, 1, 2)))))
-    with pytest.raises(InputError, match="the support holds the interface"):
+    with pytest.raises(InputError, match="the support acts on the interface"):
         superelement(system, number=4)

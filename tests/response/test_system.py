@@ -74,7 +74,7 @@ def test_a_spring_on_a_held_dof_does_nothing(monopile) -> None:
         (Support(springs=(Spring("nowhere", np.eye(6)),)), "no such node .got 'nowhere'"),
         (
             Support(fixed=tuple((f"n{k}", tuple(range(6))) for k in range(7))),
-            "every degree of freedom is held",
+            "every degree of freedom is fixed",
         ),
     ],
 )

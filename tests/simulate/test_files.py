@@ -89,7 +89,10 @@ PILED = {
 }
 BAD = {
     "growth without heights": ({"water": {"marine_growth": [{"thickness_m": 0.1}]}}, "top_z_m.*z_m at every"),
-    "one height of growth": ({"water": {"marine_growth": [GROWN]}}, "water.marine_growth.*two at least"),
+    "one height of growth": (
+        {"water": {"marine_growth": [GROWN]}},
+        "water.marine_growth.*at least two heights",
+    ),
     "growth upside down": (
         {"water": {"marine_growth": [{"top_z_m": -9.0, "bottom_z_m": 2.0, "thickness_m": 0.1}]}},
         "water.marine_growth.*must lie above",

@@ -1,6 +1,6 @@
 """Compiled loops of the loads: interpolation between levels, Morison's equation, blade elements.
 
-Plain arrays in and out; what they mean stands where they are called.
+All arguments are plain arrays, described where the functions are called.
 """
 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call, untyped-decorator, call-overload"
@@ -13,21 +13,23 @@ import numpy as np
 from numba import njit
 
 _BLOCK = 64
-"""Times at once: what is read and written of them stays in the cache."""
+"""Number of times per block, so that the data of a block fit in the processor's cache."""
 
 _HOW: dict[str, Any] = {"error_model": "numpy", "fastmath": {"reassoc", "contract"}}
 compiled = njit(cache=True, **_HOW)
-"""For what Python calls."""
+"""Decorator of functions that are called from Python."""
 inner = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **_HOW)
-"""For what only compiled code calls: half the compiling of a small kernel is its door to Python."""
+"""Decorator of functions called by compiled code only; without a Python wrapper a small kernel compiles in
+half the time."""
 
 
 @compiled
 def between_levels(level, middle, half, nodes, fields, mixing, points, out):
-    """Write mixing @ fields at a moving level to ``points`` of ``out`` (n_mixed, all points, n_times).
+    """Write mixing @ fields at a moving level to ``points`` of ``out`` (n_mixed, n_all_points, n_times).
 
-    ``fields`` (n_fields, n_nodes, n_points, n_times) are known at middle + nodes·half of each point;
-    Lagrange interpolation to ``level`` (all points, n_times); the other arrays are of all points too.
+    ``fields`` (n_fields, n_nodes, n_points, n_times) are given at the levels middle + nodes·half of each
+    point and interpolated (Lagrange) to ``level`` (n_all_points, n_times); the other arrays are for all
+    points too.
     """
     n_fields, n_nodes, n_points, n_times = fields.shape
     scale = _lagrange_scale(nodes)
@@ -52,7 +54,7 @@ def between_levels(level, middle, half, nodes, fields, mixing, points, out):
 
 @inner
 def _lagrange(x, nodes, scale, weight):
-    """Write Lagrange's weights of the nodes at every x to ``weight`` (n_nodes, at least as many)."""
+    """Write the Lagrange weights of the nodes at every x to ``weight`` (n_nodes, ≥ n_x)."""
     for j in range(nodes.size):
         weight[j, : x.size] = scale[j]
         for i in range(nodes.size):
@@ -84,7 +86,7 @@ def _lagrange_scale(nodes):
 
 @compiled
 def morison(drag, inertia, normal, u, du, length, out):
-    """Write length·(drag |v| v + inertia a), v and a normal to the member, (n_points, 3, n_times).
+    """Write length·(drag |v| v + inertia a), with v and a normal to the member, (n_points, 3, n_times).
 
     ``drag`` (n_points,) is ½ρC_D D, ``inertia`` (n_points,) ρC_M πD²/4, ``length`` (n_points, n_times);
     ``u`` and ``du`` (3, n_points, n_times).
@@ -111,13 +113,14 @@ def blade_elements(
 ):  # fmt: skip
     """Write force and moment at the tower top, (n, 6), of blade elements in wind (n, n_places, 3).
 
-    Element e sees ``share`` of the places ``place`` from ``first[e]`` to ``first[e + 1]``.
-    ``along`` and ``across`` (6, n_elements) are the directions of chord and normal, and their moments about
-    the hub, before the rotor turns by ``angle`` (n,) about ``shaft``; ``own`` (2, n_elements) is the flow on
-    both that its speed and wake take away. ``scale`` is ½ρ c dr; ``motion`` (n, 6) that of the tower top.
+    The wind at element e is the sum of ``share`` times the wind at ``place``, from ``first[e]`` to ``first[e
+    + 1]``. ``along`` and ``across`` (6, n_elements) are the directions of chord and normal and their moments
+    about the hub, before the rotor rotates by ``angle`` (n,) about ``shaft``. ``own`` (2, n_elements) is the
+    flow along both due to rotation and wake, which is subtracted. ``scale`` is ½ρ c dr, ``motion`` (n, 6)
+    that of the tower top.
 
-    What the elements see, their flow, their lift and their load are loops of their own: the second and the
-    last then run on several elements at once.
+    Wind, flow, lift and load of the elements are computed in separate loops, so that the second and the last
+    are vectorised.
     """
     n = station.size
     turn, v, load = np.empty((3, 3)), np.empty(6), np.empty(6)
@@ -148,7 +151,7 @@ def blade_elements(
 
 @inner
 def _seen_by_elements(wind, first, place, share, out):
-    """Write the wind (3, n_elements) that elements see of that at places (n_places, 3)."""
+    """Write the wind at elements (3, n_elements) from that at places (n_places, 3)."""
     for e in range(first.size - 1):
         x = y = z = 0.0
         for j in range(first[e], first[e + 1]):
@@ -178,9 +181,9 @@ def _summed(along, across, scale, polar, flow, out):
 
 @inner
 def _arctan2(y, x):
-    """Return the angle of (x, y) to 2e-8 rad (Abramowitz & Stegun 1964, eq. 4.4.49): a third of the work."""
+    """Return the angle of (x, y) to 2e-8 rad (Abramowitz & Stegun 1964, eq. 4.4.49), three times as fast."""
     low, high = min(abs(x), abs(y)), max(abs(x), abs(y))
-    t = low / max(high, 1e-300)  # no branch: many angles at once
+    t = low / max(high, 1e-300)  # without a branch the loop is vectorised
     q = t * t
     p = 0.0429096138 + q * (-0.0161657367 + q * 0.0028662257)
     p = -0.1420889944 + q * (0.1065626393 + q * (-0.0752896400 + q * p))
@@ -192,7 +195,7 @@ def _arctan2(y, x):
 
 @inner
 def _to_rotor(turn, shaft, hub, free, motion, out):
-    """Write the hub's velocity and turning in the rotor's axes from the motion (6,) of the tower top."""
+    """Write the hub's velocity and angular velocity in the rotor's axes from the tower top's motion (6,)."""
     spin, at_hub = motion[3:], np.empty(3)
     _cross(spin, hub, at_hub)
     for i in range(3):
@@ -241,7 +244,7 @@ def _times(matrix, vector, out):
 
 @inner
 def _back(matrix, vector, out):
-    """Write matrixᵀ vector; ``out`` may be the vector itself."""
+    """Write matrixᵀ vector; ``out`` may be the same array as the vector."""
     x, y, z = vector[0], vector[1], vector[2]
     for i in range(3):
         out[i] = matrix[0, i] * x + matrix[1, i] * y + matrix[2, i] * z
@@ -259,8 +262,9 @@ def _cross(a, b, out):
 def wind_on_blades(samples, azimuth, spoke, ring, ring_share, n_spokes):
     """Return the wind at blade elements (n_times, n_elements, 3) from samples on rings and spokes.
 
-    ``samples`` (n_times, 1 + n_rings·n_spokes, 3): the hub, then ring by ring. Element e sits at angle
-    ``spoke`` (in spokes, azimuth not included) between rings ``ring`` and ``ring`` + 1; ring 0 is the hub.
+    ``samples`` (n_times, 1 + n_rings·n_spokes, 3) are those of the hub, then ring by ring. Element e is at
+    the angle ``spoke`` (in spokes, without the azimuth) between rings ``ring`` and ``ring`` + 1; ring 0 is
+    the hub.
     """
     n_times, n = azimuth.size, spoke.size
     out = np.zeros((n_times, n, 3))

@@ -1,12 +1,12 @@
-"""A system on a small basis that keeps every DOF its supports act on: Craig–Bampton about the supports.
+"""A system reduced to the DOFs its supports act on and modes in between (Craig–Bampton).
 
-The support DOFs stay unknowns of their own, so that any law acts on them exactly, however strong; inside, the
-modes with these DOFs held are kept up to a frequency. Alone they miss the free system's modes near that
-frequency by several per cent (they are (f/f_max)⁴ off, and a small asset has few): what the undamped modes
-have beyond the basis is added until none is further off than a given error.
+The support DOFs remain unknowns, so that any law acts on them exactly. The fixed-interface modes are retained
+up to a frequency. With these alone the modes of the whole system near that frequency have errors of several
+per cent (of the order of (f/f_max)⁴). The part of the undamped modes outside the basis is therefore added
+until no frequency error exceeds a limit.
 
-Along piles that are members, ground acts on hundreds of DOFs. There the basis takes the ground's static
-stiffness, as a pile lumped at its head does, and the law acts on the basis: second order in D(s) − D(0).
+Along piles modelled as members the ground acts on hundreds of DOFs. The basis then includes the ground's
+static stiffness, and the law acts on the basis, with an error of second order in D(s) − D(0).
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ from jackettwin.structure import dense, lowest_modes
 
 _FIRST_GUESS = 40
 FREQUENCY_ERROR = 5e-4
-"""Of the undamped modes: a tenth of what ten minutes tell of a frequency."""
+"""Largest relative frequency error of the undamped modes: a tenth of the uncertainty from ten minutes of
+record."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ class Reduced:
     Attributes
     ----------
     pencil : Pencil
-        Dense; coordinates are the kept DOFs, then the modes inside.
+        Dense pencil; its coordinates are the retained DOFs, then the modes.
     basis : (assembly.n_dof, n) shapes of the coordinates
     """
 
@@ -51,20 +52,20 @@ class Reduced:
 def reduced(
     system: System, *, below_hz: float, keep: tuple[int, ...] = (), error: float = FREQUENCY_ERROR
 ) -> Reduced:
-    """Return the system on its support DOFs, the DOFs ``keep`` of the assembly, and the modes inside.
+    """Return the system reduced to its support DOFs, the DOFs ``keep`` of the assembly, and modes.
 
     Parameters
     ----------
     below_hz : float
-        Modes with the kept DOFs held are retained up to this frequency, and so many shapes beside them that
-        the undamped modes of the whole system up to it are right.
+        Fixed-interface modes are retained up to this frequency, with as many further shapes as the undamped
+        modes of the whole system up to this frequency need.
     error : float
-        Largest relative error of the frequency of one of these.
+        Largest relative error of the frequencies of these modes.
 
     Raises
     ------
     InputError
-        If ``below_hz`` is not positive, or nothing is left to move.
+        If ``below_hz`` is not positive, or there is no mode below it.
     """
     require(0.0 < below_hz < np.inf, "must be positive", field="below_hz", value=below_hz, allowed="> 0")
     full = system.pencil
@@ -86,7 +87,7 @@ def reduced(
     T[i, b.size :] = phi
     T = np.hstack([T, _missing(static, M, T, 2.0 * pi * below_hz, error)])
     require(T.shape[1] != 0, "no mode below this frequency", field="below_hz", value=below_hz)
-    # unit mass of every coordinate: metres, radians and modes side by side
+    # scale to unit mass of every coordinate, since units differ
     T /= np.sqrt(np.einsum("ij,ij->j", T, M @ T))
     groups = (replace(g, S=_symmetric(T.T @ (g.S @ T)), dofs=_on(b, g.dofs, T.shape[1])) for g in full.groups)
     pencil = Pencil(_symmetric(T.T @ (M @ T)), _symmetric(T.T @ (K @ T)), full.rayleigh, tuple(groups))
@@ -94,12 +95,12 @@ def reduced(
 
 
 def _missing(K: sp.csc_array, M: sp.csc_array, T: FloatArray, limit: float, error: float) -> FloatArray:
-    """Return what the modes below ω ``limit`` hold beyond a basis, the fewest shapes that will do.
+    """Return the fewest shapes that represent the part of the modes below ω ``limit`` outside a basis.
 
-    By Rayleigh's quotient a mode of which the share e of the strain energy lies beyond the basis comes out
-    e/2 too high, if the basis takes the rest.
+    By Rayleigh's quotient, the frequency of a mode with the share e of its strain energy outside the basis is
+    e/2 too high.
     """
-    # interlacing: no more modes lie below the limit than held ones and kept coordinates
+    # interlacing: the modes below the limit are at most the fixed-interface modes plus retained coordinates
     phi = _modes_below(K, M, limit, first=T.shape[1] + 1)
     if phi.shape[1] == 0 or T.shape[1] == 0:
         return phi[:, :0]
@@ -109,7 +110,7 @@ def _missing(K: sp.csc_array, M: sp.csc_array, T: FloatArray, limit: float, erro
     beyond /= np.sqrt(energy)
     values, vectors = np.linalg.eigh(_symmetric(beyond.T @ (K @ beyond)))
     values, vectors = values[::-1], vectors[:, ::-1]
-    # share of each mode that is left after the first shapes, none to all
+    # share of each mode that remains after the first 0, 1, … shapes
     left = np.cumsum((vectors**2 * np.maximum(values, 0.0))[:, ::-1], axis=1)[:, ::-1]
     left = np.hstack([left, np.zeros((left.shape[0], 1))])
     number = int(np.argmax(left.max(axis=0) <= 2.0 * error))
@@ -127,7 +128,7 @@ def _modes_below(K: sp.csc_array, M: sp.csc_array, limit: float, *, first: int =
 
 
 def _on(b: IntArray, dofs: IntArray, size: int) -> IntArray:
-    """Return the coordinates that a group acts on: kept DOFs, or all where some of its DOFs lie inside."""
+    """Return the coordinates that a group acts on: retained DOFs, or all if some are not retained."""
     return np.searchsorted(b, dofs) if np.isin(dofs, b).all() else np.arange(size)
 
 

@@ -1,4 +1,4 @@
-"""One degree of freedom: what every larger model must agree with."""
+"""A single-degree-of-freedom system on a viscoelastic law."""
 
 from __future__ import annotations
 
@@ -24,30 +24,32 @@ def sdof(mass_kg: float, law: Law) -> Pencil:
 
 
 def poles(pencil: Pencil) -> ComplexArray:
-    """Return every pole of a small dense pencil, complex pairs first, by |λ|."""
+    """Return all poles of a small dense pencil, complex pairs first, by |λ|."""
     values = np.linalg.eigvals(state_matrix(pencil)).astype(np.complex128)
     return values[np.lexsort((-values.imag, np.abs(values), np.abs(values.imag) < 1e-12 * np.abs(values)))]
 
 
 Regime = Literal["underdamped", "critically damped", "overdamped"]
 _DOUBLE = 1e-6
-"""Two poles nearer than this share of themselves are one: a double root is known to the root of rounding."""
+"""Relative difference below which two poles are a double root, accurate to the root of rounding."""
 _CYCLES = 5.0
-"""Of a mass let go that are shown."""
+"""Number of cycles of the free vibration that are computed."""
 _BAND = 1e3
-"""A springpot is followed by branches this many times above and below the mass's frequency."""
+"""A springpot is approximated by branches up to this factor above and below the frequency of the mass."""
 
 
 @dataclass(frozen=True)
 class FreeVibration:
-    """A mass on a law, let go.
+    """Free vibration of a mass on a law after release.
 
     Attributes
     ----------
     poles : complex pairs first [rad/s]; a springpot's pair alone, whose relaxation is a continuum
-    regime : of the motion: whether it swings, just not, or creeps back
-    frequency_hz, damping_ratio : of the pair; None where the motion does not swing
-    time_s, displacement : (n,) from one, let go at rest before any dashpot in series has moved
+    regime : whether the motion is underdamped, critically damped or overdamped
+    frequency_hz, damping_ratio : frequency and damping ratio of the pair; None if the motion does not
+        oscillate
+    time_s, displacement : (n,) motion after release at rest from unit displacement, before any dashpot in
+        series has moved
     """
 
     poles: ComplexArray
@@ -74,12 +76,12 @@ def free_vibration(
     ----------
     duration_s : float, optional
         Default: five cycles at √(|D|/m)/2π.
-    n : times
+    n : number of times
 
     Raises
     ------
     InputError
-        If the law resists no motion at all.
+        If the law has no stiffness and no damping.
     """
     omega, given, continuum = swinging(mass_kg, law), law, isinstance(law, Springpot)
     if isinstance(law, Springpot):
@@ -106,15 +108,15 @@ def free_vibration(
 
 
 def swinging(mass_kg: float, law: Law) -> float:
-    """Return ω [rad/s] at which a mass balances the size of a law's stiffness, m ω² = |D(iω)|."""
+    """Return ω [rad/s] at which a mass' inertia equals the size of a law's stiffness, m ω² = |D(iω)|."""
     size = abs(complex(law.stiffness(1j)))
-    require(size > 0.0, "a law that resists no motion holds no mass", field="law", value=size, allowed="> 0")
+    require(size > 0.0, "a law without stiffness and damping", field="law", value=size, allowed="> 0")
     omega = 1.0
     for _ in range(200):
         new = sqrt(abs(complex(law.stiffness(1j * omega))) / mass_kg)
         if abs(new - omega) <= 1e-12 * omega:
             break
-        # half-way in logarithms: a dashpot alone, |D| = cω, would go back and forth or stand still
+        # damped by half in the logarithm: with a dashpot alone, |D| = cω, the iteration would alternate
         omega = sqrt(new * omega)
     return omega
 

@@ -1,6 +1,6 @@
-"""Where sensors sit and what they see of the structure's motion: displacement, inclination or strain.
+"""Sensors: their positions and the quantity they measure (displacement, inclination or strain).
 
-Another package adds a kind of sensor by an entry point in ``jackettwin.sensors`` that is a
+An installed package adds a kind of sensor by an entry point in ``jackettwin.sensors`` that is a
 :class:`SensorKind`; twin files and scenarios name it as the ``quantity`` of a sensor.
 """
 
@@ -21,11 +21,11 @@ from jackettwin.structure import Assembly, beam, tube_radius
 PLUGINS = "jackettwin.sensors"
 """Entry points of packages that add kinds of sensors: each is a :class:`SensorKind`."""
 _ACROSS = 0.1
-"""Least part of a strain gauge's direction that is across its member: 6° from the axis."""
+"""Smallest component of a strain gauge's direction perpendicular to its member: 6° from the axis."""
 
 
 class ElementPlace(NamedTuple):
-    """A place in a beam element.
+    """A point in a beam element.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class ElementPlace(NamedTuple):
 
 @dataclass(frozen=True)
 class SensorKind:
-    """What a kind of sensor sees of the structure's displacement.
+    """A kind of sensor: the quantity it measures as a function of the structure's displacement.
 
     Attributes
     ----------
@@ -52,8 +52,8 @@ class SensorKind:
     on_element : function of an :class:`ElementPlace` and the sensor's direction, a global unit vector
         Returns the row (12,) on translations and rotations of the element's ends, in the element's axes.
     on_node : function of the direction, optional
-        Returns the row (6,) on a node's translations and rotations in global axes; None if a node does not
-        tell what the sensor sees.
+        Returns the row (6,) on a node's translations and rotations in global axes; None if the quantity does
+        not follow from the motion of a node.
     recorded_as : str
         Quantity of the channel when such a sensor is simulated.
     """
@@ -71,14 +71,14 @@ class Sensor:
     Attributes
     ----------
     direction : (3,) in global axes; it need not be a unit vector
-        Of motion, the way it points. Of an inclination, the horizontal way a mast leans that reads positive:
-        leaning towards x is turning about y. Of a strain, where on the section the gauge is, seen from its
-        centre; it measures along the member.
+        For motion, the measured direction. For an inclination, the horizontal direction of a lean that reads
+        positive; leaning towards x is a rotation about y. For a strain, the direction from the centre of the
+        section to the gauge, which measures along the member.
     position : float
         Share of the member's length from its first node.
     quantity : str
-        Of :func:`sensor_kinds`. Motion is displacement, velocity or acceleration: modes have the same shape
-        in all three.
+        A name of :func:`sensor_kinds`. Motion is displacement, velocity or acceleration, in all of which
+        modes have the same shape.
     """
 
     channel: str
@@ -100,10 +100,10 @@ def _inclination(at: ElementPlace, direction: FloatArray) -> FloatArray:
 
 
 def _axis_of_lean(direction: FloatArray) -> FloatArray:
-    """Return the axis about which a mast turns that leans towards a direction."""
+    """Return the axis of rotation of a mast that leans towards a direction."""
     require(
         abs(direction[2]) <= 1e-6,
-        "an inclination is a lean to one side",
+        "the direction of an inclination must be horizontal",
         field="direction",
         value=direction.tolist(),
         remedy="give the horizontal direction that reads positive, e.g. [1, 0, 0]",
@@ -116,7 +116,7 @@ def _strain(at: ElementPlace, direction: FloatArray) -> FloatArray:
     across = float(np.hypot(local[1], local[2]))
     require(
         across >= _ACROSS,
-        "a strain gauge's direction points from the section's centre to the gauge",
+        "the direction of a strain gauge must point from the section's centre to the gauge",
         field="direction",
         value=direction.tolist(),
         remedy="give a vector across the member",
@@ -152,26 +152,26 @@ def sees(quantity: str) -> str:
 
 
 def observation_matrix(assembly: Assembly, sensors: tuple[Sensor, ...]) -> sp.csr_array:
-    """Return (n_sensors, assembly.n_dof): what sensors see [m, rad or –] of the structure's displacement.
+    """Return the matrix (n_sensors, assembly.n_dof) from displacements to sensor readings [m, rad or –].
 
-    Between nodes the beam's own shape functions interpolate.
+    Between nodes the shape functions of the beam elements are used.
 
     Raises
     ------
     InputError
-        If a sensor names no place, an unknown one, a height off the tower axis, or no direction.
+        If a sensor has no position, an unknown one, a height off the tower axis, or no direction.
     """
     rows = [_row(assembly, sensor) for sensor in sensors]
     return sp.csr_array(sp.vstack(rows)) if rows else sp.csr_array((0, assembly.n_dof))
 
 
 def sensor_positions(assembly: Assembly, sensors: Sequence[Sensor]) -> FloatArray:
-    """Return where sensors sit, (n_sensors, 3) [m], z above the mean sea level.
+    """Return the positions of sensors, (n_sensors, 3) [m], z above the mean sea level.
 
     Raises
     ------
     InputError
-        If a sensor names a place that the structure does not have.
+        If a sensor names a node or member that the structure does not have.
     """
     mesh, structure = assembly.mesh, assembly.structure
     places = []
@@ -217,7 +217,7 @@ def _row(assembly: Assembly, sensor: Sensor) -> sp.csr_array:
 
 
 def _of_node(assembly: Assembly, node: str, kind: SensorKind, direction: FloatArray) -> sp.csr_array:
-    """Return what a sensor sees on a node, (1, n_dof)."""
+    """Return the row (1, n_dof) of a sensor on a node."""
     require(
         node in assembly.structure.nodes,
         "no such node",
@@ -227,7 +227,7 @@ def _of_node(assembly: Assembly, node: str, kind: SensorKind, direction: FloatAr
     )
     if kind.on_node is None:
         raise InputError(
-            f"{kind.name} is a member's, not a node's",
+            f"{kind.name} is measured on a member, not on a node",
             field="node",
             value=node,
             remedy="give member and position, or height_m on the tower",
@@ -236,7 +236,7 @@ def _of_node(assembly: Assembly, node: str, kind: SensorKind, direction: FloatAr
 
 
 def _on_member(assembly: Assembly, sensor: Sensor) -> tuple[int, float]:
-    """Return the element that holds a sensor on a member, and where in it, 0 to 1."""
+    """Return the element of a sensor on a member, and the position in it, 0 to 1."""
     names = [member.name for member in assembly.structure.members]
     if sensor.member not in names:
         raise InputError(
@@ -253,7 +253,7 @@ def _on_member(assembly: Assembly, sensor: Sensor) -> tuple[int, float]:
 
 
 def _on_axis(assembly: Assembly, sensor: Sensor) -> tuple[int, float]:
-    """Return the element of the tower axis at the sensor's height, and where in it, 0 to 1."""
+    """Return the element of the tower axis at the sensor's height, and the position in it, 0 to 1."""
     mesh, structure = assembly.mesh, assembly.structure
     x, y, _ = structure.nodes[structure.top_node]
     z = structure.sea_level_z_m + float(sensor.height_m or 0.0)

@@ -1,4 +1,4 @@
-"""The first-order form ẋ = Ax of a system whose laws have finitely many states."""
+"""The first-order form ẋ = Ax of a system whose laws have a finite number of states."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from jackettwin.structure import dense
 
 
 class Branch(NamedTuple):
-    """A Maxwell branch on all the springs of a group: its internal variables live on ``dofs``."""
+    """A Maxwell branch on all springs of a group, with internal variables on ``dofs``."""
 
     k: float
     tau: float
@@ -26,7 +26,7 @@ class Branch(NamedTuple):
 
 
 def maxwell_branches(pencil: Pencil) -> list[Branch]:
-    """Return every Maxwell branch with a live dashpot, in the order of the state vector."""
+    """Return the Maxwell branches with non-zero stiffness and damping, in the order of the state vector."""
     return [
         Branch(k, tau, group.S, group.dofs)
         for group in pencil.groups
@@ -45,7 +45,7 @@ def _instant_stiffness(pencil: Pencil) -> Matrix:
 
 
 def damping_matrix(pencil: Pencil) -> Matrix:
-    """Return C = αM + βK + Σ c S: all that is proportional to velocity."""
+    """Return C = αM + βK + Σ c S, the matrix of viscous damping."""
     total = pencil.rayleigh.alpha * pencil.M + pencil.rayleigh.beta * pencil.K
     for group in pencil.groups:
         if isinstance(group.law, Prony) and group.law.c:
@@ -54,9 +54,9 @@ def damping_matrix(pencil: Pencil) -> Matrix:
 
 
 def state_matrix(pencil: Pencil) -> FloatArray:
-    """Return the dense state matrix on [q, q̇, y] (thesis (7.2), (7.5)) of a pencil whose laws are all finite.
+    """Return the dense state matrix on [q, q̇, y] (thesis (7.2), (7.5)) of a pencil with laws of finite state.
 
-    The internal variables are displacements, τ ẏ = q − y, so that all states have one unit.
+    The internal variables are displacements, τ ẏ = q − y.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def state_matrix(pencil: Pencil) -> FloatArray:
     """
     if not all(isinstance(group.law, Prony) for group in pencil.groups):
         raise InputError(
-            "a springpot has no finite state",
+            "a springpot has no finite number of states",
             field="law",
             value="springpot",
             allowed="elastic, kelvin-voigt, zener, maxwell, maxwell-3",
@@ -117,5 +117,5 @@ def shifted_inverse(pencil: Pencil, sigma: float) -> tuple[spla.LinearOperator, 
 
 
 def factorised(F: sp.csc_array) -> spla.SuperLU:
-    """Return the factors of a symmetric matrix: a symmetric order of elimination fills in least."""
+    """Return the factors of a symmetric matrix, by a symmetric elimination order with least fill-in."""
     return spla.splu(sp.csc_matrix(F), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1)

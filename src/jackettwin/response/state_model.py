@@ -1,4 +1,4 @@
-"""The state space of a structure on its supports with a name for every state, and its file."""
+"""State-space model of a structure on its supports, with a name for every state, and its file."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from jackettwin.response.system import System
 DISPLACEMENTS = ("ux_m", "uy_m", "uz_m", "rx_rad", "ry_rad", "rz_rad")
 _FORCES = ("fx_n", "fy_n", "fz_n", "mx_n_m", "my_n_m", "mz_n_m")
 _MOST_STATES = 12_000
-"""A dense matrix of more would take over a gigabyte."""
+"""Largest number of states; a larger dense matrix would need more than a gigabyte."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ def state_model(system: System) -> StateModel:
     Raises
     ------
     InputError
-        If a support's law has no finite number of states, a node has no mass, or the states are too many
+        If a support's law has no finite number of states, a node has no mass, or there are too many states
         for a dense matrix.
     """
     pencil, assembly = system.pencil, system.assembly
@@ -68,7 +68,7 @@ def state_model(system: System) -> StateModel:
     massless = np.flatnonzero(~(pencil.M.diagonal() > 0.0))
     require(
         massless.size == 0,
-        "a motion without mass has no state",
+        "a degree of freedom without mass has no state",
         field="structure",
         value=", ".join(dict.fromkeys(nodes[dof] for dof in massless)),
         remedy="give its members a density or the node a body, or subdivide massless members less",

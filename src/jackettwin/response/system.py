@@ -27,12 +27,12 @@ if TYPE_CHECKING:
     from jackettwin.structure import Assembly
 
 Matrix = Any
-"""A NumPy array or a SciPy sparse array: the algebra below is the same."""
+"""A NumPy array or a SciPy sparse array."""
 
 
 @dataclass(frozen=True)
 class Group:
-    """All springs that share a law: pattern matrix S (n, n) and the DOFs it touches."""
+    """All springs with one law: pattern matrix S (n, n) and the DOFs it acts on."""
 
     law: Law
     S: Matrix
@@ -69,7 +69,7 @@ class Pencil:
         return total
 
     def static_stiffness(self) -> Matrix:
-        """Return K with the static stiffness of every law: the undamped structure."""
+        """Return K plus the static stiffness of every law, for the undamped structure."""
         total = self.K
         for group in self.groups:
             total = total + group.law.static_stiffness * group.S
@@ -91,8 +91,8 @@ class System:
         The free structure.
     support : Support
     pencil : Pencil
-        On the free DOFs.
-    free : (n,) DOFs of the assembly that are not held
+        Equations of the free DOFs.
+    free : (n,) DOFs of the assembly that are not fixed
     """
 
     assembly: Assembly
@@ -104,7 +104,7 @@ class System:
         return f"System({self.assembly!r} on {self.support!r}, {self.free.size} free DOFs)"
 
     def expand(self, x: npt.NDArray[Any]) -> npt.NDArray[Any]:
-        """Return shapes (assembly.n_dof, ...) from shapes on the free DOFs; held DOFs are zero."""
+        """Return shapes (assembly.n_dof, ...) from shapes at the free DOFs; fixed DOFs are zero."""
         full = np.zeros((self.assembly.n_dof, *x.shape[1:]), dtype=x.dtype)
         full[self.free] = x
         return full
@@ -125,22 +125,22 @@ def build_system(
     assembly : Assembly
     support : Support
     rayleigh : Rayleigh, optional
-        Damping of the steel alone.
+        Damping of the steel.
     dashpots : tuple of Spring
-        Further springs and dashpots anywhere (a nacelle's aerodynamic damping).
+        Further springs and dashpots, e.g. a nacelle's aerodynamic damping.
     spread : (pattern on the assembly's DOFs, law)
-        What acts all over the structure (drag in water).
+        Matrices that act on the whole structure, e.g. drag in water.
 
     Raises
     ------
     InputError
-        If a spring stands on a held DOF with nowhere to act, or a node does not exist.
+        If a spring acts on fixed DOFs only, or a node does not exist.
     """
     held: list[int] = []
     for node, dofs in support.fixed:
         held += list(assembly.dofs(node)[list(dofs)])
     free = np.setdiff1d(np.arange(assembly.n_dof), np.array(held, dtype=np.intp))
-    require(free.size != 0, "every degree of freedom is held", field="support", remedy="hold fewer nodes")
+    require(free.size != 0, "every degree of freedom is fixed", field="support", remedy="fix fewer nodes")
     number = np.full(assembly.n_dof, -1, dtype=np.intp)
     number[free] = np.arange(free.size)
     M = sp.csc_array((assembly.mass + _ground_mass(assembly, support))[free][:, free])
@@ -155,7 +155,7 @@ def _spread(S: sp.csc_array, law: Law) -> Group:
 
 
 def _ground_mass(assembly: Assembly, support: Support) -> sp.csc_array:
-    """Return the mass of the ground's own bodies (piles) on the assembly's DOFs."""
+    """Return the mass of bodies of the ground (piles) on the assembly's DOFs."""
     blocks = [(assembly.dofs(node), matrix) for node, matrix in support.masses]
     rows = [np.repeat(dofs, dofs.size) for dofs, _ in blocks]
     columns = [np.tile(dofs, dofs.size) for dofs, _ in blocks]

@@ -1,4 +1,4 @@
-"""A blade as stations: place, chord, twist, and lift and drag of each against the angle of attack."""
+"""A blade as stations, each with position, chord, twist, and lift and drag over the angle of attack."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scipy.interpolate import PchipInterpolator
 from jackettwin.arrays import FloatArray
 
 ALPHA = np.radians(np.linspace(-180.0, 180.0, 1441))
-"""Angles of attack of the tables [rad], a quarter degree apart."""
+"""Angles of attack of the tables [rad], in steps of a quarter degree."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Blade:
     prebend : offset along x [m], negative upwind
     chord, twist : [m], [rad]; positive twist turns the nose into the wind, as pitch does
     relative_thickness : thickness over chord
-    weight : length each station stands for [m]
+    weight : integration length of each station [m]
     cl, cd : (n, ALPHA.size) tables
     """
 
@@ -62,9 +62,9 @@ class Blade:
 def blend_polars(polars: list[Polar], relative_thickness: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return tables (Cl, Cd), each (n, ALPHA.size), at the stations' relative thickness.
 
-    Monotone cubics over the angle and over the thickness; linear blending over thickness or span adds up to
-    2 % to the drag of the thick root and changes its stalled lift. Polars of one thickness (two cylinders)
-    count as their mean.
+    Monotone cubics are used over the angle and over the thickness; linear interpolation over thickness or
+    span would increase the drag of the thick root by up to 2 % and change its lift in stall. Polars of equal
+    thickness (two cylinders) are averaged.
     """
     thickness, of = np.unique([polar.relative_thickness for polar in polars], return_inverse=True)
     inside = np.clip(relative_thickness, thickness[0], thickness[-1])
@@ -90,10 +90,10 @@ def stall_delay(
 ) -> FloatArray:
     """Return lift tables (n, ALPHA.size) with the rotation's stall delay, Du & Selig (1998, AIAA 98-0021).
 
-    Cl + f (Cl_linear − Cl), f = (1.6 (c/r)/0.1267 · (1 − (c/r)^e)/(1 + (c/r)^e) − 1)/m, e = (R/r)/Λ with
-    Λ = λ/√(1 + λ²); m and Cl_linear from a straight line through −5° to 5°. The correction is capped at 0.25
-    and fades from 25° to 45°; drag keeps its measured values, and sections thicker than 0.7 (half a cylinder)
-    stay as they are: so are the polars of the public OpenFAST model of the IEA 15 MW rotor made.
+    Cl + f (Cl_linear − Cl), f = (1.6 (c/r)/0.1267 · (1 − (c/r)^e)/(1 + (c/r)^e) − 1)/m, e = (R/r)/Λ with Λ =
+    λ/√(1 + λ²); m and Cl_linear follow from a straight line through −5° to 5°. The correction is limited to
+    0.25 and decreases to zero between 25° and 45°; drag and sections thicker than 0.7 are not corrected, as
+    in the public OpenFAST model of the IEA 15 MW rotor.
     """
     linear = np.abs(ALPHA) <= np.radians(5.0)
     m, intercept = np.polyfit(ALPHA[linear], cl[:, linear].T, 1)

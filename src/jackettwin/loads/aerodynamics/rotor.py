@@ -1,8 +1,9 @@
 r"""A rotor as blade elements in the frame of the tower top.
 
 Frame: x downwind along the nacelle, y to the left, z up; origin at the tower top. Positive pitch turns the
-noses into the wind; at 90° the blades are feathered. Quasi-steady aerodynamics: every element sees the wind
-less its own motion (and less the wake's induction, if one is given), and only the flow in its plane counts.
+noses into the wind; at 90° the blades are feathered. Aerodynamics are quasi-steady: the flow at each element
+is the wind minus the element's velocity (and minus the wake's induction, if given), and only its component in
+the plane of the section matters.
 """
 
 from __future__ import annotations
@@ -52,7 +53,7 @@ class Rotor:
 
 
 class Elements(NamedTuple):
-    """Blade elements at azimuth zero, (n_blades, n, 3): arm from the hub, chord and normal directions."""
+    """Blade elements at azimuth zero, (n_blades, n, 3): position from the hub, chord and normal."""
 
     arm: FloatArray
     chordwise: FloatArray
@@ -62,7 +63,7 @@ class Elements(NamedTuple):
 def elements(rotor: Rotor, pitch: float) -> Elements:
     """Return the elements of all blades, the first pointing up.
 
-    Prebend turns with the pitch; sections stand normal to the pitch axis.
+    Prebend rotates with the pitch; sections are normal to the pitch axis.
     """
     d = rotor.shaft
     up = np.array([np.sin(rotor.tilt), 0.0, np.cos(rotor.tilt)])
@@ -111,7 +112,7 @@ def rotor_loads(
     rotor_speed : float
         [rad/s].
     shaft : {"locked", "free"}
-        A free shaft neither turns the rotor with the tower nor passes its torque on.
+        A free shaft neither rotates the rotor with the tower nor transmits its torque.
     induced : (n, 2), optional
         Axial and tangential induced velocity at the stations [m/s].
     """
@@ -144,14 +145,14 @@ class CompiledRotor:
     fixed: tuple[Any, ...]
 
     def seeing(self, shares: FloatArray) -> CompiledRotor:
-        """Return the rotor in the wind of places of which its elements see ``shares`` (n_elements, n)."""
+        """Return the rotor whose elements have ``shares`` (n_elements, n) of the wind at n points."""
         table = sp.csr_array(shares)
         return CompiledRotor((*self.fixed[:_SEEN], table.indptr, table.indices, table.data))
 
     def loads(self, wind: FloatArray, motion: FloatArray, angle: FloatArray) -> FloatArray:
-        """Return loads (n, 6): wind at the elements or places (n, n_places, 3), motion (n, 6).
+        """Return loads (n, 6) in wind at the elements or points (n, n_places, 3) with motion (n, 6).
 
-        ``angle`` (n,) is how far the rotor has turned from the azimuth it was made for [rad].
+        ``angle`` (n,) is the rotation of the rotor from the azimuth for which it was compiled [rad].
         """
         out = np.empty((wind.shape[0], 6))
         blade_elements(*(*self.fixed, angle, wind, motion, out))
@@ -159,7 +160,7 @@ class CompiledRotor:
 
 
 _SEEN = 11
-"""Arrays of a compiled rotor before those that say which wind its elements see."""
+"""Number of arrays of a compiled rotor before those of the wind at its elements."""
 
 
 def compiled_rotor(
@@ -172,7 +173,7 @@ def compiled_rotor(
     induced: FloatArray | None = None,
     density: float = AIR_KG_M3,
 ) -> CompiledRotor:
-    """Return the rotor ready for many times; arguments as in ``rotor_loads``."""
+    """Return the rotor prepared for loops over time; arguments as in ``rotor_loads``."""
     blade, B, d = rotor.blade, rotor.n_blades, rotor.shaft
     turn = rotation(d, azimuth)
     arm, chordwise, normal = (part.reshape(-1, 3) @ turn.T for part in elements(rotor, pitch))
@@ -180,7 +181,7 @@ def compiled_rotor(
     wake = np.zeros((arm.shape[0], 2)) if induced is None else np.tile(induced, (B, 1))
     swirl = np.cross(d, arm)
     swirl *= (wake[:, 1] / np.linalg.norm(swirl, axis=1))[:, None]
-    # seen by an element: the wake, and the air its own turning moves it through
+    # flow at an element due to the wake and to the rotor's rotation
     lost = wake[:, :1] * d + swirl
     own = [np.sum(lost * part[:, :3], axis=1) + rotor_speed * (part[:, 3:] @ d) for part in (along, across)]
     rotor_alone = CompiledRotor(
@@ -202,7 +203,7 @@ def compiled_rotor(
 
 
 class Linearised(NamedTuple):
-    """Mean load (6,) and the matrices it loses with motion: F ≈ load − damping·ẋ − stiffness·x, each 6×6."""
+    """Mean load (6,) with damping and stiffness matrices (6, 6): F ≈ load − damping·ẋ − stiffness·x."""
 
     load: FloatArray
     damping: FloatArray
@@ -221,27 +222,27 @@ def linearise(
     induced: FloatArray | None = None,
     density: float = AIR_KG_M3,
 ) -> Linearised:
-    """Return the rotor about steady uniform wind, at the tower top in the nacelle's frame.
+    """Return the rotor linearised about steady uniform wind, at the tower top in the nacelle's frame.
 
     Parameters
     ----------
     yaw_error : float
-        Heading of the wind from the nacelle's x axis [rad].
+        Direction of the wind relative to the nacelle's x axis [rad].
     azimuth : float, optional
-        One position of the rotor [rad]; None averages over a blade's share of a turn.
+        Azimuth of the rotor [rad]; None averages over the angle between two blades.
 
     Notes
     -----
-    A small rotation of the tower top turns the rotor against the wind and its load with it; that is the
-    stiffness. A uniform wind knows no translation.
+    The stiffness arises because a small rotation of the tower top changes the angle between rotor and wind
+    and rotates the load. In uniform wind, translations have no stiffness.
     """
     wind = wind_speed * np.array([np.cos(yaw_error), np.sin(yaw_error), 0.0])
     places = 2.0 * np.pi / rotor.n_blades * np.arange(12) / 12 if azimuth is None else np.array([azimuth])
-    # 0.05 m/s: small against the wind, large against rounding
+    # 0.05 m/s: small compared with the wind, large compared with rounding
     h = np.array([0.05] * 3 + [0.05 / rotor.radius] * 3)
     small = 1e-3
     turns = np.array([rotation(axis, sign * small) for sign in (1.0, -1.0) for axis in np.eye(3)])
-    # at rest, moved and against the move, turned and turned back: all in one call
+    # at rest, with motion and rotation of either sign: all in one call
     winds = np.vstack([np.tile(wind, (13, 1)), turns.swapaxes(1, 2) @ wind])
     motions = np.vstack([np.zeros(6), np.diag(h), -np.diag(h), np.zeros((6, 6))])
     found = np.zeros((winds.shape[0], 6))
@@ -265,6 +266,6 @@ def linearise(
 
 
 def in_global_axes(matrix: FloatArray, yaw: float) -> FloatArray:
-    """Return R C Rᵀ: a 6×6 matrix of a nacelle turned by ``yaw`` [rad] about z."""
+    """Return R C Rᵀ, the 6×6 matrix of a nacelle rotated by ``yaw`` [rad] about z."""
     R = np.kron(np.eye(2), rotation(np.array([0.0, 0.0, 1.0]), yaw))
     return np.asarray(R @ matrix @ R.T)

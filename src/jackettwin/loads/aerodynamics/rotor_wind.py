@@ -1,8 +1,8 @@
 """Turbulent wind over a rotor and its tower.
 
-A rotor that stands sees the mean wind over pieces of each blade, or the nodes of a grid; the blades of one
-that turns cut through rings of points (rotational sampling). The disc stands across the wind, which blows
-along +x. Heights count from still water.
+For a parked rotor the wind is averaged over segments of each blade or given at the nodes of a grid; for a
+rotating one it is sampled on rings of points through which the blades pass (rotational sampling). The rotor
+disc is normal to the wind, which blows along +x. Heights are measured from still water.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from jackettwin.loads.aerodynamics.wind import Wind
 from jackettwin.loads.kernels import wind_on_blades
 
 RINGS = (0.3, 0.55, 0.8, 1.0)
-"""Radii of the rings over the rotor's."""
+"""Radii of the rings as shares of the rotor's radius."""
 SPOKES = 12
 PIECE_M = 10.0
-"""Longest piece of blade or tower that has a wind of its own."""
+"""Largest length of a segment of blade or tower with one wind speed [m]."""
 
 
 class SeenWind(NamedTuple):
-    """Wind at places (n_times, n_places, 3) [m/s], and what blade elements see: (n_elements, n_places)."""
+    """Wind at points (n_times, n_places, 3) [m/s], and shares at blade elements (n_elements, n_places)."""
 
     wind: FloatArray
     shares: FloatArray
@@ -35,18 +35,18 @@ class SeenWind(NamedTuple):
 
 @dataclass(frozen=True)
 class RotorWind:
-    """Wind about the mean, (n_times, n, 3) [m/s] each.
+    """Fluctuations of the wind about its mean, (n_times, n, 3) [m/s] each.
 
     Attributes
     ----------
-    hub : (n_times, 3)
-    rotor : at the places of the standing blades; or at the hub and on the rings
-    tower : on pieces of the tower's axis, from still water to the hub; or at the grid's nodes on it
-    step_s : between samples
-    radius : of the rotor [m]
-    azimuth : of the first blade if the rotor stands [rad], None if it turns
-    shares : (n_elements, n) of each place that an element of the standing blades sees
-    nodes_z : (n,) heights of the grid's nodes on the tower's axis, rising [m]; None with pieces
+    hub : (n_times, 3) at the hub
+    rotor : at the segments or nodes of parked blades, or at the hub and on the rings
+    tower : on segments of the tower's axis from still water to the hub, or at the grid's nodes on it
+    step_s : time between samples
+    radius : radius of the rotor [m]
+    azimuth : azimuth of the first blade of a parked rotor [rad], None if it rotates
+    shares : (n_elements, n) weights of the points in the wind at each element of parked blades
+    nodes_z : (n,) heights of the grid's nodes on the tower's axis, ascending [m]; None with segments
     """
 
     wind: Wind
@@ -65,7 +65,7 @@ class RotorWind:
         return int(self.hub.shape[0])
 
     def at_hub(self) -> FloatArray:
-        """Return the hub's wind, mean included (n_times, 3) [m/s]."""
+        """Return the wind at the hub including its mean, (n_times, 3) [m/s]."""
         return np.asarray(self.hub + [self.wind.speed_m_s, 0.0, 0.0])
 
     def on_blades(self, rotor: Rotor, azimuth: FloatArray, *, yaw: float | FloatArray = 0.0) -> FloatArray:
@@ -74,12 +74,12 @@ class RotorWind:
         return _spread(wind, shares)
 
     def seen(self, rotor: Rotor, azimuth: FloatArray, *, yaw: float | FloatArray = 0.0) -> SeenWind:
-        """Return the wind in the nacelle's axes where it is known, and what the blade elements see of it.
+        """Return the wind in the nacelle's axes at its points, and their weights at the blade elements.
 
         Parameters
         ----------
         azimuth : (n_times,) [rad]
-            Of a rotor that turns; one that stands does so where its wind was made.
+            Azimuth of a rotating rotor; that of a parked one is fixed when its wind is generated.
         yaw : float or (n_times,)
             Heading of the nacelle, anticlockwise from +x seen from above [rad].
         """
@@ -88,7 +88,8 @@ class RotorWind:
         if self.azimuth is not None:
             spokes = self.azimuth + 2.0 * np.pi * np.arange(n) / n
             height = self.wind.hub_height_m + np.outer(np.cos(spokes), r).ravel()
-            # one place more whose wind is 1 m/s along the mean, of which every element has its mean
+            # one more point with a wind of 1 m/s along the mean, whose weight is the mean wind
+            # at each element
             places = np.empty((self.n_times, self.rotor.shape[1] + 1, 3))
             places[:, :-1], places[:, -1] = self.rotor, [1.0, 0.0, 0.0]
             shares = np.hstack([self.shares, self.wind.mean(height)[:, None]])
@@ -127,7 +128,7 @@ class RotorWind:
 
 
 def _spread(samples: FloatArray, shares: FloatArray) -> FloatArray:
-    """Return shares (m, n) of samples (n_times, n, 3): (n_times, m, 3), in memory time runs fastest."""
+    """Return shares (m, n) of samples (n_times, n, 3) as (n_times, m, 3), with time contiguous in memory."""
     flat = np.kron(shares, np.eye(3)) @ samples.reshape(samples.shape[0], -1).T
     return np.asarray(flat.reshape(-1, 3, samples.shape[0]).transpose(2, 0, 1))
 
@@ -144,18 +145,18 @@ def rotor_wind(
     piece: float = PIECE_M,
     grid: float | None = None,
 ) -> RotorWind:
-    """Return the wind of ``duration`` [s], which it repeats, in steps of ``step`` [s].
+    """Return wind that is periodic with ``duration`` [s], in steps of ``step`` [s].
 
     Parameters
     ----------
     rotor : Rotor or None
-        None is wind on the tower alone.
+        With None only the wind on the tower is returned.
     azimuth : float or None
-        Of the first blade of a rotor that stands [rad]; None if it turns.
+        Azimuth of the first blade of a parked rotor [rad]; None if it rotates.
     piece : float
-        Longest piece of blade or tower with a wind of its own [m].
+        Largest length of a segment of blade or tower with one wind speed [m].
     grid : float, optional
-        Width of a grid whose nodes the standing blades and the tower take their wind from instead [m].
+        Spacing of a grid [m] from whose nodes the wind on parked blades and tower is interpolated instead.
     """
     hub = wind.hub_height_m
     on_rotor, shares = _on_rotor(hub, rotor, azimuth, piece, grid)
@@ -206,7 +207,7 @@ def _on_rotor(
 
 
 def _disc(hub_height: float, radius: float) -> FloatArray:
-    """Return (y, z) of the hub and the rings; spoke 0 points up, the next as the rotor turns."""
+    """Return (y, z) of the hub and the rings; spoke 0 points up, further ones follow the rotation."""
     angle = 2.0 * np.pi * np.arange(SPOKES) / SPOKES
     rings = [radius * share * np.stack([-np.sin(angle), np.cos(angle)], axis=1) for share in RINGS]
     return np.asarray(np.vstack([np.zeros((1, 2)), *rings]) + [0.0, hub_height])

@@ -1,4 +1,4 @@
-"""Wind on the blades of a standing rotor: averaged over pieces, or from the nodes of a grid."""
+"""Wind on the blades of a parked rotor: averaged over segments, or from the nodes of a grid."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from jackettwin.arrays import FloatArray
 from jackettwin.loads.aerodynamics.rotor import Rotor
 
 _POINTS = 5
-"""Points over which a piece is averaged."""
+"""Number of points over which a segment is averaged."""
 
 
 class Places(NamedTuple):
-    """Places with a wind of their own, and which share of it each blade element sees.
+    """Places with separate wind, and their weights in the wind at each blade element.
 
     Attributes
     ----------
-    points : (n_places, n, 2: y and height) points over whose mean a place stands [m]
-    shares : (n_elements, n_places), blade by blade
+    points : (n_places, n, 2) y and height [m] of the points whose mean wind is that of a place
+    shares : (n_elements, n_places) weights, blade by blade
     """
 
     points: FloatArray
@@ -27,9 +27,9 @@ class Places(NamedTuple):
 
 
 def blade_pieces(hub_height: float, rotor: Rotor, azimuth: float, piece: float) -> Places:
-    """Return pieces of every blade no longer than ``piece`` [m], from the hub's centre to the tips.
+    """Return segments of every blade no longer than ``piece`` [m], from the hub's centre to the tips.
 
-    An element sees the mean wind of the piece it is on.
+    The wind at an element is the mean wind over its segment.
     """
     centre = np.array([0.0, hub_height])
     tips = centre + rotor.radius * _along(rotor, azimuth)
@@ -43,10 +43,10 @@ def blade_pieces(hub_height: float, rotor: Rotor, azimuth: float, piece: float) 
 
 
 def grid_nodes(hub_height: float, rotor: Rotor, azimuth: float, spacing: float) -> Places:
-    """Return the nodes about the blades of a grid ``spacing`` [m] wide, one of them at the hub.
+    """Return the nodes around the blades of a grid of ``spacing`` [m], one of them at the hub.
 
-    An element sees the four about it, interpolated straight both ways: the wind of a file that other programs
-    read.
+    The wind at an element is interpolated bilinearly between four nodes, as other programs do with wind
+    files.
     """
     r = rotor.hub_radius + rotor.blade.z
     at = (_along(rotor, azimuth)[:, None, :] * r[:, None]).reshape(-1, 2) / spacing
@@ -60,7 +60,7 @@ def grid_nodes(hub_height: float, rotor: Rotor, azimuth: float, spacing: float) 
 
 
 def line_pieces(start: FloatArray, end: FloatArray, piece: float) -> FloatArray:
-    """Return points (n_pieces, n, 2) of the pieces of a line."""
+    """Return points (n_pieces, n, 2) of the segments of a line."""
     n = int(np.ceil(np.linalg.norm(end - start) / piece))
     share = (np.arange(n * _POINTS) + 0.5) / (n * _POINTS)
     return np.asarray((start + share[:, None] * (end - start)).reshape(n, _POINTS, 2))

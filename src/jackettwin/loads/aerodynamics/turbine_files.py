@@ -17,7 +17,7 @@ from jackettwin.loads.aerodynamics.rotor import Rotor
 from jackettwin.loads.operation.bem import Control
 
 _STEEPEST = radians(30.0)
-"""Of a shaft or a cone: steeper ones are degrees where radians belong."""
+"""Largest tilt or cone angle [rad]; larger values are degrees given instead of radians."""
 
 
 def read_rotor(name: str | Path, *, folder: Path | None = None) -> tuple[Rotor, Control]:
@@ -29,7 +29,7 @@ def read_rotor(name: str | Path, *, folder: Path | None = None) -> tuple[Rotor, 
     Raises
     ------
     InputError
-        If the file is missing or lacks a part that is needed.
+        If the file is missing or lacks a required part.
     """
     path = find_file(name, "rotors", folder=folder)
     content = windio(read_yaml(path, what="windIO file"))
@@ -97,7 +97,7 @@ def _blade(content: WindIO) -> Blade:
 
 
 def _used(content: WindIO, labels: list[Part]) -> dict[str, Part]:
-    """Return the airfoils that the blade names."""
+    """Return the airfoils that the blade uses."""
     known = {foil["name"].name: foil for foil in content.root["airfoils"].entries()}
     for label in labels:
         if label.name not in known:

@@ -1,4 +1,4 @@
-"""Turbulent wind at many points, or averaged over pieces of line, as time series that repeat."""
+"""Turbulent wind at many points, or averaged over line segments, as periodic time series."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.loads.aerodynamics.wind import SCALE_RATIOS, SIGMA_RATIOS, Wind, coherence
 
 Coherent = Literal["all", "u"]
-"""Components that are coherent between places: all by the same law, or u alone, as the standard has it."""
+"""Components that are coherent between places: all with the same law, or u only, as in the standard."""
 
 _KNOTS = 64
-"""Frequencies at which the coherence is factorised; factors run straight between (0.2 % of a variance)."""
+"""Number of frequencies at which the coherence is factorised; between them factors are interpolated linearly
+(error 0.2 % of a variance)."""
 
 
 def turbulence(
@@ -28,21 +29,21 @@ def turbulence(
     pieces: IntArray | None = None,
     coherent: Coherent = "u",
 ) -> FloatArray:
-    """Return u, v, w about the mean, (n_times, n, 3) [m/s]; periodic.
+    """Return fluctuations u, v, w about the mean, (n_times, n, 3) [m/s], periodic.
 
-    Veers (1988): independent complex Gaussian amplitudes, coloured across the places by the Cholesky factor
-    of the coherence at each frequency.
+    Independent complex Gaussian amplitudes are multiplied by the Cholesky factor of the coherence matrix at
+    each frequency (Veers 1988).
 
     Parameters
     ----------
     points : (n_points, 2) y and z [m]
     pieces : (n_points,), optional
-        The place, 0 to n − 1, that each point belongs to: a place has the mean of its points. Gusts that are
-        short against a piece of blade average out over it, and the load no longer depends on how finely it
-        was cut. Default: every point is a place.
+        Index, 0 to n − 1, of the place that each point belongs to; the wind at a place is the mean over its
+        points. Gusts that are small compared with a blade segment average out over it, so that the load does
+        not depend on the number of segments. By default every point is a place.
     coherent : {"u", "all"}
-        IEC 61400-1 states a coherence of u alone. Independent v and w make the load of a feathered rotor
-        depend on the number of places; ``all`` gives them the same coherence.
+        IEC 61400-1 gives a coherence for u only. With independent v and w the load on a feathered rotor
+        depends on the number of places; ``all`` gives them the coherence of u.
     """
     n_times = round(duration * sample_rate_hz)
     f = np.asarray(np.fft.rfftfreq(n_times, 1.0 / sample_rate_hz)[1:], dtype=np.float64)
@@ -64,7 +65,7 @@ def turbulence(
 def _coloured(
     wind: Wind, points: FloatArray, pieces: IntArray, f: FloatArray, white: ComplexArray
 ) -> ComplexArray:
-    """Return amplitudes (n_components, n_f, n) with the places' coherence."""
+    """Return amplitudes (n_components, n_f, n) with the coherence between places."""
     distance = np.linalg.norm(points[:, None] - points[None], axis=-1)
     knots = np.geomspace(f[0], f[-1], _KNOTS)
     factors = (_factor(coherence(wind, knot, distance), pieces) for knot in knots)
@@ -79,12 +80,12 @@ def _coloured(
 
 
 def _times(white: ComplexArray, factor: FloatArray) -> ComplexArray:
-    """Return white noise (..., n) by a real factor: half the work of a complex one."""
+    """Return white noise (..., n) times a real factor, at half the work of a complex product."""
     return np.asarray(white.real @ factor.T + 1j * (white.imag @ factor.T))
 
 
 def _factor(matrix: FloatArray, pieces: IntArray) -> FloatArray:
-    """Return the Cholesky factor of the coherence of means over pieces."""
+    """Return the Cholesky factor of the coherence of means over segments."""
     order = np.argsort(pieces, kind="stable")
     first = np.flatnonzero(np.diff(pieces[order], prepend=-1))
     size = np.diff(np.append(first, pieces.size))
@@ -94,10 +95,10 @@ def _factor(matrix: FloatArray, pieces: IntArray) -> FloatArray:
 
 
 def _band_mean(wind: Wind, f: FloatArray, component: int) -> FloatArray:
-    """Return the Kaimal spectrum averaged over each line's band: keeps the variance of the steep low end.
+    """Return the Kaimal spectrum averaged over each line's band, which preserves low-frequency variance.
 
-    The integral of S = 4σ²L/V / (1 + 6fL/V)^{5/3}, IEC 61400-1 (2019) eq. (C.14), is elementary. The first
-    band reaches down to zero frequency.
+    The integral of S = 4σ²L/V / (1 + 6fL/V)^{5/3}, IEC 61400-1 (2019) eq. (C.14), has a closed form. The
+    first band extends to zero frequency.
     """
     df = f[1] - f[0]
     L = SCALE_RATIOS[component] * wind.scale_m / wind.speed_m_s

@@ -12,8 +12,8 @@ from jackettwin.errors import InputError
 from jackettwin.loads.members.morison import MorisonPoints, point_forces, spread
 
 TOWER_DRAG = 0.5
-"""Of a tower beyond the drag crisis; the reference turbine's own aeroelastic deck has it (TwrCd of
-IEA-15-240-RWT_AeroDyn15.dat)."""
+"""Drag coefficient of a tower at supercritical Reynolds number, as in the reference turbine's aeroelastic
+model (TwrCd of IEA-15-240-RWT_AeroDyn15.dat)."""
 
 REFERENCE_INTENSITY = {"A+": 0.18, "A": 0.16, "B": 0.14, "C": 0.12}
 """Expected turbulence intensity at 15 m/s, IEC 61400-1 (2019) table 1."""
@@ -84,12 +84,12 @@ def tower_drag(grid: MorisonPoints, wind: FloatArray, *, velocity: FloatArray | 
 
     ``grid`` comes from ``morison_points`` with air's density; ``wind`` (..., n, 3) [m/s].
     """
-    # air's grid has no inertia: its acceleration, here the wind again, does not count
+    # the grid in air has no inertia, so that the acceleration argument (here the wind again) has no effect
     return point_forces(grid, wind, wind, velocity=velocity)
 
 
 def tower_drag_damping(grid: MorisonPoints, wind: FloatArray) -> sp.csr_array:
-    """Return the damping of steady wind (n, 3) on members, on the assembly's DOFs.
+    """Return the damping matrix of members in steady wind (n, 3), on the assembly's DOFs.
 
     d(½ρC_D D|v|v)/dv = ½ρC_D D (|v| I + v vᵀ/|v|), v normal to the member.
     """

@@ -1,7 +1,7 @@
 """Drag, added mass and pressure coefficients of members, and the marine growth on them.
 
-As in OpenFAST's HydroDyn: one set for all members, or tables over the height, for all members or for some;
-each with a second set for where growth covers the member.
+As in OpenFAST's HydroDyn there is one set for all members, or tables over the height for all or some members,
+each with a second set for members covered by growth.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ SEA_WATER_KG_M3 = 1025.0
 
 @dataclass(frozen=True)
 class Strip:
-    """Coefficients per length of a member, across it.
+    """Transverse coefficients of a member per unit length.
 
     Attributes
     ----------
     drag : C_D
-    added_mass : C_a, of the water's acceleration relative to the member
-    pressure : C_p, of the undisturbed water's own acceleration (Froude–Krylov); C_M = C_p + C_a
+    added_mass : C_a, for the water's acceleration relative to the member
+    pressure : C_p, for the acceleration of the undisturbed water (Froude–Krylov); C_M = C_p + C_a
     """
 
     drag: float = 1.0
@@ -45,13 +45,13 @@ class Strip:
 
 @dataclass(frozen=True)
 class StripTable:
-    """Coefficients at heights, straight in between and constant beyond.
+    """Coefficients at heights, interpolated linearly in between and constant beyond.
 
     Attributes
     ----------
-    z_m : falling or rising heights from still water [m]
-    bare, grown : coefficients there, without and with growth
-    members : members or parts of the structure they hold for; all if empty
+    z_m : ascending or descending heights from still water [m]
+    bare, grown : coefficients at these heights, without and with growth
+    members : members or parts of the structure with these coefficients; all if empty
     """
 
     z_m: tuple[float, ...]
@@ -82,7 +82,7 @@ class StripTable:
 
 @dataclass(frozen=True)
 class GrowthBand:
-    """Marine growth between two heights from still water [m], straight in between.
+    """Marine growth between two heights from still water [m], interpolated linearly.
 
     ``bottom_thickness_m`` and ``bottom_density_kg_m3`` are those of the top unless given.
     """
@@ -108,13 +108,13 @@ class GrowthBand:
         _require_not_negative("density_kg_m3", self.density_kg_m3)
 
     def share(self, z: FloatArray) -> tuple[BoolArray, FloatArray]:
-        """Return where ``z`` lies within the band, and how far from its top to its bottom (0 to 1)."""
+        """Return which ``z`` lie within the band, and their position from its top (0) to its bottom (1)."""
         inside = (z <= self.top_z_m) & (z >= self.bottom_z_m)
         return inside, np.asarray((self.top_z_m - z) / (self.top_z_m - self.bottom_z_m))
 
 
 def growth_bands(falling: Iterable[tuple[float, float, float]]) -> tuple[GrowthBand, ...]:
-    """Return the bands between the rows of a table from the top: z [m], thickness [m], density [kg/m³]."""
+    """Return the bands between the rows (z [m], thickness [m], density [kg/m³]) of a table, from the top."""
     return tuple(
         GrowthBand(z, below, thickness, thickness_below, density, density_below)
         for (z, thickness, density), (below, thickness_below, density_below) in pairwise(falling)
@@ -125,8 +125,8 @@ def growth_bands(falling: Iterable[tuple[float, float, float]]) -> tuple[GrowthB
 class Coefficients:
     """Coefficients of all members, marine growth and the density of the water.
 
-    Growth adds to the hydrodynamic diameter. ``grown`` are the coefficients where it does, ``bare`` unless
-    given. Later ``tables`` take the place of earlier ones and of these.
+    Growth increases the hydrodynamic diameter. ``grown`` are the coefficients of covered members, equal to
+    ``bare`` unless given. Later ``tables`` override earlier ones and both sets.
     """
 
     drag: float = 1.0
@@ -147,7 +147,7 @@ class Coefficients:
         return Strip(self.drag, self.added_mass, self.pressure)
 
     def thickness(self, z: FloatArray) -> FloatArray:
-        """Return the growth's thickness [m] at ``z``; of two bands that meet the later one counts."""
+        """Return the growth's thickness [m] at ``z``; where two bands meet, the later one applies."""
         t = np.zeros_like(z)
         for band in self.growth:
             inside, share = band.share(z)
@@ -166,14 +166,14 @@ class Coefficients:
         return rho
 
     def at(self, z: FloatArray, member: IntArray, names: Sequence[tuple[str, str]]) -> FloatArray:
-        """Return C_D, C_a, C_p (3, n) at heights ``z`` on members given by number.
+        """Return C_D, C_a, C_p (3, n) at heights ``z`` on members given by index.
 
-        ``names`` holds each member's name and part.
+        ``names`` contains each member's name and part.
 
         Raises
         ------
         InputError
-            If a table is for a member or part that is not there.
+            If a table is for a member or part that does not exist.
         """
         covered = self.thickness(z) > 0.0
         everywhere = StripTable((0.0,), (self.bare,), (self.grown or self.bare,))
@@ -186,7 +186,7 @@ class Coefficients:
 
 
 def require_members(wanted: Iterable[str], names: Sequence[tuple[str, str]], field: str) -> None:
-    """Refuse what is neither the name nor the part of a member."""
+    """Raise an error for a word that is neither the name nor the part of a member."""
     known = {word for both in names for word in both}
     for word in wanted:
         require(

@@ -1,11 +1,12 @@
-r"""Linearised drag damping of members in a random sea, without simulating it.
+r"""Linearised drag damping of members in a random sea, from its spectrum.
 
 .. math:: σ^2 = \tfrac{1}{2} \operatorname{tr}(P Σ), \qquad
           Σ = \int S_η ω^2 (h^2\, d d^T + v^2\, e_z e_z^T)\, df
 
-P the projector across the member, h and v the depth functions of Airy waves, d the sea's heading: the mean
-variance of the two components across a member, as the simulation takes it from its time series. Radiation
-damping of the members is left out: below 1 Hz their diameters are too small to make waves.
+with P the projector normal to the member, h and v the depth functions of Airy waves and d the sea's heading.
+σ² is the mean variance of the two velocity components normal to a member, which the simulation computes from
+its time series. Radiation damping of the members is neglected: below 1 Hz their diameters are too small to
+generate waves.
 """
 
 from __future__ import annotations
@@ -19,13 +20,13 @@ from jackettwin.loads.sea.waves import SeaState, depth_functions, jonswap, wave_
 
 _STEP_HZ = 1e-3
 _HIGHEST = 4.0
-"""The spectrum ends at this multiple of its peak, as a simulated sea does."""
+"""The spectrum ends at this multiple of its peak frequency, as in the simulation."""
 
 
 def velocity_std(grid: MorisonPoints, sea: SeaState, depth: float) -> FloatArray:
-    """Return the standard deviation of the water's velocity across the members, (n_points,) [m/s].
+    """Return the standard deviation of the water's velocity normal to the members, (n_points,) [m/s].
 
-    ``depth`` [m]; the sea is long-crested and wets members up to still water.
+    The sea is long-crested, and members are wet up to still water; ``depth`` is in m.
     """
     f = np.arange(1, int(_HIGHEST / sea.Tp / _STEP_HZ) + 1, dtype=np.float64) * _STEP_HZ
     omega = 2.0 * np.pi * f
@@ -40,5 +41,5 @@ def velocity_std(grid: MorisonPoints, sea: SeaState, depth: float) -> FloatArray
 
 
 def sea_drag_damping(grid: MorisonPoints, sea: SeaState, depth: float) -> sp.csr_array:
-    """Return the linearised drag (Borgman 1967) on members that move in a random sea, (n_dof, n_dof)."""
+    """Return the linearised drag damping (Borgman 1967) of members in a random sea, (n_dof, n_dof)."""
     return drag_damping(grid, velocity_std(grid, sea, depth) * above_bed(grid, depth))

@@ -1,20 +1,20 @@
-r"""Loads on the ends of members, where axial coefficients are given.
+r"""Loads on the ends of members with axial coefficients.
 
 At a joint, with the outward normals n of all member ends there,
 
 .. math:: F = -C_{p} p A + \rho C_{a} \frac{V V^T}{|V|} \dot u + \frac{\rho C_{d}}{4|A|^2} |u·A| (u·A) A,
           \qquad A = \sum πR^2 n, \quad V = \sum \tfrac{2π}{3}R^3 n
 
-and the same over every ring of a member that widens, where A = −π(R_2² − R_1²) k, V = ⅔π|R_2³ − R_1³| k
-and k points from R_1 to R_2: so the pressure acts on closed bodies. R is with marine growth.
+and the same over every ring of a tapered member, where A = −π(R_2² − R_1²) k, V = ⅔π|R_2³ − R_1³| k and k
+points from R_1 to R_2, so that the pressure acts on closed bodies. R includes marine growth.
 
-As in OpenFAST's HydroDyn (``AxCp``, ``AxCa``, ``AxCd``; v5, module Morison). Where legs run through, their
-ends cancel; those of braces count as if they stood free in the water: C_p = 1 is an upper bound on a jacket.
-All are 0 by default.
+The coefficients are those of OpenFAST's HydroDyn (``AxCp``, ``AxCa``, ``AxCd``; v5, module Morison), 0 by
+default. The ends of continuous legs cancel; those of braces are treated as free ends in the water, so that
+C_p = 1 gives an upper bound for a jacket.
 
-No water reaches a buried end: joints below the bed carry nothing, by HydroDyn's own rule (v5, Morison.f90:
-``Position(3) >= -WtrDpth``). Nor do the feet on the bed, whose legs or piles go on into the ground;
-HydroDyn's files sink them by a millimetre for this.
+Water does not reach a buried end: joints below the bed have no loads, as in HydroDyn (v5, Morison.f90:
+``Position(3) >= -WtrDpth``). Feet on the bed have none either, since their legs or piles continue into the
+ground; HydroDyn's files lower them by a millimetre for this purpose.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ from jackettwin.loads.sea.waves import Waves
 from jackettwin.structure import PILES, Assembly, Structure
 
 _RING_M = 0.5
-"""Length of a ring of a member that widens."""
+"""Length of a ring of a tapered member."""
 _ROUNDING_M = 1e-6
-"""A joint this little below the bed stands on it."""
+"""A joint at most this far below the bed counts as on it."""
 _ON_THE_BED_M = 0.011
-"""Depths are stated to the centimetre: a foot this close above the bed stands in it."""
+"""A foot at most this far above the bed counts as in it, as depths are given to the centimetre."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class EndCoefficients:
 
 @dataclass(frozen=True)
 class Ends:
-    """The joints with ends in the water, then the rings of members that widen.
+    """The joints with ends in the water, then the rings of tapered members.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ def member_ends(
     lowest_z: float,
     exclude_parts: tuple[str, ...] = (PILES,),
 ) -> Ends:
-    """Return the ends of members at joints between two heights [m] from still water; the lower is the bed."""
+    """Return the ends of members at joints between the bed and a height, in m from still water."""
     structure = assembly.structure
     area: dict[str, FloatArray] = {}
     volume: dict[str, FloatArray] = {}
@@ -133,7 +133,7 @@ def _is_open(structure: Structure, node: str, bed_z: float, highest_z: float) ->
 
 
 class _Rings(NamedTuple):
-    """Short pieces of members whose radius changes: middles, A, V, and where along which element they lie."""
+    """Rings of tapered members: middles, A, V, elements and positions along these."""
 
     points: FloatArray
     area: FloatArray

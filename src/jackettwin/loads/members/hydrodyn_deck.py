@@ -1,7 +1,7 @@
-"""Reading of an OpenFAST HydroDyn file: coefficients, marine growth, ends and filled members.
+"""Reader of OpenFAST HydroDyn files: coefficients, marine growth, ends and filled members.
 
-Members are known by where their joints stand, so that the file may be that of any deck with the same members
-as the structure. Geometry, waves and everything of floating platforms are not read.
+Members are matched by the positions of their joints, so that the file may be that of any deck with the
+structure's members. Geometry, waves and data of floating platforms are not read.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ from jackettwin.loads.members.ends import EndCoefficients
 from jackettwin.structure import Structure
 
 _SAME_PLACE_M = 0.3
-"""Feet of HydroDyn's files reach a little into the bed, so that no water presses on their ends."""
+"""Largest distance between matched joints: HydroDyn's files extend feet slightly into the bed, to exclude
+pressure on their ends."""
 _SAME_DENSITY = 0.01
 _SIMPLE, _BY_DEPTH, _BY_MEMBER = 1, 2, 3
 
@@ -37,7 +38,7 @@ class HydroDynMembers(NamedTuple):
 
 @dataclass(frozen=True)
 class _Tubes:
-    """The file's members: rows, ends (n, 2, 3) [m] from still water, and the structure's members they are."""
+    """The file's members: rows, ends (n, 2, 3) [m] from still water, matching members of the structure."""
 
     rows: tuple[DeckRow, ...]
     ends: Mapping[str, FloatArray]
@@ -50,8 +51,8 @@ def read_hydrodyn(path: Path, structure: Structure, *, density_kg_m3: float) -> 
     Raises
     ------
     InputError
-        If the file is missing or lacks a table, if its members are not the structure's where that matters, or
-        if it asks for what is not modelled: different ends, part-filled members, potential flow.
+        If the file is missing or lacks a table, if required members do not match the structure's, or if it
+        needs features that are not modelled: different ends, partly filled members, potential flow.
     """
     deck = read_deck(path, "HydroDyn file")
     with located(file=path):
@@ -82,7 +83,7 @@ def _tubes(deck: Deck, structure: Structure) -> _Tubes:
 
 
 def _matched(ends: Mapping[str, FloatArray], structure: Structure) -> dict[str, str]:
-    """Return the structure's member at the place of each of the file's; those that have none are left out."""
+    """Return the structure's member at the position of each of the file's members, without unmatched ones."""
     if not structure.members:
         return {}
     places = np.array([[structure.nodes[m.start], structure.nodes[m.end]] for m in structure.members])
@@ -113,7 +114,7 @@ def _of_model(tubes: _Tubes, model: int) -> list[str]:
 
 
 def _names(tubes: _Tubes, ids: list[str], field: str) -> tuple[str, ...]:
-    """Return the structure's members of some of the file's."""
+    """Return the structure's members that match some of the file's."""
     for one in ids:
         require(
             one in tubes.names,
@@ -143,7 +144,7 @@ def _by_depth(deck: Deck, tubes: _Tubes) -> tuple[StripTable, ...]:
 
 
 def _by_member(deck: Deck, tubes: _Tubes) -> tuple[StripTable, ...]:
-    """Return tables of single members: coefficients at both ends, straight in between."""
+    """Return tables of single members: coefficients at both ends, interpolated linearly."""
     wanted = _of_model(tubes, _BY_MEMBER)
     rows = {next(iter(row.values())): row for row in deck.table("NCoefMembers", "NCoefMembersCyl")}
     tables = []
@@ -151,7 +152,7 @@ def _by_member(deck: Deck, tubes: _Tubes) -> tuple[StripTable, ...]:
         require(one in rows, "member is missing", field="NCoefMembers", value=one)
         heights = tubes.ends[one][:, 2]
         bare, grown = ([_strip(rows[one], "member", f"{mg}{end}") for end in (1, 2)] for mg in ("", "mg"))
-        if abs(heights[0] - heights[1]) < 1e-6:  # level: the mean of both ends
+        if abs(heights[0] - heights[1]) < 1e-6:  # horizontal: the mean of both ends
             z: tuple[float, ...] = (float(heights[0]),)
             bare, grown = [_mean(bare)], [_mean(grown)]
         else:
@@ -188,9 +189,9 @@ def _ends(deck: Deck) -> EndCoefficients:
 
 
 def _flooded(deck: Deck, tubes: _Tubes, density: float) -> tuple[str, ...]:
-    """Return the filled members; a row is a count, members, level and density.
+    """Return the filled members; a row has a count, members, level and density.
 
-    The list is believed, not its count: public decks number the groups there.
+    The count is ignored, since public decks number the groups there.
     """
     ids: list[str] = []
     for row in deck.table("NFillGroups"):

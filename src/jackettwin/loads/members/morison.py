@@ -1,12 +1,12 @@
 r"""Morison's equation on every member: thesis (5.1), with relative velocity (2.2).
 
-Per unit length, everything normal to the member (subscript n):
+Per unit length, with all vectors normal to the member (subscript n):
 
 .. math:: f = ½ρ C_D D |v_n| v_n + ρ C_M \tfrac{π}{4}D^2 \dot u_n − ρ C_a \tfrac{π}{4}D^2 \ddot x_n,
           \qquad v = u − \dot x,\quad C_M = C_p + C_a
 
-Loads are integrated at Gauss points by the elements' own shape functions, so that forces, motions of the
-members, added mass and linear drag damping all go through one sparse matrix N.
+Loads are integrated at Gauss points with the elements' shape functions, so that forces, motions of the
+members, added mass and linear drag damping all use one sparse matrix N.
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ from jackettwin.structure.mesh import Mesh
 
 @dataclass(frozen=True)
 class MorisonPoints:
-    """Gauss points along the members that can be wet.
+    """Gauss points along the members that may be wet.
 
     Attributes
     ----------
     points : (n, 3) z up from still water [m]
-    weight : (n,) member length each stands for [m]
-    middle_z, half_height : (n,) middle and half the height of that length [m]: when it gets wet
-    diameter : (n,) hydrodynamic, growth included [m]
+    weight : (n,) integration length of each point [m]
+    middle_z, half_height : (n,) middle and half the height of that length [m], for its wet share
+    diameter : (n,) hydrodynamic diameter including growth [m]
     tube_diameter, bore : (n,) outer and inner diameter of the steel [m]
-    growth_density : (n,) of what lies between both diameters [kg/m³]
+    growth_density : (n,) density of the growth [kg/m³]
     drag, added_mass, pressure : (n,) C_D, C_a and C_p
     element, xi : (n,) index into the mesh's elements, and place x/L along them
     member : (n,) index into the structure's members
     normal : (n, 3, 3) projector onto the plane normal to the member
-    N : (assembly.n_dof, 3n) sparse; nodal loads from point forces, and its transpose point motion from DOFs
+    N : (assembly.n_dof, 3n) sparse matrix from point forces to nodal loads; its transpose gives point motions
     """
 
     points: FloatArray
@@ -75,11 +75,9 @@ def morison_points(
     spacing: float = 1.0,
     exclude_parts: tuple[str, ...] = (PILES,),
 ) -> MorisonPoints:
-    """Return the Gauss points of the members that reach below ``highest_z`` and above ``lowest_z``.
+    """Return the Gauss points of members between ``lowest_z`` and ``highest_z`` [m] from still water.
 
-    Heights [m] from still water.
-
-    Each element is cut into pieces no longer than ``spacing`` [m], each with two Gauss points.
+    Each element is divided into segments no longer than ``spacing`` [m], with two Gauss points each.
     """
     coefficients = Coefficients() if coefficients is None else coefficients
     mesh, structure = assembly.mesh, assembly.structure
@@ -120,21 +118,21 @@ def morison_points(
 def _of_parts(
     structure: Structure, mesh: Mesh, reaches: BoolArray, exclude: tuple[str, ...]
 ) -> list[np.intp]:
-    """Return the elements that reach there and are of no excluded part."""
+    """Return the elements within the heights that belong to no excluded part."""
     wanted = [e for e in np.flatnonzero(reaches) if structure.members[mesh.member[e]].part not in exclude]
     if not wanted:
         raise InputError(
-            "no member reaches into the water or the heights asked for",
+            "no member is within the water or the requested heights",
             field="sea_level_z_m",
             value=structure.sea_level_z_m,
             allowed="a level above the lowest tube",
-            remedy="state sea_level_z_m in the structure's file; beams that are no tubes take no loads",
+            remedy="state sea_level_z_m in the structure's file; beams that are not tubes have no wave loads",
         )
     return wanted
 
 
 def _diameters(assembly: Assembly, member: IntArray, points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return outer and inner diameter at points on members, straight between the ends of each."""
+    """Return outer and inner diameter at points on members, interpolated linearly between the ends."""
     structure = assembly.structure
     sea = np.array([0.0, 0.0, structure.sea_level_z_m])
     ends = np.array([[structure.nodes[m.start], structure.nodes[m.end]] for m in structure.members]) - sea
@@ -152,7 +150,7 @@ def _diameters(assembly: Assembly, member: IntArray, points: FloatArray) -> tupl
 
 
 def distribution(assembly: Assembly, element: IntArray, xi: FloatArray) -> sp.csr_array:
-    """Return N: forces at ``xi`` along elements to loads on the assembly's DOFs."""
+    """Return N, from forces at ``xi`` along elements to loads on the assembly's DOFs."""
     mesh = assembly.mesh
     dofs = mesh.element_dofs()[element]
     R, local = mesh.axes[element], _shapes(mesh, element, xi)
@@ -171,7 +169,7 @@ def _shapes(mesh: Mesh, element: IntArray, xi: FloatArray) -> FloatArray:
 
 
 def loads_along(assembly: Assembly, grid: MorisonPoints) -> sp.csr_array:
-    """Return what makes loads on elements' ends, local axes, of forces at the points: (12 n_elements, 3n)."""
+    """Return the matrix (12 n_elements, 3n) from point forces to loads on elements' ends in local axes."""
     mesh, n = assembly.mesh, grid.weight.size
     blocks = np.einsum("nji,njk->nik", _shapes(mesh, grid.element, grid.xi), mesh.axes[grid.element])
     rows = 12 * grid.element[:, None] + np.arange(12)
@@ -182,7 +180,7 @@ def loads_along(assembly: Assembly, grid: MorisonPoints) -> sp.csr_array:
 
 
 def _gauss(L: float, spacing: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return x/L of two Gauss points a piece, x/L of the middle of the half they stand for, lengths [m]."""
+    """Return x/L of two Gauss points per segment, x/L of the middle of each half segment, and lengths [m]."""
     n = int(np.ceil(L / spacing))
     x, _ = np.polynomial.legendre.leggauss(2)
     xi, middle = (((np.arange(n)[:, None] + 0.5 + 0.5 * at) / n).ravel() for at in (x, 0.5 * np.sign(x)))
@@ -199,7 +197,7 @@ def above_bed(grid: MorisonPoints, depth: float) -> FloatArray:
     """Return the share (0 to 1) of each point's length above the bed at ``depth`` [m], (n,)."""
     height, half = grid.middle_z + depth, grid.half_height
     share = np.clip(0.5 + 0.5 * height / np.maximum(half, 1e-9), 0.0, 1.0)
-    # 1 mm: a level brace on the bed is above it whatever the rounding
+    # 1 mm: a horizontal brace on the bed counts as above it regardless of rounding
     return np.asarray(np.where(half < 1e-6, height > -1e-3, share))
 
 
@@ -217,12 +215,12 @@ def point_forces(
     ----------
     u, du : (..., n, 3) water velocity [m/s] and acceleration [m/s²]
     velocity : (..., n, 3), optional
-        Velocity of the member itself: relative drag, thesis (2.2). The force on its acceleration is the
-        added mass, which belongs to the mass matrix (``added_mass``).
+        Velocity of the member, for relative drag, thesis (2.2). The force due to its acceleration is part of
+        the mass matrix (``added_mass``).
     wet : (..., n)
         Wet share of each point.
     """
-    from jackettwin.loads.kernels import morison  # it brings a compiler along
+    from jackettwin.loads.kernels import morison  # imported here because it loads a compiler
 
     rho, D = grid.density_kg_m3, grid.diameter
     v = u if velocity is None else u - velocity
@@ -230,7 +228,7 @@ def point_forces(
     length = np.broadcast_to(grid.weight * wet, shape[:-1])
     n = shape[-2]
     forces = np.empty((n, 3, int(np.prod(shape[:-2]))))
-    # time runs fastest in the kernel; series of a random sea lie so in memory
+    # time is contiguous in the kernel, as in series of a random sea
     fields = (v,) if du is v else (v, du)
     seen, *others = (
         np.ascontiguousarray(np.broadcast_to(field, shape).reshape(-1, n, 3).transpose(2, 1, 0))
@@ -274,7 +272,7 @@ def drag_damping(grid: MorisonPoints, sigma: FloatArray) -> sp.csr_array:
 
 
 def spread(grid: MorisonPoints, per_length: FloatArray) -> sp.csr_array:
-    """Return N P Nᵀ on the DOFs from a 3×3 property per metre at each point, ``per_length`` (n, 3, 3)."""
+    """Return N P Nᵀ on the DOFs for a property per metre at each point, ``per_length`` (n, 3, 3)."""
     n = grid.weight.size
     blocks = per_length * grid.weight[:, None, None]
     P = sp.bsr_array((blocks, np.arange(n), np.arange(n + 1)), shape=(3 * n, 3 * n))

@@ -1,7 +1,7 @@
-"""Still water about the structure: marine growth, water inside and around members, buoyancy.
+"""Effects of still water: marine growth, water inside and around members, buoyancy.
 
-Everything is spread along the members by the shape functions of ``morison_points``; the results are added to
-an assembly's mass matrix and to its static load.
+They are distributed along the members with the shape functions of ``morison_points``; the results are added
+to an assembly's mass matrix and static load.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from jackettwin.loads.members.morison import (
 from jackettwin.structure import Assembly
 
 _AT_THE_BED_M = 0.05
-"""A foot this much below the bed still stands in the water: depths are given to the decimetre."""
+"""A foot at most this far below the bed counts as in the water, as depths are given to the decimetre."""
 
 
 @dataclass(frozen=True)
 class Water:
-    """Which members are flooded: members or whole parts, filled up to still water."""
+    """Names of flooded members, or of parts whose members are flooded, filled up to still water."""
 
     flooded: tuple[str, ...] = ()
 
@@ -40,10 +40,10 @@ class Water:
 def water_mass(
     assembly: Assembly, grid: MorisonPoints, water: Water, *, level_m: float = 0.0
 ) -> sp.csr_array:
-    """Return the mass of growth, of water inside and of added water, (n_dof, n_dof) [kg, kg·m, kg·m²].
+    """Return the mass of growth, of water inside and added mass, (n_dof, n_dof) [kg, kg·m, kg·m²].
 
-    Growth and the water inside move with the member in every direction, added water only across it. With the
-    sea ``level_m`` above still water more of the members is wet; ``grid`` must reach there.
+    Growth and the water inside move with the member in all directions, added mass acts only normal to it. The
+    sea surface is ``level_m`` above still water; ``grid`` must extend to it.
 
     Raises
     ------
@@ -59,10 +59,10 @@ def water_mass(
 def mass_per_level(
     assembly: Assembly, coefficients: Coefficients, water: Water, *, step_m: float = 0.5, spacing: float = 1.0
 ) -> sp.csr_array:
-    """Return ∂M/∂level at still water, (n_dof, n_dof) [kg/m, …]: how a tide moves the mass of the water.
+    """Return ∂M/∂level at still water, (n_dof, n_dof) [kg/m, …]: the effect of the tide on the mass of water.
 
-    Central differences over ± ``step_m``: a tide's own size, so that braces just under or over the surface
-    count in part.
+    It is computed by central differences over ± ``step_m``, the range of a tide, so that braces just below or
+    above the surface are included in part.
     """
     grid = morison_points(
         assembly, highest_z=step_m, lowest_z=-step_m, coefficients=coefficients, spacing=spacing
@@ -72,14 +72,14 @@ def mass_per_level(
 
 
 class StillWater(NamedTuple):
-    """Weight of growth and water inside less buoyancy: on the DOFs (n_dof,), along the elements (n, 12)."""
+    """Weight of growth and water inside minus buoyancy: on the DOFs (n_dof,) and on the elements (n, 12)."""
 
     load: FloatArray
     along: FloatArray
 
 
 def still_water(assembly: Assembly, grid: MorisonPoints, water: Water) -> StillWater:
-    """Return what still water does to an asset's weight."""
+    """Return the loads of still water on an asset's weight."""
     forces = weight_forces(assembly, grid, water)
     along = (loads_along(assembly, grid) @ forces.ravel()).reshape(-1, 12)
     return StillWater(nodal_loads(grid, forces), np.asarray(along))
@@ -94,7 +94,7 @@ class WaterWeights(NamedTuple):
 
 
 def water_weights(assembly: Assembly, grid: MorisonPoints, water: Water) -> WaterWeights:
-    """Return the weights of still water; member and growth displace it as with closed ends."""
+    """Return the weights of still water; members with growth displace water as if their ends were closed."""
     wet = wetness(grid, np.zeros(grid.weight.size))
     rho = grid.density_kg_m3
     areas = (
@@ -106,7 +106,7 @@ def water_weights(assembly: Assembly, grid: MorisonPoints, water: Water) -> Wate
 
 
 def weight_forces(assembly: Assembly, grid: MorisonPoints, water: Water) -> FloatArray:
-    """Return the weight of growth and water inside less buoyancy at the points, (n, 3) [N]."""
+    """Return the weight of growth and water inside minus buoyancy at the points, (n, 3) [N]."""
     weights = water_weights(assembly, grid, water)
     forces = np.zeros_like(grid.points)
     forces[:, 2] = weights.displaced - weights.inside - weights.growth
@@ -122,11 +122,11 @@ def outside_pressure(
     wave_height_m: float = 0.0,
     wavenumber: float = 0.0,
 ) -> FloatArray:
-    r"""Return what the water outside presses more than the one inside, (n_elements, 2) [Pa].
+    r"""Return the hydrostatic overpressure outside at the ends of elements, (n_elements, 2) [Pa].
 
     .. math:: p = ρ g H_z, \qquad H_z = -z + \frac{H_w}{2} \frac{\cosh k(d + z)}{\cosh kd}
 
-    ISO 19902 (13.2-20, 13.2-21). Flooded members have none, nor what stands in the ground.
+    ISO 19902 (13.2-20, 13.2-21). It is zero for flooded members and in the ground.
     """
     mesh = assembly.mesh
     z = mesh.coordinates[np.stack([mesh.start, mesh.end], axis=1), 2] - assembly.structure.sea_level_z_m

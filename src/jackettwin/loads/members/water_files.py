@@ -1,4 +1,4 @@
-"""``water`` of a scenario: coefficients of members, marine growth, what is flooded."""
+"""``water`` of a scenario: coefficients of members, marine growth, flooded members."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from jackettwin.loads.members.water import Water
 from jackettwin.structure import GROWTH_KG_M3, PILES, Structure
 
 _GAP_M = 5.0
-"""How far above the bed feet may end, as those of piles that stick out do."""
+"""Largest height of feet above the bed, e.g. at the top of protruding piles."""
 Growth = Annotated[float, Field(ge=500.0, le=5000.0)]
 """Density of marine growth [kg/m³]."""
 
@@ -41,7 +41,7 @@ class GrowthSchema(Schema):
 
 
 class StripSchema(Schema):
-    """C_D, C_a and C_p where they differ from the others."""
+    """C_D, C_a and C_p, where they differ from the general ones."""
 
     drag: ForceCoefficient | None = None
     added_mass: ForceCoefficient | None = None
@@ -63,7 +63,7 @@ class TableSchema(Schema):
 
 
 class WaterSchema(Schema):
-    """``water``: coefficients of all members and tables of others (C_M = C_p + C_a), growth, flooding."""
+    """``water``: coefficients of all members, tables for some (C_M = C_p + C_a), growth and flooding."""
 
     depth_m: Annotated[float, Field(ge=1.0, le=1000.0)] | None = None
     density: Annotated[float, Field(ge=500.0, le=2000.0)] = SEA_WATER_KG_M3
@@ -78,14 +78,15 @@ class WaterSchema(Schema):
     ends: Placed[EndCoefficients] = EndCoefficients()
     """Axial coefficients at the ends of members (HydroDyn's AxCp, AxCa, AxCd)."""
     hydrodyn: str | None = None
-    """A HydroDyn input file that says all of this, but depth, density and ``adds_mass``."""
+    """HydroDyn input file from which all this is read, except depth, density and ``adds_mass``."""
     adds_mass: bool | None = None
 
 
 class Members(NamedTuple):
-    """What members are in the water: coefficients, also of their ends, what is flooded.
+    """Hydrodynamic properties of members: coefficients, those of their ends, flooded members.
 
-    ``adds_mass`` tells whether growth and water go into the mass, or the structure's holds them already.
+    ``adds_mass`` tells whether growth and water are added to the mass; else the structure's mass includes
+    them.
     """
 
     coefficients: Coefficients
@@ -95,12 +96,12 @@ class Members(NamedTuple):
 
 
 def water_members(w: WaterSchema, structure: Structure, folder: Path) -> Members:
-    """Return what ``water`` says of members; a HydroDyn file is sought in ``folder``.
+    """Return the properties of members given by ``water``; a HydroDyn file is relative to ``folder``.
 
     Raises
     ------
     InputError
-        If members or parts are not the structure's, or a HydroDyn file is given beside its own content.
+        If members or parts do not exist, or values are given both directly and by a HydroDyn file.
     """
     if w.hydrodyn is None:
         coefficients, ends, flooded = _coefficients(w, structure), w.ends, _flooded(w, structure)
@@ -143,7 +144,7 @@ def _strip(given: StripSchema | None, default: Strip) -> Strip:
 
 
 def _table(table: TableSchema, bare: Strip, grown: Strip) -> StripTable:
-    """Return a table; what a height does not say is as without growth there, or as elsewhere."""
+    """Return a table; missing values are those without growth at the same height, or the general ones."""
     at = [_strip(row, bare) for row in table.at]
     covered = [_strip(row.with_growth, _strip(row, grown)) for row in table.at]
     return StripTable(tuple(row.z_m for row in table.at), tuple(at), tuple(covered), tuple(table.members))
@@ -156,7 +157,7 @@ def _growth(w: WaterSchema) -> tuple[GrowthBand, ...]:
         return tuple(_band(g, g.density or w.growth_density) for g in rows)
     require(
         len(rows) >= 2 and all(g.z_m is not None and g.top_z_m is g.bottom_z_m is None for g in rows),
-        "a table of growth needs z_m at every height, two at least",
+        "a table of growth needs z_m at every height and at least two heights",
         field="z_m",
         value=[g.z_m for g in rows if g.z_m is not None],
         remedy="give z_m and thickness_m everywhere, or top_z_m, bottom_z_m and thickness_m",
@@ -168,7 +169,7 @@ def _growth(w: WaterSchema) -> tuple[GrowthBand, ...]:
 def _band(g: GrowthSchema, density: float) -> GrowthBand:
     if g.top_z_m is None or g.bottom_z_m is None:
         raise InputError(
-            "growth without its heights",
+            "growth without heights",
             field="top_z_m" if g.top_z_m is None else "bottom_z_m",
             remedy="give top_z_m and bottom_z_m, or z_m at every height of a table",
         )
@@ -176,7 +177,7 @@ def _band(g: GrowthSchema, density: float) -> GrowthBand:
 
 
 def depth_of(w: WaterSchema, structure: Structure) -> float:
-    """Return the depth [m] as stated; else down to the lowest foot."""
+    """Return the stated depth [m], or that of the lowest foot."""
     feet = structure.reaction_nodes or tuple(structure.nodes)
     reach = structure.sea_level_z_m - min(structure.nodes[node][2] for node in feet)
     if w.depth_m is not None:
@@ -185,7 +186,7 @@ def depth_of(w: WaterSchema, structure: Structure) -> float:
             "the structure does not reach the bed",
             field="water.depth_m",
             value=w.depth_m,
-            allowed=f"up to {reach + _GAP_M:g} m; its feet stand {reach:g} m below still water",
+            allowed=f"up to {reach + _GAP_M:g} m; its feet are {reach:g} m below still water",
             remedy="state the depth of this structure or its sea_level_z_m, or leave the depth out",
         )
         return w.depth_m

@@ -1,8 +1,8 @@
 r"""Power production: steady blade element momentum theory.
 
-Each ring's inflow angle φ solves sin φ/(1 − a) = (V/Ωr) cos φ/(1 + a′) (Ning 2014, Wind Energy 17:1327),
-with Prandtl's losses at tip and hub and Buhl's (2005) thrust at high induction. The ring is taken normal to
-the wind: tilt, cone and yaw enter the loads that follow, not the induction.
+The inflow angle φ of each annulus solves sin φ/(1 − a) = (V/Ωr) cos φ/(1 + a′) (Ning 2014, Wind Energy
+17:1327), with Prandtl's tip and hub losses and Buhl's (2005) thrust at high induction. The annulus is assumed
+normal to the wind: tilt, cone and yaw affect the loads but not the induction.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from jackettwin.loads.operation.schedule import Schedule
 
 @dataclass(frozen=True)
 class Control:
-    """What the controller holds: optimal tip-speed ratio, limits of the speed, rated (aerodynamic) power."""
+    """Set points of the controller: optimal tip-speed ratio, limits of the speed, rated aerodynamic power."""
 
     rated_power_w: float
     tip_speed_ratio: float
@@ -57,16 +57,16 @@ class OperatingPoint(NamedTuple):
 def steady_operation(
     rotor: Rotor, wind_speed: float, *, rotor_speed: float, pitch: float, density: float = AIR_KG_M3
 ) -> OperatingPoint:
-    """Return thrust, torque and induction of a rotor square to the wind.
+    """Return thrust, torque and induction of a rotor normal to the wind.
 
     Raises
     ------
     InputError
-        If wind or rotor stand still.
+        If the wind speed or the rotor speed is zero.
     """
     if not (wind_speed > 0.0 and rotor_speed > 0.0):
         raise InputError(
-            "power production needs wind and a turning rotor",
+            "power production needs wind and a rotating rotor",
             field="wind_speed, rotor_speed",
             value=(wind_speed, rotor_speed),
             allowed="> 0",
@@ -99,7 +99,7 @@ def balanced_wake(rotor: Rotor, wind: FloatArray, swirl: FloatArray, pitch: floa
         residual = np.sin(phi) / (1.0 - a) - wind / swirl * np.cos(phi) / (1.0 + da)
         low, high = np.where(residual < 0.0, phi, low), np.where(residual < 0.0, high, phi)
     a, da = _induction(rotor, r, 0.5 * (low + high), pitch)
-    # swirl turns against the rotor: it adds to the tangential wind
+    # swirl rotates opposite to the rotor: it adds to the tangential wind
     return np.stack([wind * a, swirl * da], axis=1)
 
 
@@ -112,7 +112,7 @@ def ring_forces(
     *,
     density: float = AIR_KG_M3,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the forces of all blades (n,) along the shaft and around it, as the rotor turns [N]."""
+    """Return the forces of all blades (n,) along the shaft, and around it in the sense of rotation [N]."""
     blade = rotor.blade
     axial, tangential = wind - induced[:, 0], swirl + induced[:, 1]
     phi = np.arctan2(axial, tangential)
@@ -122,7 +122,7 @@ def ring_forces(
 
 
 def _induction(rotor: Rotor, r: FloatArray, phi: FloatArray, pitch: float) -> tuple[FloatArray, FloatArray]:
-    """Return (a, a′) that momentum theory gives to a ring at inflow angle φ; Ning eqs. (10)–(17)."""
+    """Return (a, a′) of an annulus at inflow angle φ by momentum theory; Ning eqs. (10)–(17)."""
     blade, B = rotor.blade, rotor.n_blades
     cl, cd = blade.coefficients(phi - pitch - blade.twist)
     sin, cos = np.sin(phi), np.cos(phi)

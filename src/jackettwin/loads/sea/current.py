@@ -1,4 +1,4 @@
-"""Current: a horizontal flow that depends on depth alone."""
+"""Current: a horizontal flow that depends on the depth only."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ from jackettwin.arrays import FloatArray
 class Current:
     """Wind-driven and sub-surface current, IEC 61400-3-1 (2019) section 6.4.4.
 
-    The sub-surface part follows (1 + z/d)^(1/7), the wind-driven one falls linearly to zero at 20 m depth,
-    the uniform one is the same at every depth. Speeds [m/s] at still water, heading from +x [rad].
+    The sub-surface part follows (1 + z/d)^(1/7), the wind-driven part decreases linearly to zero at 20 m
+    depth, and the uniform part is constant. Speeds [m/s] are those at still water, the heading is from +x
+    [rad].
     """
 
     depth: float
@@ -24,7 +25,7 @@ class Current:
     uniform_m_s: float = 0.0
 
     def velocity(self, z: FloatArray) -> FloatArray:
-        """Return (n, 3) [m/s] at heights ``z`` above still water; above it the surface value holds."""
+        """Return (n, 3) [m/s] at heights ``z`` from still water; above it, the velocity at the surface."""
         z = np.minimum(z, 0.0)
         speed = self.uniform_m_s + self.subsurface_m_s * np.maximum(1.0 + z / self.depth, 0.0) ** (1.0 / 7.0)
         speed = speed + self.wind_driven_m_s * np.maximum(1.0 + z / 20.0, 0.0)

@@ -1,4 +1,4 @@
-"""Waves that a wide vertical cylinder scatters: MacCamy & Fuchs (1954, Beach Erosion Board TM 69)."""
+"""Diffraction of waves by a wide vertical cylinder: MacCamy & Fuchs (1954, Beach Erosion Board TM 69)."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ from scipy.special import h2vp
 from jackettwin.arrays import ComplexArray, FloatArray
 
 _SLENDER = 1e-3
-"""ka below which the factor is 1 within 1e-6, and its formula a ratio of large numbers."""
+"""ka below which the factor is set to 1: the error is 1e-6, and the formula would be a ratio of large
+numbers."""
 
 
 def scattered(k: FloatArray, diameter: FloatArray) -> ComplexArray:
-    r"""Return what scattering makes of the inertia force of each wave on each cylinder, (n, n_waves).
+    r"""Return the complex factor on the inertia force of each wave on each cylinder, (n, n_waves).
 
     .. math:: m = \frac{-2i}{π (ka)^2 H_1^{(2)\prime}(ka)}, \qquad C_M = 2|m|
 

@@ -1,6 +1,7 @@
-"""Waves whose motion is given at one place, over height and time: by another program, or by a measurement.
+"""Waves with given kinematics at one place, over height and time, from another program or a measurement.
 
-The motion travels along the waves' heading without change: what is at x now was at the given place x/c ago.
+The kinematics travel along the waves' heading unchanged: those at x are those at the given place, delayed by
+x/c.
 """
 
 from __future__ import annotations
@@ -17,9 +18,10 @@ from jackettwin.files import read_text
 from jackettwin.loads.sea.given_waves import FIELD, Elevation, require_physical
 
 _LONGEST = 5_000_000
-"""Rows that a file may have: ten minutes at 10 Hz on a hundred levels are 600,000."""
+"""Largest number of rows of a file; ten minutes at 10 Hz on a hundred levels have 600,000."""
 _FASTEST_M_S2 = 200.0
-"""No water moves or turns faster than twenty times gravity: such a column has another unit."""
+"""Largest plausible value of velocity and acceleration (twenty times gravity); larger ones have another
+unit."""
 _HIGHEST_PA = 1e8
 REQUIRED = (
     "time_s",
@@ -35,13 +37,13 @@ PRESSURE = "pressure_pa"
 
 @dataclass(frozen=True, eq=False)
 class Kinematics:
-    """Motion of the water at one place.
+    """Kinematics of the water at one place.
 
     Attributes
     ----------
     elevation : Elevation
-        Surface there at the n times.
-    z_m : (m,) rising heights from still water [m]
+        Surface elevation at the n times.
+    z_m : (m,) ascending heights from still water [m]
     velocity, acceleration : (n, m, 2) along the heading and up [m/s, m/s²]
     pressure_pa : (n, m) dynamic pressure, if it is given
     """
@@ -61,13 +63,13 @@ class Kinematics:
 
 @dataclass(frozen=True, eq=False)
 class TravellingKinematics:
-    """Waves (``Waves``) from kinematics at the origin that repeat after ``period`` [s].
+    """Waves (``Waves``) from kinematics at the origin, periodic with ``period`` [s].
 
     Attributes
     ----------
-    celerity_m_s : speed at which the motion travels
+    celerity_m_s : speed at which the kinematics travel
     direction : heading from +x [rad]
-    density_kg_m3 : of the water, for its pressure
+    density_kg_m3 : density of the water, for its pressure
     """
 
     given: Kinematics
@@ -82,11 +84,11 @@ class TravellingKinematics:
         return np.asarray(np.interp(self._local(points, t), eta.time_s, eta.eta_m))
 
     def surface(self, points: FloatArray, t: FloatArray) -> FloatArray:
-        """Return the elevation: what the file says of a height holds up to the surface."""
+        """Return the elevation, up to which the kinematics of the highest level apply."""
         return self.elevation(points, t)
 
     def motion(self, points: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return velocity and acceleration, each (m, n, 3); straight between heights and times."""
+        """Return velocity and acceleration, each (m, n, 3), interpolated linearly over height and time."""
         local = self._local(points, t)
         heading = np.array([np.cos(self.direction), np.sin(self.direction)])
         both = []
@@ -101,7 +103,7 @@ class TravellingKinematics:
         Raises
         ------
         InputError
-            If the file does not say it.
+            If the file has no pressure.
         """
         if self.given.pressure_pa is None:
             raise InputError(
@@ -113,7 +115,7 @@ class TravellingKinematics:
         return p / self.density_kg_m3
 
     def _local(self, points: FloatArray, t: FloatArray) -> FloatArray:
-        """Return when what is at the points was at the given place, (m, n) [s] within the period."""
+        """Return the time at the given place of the kinematics at points, (m, n) [s] within the period."""
         along = points[:, 0] * np.cos(self.direction) + points[:, 1] * np.sin(self.direction)
         return np.asarray(np.mod(np.atleast_1d(t)[:, None] - along / self.celerity_m_s, self.period))
 
@@ -128,12 +130,12 @@ class TravellingKinematics:
 
 
 def read_kinematics(path: Path) -> Kinematics:
-    """Read a CSV of one row a time and height, the same heights at every time.
+    """Read a CSV with one row per time and height, and the same heights at every time.
 
     Raises
     ------
     InputError
-        If columns lack, values are no numbers, or the rows are no grid.
+        If columns are missing, values are not numbers, or the rows do not form a grid.
     """
     reader = csv.reader(read_text(path, what="file of wave kinematics").splitlines()[: _LONGEST + 1])
     header = [name.strip() for name in next(reader, [])]
@@ -172,7 +174,7 @@ def _gridded(column: dict[str, FloatArray]) -> Kinematics:
     whole = order.size == times.size * heights.size and heights.size > 1
     if not whole or np.any(grid["z_m"].reshape(shape) != heights):
         raise InputError(
-            "rows are no grid of times and heights",
+            "rows do not form a grid of times and heights",
             field=FIELD,
             value=f"{order.size} rows, {times.size} times, {heights.size} heights",
             allowed="the same two or more heights at every time",

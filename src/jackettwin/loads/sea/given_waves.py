@@ -1,4 +1,4 @@
-"""A sea whose elevation is given: measured, or made by another program."""
+"""A sea with given elevation, measured or from another program."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from jackettwin.files import read_text
 from jackettwin.loads.sea.waves import AirySea
 
 _LONGEST = 2_000_000
-"""Rows that a file of elevations may have."""
+"""Largest number of rows of a file of elevations."""
 FIELD = "file"
-"""Of ``waves`` in a scenario."""
+"""Key of ``waves`` in a scenario."""
 _STEP_S = 1.0
-"""Longest step between rows: the shortest wave that is kept lasts 1.7 s."""
+"""Longest step between rows; the shortest wave that is used has a period of 1.7 s."""
 _HIGHEST_M = 100.0
 _COLUMNS = "give two columns, time [s] and elevation [m], with decimal points"
 
 
 @dataclass(frozen=True, eq=False)
 class Elevation:
-    """An elevation at the structure's axis: growing times from the simulation's start [s], and η [m]."""
+    """Elevation η [m] at the structure's axis, at increasing times from the start of the simulation [s]."""
 
     time_s: FloatArray
     eta_m: FloatArray
@@ -33,7 +33,7 @@ class Elevation:
         steps = np.diff(self.time_s)
         if steps.size < 7 or not (steps > 0.0).all():
             raise InputError(
-                "too few rows, or times do not grow",
+                "too few rows, or times do not increase",
                 field=FIELD,
                 value=int(self.time_s.size),
                 allowed="8 rows or more",
@@ -66,12 +66,12 @@ class Elevation:
 
 
 def require_physical(what: str, values: FloatArray, highest: float, unit: str) -> None:
-    """Refuse values that are no numbers, or that no water has.
+    """Raise an error for values that are not finite or physically impossible.
 
     Raises
     ------
     InputError
-        Names the first of them.
+        If there is such a value; the message names the first.
     """
     wrong = ~(np.abs(values) <= highest)
     if wrong.any():
@@ -85,7 +85,7 @@ def require_physical(what: str, values: FloatArray, highest: float, unit: str) -
 
 
 def read_elevation(path: Path) -> Elevation:
-    """Read two columns, time [s] and elevation [m], below any lines of words: CSV, or a program's text.
+    """Read two columns, time [s] and elevation [m], after any header lines, from a CSV or text file.
 
     Raises
     ------
@@ -94,7 +94,7 @@ def read_elevation(path: Path) -> Elevation:
     """
     rows = []
     for line in read_text(path, what="file of wave elevations").splitlines()[:_LONGEST]:
-        # a comma beside another separator is a decimal comma, and no number
+        # a comma together with another separator is a decimal comma, which is not accepted
         words = line.split(";" if ";" in line else "," if "," in line else None)
         try:
             rows.append((float(words[0]), float(words[1])))
@@ -109,12 +109,12 @@ def read_elevation(path: Path) -> Elevation:
 
 
 def require_cover(elevation: Elevation, duration: float) -> None:
-    """Refuse an elevation that does not last for ``duration`` [s].
+    """Raise an error if an elevation does not cover ``duration`` [s].
 
     Raises
     ------
     InputError
-        If it is shorter by more than a second, or starts late.
+        If it is shorter by more than a second, or starts after the simulation.
     """
     t = elevation.time_s
     if t[0] > 1e-6 or t[-1] < duration * (1.0 - 1e-3) - 1.0:
@@ -122,8 +122,8 @@ def require_cover(elevation: Elevation, duration: float) -> None:
             "the elevation does not cover the simulation",
             field="waves.file",
             value=[float(t[0]), float(t[-1])],
-            allowed=f"0 to {duration:g} s, what is discarded included",
-            remedy="shorten time.duration_s, or give more of it",
+            allowed=f"0 to {duration:g} s, including the discarded part",
+            remedy="shorten time.duration_s, or give a longer elevation",
         )
 
 
@@ -138,8 +138,8 @@ def given_sea(
 ) -> AirySea:
     """Return the long-crested sea of linear waves that has this elevation at the origin.
 
-    It repeats after ``duration`` [s], of which lines Δf = 1/duration up to ``highest_hz`` are kept; the mean
-    is the tide's, and left out.
+    It is periodic with ``duration`` [s] and consists of components at multiples of 1/duration up to
+    ``highest_hz``. The mean is removed, since it is due to the tide.
 
     Raises
     ------

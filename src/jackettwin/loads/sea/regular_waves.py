@@ -1,7 +1,7 @@
 """Steep regular waves: Stokes' fifth order and the stream function, through the optional package raschii.
 
-Both theories are sums of harmonics of one potential, so a solution is read off as the harmonics of η and of
-the horizontal velocity at one level; everything else follows in closed form.
+Both theories are sums of harmonics of one potential, so that the harmonics of η and of the horizontal
+velocity at one level define a solution; all other quantities follow in closed form.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from jackettwin.loads.sea.waves import wave_number
 
 THEORIES = ("stokes-5", "stream-function")
 HIGHEST_URSELL = 30.0
-"""Hλ²/d³ up to which Stokes' fifth order holds (DNV-RP-C205): crests 6 % low at worst there."""
+"""Hλ²/d³ up to which Stokes' fifth order is valid (DNV-RP-C205); crests are then at most 6 % too low."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class RegularWave:
     ----------
     k, omega, depth : wave number [rad/m], frequency [rad/s], depth [m]
     eta : (n,) harmonics 1… of the surface [m], η = Σ η_j cos jθ about still water
-    u : (n,) harmonics 1… of the horizontal velocity carried up to still water [m/s]
+    u : (n,) harmonics 1… of the horizontal velocity, extrapolated to still water [m/s]
     direction : heading from +x [rad]
     """
 
@@ -46,7 +46,7 @@ class RegularWave:
         return np.asarray(np.cos(theta[..., None] * j) @ self.eta)
 
     def surface(self, points: FloatArray, t: FloatArray) -> FloatArray:
-        """Return η: these theories fill the water to the surface."""
+        """Return η, up to which these theories are valid."""
         return self.elevation(points, t)
 
     def motion(self, points: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -101,21 +101,21 @@ def regular_wave(
     direction: float = 0.0,
     order: int | None = None,
 ) -> RegularWave:
-    """Return a steep regular wave with its crest at the origin at t = 0, no net current at a point.
+    """Return a steep regular wave with its crest at the origin at t = 0 and zero mean Eulerian current.
 
     Parameters
     ----------
     theory : {"stokes-5", "stream-function"}
         Fenton (1985), or Rienecker & Fenton (1981).
     order : int, optional
-        Harmonics of the stream function; default 12, more in shallow water.
+        Number of harmonics of the stream function; default 12, more in shallow water.
 
     Raises
     ------
     MissingExtra
         If raschii is not installed.
     InputError
-        If the theory is unknown or does not hold for the wave, or the wave breaks.
+        If the theory is unknown or not valid for the wave, or the wave breaks.
     NumericalError
         If the solution does not converge.
     """
@@ -127,11 +127,11 @@ def regular_wave(
     ursell = height * length**2 / depth**3
     if theory == "stokes-5" and ursell > HIGHEST_URSELL:
         raise InputError(
-            "wave too long for the depth: Stokes' fifth order does not hold",
+            "wave too long for the depth: Stokes' fifth order is not valid",
             field="theory",
             value=f"stokes-5 at an Ursell number Hλ²/d³ of {ursell:.0f}",
             allowed=f"up to {HIGHEST_URSELL:g}",
-            remedy="take the stream function",
+            remedy="use the stream function",
         )
     n = 5 if theory == "stokes-5" else order or min(12 + int(ursell / 10.0), 30)
     wave = _solve(theory, height, period, depth, n)
@@ -175,7 +175,7 @@ def _solve(theory: str, height: float, period: float, depth: float, n: int):  # 
 
 
 def _harmonics(wave, n: int, depth: float, direction: float) -> RegularWave:  # type: ignore[no-untyped-def]
-    """Return the harmonics of a solution, sampled over one length."""
+    """Return the harmonics of a solution, sampled over one wave length."""
     m = 8 * n
     x = np.arange(m) / m * wave.length
     k = 2.0 * np.pi / wave.length

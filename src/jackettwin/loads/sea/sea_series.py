@@ -1,8 +1,8 @@
 r"""Time series of a random sea's motion at many points, by the fast Fourier transform.
 
-The components of ``irregular_sea`` lie on the lines of a period T, so that every field is one inverse FFT a
-point. Wheeler's stretching asks for fields at a level that moves: they are transformed at Chebyshev levels
-across the range of each point and interpolated between these.
+The frequencies of ``irregular_sea`` are multiples of 1/T, so that every field is one inverse FFT per point.
+Wheeler stretching needs fields at a moving level: they are computed at Chebyshev levels across the range of
+each point and interpolated between these.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from jackettwin.loads.kernels import between_levels
 from jackettwin.loads.sea.waves import AirySea
 
 LEVELS = 5
-"""Most Chebyshev levels a point: 0.1 % of the particle motion under Hs = 8 m."""
+"""Largest number of Chebyshev levels per point; the error is 0.1 % of the particle motion for Hs = 8 m."""
 _ERROR = 3e-4
-"""Of a point's acceleration, which fewer levels may cost."""
+"""Relative error of a point's acceleration that is accepted to use fewer levels."""
 
 
 class SeaSeries(NamedTuple):
@@ -36,17 +36,17 @@ class SeaSeries(NamedTuple):
 def sea_series(
     sea: AirySea, points: FloatArray, *, period: float, n_times: int, scattered: ComplexArray | None = None
 ) -> SeaSeries:
-    """Return what ``sea`` does at points (n, 3) at ``n_times`` even times of one ``period`` [s].
+    """Return the motion of ``sea`` at points (n, 3) and ``n_times`` regular times of one ``period`` [s].
 
     Parameters
     ----------
     scattered : (n, n_waves), optional
-        What wide members make of every wave's acceleration (``diffraction.scattered``).
+        Factors of wide members on every wave's acceleration (``diffraction.scattered``).
 
     Raises
     ------
     InputError
-        If a component is not on a line of the period, or the times are too few for the shortest wave.
+        If a frequency is not a multiple of 1/period, or there are too few times for the shortest wave.
     """
     lines = _lines(sea, period, n_times)
     inertia = np.ones(1) if scattered is None else scattered
@@ -92,9 +92,9 @@ def _steady(sea: AirySea, points: FloatArray) -> ComplexArray:
 
 
 def _levels(sea: AirySea, middle: FloatArray, half: FloatArray) -> IntArray:
-    """Return how many Chebyshev levels each point needs: few where the water hardly moves up and down.
+    """Return the number of Chebyshev levels of each point; few suffice where the surface hardly moves.
 
-    Between n of them a wave of number k is off by (kh/2)ⁿ 2/n! over a half range h.
+    With n levels over a half range h, the interpolation error of a wave of number k is (kh/2)ⁿ 2/n!.
     """
     strength = (sea.amplitude * sea.omega**2) ** 2 * np.exp(
         2.0 * np.outer(np.minimum(middle + half, 0.0), sea.k)
@@ -123,7 +123,7 @@ def _lines(sea: AirySea, period: float, n_times: int) -> IntArray:
 
 
 def _mixing(sea: AirySea) -> FloatArray:
-    """Return (6, n_fields): velocity and acceleration from the fields that were transformed."""
+    """Return the matrix (6, n_fields) from the transformed fields to velocity and acceleration."""
     if np.ptp(sea.direction) > 0.0:
         return np.eye(6)
     cos, sin = np.cos(sea.direction[0]), np.sin(sea.direction[0])
@@ -138,9 +138,9 @@ def _fields(
     inertia: npt.NDArray[Any],
     out: FloatArray,
 ) -> None:
-    """Write velocity, then acceleration, at one level a point to ``out`` (n_fields, n_points, n_times).
+    """Write velocity, then acceleration, at one level per point to ``out`` (n_fields, n_points, n_times).
 
-    Waves of one direction have two components, along it and up; else three.
+    Waves of one direction have two components, along it and vertical; others have three.
     """
     horizontal, vertical = sea.depth_functions(z)
     u, w = sea.omega * horizontal * steady, 1j * sea.omega * vertical * steady

@@ -1,4 +1,4 @@
-"""Wave loads as time series, projected on a few coordinates: resultants, modes, any columns of motion."""
+"""Wave loads as time series, projected on a few coordinates: resultants, modes or other shapes."""
 
 from __future__ import annotations
 
@@ -18,16 +18,17 @@ from jackettwin.loads.sea.sea_series import sea_series
 from jackettwin.loads.sea.waves import AirySea, Waves
 
 _CHUNK = 48
-"""Points at a time: their fields stay in the cache."""
+"""Number of points per block, so that their fields fit in the processor's cache."""
 _REGULAR_SAMPLES = 256
-"""Times in one period of a regular wave."""
+"""Number of times in one period of a regular wave."""
 
 
 class WaveSeries(NamedTuple):
-    """Loads that repeat: (n_times, n_columns) at times ``step_s`` apart, and the water's spread.
+    """Periodic loads (n_times, n_columns) in steps of ``step_s``, and the water's velocity.
 
-    ``sigma`` (n,) is the standard deviation of the water's velocity across the members at the points [m/s];
-    ``across`` (n_times, n, 3) that velocity and ``wet`` (n_times, n) their wet share, if they are kept.
+    ``sigma`` (n,) is the standard deviation of the water's velocity normal to the members at the points
+    [m/s]; ``across`` (n_times, n, 3) is that velocity and ``wet`` (n_times, n) the wet share of the points,
+    if requested.
     """
 
     loads: FloatArray
@@ -43,7 +44,7 @@ class WaveSeries(NamedTuple):
 
 
 def resultant_columns(points: FloatArray) -> FloatArray:
-    """Return (3n, 6): force and moment about the still water's origin from forces at points (n, 3)."""
+    """Return the matrix (3n, 6) from forces at points (n, 3) to force and moment about the origin."""
     columns = np.zeros((points.shape[0], 3, 6))
     columns[:, :, :3] = np.eye(3)
     x, y, z = points.T
@@ -66,7 +67,7 @@ def wave_series(
     keep_motion: bool = False,
     diffraction: bool = False,
 ) -> WaveSeries:
-    """Return the loads of waves that repeat after ``period`` [s].
+    """Return the loads of waves that are periodic with ``period`` [s].
 
     Parameters
     ----------
@@ -79,9 +80,9 @@ def wave_series(
     ends : (Ends, (3n, n_columns)), optional
         Ends of members and the work of forces on them.
     keep_motion : bool
-        Keep the water's motion at the points: 30 MB for ten minutes on a jacket.
+        Whether to return the water's motion at the points: 30 MB for ten minutes on a jacket.
     diffraction : bool
-        Let members scatter waves by their own diameter (MacCamy & Fuchs); of Airy waves alone.
+        Whether to include diffraction by the members (MacCamy & Fuchs); for Airy waves only.
     """
     random = isinstance(waves, AirySea) and waves.omega.size > 1
     many = random or isinstance(waves, TravellingKinematics)
@@ -107,7 +108,7 @@ def wave_series(
             across[:, here], share[:, here] = np.einsum("nij,tnj->tni", part.normal, u), wet
         forces = point_forces(part, u, du, wet=wet)
         loads += forces.reshape(n_times, -1) @ columns[3 * start : 3 * start + 3 * part.weight.size]
-        # the covariance of the water's velocity, seen across the member
+        # the covariance of the water's velocity normal to the member
         spread = (u[::4] - u.mean(axis=0)).transpose(1, 2, 0)
         covariance = spread @ spread.swapaxes(1, 2) / spread.shape[2]
         sigma[here] = np.sqrt(0.5 * np.maximum(np.einsum("nij,nij->n", part.normal, covariance), 0.0))
@@ -118,7 +119,7 @@ def wave_series(
 
 
 def some_points(grid: MorisonPoints, here: slice) -> MorisonPoints:
-    """Return a part of the points."""
+    """Return a slice of the points."""
     N = sp.csr_array(grid.N[:, 3 * here.start : 3 * here.stop])
     rest = {f.name: getattr(grid, f.name)[here] for f in fields(grid) if f.name not in ("N", "density_kg_m3")}
     return replace(grid, N=N, **rest)

@@ -29,13 +29,13 @@ class Waves(Protocol):
         ...
 
     def surface(self, points: FloatArray, t: FloatArray) -> FloatArray:
-        """Return the level up to which the theory fills the water [m], (m, n)."""
+        """Return the level up to which the theory gives water [m], (m, n)."""
         ...
 
     def motion(self, points: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return velocity [m/s] and acceleration [m/s²], each (m, n, 3).
 
-        Points above the surface get the values of the surface; who asks must know what is wet.
+        Points above the surface have the values at the surface; callers must account for the wet part.
         """
         ...
 
@@ -63,8 +63,8 @@ def wave_number(omega: FloatArray | float, depth: float) -> FloatArray:
 def jonswap(frequency_hz: FloatArray, *, Hs: float, Tp: float, gamma: float | None = None) -> FloatArray:
     """Return the one-sided spectrum S(f) [m²/Hz], IEC 61400-3-1 (2019) annex D, m0 = Hs²/16.
 
-    The factor 1 − 0.287 ln γ keeps Hs within 1 % for γ from 1 to 7; γ = 1 is Pierson–Moskowitz. The default
-    γ is the standard's for Tp/√Hs.
+    With the factor 1 − 0.287 ln γ the error of Hs is below 1 % for γ from 1 to 7; γ = 1 is Pierson–Moskowitz.
+    The default is the standard's γ for Tp/√Hs.
     """
     gamma = peak_factor(Hs, Tp) if gamma is None else gamma
     require_between("Hs", Hs, 0.0, 40.0)
@@ -95,9 +95,10 @@ class AirySea:
     ----------
     amplitude, omega, direction, phase : amplitude [m], ω [rad/s], heading β from +x [rad], φ [rad]
     depth : water depth [m]
-    stretching : ``"none"``: linear theory up to still water. Up to the moving surface: ``"vertical"``: above
-        still water as at still water. ``"extrapolated"``: straight on with the slope there. ``"wheeler"``: z
-        is mapped to (z − η) d/(d + η). HydroDyn's ``WaveStMod`` 0 to 3.
+    stretching : ``"none"``: linear theory up to still water. The others extend to the moving surface:
+        ``"vertical"``: above still water as at still water; ``"extrapolated"``: linearly with the slope at
+        still water; ``"wheeler"``: z is mapped to (z − η) d/(d + η). They are HydroDyn's ``WaveStMod`` 0 to
+        3.
     """
 
     amplitude: FloatArray
@@ -160,7 +161,7 @@ class AirySea:
     def depth_functions(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return cosh k(z+d)/sinh kd and sinh k(z+d)/sinh kd at levels, (n_points, n_waves).
 
-        Above still water they stay or run straight on, as the stretching has it.
+        Above still water they are constant or linear, depending on the stretching.
         """
         C, S = depth_functions(self.k, np.minimum(z, 0.0), self.depth)
         if self.stretching != "extrapolated":
@@ -183,7 +184,7 @@ class AirySea:
     def _fields(
         self, rotating: ComplexArray, spatial: ComplexArray, z: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Return (velocity, acceleration) at levels ``z`` without asking whether these are wet."""
+        """Return (velocity, acceleration) at levels ``z``, whether or not these are wet."""
         horizontal, vertical = self.depth_functions(z)
         steady = self.amplitude * self.omega * np.exp(1j * self.phase) * spatial
         u, w = steady * horizontal, 1j * steady * vertical
@@ -227,10 +228,10 @@ def irregular_sea(
     highest_hz: float | None = None,
     stretching: str = "wheeler",
 ) -> AirySea:
-    """Return a random sea that repeats after ``duration`` [s].
+    """Return a random sea that is periodic with ``duration`` [s].
 
-    Components lie Δf = 1/duration apart; their amplitudes are Rayleigh distributed (a true Gaussian sea) and
-    their phases uniform, both from ``seed`` alone.
+    Components have the spacing Δf = 1/duration; their amplitudes are Rayleigh distributed (an exactly
+    Gaussian sea) and their phases uniform, both determined by ``seed``.
 
     Parameters
     ----------
@@ -238,10 +239,10 @@ def irregular_sea(
     direction : float
         Mean heading from +x [rad].
     spreading : float, optional
-        Exponent s of the cos^{2s}((β − β̄)/2) distribution; None is long-crested. Each component draws its
-        own heading, so the sea stays ergodic.
+        Exponent s of the cos^{2s}((β − β̄)/2) distribution; None is long-crested. Each component has one
+        random heading, so that the sea is ergodic.
     highest_hz : float, optional
-        Cut-off, default 4/Tp: 0.5 % of a Pierson–Moskowitz sea's energy lies beyond.
+        Cut-off frequency, by default 4/Tp, above which a Pierson–Moskowitz sea has 0.5 % of its energy.
     """
     cutoff = 4.0 / Tp if highest_hz is None else highest_hz
     df = 1.0 / duration
@@ -265,7 +266,7 @@ def _headings(rng: np.random.Generator, s: float, n: int) -> FloatArray:
 
 @dataclass(frozen=True)
 class SeaState:
-    """A JONSWAP sea: Hs [m], Tp [s], heading from +x [rad]; the rest as in ``irregular_sea``."""
+    """A JONSWAP sea: Hs [m], Tp [s], heading from +x [rad]; other fields as in ``irregular_sea``."""
 
     Hs: float
     Tp: float

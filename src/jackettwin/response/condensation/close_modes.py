@@ -1,4 +1,4 @@
-"""Families of modes that are close on pinned supports, followed together from one set to the next."""
+"""Families of modes with close frequencies on pinned supports, tracked together between parameter sets."""
 
 from __future__ import annotations
 
@@ -13,17 +13,18 @@ from jackettwin.response.condensation.pole_count import REAL, SAME
 from jackettwin.response.modes.tracking import near_degenerate
 
 _KIN = 0.8
-"""Least share of a mode, weighted by mass, in the subspace of its family at the neighbouring set for a warm
+"""Smallest mass-weighted share of a mode within the subspace of its family at the neighbouring set for a warm
 start to be accepted."""
 _TOGETHER = 0.03
-"""Poles of a family nearer than this (relative) are refined together: apart, two might end in one."""
+"""Poles of a family nearer than this (relative) are refined together; refined separately, two could converge
+to one."""
 _HALVINGS = 2
-"""How often a way between two sets that is too long is halved; after that a cold start is as fast."""
+"""Number of times that the step between two sets may be halved; after that a cold start is as fast."""
 
 
 @dataclass(frozen=True)
 class Start:
-    """Sets whose modes are known, for as many others to start from.
+    """Parameter sets with known modes, each the start for one other set.
 
     Attributes
     ----------
@@ -44,14 +45,14 @@ class Start:
 
 @dataclass(frozen=True)
 class Families:
-    """The modes that are followed: those asked for, and the other members of their families.
+    """The modes that are tracked: the requested ones and the other members of their families.
 
     Attributes
     ----------
     modes : mode numbers, ascending
-    wanted : (n_wanted,) places of those asked for, in their order
-    beside : (n_beside,) places of the others
-    of : (n_modes,) the family of each
+    wanted : (n_wanted,) indices of the requested modes, in the order requested
+    beside : (n_beside,) indices of the other members
+    of : (n_modes,) family of each mode
     like : (n_modes, n) φᵀM of the pinned modes; zero beyond the last
     """
 
@@ -71,13 +72,13 @@ class Families:
         shapes: ComplexArray,
         halvings: int = _HALVINGS,
     ) -> BoolArray:
-        """Fill poles and shapes of the sets that a neighbour's lead to; return which sets these are.
+        """Fill poles and shapes of the sets reached from their neighbours; return which sets these are.
 
         Parameters
         ----------
-        rows, rayleigh : (n_sets, …) of the sets
+        rows, rayleigh : (n_sets, …) parameters of the sets
         halvings : int
-            How often a way that is too long may be halved.
+            Number of times that a step may be halved if it is too long.
         """
         good = self._step(model, start, rows, rayleigh, poles, shapes)
         far: IntArray = np.flatnonzero(~good & ~np.isnan(start.poles[:, self.wanted]).any(axis=1))
@@ -107,20 +108,20 @@ class Families:
         poles: ComplexArray,
         shapes: ComplexArray,
     ) -> BoolArray:
-        """Fill the sets in whose modes the neighbour's are recognised; return which these are."""
+        """Fill the sets whose modes are recognised as their neighbours'; return which sets these are."""
         values, x = start.poles.copy(), start.shapes.copy()
         done = refined(model, rows, rayleigh, self.of, values, x, _TOGETHER)
         started = ~np.isnan(start.poles)
         sound = done & (values.imag > REAL * np.abs(values)) & (np.abs(values) <= model.radius)
         good = np.asarray((sound | ~started).all(axis=1) & started[:, self.wanted].all(axis=1))
-        # one layout of arrays is one compilation: a neighbour's shapes may be a view that cannot be written
+        # a fixed memory layout avoids a second compilation: a neighbour's shapes may be a read-only view
         known = np.require(start.shapes, requirements=["C", "W"])
         good &= kernels().recognised(model.pencil.M, self.of, known, values, x, _KIN, SAME)
         poles[good], shapes[good] = values[good], x[good]
         return good
 
     def arrange(self, poles: ComplexArray, shapes: ComplexArray) -> IntArray:
-        """Name the members of every family and turn the modes of multiple poles to the pinned ones, in place.
+        """Number the members of every family and rotate modes of multiple poles to the pinned ones, in place.
 
         Returns
         -------
@@ -164,5 +165,5 @@ def _families(model: Condensed, modes: tuple[int, ...]) -> Families:
 
 
 def _between(one: FloatArray, other: FloatArray) -> FloatArray:
-    """Return the numbers half-way: the geometric mean, or the arithmetic one where either is zero."""
+    """Return the midpoint: the geometric mean, or the arithmetic one where either number is zero."""
     return np.where((one > 0.0) & (other > 0.0), np.sqrt(np.abs(one * other)), 0.5 * (one + other))

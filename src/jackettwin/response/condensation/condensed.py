@@ -1,11 +1,12 @@
 r"""A structure condensed to its support DOFs, exactly.
 
-Every DOF that a support law or dashpot touches is kept (the boundary b). Inside, the modes with b held are
+Every DOF that a support law or dashpot acts on is retained (the boundary b). The fixed-interface modes, with
+b fixed, are
 
-* retained as unknowns where they lie in the band of interest: there a mode that the supports hardly move is
-  a pole and a zero of the condensed matrix that cancel, and only an unknown of its own shows it;
+* retained as unknowns in the band of interest: a mode in which the supports hardly move would otherwise be a
+  cancelling pole and zero of the condensed matrix and could not be found;
 * summed in closed form up to several times the band;
-* and beyond as moments, a power series in μ that converges to machine precision.
+* represented above that by moments, a power series in μ that converges to machine precision.
 
 .. math::
 
@@ -15,8 +16,8 @@ Every DOF that a support law or dashpot touches is kept (the boundary b). Inside
     S_0(μ) = K_B + μM_B - μ^2 \sum_j \frac{p_j p_j^T}{ω_j^2+μ}
              - μ^2 \sum_k (-μ)^k R_{k+1}
 
-with Rayleigh damping aM + bK of the steel and :math:`R_k = \sum_{trunc} p_j p_j^T / ω_j^{2k}`, found without
-the truncated modes from static solutions. Nothing is approximated but the tail of the series.
+with Rayleigh damping aM + bK of the steel and :math:`R_k = \sum_{trunc} p_j p_j^T / ω_j^{2k}`, computed from
+static solutions without the truncated modes. Only the tail of the series is neglected.
 """
 
 from __future__ import annotations
@@ -41,34 +42,34 @@ from jackettwin.soil import Prony, standing
 from jackettwin.structure import lowest_modes
 
 _RETAINED = 1.2
-"""Modes up to this multiple of the band are unknowns of their own."""
+"""Modes up to this multiple of the band are retained as unknowns."""
 _SUMMED = 2.5
-"""Modes up to this multiple of the band are summed in closed form; the rest are moments."""
+"""Modes up to this multiple of the band are summed in closed form; higher ones are represented by moments."""
 _MOST_MOMENTS = 24
 _TAIL = 1e-13
-"""The series of moments ends where its next term is this small beside the boundary's own mass."""
+"""The series of moments ends where its next term is smaller than this share of the boundary's mass."""
 _STEEPEST = 0.3
-"""Largest b·|λ|: beyond, the steel itself is overdamped and μ leaves the range of the series."""
+"""Largest b·|λ|; beyond it the steel is overdamped and μ leaves the range of convergence."""
 
 
 @dataclass(frozen=True)
 class Condensed:
-    """A structure condensed to its boundary: any support law acts on it exactly.
+    """A structure condensed to its boundary, on which any support law acts exactly.
 
     Coordinates are the boundary DOFs, scaled to unit mass, then the retained modes.
 
     Attributes
     ----------
     pencil : Pencil
-        Mass and stiffness of the coordinates alone (Craig–Bampton), dense; its groups are the support's,
-        then what is spread over the structure.
+        Mass and stiffness of the coordinates without the other modes (Craig–Bampton), dense; its groups are
+        the support's, then the patterns distributed over the structure.
     basis : (assembly.n_dof, n) shapes of the coordinates
     boundary : (n_boundary,) DOFs of the assembly
     pinned : UndampedModes
-        With the supports' translations held (a monopile's rotations, too), in these coordinates: they count
-        the modes. Other boundary DOFs (a nacelle's dashpot) are free in them.
+        Modes with the supports' translations fixed (a monopile's rotations too), in these coordinates; they
+        define the mode numbers. Other boundary DOFs (a nacelle's dashpot) are free in them.
     radius : float
-        F is exact for |λ| up to here [rad/s].
+        Largest |λ| for which F is exact [rad/s].
     terms : (n_terms, n_pairs) K_B, M_B, moments R_k, then p_j p_jᵀ of the summed modes; upper triangles
     mid : (n_mid,) ω_j² of the summed modes
     P : (n_boundary, n_retained) coupling of the retained modes
@@ -105,11 +106,11 @@ class Condensed:
 
     @property
     def ranks(self) -> tuple[int, ...]:
-        """Rank of each group's pattern: how many poles of F a Maxwell branch makes."""
+        """Rank of each group's pattern, equal to the number of poles of F due to one Maxwell branch."""
         return tuple(int(np.linalg.matrix_rank(group.S)) for group in self.pencil.groups)
 
     def arrays(self) -> tuple[Any, ...]:
-        """Return what :mod:`jackettwin.response.condensation.kernels` calls ``model``."""
+        """Return the tuple ``model`` of :mod:`jackettwin.response.condensation.kernels`."""
         n_moments = self.terms.shape[0] - self.mid.size
         return (self.terms, n_moments, self.mid, self.P, self.w2, *self.entries)
 
@@ -118,7 +119,7 @@ class Condensed:
         return np.asarray(self.expansion(pole) @ x)
 
     def expansion(self, pole: complex) -> ComplexArray:
-        """Return (assembly.n_dof, n): what moves with each coordinate at a pole, truncated modes included."""
+        """Return the shape of each coordinate at a pole, truncated modes included, (assembly.n_dof, n)."""
         a, b = self.pencil.rayleigh.alpha, self.pencil.rayleigh.beta
         mu = (pole * pole + a * pole) / (1.0 + b * pole)
         shapes = self.basis.astype(np.complex128)
@@ -128,32 +129,31 @@ class Condensed:
 
 
 def condense(system: System, *, below_hz: float, spread: tuple[Matrix, ...] = ()) -> Condensed:
-    """Return the structure with every DOF a support law or dashpot touches as boundary.
+    """Return the structure condensed to the DOFs that a support law or dashpot acts on.
 
     Parameters
     ----------
-    spread : (assembly.n_dof, assembly.n_dof) patterns all over the structure, water's mass and damping: their
-        laws act on the coordinates alone, without the truncated modes (4e-5 of f4 for 30 % more water).
     below_hz : float
-        Poles with |λ|/2π up to here will be asked for.
+        Largest |λ|/2π of the poles that will be requested.
+    spread : tuple of (assembly.n_dof, assembly.n_dof)
+        Patterns distributed over the structure (mass and damping of water). Their laws act on the coordinates
+        without the truncated modes; the error is 4e-5 of f4 for 30 % more water.
 
     Raises
     ------
     InputError
-        If nothing is supported by a law, or the steel is overdamped inside the band.
+        If no support has a law, or the steel is overdamped inside the band.
     NumericalError
         If the truncated modes lie too near the band for their moments to converge.
     """
     full = system.pencil
-    require(
-        full.groups, "no support to keep as boundary", field="support", value="pinned", remedy="give it a law"
-    )
+    require(full.groups, "no support has a law", field="support", value="pinned", remedy="give it a law")
     radius = 2.0 * pi * below_hz
     check_rayleigh(np.array([[full.rayleigh.alpha, full.rayleigh.beta]]), radius)
     b = np.unique(np.concatenate([group.dofs for group in full.groups]))
     inside = _Inside(full, b, radius)
     scale = 1.0 / np.sqrt(np.diag(inside.mass))
-    # what is spread acts on retained coordinates alone: more of them make up for the others
+    # distributed patterns act on retained coordinates only: more of them make up for the truncated modes
     n_retained = int(np.searchsorted(inside.omega, (_SUMMED if spread else _RETAINED) * radius))
     P = scale[:, None] * inside.P[:, :n_retained]
     terms, mid = inside.terms(scale, n_retained, radius)
@@ -188,21 +188,21 @@ def condense(system: System, *, below_hz: float, spread: tuple[Matrix, ...] = ()
 
 
 def widest_band_hz(beta: float) -> float:
-    """Return how far a band may reach [Hz] with stiffness-proportional damping β [s] of the steel."""
+    """Return the highest upper limit of a band [Hz] for stiffness-proportional damping β [s] of the steel."""
     return _STEEPEST / (2.0 * pi * beta) if beta > 0.0 else inf
 
 
 def strongest_beta(radius: float) -> float:
-    """Return how strong stiffness-proportional damping β [s] may be in a band of this radius [rad/s]."""
+    """Return the largest stiffness-proportional damping β [s] for a band of this radius [rad/s]."""
     return _STEEPEST / radius
 
 
 def check_rayleigh(rayleigh: FloatArray, radius: float) -> None:
-    """Refuse steel that is overdamped inside the band.
+    """Raise an error if the steel is overdamped inside the band.
 
     Parameters
     ----------
-    rayleigh : (n_sets, 2) of a and b
+    rayleigh : (n_sets, 2) a and b
 
     Raises
     ------
@@ -212,17 +212,17 @@ def check_rayleigh(rayleigh: FloatArray, radius: float) -> None:
     worst = float(rayleigh[:, 1].max(initial=0.0))
     if radius > 2.0 * pi * widest_band_hz(worst):
         raise InputError(
-            "stiffness-proportional damping of the steel is too strong for the band of the modes asked for",
+            "stiffness-proportional damping of the steel is too strong for the band of the requested modes",
             field="damping.rayleigh",
             value=worst,
             allowed=f"β ≤ {strongest_beta(radius):.3g} s",
-            remedy=f"leave the highest modes out: they take the band to {radius / (2.0 * np.pi):.3g} Hz; "
+            remedy=f"leave out the highest modes, which extend the band to {radius / (2.0 * np.pi):.3g} Hz, "
             "or state less damping",
         )
 
 
 class _Inside:
-    """The interior with the boundary held: static shapes, modes, couplings and what they leave over."""
+    """The interior with the boundary fixed: static shapes, modes, couplings and the truncated remainder."""
 
     def __init__(self, full: Pencil, b: IntArray, radius: float) -> None:
         K, M = sp.csc_array(full.K), sp.csc_array(full.M)
@@ -241,7 +241,7 @@ class _Inside:
         """First moment of the truncated modes' shapes, K⁻¹ load without the known modes."""
 
     def _clean(self, Z: FloatArray) -> FloatArray:
-        """Return Z without the known modes: what rounding brings back would grow from moment to moment."""
+        """Return Z without the known modes, whose rounding errors would grow from moment to moment."""
         return np.asarray(Z - self.phi @ (self.phi.T @ (self.M_ii @ Z)))
 
     def terms(self, scale: FloatArray, n_retained: int, radius: float) -> tuple[FloatArray, FloatArray]:
@@ -252,7 +252,7 @@ class _Inside:
         Z, size = self.rest, 1.0
         while True:
             R = (outer * _symmetric(self.load.T @ Z))[upper]
-            # beside M_B, whose diagonal the scaling made one
+            # relative to M_B, whose diagonal is one after scaling
             size = float(np.abs(R).max(initial=0.0)) * (1.05 * radius) ** (2 * (len(packed) - 1))
             if size < _TAIL:
                 break
@@ -298,7 +298,7 @@ def _entries(pencil: Pencil) -> tuple[IntArray, IntArray, IntArray, FloatArray]:
 
 
 def _held(system: System, boundary: IntArray) -> IntArray:
-    """Return the coordinates of the boundary that the feet modes are numbered on would hold."""
+    """Return the boundary coordinates that are fixed by the pinned feet on which modes are numbered."""
     held = dict(standing(system.assembly.structure).fixed)
     pins = [
         system.assembly.dofs(spring.node)[list(held.get(spring.node, TRANSLATIONS))]

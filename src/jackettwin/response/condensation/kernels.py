@@ -8,7 +8,8 @@ Everything here works on plain arrays. A condensed structure is the tuple ``mode
 of :class:`jackettwin.response.condensation.condensed.Condensed`; a support law is a row of
 :mod:`jackettwin.soil.laws.coefficients`.
 
-One file on purpose: compiled code on disk is renewed when its own file changes, whatever other file it calls.
+All kernels are in one file because Numba recompiles cached code only when the file that contains it changes,
+not when a file that it calls does.
 """
 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call, untyped-decorator, call-overload"
@@ -21,16 +22,18 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-# sums may be regrouped for speed, but signed zeros stay: they tell the sides of the branch cut apart
+# sums may be regrouped for speed, but signed zeros must remain: they distinguish the sides of the branch cut
 _HOW: dict[str, Any] = {"error_model": "numpy", "fastmath": {"reassoc", "contract"}}
 compiled = njit(cache=True, **_HOW)
-"""For what Python calls."""
+"""Decorator of functions that are called from Python."""
 making = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **_HOW)
-"""For what only compiled code calls: half the compiling of a small kernel is its door to Python."""
+"""Decorator of functions called by compiled code only; without a Python wrapper a small kernel compiles in
+half the time."""
 inner = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False, **_HOW)
-"""For what makes no array either: a tenth of the compiling is counting who still holds one."""
+"""Decorator of such functions that also allocate no array; without reference counting they compile a tenth
+faster."""
 within = njit(inline="always", **_HOW)
-"""For what is called in one place: written into it there, so that what it calls is optimised once less."""
+"""Decorator of functions that are called in one place and inlined there."""
 
 MAX_STEPS = 30
 _TINY = 1e-300
@@ -38,23 +41,24 @@ _MAX_DEPTH = 24
 _NEAR = 0.05
 """A retained mode whose diagonal is less than this share of its ω² is near its resonance."""
 COARSE = 1e-4
-"""A cluster has come to rest as a whole when its mean moves less than this (relative): its poles are then
-known to the square of that and of their distance, and each can be refined from its own start."""
+"""A cluster has converged as a whole when its mean changes by less than this (relative). The errors of its
+poles are then of the order of the square of this and of their distance, and each can be refined
+separately."""
 INSEPARABLE = 1e-5
-"""Poles nearer than this (relative) stay together to the end: the block's error, their distance squared, is
-rounding."""
+"""Poles nearer than this (relative) are refined together to the end: the error, their distance squared, is at
+rounding level."""
 _PARALLEL = 1.0 - 5e-7
-"""Two shapes of one pole with a larger cosine are one mode found twice."""
+"""Two shapes of equal poles with a larger cosine than this are one mode found twice."""
 _SKEWED = 1e3
-"""Condition number from which modes of a multiple pole hardly resemble pinned ones: they are not turned."""
+"""Condition number above which modes of a multiple pole hardly resemble pinned ones and are not rotated."""
 _CLEARLY = 1.0 + 1e-9
-"""An exchange must be better by more than rounding."""
+"""Smallest ratio by which an exchange must be better, to exceed rounding."""
 EQUAL = 1e-9
 """Poles nearer than this (relative) are one multiple pole."""
 
 
 def compiled_before() -> bool:
-    """Tell whether what is compiled for this file lies on disk, so that nothing is compiled again."""
+    """Tell whether compiled code of this file is cached on disk."""
     written = Path(__file__).stat().st_mtime
     kept = Path(refine.stats.cache_path).glob("kernels.refine-*.nbi")
     return any(file.stat().st_mtime >= written for file in kept)
@@ -214,11 +218,11 @@ def _mirror(G, n):
 
 @inner
 def eliminate(F, w2, place, G):
-    """Eliminate retained modes from F; return the size of what is left in G and the phase of their pivots.
+    """Eliminate retained modes from F; return the size of the remaining matrix G and the pivots' phase.
 
-    They only meet the boundary, not each other, unless a law acts all over the structure (water): then all
-    stay. Those near their own resonance stay, too, for they would be poor pivots: ``place`` (n_retained,)
-    says where in G, or −1.
+    Retained modes are coupled to the boundary but not to each other, unless a law acts on the whole structure
+    (water); then none is eliminated. Modes near their own resonance, which would be poor pivots, are not
+    eliminated either. ``place`` (n_retained,) is filled with the index of each mode in G, or −1.
     """
     nr = w2.size
     nb = F.shape[0] - nr
@@ -253,7 +257,7 @@ def eliminate(F, w2, place, G):
 
 @inner
 def solve_eliminated(F, place, G, m, pivot, x, z):
-    """Overwrite x with F⁻¹x from the factors of what :func:`eliminate` left; ``z`` is room for m numbers."""
+    """Overwrite x with F⁻¹x from the factors of G of :func:`eliminate`; ``z`` (m,) is work space."""
     nr = place.size
     nb = F.shape[0] - nr
     for i in range(nb):
@@ -345,7 +349,7 @@ def _product(x, y):
 
 @making
 def _matrices(n):
-    """Return room for F, dF/ds and what elimination leaves of F."""
+    """Return work space for F, dF/ds and the matrix that remains after elimination."""
     shape = (n, n)
     return np.empty(shape, np.complex128), np.empty(shape, np.complex128), np.empty(shape, np.complex128)
 
@@ -362,7 +366,7 @@ def _normalise(x):
 
 @inner
 def _bounded(step, s):
-    """Return the step, no longer than a third of |s|."""
+    """Return the step, limited to a third of |s|."""
     size, most = abs(step), 0.3 * abs(s)
     return step * (most / size) if size > most else step
 
@@ -387,7 +391,7 @@ def _mean(values):
 
 @making
 def _room(model):
-    """Return what refining one pole or two works with."""
+    """Return work space for refining one or two poles."""
     n, n_pairs, n_retained = model[3].shape[0] + model[3].shape[1], model[0].shape[1], model[4].size
     F, dF, G = _matrices(n)
     s0, s1, z = np.empty(n_pairs, np.complex128), np.empty(n_pairs, np.complex128), np.empty(n, np.complex128)
@@ -397,9 +401,9 @@ def _room(model):
 
 @inner
 def _orthonormalise(U, W, m):
-    """Make the first rows of U, one or two, orthonormal, those of W following."""
+    """Orthonormalise the first rows of U, one or two, and transform those of W in the same way."""
     for j in range(m):
-        for _ in range(2 * j):  # twice is enough: nearly parallel rows lose their digits once
+        for _ in range(2 * j):  # two passes suffice, even for nearly parallel rows
             c = _inner_product(U[0], U[1])
             for k in range(U.shape[1]):
                 U[1, k] -= c * U[0, k]
@@ -412,13 +416,13 @@ def _orthonormalise(U, W, m):
 
 @inner
 def _small_eigen(A, B, Y):
-    """Return the two δ of A y = δ B y, filling Y with y; the matrices (4,) are row by row."""
+    """Return the two δ of A y = δ B y and fill Y with y; the 2 × 2 matrices are stored by rows, (4,)."""
     inverse = 1.0 / (B[0] * B[3] - B[1] * B[2])
     c00, c01 = (B[3] * A[0] - B[1] * A[2]) * inverse, (B[3] * A[1] - B[1] * A[3]) * inverse
     c10, c11 = (B[0] * A[2] - B[2] * A[0]) * inverse, (B[0] * A[3] - B[2] * A[1]) * inverse
     middle, half = 0.5 * (c00 + c11), 0.5 * (c00 - c11)
     root = np.sqrt(half * half + c01 * c10)
-    # of the two roots the one that adds to half, so that no digits are lost
+    # the root without cancellation
     top = half + root if abs(half + root) > abs(half - root) else half - root
     Y[0], Y[1], Y[2], Y[3] = top, -c01, c10, top
     return middle + (top - half), middle - (top - half)
@@ -452,7 +456,7 @@ def _ritz(room, s, values, vectors):
     for j in range(2):
         _assign(U[j], vectors[j])
         if spread > EQUAL * abs(s):
-            # vectors of equal values would be rounding's, and might be parallel
+            # eigenvectors of equal values would be determined by rounding and might be parallel
             for k in range(y.size):
                 vectors[j, k] = A[j] * U[0, k] + A[2 + j] * U[1, k]
             _normalise(vectors[j])
@@ -463,8 +467,9 @@ def _ritz(room, s, values, vectors):
 def _iterate(model, laws, a, b, values, vectors, tolerance, room):
     """Refine one pole, or two nearly equal ones about their mean, by inverse iteration and Rayleigh–Ritz.
 
-    One pole converges cubically: F is symmetric. Two are known to the square of their distance. The starts'
-    shapes know the poles better than their values do. Return whether the mean came to rest.
+    Convergence to one pole is cubic, since F is symmetric; the error of two is the square of their distance.
+    The Rayleigh quotients of the initial shapes are more accurate than the initial values. Return whether the
+    mean converged.
     """
     F, dF, G, s0, s1, pivot, place, U, W, z, small = room
     m = values.size
@@ -494,7 +499,7 @@ def _iterate(model, laws, a, b, values, vectors, tolerance, room):
 
 @inner
 def _exchange(values, shapes, a, b):
-    """Let two modes take each other's place."""
+    """Exchange two modes."""
     values[a], values[b] = values[b], values[a]
     for i in range(shapes.shape[1]):
         shapes[a, i], shapes[b, i] = shapes[b, i], shapes[a, i]
@@ -510,9 +515,9 @@ def _take(values, shapes, i, other_values, other_shapes, j):
 
 @within
 def _refine_cluster(model, laws, a, b, values, vectors, tolerance, room):
-    """Refine one pole, or two that are near each other: together, then alone where they stand clear.
+    """Refine one pole, or two near each other: first together, then separately if they are distinct.
 
-    Two end in the order of |λ|, not in that of the starts. Return whether all came to rest.
+    Two are returned in the order of |λ|. Return whether all converged.
     """
     first, size = 0, values.size
     near = COARSE if size == 2 else tolerance
@@ -533,7 +538,7 @@ def _refine_cluster(model, laws, a, b, values, vectors, tolerance, room):
 
 @inner
 def _known(values, family, first, at):
-    """Fill ``at`` with the places of a family's finite values, in the order of their size.
+    """Fill ``at`` with the indices of a family's finite values, in the order of their size.
 
     Return how many there are.
     """
@@ -551,11 +556,11 @@ def _known(values, family, first, at):
 
 @compiled
 def refine(model, rows, rayleigh, family, values, vectors, near, tolerance):
-    """Refine starts of every set in place; two of one family that are near each other go together.
+    """Refine initial poles of every set in place, two of one family together if they are near each other.
 
-    ``family`` (n_modes,) ascends; a mode without a start is NaN. Returns (n_sets, n_modes) numbers: 1 where
-    a mode converged, 0 where it did not, and for modes of a cluster of more than two, which are left as they
-    are, one less than minus the place of its first.
+    ``family`` (n_modes,) ascends; a mode without an initial value is NaN. Returns (n_sets, n_modes) codes: 1
+    where a mode converged, 0 where it did not, and −1 − i for modes of a cluster of more than two, which is
+    not refined, with i the index of its first mode.
     """
     n_sets, n_modes = values.shape
     room = _room(model)
@@ -614,7 +619,7 @@ def _members(family, values, first, own):
 
 @inner
 def _among(M, starts, shapes, own, m, heavy, room, pivot):
-    """Return the least share, by mass, of any of m modes that lies in the space of their starts."""
+    """Return the smallest mass-weighted share of any of m modes within the space of their initial shapes."""
     gram, part, across = room[: m * m].reshape(m, m), room[m * m : m * (m + 1)], room[m * (m + 1) :]
     for i in range(m):
         _weighed(M, starts[own[i]], heavy[i])
@@ -638,10 +643,10 @@ def _among(M, starts, shapes, own, m, heavy, room, pivot):
 
 @compiled
 def recognised(M, family, starts, values, shapes, least, same):
-    """Tell in which sets every mode lies, by mass, in the space of its family's starts, and none is twice.
+    """Return in which sets every mode lies in the space of its family's initial shapes, without duplicates.
 
-    ``least`` is the share of it that must; poles nearer than ``same`` (relative) with parallel shapes are one
-    mode. Modes that are NaN are left out.
+    ``least`` is the smallest mass-weighted share within that space; poles nearer than ``same`` (relative)
+    with parallel shapes are duplicates. Modes that are NaN are ignored.
     """
     n_sets, n_modes, n = shapes.shape
     good = np.ones(n_sets, np.bool_)
@@ -673,15 +678,15 @@ def _sort(own, m, values, shapes):
 
 @inner
 def _name(like, own, m, values, shapes, alike):
-    """Put each of m modes of a family in the place it resembles most.
+    """Assign each of m modes of a family to the pinned mode that it resembles most.
 
-    From the order of |λ| on, two modes exchange places until no exchange makes the sum of what they resemble
-    larger: what comes out depends on the modes alone, not on how they were found.
+    Starting from the order of |λ|, pairs of modes are exchanged until no exchange increases the sum of their
+    resemblance, so that the result depends on the modes only, not on how they were found.
     """
     _sort(own, m, values, shapes)
     for j in range(m):
         for i in range(m):
-            # shapes of one family have about the same modal mass: their unit norm does for weighing
+            # shapes of one family have about the same modal mass, so that unit norm suffices
             alike[i, j] = abs(_product(shapes[own[j]], like[own[i]])) ** 2
     better = True
     while better:
@@ -698,9 +703,9 @@ def _name(like, own, m, values, shapes, alike):
 
 @making
 def _turn(like, own, m, values, shapes):
-    """Mix m modes of a multiple pole until each has a part of its own pinned mode and none of the others'.
+    """Rotate m modes of a multiple pole so that each contains its own pinned mode and none of the others.
 
-    Modes that hardly resemble these are left as they are.
+    Modes that hardly resemble the pinned ones are not changed.
     """
     n = shapes.shape[1]
     part, pivot = np.empty((m, m), np.complex128), np.empty(m, np.int64)
@@ -730,10 +735,10 @@ def _turn(like, own, m, values, shapes):
 
 @compiled
 def arrange(like, family, values, shapes, same):
-    """Name the modes of every family in every set, in place.
+    """Assign the modes of every family in every set to the pinned modes, in place.
 
-    ``like`` (n_modes, n) is φᵀM of the pinned modes that name them. Returns (n_sets, n_modes) numbers, the
-    same for the modes of one multiple pole, those nearer than ``same`` (relative): the place of its first.
+    ``like`` (n_modes, n) is φᵀM of the pinned modes. Returns (n_sets, n_modes) the index of the first mode of
+    the same multiple pole, that is, of poles nearer than ``same`` (relative).
     """
     n_sets, n_modes = values.shape
     number = np.empty((n_sets, n_modes), np.int64)
@@ -758,7 +763,7 @@ def arrange(like, family, values, shapes, same):
 
 @compiled
 def turn(like, number, values, shapes):
-    """Turn the modes of the multiple poles that :func:`arrange` numbered to the pinned ones, in place."""
+    """Rotate the modes of the multiple poles numbered by :func:`arrange` to the pinned ones, in place."""
     n_sets, n_modes = values.shape
     own = np.empty(n_modes, np.int64)
     for k in range(n_sets):
@@ -856,11 +861,11 @@ def slopes(
 ):
     """Fill dλ/dz and dx/dz (without a component along x) for every mode and parameter z.
 
-    ``jacobian`` (n_sets, n_groups, width, n_z) and ``rayleigh_jacobian`` (n_sets, 2, n_z) say how the law
-    rows and (a, b) depend on z. An empty ``dvectors`` asks for the eigenvalues alone. Neighbours in the list
-    with the same number in ``multiple`` (n_values,) are modes of one multiple pole: the diagonal of its
-    derivative (Xᵀ F′X)⁻¹ Xᵀ(−∂F/∂z)X holds their slopes, whose sum is that of the poles whatever the vectors,
-    and dx has no component along any of them.
+    ``jacobian`` (n_sets, n_groups, width, n_z) and ``rayleigh_jacobian`` (n_sets, 2, n_z) are the derivatives
+    of the law rows and of (a, b) by z. With an empty ``dvectors`` only the slopes of the eigenvalues are
+    computed. Neighbours with the same number in ``multiple`` (n_values,) are modes of one multiple pole.
+    Their slopes are the diagonal of (Xᵀ F′X)⁻¹ Xᵀ(−∂F/∂z)X, whose sum does not depend on the choice of the
+    vectors, and dx has no component along any of them.
     """
     n_values, n = vectors.shape
     n_pairs = model[0].shape[1]
@@ -915,7 +920,8 @@ def _phase(model, rows, a, b, s, known, F, dF, G, s0, s1, pivot, place):
 def _point(kind, u, radius, small):
     """Return a point of the path at u in [0, 1]: the great arc, the upper side of the cut, the small arc.
 
-    The great arc's points crowd towards the negative real axis, where multiple poles of the supports lie.
+    The points of the great arc are denser towards the negative real axis, where multiple poles of the
+    supports lie.
     """
     if kind == 0:
         return radius * np.exp(1j * np.pi * (1.0 - (1.0 - u) ** 2))
@@ -926,10 +932,10 @@ def _point(kind, u, radius, small):
 
 @compiled
 def winding(model, rows, a, b, radius, cut, n_points, known):
-    """Return the change of arg det F along the upper half circle in units of π, NaN if it runs over a pole.
+    """Return the change of arg det F along the upper half circle in units of π, NaN if it meets a pole.
 
-    Known poles are divided out, so that only unknown ones can turn the phase fast, and counted in the end.
-    With a branch cut the path returns along the upper side of the cut and around the origin.
+    Known poles are divided out, so that only unknown ones can change the phase rapidly, and added at the end.
+    If there is a branch cut, the path returns along its upper side and around the origin.
     """
     n = model[3].shape[0] + model[3].shape[1]
     n_pairs = model[0].shape[1]

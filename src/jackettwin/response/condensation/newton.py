@@ -1,4 +1,4 @@
-"""Poles of many sets, refined from starts: one or two near each other compiled, larger clusters in NumPy."""
+"""Refinement of initial poles of many sets: one or two by compiled code, larger clusters in NumPy."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ from jackettwin.response.condensation.condensed import Condensed
 log = logging.getLogger(__name__)
 
 STEP = 1e-6
-"""Newton converges cubically: a last step this small leaves an error at rounding level."""
+"""Largest relative size of the last step: convergence is cubic, so that the remaining error is at rounding
+level."""
 
 
 @cache
 def kernels() -> Any:
-    """Return the compiled part, imported when first needed: it brings a compiler along."""
+    """Return the compiled module, imported when first needed because it loads a compiler."""
     from jackettwin.response.condensation import kernels as condensed_kernels
 
     if not condensed_kernels.compiled_before():
@@ -36,16 +37,16 @@ def refined(
     vectors: ComplexArray,
     near: float,
 ) -> BoolArray:
-    """Refine starts in place; those of one family that are near each other go together.
+    """Refine initial poles in place, those of one family together if they are near each other.
 
     Parameters
     ----------
     rows, rayleigh : (n_sets, …) as in :class:`jackettwin.response.condensation.numbered_modes.Points`
     family : (n_modes,) ascending numbers
-    values : (n_sets, n_modes); a mode without a start is NaN
+    values : (n_sets, n_modes) initial poles; NaN for a mode without one
     vectors : (n_sets, n_modes, n)
     near : float
-        Relative distance of poles that go together.
+        Relative distance below which poles are refined together.
 
     Returns
     -------
@@ -70,7 +71,7 @@ def _cluster(
     vectors: ComplexArray,
     near: float,
 ) -> BoolArray:
-    """Refine a cluster of more than two poles in place: together, then those that stand clear alone."""
+    """Refine a cluster of more than two poles in place: first together, then distinct ones separately."""
     limits = kernels()
     inseparable = near <= limits.INSEPARABLE
     if not _block(model, rows, rayleigh, values, vectors, STEP if inseparable else limits.COARSE):
@@ -92,7 +93,8 @@ def _block(
 ) -> bool:
     """Refine nearly equal poles by block inverse iteration and Rayleigh–Ritz about their mean, in place.
 
-    Return whether the mean came to rest. What is left is the square of the poles' distance from each other.
+    Return whether the mean converged. The remaining error is the square of the poles' distance from each
+    other.
     """
     n, n_pairs = model.n, model.terms.shape[1]
     F, dF = np.empty((2, n, n), np.complex128)
@@ -101,13 +103,13 @@ def _block(
         s = values.mean()
         kernels().fill(model.arrays(), rows, *rayleigh, s, F, dF, s0, s1)
         try:
-            # the shapes know the poles better than their starts do
+            # the Rayleigh quotients of the shapes are more accurate than the initial poles
             force = F @ vectors.T if number == 0 else dF @ vectors.T
             U, R = np.linalg.qr(vectors.T if number == 0 else np.linalg.solve(F, force))
             residual = np.linalg.solve(R.T, force.T).T
             delta, Y = np.linalg.eig(np.linalg.solve(U.T @ dF @ U, -U.T @ residual))
         except np.linalg.LinAlgError:
-            # F is singular to the last digit at a pole
+            # F is numerically singular at a pole
             return number > 0
         step, most = delta.mean(), 0.3 * abs(s)
         if not np.isfinite(delta).all():
@@ -115,7 +117,7 @@ def _block(
         spread = float(np.abs(delta - step).max())
         shrunk = min(1.0, most / max(spread, np.finfo(float).tiny))
         values[:] = s + step * min(1.0, most / max(abs(step), np.finfo(float).tiny)) + shrunk * (delta - step)
-        # vectors of equal values would be rounding's, and might be parallel
+        # eigenvectors of equal values would be determined by rounding and might be parallel
         mixed = (U @ Y if spread > kernels().EQUAL * abs(s) else U).T
         vectors[:] = mixed / np.linalg.norm(mixed, axis=1)[:, None]
         if number > 0 and abs(step) <= tolerance * abs(s):
@@ -126,13 +128,13 @@ def _block(
 def law_response(
     rows: FloatArray, jacobian: FloatArray, s: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Return the complex stiffness of laws and how it depends on their parameters.
+    """Return the complex stiffness of laws and its derivatives by their parameters.
 
     Parameters
     ----------
     rows : (n_groups, width) as in :mod:`jackettwin.soil.laws.coefficients`
     jacobian : (n_groups, width, n_z) d rows/dz
-    s : (n_s,) where [rad/s]
+    s : (n_s,) Laplace variable [rad/s]
 
     Returns
     -------

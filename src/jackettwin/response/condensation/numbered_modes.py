@@ -1,13 +1,13 @@
 """Poles of numbered modes and their gradients for many parameter sets at once.
 
-This is the one function behind updating, sampling, root locus and cost surfaces. A cold start finds every
-mode and certifies that it has (:mod:`jackettwin.response.condensation.pole_count`). A warm start refines the
-modes of a neighbouring set and recognises them by shape; whatever is in doubt starts cold.
+Updating, sampling, root loci and cost surfaces all use this function. A cold start finds every mode and
+certifies that the list is complete (:mod:`jackettwin.response.condensation.pole_count`). A warm start refines
+the modes of a neighbouring set and recognises them by shape; sets in which this fails are started cold.
 
-Modes that are close on pinned supports are a family, such as the bending pair of a symmetric structure. A
-family is followed whole, recognised by the subspace of its shapes, and its members take the names of the
-pinned modes they resemble most. Those of one multiple pole, of which any mixture is a mode, are turned until
-each resembles one pinned mode alone; the pinned ones are turned to the global axes.
+Modes of close frequency on pinned supports form a family, such as the bending pair of a symmetric structure.
+A family is tracked as a whole and recognised by the subspace of its shapes; its members are assigned to the
+pinned modes they resemble most. Modes of one multiple pole, of which any linear combination is a mode, are
+rotated until each resembles one pinned mode only; the pinned ones are aligned with the global axes.
 """
 
 from __future__ import annotations
@@ -29,30 +29,30 @@ from jackettwin.soil import static_rows
 from jackettwin.structure import Rayleigh
 
 _BYSTANDERS = 2
-"""Modes beyond the last one wanted that may claim a shape, too."""
+"""Number of modes beyond the last requested one that also take part in the assignment by shape."""
 
 
 class Status(IntEnum):
-    """How sure a set of poles is."""
+    """Reliability of a set of poles."""
 
     CERTIFIED = 0
     """The independent count agrees: no mode missed, duplicated or spurious."""
     NEIGHBOUR = 1
     """Continued from a neighbouring set and recognised by shape."""
     UNCERTIFIED = 2
-    """Poles were found, here or where these were continued from, but the count does not confirm them all."""
+    """Poles were found, here or in the set these were continued from, but the count does not confirm all."""
 
 
 @dataclass(frozen=True)
 class Points:
-    """Parameter sets as the numbers F depends on, and how these depend on the parameters z.
+    """Parameter sets: the numbers that F depends on, and their derivatives by the parameters z.
 
     Attributes
     ----------
     rows : (n_sets, n_groups, width) law rows of :mod:`jackettwin.soil.laws.coefficients`
-    rayleigh : (n_sets, 2) a, b
+    rayleigh : (n_sets, 2) Rayleigh coefficients a, b
     jacobian : (n_sets, n_groups, width, n_z) d rows/dz
-    rayleigh_jacobian : (n_sets, 2, n_z)
+    rayleigh_jacobian : (n_sets, 2, n_z) d(a, b)/dz
     """
 
     rows: FloatArray
@@ -85,17 +85,17 @@ class NumberedModes:
 
     Attributes
     ----------
-    modes : mode numbers, those asked for
+    modes : requested mode numbers
     poles : (n_sets, n_modes) λ [rad/s]
     shapes : (n_sets, n_modes, n) condensed coordinates, unit norm
     slopes : (n_sets, n_modes, n_z) dλ/dz
     shape_slopes : (n_sets, n_modes, n_z, n) dx/dz without a component along x, nor along other modes of the
-        same pole; empty unless asked for
+        same pole; empty unless requested
     status : (n_sets,) of :class:`Status`
-    beside : mode numbers of their families' other members
-    beside_poles : (n_sets, n_beside)
-    beside_shapes : (n_sets, n_beside, n)
-    rows, rayleigh : of the sets, as in :class:`Points`
+    beside : mode numbers of the other members of their families
+    beside_poles : (n_sets, n_beside) poles of these members
+    beside_shapes : (n_sets, n_beside, n) their shapes
+    rows, rayleigh : parameters of the sets, as in :class:`Points`
     """
 
     modes: tuple[int, ...]
@@ -121,7 +121,7 @@ class NumberedModes:
         return replace(self, **joined)
 
     def start(self, modes: tuple[int, ...], n_sets: int) -> Start:
-        """Return where the continuation of modes by number starts; a mode that is not among these is NaN."""
+        """Return the start for a continuation of modes by number; a mode that is not available is NaN."""
         poles = np.concatenate([self.poles, self.beside_poles], axis=1)
         shapes = np.concatenate([self.shapes, self.beside_shapes], axis=1)
         place = {mode: i for i, mode in enumerate((*self.modes, *self.beside))}
@@ -149,16 +149,16 @@ def numbered_poles(
 
     .. math:: dλ/dz = -\frac{x^T (∂F/∂z) x}{x^T F'(λ) x}
 
-    (Adhikari 2001; F is symmetric), shapes from the same system bordered by F′x; a multiple pole's from the
-    border of all its modes.
+    (Adhikari 2001; F is symmetric). Derivatives of shapes follow from the same system bordered by F′x, those
+    of a multiple pole from the border of all its modes.
 
     Parameters
     ----------
     modes : mode numbers, counted from 1 on pinned supports
     near : NumberedModes, optional
-        A result for these modes, of one set or as many as there are points, to start from.
+        Result for these modes from which to start, for one set or as many as there are points.
     shape_slopes : bool
-        Return dx/dz too.
+        Whether dx/dz is returned too.
     """
     check_rayleigh(points.rayleigh, model.radius)
     families = families_of(model, modes)

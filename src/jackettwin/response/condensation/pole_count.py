@@ -1,13 +1,14 @@
-r"""Every oscillating mode inside a disc, with a certificate that it is every one.
+r"""All oscillating modes inside a disc, with a certificate that the list is complete.
 
-Eigenvalues of a small state matrix start a Newton iteration on the condensed F(λ) itself. The number of poles
-inside the disc is then counted independently of how they were found: the argument principle on det F gives
-all of them, Sylvester's law of inertia on the real axis those that do not oscillate,
+Newton iterations on the condensed F(λ) start from the eigenvalues of a small state matrix. The number of
+poles inside the disc is then counted independently of how they were found: the argument principle on det F
+gives their total number, Sylvester's law of inertia on the real axis the number of those that do not
+oscillate,
 
 .. math:: 2 N_{osc} + N_{real} = \frac{1}{2π} Δ\arg\det F + N_{law poles}.
 
-Only if the count agrees with the list is it certified: nothing missed, nothing twice, nothing spurious. A
-springpot has no real poles but a branch cut; the contour goes around it.
+The list is certified only if it agrees with the count: no pole is missing, duplicated or spurious. A
+springpot has a branch cut instead of real poles; the contour goes around it.
 """
 
 from __future__ import annotations
@@ -26,21 +27,23 @@ from jackettwin.soil.laws.coefficients import ALPHA
 from jackettwin.structure import Rayleigh
 
 _INNER = 0.9
-"""The disc ends between this share of the band and the band's end, where there is most room."""
+"""The radius of the disc lies between this share of the band's limit and the limit, as far as possible from
+poles."""
 _FAR = 1e-4
-"""A branch with τ·|λ| beyond this share of one is a dashpot or a spring in the start."""
+"""In the initial eigenvalue problem a branch whose τ times the band's radius is below this is a dashpot, and
+one above its inverse a spring."""
 _NEARLY_REAL = 1e-5
 """Rounding may split a multiple real pole into pairs with this share of |λ| in Im λ; the count decides."""
 _ARC_POINTS = 48
 _EDGE = 1e-10
-"""Relative distance to a law's own pole at which the inertia is taken on either side of it."""
+"""Relative distance from a pole of a law at which the inertia is evaluated on either side of it."""
 REAL = 1e-9
 """A pole with |Im λ| below this share of |λ| is real."""
 SAME = 1e-8
 """Poles nearer than this (relative) with parallel shapes are one."""
 _TOGETHER = 1e-3
-"""If one by one they do not add up, starts nearer than this (relative) are refined together: two may have
-ended in one pole."""
+"""If the count does not agree, initial poles nearer than this (relative) are refined together, as two may
+have converged to one pole."""
 
 
 @dataclass(frozen=True)
@@ -52,9 +55,9 @@ class AllModes:
     poles : (n_modes,) λ with Im λ > 0 [rad/s], by |λ|
     shapes : (n_modes, n) condensed coordinates
     radius : float
-        Of the disc [rad/s].
+        Radius of the disc [rad/s].
     n_real : int or None
-        How many poles inside do not oscillate; None for a springpot, whose relaxation is a continuum.
+        Number of poles inside that do not oscillate; None for a springpot, whose relaxation is a continuum.
     certified : bool
     """
 
@@ -66,12 +69,12 @@ class AllModes:
 
 
 def all_modes(model: Condensed, rows: FloatArray, rayleigh: FloatArray) -> AllModes:
-    """Return every oscillating mode of one parameter set and say whether an independent count confirms it.
+    """Return all oscillating modes of one parameter set, and whether an independent count confirms them.
 
     Parameters
     ----------
     rows : (n_groups, width) law rows
-    rayleigh : (2,) a, b
+    rayleigh : (2,) Rayleigh coefficients a, b
     """
     found = _attempt(model, rows, rayleigh, exact=False)
     for together in (False, True):
@@ -86,7 +89,7 @@ def real_poles(model: Condensed, rows: FloatArray, rayleigh: FloatArray, found: 
     Parameters
     ----------
     found : AllModes
-        Of the same set: its disc is searched. Empty for a springpot.
+        Modes of the same set, whose disc is searched. The result is empty for a springpot.
     """
     if found.n_real is None:
         return np.zeros(0)
@@ -134,7 +137,7 @@ def _counted(
     radius: float,
     known: ComplexArray,
 ) -> tuple[float, int | None]:
-    """Return twice the number of oscillating modes inside the disc by the contour, and that of real poles."""
+    """Return twice the number of oscillating modes in the disc by the contour, and that of real poles."""
     cut = bool((rows[:, K_ALPHA] > 0.0).any())
     total = float(kernels().winding(model.arrays(), rows, *rayleigh, radius, cut, _ARC_POINTS, known))
     if cut:
@@ -144,14 +147,14 @@ def _counted(
 
 
 def _agrees(total: float, count: float) -> bool:
-    """Tell whether the winding number, known to rounding, is the integer that was counted."""
+    """Tell whether the winding number equals the counted integer, apart from rounding."""
     return bool(abs(total - count) < 1e-3)
 
 
 def _starts(
     model: Condensed, rows: FloatArray, rayleigh: FloatArray, *, exact: bool
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Return the eigenvalues and vectors (n, n_values) of the coordinates alone, on nearly these laws."""
+    """Return eigenvalues and vectors (n, n_values) of the coordinates with approximations of the laws."""
     laws = [_finite_law(row, model, exact=exact) for row in rows]
     steel = Rayleigh(float(rayleigh[0]), float(rayleigh[1]))
     mass = model.pencil.M + sum(row[MASS] * g.S for row, g in zip(rows, model.pencil.groups, strict=True))
@@ -161,13 +164,13 @@ def _starts(
 
 
 def _finite_law(row: FloatArray, model: Condensed, *, exact: bool) -> Prony:
-    """Return a law with few states: the row's own, or one branch that follows it through the band."""
+    """Return a law with few states: that of the row, or one branch that approximates it in the band."""
     k, tau = row[BRANCHES::2], row[BRANCHES + 1 :: 2]
     live = (k > 0.0) & (tau > 0.0)
     if live.sum() > 1 and not exact or row[K_ALPHA] > 0.0 and not exact:
         return one_branch(row, model.radius)
     k0, c = float(row[K0]), float(row[C])
-    # branches far above the band are dashpots, far below it springs: their states would spoil the scaling
+    # branches far above the band become dashpots, far below it springs: their states would impair the scaling
     fast, slow = live & (tau * model.radius < _FAR), live & (tau * model.radius > 1.0 / _FAR)
     k0, c = k0 + float(k[slow].sum()), c + float((k * tau)[fast].sum())
     live &= ~(fast | slow)
@@ -180,7 +183,7 @@ def _finite_law(row: FloatArray, model: Condensed, *, exact: bool) -> Prony:
 
 
 def _distinct(poles: ComplexArray, shapes: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-    """Return the poles by |λ|, one of each: equal poles are kept apart if their shapes are independent."""
+    """Return the poles by |λ| without duplicates; equal poles with independent shapes are distinct."""
     order = np.argsort(np.abs(poles))
     kept: list[int] = []
     for m in order:
@@ -191,7 +194,7 @@ def _distinct(poles: ComplexArray, shapes: ComplexArray) -> tuple[ComplexArray, 
 
 
 def _roomy(sizes: FloatArray, radius: float) -> float:
-    """Return a radius in the last part of the band, as far as can be from every known pole."""
+    """Return a radius in the last part of the band, as far as possible from every known pole."""
     candidates = radius * np.linspace(_INNER, 1.0, 21)
     if sizes.size == 0:
         return float(candidates[-1])
@@ -199,20 +202,20 @@ def _roomy(sizes: FloatArray, radius: float) -> float:
 
 
 def _law_poles(rows: FloatArray, radius: float) -> FloatArray:
-    """Return the distinct −1/τ of live branches inside a disc, from the origin outwards."""
+    """Return the distinct −1/τ of branches of non-zero stiffness inside a disc, from the origin outwards."""
     k, tau = rows[:, BRANCHES::2].ravel(), rows[:, BRANCHES + 1 :: 2].ravel()
     tau = tau[(k > 0.0) & (tau * radius > 1.0)]
     return np.sort(np.unique(-1.0 / tau))[::-1]
 
 
 def _n_law_poles(model: Condensed, rows: FloatArray, radius: float) -> int:
-    """Return how often det F has a pole inside the disc."""
+    """Return the number of poles of det F inside the disc, with multiplicity."""
     live = (rows[:, BRANCHES::2] > 0.0) & (rows[:, BRANCHES + 1 :: 2] * radius > 1.0)
     return int(sum(rank * n for rank, n in zip(model.ranks, live.sum(axis=1), strict=True)))
 
 
 def _real_breaks(rows: FloatArray, real: FloatArray, radius: float) -> FloatArray:
-    """Return points of the real axis, from 0 to −radius, with every law pole between two close ones."""
+    """Return points on the real axis from 0 to −radius, two of which closely enclose every pole of a law."""
     poles = _law_poles(rows, radius)
     real = np.unique(real[(real < 0.0) & (real > -radius)])
     between = -np.sqrt(real[1:] * real[:-1])
@@ -224,7 +227,7 @@ def _real_breaks(rows: FloatArray, real: FloatArray, radius: float) -> FloatArra
 def _count_real(
     model: Condensed, rows: FloatArray, rayleigh: FloatArray, real: FloatArray, radius: float
 ) -> int:
-    """Return a lower bound of the number of real poles in (−radius, 0): crossings of the inertia."""
+    """Return a lower bound of the number of real poles in (−radius, 0), from changes of the inertia."""
     breaks = _real_breaks(rows, real, radius)
     count = kernels().inertia(model.arrays(), rows, *rayleigh, breaks)
     across = np.zeros(breaks.size - 1, dtype=np.bool_)

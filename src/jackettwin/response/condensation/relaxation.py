@@ -1,18 +1,17 @@
 r"""The real pole nearest a given rate: a relaxation exp(−at) of the supports, with its gradient.
 
-Laws with dashpots relax at rates that crowd together, one for every support DOF. Near a rate a the structure
-hardly depends on λ: with A = F(−a) of the steel alone held fixed, all relaxations of Prony laws are the
-eigenvalues of a symmetric definite pencil in the displacements u of the supports and y_j of the branches'
-dashpots,
+Laws with dashpots have close relaxation rates, one for every support DOF. Near a rate a the steel hardly
+depends on λ: with its F(−a) = A taken as constant, all relaxations of Prony laws are the eigenvalues of a
+symmetric definite pencil in the displacements u of the supports and y_j of the branches' dashpots,
 
 .. math::
 
     \begin{bmatrix} A + K_0 + \sum_j K_j & -K_j \\ -K_j & K_j \end{bmatrix} x
     = a \begin{bmatrix} C & \\ & τ_j K_j \end{bmatrix} x ,
 
-so that all of them are found at once, and none is missed. The one nearest the given rate is then refined on
-the exact F(λ). A rate beyond the band of the condensed structure keeps the pencil's value, which tends to the
-law's own 1/τ_j: far from the data that is all a search needs.
+so that all of them are found at once and none is missed. The one nearest the given rate is then refined on
+the exact F(λ). A rate outside the band of the condensed structure is not refined; its value tends to the
+1/τ_j of the law, which suffices for a search far from the data.
 """
 
 from __future__ import annotations
@@ -30,9 +29,9 @@ from jackettwin.response.condensation.pole_count import REAL
 from jackettwin.soil import BRANCHES, K0, K_ALPHA, MASS, C
 
 _NEAR = 0.3
-"""Refining may move ln a by so much: what it finds farther away is another pole."""
+"""Largest change of ln a by refinement; a result farther away is another pole."""
 _LEAST = 1e-13
-"""Share of the longest relaxation time below which an eigenvalue is rounding."""
+"""Share of the longest relaxation time below which an eigenvalue is due to rounding."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +50,7 @@ class Relaxation:
     slopes: FloatArray
 
     def some(self, which: BoolArray) -> Relaxation:
-        """Return those of some sets."""
+        """Return the relaxations of some sets."""
         return Relaxation(self.rate[which], self.shapes[which], self.slopes[which])
 
 
@@ -68,11 +67,11 @@ def nearest_relaxation(
     Parameters
     ----------
     rate : float
-        [rad/s], inside the band that the structure was condensed for.
+        Rate [rad/s], inside the band for which the structure was condensed.
     at_sensors : (n_channels, n), optional
         Motion of the sensors for each coordinate.
     shape : (n_channels,), optional
-        Measured there.
+        Measured shape at the sensors.
     """
     n_sets, n_z = len(points.rows), points.jacobian.shape[3]
     nothing = Relaxation(
@@ -95,12 +94,12 @@ def nearest_relaxation(
 
 
 class _Pencil:
-    """The symmetric pencil P x = a Q x of the supports' relaxations, the structure held at a fixed rate."""
+    """The symmetric pencil P x = a Q x of the supports' relaxations, with the steel's F at a fixed rate."""
 
     def __init__(self, model: Condensed, points: Points, rate: float) -> None:
         self.points, self.rate = points, rate
         patterns = np.array([np.asarray(group.S) for group in model.pencil.groups])
-        # the structure follows the coordinates that laws act on
+        # condense the structure to the coordinates that laws act on
         on = np.flatnonzero(np.einsum("gii->i", patterns))
         rayleigh, which = np.unique(points.rayleigh, axis=0, return_inverse=True)
         steel = [_followed(_steel(model, ab, rate), on) for ab in rayleigh]
@@ -134,7 +133,7 @@ class _Pencil:
         L = np.linalg.inv(np.linalg.cholesky(P))
         time, v = np.linalg.eigh(L @ Q @ L.transpose(0, 2, 1))
         x = L.transpose(0, 2, 1) @ v
-        # the springs that no dashpot follows relax at once
+        # motions without damping relax instantly
         real = (time > _LEAST * time[:, -1:]).any(axis=0)
         with np.errstate(divide="ignore"):
             rates = np.where(time > _LEAST * time[:, -1:], 1.0 / time, np.inf)
@@ -179,7 +178,7 @@ def _steel(model: Condensed, rayleigh: FloatArray, rate: float) -> FloatArray:
 
 
 def _followed(A: FloatArray, on: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Return A condensed on some coordinates (m, m), and how all others follow them (n, m)."""
+    """Return A condensed to some coordinates (m, m), and the transformation to all coordinates (n, m)."""
     off = np.setdiff1d(np.arange(len(A)), on)
     spread = np.zeros((len(A), on.size))
     spread[on] = np.eye(on.size)
@@ -188,7 +187,7 @@ def _followed(A: FloatArray, on: IntArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _refined(model: Condensed, points: Points, start: Relaxation) -> Relaxation:
-    """Return the relaxations on the exact F(λ), where the condensed structure reaches them."""
+    """Return the relaxations refined on the exact F(λ), where they are inside the band."""
     inside = np.flatnonzero(start.rate < model.radius)
     rate, shapes, slopes = start.rate.copy(), start.shapes.copy(), start.slopes.copy()
     values = (-start.rate[inside, None]).astype(np.complex128)

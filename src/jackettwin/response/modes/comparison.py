@@ -1,4 +1,4 @@
-"""Modes of a structure beside those that another program found, node by node."""
+"""Comparison of a structure's modes with those of another program, at common nodes."""
 
 from __future__ import annotations
 
@@ -18,16 +18,17 @@ from jackettwin.response.state import factorised
 from jackettwin.structure import Assembly
 
 NEAREST_M = 0.1
-"""How far a node may lie from where the other program has it."""
+"""Largest distance between a node and that of the other program [m]."""
 PAIR = 1e-3
-"""Modes whose frequencies differ by less are a pair: either program may turn them as it likes."""
+"""Relative difference of frequencies below which modes are a pair; either program may return any rotation of
+its shapes."""
 _FEWEST = 3
 _ALIKE = 0.5
-"""Modes that agree less are no two of a kind."""
+"""Smallest MAC of two modes that are matched."""
 
 
 class ModePair(NamedTuple):
-    """An own mode and the other program's; MAC of translations, and of rotations if they are known."""
+    """A mode and its counterpart in the other program; MAC of translations and, if known, of rotations."""
 
     own: int
     other: int
@@ -37,17 +38,18 @@ class ModePair(NamedTuple):
 
 @dataclass(frozen=True)
 class ModeComparison:
-    """Modes of a structure beside another program's.
+    """Modes of a structure compared with those of another program.
 
     Attributes
     ----------
     own : UndampedModes
-        Pairs of one frequency turned to the other program's.
+        Modes of the structure; pairs of one frequency are rotated to those of the other program.
     other : NodalModes
-        At the nodes that both know, named as here; pairs of its own turned to ours.
-    mac : (n_own, n_other) of the translations there
-    pairs : by own mode; what is alike by less than a half is left out
-    unknown : nodes of the other program that are none here
+        Modes of the other program at the common nodes, with the structure's node names; its pairs are rotated
+        too.
+    mac : (n_own, n_other) MAC of the translations at the common nodes
+    pairs : matched modes, by mode of the structure; modes with a MAC below one half are left out
+    unknown : nodes of the other program that the structure does not have
     """
 
     own: UndampedModes
@@ -67,19 +69,19 @@ def nodal_modes(assembly: Assembly, modes: UndampedModes) -> NodalModes:
 
 
 def compare_modes(assembly: Assembly, own: UndampedModes, other: NodalModes) -> ModeComparison:
-    """Return own modes beside another program's.
+    """Compare modes with those of another program.
 
-    Nodes are one by name, or else by place within 0.1 m.
+    Nodes are matched by name, or else by position within 0.1 m.
 
     Raises
     ------
     InputError
-        If fewer than three nodes are known here.
+        If fewer than three nodes are matched.
     """
     here, which, unknown = _matched(assembly, other)
     require(
         len(here) >= _FEWEST,
-        "too few nodes of the other program are known here",
+        "too few nodes of the other program are nodes of the structure",
         field="node",
         value=list(other.nodes[:5]),
         allowed=f"{_FEWEST} nodes or more, by name or by x_m, y_m, z_m within {NEAREST_M:g} m",
@@ -107,7 +109,8 @@ def compare_modes(assembly: Assembly, own: UndampedModes, other: NodalModes) -> 
 def expanded(assembly: Assembly, other: NodalModes) -> FloatArray:
     """Return another program's shapes on all of the assembly's DOFs, (n_dof, n_modes).
 
-    Where it knows nothing, the structure rests on what it knows: the static shape of least strain energy.
+    At other nodes the static shape of least strain energy is taken, given the displacements at the common
+    nodes.
     """
     components = range(6 if other.has_rotations else 3)
     known = np.array(
@@ -126,7 +129,7 @@ def expanded(assembly: Assembly, other: NodalModes) -> FloatArray:
 
 
 def _matched(assembly: Assembly, other: NodalModes) -> tuple[tuple[str, ...], IntArray, tuple[str, ...]]:
-    """Return our names of the other's nodes, their places in its table, and the names that are none here."""
+    """Return names of the common nodes, their rows in the other's table, and names without a match."""
     structure = assembly.structure
     followers = {link.follower for link in structure.rigid_links}
     free = [name for name in structure.nodes if name not in followers]
@@ -157,9 +160,9 @@ def _rows(shapes: FloatArray) -> FloatArray:
 
 
 def _turn(frequency_hz: FloatArray, shapes: FloatArray, wanted: FloatArray) -> FloatArray:
-    """Return the turn R (n, n) of shapes (n, m) that brings modes of one frequency nearest to those wanted.
+    """Return the rotation R (n, n) of shapes (n, m) that brings modes of one frequency to wanted ones.
 
-    Within a pair (or more) it is orthogonal (Procrustes); others stay.
+    Within a pair (or more) it is orthogonal (Procrustes problem); single modes are not changed.
     """
     n = frequency_hz.size
     R = np.eye(n)

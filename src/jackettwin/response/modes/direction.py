@@ -1,4 +1,4 @@
-"""In which horizontal direction a mode moves."""
+"""Horizontal direction of a mode's motion."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from jackettwin.arrays import ComplexArray
 
 
 def principal_direction(moved: ComplexArray) -> tuple[float, float]:
-    """Return the horizontal direction of most motion [rad] of some places (n, 2), and the sum of its squares.
+    """Return the horizontal direction [rad] of largest motion of some points (n, 2), and its sum of squares.
 
     Examples
     --------

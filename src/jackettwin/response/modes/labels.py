@@ -1,4 +1,4 @@
-"""Which mode is which: fore-aft, side-side, torsion, heave or local; labels as people write them."""
+"""Kinds of modes (fore-aft, side-side, torsion, heave, local) and their labels in usual spellings."""
 
 from __future__ import annotations
 
@@ -17,14 +17,15 @@ from jackettwin.structure import Assembly
 
 KINDS = ("fore_aft", "side_side", "heave", "torsion")
 LOCAL = "local"
-"""Braces swing, the structure's axis rests: no sensor on the tower sees such a mode."""
+"""Braces vibrate while the structure's axis does not move: no sensor on the tower measures such a mode."""
 _TORSION_RADIUS_M = 10.0
-"""A yaw rotation counts as the sway it causes this far from the axis: about a jacket top's half width."""
+"""Distance from the axis at which the displacement due to yaw is compared with sway: about half a jacket's
+top width [m]."""
 _LOCAL_SHARE = 0.1
-"""An axis that moves less than this share of the largest motion rests: local modes stay below 0.04 (braces of
-two jackets) and 0.08 (panels), their global ones above 0.8."""
+"""Ratio of the axis' motion to the largest motion below which a mode is local: local modes have at most 0.04
+(braces of two jackets) or 0.08 (panels), global ones more than 0.8."""
 _EVEN = 1e-3
-"""Shares of motion along x that differ by less are the same; the lower of the two modes is then fore-aft."""
+"""Difference between shares of motion along x below which they are equal; the lower mode is then fore-aft."""
 
 KIND_WORDS: tuple[tuple[str, str], ...] = (
     ("fore_aft", r"fa|fore[\s_\-]*aft(?:[\s_\-]*bending)?"),
@@ -33,29 +34,30 @@ KIND_WORDS: tuple[tuple[str, str], ...] = (
     ("heave", r"heave|vertical|vert|axial"),
     ("local", r"local"),
 )
-"""Kind of mode and what it is called, without regard to case."""
+"""Kind of mode and the pattern of its names, without regard to case."""
 _FORMS = (
     r"^(?:mode\s*)?(?P<number>\d{1,2})(?:st|nd|rd|th|\.)?[\s_\-.]*(?:KIND)(?:\s*mode)?$",
     r"^(?:KIND)[\s_\-.#]*(?P<number>\d{1,2})$",
     r"^(?P<number>)(?:KIND)$",
 )
-"""Number before the kind, behind it, or none."""
+"""Number before or after the kind, or none."""
 
 
 def mode_kinds(
     assembly: Assembly, shapes: npt.NDArray[Any], frequency_hz: FloatArray, *, heading_rad: float = 0.0
 ) -> tuple[str, ...]:
-    """Return the kind of each mode by how the structure's axis moves, level by level.
+    """Return the kind of each mode by the motion of the structure's axis at each level.
 
-    The axis is the nodes above and below the highest one; without a tower, the mean of the interface nodes.
-    The two modes of a nearly symmetric structure that sway across each other may both lie between the global
-    axes; the one nearer to x is then the fore-aft one of the two. Fore-aft is along the nacelle's heading.
+    The axis consists of the nodes on the vertical through the highest one; without a tower, of the mean of
+    the interface nodes. Two modes of a nearly symmetric structure that sway perpendicular to each other may
+    both lie between the global axes; the one nearer to x is then fore-aft. Fore-aft is along the nacelle's
+    heading.
 
     Parameters
     ----------
     shapes : (assembly.n_dof, n_modes)
     frequency_hz : (n_modes,) ascending
-    heading_rad : of the nacelle, anticlockwise from x seen from above
+    heading_rad : heading of the nacelle, anticlockwise from x seen from above
     """
     u = (assembly.expand @ shapes).reshape(len(assembly.mesh.coordinates), 6, -1)
     axis = np.abs(seen_from(heading_rad, np.tensordot(axis_levels(assembly), u, 1)[:, [0, 1, 2, 5]]))
@@ -74,7 +76,7 @@ def mode_kinds(
 
 
 def _across(one: float, other: float) -> bool:
-    """Tell whether two shares of motion along x are those of sways across each other: their sum is one."""
+    """Tell whether two shares of motion along x belong to perpendicular sway modes: their sum is one."""
     return 0.5 <= one + other <= 1.5
 
 

@@ -15,12 +15,12 @@ from jackettwin.response.system import System
 from jackettwin.structure import AT_REST, below_zero, lowest_modes
 
 _SHOWN = 6
-"""Modes that a result names when it is printed."""
+"""Number of modes named when a result is printed."""
 
 
 @dataclass(frozen=True)
 class UndampedModes:
-    """Real modes of (K + D(0)) φ = ω² M φ; those of one frequency are turned to the global axes.
+    """Real modes of (K + D(0)) φ = ω² M φ; modes of one frequency are aligned with the global axes.
 
     Attributes
     ----------
@@ -42,13 +42,13 @@ class UndampedModes:
 
     @property
     def n_at_rest(self) -> int:
-        """How many of them, the first, are free motions of a floating structure or a mechanism."""
+        """Number of leading modes that are rigid-body motions of a floating structure, or a mechanism."""
         return int(np.count_nonzero(self.omega <= AT_REST * self.omega.max(initial=0.0)))
 
 
 @dataclass(frozen=True)
 class DampedModes:
-    """Complex modes F(λ)x = 0; those of one pole are turned to the global axes.
+    """Complex modes F(λ)x = 0; modes of one pole are aligned with the global axes.
 
     Attributes
     ----------
@@ -93,16 +93,16 @@ def undamped_modes(system: System, number: int) -> UndampedModes:
 
 
 def damped_modes(system: System, *, below_hz: float) -> DampedModes:
-    """Return every pole with |λ|/2π below ``below_hz``: oscillating modes and real poles.
+    """Return all poles with |λ|/2π below ``below_hz``: oscillating modes and real poles.
 
-    The real poles of a springpot are a continuum, the law's branch cut; none is listed.
+    A springpot has a branch cut instead of real poles, so that none is listed.
 
     Raises
     ------
     InputError
         If ``below_hz`` is not positive.
     NumericalError
-        If the iteration does not converge or a refined pole does not come to rest.
+        If the iteration or the refinement of a pole does not converge.
     """
     require(0.0 < below_hz < np.inf, "must be positive", field="below_hz", value=below_hz, allowed="> 0")
     pairs = poles_below(system.pencil, 2.0 * pi * below_hz)

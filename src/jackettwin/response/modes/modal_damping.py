@@ -17,12 +17,12 @@ from jackettwin.structure import Assembly, Rayleigh
 def modal_damping(
     assembly: Assembly, ratios: Mapping[int, float], rayleigh: Rayleigh | None = None
 ) -> Matrix:
-    r"""Return what gives numbered modes of the structure their ratios, beside its Rayleigh damping.
+    r"""Return the damping matrix that, added to Rayleigh damping, gives numbered modes their damping ratios.
 
     .. math:: C = \sum_i 2 (ζ_i - ζ_R(ω_i)) ω_i \, M φ_i φ_i^T M, \quad φ_i^T M φ_i = 1
 
-    with the modes on pinned feet, a monopile's clamped ones: on supports of their own they keep the share of
-    the structure's damping that their motion has. A mode that is not named has Rayleigh's ratio.
+    with the modes on pinned feet (a monopile's clamped). On other supports the structure's contribution to
+    the damping follows from the motion. A mode that is not given has the Rayleigh ratio.
 
     Parameters
     ----------
@@ -35,12 +35,12 @@ def modal_damping(
     Raises
     ------
     InputError
-        If a ratio is out of range or below Rayleigh's, or the structure has no such mode.
+        If a ratio is out of range or below the Rayleigh ratio, or the structure has no such mode.
     """
     for mode, ratio in ratios.items():
         require(
             mode >= 1 and 0.0 <= ratio < 1.0,
-            "a ratio by mode is out of range",
+            "a modal damping ratio is out of range",
             field=f"damping.modes.{mode}",
             value=ratio,
             allowed="modes from 1 on, 0 ≤ ratio < 1",
@@ -61,7 +61,7 @@ def modal_damping(
     for mode, ratio, least in zip(rows + 1, zeta, np.atleast_1d(own), strict=True):
         require(
             ratio >= least * (1.0 - 1e-9),
-            "less damping than Rayleigh's gives this mode already: the difference would feed energy in",
+            "is less than the Rayleigh damping of this mode: the difference would add energy",
             field=f"damping.modes.{mode}",
             value=float(ratio),
             allowed=f"{least:.4g} or more beside this damping.rayleigh",

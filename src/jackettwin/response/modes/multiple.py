@@ -1,8 +1,8 @@
-"""Modes of equal frequency: a symmetric structure has them in pairs, and any mixture of a pair is one.
+"""Modes of equal frequency: symmetric structures have pairs, whose linear combinations are modes too.
 
-Which mixtures a solver returns is rounding's choice. Here they are turned to the global axes, or to those of
-a nacelle whose heading is given, so that the first of a pair is the one along x, fore-aft, whatever the mesh,
-the weight or the solver.
+Which combinations a solver returns depends on rounding. They are rotated here to the global axes, or to those
+of a nacelle with a given heading, so that the first of a pair is along x (fore-aft), independently of mesh
+and solver.
 """
 
 from __future__ import annotations
@@ -17,16 +17,18 @@ from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.structure import Assembly
 
 INSEPARABLE = 1e-5
-"""Frequencies nearer than this (relative) are one: deviations of coordinates written to the millimetre, and
-rounding, part them by less; no measurement parts them."""
+"""Relative difference below which frequencies are equal: coordinates rounded to the millimetre and rounding
+errors cause smaller differences, and no measurement resolves them."""
 _ELSEWHERE = 1e-6
-"""Weight of the other nodes' motion beside the axis': where the axis rests, it decides."""
+"""Weight of the motion of all other nodes relative to that of the axis; it matters only where the axis does
+not move."""
 
 
 def axis_levels(assembly: Assembly) -> FloatArray:
-    """Return (n_levels, n_nodes): the mean over the nodes of the structure's axis at each height.
+    """Return the matrix (n_levels, n_nodes) that averages the nodes of the structure's axis at each height.
 
-    The axis is the nodes above and below the highest one; without a tower, the mean of the interface nodes.
+    The axis consists of the nodes on the vertical through the highest one; without a tower, of the mean of
+    the interface nodes.
     """
     mesh, structure = assembly.mesh, assembly.structure
     x, y, _ = structure.nodes[structure.top_node]
@@ -41,7 +43,7 @@ def axis_levels(assembly: Assembly) -> FloatArray:
 
 
 def inseparable(values: npt.NDArray[Any], closer_than: float = INSEPARABLE) -> list[IntArray]:
-    """Return groups, of two or more, of neighbours in the list that are nearer than a share of their size."""
+    """Return groups of two or more neighbours in the list whose relative differences are below a limit."""
     if values.size < 2:
         return []
     cuts = np.flatnonzero(~(np.abs(np.diff(values)) <= closer_than * np.abs(values[1:]))) + 1
@@ -53,7 +55,7 @@ def seen_from(heading_rad: float, motion: npt.NDArray[Any]) -> npt.NDArray[Any]:
 
     Parameters
     ----------
-    motion : (n_points, 2 or more, n_modes) along the global x, y and what is kept
+    motion : (n_points, 2 or more, n_modes) components along the global x and y, and further ones, not changed
     """
     c, s = np.cos(heading_rad), np.sin(heading_rad)
     turned = motion.copy()
@@ -65,13 +67,13 @@ def seen_from(heading_rad: float, motion: npt.NDArray[Any]) -> npt.NDArray[Any]:
 def aligned(
     assembly: Assembly, values: npt.NDArray[Any], shapes: npt.NDArray[Any], *, heading_rad: float = 0.0
 ) -> npt.NDArray[Any]:
-    """Return the shapes with those of inseparable values turned to the axes: first what moves most along x.
+    """Return the shapes, with those of equal values rotated to the axes, the one along x first.
 
     Parameters
     ----------
     values : (n_modes,) natural frequencies or poles, sorted
     shapes : (assembly.n_dof, n_modes)
-    heading_rad : of the nacelle, whose axes are meant; zero: the global ones
+    heading_rad : heading of the nacelle that defines the axes; zero for the global ones
     """
     groups = inseparable(values)
     if not groups:
@@ -87,7 +89,7 @@ def aligned(
 def aligned_coordinates(
     assembly: Assembly, basis: FloatArray, omega: FloatArray, x: FloatArray
 ) -> FloatArray:
-    """Return mass-normalised modes in coordinates of a basis, turned as :func:`aligned` turns shapes.
+    """Return mass-normalised modes in coordinates of a basis, rotated as by :func:`aligned`.
 
     Parameters
     ----------
@@ -113,15 +115,15 @@ def turning(
     *,
     heading_rad: float = 0.0,
 ) -> npt.NDArray[Any]:
-    """Return the mixtures (n_modes, n_modes) of shapes that stand apart along x and y, those along x first.
+    """Return the combinations (n_modes, n_modes) of shapes that separate motion along x and y, along x first.
 
-    They are the extremes of the energy of motion along x less that along y, at equal kinetic energy, and keep
-    the shapes' mean norm.
+    They are the extremes of the difference between the energy of motion along x and along y at equal kinetic
+    energy, scaled to the mean norm of the shapes.
 
     Parameters
     ----------
     shapes : (assembly.n_dof, n_modes)
-    gram : (n_modes, n_modes) their products xᴴMx
+    gram : (n_modes, n_modes) products xᴴMx
     """
     u = (assembly.expand @ shapes).reshape(len(assembly.mesh.coordinates), 6, -1)
     motion = np.concatenate([np.tensordot(levels, u[:, :2], 1), np.sqrt(_ELSEWHERE) * u[:, :2]])

@@ -1,4 +1,4 @@
-"""Damping that parts of a structure have of their own: bending blades."""
+"""Damping of elements with their own loss, instead of the steel's: flexible blades."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from jackettwin.structure.mesh import sum_of_blocks
 
 
 def own_damping(assembly: Assembly, rayleigh: Rayleigh) -> tuple[tuple[Any, Law], ...]:
-    """Return what ``build_system`` takes as ``spread``: own damping in the place of the steel's.
+    """Return the argument ``spread`` of ``build_system`` that replaces Rayleigh damping by the elements' own.
 
-    Empty if no element has any.
+    It is empty if no element has damping of its own.
     """
     mesh, blocks = assembly.mesh, []
     for element in assembly.structure.elements:

@@ -1,11 +1,12 @@
-"""Every damped pole inside a disc, by a sparse method.
+"""All damped poles inside a disc, by a sparse method.
 
-The first-order system of the thesis, (7.2) and (7.5), is never formed. Arnoldi iteration works on its inverse
-about a small positive real shift σ, where F(σ) is real, symmetric and positive definite for any passive
-support. What it found is projected out and it runs again, until nothing is left inside the disc: that is what
-finds multiple poles. Each pole, or cluster of nearly equal poles, is then refined on the non-linear F(λ)x = 0
-itself, which keeps their number. A springpot starts from a law of few states; what that finds is refined
-on the springpot's own law in the space of all the shapes found, and there alone on the whole.
+The first-order system of the thesis, (7.2) and (7.5), is never formed. Arnoldi iteration is applied to its
+inverse about a small positive real shift σ, where F(σ) is real, symmetric and positive definite for any
+passive support. Converged states are projected out and the iteration is repeated until no pole is left inside
+the disc; in this way multiple poles are found. Each pole, or cluster of nearly equal poles, is then refined
+on the non-linear F(λ)x = 0, which preserves their number. A springpot is first approximated by a law of few
+states; the poles found are refined with the springpot's law, first in the space of all shapes found, then on
+the whole system.
 """
 
 from __future__ import annotations
@@ -26,29 +27,30 @@ from jackettwin.response.system import Matrix, Pencil
 from jackettwin.soil import Prony, Springpot, one_branch, prony_fit
 
 Pair = tuple[complex, ComplexArray]
-"""A pole and its shape on the pencil's DOFs."""
+"""A pole and its shape at the pencil's DOFs."""
 
 _SMALL = 300
-"""State vectors shorter than this are solved densely: Arnoldi needs room."""
+"""State vectors shorter than this are solved densely, as Arnoldi iteration needs a larger space."""
 REAL = 1e-9
 """A pole with |Im λ| below this share of |λ| is real."""
 _AT_ZERO = 5e-6
-"""A pole smaller than this share of the disc's radius is a structure at rest, not an oscillation."""
+"""A pole smaller than this share of the disc's radius is a rigid-body motion, not an oscillation."""
 _AT_REST = 1e-10
-"""A pole that a Newton step moves less than this (relative) is found."""
+"""A pole has converged when a Newton step changes it by less than this (relative)."""
 _ROUNDING = 1e-7
-"""What rounding may leave in a pole of a finely cut mesh, whose stiffness spans many decades."""
+"""Relative error of a pole due to rounding on a fine mesh, whose stiffness spans many decades."""
 _FINE = (1e-4, 1e3, 4)
-"""Range over the radius and branches a decade of a springpot's fit where one branch did not do. Every branch
-inside the disc brings a real pole for every degree of freedom it holds, all of which have to be found."""
+"""Limits of the range, relative to the radius, and branches per decade of a springpot's fit, used if one
+branch is not sufficient. Every branch inside the disc adds a real pole for every degree of freedom it acts
+on, all of which must be found."""
 _OFF = 0.05
-"""By which the starts of one branch, within 10 % of the law over a decade and a half, may miss."""
+"""Relative error of initial poles from one branch (within 10 % of the law over a decade and a half)."""
 _IN_SPACE = 1e-7
-"""Where a Newton step among the shapes found ends: they are not the springpot's own to more than this."""
+"""Relative size of the last Newton step in the space of the shapes found, which limits its accuracy."""
 _STALE = 1e-3
-"""A pole that moved further (relative) wants new factors."""
+"""A new factorisation is made when a pole has moved farther than this (relative)."""
 _ALIKE = 0.9
-"""Cosine of two shapes of unit length from which they are one."""
+"""Cosine of two shapes above which they are the same."""
 _CLUSTER = 1e-5
 """Poles nearer than this (relative) are refined together, so that none falls on its neighbour."""
 
@@ -91,7 +93,7 @@ def _from_start(pencil: Pencil, start: Pencil, radius: float) -> tuple[list[Pair
 
 
 def _doubled(pairs: list[Pair]) -> bool:
-    """Tell whether two starts came to one pole: the same value and the same shape."""
+    """Tell whether two initial poles converged to the same pole and shape."""
     values = np.array([value for value, _ in pairs])
     near = np.abs(values[:, None] - values) <= _ROUNDING * np.abs(values)
     return any(
@@ -107,7 +109,7 @@ def _fitted(pencil: Pencil, fit: Callable[[Springpot], Prony]) -> Pencil:
 
 
 def _on_space(pencil: Pencil, V: FloatArray) -> Pencil:
-    """Return the pencil on the coordinates of a basis (n, n_vectors)."""
+    """Return the pencil projected on a basis (n, n_vectors)."""
     groups = tuple(replace(group, S=V.T @ (group.S @ V)) for group in pencil.groups)
     return Pencil(V.T @ (pencil.M @ V), V.T @ (pencil.K @ V), pencil.rayleigh, groups)
 
@@ -115,7 +117,7 @@ def _on_space(pencil: Pencil, V: FloatArray) -> Pencil:
 def _poles_within(pencil: Pencil, radius: float) -> tuple[ComplexArray, ComplexArray]:
     """Return all poles with |λ| ≤ radius and Im λ ≥ 0 and their displacement parts (n, n_poles).
 
-    Of a nearly real pair both are returned: rounding may have made it from two real poles.
+    Both poles of a nearly real pair are returned, since rounding may have produced it from two real poles.
     """
     sigma = 0.02 * radius
     inverse, size = shifted_inverse(pencil, sigma)
@@ -123,7 +125,7 @@ def _poles_within(pencil: Pencil, radius: float) -> tuple[ComplexArray, ComplexA
     theta, Y = np.linalg.eig(Q.T @ np.column_stack([inverse.matvec(q) for q in Q.T]))
     keep = _inside(theta, sigma, radius)
     values = (sigma + 1.0 / theta[keep]).astype(np.complex128)
-    # a structure at rest has double poles at zero, which rounding splits into slow pairs
+    # rigid-body motions are double poles at zero, which rounding splits into slow pairs
     resting = np.abs(values) <= _AT_ZERO * radius
     values[resting] = values[resting].real
     upper = values.imag >= -_CLUSTER * np.abs(values)
@@ -138,8 +140,8 @@ def _inside(theta: ComplexArray, sigma: float, radius: float) -> BoolArray:
 def _invariant_subspace(inverse: spla.LinearOperator, sigma: float, radius: float, size: int) -> FloatArray:
     """Return an orthonormal basis of the states of all poles with |λ| ≤ radius.
 
-    Arnoldi from one vector sees one state of a multiple pole. So it runs again beside what is already known,
-    from another start, until all it finds lies outside.
+    Arnoldi iteration from one vector finds one state of a multiple pole. It is therefore repeated from
+    another vector, orthogonal to the known states, until all poles found lie outside.
     """
     Q, k = np.zeros((size, 0)), 24
     while True:
@@ -158,7 +160,7 @@ def _invariant_subspace(inverse: spla.LinearOperator, sigma: float, radius: floa
                 operator, k=k, v0=_start(size, Q.shape[1]), ncv=min(size, 2 * k + 20), tol=1e-12, maxiter=300
             )
         except (spla.ArpackError, RuntimeError) as error:
-            if k > 4:  # the last of the many were too small beside the first to converge
+            if k > 4:  # among so many, the last were too small relative to the first to converge
                 k //= 2
                 continue
             raise NumericalError(f"damped modes did not converge: {error}") from error
@@ -174,14 +176,14 @@ def _extended(Q: FloatArray, x: ComplexArray) -> FloatArray:
     parts = np.hstack([x.real, x.imag])
     parts = parts - Q @ (Q.T @ parts)
     u, s, _ = la.svd(parts, full_matrices=False)
-    # what is nearly dependent would add noise; the next run finds it cleanly
+    # nearly dependent vectors would add noise; the next run finds them accurately
     new = u[:, s > 1e-6 * s[0]]
     new = new - Q @ (Q.T @ new)
     return np.hstack([Q, np.linalg.qr(new)[0]])
 
 
 def _clusters(values: ComplexArray) -> list[IntArray]:
-    """Return groups of poles that lie too close to be refined one by one."""
+    """Return groups of poles that are too close to be refined one by one."""
     near = np.abs(values[:, None] - values) <= _CLUSTER * np.abs(values)
     n_groups, group = connected_components(near.astype(float), directed=False)
     return [np.flatnonzero(group == g) for g in range(n_groups)]
@@ -193,9 +195,9 @@ def _exactly(pencil: Pencil, values: ComplexArray, x: ComplexArray) -> list[Pair
     Raises
     ------
     NumericalError
-        If a pole does not come to rest where Arnoldi found it.
+        If the refinement of a pole does not converge near its initial value.
     """
-    if not values.imag.any():  # real poles are as exact as Arnoldi made them
+    if not values.imag.any():  # real poles are not refined
         return list(zip(map(complex, values), x.T, strict=True))
     found, y, at_rest = _newton(pencil, values, x)
     if not at_rest or abs(found.mean() - values.mean()) > 1e-6 * abs(values.mean()):
@@ -206,7 +208,7 @@ def _exactly(pencil: Pencil, values: ComplexArray, x: ComplexArray) -> list[Pair
 def _nearly(
     pencil: Pencil, small: Pencil, space: FloatArray, values: ComplexArray, x: ComplexArray
 ) -> list[Pair]:
-    """Return the poles of one cluster from a start law's; none if it was an artefact near the branch cut.
+    """Return the poles of one cluster from approximate ones; none for an artefact near the branch cut.
 
     Parameters
     ----------
@@ -225,9 +227,9 @@ def _newton(
 ) -> tuple[ComplexArray, ComplexArray, bool]:
     r"""Refine a cluster of poles together: inverse iteration and Rayleigh–Ritz on F(λ) about their mean.
 
-    With one pole this is Newton's method; F is symmetric, so that
-    :math:`δ = -u^T F u / u^T F' u` with :math:`u = F^{-1} F' x` converges cubically. Near the pole the
-    factors serve on, by residual inverse iteration (Neumaier 1985): :math:`x - F(σ)^{-1} F(λ) x`.
+    For one pole this is Newton's method: since F is symmetric, :math:`δ = -u^T F u / u^T F' u` with
+    :math:`u = F^{-1} F' x` converges cubically. Near the pole a factorisation is reused by residual inverse
+    iteration (Neumaier 1985): :math:`x - F(σ)^{-1} F(λ) x`.
     """
     change = last = np.inf
     for _ in range(steps):
@@ -240,7 +242,7 @@ def _newton(
             else:
                 x = x - solve(F @ x + dF @ (x * (values - mean)))
         except (RuntimeError, np.linalg.LinAlgError):
-            pass  # F is singular to the last digit: the vectors are as good as they get
+            pass  # F is numerically singular: the vectors have converged
         last = change
         Q = np.linalg.qr(x)[0]
         delta, y = la.eig(-(Q.T @ (F @ Q)), Q.T @ (dF @ Q))
@@ -252,7 +254,7 @@ def _newton(
 
 
 def _solver(F: Matrix) -> Callable[[ComplexArray], ComplexArray]:
-    """Return what solves F x = b, F sparse or dense."""
+    """Return a function that solves F x = b, for sparse or dense F."""
     if isinstance(F, np.ndarray):
         return lambda b: np.asarray(np.linalg.solve(F, b), dtype=np.complex128)
     factors = factorised(F)
@@ -260,5 +262,5 @@ def _solver(F: Matrix) -> Callable[[ComplexArray], ComplexArray]:
 
 
 def _start(n: int, seed: int = 0) -> FloatArray:
-    """Return a fixed start vector with something of every mode in it."""
+    """Return a fixed start vector with a component along every mode."""
     return np.random.default_rng(seed).standard_normal(n)

@@ -1,4 +1,4 @@
-"""Follow modes from one support to another by shape, never by their place in a sorted list."""
+"""Tracking of modes from one support to another by shape, not by their position in a sorted list."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import numpy.typing as npt
 from jackettwin.arrays import FloatArray, IntArray
 
 NEAR_DEGENERATE = 0.03
-"""Reference modes closer than this (relative) are followed as one subspace."""
+"""Reference modes closer than this (relative) are tracked as one subspace."""
 RECOGNISED = 0.3
-"""Modes with a smaller mass-weighted MAC than this are not taken for the same mode."""
+"""Smallest mass-weighted MAC of modes that are taken for the same mode."""
 
 
 def mass_mac(M: Any, phi: FloatArray, x: npt.NDArray[Any]) -> FloatArray:
@@ -46,7 +46,7 @@ def track_modes(M: Any, omega: FloatArray, phi: FloatArray, x: npt.NDArray[Any])
     subspace = np.empty_like(single)
     for group in near_degenerate(omega):
         subspace[group] = single[group].sum(axis=0)
-    # the subspace decides who belongs; inside it the single shapes say which is which
+    # candidates are assigned to subspaces first; within a subspace single shapes decide
     from scipy.optimize import linear_sum_assignment  # half a second, and rarely needed
 
     rows, columns = linear_sum_assignment(-(subspace + 0.1 * single))

@@ -1,4 +1,4 @@
-"""A regular wave passing: loads on the members and the rest positions they would hold the structure in."""
+"""Passage of a regular wave: loads on the members and the quasi-static displacements they cause."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ class Passage:
 
     Attributes
     ----------
-    height_m, period_s, length_m, direction_rad : of the wave
-    displacement : (n_phases, assembly.n_dof) quasi-static [m, rad]
+    height_m, period_s, length_m, direction_rad : height, period, length and direction of the wave
+    displacement : (n_phases, assembly.n_dof) quasi-static displacements [m, rad]
     load_n_m : (n_phases, n_elements) force per length on each element [N/m]
     """
 
@@ -49,7 +49,7 @@ def wave_passage(
     coefficients: Coefficients | None = None,
     n_phases: int = 24,
 ) -> Passage:
-    """Return a linear wave through the structure, from crest to crest at the origin.
+    """Return the passage of a linear wave, from one crest at the origin to the next.
 
     Raises
     ------

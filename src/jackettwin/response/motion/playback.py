@@ -1,4 +1,4 @@
-"""A record played on the whole structure: sensors to modes, modes to every node."""
+"""Motion of the whole structure during a record: modal coordinates from sensors, displacements from modes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from jackettwin.structure import Assembly
 _TAPER = 0.3
 """Share of a band edge's frequency over which the filter rises."""
 _VISIBLE, _NEW = 0.05, 0.2
-"""Of the best seen mode's size at the sensors, and of a pattern's own size."""
+"""Smallest size of a mode at the sensors relative to the best visible mode, and smallest part of its pattern
+that is independent of lower modes."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,7 @@ class Playback:
     shapes : (assembly.n_dof, n_modes)
     q : (n_times, n_modes); displacement is shapes @ q [m]
     step_s, start_s : float
-        Sampling, and where in the record the excerpt begins.
+        Sampling interval, and time in the record at which the excerpt begins.
     """
 
     shapes: FloatArray
@@ -38,7 +39,7 @@ class Playback:
 
 
 def record_sensors(record: Record) -> tuple[Sensor, ...]:
-    """Return the sensors of a record's accelerometers that say where they sit and point.
+    """Return the sensors of a record's accelerometers that have a position and a direction.
 
     Raises
     ------
@@ -52,7 +53,7 @@ def record_sensors(record: Record) -> tuple[Sensor, ...]:
     )
     if not found:
         raise InputError(
-            "no accelerometer of the record says where it sits",
+            "no accelerometer of the record has a position",
             field="channels",
             value=list(record.channel_names),
             remedy="give height_m or node, and direction",
@@ -69,10 +70,10 @@ def playback(
     duration_s: float = 60.0,
     step_s: float = 0.1,
 ) -> Playback:
-    r"""Return the liveliest part of a record as modal coordinates.
+    r"""Return the part of a record with most motion as modal coordinates.
 
     Accelerations become displacements in the band, d̂ = −â/ω², and these modal coordinates by least squares,
-    :math:`q = (HΦ)^+ d`, of the lowest modes that the sensors see and can tell apart.
+    :math:`q = (HΦ)^+ d`, of the lowest modes that the sensors measure and distinguish.
     """
     sensors = record_sensors(record)
     data = record.select([s.channel for s in sensors]).data
@@ -89,7 +90,7 @@ def playback(
 
 
 def _told_apart(seen: FloatArray, inside: BoolArray) -> list[int]:
-    """Return the modes whose pattern at the sensors is visible and not made of the patterns of lower ones."""
+    """Return the modes whose pattern at the sensors is large and independent of those of lower modes."""
     kept: list[int] = []
     largest = float(np.linalg.norm(seen[:, inside], axis=0).max(initial=0.0))
     Q = np.zeros((seen.shape[0], 0))
@@ -121,7 +122,7 @@ def _displacement(a: FloatArray, rate_hz: float, band_hz: tuple[float, float]) -
 
 
 def _liveliest(q: FloatArray, window: int) -> int:
-    """Return where ``window`` samples in a row hold most energy."""
+    """Return the start of the ``window`` consecutive samples with most energy."""
     if q.shape[0] <= window:
         return 0
     energy = np.concatenate([[0.0], np.cumsum((q**2).sum(axis=1))])

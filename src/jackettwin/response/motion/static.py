@@ -1,4 +1,4 @@
-"""Where a supported structure comes to rest under a constant load."""
+"""Static displacement of a supported structure under a constant load."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def static_displacement(system: System, load: FloatArray) -> FloatArray:
         u = np.full(system.free.size, np.nan)
     if not np.isfinite(u).all() or np.abs(u).max(initial=0.0) > 1e6:
         raise InputError(
-            "the structure cannot stand on its support", field="support", remedy="hold it in every direction"
+            "the structure cannot stand on its support", field="support", remedy="fix it in every direction"
         )
     return np.asarray(system.expand(u))
 
@@ -41,7 +41,7 @@ def self_weight(assembly: Assembly) -> FloatArray:
 
 
 def nodal_load(assembly: Assembly, forces: Mapping[str, tuple[float, ...]]) -> FloatArray:
-    """Return forces and moments on nodes, (assembly.n_dof,); a follower's act on its leader.
+    """Return forces and moments on nodes, (assembly.n_dof,); those on a follower node act on its leader.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def nodal_load(assembly: Assembly, forces: Mapping[str, tuple[float, ...]]) -> F
                 field="force",
                 value=node,
                 allowed="a node of the structure",
-                remedy=did_you_mean(node, assembly.structure.nodes) or "`view` names them all",
+                remedy=did_you_mean(node, assembly.structure.nodes) or "`view` lists all nodes",
             )
         if len(components) not in (3, DOFS_PER_NODE):
             raise InputError("give 3 or 6 components", field=f"force.{node}", value=components)

@@ -1,12 +1,12 @@
-r"""How a moving sea level changes frequencies: the slope ∂f/∂level of every mode, from the model.
+r"""Effect of the sea level on frequencies: the slope ∂f/∂level of every mode, from the model.
 
-Where the free surface cuts the members the added mass begins and ends, and so does the water inside flooded
-ones. With unit modal mass φᵀMφ = 1,
+The added mass and the water inside flooded members end at the free surface. With unit modal mass φᵀMφ = 1,
 
 .. math:: \frac{∂f}{∂η} = -\tfrac{f}{2}\, φ^T \frac{∂M}{∂η} φ
 
-where ∂M/∂η is the mass of a metre more of water (``jackettwin.loads.members.water.mass_per_level``). Marine
-growth is fixed to the steel and does not move with the tide.
+where ∂M/∂η is the change of mass per metre of water level
+(``jackettwin.loads.members.water.mass_per_level``). Marine growth is fixed to the steel and does not change
+with the tide.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from jackettwin.response.system import Matrix
 
 @dataclass(frozen=True)
 class TideSlopes:
-    """Slopes at a level.
+    """Slopes of the modes' frequencies at a sea level.
 
     Attributes
     ----------
-    frequency_hz : (n_modes,)
-    slope_hz_m : (n_modes,) ∂f/∂level [Hz/m]; the water makes every one of them negative or zero
+    frequency_hz : (n_modes,) natural frequencies
+    slope_hz_m : (n_modes,) ∂f/∂level [Hz/m], negative or zero
     """
 
     frequency_hz: FloatArray
@@ -35,18 +35,19 @@ class TideSlopes:
 
     @property
     def relative(self) -> FloatArray:
-        """∂ ln f/∂level [1/m]: what a monitored frequency is divided by."""
+        """∂ ln f/∂level [1/m]."""
         return np.asarray(self.slope_hz_m / self.frequency_hz)
 
 
 def tide_slopes(frequency_hz: FloatArray, shapes: FloatArray, mass: Matrix, mass_per_m: Matrix) -> TideSlopes:
     """Return the slopes of undamped modes with shapes (n_dof, n_modes) of any size.
 
-    Of damped ones the formula holds to order ζ: dashpots that make ζ = 10 % change it by up to a sixth.
+    For damped modes the formula has an error of order ζ: dashpots that cause ζ = 10 % change it by up to a
+    sixth.
 
     Parameters
     ----------
-    mass : (n_dof, n_dof) the whole mass at the level
+    mass : (n_dof, n_dof) total mass at the level
     mass_per_m : (n_dof, n_dof) ∂M/∂level
 
     Raises

@@ -1,12 +1,12 @@
-r"""Exact stepping of a linear model, internal variables included; loads straight from sample to sample.
+r"""Exact time stepping of a linear model with internal variables, for loads linear between samples.
 
 The state :math:`x = [q, \dot q, y]` follows :math:`\dot x = A x + B f`. With f linear within a step h,
 
 .. math:: x_{k+1} = e^{Ah} x_k + P_0 f_k + P_1 f_{k+1}
 
-holds exactly (first-order hold; Franklin, Powell & Workman 1998, section 6.3.2): no restriction on h from the
-stiffest dashpot, no numerical damping. What depends on the motion itself enters as a feedback g(t, x) that is
-evaluated at both ends of each step: second order, and the smaller the part that is left to it, the better.
+holds exactly (first-order hold; Franklin, Powell & Workman 1998, section 6.3.2), without numerical damping
+and for any h, however stiff the dashpots. Forces that depend on the motion enter as a feedback g(t, x),
+evaluated at both ends of each step with second-order accuracy.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class Hold:
 
 
 def state_space(pencil: Pencil) -> StateSpace:
-    """Return the first-order form of a pencil whose laws have finitely many states.
+    """Return the first-order form of a pencil whose laws have a finite number of states.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def state_space(pencil: Pencil) -> StateSpace:
 
 
 def first_order_hold(A: FloatArray, B: FloatArray, step_s: float) -> Hold:
-    """Return the exact step of ẋ = Ax + Bf for forces that are straight within it.
+    """Return the exact step of ẋ = Ax + Bf for forces that are linear within it.
 
     Raises
     ------
@@ -105,14 +105,14 @@ def _steps(E: FloatArray, x0: FloatArray, gain: FloatArray) -> FloatArray:
 
 
 def periodic_start(hold: Hold, f: FloatArray) -> FloatArray:
-    """Return the state to which forces that repeat, ``f`` (n_steps + 1, m) with f[−1] = f[0], bring it back.
+    """Return the initial state of the periodic motion under forces ``f`` (n_steps + 1, m) with f[−1] = f[0].
 
-    A record that starts here has no transient: it is a piece of a motion without beginning.
+    A record that starts there has no transient.
 
     Raises
     ------
     NumericalError
-        If a motion neither decays nor is driven: a mechanism.
+        If a motion of the model is undamped, as in a mechanism.
     """
     end, power = _end(hold.E, f[:-1] @ hold.P0.T + f[1:] @ hold.P1.T)
     left = np.eye(end.size) - power
@@ -123,7 +123,7 @@ def periodic_start(hold: Hold, f: FloatArray) -> FloatArray:
 
 
 def _end(E: FloatArray, gain: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return Σ E^{n−1−k} g_k and Eⁿ for gains g (n, n_states): two steps become one, again and again."""
+    """Return Σ E^{n−1−k} g_k and Eⁿ for gains g (n, n_states), by repeated doubling of the step."""
     power, square = np.linalg.matrix_power(E, gain.shape[0]), E
     while gain.shape[0] > 1:
         if gain.shape[0] % 2:
@@ -143,13 +143,13 @@ def march_with_feedback(
 ) -> tuple[FloatArray, FloatArray]:
     """Return states and feedback forces (n_steps + 1, m_g) under ``f`` and forces that depend on the motion.
 
-    Each step extrapolates the feedback, evaluates it at the state this gives, and corrects;
-    ``evaluations`` more rounds bring it closer to the implicit solution.
+    Each step extrapolates the feedback, evaluates it at the resulting state, and corrects; ``evaluations``
+    further iterations approach the implicit solution.
 
     Parameters
     ----------
     feedback_hold : Hold
-        The same E, with P0 and P1 of the feedback's own input.
+        The same E, with P0 and P1 of the feedback's input.
 
     Raises
     ------
@@ -163,7 +163,7 @@ def march_with_feedback(
     g = np.empty((f.shape[0], P0.shape[1]))
     g[0] = feedback(0, x0)
     before = g[0]
-    with np.errstate(over="ignore", invalid="ignore"):  # seen at the end
+    with np.errstate(over="ignore", invalid="ignore"):  # checked at the end
         for k in range(gain.shape[0]):
             base = hold.E @ x[k] + gain[k] + P0 @ g[k]
             guess = 2.0 * g[k] - before
@@ -177,7 +177,7 @@ def march_with_feedback(
 
 
 def free_decay(pencil: Pencil, x0: FloatArray, *, step_s: float, n_steps: int) -> FloatArray:
-    """Return displacements (n_steps + 1, n) after release from rest at ``x0``, dashpots relaxed there."""
+    """Return displacements (n_steps + 1, n) after release from rest at ``x0``, where dashpots are relaxed."""
     space = state_space(pencil)
     state = np.zeros(space.A.shape[0])
     state[: pencil.n] = x0

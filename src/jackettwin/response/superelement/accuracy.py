@@ -1,4 +1,4 @@
-"""What a superelement gets wrong: poles of the whole model beside those of the reduced one."""
+"""Accuracy of a superelement: poles of the full model compared with those of the reduced one."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ from jackettwin.response.system import Pencil, System
 from jackettwin.structure import AT_REST, Assembly, Rayleigh, dense, lowest_modes
 
 _OVERDAMPED = 0.3
-"""More damped poles are motions of the supports; nobody asks a superelement for them."""
+"""Damping ratio above which poles are motions of the supports, for which no superelement is used."""
 
 
 @dataclass(frozen=True)
 class ReducedModes:
-    """Poles of the full model and, for each, the nearest of the reduced one.
+    """Poles of the full model and, for each, the nearest pole of the reduced one.
 
     Attributes
     ----------
     full, reduced : (n_modes,) λ [rad/s], by |λ|
-    missing : modes of the full model that the reduced one has no coordinates for
+    missing : number of modes of the full model for which the reduced one has no coordinates
     """
 
     full: ComplexArray
@@ -60,14 +60,14 @@ def damping_ratio(pole: ComplexArray) -> FloatArray:
 def reduced_modes(
     element: Superelement, full: System, rest: Assembly | None, *, band_hz: float
 ) -> ReducedModes:
-    """Return the modes of the whole structure up to ``band_hz``, full and on the superelement.
+    """Return the modes of the structure up to ``band_hz``, with the full model and with the superelement.
 
     Parameters
     ----------
     full : System
-        The whole structure on its support.
+        The full structure on its support.
     rest : Assembly, optional
-        What stands on the interface.
+        Structure on the interface.
     """
     exact = np.array([pole for pole, _ in poles_below(tied(full), 2.0 * pi * band_hz)])
     exact = exact[(exact.imag > 0.0) & (damping_ratio(exact) < _OVERDAMPED)]
@@ -100,7 +100,7 @@ def tied(system: System) -> Pencil:
 
 
 def coupled_poles(element: Superelement, rest: Assembly | None, rayleigh: Rayleigh) -> ComplexArray:
-    """Return every pole of a superelement with what stands on its interface."""
+    """Return all poles of a superelement together with the structure on its interface."""
     if rest is None:
         return poles(element.M, element.C, element.K)
     b, B = interface_motion(rest, element.reference_m)
@@ -121,9 +121,10 @@ def coupled_poles(element: Superelement, rest: Assembly | None, rayleigh: Raylei
 
 
 def default_band_hz(full: System) -> float:
-    """Return the band [Hz] whose damping is asked for: five modes, with dampers locked, and 5 %.
+    """Return the default band [Hz]: 5 % above the fifth mode with locked dampers.
 
-    A turbine's second bending pair are modes 4 and 5. Motions of a floating structure at rest do not count.
+    The second bending pair of a turbine are modes 4 and 5. Rigid-body motions of a floating structure do not
+    count.
     """
     pencil = tied(full)
     locked = [group.dofs for group in pencil.groups if dissipates(group.law)]

@@ -1,20 +1,21 @@
 r"""A foundation as a superelement: the six motions of its interface and N internal coordinates.
 
-Craig–Bampton keeps the static shapes of the interface and fixed-interface modes of the *undamped* structure.
-A strong dashpot under a foot holds that foot at the frequencies of interest; no undamped mode knows this
-shape, and taking more of them hardly helps. So the first internal shapes are taken from the damped response
-to a motion of the interface,
+Craig–Bampton reduction uses the static shapes of the interface and fixed-interface modes of the *undamped*
+structure. A strong dashpot under a foot practically fixes that foot at the frequencies of interest; no
+undamped mode has this shape, and more of them hardly help. The first internal shapes are therefore taken from
+the damped response to a motion of the interface,
 
 .. math:: U(iω) = -F_{ii}^{-1}(iω) F_{ib}(iω) B,
 
-its real and imaginary parts at two frequencies, as many as hold strain energy; fixed-interface modes make
-up the number. The reduction is one congruent transformation of the second-order form with internal variables
+its real and imaginary parts at two frequencies, as far as they have strain energy of their own;
+fixed-interface modes complete the number. The reduction is a congruent transformation of the second-order
+form with internal variables
 
 .. math::
 
     M ẍ + C ẋ + K x + Σ k S (x − y) = f, \qquad τ S ẏ = S (x − y)
 
-so that M, C and K come out symmetric and the element can only dissipate, whatever the laws of the ground.
+so that M, C and K are symmetric and the element is dissipative for all laws of the ground.
 """
 
 from __future__ import annotations
@@ -37,28 +38,28 @@ from jackettwin.soil import Law, Prony, Springpot, prony_fit
 from jackettwin.structure import Assembly, Structure, Vector, lowest_modes, rigid_transfer
 
 INTERFACE = DOFS_PER_NODE
-"""Coordinates of the interface: they come first."""
+"""Number of interface coordinates, which come first."""
 RUNGE_KUTTA = 2.78
 """|λ|·step up to which the fourth-order method is stable for every decaying pole λ."""
 _SHIFTS = (0.25, 1.0)
-"""Where in the band the damped response is sampled."""
+"""Frequencies at which the damped response is sampled, as shares of the band's upper limit."""
 _NEW = 1e-5
-"""Share of strain energy below which a sampled shape says nothing new."""
+"""Share of strain energy below which a sampled shape is left out."""
 _SPRINGPOT_HZ = (1e-3, 100.0)
-"""A springpot has finitely many states between these frequencies; below it is a spring."""
+"""Range in which a springpot is approximated by a finite number of states; below it is a spring."""
 
 
 @dataclass(frozen=True)
 class Superelement:
-    """M q̈ + C q̇ + K q = f on the interface's six motions, then internal coordinates.
+    """M q̈ + C q̇ + K q = f for the six interface motions and the internal coordinates.
 
     Attributes
     ----------
-    M, C, K : (n, n) symmetric
-    reference_m : point whose motion the first six coordinates are
+    M, C, K : (n, n) symmetric mass, damping and stiffness
+    reference_m : point whose motion the first six coordinates describe [m]
     weight_n : (n,) self-weight on the coordinates
     basis : (assembly.n_dof, n) shapes of the coordinates; empty if read from a file without them
-    n_damped : how many internal coordinates come from the damped response
+    n_damped : number of internal coordinates from the damped response
     """
 
     M: FloatArray
@@ -76,23 +77,23 @@ class Superelement:
 
     @property
     def interface_stiffness(self) -> FloatArray:
-        """Static stiffness of the interface, (6, 6): Guyan's."""
+        """Static (Guyan) stiffness of the interface, (6, 6)."""
         return self.K[:INTERFACE, :INTERFACE]
 
     @property
     def interface_mass(self) -> FloatArray:
-        """Mass of the interface, (6, 6): Guyan's."""
+        """Guyan mass of the interface, (6, 6)."""
         return self.M[:INTERFACE, :INTERFACE]
 
     @property
     def guyan_frequency_hz(self) -> FloatArray:
-        """Frequencies of the six interface coordinates alone."""
+        """Frequencies of the six interface coordinates without internal ones."""
         w2 = la.eigvalsh(self.interface_stiffness, self.interface_mass)
         return np.asarray(np.sqrt(np.maximum(w2, 0.0)) / (2.0 * pi))
 
     @property
     def held_frequency_hz(self) -> FloatArray:
-        """Undamped frequencies of the internal coordinates, interface held."""
+        """Undamped frequencies of the internal coordinates with the interface fixed."""
         inner = slice(INTERFACE, None)
         if self.n == INTERFACE:
             return np.empty(0)
@@ -101,7 +102,7 @@ class Superelement:
 
     @property
     def fastest_pole_rad_s(self) -> float:
-        """Largest |λ| with the interface held: what an explicit integrator must follow."""
+        """Largest |λ| with the interface fixed, which limits the step of an explicit integrator."""
         inner = slice(INTERFACE, None)
         return float(
             np.abs(poles(self.M[inner, inner], self.C[inner, inner], self.K[inner, inner])).max(initial=0.0)
@@ -130,20 +131,20 @@ def superelement(
     Parameters
     ----------
     system : System
-        The foundation on its support, cut at its interface nodes; these move as one rigid body.
+        The foundation on its support up to its interface nodes, which move as one rigid body.
     number : int
-        Internal coordinates.
+        Number of internal coordinates.
     reference_m : (x, y, z), optional
         Point that moves with the interface; default: the centroid of its nodes.
     band_hz : float
-        Up to here the damping of the supports is met.
+        Upper limit of the frequencies for which the damping of the supports is accurate.
     damped : bool
-        False is plain Craig–Bampton. Supports that do not dissipate need nothing else.
+        False gives plain Craig–Bampton reduction, which suffices for supports without damping.
 
     Raises
     ------
     InputError
-        If the interface is held by the support or the numbers are out of range.
+        If the support acts on the interface or the numbers are out of range.
     NumericalError
         If the foundation cannot stand on its support.
     """
@@ -178,17 +179,17 @@ def superelement(
 
 
 def fixed_interface_frequencies(system: System, number: int) -> FloatArray:
-    """Return the lowest undamped frequencies [Hz] with the interface held."""
+    """Return the lowest undamped frequencies [Hz] with the interface fixed."""
     at = _interface(system, interface_centroid(system.assembly.structure))
     return np.asarray(_fixed_modes(system.pencil, at, number)[0] / (2.0 * pi))
 
 
 def slowed(element: Superelement, *, step_s: float, band_hz: float) -> Superelement:
-    r"""Return the element with its fast poles slowed until Runge–Kutta steps of ``step_s`` are stable.
+    r"""Return the element with its fast poles slowed so that Runge–Kutta steps of ``step_s`` are stable.
 
-    Inertia is added to internal coordinates whose dashpots or springs are too fast, until
-    :math:`C + K/r ≤ r M`, which keeps every :math:`|λ| ≤ 1.62\,r`; and stiffness that cancels it at the upper
-    end of the band. The static stiffness of the interface does not change.
+    Inertia is added to internal coordinates whose dashpots or springs are too stiff, until
+    :math:`C + K/r ≤ r M`, which ensures :math:`|λ| ≤ 1.62\,r`. Stiffness is added that cancels it at the
+    upper end of the band. The static stiffness of the interface does not change.
     """
     r = RUNGE_KUTTA / 1.62 / step_s
     i = slice(INTERFACE, None)
@@ -217,7 +218,7 @@ def interface_centroid(structure: Structure) -> Vector:
 
 
 def interface_motion(assembly: Assembly, point: Vector) -> tuple[IntArray, FloatArray]:
-    """Return the DOFs of the interface nodes and how they move with the point, (n_interface, 6)."""
+    """Return the interface nodes' DOFs and their motion per unit motion of the point, (n_interface, 6)."""
     structure = assembly.structure
     leader = {link.follower: link.leader for link in structure.rigid_links}
     nodes = list(dict.fromkeys(leader.get(name, name) for name in structure.interface_nodes))
@@ -229,7 +230,7 @@ def _interface(system: System, point: Vector) -> _Interface:
     dofs, B = interface_motion(system.assembly, point)
     if not np.isin(dofs, system.free).all():
         raise InputError(
-            "the support holds the interface",
+            "the support acts on the interface",
             field="interface_nodes",
             value=list(system.assembly.structure.interface_nodes),
             remedy="name nodes above the ground",
@@ -247,7 +248,7 @@ def _finite(law: Law) -> Law:
 
 
 def dissipates(law: Law) -> bool:
-    """Return whether a law takes energy out."""
+    """Return whether a law dissipates energy."""
     return not isinstance(law, Prony) or law.c > 0.0 or any(law.k)
 
 
@@ -264,12 +265,12 @@ def _response(pencil: Pencil, at: _Interface, s: complex) -> FloatArray:
 
 
 def _lifted(pencil: Pencil, u: FloatArray, s: complex = 0.0) -> FloatArray:
-    """Return shapes with the internal variables y = u/(1 + τs) of every Maxwell branch below them."""
+    """Return shapes with the internal variables y = u/(1 + τs) of every Maxwell branch appended."""
     return np.vstack([u, *(u[branch.dofs] / (1.0 + s * branch.tau) for branch in maxwell_branches(pencil))])
 
 
 def _fixed_modes(pencil: Pencil, at: _Interface, number: int) -> tuple[FloatArray, FloatArray]:
-    """Return ω and lifted shapes of the undamped modes with the interface held."""
+    """Return ω and shapes, with internal variables, of the undamped modes with the interface fixed."""
     if number == 0:
         return np.empty(0), _lifted(pencil, np.zeros((pencil.n, 0)))
     i = at.i
@@ -284,7 +285,7 @@ def _fixed_modes(pencil: Pencil, at: _Interface, number: int) -> tuple[FloatArra
 def _damped_shapes(
     pencil: Pencil, at: _Interface, static: FloatArray, band_hz: float, number: int
 ) -> FloatArray:
-    """Return the shapes that hold most strain energy of the damped response beyond the static one."""
+    """Return the shapes with most strain energy of the damped response, apart from the static one."""
     samples = []
     for share in _SHIFTS:
         beyond = _response(pencil, at, 2j * pi * share * band_hz) - static
@@ -292,7 +293,7 @@ def _damped_shapes(
         energy = np.einsum("ii->i", _reduced(pencil, both)[2]).max()
         samples.append(both / np.sqrt(energy))
     X = np.hstack(samples)
-    # rotations and translations alike: what counts is energy
+    # strain energy makes rotations and translations comparable
     energy, V = la.eigh(_reduced(pencil, X)[2])
     order = np.argsort(energy)[::-1][:number]
     order = order[energy[order] > _NEW * energy[-1]]
@@ -300,7 +301,7 @@ def _damped_shapes(
 
 
 def _reduced(pencil: Pencil, basis: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return M, C, K of a pencil with its internal variables on lifted shapes (n + internal, m)."""
+    """Return M, C, K of a pencil on shapes with internal variables (n + n_internal, m)."""
     u = basis[: pencil.n]
     M, K = _on(u, pencil.M), _on(u, pencil.K)
     C = pencil.rayleigh.alpha * M + pencil.rayleigh.beta * K
@@ -328,7 +329,7 @@ def _on(u: FloatArray, matrix: sp.csc_array) -> FloatArray:
 
 
 def poles(M: FloatArray, C: FloatArray, K: FloatArray) -> ComplexArray:
-    """Return every pole of M q̈ + C q̇ + K q = 0 [rad/s]."""
+    """Return all poles of M q̈ + C q̇ + K q = 0 [rad/s]."""
     n = M.shape[0]
     if n == 0:
         return np.empty(0, dtype=np.complex128)

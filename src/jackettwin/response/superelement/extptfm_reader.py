@@ -1,8 +1,9 @@
-"""Read the superelements of OpenFAST's ExtPtfm, its own or another program's.
+"""Reader of superelement files of OpenFAST's module ExtPtfm.
 
-The module's input file names the matrices' file. There ``!`` keywords lead: of OpenFAST 5 a matrix follows at
-once, with the self-weight as blocks; before (FlexASCII, format 1) it follows a row of dimensions, with the
-self-weight as a table over time. Format 0 is Guyan's, six coordinates read by the place of their lines.
+The module's input file names the file of the matrices, in which keywords begin with ``!``. For OpenFAST 5 a
+matrix follows its keyword directly, and the self-weight is given as blocks. For earlier versions (FlexASCII,
+format 1) a row of dimensions stands between, and the self-weight is a table over time. Format 0 (Guyan) has
+six coordinates, read by line number.
 """
 
 from __future__ import annotations
@@ -20,16 +21,16 @@ from jackettwin.response.superelement.craig_bampton import INTERFACE, Supereleme
 MATRICES = ("mass", "stiffness", "damping")
 """First words of the matrices' headers."""
 _GUYAN_LINES = {"mass": 2, "damping": 9, "stiffness": 16, "loads": 25}
-"""Lines before each matrix and before the table of loads in Guyan's format."""
+"""Number of lines before each matrix and before the table of loads in format 0."""
 
 
 def is_extptfm(path: Path) -> bool:
-    """Return whether a file is ExtPtfm's: its module's input, or a superelement in one of its formats."""
+    """Return whether a file is an input file of ExtPtfm or a superelement in one of its formats."""
     return _kind(read_text(path).splitlines()) is not None
 
 
 def read_extptfm(path: Path) -> Superelement:
-    """Read a superelement by its own file or by the module's input file that names it.
+    """Read a superelement, given its file or the module's input file that names it.
 
     Raises
     ------
@@ -42,7 +43,7 @@ def read_extptfm(path: Path) -> Superelement:
     if kind != "input":
         return _whole(text, path, guyan=kind == "guyan")
     named = path.parent / _value(lines, "Red_FileName", path).strip("\"' ").replace("\\", "/")
-    # OpenFAST 5 dropped the switch: its file is the one with keywords
+    # OpenFAST 5 has no format switch: its file has keywords
     form = "1" if _has(lines, "RBMod") else _value(lines, "FileFormat", path).strip()
     if form not in ("0", "1"):
         raise InputError(
@@ -80,7 +81,7 @@ def _has(lines: list[str], key: str) -> bool:
 
 
 def _value(lines: list[str], key: str, path: Path) -> str:
-    """Return what stands before a keyword: a text in quotes, a word, or numbers."""
+    """Return the text before a keyword: a quoted text, a word, or numbers."""
     value = r"""(".*?"|'.*?'|[^\s,]+(?:[\s,]+[-+.\d]+)*)"""
     for line in lines:
         found = re.match(rf"\s*{value},?\s+{key}\b", line)
@@ -90,7 +91,7 @@ def _value(lines: list[str], key: str, path: Path) -> str:
 
 
 def _active(whole: Superelement, lines: list[str], path: Path) -> Superelement:
-    """Return the superelement with those internal coordinates that the input file keeps active."""
+    """Return the superelement with the internal coordinates that are active in the input file."""
     number, given = (_value(lines, key, path) for key in ("NActiveDOFList", "ActiveDOFList"))
     try:
         count = int(number)
@@ -109,7 +110,7 @@ def _active(whole: Superelement, lines: list[str], path: Path) -> Superelement:
             field="ActiveDOFList",
             value=wanted,
             allowed=f"{count} numbers from 1 to {inner}",
-            remedy="mend the list, or keep all by NActiveDOFList -1",
+            remedy="correct the list, or use all with NActiveDOFList -1",
         )
     at = [*range(INTERFACE), *(INTERFACE - 1 + k for k in wanted)]
     M, C, K = (matrix[np.ix_(at, at)] for matrix in (whole.M, whole.C, whole.K))
@@ -117,7 +118,7 @@ def _active(whole: Superelement, lines: list[str], path: Path) -> Superelement:
 
 
 def _guyan(lines: list[str], path: Path) -> Superelement:
-    """Return the superelement of a Guyan text: six coordinates, read by the place of the lines."""
+    """Return the superelement of a text in format 0: six coordinates, read by line number."""
     M, C, K = (
         _matrix(lines[(at := _GUYAN_LINES[name]) : at + INTERFACE], INTERFACE, path, name, rows=INTERFACE)
         for name in ("mass", "damping", "stiffness")
@@ -130,7 +131,7 @@ def _guyan(lines: list[str], path: Path) -> Superelement:
 
 
 def parse_keywords(text: str, path: Path) -> Superelement:
-    """Return the superelement of a text with keywords, read by OpenFAST's rules, 5's or those before.
+    """Return the superelement of a text with keywords, by the rules of OpenFAST 5 or of earlier versions.
 
     Raises
     ------
@@ -171,7 +172,7 @@ def _at(words: list[str], keyword: str) -> int | None:
 
 
 def _block(lines: list[str], words: list[str], name: str, n: int, path: Path, *, rows: int = 0) -> FloatArray:
-    """Return the rows below a header, and below the row of dimensions if there is one; n × n unless told."""
+    """Return the rows below a header and an optional row of dimensions; n × n unless ``rows`` is given."""
     at = _at(words, f"!{name}")
     if at is None:
         raise InputError(
@@ -182,7 +183,7 @@ def _block(lines: list[str], words: list[str], name: str, n: int, path: Path, *,
 
 
 def _weight(lines: list[str], words: list[str], n: int, path: Path) -> FloatArray:
-    """Return the constant load: OpenFAST 5's block, or the first row of the table over time."""
+    """Return the constant load: the block of OpenFAST 5, or the first row of the table over time."""
     if _at(words, "!weight constant") is not None:
         return np.asarray(_block(lines, words, "weight constant", n, path, rows=1)[0])
     at = _at(words, "!loading")

@@ -1,9 +1,9 @@
-"""Superelements as OpenFAST's ExtPtfm reads them: the module's input file and the matrices' file, by version.
+"""Writer of superelements for OpenFAST's ExtPtfm: the module's input file and the matrices' file, by version.
 
-``openfast5`` is what 5.0 reads (``ExtPtfm_MCKF_IO.f90`` of v5.0.0): no switch of formats, the self-weight a
-matrix block of its own, and no row between a header and its matrix. ``openfast3`` and ``openfast4`` are
-FlexASCII, whose reader did not change from 2.4 to 4.2: the self-weight there is a table of loads over time.
-Both readers go by the place of the lines, so that one layout stops the other version.
+``openfast5`` is the layout of 5.0 (``ExtPtfm_MCKF_IO.f90`` of v5.0.0): no format switch, the self-weight in a
+separate matrix block, and no row between a header and its matrix. ``openfast3`` and ``openfast4`` are
+FlexASCII, whose reader did not change from 2.4 to 4.2: the self-weight is a table of loads over time. Both
+readers rely on line numbers, so that each stops with an error on the other layout.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ Layout = Literal["openfast5", "openfast4", "openfast3"]
 LAYOUTS: tuple[Layout, ...] = get_args(Layout)
 DEFAULT: Layout = "openfast5"
 NEWEST_LISTED = 9
-"""How many internal coordinates are written out as channels."""
+"""Number of internal coordinates that are output channels."""
 _FOREVER_S = 1.0e5
 """The constant loads of FlexASCII are given at 0 and at this time."""
 _FORCES = ("IntrfFx", "IntrfFy", "IntrfFz", "IntrfMx", "IntrfMy", "IntrfMz")
@@ -46,7 +46,7 @@ def _version_5(element: Superelement) -> str:
         ("Stiffness Matrix (N,m)", element.K),
         ("Damping Matrix (N,m,s)", element.C),
         ("Weight constant (N,m)", element.weight_n[None]),
-        # what weight adds to the stiffness (P-Δ) is in the stiffness matrix already
+        # the geometric stiffness due to weight (P-Δ) is in the stiffness matrix already
         ("Weight stiffness (N,m)", np.zeros((n, n))),
     ):
         lines += ["", f"!{name}", *map(_row, matrix)]
@@ -79,17 +79,17 @@ def _row(values: FloatArray) -> str:
 
 
 def static_internal(element: Superelement) -> FloatArray:
-    """Return the internal coordinates at rest under the self-weight, interface held."""
+    """Return the static internal coordinates under the self-weight, with the interface fixed."""
     i = slice(INTERFACE, None)
     return np.asarray(np.linalg.solve(element.K[i, i], element.weight_n[i]))
 
 
 def module_input(element: Superelement, name: str, *, layout: Layout = DEFAULT) -> str:
-    """Return the text of the module's input file; the coordinates start at rest under their weight.
+    """Return the text of the module's input file; the coordinates start from static equilibrium under weight.
 
     Parameters
     ----------
-    name : of the matrices' file beside it
+    name : name of the matrices' file in the same folder
     """
     rows = _rows_5(element, name) if layout == "openfast5" else _rows_flex(element, name)
     inner = min(element.n - INTERFACE, NEWEST_LISTED)

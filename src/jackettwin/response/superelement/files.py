@@ -1,7 +1,7 @@
-"""Superelements as files: ``.npz`` with everything, and OpenFAST's ExtPtfm.
+"""Superelement files: ``.npz`` with all data, and OpenFAST's ExtPtfm.
 
-ExtPtfm wants two files: the module's input file, and the matrices' file that it names. OpenFAST does not add
-the self-weight by itself: it is in the latter.
+ExtPtfm needs two files: the module's input file, and the matrices' file that it names. OpenFAST does not add
+the self-weight of the element; it is contained in the matrices' file.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def write_superelement(element: Superelement, path: Path, *, layout: Layout = DE
     Parameters
     ----------
     layout : {"openfast5", "openfast4", "openfast3"}
-        The version that is to read ``.dat``.
+        OpenFAST version for which ``.dat`` is written.
 
     Raises
     ------
@@ -57,12 +57,12 @@ def write_superelement(element: Superelement, path: Path, *, layout: Layout = DE
 
 
 def require_format(path: Path) -> None:
-    """Refuse endings other than ``.npz`` and ``.dat``.
+    """Raise an error for endings other than ``.npz`` and ``.dat``.
 
     Raises
     ------
     InputError
-        Names the ending.
+        If the ending is another one.
     """
     if path.suffix.lower() not in FORMATS:
         raise InputError(
@@ -75,14 +75,14 @@ def require_format(path: Path) -> None:
 
 
 def is_superelement(path: Path) -> bool:
-    """Return whether a file holds a superelement: ``.npz``, or one of ExtPtfm's."""
+    """Return whether a file is a superelement: ``.npz``, or a file of ExtPtfm."""
     if path.suffix.lower() != ".dat":
         return path.suffix.lower() == ".npz"
     return path.is_file() and is_extptfm(path)
 
 
 def read_superelement(path: Path) -> Superelement:
-    """Read a superelement, also by ExtPtfm's input file. ExtPtfm knows no shapes and no reference point.
+    """Read a superelement, or the one named by ExtPtfm's input file (without shapes and reference point).
 
     Raises
     ------
