@@ -291,6 +291,16 @@ CATALOGUE: dict[str, Kind] = {
         "its amplitude varies less than that of a mode of so little damping should: it may be a tone",
     ),
     "rotor_order_passes": Kind("warning", "{order}P of the rotor passes here: distrust the damping"),
+    "rotor_order_across_records": Kind(
+        "warning",
+        "moves with another peak at {ratio:g} times the frequency of the lower, {low_hz:.3g} to "
+        "{high_hz:.3g} Hz in {number} records, while modes stay: orders of a rotor whose speed is not told",
+    ),
+    "jumps_between_records": Kind(
+        "warning",
+        "jumps {times} times from one record to the next, typically by {size:.1%}, while {stays_hz:.4g} Hz "
+        "stays: an order of a rotor whose speed is not told, or two modes taken for one",
+    ),
     # updating
     "unpaired_shape": Kind(
         "info",

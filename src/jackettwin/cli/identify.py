@@ -486,6 +486,7 @@ def _print_fused(title: str, modes: Sequence[Mapping[str, Any]], n_records: int)
         TableColumn("status", lambda m: f"{m['status']} (ok in {m['records_ok']})"),
     )
     show_table(Table(title, columns, modes))
+    _print_reasons(modes)
 
 
 def _interval(m: Mapping[str, Any]) -> str:

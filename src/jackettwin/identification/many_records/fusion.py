@@ -13,27 +13,29 @@ The mean of ζ uses the records in which the mode is ``OK``, that of f those in 
 is at worst ``DAMPING_UNKNOWN``; if there are none, all records that contain the mode.
 Where the decay of a mode lasts about as long as a record, the estimates would be biased all alike, and ζ is
 found from the likelihoods of the records instead (``joint_damping.py``).
-The status of a fused mode is the median.
+The status of a fused mode is the median, or what its motion from record to record says (``rotor_orders.py``).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.many_records.joint_damping import joint_damping
+from jackettwin.identification.many_records.rotor_orders import objections
 from jackettwin.identification.many_records.setups import WEAK_CONNECTION, tie
 from jackettwin.identification.many_records.tracking import Track, TrackedModes, follow
-from jackettwin.identification.status import ModeStatus
+from jackettwin.identification.status import ModeStatus, sentence, worse
 from jackettwin.intervals import log_interval_95
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable, Sequence
 
     from jackettwin.identification.estimate import Identification
+    from jackettwin.identification.many_records.rotor_orders import NoMode
     from jackettwin.identification.many_records.sightings import Sightings
     from jackettwin.records import Channel
 
@@ -101,6 +103,8 @@ class FusedMode:
         due to wind, tide and temperature.
     sightings : Sightings
         Estimates of the mode in each record that contains it.
+    objection : NoMode or None
+        What its motion from record to record says against it.
     """
 
     frequency_hz: float
@@ -114,11 +118,18 @@ class FusedMode:
     scatter_frequency: float
     scatter_damping_ratio: float
     sightings: Sightings
+    objection: NoMode | None = None
 
     @property
     def status(self) -> ModeStatus:
-        """Median status over the records that contain the mode."""
-        return self.sightings.status
+        """Median status over the records that contain the mode, or a worse one that all of them tell."""
+        own = self.sightings.status
+        return own if self.objection is None else worse(own, self.objection.status)
+
+    @property
+    def status_reason(self) -> str | None:
+        """What the records together say against the mode; None if that is nothing."""
+        return None if self.objection is None else sentence([self.objection.reason])
 
     @property
     def records_ok(self) -> int:
@@ -160,7 +171,12 @@ def fused_records(followed: TrackedModes, key: Hashable = None) -> FusedIdentifi
     at_least = max(1, round(MIN_RECORD_SHARE * int(mine.sum())))
     parts = ((track, track.sightings()) for track in followed.tracks)
     kept = [(track, seen.at(mine[seen.record])) for track, seen in parts]
-    modes = [_fused_mode(track, seen, keys, followed) for track, seen in kept if len(seen) >= at_least]
+    against = objections([seen for _, seen in kept])
+    modes = [
+        replace(_fused_mode(track, seen, keys, followed), objection=against.get(k))
+        for k, (track, seen) in enumerate(kept)
+        if len(seen) >= at_least
+    ]
     return FusedIdentification(
         records=tuple(name for name, own in zip(followed.records, mine, strict=True) if own),
         channels=followed.channels,

@@ -68,7 +68,7 @@ def _mode_table(named: list[tuple[str, FusedMode]], n_records: int) -> Table:
             *_numbers(mode),
             fixed(100.0 * len(mode.sightings) / n_records, 0),
             *_scatter(mode),
-            mode.status,
+            mode.status if mode.status_reason is None else f"{mode.status}: {mode.status_reason}",
         )
         for label, mode in named
     ]
@@ -86,7 +86,7 @@ def _mode_table(named: list[tuple[str, FusedMode]], n_records: int) -> Table:
     caption = (
         "Modes fused over all records. ± is one standard deviation of the mean; scatter is that between "
         "records beyond their own uncertainty. The mean rests on the records in which the mode is ok, where "
-        "there are any; the status is the median over all that hold it."
+        "there are any; the status is the median over all that hold it, unless the records together object."
     )
     return Table(caption, columns, tuple(rows))
 

@@ -68,6 +68,7 @@ def fused_mode_document(mode: FusedMode, channels: Sequence[str]) -> dict[str, A
         "relative_scatter_frequency": mode.scatter_frequency,
         "relative_scatter_damping_ratio": mode.scatter_damping_ratio,
         "status": mode.status.value,
+        "status_reason": mode.status_reason,
         "records_with_mode": len(mode.sightings),
         "records_ok": mode.records_ok,
         "mode_shape": {

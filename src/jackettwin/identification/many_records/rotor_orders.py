@@ -1,0 +1,210 @@
+"""Orders of a rotor whose speed nobody measured, recognised across records.
+
+A mode stays where it is while a rotor turns faster or slower. The orders 1P, 3P, 6P and 9P move with the
+speed, all by the same factor, so that in every record the ratio of two of them is 3, 2 or 1.5. Turbulence
+that the blades cut makes them broad, and a single record holds them for modes.
+
+The same records show how often two frequencies have such a ratio by chance: one of them is taken from one
+record and one from another, between which the speed has changed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.special import bdtr, bdtrc
+
+from jackettwin.arrays import BoolArray, FloatArray, Int64Array
+from jackettwin.findings import Finding
+from jackettwin.identification.status import ModeStatus
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jackettwin.identification.many_records.sightings import Sightings
+
+
+RATIOS = (2.0, 3.0, 1.5)
+"""Of 3P and 6P, 1P and 3P, 6P and 9P."""
+TOLERANCE = 0.015
+"""Largest deviation of ln of a ratio: a broad peak's middle is known to about a per cent."""
+SETTLED_SHARE, SETTLED_SPREAD = 0.5, 0.01
+"""Least share of the records that contain a settled mode, and its largest spread of ln f."""
+LEAST_SWEEP, STEADIER = 0.03, 5.0
+"""Least range of ln f over which orders sweep, and the least multiple of the steadiest mode's range."""
+REACH = 0.3
+"""Largest distance in ln f of the rated speed's order from one seen at another speed."""
+CHANCE = 1e-3
+"""Probability of as many locked pairs below which they are no coincidence."""
+FEWEST = 3
+"""Fewest records with a locked pair, and fewest jumps of a frequency."""
+JUMP, STAYS = 0.02, 0.005
+"""Change of ln f from one record to the next that no structure makes, and the largest typical one of another
+mode meanwhile."""
+CLEAR = 4.0
+"""Number of standard deviations beyond which a change is a jump."""
+
+
+@dataclass(frozen=True)
+class NoMode:
+    """Why a frequency that many records show is no mode."""
+
+    status: ModeStatus
+    reason: Finding
+
+
+@dataclass(frozen=True)
+class _All:
+    """Estimates of all records as columns: record, track, ln f and the standard deviation of it."""
+
+    record: Int64Array
+    track: Int64Array
+    log_f: FloatArray
+    std: FloatArray
+
+    def at(self, rows: BoolArray | Int64Array) -> _All:
+        return _All(self.record[rows], self.track[rows], self.log_f[rows], self.std[rows])
+
+
+@dataclass(frozen=True)
+class _Locked:
+    """Pairs of estimates of one record whose frequencies have a ratio: rows of the lower and the higher."""
+
+    ratio: float
+    low: Int64Array
+    high: Int64Array
+
+
+def objections(tracks: Sequence[Sightings]) -> dict[int, NoMode]:
+    """Return by number what speaks against tracks of modes over many records.
+
+    Parameters
+    ----------
+    tracks : sequence of Sightings
+        Of all that was tracked, also of what few records contain.
+    """
+    seen = _columns(tracks)
+    n_records = len(np.unique(seen.record))
+    settled = [k for k in range(len(tracks)) if _is_settled(seen.at(seen.track == k).log_f, n_records)]
+    if not settled:
+        return {}
+    still = min(_sweep(seen.log_f[seen.track == k]) for k in settled)
+    moving = seen.at(~np.isin(seen.track, settled))
+    out: dict[int, NoMode] = {}
+    for locked in (_locked(moving, ratio) for ratio in RATIOS):
+        sweep = _sweep(moving.log_f[locked.low])
+        if sweep > max(LEAST_SWEEP, STEADIER * still) and _is_no_chance(moving, locked):
+            out |= {k: one for k, one in _of_orders(seen, moving, locked).items() if k not in out}
+    return _of_jumps(seen, settled) | out
+
+
+def _columns(tracks: Sequence[Sightings]) -> _All:
+    kept = [one.at(one.severity <= ModeStatus.DOUBTFUL.severity) for one in tracks]
+    return _All(
+        np.concatenate([one.record for one in kept]),
+        np.repeat(np.arange(len(kept)), [len(one) for one in kept]),
+        np.log(np.concatenate([one.frequency_hz for one in kept])),
+        np.sqrt(np.nan_to_num(np.concatenate([one.log_covariance[:, 0, 0] for one in kept]))),
+    )
+
+
+def _is_settled(log_f: FloatArray, n_records: int) -> bool:
+    if log_f.size < max(SETTLED_SHARE * n_records, FEWEST):
+        return False
+    return float(1.4826 * np.median(np.abs(log_f - np.median(log_f)))) < SETTLED_SPREAD
+
+
+def _sweep(log_f: FloatArray) -> float:
+    """Return the range of most values."""
+    return float(np.ptp(np.percentile(log_f, (10.0, 90.0)))) if log_f.size >= FEWEST else 0.0
+
+
+def _locked(moving: _All, ratio: float) -> _Locked:
+    """Return the pairs of one record whose frequencies have a ratio."""
+    low, high = [], []
+    for record in np.unique(moving.record):
+        rows = np.flatnonzero(moving.record == record)
+        apart = moving.log_f[rows] - moving.log_f[rows][:, None] - np.log(ratio)
+        i, j = np.nonzero(np.abs(apart) < TOLERANCE)
+        low.append(rows[i])
+        high.append(rows[j])
+    none = np.zeros(0, dtype=np.int64)
+    return _Locked(ratio, np.concatenate([none, *low]), np.concatenate([none, *high]))
+
+
+def _is_no_chance(moving: _All, locked: _Locked) -> bool:
+    """Tell whether more pairs of one record are locked than pairs of two records are."""
+    if len(np.unique(moving.record[locked.low])) < FEWEST:
+        return False
+    ordered = np.sort(moving.log_f)
+    above = moving.log_f + np.log(locked.ratio)
+    met = np.searchsorted(ordered, above + TOLERANCE) - np.searchsorted(ordered, above - TOLERANCE)
+    within = int(sum(n * (n - 1) // 2 for n in np.unique(moving.record, return_counts=True)[1]))
+    across = moving.log_f.size * (moving.log_f.size - 1) // 2 - within
+    chance = (int(met.sum()) - locked.low.size + 1.0) / (across + 2.0)
+    return bool(bdtrc(locked.low.size - 1, within, min(chance, 1.0)) < CHANCE)
+
+
+def _of_orders(seen: _All, moving: _All, locked: _Locked) -> dict[int, NoMode]:
+    """Return the tracks that consist of a rotor's orders."""
+    rows = np.unique(np.concatenate([locked.low, locked.high]))
+    records = np.unique(moving.record[rows])
+    numbers = np.exp(moving.log_f[locked.low])
+    reason = Finding(
+        "rotor_order_across_records",
+        params={
+            "ratio": locked.ratio, "low_hz": float(numbers.min()), "high_hz": float(numbers.max()),
+            "number": len(records),
+        },
+    )  # fmt: skip
+    out = {}
+    for k in np.unique(seen.track):
+        own = seen.at(seen.track == k)
+        caught = np.isin(np.flatnonzero(moving.track == k), rows)
+        if caught.size and 2 * caught.sum() >= caught.size or _is_away(own, seen, moving.at(rows)):
+            out[int(k)] = NoMode(ModeStatus.TONE, reason)
+    return out
+
+
+def _is_away(own: _All, seen: _All, orders: _All) -> bool:
+    """Tell whether a track in the range of the orders is missing where these are elsewhere.
+
+    A rotor runs at its rated speed most of the time, and its orders seem settled.
+    """
+    middle = float(np.median(own.log_f))
+    near = np.abs(orders.log_f - middle) < LEAST_SWEEP
+    elsewhere = np.setdiff1d(orders.record, orders.record[near])
+    others = np.setdiff1d(seen.record, elsewhere)
+    if min(len(elsewhere), len(others)) <= FEWEST or np.abs(orders.log_f - middle).min() > REACH:
+        return False
+    there = np.isin(elsewhere, own.record).sum()
+    usual = np.isin(others, own.record).mean()
+    return bool(bdtr(there, len(elsewhere), min(usual, 0.95)) < CHANCE)
+
+
+def _of_jumps(seen: _All, settled: Sequence[int]) -> dict[int, NoMode]:
+    """Return the tracks that jump from record to record while another mode stays."""
+    typical = {k: float(np.median(np.abs(_changes(seen.at(seen.track == k))[0]))) for k in settled}
+    steadiest = min(typical, key=lambda k: typical[k])
+    if typical[steadiest] > STAYS:
+        return {}
+    stays = float(np.exp(np.median(seen.log_f[seen.track == steadiest])))
+    out = {}
+    for k in np.unique(seen.track):
+        change, std = _changes(seen.at(seen.track == k))
+        jumps = np.abs(change) > np.maximum(JUMP, CLEAR * std)
+        if jumps.sum() >= FEWEST and 4 * jumps.sum() >= change.size:
+            size = float(np.median(np.abs(change[jumps])))
+            reason = Finding(
+                "jumps_between_records", params={"times": int(jumps.sum()), "size": size, "stays_hz": stays}
+            )
+            out[int(k)] = NoMode(ModeStatus.DOUBTFUL, reason)
+    return out
+
+
+def _changes(own: _All) -> tuple[FloatArray, FloatArray]:
+    """Return the changes of ln f from each record to the next with the track, and their uncertainty."""
+    order = np.argsort(own.record, kind="stable")
+    return np.diff(own.log_f[order]), np.hypot(own.std[order][1:], own.std[order][:-1])
