@@ -119,6 +119,14 @@ class Client:
         """Return cost surface, cost curves and root loci of the updated law around its medians."""
         return self._asked("GET", f"/assets/{asset}/explore")
 
+    def assumptions(self, asset: str) -> list[dict[str, Any]]:
+        """Return what the answer takes for granted, and what nobody has confirmed."""
+        return list(self._pages(f"/assets/{asset}/assumptions"))
+
+    def confirm(self, asset: str, key: str, comment: str) -> dict[str, Any]:
+        """Say that a tolerance was settled; return the version of the twin that says so."""
+        return self._asked("POST", f"/assets/{asset}/assumptions/{key}/confirm", json={"comment": comment})
+
     def findings(self, asset: str, **query: Any) -> Iterator[dict[str, Any]]:
         """Yield what was worth saying, newest first."""
         return self._pages(f"/assets/{asset}/findings", **query)

@@ -8,6 +8,7 @@ import plotly.graph_objects as go
 import pytest
 from figure_units import assert_units_of
 
+from jackettwin.caveats import Assumption
 from jackettwin.decks import read_structure
 from jackettwin.identification import (
     Examination,
@@ -60,7 +61,7 @@ def targets_only() -> TwinResult:
         measured=measured,
         updates=(fitted,),
         excess=((),),
-        assumptions=("The steel has 1 %.",),
+        assumptions=(Assumption("steel_damping", "The steel has 1 %."),),
         warnings=(),
     )
 

@@ -166,7 +166,12 @@ def known(twin: Any, sums: Any, newest: Any, in_all: tuple[int, float]) -> tuple
         "damping_sensitivity": {"k": -0.01},
     }
     found = {"status": "ok", "parameters": parameters, "records": in_all[0], "budget": budget}
-    drawn = {"explored": EXAMPLES["ExploredOut"], "structure": EXAMPLES["StructureOut"]}
+    assumed = [EXAMPLES["AssumptionOut"]]
+    drawn = {
+        "explored": EXAMPLES["ExploredOut"],
+        "structure": EXAMPLES["StructureOut"],
+        "assumptions": assumed,
+    }
     return {**found, "sensitivity": [moved], **drawn}, None
 
 

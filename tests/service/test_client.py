@@ -13,6 +13,8 @@ from jackettwin.client import Client
 from jackettwin.errors import InputError
 from jackettwin.service.context import Service
 from jackettwin.service.web.app import API, create_app
+from jackettwin.store import reading
+from jackettwin.store.assets import bundle_of, unpack
 
 
 @pytest.fixture
@@ -37,6 +39,25 @@ def test_records_in_and_answers_out(twin: Client, service: Service, tmp_path: Pa
     assert twin.sensitivity("wtg")[0]["frequency_sensitivity"] == {"k": 0.02}
     assert twin.explored("wtg")["curves"][0]["cost"] == [9.1, 0.4, 2.2]
     assert "explored" not in twin.twin("wtg")["parameters"]
+    assert [one["key"] for one in twin.assumptions("wtg")] == ["tolerances.rna_mass"]
+
+
+def test_a_confirmed_assumption_is_a_version_that_waits_to_be_adopted(
+    twin: Client, service: Service, tmp_path: Path
+) -> None:
+    """Its twin file closes the tolerance and is otherwise as before; what is not open is refused."""
+    (tmp_path / "r.parquet").write_bytes(record_file(1))
+    twin.send("wtg", tmp_path / "r.parquet", json.loads(description(hour(1))))
+    turn(service, 4)
+    added = twin.confirm("wtg", "tolerances.rna_mass", "weighed at the quay")
+    assert (added["version"], added["adopted"]) == (2, False)
+    assert added["comment"] == "tolerances.rna_mass confirmed: weighed at the quay"
+    with reading(service.database) as connection:
+        files = unpack(bundle_of(connection, "wtg", 2))
+    assert files["twin.yaml"].decode() == TWIN + "tolerances: {rna_mass: {weighed: true}}\n"
+    with pytest.raises(InputError, match="404") as refused:
+        twin.confirm("wtg", "tolerances.growth", "divers")
+    assert refused.value.field == "key"
 
 
 def test_versions_are_compared_before_one_is_adopted(twin: Client, service: Service, tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ from jackettwin.service.answer_cache import Answer, AnswerCache, has_tag
 from jackettwin.service.context import Service
 from jackettwin.service.web.app import create_app
 from jackettwin.service.web.dependencies import Told
-from jackettwin.service.web.routes import assets, findings, modes, records
+from jackettwin.service.web.routes import assets, assumptions, findings, modes, records
 from jackettwin.service.work.housekeeping import Housekeeping, end_mutes, prune
 from jackettwin.store import journal, results, writing
 from jackettwin.store.tables import events
@@ -35,6 +35,7 @@ QUERIES = {
     "/assets/{asset}/damping-budget": 7,
     "/assets/{asset}/sensitivity": 7,
     "/assets/{asset}/explore": 4,
+    "/assets/{asset}/assumptions": 4,
     "/assets/{asset}/comparison": 12,
     "/assets/{asset}/life": 3,
     "/assets/{asset}/findings": 5,
@@ -47,7 +48,9 @@ AGAIN = 2
 
 def told() -> list[str]:
     """Return the paths of all routes whose answers change with an event only."""
-    routes = [route for module in (assets, findings, modes, records) for route in module.router.routes]
+    routes = [
+        route for module in (assets, assumptions, findings, modes, records) for route in module.router.routes
+    ]
     hints = [(r.path, get_type_hints(inspect.unwrap(r.endpoint), include_extras=True)) for r in routes]
     return [path for path, found in hints if Told in found.values()]
 

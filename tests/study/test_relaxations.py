@@ -104,8 +104,8 @@ def test_the_update_meets_what_it_can(result: TwinResult) -> None:
     assert update.law == "kelvin-voigt" and "springpot: left out" in result.warnings[0]
     assert update.problem.data_names == ["f1", "ζ1", "f4", "a1", "a2"]
     assert update.best.rates.shape == (2,)
-    assert any("a1 (relaxation at 3.5 rad/s)" in line for line in result.assumptions)
-    assert any("Model error of relaxations: 5 %" in line for line in result.assumptions)
+    assert any("a1 (relaxation at 3.5 rad/s)" in one.value for one in result.assumptions)
+    assert any("Model error of relaxations: 5 %" in one.value for one in result.assumptions)
 
 
 def test_documents_and_tables_say_both_rates(result: TwinResult) -> None:

@@ -76,13 +76,18 @@ def changed_inputs(a: Mapping[str, Any], b: Mapping[str, Any]) -> tuple[ChangedI
     files = [_records(document) if told else _hashes(document) for document in (a, b)]
     found += _differing(*({name.removeprefix(HASHES): h for name, h in one.items()} for one in files))
     if not found or not told:
-        said = [tuple(document.get("assumptions") or ()) for document in (a, b)]
+        said = [[_assumed(one) for one in document.get("assumptions") or ()] for document in (a, b)]
         found += [ChangedInput("assumption", one, None) for one in said[0] if one not in said[1]]
         found += [ChangedInput("assumption", None, one) for one in said[1] if one not in said[0]]
     versions = [document.get("code_version") for document in (a, b)]
     if versions[0] != versions[1]:
         found.append(ChangedInput("jackettwin", *versions))
     return tuple(found)
+
+
+def _assumed(one: str | Mapping[str, Any]) -> str:
+    """Return an assumption in words; results of older versions have nothing else."""
+    return one if isinstance(one, str) else str(one["value"])
 
 
 def _differing(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[ChangedInput]:

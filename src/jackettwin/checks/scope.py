@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 
-from jackettwin.omissions import Omission
+from jackettwin.caveats import Omission
 from jackettwin.structure import PILES, Structure, few
 
 _CLAUSES = (

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import click
 import numpy as np
 
+from jackettwin.caveats import Omission, omission_documents, omission_sentences
 from jackettwin.checks import EDITIONS
 from jackettwin.cli.console import FiniteFloat, Reply, answers, numbers_of, say, say_all, show_table
 from jackettwin.cli.modes import pile_model_option, supported_option
 from jackettwin.errors import InputError, look_up
-from jackettwin.omissions import Omission, omission_documents, omission_sentences
 from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 import numpy as np
 
+from jackettwin.caveats import Omission, omission_documents
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import (
     CommandGroup,
@@ -21,7 +22,6 @@ from jackettwin.cli.console import (
     working,
 )
 from jackettwin.errors import InputError, look_up, require
-from jackettwin.omissions import Omission, omission_documents
 from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from typing import Any
 
 import click
 
+from jackettwin.caveats import omission_sentences
 from jackettwin.cli.console import Reply, answers, say, say_all, show_table, working
-from jackettwin.omissions import omission_sentences
 from jackettwin.report import Table, TableColumn
 
 _SLAMMED = 5

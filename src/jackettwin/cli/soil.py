@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 import numpy as np
 
+from jackettwin.caveats import Omission, omission_documents, omission_sentences
 from jackettwin.cli.console import (
     FiniteFloat,
     PageFile,
@@ -21,7 +22,6 @@ from jackettwin.cli.console import (
     show_table,
     working,
 )
-from jackettwin.omissions import Omission, omission_documents, omission_sentences
 from jackettwin.report import Table
 
 if TYPE_CHECKING:

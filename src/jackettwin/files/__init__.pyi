@@ -20,4 +20,10 @@ from .schema import Placed as Placed, Schema as Schema, one_of as one_of, valida
 from .shipped import find_file as find_file, shipped as shipped
 from .stored_schema import DIGITS as DIGITS, StoredSchema as StoredSchema, digest as digest
 from .windio import Part as Part, WindIO as WindIO, windio as windio
-from .yaml import read_mapping as read_mapping, read_text as read_text, read_yaml as read_yaml
+from .yaml import (
+    parse_yaml as parse_yaml,
+    read_mapping as read_mapping,
+    read_text as read_text,
+    read_yaml as read_yaml,
+    with_key as with_key,
+)

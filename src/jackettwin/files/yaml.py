@@ -100,9 +100,19 @@ def read_yaml(path: Path | str, *, what: str = "file") -> dict[str, Any]:
     InputError
         If the file is missing, is not YAML, repeats a key, or is not a mapping.
     """
+    return parse_yaml(read_text(path, what=what), path, what=what)
+
+
+def parse_yaml(text: str, path: Path | str, *, what: str = "file") -> dict[str, Any]:
+    """Return the mapping that a text in YAML is; ``path`` is named in errors.
+
+    Raises
+    ------
+    InputError
+        If it is not YAML, repeats a key, or is not a mapping.
+    """
     try:
         # _Loader derives from SafeLoader: it builds plain data only.
-        text = read_text(path, what=what)
         _bounded(text)
         data = yaml.load(text, Loader=_Loader)
     except yaml.YAMLError as error:
@@ -165,3 +175,30 @@ def read_mapping(path: Path | str, *, what: str = "file") -> dict[str, Any]:
     if not isinstance(data, dict):
         raise InputError(f"{what} must be a mapping of keys to values", file=path, value=data)
     return data
+
+
+def with_key(text: str, key: str, value: Any) -> str:
+    r"""Return the text of a YAML mapping with one of its own keys set.
+
+    Other lines stay as they are; comments inside the old value, and right behind it, go with it.
+
+    Parameters
+    ----------
+    text : of a mapping that :func:`read_yaml` has read before
+
+    Examples
+    --------
+    >>> with_key("a: 1   # one\nb:\n  c: 2\n", "b", {"c": 3, "d": True})
+    'a: 1   # one\nb: {c: 3, d: true}\n'
+    """
+    line = yaml.safe_dump(value, default_flow_style=True, width=10_000, allow_unicode=True)
+    line = line.removesuffix("...\n").strip()
+    root = yaml.compose(text, Loader=_Loader)
+    if not isinstance(root, yaml.MappingNode) or root.flow_style:
+        changed = {**(yaml.load(text, Loader=_Loader) or {}), key: value}
+        return yaml.safe_dump(changed, default_flow_style=False, sort_keys=False, allow_unicode=True)
+    for name, old in root.value:
+        if name.value == key:
+            before, after = text[: name.start_mark.index], text[old.end_mark.index :].lstrip(" ")
+            return f"{before}{key}: {line}{'' if after.startswith(chr(10)) else chr(10)}{after}"
+    return f"{text.rstrip()}\n{key}: {line}\n"

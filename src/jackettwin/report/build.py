@@ -123,7 +123,8 @@ def _next(result: TwinResult, *, a: Answers, said: Said) -> list[Block]:
 
 
 def _assumptions(result: TwinResult) -> list[Block]:
-    blocks: list[Block] = [Text(result.assumptions, "list")] if result.assumptions else []
+    choices = tuple(one.value for one in result.assumptions if one.confirmed is None)
+    blocks: list[Block] = [Text(choices, "list")] if choices else []
     return [*blocks, Text(result.warnings, "warnings")] if result.warnings else blocks
 
 

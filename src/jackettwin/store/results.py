@@ -272,20 +272,20 @@ def find_kept(connection: Connection, asset: str, version: int) -> Mapping[str, 
 
 def find_supports(connection: Connection, asset: str, version: int) -> dict[str, Any]:
     """Return what the days say of the supports alone, empty if nothing yet: without what watching keeps."""
-    return _part(connection, asset, version, "known")
+    return dict(_part(connection, asset, version, "known"))
 
 
-def find_drawn(connection: Connection, asset: str, version: int, name: str) -> dict[str, Any]:
-    """Return what is kept for a page of its own, ``explored`` or ``structure``, empty if nothing yet."""
+def find_drawn(connection: Connection, asset: str, version: int, name: str) -> Any:
+    """Return what a page of its own shows, ``explored``, ``structure``, ``assumptions``; empty if nothing yet."""
     return _part(connection, asset, version, ("together", "known", name))
 
 
 def find_stiffness(connection: Connection, asset: str, version: int) -> dict[str, Any]:
     """Return the stiffness of the supports on each day, empty if nothing yet."""
-    return _part(connection, asset, version, "supports")
+    return dict(_part(connection, asset, version, "supports"))
 
 
-def _part(connection: Connection, asset: str, version: int, name: str | tuple[str, ...]) -> dict[str, Any]:
+def _part(connection: Connection, asset: str, version: int, name: str | tuple[str, ...]) -> Any:
     query = select(knowledge.c.document[name]).where(*_of_version(asset, version))
     return connection.scalar(query) or {}
 

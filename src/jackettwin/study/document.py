@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from jackettwin.arrays import FloatArray
+from jackettwin.caveats import assumption_documents
 from jackettwin.files import named
 from jackettwin.identification import Comparison, identification_document
 from jackettwin.identification.document import mode_document, shape_document
@@ -48,7 +49,7 @@ def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
             mode_document(e, None) | {"held_against": held_document(e, held, result.labels)}
             for e, held in result.unpaired
         ],
-        "assumptions": list(result.assumptions),
+        "assumptions": assumption_documents(result.assumptions),
         "warnings": list(result.warnings),
         "truth": truth_document(result),
         "report": report,
@@ -74,7 +75,7 @@ def ranking_document(updates: Sequence[Update]) -> list[dict[str, Any]]:
 
 def series_sentence(result: TwinResult) -> str | None:
     """Return how many branches a Prony series without a number was given, and why; None if none was asked."""
-    return next((line for line in result.assumptions if line.startswith(f"{SERIES}: ")), None)
+    return next((one.value for one in result.assumptions if one.key == SERIES), None)
 
 
 def update_document(result: TwinResult, index: int) -> dict[str, Any]:

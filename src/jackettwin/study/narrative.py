@@ -1,4 +1,4 @@
-"""What was assumed and what to beware of, in sentences."""
+"""What to beware of, in sentences."""
 
 from __future__ import annotations
 
@@ -6,90 +6,11 @@ from collections.abc import Mapping
 from math import hypot
 from typing import Any
 
-from jackettwin.soil import MUDLINE
-from jackettwin.structure import Rayleigh
 from jackettwin.study.measure import Measured
-from jackettwin.study.measurements import MeasuredMode, MeasuredRelaxation
+from jackettwin.study.measurements import MeasuredMode
 from jackettwin.study.result import unpaired_finding
 from jackettwin.twin import TwinConfig, stated_model
 from jackettwin.updating import Update
-
-
-def assumptions(
-    config: TwinConfig,
-    measured: tuple[MeasuredMode, ...],
-    relaxations: tuple[MeasuredRelaxation, ...],
-    wind: float | None,
-) -> tuple[str, ...]:
-    """Return what the run took for granted; dashpots are stated at the wind [m/s]."""
-    how = config.modelling()
-    theory = {"euler-bernoulli": "Euler–Bernoulli", "timoshenko": "Timoshenko"}[str(how["beam"])]
-    rotary = how["rotary_inertia"] or theory == "Timoshenko"
-    lines = [
-        f"{theory} beams, {'with' if rotary else 'without'} rotary inertia; "
-        + ("gravity's P-Δ stiffness is on" if config.gravity else "no gravity stiffness")
-        + (f"; {', '.join(config.of_records)}: as the records state it." if config.of_records else "."),
-        _steel(config),
-        f"The support law {_acts_on(config)} (tie: {config.tie}).",
-        "Modes are numbered by their order on pinned feet and followed by mass-weighted MAC.",
-        f"Fitted: {', '.join(filter(None, [*map(_fitted, measured), *map(_relaxed, relaxations)]))}.",
-    ]
-    if relaxations and config.update.rate_error:
-        lines.append(f"Model error of relaxations: {100 * config.update.rate_error:.3g} % on the rate.")
-    for e in (e for e in config.update.model_errors if e.modes):
-        lines.append(
-            f"Model error of modes {', '.join(map(str, e.modes))}: {100 * e.frequency:.3g} % on frequency, "
-            f"{100 * e.damping:.3g} % on damping."
-        )
-    if config.update.dashpots:
-        shape = "with the pattern of its blades" if config.update.rotor else "on the tower top"
-        where = "" if wind is None else f", stated at a wind of {wind:.3g} m/s and proportional to it"
-        lines.append(f"The rotor is parked: dashpots {', '.join(config.update.dashpots)} {shape}{where}.")
-    if config.update.water:
-        lines.append(
-            f"Factors on the water are updated: {', '.join(config.update.water)}. Drag is linear, in one "
-            "mean sea for all records; radiation damping is left out."
-        )
-    if config.update.parameters:
-        lines.append(f"Updated beside the law: {', '.join(config.update.parameters)}.")
-    if len(config.records) > 1:
-        lines.append(
-            f"{len(config.records)} records are fused on the logarithms, weighted by precision, with their "
-            "scatter."
-        )
-    return tuple(lines)
-
-
-def _steel(config: TwinConfig) -> str:
-    """Say how the steel is damped."""
-    said = []
-    if config.rayleigh != Rayleigh():
-        said.append(f"Rayleigh, {100 * config.rayleigh_ratio:.3g} % at its minimum")
-    if config.mode_damping:
-        ratios = sorted(config.mode_damping.items())
-        said.append("by mode, " + ", ".join(f"ζ{mode} {100 * ratio:.3g} %" for mode, ratio in ratios))
-    return f"Steel damping: {'; '.join(said)}; on the structure only." if said else "The steel is undamped."
-
-
-def _acts_on(config: TwinConfig) -> str:
-    nodes = config.structure.reaction_nodes
-    of = f"of {len(nodes)} reaction nodes"
-    if config.tie == MUDLINE:
-        tied = f"{nodes[0]}, which all feet follow rigidly" if nodes == (MUDLINE,) else f"foot {nodes[0]}"
-        what = "sway and rocking" if config.heads is None else "the 6×6 stiffness"
-        return f"acts on {what} of {tied}"
-    return (
-        f"acts on the three translations {of}" if config.heads is None else f"scales the 6×6 pile heads {of}"
-    )
-
-
-def _fitted(m: MeasuredMode) -> str:
-    what = [word for word, flag in (("f", m.fits_frequency), ("ζ", m.fits_damping)) if flag]
-    return f"{m.label} ({' and '.join(what)})" if what else ""
-
-
-def _relaxed(r: MeasuredRelaxation) -> str:
-    return f"{r.name} (relaxation at {r.rate_rad_s:.3g} rad/s)"
 
 
 def without_relaxation(laws: tuple[str, ...]) -> tuple[str, ...]:

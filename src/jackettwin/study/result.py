@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
+from jackettwin.caveats import Assumption
 from jackettwin.findings import Finding
 from jackettwin.identification import Examination, Identification, ModalEstimate
 from jackettwin.records import Record
@@ -72,7 +73,8 @@ class TwinResult:
         One a law; each covers the modes of ``measured``.
     excess : tuple of tuple of DampingExcess
         For each update, every mode with measured damping.
-    assumptions, warnings : tuple of str
+    assumptions : tuple of Assumption
+    warnings : tuple of str
         Sentences for the report.
     relaxations : tuple of MeasuredRelaxation
         Real poles that the supports were updated to, too, by rate.
@@ -95,7 +97,7 @@ class TwinResult:
     measured: tuple[MeasuredMode, ...]
     updates: tuple[Update, ...]
     excess: tuple[tuple[DampingExcess, ...], ...]
-    assumptions: tuple[str, ...]
+    assumptions: tuple[Assumption, ...]
     warnings: tuple[str, ...]
     relaxations: tuple[MeasuredRelaxation, ...] = ()
     rotor_speed_hz: tuple[float, float] | None = None

@@ -3,29 +3,31 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Literal
 
 import numpy as np
 
+from jackettwin.caveats import Assumption
 from jackettwin.errors import InputError
 from jackettwin.files import NOT_KEPT, Keep
 from jackettwin.progress import SILENT, Progress
 from jackettwin.soil import SERIES
+from jackettwin.study.assumptions import modelling_assumptions, tolerance_assumptions
 from jackettwin.study.fit_cache import fitted, with_kept_posterior
 from jackettwin.study.fit_data import recorded_modes, residuals, target_modes, updating
 from jackettwin.study.measure import Measured, measure
 from jackettwin.study.measurements import MeasuredMode
-from jackettwin.study.narrative import assumptions, cautions, without_relaxation
+from jackettwin.study.narrative import cautions, without_relaxation
 from jackettwin.study.pair_directions import measured_directions
 from jackettwin.study.problem import UpdateEvidence, law_problem
 from jackettwin.study.relaxations import measured_relaxations, relaxing
 from jackettwin.study.result import DampingExcess, TwinResult
 from jackettwin.study.rotor import mean_wind, operating_states, rotor_damping, rotor_speed_hz
-from jackettwin.study.scrutiny import scrutiny
+from jackettwin.study.scrutiny import Scrutiny, scrutiny
 from jackettwin.twin import TwinConfig, TwinModel, TwinState, suspects, twin_model
-from jackettwin.updating import Update, likely, series
+from jackettwin.updating import Update, likely, recommended, series
 
 Posteriors = Literal["all", "likely", "none"]
 log = logging.getLogger(__name__)
@@ -119,7 +121,7 @@ def updated_twin(
         progress(f"update {law}")
         if law == SERIES:
             chosen, why = series(lambda name: fit(name, sampled=False), progress)
-            lengths.append(why)
+            lengths.append(Assumption(SERIES, why))
             wanted = tuple(chosen.law if name == SERIES else name for name in wanted)
             updates.append(fit(chosen.law))
         else:
@@ -133,6 +135,7 @@ def updated_twin(
     sensors = () if found is None else found.sensors
     pairs = measured_directions(state, sensors, assembly, measured)
     seen = () if found is None else found.observations
+    checked = tuple(scrutiny(u, measured, others, pairs, seen) for u in updates)
     left_out = tuple(law for law in wanted if law not in [u.law for u in updates])
     return TwinResult(
         name=config.name,
@@ -145,14 +148,28 @@ def updated_twin(
         measured=measured,
         updates=tuple(updates),
         excess=tuple(_excess(measured, result) for result in updates),
-        assumptions=(*assumptions(config, measured, relaxations, wind), *lengths),
+        assumptions=(
+            *modelling_assumptions(config, measured, relaxations, wind),
+            *lengths,
+            *_of_tolerances(config, updates, checked),
+        ),
         warnings=(*without_relaxation(left_out), *cautions(config, found, measured, tuple(updates), labels)),
         relaxations=relaxations,
         rotor_speed_hz=speed,
         blades=blades,
         in_all=None if found is None else found.in_all,
-        scrutiny=tuple(scrutiny(u, measured, others, pairs, seen) for u in updates),
+        scrutiny=checked,
     )
+
+
+def _of_tolerances(
+    config: TwinConfig, updates: Sequence[Update], checked: Sequence[Scrutiny]
+) -> tuple[Assumption, ...]:
+    """Return the tolerances of a twin, with what they move under the law that is recommended."""
+    u = recommended(updates)
+    s = next((s for one, s in zip(updates, checked, strict=True) if one is u), None)
+    names = () if u is None else tuple(p.name for p in u.problem.parameters)
+    return tolerance_assumptions(config, s, names)
 
 
 def _recorded(

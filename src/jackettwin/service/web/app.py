@@ -22,6 +22,7 @@ from jackettwin.service.web.dependencies import KnownAnswer, sent
 from jackettwin.service.web.routes import (
     alert_channels,
     assets,
+    assumptions,
     findings,
     health,
     jobs,
@@ -43,6 +44,7 @@ ROUTERS = (
     modes.router,
     findings.router,
     alert_channels.router,
+    assumptions.router,
     jobs.router,
     health.router,
 )

@@ -593,6 +593,19 @@ class StructureOut(BaseModel):
     mud_z: float = 0.0
 
 
+class AssumptionOut(BaseModel):
+    """What an answer takes for granted; ``confirmed`` is null of a choice of modelling.
+
+    ``moves`` is the relative change of each updated parameter for one standard deviation more.
+    """
+
+    key: str
+    value: str
+    confirmed: bool | None = None
+    moves: dict[str, float] = {}
+    settled_by: str | None = None
+
+
 class ChangeOut(BaseModel):
     """A quantity under two versions; null where one does not know it.
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from jackettwin.answers import ModeAnswer, Span, answer
 from jackettwin.arrays import FloatArray
+from jackettwin.caveats import assumption_documents
 from jackettwin.change import JUDGED, Days, Ground, corrections, finding_of, judge, sight_of
 from jackettwin.errors import JackettwinError
 from jackettwin.files import null_for_nan
@@ -48,7 +49,7 @@ CANNOT_MEET = "the model cannot meet what was measured on any ground: no interva
 """What is said of parameters that come nearest to the data and do not explain them."""
 _GRID = 33
 """Points a side of the cost surface that is kept."""
-DRAWN = ("explored", "structure")
+DRAWN = ("explored", "structure", "assumptions")
 """What is kept of an answer for pages of their own, beside what is known."""
 NO_MODE = "no mode of the model has been seen"
 FEW, GROWN, MOST_DAYS = 24, 1.3, 30
@@ -175,6 +176,7 @@ def known(
         "sensitivity": _sensitivity(u, median, result),
         "explored": _explored(u, median, result.name),
         "structure": null_for_nan(view_document(structure_view(result))),
+        "assumptions": assumption_documents(result.assumptions),
     }, sections
 
 

@@ -13,6 +13,7 @@ from jackettwin.service.web import answers as said, auth, signals
 from jackettwin.service.web.auth import Who
 from jackettwin.service.web.dependencies import (
     WAITING,
+    AnyVersion,
     Asker,
     AssetName,
     Parts,
@@ -39,7 +40,6 @@ router = APIRouter(tags=["answers"], route_class=Route)
 
 Cursor = Annotated[str | None, Query(max_length=500)]
 Limit = Annotated[int, Query(ge=1, le=10_000)]
-AnyVersion = Annotated[int | None, Query(ge=1, le=1_000_000, description="Default: the adopted one.")]
 _PARQUET, _ARROW = "application/vnd.apache.parquet", "application/vnd.apache.arrow.stream"
 When = Annotated[datetime | None, Query(description="The state as it was then; default: now.")]
 
