@@ -276,7 +276,7 @@ def find_supports(connection: Connection, asset: str, version: int) -> dict[str,
 
 
 def find_drawn(connection: Connection, asset: str, version: int, name: str) -> Any:
-    """Return what a page of its own shows, ``explored``, ``structure``, ``assumptions``; empty if nothing yet."""
+    """Return what a page shows: ``explored``, ``structure`` or ``assumptions``; empty if nothing yet."""
     return _part(connection, asset, version, ("together", "known", name))
 
 
