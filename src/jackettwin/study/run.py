@@ -14,12 +14,16 @@ from jackettwin.errors import InputError
 from jackettwin.files import NOT_KEPT, Keep
 from jackettwin.progress import SILENT, Progress
 from jackettwin.soil import SERIES
-from jackettwin.study.assumptions import modelling_assumptions, tolerance_assumptions
 from jackettwin.study.fit_cache import fitted, with_kept_posterior
 from jackettwin.study.fit_data import recorded_modes, residuals, target_modes, updating
 from jackettwin.study.measure import Measured, measure
 from jackettwin.study.measurements import MeasuredMode
-from jackettwin.study.narrative import cautions, without_relaxation
+from jackettwin.study.narrative import (
+    cautions,
+    modelling_assumptions,
+    tolerance_assumptions,
+    without_relaxation,
+)
 from jackettwin.study.pair_directions import measured_directions
 from jackettwin.study.problem import UpdateEvidence, law_problem
 from jackettwin.study.relaxations import measured_relaxations, relaxing

@@ -7,7 +7,7 @@ from math import expm1
 
 import numpy as np
 
-from jackettwin.study.assumptions import tolerance_assumptions
+from jackettwin.study.narrative import tolerance_assumptions
 from jackettwin.study.scrutiny import Scrutiny
 from jackettwin.twin import read_twin
 from jackettwin.twin.config import TwinTolerances
