@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from jackettwin.updating import MeasuredShape, order_checks, shape_checks
+from jackettwin.updating import CheckedShape, order_checks, shape_checks
 
 N, STD = 8, 0.02
 HZ = np.array([0.20, 0.205, 0.6, 0.8])
@@ -22,7 +22,7 @@ def test_the_share_outside_a_plane_is_the_sine_squared(rng: np.random.Generator)
     for angle, objects in ((0.05, False), (0.4, True)):
         along = np.cos(angle) * (0.3 * shapes[:, 0] + np.sqrt(1.0 - 0.09) * shapes[:, 1])
         seen = 3.0 * np.exp(0.7j) * (along + np.sin(angle) * shapes[:, 2])
-        found = shape_checks([MeasuredShape(1, seen, np.zeros(N))], [shapes], HZ, [0.2])[0]
+        found = shape_checks([CheckedShape(1, seen, np.zeros(N))], [shapes], HZ, [0.2])[0]
         assert found.outside == pytest.approx(np.sin(angle) ** 2, rel=1e-9)
         assert found.objects is objects and found.expected == 0.0
 
@@ -31,7 +31,7 @@ def test_errors_of_sensors_put_as_much_outside_as_is_expected(rng: np.random.Gen
     shapes, found = modes(rng), []
     for _ in range(2000):
         noise = STD / np.sqrt(2.0) * (rng.standard_normal(N) + 1j * rng.standard_normal(N))
-        seen = MeasuredShape(3, shapes[:, 2] + noise, np.full(N, STD))
+        seen = CheckedShape(3, shapes[:, 2] + noise, np.full(N, STD))
         found.append(shape_checks([seen], [shapes], HZ, [0.6])[0])
     outside, expected = (np.array([getattr(one, key) for one in found]) for key in ("outside", "expected"))
     # four standard errors of the mean of 2,000 sums of 7 squares
@@ -43,7 +43,7 @@ def test_errors_of_sensors_put_as_much_outside_as_is_expected(rng: np.random.Gen
 
 def test_no_more_sensors_than_modes_tell_nothing(rng: np.random.Generator) -> None:
     shapes = modes(rng)[:2]
-    assert shape_checks([MeasuredShape(1, shapes[:, 0], np.full(2, STD))], [shapes], HZ, [0.2]) == ()
+    assert shape_checks([CheckedShape(1, shapes[:, 0], np.full(2, STD))], [shapes], HZ, [0.2]) == ()
 
 
 @pytest.mark.parametrize(

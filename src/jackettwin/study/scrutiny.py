@@ -15,10 +15,10 @@ from jackettwin.study.measurements import MeasuredMode, sensors_of
 from jackettwin.twin import Observation
 from jackettwin.updating import (
     USABLE,
+    CheckedShape,
     DatumCheck,
     Direction,
     Influence,
-    MeasuredShape,
     Objection,
     OrderCheck,
     PairDirection,
@@ -125,7 +125,7 @@ def _shapes(
         if seen is None or e is None or std is None or not np.isfinite(hz):
             continue
         sensors, rows = seen
-        modes.append(MeasuredShape(m.mode, e.mode_shape[rows], std[rows]))
+        modes.append(CheckedShape(m.mode, e.mode_shape[rows], std[rows]))
         shapes.append(np.asarray(observation_matrix(u.model.assembly, sensors) @ every.shapes))
         own_hz.append(float(hz))
     return shape_checks(modes, shapes, every.frequency_hz, own_hz)

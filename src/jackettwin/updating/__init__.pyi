@@ -48,7 +48,7 @@ from .model_error.directions import (
 from .model_error.error_model import ErrorModel as ErrorModel
 from .model_error.influence import Influence as Influence, influences as influences
 from .model_error.mode_checks import (
-    MeasuredShape as MeasuredShape,
+    CheckedShape as CheckedShape,
     OrderCheck as OrderCheck,
     ShapeCheck as ShapeCheck,
     order_checks as order_checks,

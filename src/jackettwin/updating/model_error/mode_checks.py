@@ -25,7 +25,7 @@ bending modes in the shipped records 0.001 to 0.3 % lie outside the model's, of 
 
 
 @dataclass(frozen=True)
-class MeasuredShape:
+class CheckedShape:
     """The measured shape of a mode at some sensors.
 
     Attributes
@@ -89,7 +89,7 @@ class OrderCheck:
 
 
 def shape_checks(
-    measured: Sequence[MeasuredShape],
+    measured: Sequence[CheckedShape],
     at_sensors: Sequence[ComplexArray],
     frequency_hz: FloatArray,
     own_hz: Sequence[float],
