@@ -19,6 +19,7 @@ from jackettwin.response import Sensor
 from jackettwin.soil import DEFAULT_LAWS
 from jackettwin.structure import Assembly, Rayleigh, Structure, assemble
 from jackettwin.twin.calibration import Calibrations
+from jackettwin.twin.life.settings import LifeSettings
 from jackettwin.twin.operation import OperationRule
 from jackettwin.twin.water import WaterConfig, moving_mass
 from jackettwin.updating import MOST_EVALUATIONS, Problem, Target, points_of
@@ -238,6 +239,8 @@ class TwinConfig:
     """How its days are watched for change."""
     tolerances: TwinTolerances = TwinTolerances()
     """What drawings and sea leave open."""
+    life: LifeSettings | None = None
+    """How damage at the welds is counted; None counts none."""
     rotor_speed_rpm: tuple[float, float] | None = None
     """Lowest and highest speed of the rotor in operation; None leaves it to ``update.rotor``."""
     mode_damping: Mapping[int, float] = field(default_factory=dict)
