@@ -28,6 +28,7 @@ PAGES = (
     "/jobs",
     "/users",
     "/start",
+    "/docs",
     "/assets/wtg",
     "/assets/wtg/timeline",
     "/assets/wtg/structure",
@@ -181,6 +182,35 @@ def test_an_alarm_is_acknowledged_by_keyboard_and_another_reader_sees_it(opened:
         expect(page.get_by_text("<b>divers</b> looked")).to_be_visible()
         assert "injected" not in page.title()
         page.context.close()
+
+
+def test_an_alarm_is_handed_on_muted_closed_and_opened_again(opened: Open) -> None:
+    """What each did stays in sight, as text; what is closed is not among what asks for a person."""
+    alarm(opened.service, opened.url, "A third change.", day=3)
+    page = opened.page("/assets/wtg/alarms")
+    one = page.get_by_role("listitem").filter(has_text="A third change.")
+
+    def act(name: str, comment: str) -> None:
+        one.get_by_role("button", name=name).click()
+        one.get_by_role("textbox").last.fill(comment)
+        one.locator("form button.main").click()
+
+    one.get_by_role("button", name="Assign").click()
+    one.get_by_label("To whom").fill("eva")
+    one.locator("form button.main").click()
+    expect(one.get_by_text("with eva")).to_be_visible()
+    act("Comment", "<b>scour</b> survey ordered")
+    expect(one.get_by_text("<b>scour</b> survey ordered")).to_be_visible()
+    act("Mute", "until the survey")
+    expect(one.locator(".light")).to_have_text("muted")
+    act("Close", "rock was placed")
+    expect(one).to_have_count(0)
+    page.get_by_role("button", name="Closed", exact=True).click()
+    expect(one.get_by_text("rock was placed")).to_be_visible()
+    act("Reopen", "")
+    page.get_by_role("button", name="Open", exact=True).click()
+    expect(one.get_by_text("reopened")).to_be_visible()
+    page.context.close()
 
 
 def test_two_acknowledge_at_once_and_read_the_same(opened: Open) -> None:

@@ -3,6 +3,7 @@ import { useAnswer } from "../api/answer";
 import { api, told } from "../api/client";
 import { AlarmList } from "../parts/AlarmList";
 import { Card, Choice, Light, Time } from "../parts/Bits";
+import { Handling, History, standing } from "../parts/Handling";
 import { Empty, Shown } from "../parts/Shown";
 import type { PageProps } from "../shell/App";
 import { asked, assetUrl, keep } from "../shell/place";
@@ -13,8 +14,13 @@ const KINDS = [
   ["info", "notes"],
 ] as const;
 
+const STATES = [
+  ["", "Open"],
+  ["closed", "Closed"],
+] as const;
+
 export default function Alarms({ asset }: PageProps) {
-  const kind = asked("severity") ?? "";
+  const [kind, state] = [asked("severity") ?? "", asked("state") ?? ""];
   const path = { asset };
   const alarms = useAnswer(asset, `alarms ${asset}`, () =>
     told(api.GET("/api/v1/assets/{asset}/alarms", { params: { path } })),
@@ -33,9 +39,27 @@ export default function Alarms({ asset }: PageProps) {
         </p>
       </div>
       <div class="grid">
-        <Card title="Asks for a person" wide>
+        <Card
+          title="Asks for a person"
+          wide
+          more={
+            <Choice
+              label="Which"
+              value={state}
+              options={STATES}
+              onChoose={(one) => keep({ state: one || null })}
+            />
+          }
+        >
           <Shown of={alarms} empty={(data) => (data.items.length ? null : <Empty title="No alarm" />)}>
-            {(data) => <AlarmList alarms={data.items} again={alarms.again} />}
+            {(data) => {
+              const shown = data.items.filter((a) => (state === "closed") === Boolean(a.closed_by));
+              return shown.length ? (
+                <AlarmList alarms={shown} again={alarms.again} whole />
+              ) : (
+                <Empty title={state === "closed" ? "None is closed" : "No open alarm"} />
+              );
+            }}
           </Shown>
         </Card>
         <Card
@@ -63,11 +87,13 @@ export default function Alarms({ asset }: PageProps) {
                   .map((f) => (
                     <li key={f.id}>
                       <p class="meta">
-                        <Light status={f.severity} />
+                        <Light status={standing(f)} />
                         <Time at={f.time_utc} />
                         {f.record_id && <a href={assetUrl(asset, "records", f.record_id)}>the record</a>}
                       </p>
                       <p>{f.text}</p>
+                      {(f.assigned_to ?? f.muted_until_utc ?? f.closed_by) && <History finding={f} />}
+                      {f.severity === "warning" && <Handling finding={f} again={said.again} />}
                     </li>
                   ))}
               </ul>

@@ -1,5 +1,6 @@
 // Who are you?
 import { useState } from "preact/hooks";
+import { useAnswer } from "../api/answer";
 import { api, me, Problem, told } from "../api/client";
 import { asked, go } from "../shell/place";
 
@@ -11,6 +12,7 @@ export function safePlace(next: string | null): string {
 export function Login() {
   const [problem, setProblem] = useState<Problem | null>(null);
   const [busy, setBusy] = useState(false);
+  const health = useAnswer(null, "health", () => told(api.GET("/api/v1/health")));
   const anew = problem?.field === "new";
   const send = async (event: SubmitEvent): Promise<void> => {
     event.preventDefault();
@@ -54,6 +56,13 @@ export function Login() {
             {busy ? "Asking" : "Log in"}
           </button>
         </form>
+        {health.data?.openid && (
+          <p class="other-way">
+            <a class="button" href="/api/v1/oidc/login" data-leave>
+              Log in with your organisation's account
+            </a>
+          </p>
+        )}
       </section>
     </main>
   );

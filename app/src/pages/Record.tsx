@@ -7,11 +7,11 @@ import { Plot } from "../parts/plot/Plot";
 import type { Mark, PlotData, Range } from "../parts/plot/series";
 import { Shown, Trouble } from "../parts/Shown";
 import { Stabilisation } from "../parts/Stabilisation";
-import { Table } from "../parts/Table";
+import { ModeTable } from "../parts/ModeTable";
 import type { PageProps } from "../shell/App";
-import { asked, assetUrl } from "../shell/place";
+import { asked } from "../shell/place";
 import { keepRange } from "../parts/Stiffness";
-import { frequency, percent, words } from "../words/numbers";
+import { words } from "../words/numbers";
 import { seconds } from "../words/time";
 
 const COLOURS = ["blue", "vermillion", "green", "purple", "orange", "sky", "grey", "ink"];
@@ -201,31 +201,10 @@ export default function Record({ asset, id }: PageProps) {
         <Card title="Modes found">
           <Shown of={modes} empty={(rows) => (rows.length ? null : <p class="quiet">None yet.</p>)}>
             {(rows) => (
-              <Table
-                label="Modes"
-                rows={rows}
-                id={(m) => m.label}
-                columns={[
-                  {
-                    title: "Mode",
-                    show: (m) => (
-                      <a href={`${assetUrl(asset, "timeline")}?mode=${m.label}`}>{words(m.label)}</a>
-                    ),
-                  },
-                  {
-                    title: "Frequency",
-                    unit: "Hz",
-                    numeric: true,
-                    show: (m) => frequency(m.frequency_hz, m.frequency_std_hz),
-                  },
-                  {
-                    title: "Damping ratio",
-                    unit: "%",
-                    numeric: true,
-                    show: (m) => percent(m.damping_ratio, m.damping_ratio_std),
-                  },
-                  { title: "Status", show: (m) => <Light status={m.status} /> },
-                ]}
+              <ModeTable
+                asset={asset}
+                modes={rows}
+                more={[{ title: "Status", show: (m) => <Light status={m.status} /> }]}
               />
             )}
           </Shown>

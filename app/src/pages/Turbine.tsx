@@ -7,6 +7,7 @@ import { AlarmList } from "../parts/AlarmList";
 import { Ago, Card, Light, Time } from "../parts/Bits";
 import { Budget } from "../parts/Budget";
 import { Empty, Shown, Trouble } from "../parts/Shown";
+import { ModeTable } from "../parts/ModeTable";
 import { Table } from "../parts/Table";
 import { later } from "../parts/later";
 import type { PageProps } from "../shell/App";
@@ -24,7 +25,7 @@ function Figures({ twin, alarms }: { twin: Twin; alarms: readonly Alarm[] }) {
   const ground = Object.values(known.parameters ?? {})
     .filter((p) => p.unit === "N/m")
     .slice(0, 1);
-  const open = alarms.filter((a) => !a.acknowledged_by).length;
+  const open = alarms.filter((a) => !a.acknowledged_by && !a.closed_by && !a.muted_until_utc).length;
   return (
     <dl class="figures">
       {first.map((m) => (
@@ -65,32 +66,8 @@ function Figures({ twin, alarms }: { twin: Twin; alarms: readonly Alarm[] }) {
 
 function Modes({ asset, twin }: { asset: string; twin: Twin }) {
   const modes = twin.modes as unknown as KnownMode[];
-  return (
-    <Table
-      label="Modes"
-      rows={modes}
-      id={(m) => m.label}
-      columns={[
-        {
-          title: "Mode",
-          show: (m) => <a href={`${assetUrl(asset, "timeline")}?mode=${m.label}`}>{words(m.label)}</a>,
-        },
-        {
-          title: "Frequency",
-          unit: "Hz",
-          numeric: true,
-          show: (m) => frequency(m.frequency_hz, m.frequency_std_hz),
-        },
-        {
-          title: "Damping ratio",
-          unit: "%",
-          numeric: true,
-          show: (m) => percent(m.damping_ratio, m.damping_ratio_std),
-        },
-        { title: "Records", numeric: true, show: (m) => m.records },
-      ]}
-    />
-  );
+  const records = { title: "Records", numeric: true, show: (m: KnownMode) => m.records };
+  return <ModeTable asset={asset} modes={modes} more={[records]} />;
 }
 
 function Supports({ known }: { known: Knowledge }) {
@@ -159,7 +136,7 @@ export function Turbine({ asset }: PageProps) {
       <div class="grid">
         <Card title="What changed, and why" more={<a href={assetUrl(asset, "alarms")}>All alarms</a>}>
           <Shown of={alarms} empty={(data) => (data.items.length ? null : <Unchanged own={own} />)} lines={3}>
-            {(data) => <AlarmList alarms={data.items.slice(0, 3)} again={alarms.again} />}
+            {(data) => <AlarmList alarms={mostUrgent(data.items).slice(0, 3)} again={alarms.again} />}
           </Shown>
         </Card>
         <Card
@@ -188,6 +165,10 @@ export function Turbine({ asset }: PageProps) {
     </>
   );
 }
+
+/** What is open before what is closed, newest first. */
+const mostUrgent = (alarms: readonly Alarm[]): Alarm[] =>
+  alarms.toSorted((a, b) => Number(Boolean(a.closed_by)) - Number(Boolean(b.closed_by)));
 
 function Unchanged({ own }: { own: Answer<Asset> }) {
   return (

@@ -1,75 +1,60 @@
-// Findings that ask for a person, and the way to say that one has looked.
-import { useState } from "preact/hooks";
-import { api, type Alarm, Problem, told } from "../api/client";
-import { may } from "../api/do";
+// Findings that ask for a person, what is known of each, and the way to say that one has looked.
+import type { Alarm } from "../api/client";
+import { assetUrl } from "../shell/place";
 import { Light, Time } from "./Bits";
+import { Handling, History, standing } from "./Handling";
 
-function Acknowledge({ alarm, again }: { alarm: Alarm; again: () => void }) {
-  const [open, setOpen] = useState(false);
-  const [problem, setProblem] = useState<Problem | null>(null);
-  if (!may("engineer")) return <span class="quiet">Engineers acknowledge alarms.</span>;
-  if (!open)
-    return (
-      <button type="button" onClick={() => setOpen(true)}>
-        Acknowledge
-      </button>
-    );
-  const send = async (event: SubmitEvent): Promise<void> => {
-    event.preventDefault();
-    const comment = String(new FormData(event.currentTarget as HTMLFormElement).get("comment") ?? "");
-    try {
-      const path = { params: { path: { alarm_id: alarm.id } }, body: { comment } };
-      await told(api.POST("/api/v1/alarms/{alarm_id}/acknowledge", path));
-      setOpen(false);
-      again();
-    } catch (error) {
-      setProblem(error instanceof Problem ? error : null);
-    }
-  };
-  return (
-    <form class="stack" onSubmit={(event) => void send(event)}>
-      <label>
-        What you saw, and what you do about it
-        <textarea name="comment" required maxLength={2000} />
-      </label>
-      {problem && (
-        <p class="error" role="alert">
-          {problem.message}
-        </p>
-      )}
-      <span>
-        <button class="main">Acknowledge</button>{" "}
-        <button type="button" onClick={() => setOpen(false)}>
-          Not now
-        </button>
-      </span>
-    </form>
-  );
+const ROOM_MS = 60 * 86_400_000;
+
+/** The days before and after: what a reader looks at first. */
+function evidence(alarm: Alarm): string {
+  const began = alarm.params["began_low"];
+  const first = typeof began === "string" ? Date.parse(began) : Date.parse(alarm.time_utc);
+  const at = (ms: number): string => encodeURIComponent(new Date(ms).toISOString());
+  const range = `from=${at(first - ROOM_MS)}&to=${at(Date.parse(alarm.time_utc) + ROOM_MS)}`;
+  return `${assetUrl(alarm.asset, "timeline")}?${range}`;
 }
 
-export function AlarmList({ alarms, again }: { alarms: readonly Alarm[]; again: () => void }) {
+interface AlarmListProps {
+  alarms: readonly Alarm[];
+  again: () => void;
+  /** Whether what people did is shown line by line. */
+  whole?: boolean;
+}
+
+export function AlarmList({ alarms, again, whole = false }: AlarmListProps) {
   return (
     <ul class="list">
       {alarms.map((alarm) => (
         <li key={alarm.id}>
           <p class="meta">
-            <Light status={alarm.acknowledged_by ? "acknowledged" : "alarm"} />
+            <Light status={standing(alarm)} />
             <Time at={alarm.time_utc} />
+            {alarm.assigned_to && <span>with {alarm.assigned_to}</span>}
+            {alarm.muted_until_utc && (
+              <span>
+                until <Time at={alarm.muted_until_utc} />
+              </span>
+            )}
+            <a href={evidence(alarm)}>the days around it</a>
           </p>
           <p>{alarm.text}</p>
-          {alarm.acknowledged_by ? (
-            <p class="quiet">
-              {alarm.acknowledged_by}
-              {alarm.acknowledged_utc && (
-                <>
-                  , <Time at={alarm.acknowledged_utc} />
-                </>
-              )}
-              : {alarm.comment}
-            </p>
+          {whole ? (
+            <History finding={alarm} />
           ) : (
-            <Acknowledge alarm={alarm} again={again} />
+            alarm.acknowledged_by && (
+              <p class="quiet">
+                {alarm.acknowledged_by}
+                {alarm.acknowledged_utc && (
+                  <>
+                    , <Time at={alarm.acknowledged_utc} />
+                  </>
+                )}
+                : {alarm.comment}
+              </p>
+            )
           )}
+          <Handling finding={alarm} again={again} />
         </li>
       ))}
     </ul>

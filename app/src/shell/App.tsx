@@ -32,6 +32,7 @@ const PAGES: Record<string, ComponentType<PageProps>> = {
   reports: later(() => import("../pages/Reports")),
   jobs: later(() => import("../pages/Jobs")),
   users: later(() => import("../pages/Users")),
+  docs: later(() => import("../pages/Docs")),
   start: later(() => import("../pages/Start")),
 };
 const TABS: readonly (readonly [string, string])[] = [
@@ -49,6 +50,7 @@ const OWN_TABS: readonly (readonly [string, string, string])[] = [
   ["/jobs", "Jobs", "viewer"],
   ["/start", "New turbine", "engineer"],
   ["/users", "Users", "admin"],
+  ["/docs", "API", "viewer"],
 ];
 
 async function ask(): Promise<void> {
@@ -84,6 +86,9 @@ function Top() {
           <span class={`link-state ${state}`} role="status" title={`Connection: ${state}`}>
             <span>{state === "live" ? "live" : state === "lost" ? "no connection" : "connecting"}</span>
           </span>
+          <button type="button" class="wide-only" onClick={() => print()}>
+            Print
+          </button>
           <button
             type="button"
             onClick={switchTheme}
@@ -106,9 +111,6 @@ function Top() {
               {words}
             </a>
           ))}
-          <a href="/api/v1/openapi.json" data-leave>
-            API
-          </a>
         </nav>
       )}
       {asset && (

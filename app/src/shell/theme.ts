@@ -5,8 +5,14 @@ export type Theme = "light" | "dark";
 const system = matchMedia("(prefers-color-scheme: dark)");
 const systemDark = signal(system.matches);
 const chosen = signal(localStorage.getItem("theme"));
+/** Paper is white. */
+const onPaper = signal(false);
+window.addEventListener("beforeprint", () => (onPaper.value = true));
+window.addEventListener("afterprint", () => (onPaper.value = false));
 export const theme = computed<Theme>(() =>
-  chosen.value === "dark" || (chosen.value === null && systemDark.value) ? "dark" : "light",
+  !onPaper.value && (chosen.value === "dark" || (chosen.value === null && systemDark.value))
+    ? "dark"
+    : "light",
 );
 system.addEventListener("change", () => (systemDark.value = system.matches));
 theme.subscribe((now) => (document.documentElement.dataset["theme"] = now));

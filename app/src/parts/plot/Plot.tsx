@@ -7,6 +7,7 @@ import { scientific } from "../../words/numbers";
 import { SaveMenu } from "./SaveMenu";
 import type { PlotData, Range, Series } from "./series";
 import { extentOf, readX, spanOf } from "./series";
+import { MANY, under } from "./under";
 
 interface PlotProps {
   data: PlotData;
@@ -27,22 +28,38 @@ const TIMES: uPlot.Axis.Values = [
   [60, "{HH}:{mm}", "\n{D} {MMM} {YYYY}", null, "\n{D} {MMM}", null, null, null, 1],
   [1, "{HH}:{mm}:{ss}", "\n{D} {MMM} {YYYY}", null, "\n{D} {MMM}", null, null, null, 1],
 ];
-const BAR_ROOM = 1500;
 
-/** One table for uPlot: x of all series, then y of each, then the lower and upper ends of bands. */
-function joined(series: Series[]): { table: uPlot.AlignedData; rows: number[][] } {
+type Column = ArrayLike<number | null | undefined>;
+interface Joined {
+  table: uPlot.AlignedData;
+  /** Of each series, which of its points a place of the table is; null if all are. */
+  rows: (ArrayLike<number> | null)[];
+}
+
+const columnsOf = (s: Series, put: (values: Series["y"] | undefined) => Column): Column[] =>
+  s.kind === "band" ? [put(s.high), put(s.low)] : [put(s.y)];
+const rising = (x: ArrayLike<number>): boolean => {
+  for (let i = 1; i < x.length; i++) if ((x[i] ?? 0) < (x[i - 1] ?? 0)) return false;
+  return true;
+};
+
+/** One table for uPlot: x of all series, then y of each, the upper and lower ends of bands. */
+function joined(series: Series[]): Joined {
+  const first = series[0]?.x ?? [];
+  if (series.every((s) => s.x === first) && rising(first)) {
+    const columns = series.flatMap((s) => columnsOf(s, (values) => values ?? []));
+    return { table: [first, ...columns] as uPlot.AlignedData, rows: series.map(() => null) };
+  }
   const every = [...new Set(series.flatMap((s) => Array.from(s.x)))].sort((a, b) => a - b);
   const place = new Map(every.map((x, i) => [x, i]));
-  const spread = (s: Series, values: ArrayLike<number | null> | undefined): (number | null | undefined)[] => {
+  const spread = (s: Series, values: ArrayLike<number | null> | undefined): Column => {
     const out: (number | null | undefined)[] = new Array(every.length).fill(undefined);
     for (let i = 0; i < s.x.length; i++) out[place.get(s.x[i] ?? NaN) ?? 0] = values?.[i] ?? null;
     return out;
   };
-  const columns = series.flatMap((s) =>
-    s.kind === "band" ? [spread(s, s.high), spread(s, s.low)] : [spread(s, s.y)],
-  );
+  const columns = series.flatMap((s) => columnsOf(s, (values) => spread(s, values)));
   const rows = series.map((s) => {
-    const out: number[] = new Array<number>(every.length).fill(-1);
+    const out = new Int32Array(every.length).fill(-1);
     for (let i = 0; i < s.x.length; i++) out[place.get(s.x[i] ?? NaN) ?? 0] = i;
     return out;
   });
@@ -79,8 +96,8 @@ function options(
         stroke: paint,
         paths: () => null,
         points: {
-          show: true,
-          size: n > BAR_ROOM ? 3 : n > 200 ? 4 : 6,
+          show: n <= MANY,
+          size: n > 200 ? 4 : 6,
           fill: paint,
           stroke: paint,
           width: 0,
@@ -128,61 +145,6 @@ function options(
   };
 }
 
-/** Intervals of points, and marks, behind the points. */
-function under(data: PlotData): uPlot.Plugin {
-  const draw = (u: uPlot): void => {
-    const { ctx, bbox } = u;
-    const ratio = devicePixelRatio;
-    const [from, to] = [u.scales["x"]?.min ?? 0, u.scales["x"]?.max ?? 1];
-    ctx.save();
-    ctx.beginPath();
-    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
-    ctx.clip();
-    for (const s of data.series) {
-      if (s.kind !== "points" || !s.low || !s.high) continue;
-      ctx.strokeStyle = colour(s.colour) + (s.x.length > 300 ? "3a" : "77");
-      ctx.lineWidth = ratio;
-      ctx.beginPath();
-      for (let i = 0; i < s.x.length; i++) {
-        const [x, low, high] = [s.x[i] ?? NaN, s.low[i], s.high[i]];
-        if (!(x >= from && x <= to) || typeof low !== "number" || typeof high !== "number") continue;
-        const px = u.valToPos(x, "x", true);
-        ctx.moveTo(px, u.valToPos(low, "y", true));
-        ctx.lineTo(px, u.valToPos(high, "y", true));
-      }
-      ctx.stroke();
-    }
-    ctx.font = `${12 * ratio}px system-ui, sans-serif`;
-    let free = -Infinity;
-    for (const mark of data.marks ?? []) {
-      const px = u.valToPos(mark.x, "x", true);
-      const paint = colour(mark.colour);
-      if (mark.to !== undefined) {
-        ctx.fillStyle = paint + "22";
-        ctx.fillRect(px, bbox.top, u.valToPos(mark.to, "x", true) - px, bbox.height);
-      }
-      ctx.strokeStyle = paint;
-      ctx.setLineDash([4 * ratio, 3 * ratio]);
-      ctx.lineWidth = ratio;
-      ctx.beginPath();
-      ctx.moveTo(px, bbox.top);
-      ctx.lineTo(px, bbox.top + bbox.height);
-      ctx.stroke();
-      ctx.setLineDash([]);
-      const width = ctx.measureText(mark.words).width;
-      const left = px + width + 8 * ratio > bbox.left + bbox.width;
-      if (px >= bbox.left && px > free) {
-        ctx.fillStyle = paint;
-        ctx.textAlign = left ? "right" : "left";
-        ctx.fillText(mark.words, px + (left ? -5 : 5) * ratio, bbox.top + 13 * ratio);
-        free = px + (left ? 0 : width);
-      }
-    }
-    ctx.restore();
-  };
-  return { hooks: { drawAxes: draw } };
-}
-
 export function Plot({ data, height = 220, range = null, onRange, onPick, together }: PlotProps) {
   const root = useRef<HTMLDivElement>(null);
   const chart = useRef<uPlot | null>(null);
@@ -204,7 +166,8 @@ export function Plot({ data, height = 220, range = null, onRange, onPick, togeth
         const at = u.cursor.idxs?.[k + 1];
         if (series < 0 || at === null || at === undefined) return;
         const y = u.data[k + 1]?.[at];
-        const index = rows[series]?.[at] ?? -1;
+        const own = rows[series];
+        const index = own === null ? at : (own?.[at] ?? -1);
         if (typeof y !== "number" || index < 0) return;
         const far = Math.abs(u.valToPos(y, "y") - (u.cursor.top ?? 0));
         if (!found || far < found[2]) found = [series, index, far];

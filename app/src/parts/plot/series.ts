@@ -65,15 +65,18 @@ export function csvOf(plot: PlotData): string {
 /** The extremes of what is shown between two places of x; of positive numbers only if logarithmic. */
 export function spanOf(plot: PlotData, range: Range | null): Range {
   let [low, high] = [Infinity, -Infinity];
+  const see = (value: number | null | undefined): void => {
+    if (value === null || value === undefined || (plot.log && value <= 0)) return;
+    if (value < low) low = value;
+    if (value > high) high = value;
+  };
   for (const s of plot.series)
     for (let i = 0; i < s.x.length; i++) {
       const x = s.x[i] ?? NaN;
       if (range && (x < range[0] || x > range[1])) continue;
-      for (const value of [s.y[i], s.low?.[i], s.high?.[i]])
-        if (value !== null && value !== undefined && (!plot.log || value > 0)) {
-          if (value < low) low = value;
-          if (value > high) high = value;
-        }
+      see(s.y[i]);
+      see(s.low?.[i]);
+      see(s.high?.[i]);
     }
   if (low > high) return plot.log ? [0.1, 1] : [0, 1];
   if (plot.log) return [low / 1.3, high * 1.3];
@@ -83,9 +86,10 @@ export function spanOf(plot: PlotData, range: Range | null): Range {
 
 export function extentOf(plot: PlotData): Range {
   let [first, last] = [Infinity, -Infinity];
-  for (const s of plot.series)
-    for (const x of [s.x[0], s.x[s.x.length - 1]])
-      if (x !== undefined) [first, last] = [Math.min(first, x), Math.max(last, x)];
+  for (const s of plot.series) {
+    const ends = plot.time ? [s.x[0], s.x[s.x.length - 1]] : Array.from(s.x); // times are in order
+    for (const x of ends) if (x !== undefined) [first, last] = [Math.min(first, x), Math.max(last, x)];
+  }
   if (first > last) return plot.logX ? [0.1, 1] : [0, 1];
   if (plot.logX) return [first, last];
   const room = (last - first || (plot.time ? 86_400 : 1)) * 0.02;

@@ -77,6 +77,7 @@ def part_of_the_window(name: Annotated[str, Path(max_length=100)]) -> Response:
 @router.get("/")
 @router.get("/login")
 @router.get("/jobs")
+@router.get("/docs")
 @router.get("/start")
 @router.get("/users")
 @router.get("/assets/{path:path}")

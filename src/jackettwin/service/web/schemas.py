@@ -694,6 +694,7 @@ class Health(BaseModel):
     status: Literal["ok", "degraded"]
     version: str
     problems: list[str] = []
+    openid: bool = Field(default=False, description="Whether people may log in at a provider.")
 
 
 class Ready(BaseModel):

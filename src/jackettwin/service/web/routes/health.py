@@ -31,7 +31,12 @@ def health(parts: Parts, response: Response) -> Health:
     """
     said = metrics.problems(parts, metrics.readiness(parts))
     response.status_code = 200 if parts.turning() else 503
-    return Health(status="degraded" if said else "ok", version=__version__, problems=said)
+    return Health(
+        status="degraded" if said else "ok",
+        version=__version__,
+        problems=said,
+        openid=parts.settings.oidc_issuer is not None,
+    )
 
 
 @router.get("/ready", responses={503: {"model": Ready, "description": "Not ready."}})

@@ -1,0 +1,124 @@
+// What the API takes and answers, as its own document says it.
+import { useAnswer } from "../api/answer";
+import { Problem } from "../api/client";
+import { Card } from "../parts/Bits";
+import { Shown } from "../parts/Shown";
+import { asked, keep } from "../shell/place";
+
+interface Parameter {
+  name: string;
+  in: string;
+  required?: boolean;
+  description?: string;
+}
+interface Operation {
+  tags?: string[];
+  description?: string;
+  summary?: string;
+  parameters?: Parameter[];
+  requestBody?: { content: Record<string, unknown> };
+  responses: Record<string, { description: string }>;
+}
+interface Described {
+  info: { title: string; version: string; summary?: string };
+  paths: Record<string, Record<string, Operation>>;
+}
+interface Row extends Operation {
+  method: string;
+  path: string;
+}
+
+async function read(): Promise<Described> {
+  const answer = await fetch("/api/v1/openapi.json").catch(() => null);
+  if (!answer?.ok) throw new Problem("offline", "The document does not come.");
+  return (await answer.json()) as Described;
+}
+
+function Call({ row }: { row: Row }) {
+  const refused = Object.keys(row.responses).filter((status) => status >= "400");
+  return (
+    <li>
+      <p>
+        <code>
+          <b>{row.method.toUpperCase()}</b> {row.path}
+        </code>
+      </p>
+      <p>{row.description ?? row.summary}</p>
+      {row.parameters?.some((p) => p.in === "query") && (
+        <p class="quiet">
+          {row.parameters
+            .filter((p) => p.in === "query")
+            .map((p, i) => (
+              <span key={p.name}>
+                {i > 0 && " · "}
+                <code>{p.name}</code>
+                {p.required ? " (must be given)" : ""}
+                {p.description ? ` – ${p.description}` : ""}
+              </span>
+            ))}
+        </p>
+      )}
+      <p class="quiet">
+        {row.requestBody && `Sent: ${Object.keys(row.requestBody.content).join(", ")}. `}
+        {refused.length > 0 && `May answer ${refused.join(", ")} with a problem document.`}
+      </p>
+    </li>
+  );
+}
+
+export default function Docs() {
+  const found = useAnswer(null, "docs", read);
+  const text = (asked("find") ?? "").toLowerCase();
+  return (
+    <>
+      <div class="head">
+        <h1>The API</h1>
+        <p>
+          Everything this window shows and does, for programs: JSON under <code>/api/v1</code>, a token in{" "}
+          <code>Authorization: Bearer</code>, lists by cursor, times in UTC. The{" "}
+          <a href="/api/v1/openapi.json" data-leave>
+            OpenAPI document
+          </a>{" "}
+          has every field and an example of each; <code>jackettwin.client</code> is the same in Python.
+        </p>
+      </div>
+      <Shown of={found} lines={12}>
+        {(data) => {
+          const rows: Row[] = Object.entries(data.paths)
+            .flatMap(([path, of]) => Object.entries(of).map(([method, one]) => ({ ...one, method, path })))
+            .filter((r) => `${r.path} ${r.description ?? ""}`.toLowerCase().includes(text));
+          const tags = [...new Set(rows.map((r) => r.tags?.[0] ?? "other"))];
+          return (
+            <>
+              <div class="tools">
+                <input
+                  type="search"
+                  aria-label="Find a call"
+                  placeholder="Find a call"
+                  value={text}
+                  onInput={(event) => keep({ find: event.currentTarget.value || null })}
+                />
+                <span class="quiet">
+                  {data.info.title} {data.info.version}, {rows.length} calls
+                </span>
+              </div>
+              <div class="grid">
+                {tags.map((tag) => (
+                  <Card key={tag} title={tag} wide>
+                    <ul class="list">
+                      {rows
+                        .filter((r) => (r.tags?.[0] ?? "other") === tag)
+                        .map((r) => (
+                          <Call key={r.method + r.path} row={r} />
+                        ))}
+                    </ul>
+                  </Card>
+                ))}
+              </div>
+            </>
+          );
+        }}
+      </Shown>
+    </>
+  );
+}

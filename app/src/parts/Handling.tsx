@@ -1,0 +1,182 @@
+// What people do with a finding: look, hand on, say something, mute, close, open again.
+import { useState } from "preact/hooks";
+import { useAnswer } from "../api/answer";
+import { api, type Finding, told } from "../api/client";
+import { may, useDeed } from "../api/do";
+import { Time } from "./Bits";
+
+type Act = "acknowledge" | "assign" | "comment" | "mute" | "close" | "reopen";
+const DAY_MS = 86_400_000;
+const SPANS: readonly (readonly [number, string])[] = [
+  [1, "a day"],
+  [7, "a week"],
+  [30, "a month"],
+  [365, "a year"],
+];
+const ASKED: Record<Act, string> = {
+  acknowledge: "What you saw, and what you do about it",
+  assign: "Why to that person",
+  comment: "What is to be said",
+  mute: "Why nobody is to be told",
+  close: "Why it needs nobody any more",
+  reopen: "Why it needs somebody after all",
+};
+const NAMED: Record<Act, string> = {
+  acknowledge: "Acknowledge",
+  assign: "Assign",
+  comment: "Comment",
+  mute: "Mute",
+  close: "Close",
+  reopen: "Reopen",
+};
+const DID: Record<string, string> = {
+  acknowledge: "acknowledged",
+  assign: "assigned",
+  comment: "said",
+  mute: "muted",
+  unmute: "ended the mute",
+  close: "closed",
+  reopen: "reopened",
+};
+
+/** How a finding stands: what its light says. */
+export const standing = (f: Finding): string =>
+  f.closed_by ? "closed" : f.muted_until_utc ? "muted" : f.acknowledged_by ? "acknowledged" : f.severity;
+
+function possible(f: Finding): Act[] {
+  if (f.closed_by) return ["reopen", "comment"];
+  const own: Act[] = ["assign", "comment", f.muted_until_utc ? "reopen" : "mute", "close"];
+  return f.severity === "alarm" && !f.acknowledged_by ? ["acknowledge", ...own] : own;
+}
+
+async function sent(f: Finding, act: Act, form: FormData): Promise<unknown> {
+  const text = (name: string): string => String(form.get(name) ?? "");
+  const comment = text("comment");
+  const params = { path: { finding_id: f.id } };
+  switch (act) {
+    case "acknowledge":
+      return told(
+        api.POST("/api/v1/alarms/{alarm_id}/acknowledge", {
+          params: { path: { alarm_id: f.id } },
+          body: { comment },
+        }),
+      );
+    case "assign":
+      return told(
+        api.POST("/api/v1/findings/{finding_id}/assign", {
+          params,
+          body: { to: text("to") || null, comment },
+        }),
+      );
+    case "comment":
+      return told(api.POST("/api/v1/findings/{finding_id}/comment", { params, body: { comment } }));
+    case "mute": {
+      const until_utc = new Date(Date.now() + Number(text("days")) * DAY_MS).toISOString();
+      return told(api.POST("/api/v1/findings/{finding_id}/mute", { params, body: { until_utc, comment } }));
+    }
+    case "close":
+      return told(api.POST("/api/v1/findings/{finding_id}/close", { params, body: { reason: comment } }));
+    case "reopen":
+      return told(api.POST("/api/v1/findings/{finding_id}/reopen", { params, body: { comment } }));
+  }
+}
+
+interface HandlingProps {
+  finding: Finding;
+  again: () => void;
+}
+
+/** Buttons, one of which opens a form. */
+export function Handling({ finding, again }: HandlingProps) {
+  const [act, setAct] = useState<Act | null>(null);
+  const deed = useDeed();
+  if (!may("engineer"))
+    return finding.severity === "alarm" && !finding.acknowledged_by ? (
+      <span class="quiet">Engineers acknowledge alarms.</span>
+    ) : null;
+  if (act === null)
+    return (
+      <p class="acts">
+        {possible(finding).map((one) => (
+          <button type="button" key={one} onClick={() => setAct(one)}>
+            {NAMED[one]}
+          </button>
+        ))}
+      </p>
+    );
+  const send = async (event: SubmitEvent): Promise<void> => {
+    event.preventDefault();
+    const form = new FormData(event.currentTarget as HTMLFormElement);
+    if (!(await deed.run(() => sent(finding, act, form)))) return;
+    setAct(null);
+    again();
+  };
+  const must = act === "acknowledge" || act === "comment" || act === "close";
+  return (
+    <form class="stack" onSubmit={(event) => void send(event)}>
+      {act === "assign" && (
+        <label>
+          To whom (a user's name; empty for nobody)
+          <input name="to" maxLength={64} defaultValue={finding.assigned_to ?? ""} autocomplete="off" />
+        </label>
+      )}
+      {act === "mute" && (
+        <label>
+          For how long
+          <select name="days">
+            {SPANS.map(([days, words]) => (
+              <option key={days} value={days}>
+                {words}
+              </option>
+            ))}
+          </select>
+        </label>
+      )}
+      <label>
+        {ASKED[act]}
+        <textarea name="comment" required={must} maxLength={2000} />
+      </label>
+      {deed.problem && (
+        <p class="error" role="alert">
+          {deed.problem.message}
+        </p>
+      )}
+      <span>
+        <button class="main" disabled={deed.busy}>
+          {NAMED[act]}
+        </button>{" "}
+        <button type="button" onClick={() => setAct(null)}>
+          Not now
+        </button>
+      </span>
+    </form>
+  );
+}
+
+/** Who did what with a finding, oldest first. */
+export function History({ finding }: { finding: Finding }) {
+  const stands = [finding.acknowledged_utc, finding.assigned_to, finding.muted_until_utc, finding.closed_utc];
+  const found = useAnswer(finding.asset, `finding ${finding.id} ${stands.join()}`, () =>
+    told(api.GET("/api/v1/findings/{finding_id}", { params: { path: { finding_id: finding.id } } })),
+  );
+  const acts = found.data?.history ?? [];
+  if (!acts.length) return null;
+  return (
+    <ol class="acts-done">
+      {acts.map((one, i) => (
+        <li key={i}>
+          <b>{one.by}</b> {DID[one.action] ?? one.action}
+          {one.to ? ` to ${one.to}` : ""}
+          {one.until_utc && (
+            <>
+              {" "}
+              until <Time at={one.until_utc} />
+            </>
+          )}
+          , <Time at={one.time_utc} />
+          {one.comment && <>: {one.comment}</>}
+        </li>
+      ))}
+    </ol>
+  );
+}
