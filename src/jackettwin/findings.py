@@ -1,7 +1,7 @@
-"""Findings: what is worth saying of a record, a mode, a model or a state, as data.
+"""Findings: messages about a record, a mode, a model or a state, as data.
 
-A finding has a code, a severity, a subject and parameters; the catalogue makes its sentence from them,
-so that the same finding reads the same on the terminal, in the report, in the store and behind the API.
+A finding has a code, a severity, a subject and parameters; the catalogue forms its sentence from them, so
+that it reads the same on the terminal, in the report, in the store and in the API.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ Value = float | int | str | bool | None
 
 @dataclass(frozen=True)
 class Kind:
-    """What all findings of one code have in common.
+    """Properties common to all findings of one code.
 
     Attributes
     ----------
     severity : {"info", "warning", "alarm"}
-        ``info`` needs nobody, ``warning`` limits what may be concluded, ``alarm`` asks for a person.
+        ``info`` needs no action, ``warning`` limits the conclusions, ``alarm`` needs a person.
     sentence : str
         A format string over the parameters, without subject: ``"{share:.2%} of the samples are missing"``.
     """
@@ -35,71 +35,71 @@ CATALOGUE: dict[str, Kind] = {
     "gaps": Kind("info", "{share:.2%} of the samples are missing, at most {longest_s:.3g} s in a row"),
     "gain_jump": Kind(
         "warning",
-        "{channels}: {factor:.3g} times as sensitive {at} {time_s:.0f} s as in the rest of the record, "
-        "judged by the other channels; scaled, {from_s:.0f} to {to_s:.0f} s declared missing",
+        "{channels}: the sensitivity {at} {time_s:.0f} s is {factor:.3g} times that in the rest of the "
+        "record, compared with the other channels; corrected, {from_s:.0f} to {to_s:.0f} s declared missing",
     ),
     "gain_grows": Kind(
         "warning",
-        "{channels}: {factor:.3g} times as sensitive at the end as at the beginning, judged by the other "
-        "channels; scaled",
+        "{channels}: the sensitivity at the end is {factor:.3g} times that at the beginning, compared with "
+        "the other channels; corrected",
     ),
     "sign_turns": Kind(
         "warning",
-        "{channels}: the sign turns between {from_s:.0f} and {to_s:.0f} s; turned back, declared missing "
+        "{channels}: the sign changes between {from_s:.0f} and {to_s:.0f} s; corrected, declared missing in "
         "between",
     ),
     "time_lost": Kind(
         "warning",
-        "{channels}: {lost} {lost_s:.4g} s against the other channels between {from_s:.0f} and {to_s:.0f} s; "
-        "brought into step, declared missing there",
+        "{channels}: {lost} {lost_s:.4g} s relative to the other channels between {from_s:.0f} and "
+        "{to_s:.0f} s; realigned, declared missing there",
     ),
     "samples_repeated": Kind(
         "alarm",
-        "every sample of every channel is written {times} times: only one of them is used. If the repeats "
-        "are copies of one instant, all frequencies are {times} times what is said here",
+        "every sample of every channel is repeated {times} times; only one of them is used. If the repeats "
+        "are copies of one instant, all frequencies are {times} times those stated here",
     ),
     "another_time": Kind(
         "alarm",
         "{channels}: the spectrum has the peaks of the other channels, but the samples match theirs at no "
-        "delay: not of the same minutes{unless}; left out if they are fewer than the others",
+        "delay: they are not from the same time{unless}; left out if they are fewer than the others",
     ),
     "direction_unknown": Kind(
         "warning",
         "{channels}: the spectrum has the peaks of the other channels, but the samples do not move with "
-        'theirs, and directions are not stated: do they point across? State "direction" of each channel in '
-        "the JSON beside the file; parallel channels would not be of the same minutes",
+        'theirs, and directions are not stated: are they perpendicular? State "direction" of each channel in '
+        "the JSON beside the file; if the channels are parallel, they are not from the same time",
     ),
     "stored_backwards": Kind(
-        "alarm", "{channels}: matches the other channels only if read from the end to the beginning; turned"
+        "alarm", "{channels}: matches the other channels only if the time is reversed; reversed"
     ),
     "coarse_quantiser": Kind(
         "warning",
-        "read in steps of {steps:.2g} times its rms: the rounding error is neither small nor white; "
+        "the resolution is {steps:.2g} times its rms: the rounding error is neither small nor white; "
         "distrust modes and damping",
     ),
     "clock_late": Kind(
         "warning",
-        "{channels}: read {delay_s:.3g} ± {std_s:.2g} s {late} than the others, the same at all "
-        "frequencies: another clock; shifted",
+        "{channels}: sampled {delay_s:.3g} ± {std_s:.2g} s {late} than the others, equally at all "
+        "frequencies: the clocks differ; shifted",
     ),
     "clock_drift": Kind(
         "warning",
-        "{channels}: the clock runs {drift_ppm:.0f} ± {std_ppm:.2g} ppm too {slow} against the others', off"
-        " by {delay_s:.3g} s in the middle of the record; resampled",
+        "{channels}: the clock is {drift_ppm:.0f} ± {std_ppm:.2g} ppm too {slow} compared with the "
+        "others', and in error by {delay_s:.3g} s in the middle of the record; resampled",
     ),
     "clock_curve": Kind(
         "warning",
-        "{channels}: the clock's rate changes: later than the others' by {begin_s:.3g} s at the beginning, "
-        "{middle_s:.3g} s in the middle and {end_s:.3g} s at the end; resampled",
+        "{channels}: the clock's rate changes: it is later than the others' by {begin_s:.3g} s at the "
+        "beginning, {middle_s:.3g} s in the middle and {end_s:.3g} s at the end; resampled",
     ),
     "clock_late_or_complex": Kind(
         "info",
-        "{channels}: read {delay_s:.3g} s {late} than the others, or the modes are complex: the record "
-        "cannot tell which; kept",
+        "{channels}: sampled {delay_s:.3g} s {late} than the others, or the modes are complex: the record "
+        "does not distinguish the two; not corrected",
     ),
     "clock_jump": Kind(
         "warning",
-        "{channels}: the clock jumps by {by_s:.3g} s against the others' between {from_s:.0f} and "
+        "{channels}: the clock jumps by {by_s:.3g} s relative to the others' between {from_s:.0f} and "
         "{to_s:.0f} s",
     ),
     "clock_cut": Kind(
@@ -107,33 +107,38 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "clocks_wander": Kind(
         "alarm",
-        "the clocks of the loggers wander against each other: no stretch is long enough to bring them into "
-        "step",
+        "the clocks of the loggers drift irregularly against each other: no stretch is long enough to "
+        "synchronise them",
     ),
     "file": Kind("info", "{text}"),
-    "dead": Kind("warning", "does not vary at all; left out"),
+    "dead": Kind("warning", "is constant; left out"),
     "empty": Kind("warning", "{share:.0%} of the samples are missing; left out"),
-    "outliers": Kind("warning", "{share:.1%} of the samples stand out, too many to be spikes; kept"),
+    "outliers": Kind(
+        "warning", "{share:.1%} of the samples are outliers, too many to be spikes; not removed"
+    ),
     "spikes": Kind("info", "{share:.3%} of the samples are spikes; declared missing"),
     "clipped": Kind(
-        "warning", "{share:.2%} of the samples are at the range's end; kept, amplitudes are too small"
+        "warning",
+        "{share:.2%} of the samples are at the limit of the range; not corrected, amplitudes are too small",
     ),
-    "stuck": Kind("info", "reading is frozen for {share:.2%} of the time; declared missing"),
+    "stuck": Kind("info", "the reading is frozen for {share:.2%} of the time; declared missing"),
     "held": Kind(
         "info",
-        "every value is repeated {times} times: the sensor is read at a lower rate, and its signal is late",
+        "every value is repeated {times} times: the sensor is sampled at a lower rate, and its signal is "
+        "delayed",
     ),
-    "drift": Kind("info", "drifts over {ratio:.1f} times the rms of its vibration; slow part removed"),
+    "drift": Kind("info", "drifts by {ratio:.1f} times the rms of its vibration; the slow part is removed"),
     "unsteady": Kind(
         "warning",
         "is {ratio:.3g} times stronger in one tenth of the record than usual: the record is not stationary",
     ),
-    "sign_turned": Kind("warning", "moves against all parallel channels; sign turned"),
+    "sign_turned": Kind("warning", "has the opposite sign of all parallel channels; sign changed"),
     "sign_unclear": Kind(
-        "warning", "moves against a parallel channel, and nothing says which of them is wrong; kept"
+        "warning",
+        "has the opposite sign of a parallel channel; which of them is wrong is not known; not changed",
     ),
     "unit": Kind(
-        "warning", "{which} is {size} compared with similar channels: {units}? kept, correct the unit"
+        "warning", "{which} is {size} compared with similar channels: {units}? not changed, correct the unit"
     ),
     "weak": Kind(
         "warning", "its rms is {ratio:.2g} times that of similar channels: is the sensor or its unit wrong?"
@@ -143,42 +148,47 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "not_filtered": Kind(
         "warning",
-        "{channels}: the spectrum does not fall towards half the sample rate, has a peak and {share:.1%} of "
-        "its power near it: sampled or decimated without a filter? Peaks may be folded from above",
+        "{channels}: the spectrum does not fall towards half the sample rate, has a peak and {share:.1%} "
+        "of its power near it: was it sampled or decimated without an anti-aliasing filter? Peaks may be "
+        "aliases",
     ),
     "axes_crossed": Kind(
-        "warning", "{channels}: each moves with the other axis of all other places: exchanged; put right"
+        "warning",
+        "{channels}: each moves with the other axis at all other places: the two are exchanged; corrected",
     ),
     "axes_crossed_unclear": Kind(
         "warning",
-        "{channels}: at some of these places x and y are exchanged, and nothing says at which; kept, state "
+        "{channels}: at some of these places x and y are exchanged, but not known at which; not changed, "
+        "state "
         '"direction" in the JSON beside the file',
     ),
     "unreadable": Kind("warning", "{samples} samples are infinite or beyond {limit:g}; declared missing"),
     "changed": Kind("warning", "{what}; declared missing there"),
-    "changed_unclear": Kind("warning", "{what}, or a similar channel changes; kept"),
+    "changed_unclear": Kind("warning", "{what}, or a similar channel changes; not corrected"),
     "stamps_jitter": Kind(
         "warning", "time stamps jitter by {share:.0%} of a step (rms); interpolated to a regular grid"
     ),
     "stamps_missing": Kind("warning", "{samples} samples have no time stamp; declared missing"),
-    "stamps_disordered": Kind("warning", "{samples} time stamps repeat or run backwards; left out"),
+    "stamps_disordered": Kind("warning", "{samples} time stamps are repeated or decrease; left out"),
     # identification
     "peaks_above_band": Kind(
         "info",
-        "{count} clear peaks above the band, which ends at {edge:.3g} Hz: {peaks} Hz; modes there are not "
-        "sought, --band {widen} widens it",
+        "there are {count} clear peaks above the band, which ends at {edge:.3g} Hz: {peaks} Hz; modes are "
+        "not sought there, --band {widen} widens the band",
     ),
-    "not_refined": Kind("warning", "modes at {frequencies_hz} Hz not refined: {obstacle}"),
+    "not_refined": Kind("warning", "modes at {frequencies_hz} Hz are not refined: {obstacle}"),
     "hidden_mode": Kind(
         "warning",
-        "a second mode may hide beside {frequency_hz:.4g} Hz: poles of another shape at {other_hz:.4g} Hz, "
+        "there may be a second mode near {frequency_hz:.4g} Hz: poles of another shape at {other_hz:.4g} Hz, "
         "within its bandwidth, were left out",
     ),
     "steady_tone_near": Kind(
-        "warning", "a steady tone at {frequency_hz:.4g} Hz is too near to trust the damping"
+        "warning", "a steady tone at {frequency_hz:.4g} Hz is near: distrust the damping"
     ),
     "tone_passes": Kind(
-        "warning", "a tone passes here, between {low_hz:.4g} and {high_hz:.4g} Hz: distrust the damping"
+        "warning",
+        "a drifting tone, between {low_hz:.4g} and {high_hz:.4g} Hz, crosses this frequency: distrust the "
+        "damping",
     ),
     "free_decay": Kind(
         "info",
@@ -187,16 +197,17 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "beside_knock": Kind(
         "info",
-        "one impact rings out over {fall:.1f} e-folds; the modes are those of the {used_s:.4g} s beside it",
+        "the response to one impact decays by {fall:.1f} e-folds; the modes are those of the other "
+        "{used_s:.4g} s",
     ),
     "transient": Kind(
         "warning",
-        "the record falls by {fall:.1f} e-folds from one maximum while forces go on: neither a free decay "
-        "nor stationary",
+        "the amplitude falls by {fall:.1f} e-folds from one maximum while forces act: the record is "
+        "neither a free decay nor stationary",
     ),
-    "decay_forced": Kind("warning", "forces that go on leave {left:.0%} of the decay unexplained"),
-    "decay_weak": Kind("warning", "only {ratio:.0f} times as strong as the noise near its frequency"),
-    "decay_short": Kind("warning", "observed over {folds:.1f} e-folds only"),
+    "decay_forced": Kind("warning", "{left:.0%} of the decay is not explained, since forces still act"),
+    "decay_weak": Kind("warning", "it is only {ratio:.0f} times as strong as the noise near its frequency"),
+    "decay_short": Kind("warning", "it is observed over {folds:.1f} e-folds only"),
     "decay_damping_unknown": Kind("warning", "the damping is uncertain by {spread:.0%}"),
     "decay_damping_changes": Kind(
         "warning",
@@ -204,23 +215,25 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "damping_unknown": Kind(
         "warning",
-        "the record does not tell the damping: its logarithm has a standard deviation of {log_std:.2g}",
+        "the record does not determine the damping: its logarithm has a standard deviation of {log_std:.2g}",
     ),
     "narrow_as_a_line": Kind(
-        "warning", "its peak is hardly broader than a line of the spectrum: the record is too short for it"
+        "warning",
+        "its peak is hardly broader than a line of the spectrum: the record is too short for its damping",
     ),
     "follows_the_sea": Kind(
         "warning",
-        "a peak of waves: with {damping_percent:.2g} % it is as broad as that of the sea of {period_s:.3g} "
-        "s, and at its frequency",
+        "it is a peak of the waves: with a damping of {damping_percent:.2g} % it is as broad as the peak "
+        "of a sea of {period_s:.3g} s, and at its frequency",
     ),
     "broad_as_waves": Kind(
         "warning",
-        "with {damping_percent:.2g} % it is as broad as the forces of waves; state their period (tp_s)",
+        "with a damping of {damping_percent:.2g} % it is as broad as a peak of wave forces; state the waves' "
+        "peak period (tp_s)",
     ),
     "broad": Kind(
         "warning",
-        "with {damping_percent:.2g} % it is so broad that it may be a slope of the forces' spectrum",
+        "with a damping of {damping_percent:.2g} % it is so broad that it may be due to the forces' spectrum",
     ),
     "complex_shape": Kind(
         "warning",
@@ -228,33 +241,33 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "one_part": Kind(
         "warning",
-        "{share:.0%} of its power lie in one fifth of the record, unlike that of the other modes: a tone "
-        "that ended, or an impact",
+        "{share:.0%} of its power is in one fifth of the record, unlike that of the other modes: it is a "
+        "tone that ended, or an impact",
     ),
     "one_sensor": Kind("warning", "{share:.0%} of its motion is that of one sensor"),
     "sensor_beside": Kind(
         "warning",
-        "together with the mode beside it, its shape holds one sensor that moves alone, {share:.0%} of its "
-        "own motion: a mount or a cable",
+        "its shape and that of the neighbouring mode contain the motion of one sensor alone, {share:.0%} "
+        "of its motion: a mount or a cable vibrates",
     ),
     "shape_of_neighbours": Kind(
         "warning",
-        "its shape is a combination of those of the modes below and above: a peak of the forces, or of "
-        "something that is not measured, which these modes show",
+        "its shape is a combination of those of the modes below and above: it is a peak of the forces or "
+        "of an unmeasured motion, to which these modes respond",
     ),
     "unlike_model": Kind(
         "warning",
-        "no mode of the model has such a shape ({mac:.2f} at most), and the refinement could not confirm it",
+        "no mode of the model has such a shape (MAC at most {mac:.2f}), and refinement did not confirm it",
     ),
     "below_model": Kind(
         "warning",
-        "it lies below the lowest mode of the model and has its shape (MAC {mac:.2f}): the structure "
-        "follows slow forces, as those of waves",
+        "it is below the lowest mode of the model and has its shape (MAC {mac:.2f}): it is the quasi-static "
+        "response to slow forces such as waves",
     ),
     "sea_forced": Kind(
         "warning",
-        "it is no further mode of the model, and {share:.0%} of its shape is how the sea moves the structure "
-        "at that frequency: a peak of the waves",
+        "it is no mode of the model, and {share:.0%} of its shape is the response to the sea at that "
+        "frequency: it is a peak of the waves",
     ),
     "shape_twice": Kind(
         "warning",
@@ -263,95 +276,100 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "too_short": Kind(
         "alarm",
-        "{share:.0%} of the motion is slower than {cycles} cycles in {duration_s:.3g} s: the record is too "
+        "{share:.0%} of the motion has fewer than {cycles} cycles in {duration_s:.3g} s: the record is too "
         "short for any statement",
     ),
-    "few_cycles": Kind("warning", "the record holds only {cycles:.0f} of its cycles"),
+    "few_cycles": Kind("warning", "the record contains only {cycles:.0f} of its cycles"),
     "zero_steps": Kind(
-        "warning", "its zero steps by {size:.3g} times the rms of the vibration at {time_s:.1f} s; taken back"
+        "warning", "its zero jumps by {size:.3g} times the rms of the vibration at {time_s:.1f} s; corrected"
     ),
     "zero_steps_together": Kind(
         "alarm",
-        "the zeros of most channels step at {time_s:.1f} s: something happened to the logger or the "
-        "structure",
+        "the zeros of most channels jump at {time_s:.1f} s: the logger or the structure was disturbed",
     ),
-    "one_method": Kind("warning", "with a shorter lag window only {share:.0%} of the model orders find it"),
+    "one_method": Kind(
+        "warning", "with a shorter lag window it appears in only {share:.0%} of the model orders"
+    ),
     "no_peak": Kind(
         "warning",
-        "in the direction of its shape the spectrum has no clear peak: {ratio:.2g} times the level beside "
-        "it, where a single mode has 17 times",
+        "in the direction of its shape the spectrum has no clear peak: it is {ratio:.2g} times the "
+        "neighbouring level, whereas a single mode has 17 times",
     ),
     "second_peak": Kind(
         "warning",
-        "a clear peak beside it, at {frequency_hz:.4g} Hz, belongs to no mode: two modes may be identified "
-        "as one",
+        "a clear peak near it, at {frequency_hz:.4g} Hz, belongs to no mode: two modes may be identified as "
+        "one",
     ),
     "steady_envelope": Kind(
         "warning",
-        "its amplitude varies less than that of a mode of so little damping should: it may be a tone",
+        "its amplitude varies less than that of a mode of such low damping: it may be a tone",
     ),
-    "rotor_order_passes": Kind("warning", "{order}P of the rotor passes here: distrust the damping"),
+    "rotor_order_passes": Kind(
+        "warning", "{order}P of the rotor crosses this frequency: distrust the damping"
+    ),
     "rotor_order_across_records": Kind(
         "warning",
-        "moves with another peak at {ratio:g} times the frequency of the lower, {low_hz:.3g} to "
-        "{high_hz:.3g} Hz in {number} records, while modes stay: orders of a rotor whose speed is not told",
+        "varies with another peak at {ratio:g} times the frequency of the lower, {low_hz:.3g} to "
+        "{high_hz:.3g} Hz in {number} records, while modes are constant: orders of a rotor of unknown speed",
     ),
     "jumps_between_records": Kind(
         "warning",
         "jumps {times} times from one record to the next, typically by {size:.1%}, while {stays_hz:.4g} Hz "
-        "stays: an order of a rotor whose speed is not told, or two modes taken for one",
+        "is constant: an order of a rotor of unknown speed, or two modes taken for one",
     ),
     # updating
     "unpaired_shape": Kind(
         "info",
-        "nearest in the model is {label} at {model_frequency_hz:.4g} Hz ({difference:+.1%}), of another "
-        "shape: MAC {mac:.2f}, {least_mac:g} needed",
+        "the nearest mode of the model is {label} at {model_frequency_hz:.4g} Hz ({difference:+.1%}), but "
+        "its shape differs: MAC {mac:.2f}, {least_mac:g} needed",
     ),
     "unpaired_frequency": Kind(
         "info",
-        "of the model's modes {label} at {model_frequency_hz:.4g} Hz has the shape (MAC {mac:.2f}), "
-        "but the frequency is {difference:+.0%} away",
+        "the model's mode {label} at {model_frequency_hz:.4g} Hz has this shape (MAC {mac:.2f}), but its "
+        "frequency differs by {difference:+.0%}",
     ),
     "unpaired_taken": Kind(
         "info",
         "resembles {label} of the model at {model_frequency_hz:.4g} Hz ({difference:+.1%}, MAC {mac:.2f}), "
-        "but another measured mode resembles that more",
+        "but another measured mode resembles it more",
     ),
     # twin: a record on its way to an observation
     "yaw_unknown": Kind(
-        "warning", "the yaw is not known: sensors on the nacelle are taken to be aligned with the fixed ones"
+        "warning",
+        "the yaw is not known: sensors on the nacelle are assumed to be aligned with the fixed ones",
     ),
     "not_in_rotor_axes": Kind(
-        "warning", "not turned to the rotor's axes: no two horizontal channels sit at one place"
+        "warning", "not rotated to the rotor's axes: no place has two horizontal channels"
     ),
     "channels_without_partner": Kind("warning", "left out: no second horizontal channel at the same place"),
     "rotor_order_removed": Kind(
         "warning",
-        "{low_hz:.3g} to {high_hz:.3g} Hz by the measured rotor speed: taken out, {share:.1%} of a "
-        "channel's power at most",
+        "{low_hz:.3g} to {high_hz:.3g} Hz by the measured rotor speed: removed, at most {share:.1%} of a "
+        "channel's power",
     ),
-    "rotor_order_weak": Kind(
-        "info", "{low_hz:.3g} to {high_hz:.3g} Hz by the measured rotor speed: taken out"
+    "rotor_order_weak": Kind("info", "{low_hz:.3g} to {high_hz:.3g} Hz by the measured rotor speed: removed"),
+    "rotor_order_seen": Kind(
+        "info", "{low_hz:.3g} to {high_hz:.3g} Hz: detected at the measured rotor speed"
     ),
-    "rotor_order_seen": Kind("info", "{low_hz:.3g} to {high_hz:.3g} Hz: seen along the measured rotor speed"),
     "rotor_order_stated": Kind("info", "{low_hz:.3g} to {high_hz:.3g} Hz by the stated rotor speed"),
     "places_unknown": Kind(
         "info",
-        "the place is not known (height_m or node in the JSON beside the record): swapped signs and wrong "
-        "units are not looked for",
+        "the position is not known (height_m or node in the JSON beside the record): wrong signs and units "
+        "are not checked",
     ),
     "sensors_absent": Kind("warning", "the record has no such channels; identified without them"),
-    "channels_unclear": Kind("info", "left out: neither name and unit nor the JSON say what they measure"),
+    "channels_unclear": Kind("info", "left out: neither name and unit nor the JSON show what they measure"),
     "deformation_set_aside": Kind(
         "info", "left out beside accelerations; identify them from a file of their own"
     ),
     "sensor_against_model": Kind(
         "warning",
-        "points the other way than the twin says: if it were turned, the shapes it moves in would agree "
-        "with the model's by {after:.0%} instead of {before:.0%}. Kept; turn its direction.",
+        "points opposite to its direction in the twin: with the other sign, the shapes in which it moves "
+        "would agree with the model's by {after:.0%} instead of {before:.0%}. Not changed; reverse its "
+        "direction.",
     ),
     "sensor_uncalibrated": Kind(
-        "warning", "has a history of calibrations, but none that holds at that time: taken as it was logged"
+        "warning", "has a history of calibrations, but none that is valid at that time: used as logged"
     ),
     "operation_unknown": Kind(
         "warning",
@@ -359,24 +377,24 @@ CATALOGUE: dict[str, Kind] = {
         "record is observed again",
     ),
     "identification": Kind("warning", "{text}"),
-    "no_mode_of_the_model": Kind("warning", "none of its {modes} identified modes is one of the model"),
+    "no_mode_of_the_model": Kind("warning", "none of its {modes} identified modes is a mode of the model"),
     "record_mismatched": Kind(
         "warning",
-        "none of its {modes} modes is one of the twin's: is it of another turbine, or are its sensors "
-        "elsewhere than the twin says? It does not count.",
+        "none of its {modes} modes is a mode of the twin: is it from another turbine, or are its sensors not "
+        "where the twin states? It is not used.",
     ),
     # twin: an observation on its way into the state
-    "record_doubled": Kind("warning", "these samples are known already and count once"),
+    "record_doubled": Kind("warning", "these samples are known already and are used once"),
     "record_overlaps": Kind(
         "warning",
-        "other samples of the same minutes are known; if they are of the same sensors, they count twice",
+        "other samples of the same time are known; if they are from the same sensors, they are counted twice",
     ),
     # twin: the days of a state watched
     "watch_learning": Kind(
-        "info", "learning what is normal: {days:.0f} of {needed:.0f} days; nothing is watched yet"
+        "info", "the baseline is being learnt: {days:.0f} of {needed:.0f} days; nothing is monitored yet"
     ),
     "watch_begins": Kind(
-        "info", "watched from {from} on: a false alarm once in {arl_years:g} years or more rarely"
+        "info", "monitored from {from} on: at most one false alarm in {arl_years:g} years on average"
     ),
     "watch_sees": Kind("info", "{said}"),
     "structure_changed": Kind(
@@ -391,7 +409,7 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "sensor_changed": Kind(
         "warning",
-        "behaves otherwise since {began} ({began_low} to {began_high}); most likely {cause} "
+        "behaves differently since {began} ({began_low} to {began_high}); most likely {cause} "
         "({probability:.0%})",
     ),
     "cause_corrected": Kind(
@@ -401,8 +419,8 @@ CATALOGUE: dict[str, Kind] = {
     # service
     "study_set_aside": Kind(
         "alarm",
-        "what the days say could not be found in {tries} tries ({reason}): no change would be seen; "
-        "mend the cause, then POST /jobs/{job}/retry",
+        "the days could not be evaluated in {tries} attempts ({reason}): no change would be detected; remove "
+        "the cause, then POST /jobs/{job}/retry",
     ),
     "life_unknown": Kind("warning", "no damage at the welds: {reason}"),
     "life_share": Kind(
@@ -416,16 +434,16 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "asset_silent": Kind(
         "alarm",
-        "nothing came since for more than {hours:g} hours: is the logger, or the way from it, broken?",
+        "no data arrived for more than {hours:g} hours: is the logger or its connection broken?",
     ),
-    "record_late": Kind("info", "older than {days} days that are known; these days are computed again"),
+    "record_late": Kind("info", "older than {days} days that are known; these days are evaluated again"),
 }
-"""Every code there is, by the package that finds it."""
+"""All codes, by the package that reports them."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing worth saying.
+    """One message.
 
     Attributes
     ----------
@@ -434,9 +452,9 @@ class Finding:
     subject : str or None
         The channel, mode, record or parameter it concerns; None if it concerns the whole.
     params : mapping
-        Numbers and names the sentence is made from, SI units.
+        Numbers and names in the sentence, in SI units.
     repaired : bool
-        Whether what was found is taken out of the record.
+        Whether the fault is corrected in the record.
     """
 
     code: str
@@ -450,7 +468,7 @@ class Finding:
 
     @property
     def severity(self) -> Severity:
-        """How much it matters."""
+        """Severity of the code."""
         return CATALOGUE[self.code].severity
 
     @property
@@ -460,7 +478,7 @@ class Finding:
 
     @property
     def document(self) -> dict[str, Any]:
-        """It as plain JSON data, with its severity and its sentence."""
+        """The finding as plain JSON data, with its severity and its sentence."""
         return {
             "code": self.code,
             "severity": self.severity,

@@ -40,7 +40,7 @@ def test_a_twins_law_as_json_and_page(tmp_path: Path) -> None:
     assert [path["start"]["k"] for path in document["paths"]][0] == pytest.approx(1.1e8)
     assert document["paths"][0]["fate"] == "solution"
     text = page.read_text("utf-8")
-    for heading in ("Where searches ended", "What the cost looks like", "What moves the modes", "Root locus"):
+    for heading in ("Ends of the searches", "Shape of the cost", "Sensitivity of the modes", "Root locus"):
         assert heading in text
 
 
@@ -54,13 +54,19 @@ def test_a_structure_alone_has_modes_and_no_cost(tmp_path: Path) -> None:
     document = json.loads(result.stdout)
     assert document["law"] == "springpot" and document["surface"] is None and document["paths"] == []
     assert [locus["parameter"] for locus in document["loci"]] == ["k", "alpha"]
-    assert "What the cost looks like" not in page.read_text("utf-8")
+    assert "Shape of the cost" not in page.read_text("utf-8")
 
 
 def test_tables_name_the_point_and_every_parameter(tmp_path: Path) -> None:
     result = run(TWIN, "--at", "k=3e9", "--starts", "1", "--grid", "5", "--out", str(tmp_path / "page.html"))
     assert result.exit_code == 0, result.output
-    for words in ("solution 1", "∂ ln f/∂ ln θ", "most damping", "How far can c move each mode", "wrote"):
+    for words in (
+        "solution 1",
+        "∂ ln f/∂ ln θ",
+        "largest damping",
+        "How far can c change each mode",
+        "wrote",
+    ):
         assert words in result.stdout
 
 

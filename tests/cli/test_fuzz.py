@@ -202,7 +202,7 @@ def test_signals_with_faults(name: str, case: Case, clean: np.ndarray) -> None:
 def test_samples_that_stand_for_several_are_used_once(case: Case, clean: np.ndarray) -> None:
     document = flagged(identify(signals(case, np.repeat(clean[:, ::10], 10, axis=1))))
     assert any(
-        "every sample of every channel is written 10 times" in warning for warning in document["warnings"]
+        "every sample of every channel is repeated 10 times" in warning for warning in document["warnings"]
     )
     assert not [mode for mode in document["modes"] if mode["status"] == "ok"]
 

@@ -70,7 +70,7 @@ def test_a_table_of_one_column_a_mode(wide: Columns, tmp_path: Path) -> None:
     assert sorted(p.name for p in out.iterdir()) == ["report.html", "watched.json"]
     assert json.loads((out / "watched.json").read_text()) == document
     page = (out / "report.html").read_text()
-    assert "what the likeliest causes would have done" in page and "all modes alike" in page
+    assert "the changes that the most likely causes predict" in page and "all modes alike" in page
 
 
 def test_one_row_a_mode_says_the_same(wide: Columns, tmp_path: Path) -> None:

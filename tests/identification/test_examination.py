@@ -94,7 +94,7 @@ def test_what_cannot_be_turned_is_said(tmp_path: Path) -> None:
     assert "no second horizontal channel" in lonely.identification.warnings[0]
     assert "acc_tp_x" in lonely.identification.warnings[0]
     none = seen(record.select(record.channel_names[::2]), tmp_path / "b.parquet")
-    assert "not turned to the rotor's axes" in none.identification.warnings[0]
+    assert "not rotated to the rotor's axes" in none.identification.warnings[0]
     assert len(none.identification.channels) == 4
 
 
@@ -112,7 +112,7 @@ def test_sensors_without_a_place_are_named() -> None:
     nowhere = replace(record, channels=tuple(replace(c, height_m=None) for c in record.channels))
     (note,) = unplaced(nowhere)
     assert str(note).startswith(
-        "acc_top_x, acc_top_y, acc_g77_x, acc_g77_y, acc_g41_x …: the place is not known"
+        "acc_top_x, acc_top_y, acc_g77_x, acc_g77_y, acc_g41_x …: the position is not known"
     )
 
 
@@ -121,7 +121,7 @@ def test_channels_of_which_nobody_knows_what_they_measure_are_named() -> None:
     assert unclear(record) == ()
     strange = (replace(record.channels[0], quantity="other", unit="mm"), *record.channels[1:])
     (note,) = unclear(replace(record, channels=strange))
-    assert str(note).startswith("acc_top_x (mm): left out: neither name and unit nor the JSON say")
+    assert str(note).startswith("acc_top_x (mm): left out: neither name and unit nor the JSON show")
 
 
 def test_a_dead_channel_is_left_out_and_said(tmp_path: Path) -> None:

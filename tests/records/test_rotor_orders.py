@@ -63,9 +63,9 @@ def test_a_drifting_tone_is_no_mode_and_what_it_passes_is_flagged(tmp_path: Path
     write_record(record, tmp_path / "r.parquet")
     found = examine_file(tmp_path / "r.parquet", IdentificationSettings(refine=False)).identification
     assert [round(m.frequency_hz, 1) for m in found.modes] == [0.3, 0.7, 1.3]
-    assert "3P: 0.45 to 0.75 Hz by the measured rotor speed: taken out" in found.warnings[0]
+    assert "3P: 0.45 to 0.75 Hz by the measured rotor speed: removed" in found.warnings[0]
     # 3P passes 0.7 Hz, 6P goes from 0.9 to 1.5 Hz
-    passed = ["P of the rotor passes here" in (m.status_reason or "") for m in found.modes]
+    passed = ["P of the rotor crosses this frequency" in (m.status_reason or "") for m in found.modes]
     assert passed == [False, True, True]
 
 

@@ -18,7 +18,7 @@ OFF = replace(MODE, measured_hz=Span(0.16, 0.159, 0.161))
 @pytest.mark.parametrize(
     ("answers", "level", "words"),
     [
-        (ANSWERS, "ok", "In order: nothing measured speaks against the model"),
+        (ANSWERS, "ok", "In order: no measurement contradicts the model"),
         (replace(ANSWERS, clearances=(NEAR,)), "act", "Act: fore-aft 1 is near the rotor's 3P"),
         (replace(ANSWERS, modes=(OFF,)), "look", "Look: fore-aft 1 is not as designed"),
         (replace(ANSWERS, modes=()), "look", "Look: no first bending mode was measured"),
@@ -26,7 +26,7 @@ OFF = replace(MODE, measured_hz=Span(0.16, 0.159, 0.161))
         (
             replace(ANSWERS, fit=FitAnswer(436.0, 4, 1e-90, False, {"side_side_1": -0.05}, 0.03)),
             "act",
-            "Not to be relied on: the model cannot meet the data",
+            "Not reliable: the model cannot reproduce the data",
         ),
     ],
     ids=["healthy", "rotor", "off", "unmeasured", "worst-first", "misfit"],

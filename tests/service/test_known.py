@@ -73,7 +73,7 @@ def test_what_no_ground_explains_has_no_interval(tmp_path: Path) -> None:
     known, page = asked_of(tmp_path, odd)
     assert known["status"] == verdict.CANNOT_MEET
     assert {found["interval_90"] for found in known["parameters"].values()} == {None}
-    assert "cannot meet what was measured on any ground" in page
+    assert "cannot reproduce the measurements on any ground" in page
 
 
 def test_parameters_have_intervals_and_units(answered: tuple[dict, str]) -> None:

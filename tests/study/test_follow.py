@@ -142,7 +142,7 @@ def test_the_same_record_twice_is_one_record_and_said(
 ) -> None:
     twice = follow_observations(config, model, [*records, *records])
     assert twice.state == followed.state and twice.days == followed.days
-    assert sum("count once" in line for line in twice.warnings) == 6
+    assert sum("are used once" in line for line in twice.warnings) == 6
 
 
 def test_a_posterior_that_does_not_converge_is_a_status(

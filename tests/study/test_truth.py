@@ -66,7 +66,7 @@ def test_the_loop_closes(tmp_path: Path) -> None:
     np.testing.assert_allclose(in_time.days, [0.25, 0.75], rtol=1e-12)
     assert {"fore_aft_1", "side_side_1"} <= {*in_time.labels}
     assert in_time.state_names == ("parked",)
-    assert "these records state of their asset" in (tmp_path / "out" / "report.html").read_text(
+    assert "Mean true values stated by these records" in (tmp_path / "out" / "report.html").read_text(
         encoding="utf-8"
     )
 

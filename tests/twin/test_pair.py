@@ -255,7 +255,11 @@ def test_a_mean_covers_the_truth_as_often_as_it_says() -> None:
 
 def test_an_observation_of_the_version_before_is_read(seen: Observation) -> None:
     document = OBSERVATION.dump(seen)
-    fault = {"fault": "sign", "text": "moves against all parallel channels; sign turned", "channel": "a"}
+    fault = {
+        "fault": "sign",
+        "text": "has the opposite sign of all parallel channels; sign changed",
+        "channel": "a",
+    }
     old = {
         **document,
         "schema_version": 1,

@@ -41,7 +41,9 @@ def test_a_turned_sensor_is_found(i: int, rng: np.random.Generator) -> None:
     (found,) = sensor_polarity(measured(shapes, rng), FREQUENCY, SHAPES)
     assert found.rows == (i,)
     assert found.after > 0.95 > found.before
-    assert f"s{i} points the other way" in found.described(tuple(f"s{k}" for k in range(8)))
+    assert f"s{i} points opposite to its direction in the twin" in found.described(
+        tuple(f"s{k}" for k in range(8))
+    )
 
 
 def test_two_turned_sensors_are_found(rng: np.random.Generator) -> None:

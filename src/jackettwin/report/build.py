@@ -1,4 +1,4 @@
-"""Put the report together: ``TwinResult`` in, ``report.html`` and its figures out."""
+"""Assemble the report: ``report.html`` and its figures from a ``TwinResult``."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ def build_report(
     Parameters
     ----------
     answers : Answers, optional
-        Of this result, if they are there already.
+        Answers of this result, if already computed.
     provenance : tuple of (what, value)
-        What only the caller knows: when, by which command, from which files.
+        Facts that only the caller knows: time, command, files.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def _subtitle(result: TwinResult, provenance: Rows) -> str:
     when = dict(provenance).get("made", "")
     return " · ".join(
         filter(
-            None, (source, when, f"jackettwin {__version__}", "intervals are 90 % where nothing else is said")
+            None, (source, when, f"jackettwin {__version__}", "intervals are 90 % unless stated otherwise")
         )
     )
 

@@ -1,4 +1,4 @@
-"""One table for the terminal and for pages: columns with their formats, and rows."""
+"""Tables for the terminal and for pages: columns with their formats, and rows."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ UNKNOWN = "–"
 
 @dataclass(frozen=True)
 class TableColumn:
-    """A heading with its unit, what a row shows under it, and how.
+    """A column: heading with unit, value and format.
 
     Attributes
     ----------
     head : str
         Name and unit, ``f [Hz]``.
     value : str or function
-        Key of the row, or what is computed from the row.
+        Key of the row, or function of the row.
     form : str
         Format specification of Python; empty for text.
     scale : float
@@ -44,7 +44,7 @@ class TableColumn:
 
 
 def cell(value: Any, form: str = "") -> str:
-    """Return a value as text: a dash if it is not known, and no minus sign before a zero.
+    """Return a value as text: a dash if it is unknown, and no minus sign for zero.
 
     >>> cell(-1e-9, ".2f"), cell(None, ".2f"), cell(float("nan"), ".3g"), cell("text")
     ('0.00', '–', '–', 'text')
@@ -62,15 +62,15 @@ class Table:
     Attributes
     ----------
     caption : str
-        What the table shows, or the question that it answers.
+        Content of the table, or the question that it answers.
     columns : sequence of TableColumn or str
-        If they are texts, every row holds its cells.
+        If they are texts, every row is a sequence of cells.
     text_columns : int
-        How many columns on the left hold words.
+        Number of text columns on the left.
     marked : set of int
-        Rows that deserve attention.
+        Indices of highlighted rows.
     folded : bool
-        Shown on a page only on request: long lists that few will read.
+        Whether a page shows the table only on request.
     """
 
     caption: str
@@ -88,7 +88,7 @@ class Table:
 
     @cached_property
     def cells(self) -> tuple[tuple[str, ...], ...]:
-        """The rows as they are printed."""
+        """The rows as printed."""
         return tuple(self._row(row) for row in self.rows)
 
     def _row(self, row: Any) -> tuple[str, ...]:

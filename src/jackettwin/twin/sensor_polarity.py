@@ -43,11 +43,11 @@ class Turned:
     after: float
 
     def described(self, names: tuple[str, ...]) -> str:
-        """Return it in words, with the names of the channels."""
+        """Return the sentence on it, with the names of the channels."""
         which = " or ".join(names[i] for i in self.rows)
         return (
-            f"{which} points the other way than the twin says: turned, the shapes it moves in would be "
-            f"{self.after:.0%} like the model's instead of {self.before:.0%}. Kept; turn its direction."
+            f"{which} points opposite to its direction in the twin: with the other sign, its shapes have "
+            f"a MAC of {self.after:.0%}, not {self.before:.0%}. Samples are unchanged; reverse its direction."
         )
 
 

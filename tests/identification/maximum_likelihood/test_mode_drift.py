@@ -111,4 +111,4 @@ def test_a_mode_whose_start_is_nowhere_near_is_left_unrefined(tower, rng):
     fits, findings = accepted_fits(y / y.std(axis=1, keepdims=True), 5.0, (0.2, 1.6), start)
     assert [np.flatnonzero(fit.candidates).tolist() for fit in fits] == [[0, 1]]
     assert [finding.code for finding in findings] == ["not_refined"]
-    assert "1.2, 1.26 Hz not refined: the fit left the peak at 1.2" in findings[0].text
+    assert "1.2, 1.26 Hz are not refined: the fit left the peak at 1.2" in findings[0].text

@@ -1,4 +1,4 @@
-"""Mode shapes of sensors of unknown place: one bar per channel."""
+"""Mode shapes at sensors of unknown position: one bar per channel."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def components(shape: ComplexArray) -> FloatArray:
 
 
 def shape_components(channels: Sequence[Channel], modes: Sequence[tuple[str, ModalEstimate]]) -> go.Figure:
-    """Draw every mode as bars, one a channel in the record's order.
+    """Draw every mode as bars, one per channel in the record's order.
 
     Parameters
     ----------

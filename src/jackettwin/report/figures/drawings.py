@@ -99,9 +99,9 @@ def campbell(a: Answers) -> Markup | None:
 
 
 def damping_bars(modes: Sequence[ModeAnswer]) -> Markup | None:
-    """Draw one bar per mode: the damping from steel, ground, rotor and water, and what none of them explains.
+    """Draw one bar per mode: the damping from steel, ground, rotor and water, and the unexplained part.
 
-    Below it stands the measured one.
+    The measured damping is below it.
     """
     shown = [m for m in modes if m.sources]
     if not shown:
@@ -170,7 +170,7 @@ def ground_intervals(ground: Sequence[GroundAnswer], law: str, *, fits: bool = T
     c = Canvas(_WIDTH, head + row * len(ground), "The ground before and after the data")
     left, right, colour = 60.0, _WIDTH - 60.0, style.law_look(law).colour
     c.box(left, 2, 22, 12, colour=style.PALE)
-    c.text(left + 28, 13, "before the data")
+    c.text(left + 28, 13, "prior")
     c.box(left + 150, 5, 22, 7, colour=colour)
     c.text(left + 178, 13, "now: 90 %, and the median")
     for i, g in enumerate(ground):

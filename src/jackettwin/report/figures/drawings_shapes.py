@@ -21,7 +21,7 @@ Seen = tuple[tuple[Sensor, ...], ComplexArray]
 
 _WIDTH, _HEIGHT, _HEAD = 160.0, 330.0, 40.0
 _SWAY = 0.11
-"""Largest drawn displacement, as a share of what is drawn."""
+"""Largest drawn displacement, as a share of the drawing's height."""
 
 
 def shape_drawings(result: TwinResult, u: Update) -> list[Markup]:
@@ -36,7 +36,7 @@ def shape_drawings(result: TwinResult, u: Update) -> list[Markup]:
 
 
 def _seen(result: TwinResult, m: MeasuredMode) -> Seen | None:
-    """Return the sensors of the record that a mode's shape is of, and the shape there; None without one."""
+    """Return the sensors of a mode's measured shape, with the shape there; None without a shape."""
     at = sensors_of(m, result.observations)
     return None if at is None or m.estimate is None else (at[0], m.estimate.mode_shape[at[1]])
 

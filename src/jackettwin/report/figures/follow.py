@@ -35,12 +35,12 @@ def parameters_through_time(followed: Followed, names: Sequence[str]) -> go.Figu
         _points(figure, followed, name, row)
         if followed.drift is not None and not followed.changes and name in followed.stiffness:
             _line(figure, followed, name, row)
-    figure.update_yaxes(type="log", dtick="D2", tickformat=".1~g")  # whole numbers: no decade may be in view
+    figure.update_yaxes(type="log", dtick="D2", tickformat=".1~g")  # there may be no decade in view
     by_day = followed.moments == "day"
     form = "%d %b\n%Y" if by_day else "%H:%M\n%d %b %Y"
     figure.update_xaxes(type="date", tickformat=form, row=len(names), col=1, title="time (UTC)")
     if by_day and len(followed.days) <= _FEW_DAYS:
-        half = timedelta(hours=15)  # with one day alone the axis would hold no midnight, and no date
+        half = timedelta(hours=15)  # with a single day the axis would contain no midnight, and no date
         ends = [followed.days[0].time_utc - half, followed.days[-1].time_utc + half]
         figure.update_xaxes(dtick=_DAY_MS, range=ends)
     return style.finish(
@@ -51,7 +51,7 @@ def parameters_through_time(followed: Followed, names: Sequence[str]) -> go.Figu
 
 
 def stiffness_in_time(followed: Followed) -> go.Figure:
-    """Draw the stiffness of each day over that of the first: known then, known by now, and expected."""
+    """Draw the ratio of each day's stiffness to the first day's: as known then, as known now, expected."""
     figure, colour = go.Figure(), style.law_look(followed.law).colour
     dates = [datetime.fromisoformat(date).replace(hour=12, tzinfo=UTC) for date in followed.smoothed]
     by_now = np.array([level.relative for level in followed.smoothed.values()])
@@ -67,12 +67,12 @@ def stiffness_in_time(followed: Followed) -> go.Figure:
         marker={"size": 4, "color": style.GREY},
         name="known on the day, 90 %",
     )  # fmt: skip
-    most = max(min(followed.ahead), followed.days_since_first[-1])  # no further than has been seen
+    most = max(min(followed.ahead), followed.days_since_first[-1])  # at most as far as the past
     shown = {days: level for days, level in followed.ahead.items() if days <= most}
     ahead = [known[-1].time_utc + timedelta(days=days) for days in shown]
     expected = np.array([then[-1], *(level.relative for level in shown.values())])
     _band(figure, [known[-1].time_utc, *ahead], expected, style.GREY, "expected", dash="dot")
-    figure.update_yaxes(title="stiffness over that of the first day")
+    figure.update_yaxes(title="stiffness relative to the first day")
     figure.update_xaxes(type="date", title="time (UTC)")
     return style.finish(figure, height=420, legend=style.LEGEND_ABOVE)
 
@@ -124,7 +124,7 @@ def _line(figure: go.Figure, followed: Followed, name: str, row: int) -> None:
         y=[*high, *low[::-1]],
         fill="toself",
         fillcolor=style.rgba(colour, 0.2),
-        mode="lines",  # of few days the band's corners would be drawn as points
+        mode="lines",  # otherwise the corners of a band of few days are drawn as points
         line={"width": 0},
         hoverinfo="skip",
         name="slope through all, 90 %",

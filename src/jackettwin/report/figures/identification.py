@@ -40,7 +40,7 @@ _CLASSES = (
 def stabilisation(
     found: Identification, names: Sequence[str], *, band: tuple[float, float] | None = None
 ) -> go.Figure:
-    """Draw poles of every model order against frequency over the first singular value; modes kept are lines.
+    """Draw poles of every model order over frequency with the first singular value; accepted modes as lines.
 
     Parameters
     ----------
@@ -64,9 +64,9 @@ def stabilisation(
 
 
 def stabilisation_damping(found: Identification, names: Sequence[str]) -> go.Figure:
-    """Draw poles of every model order against damping, those of each mode in its colour.
+    """Draw poles of every model order over damping, those of each mode in its colour.
 
-    As the intervals of the modes overlap, they are bars above the poles, at the ends of the modes' lines.
+    Since the intervals of the modes overlap, they are bars above the poles, at the ends of the modes' lines.
     """
     s = found.stabilisation
     limits = (0.0, _damping_limit(found))
@@ -110,7 +110,7 @@ def _bar(figure: go.Figure, mode: ModalEstimate, y: float, look: style.Appearanc
 
 
 def damping_against_frequency(found: Identification, names: Sequence[str]) -> go.Figure:
-    """Draw stable poles as damping over frequency (thesis figure 6.2), the modes kept on top."""
+    """Draw stable poles as damping over frequency (thesis figure 6.2), with the accepted modes on top."""
     s = found.stabilisation
     figure = go.Figure()
     for name, chosen, colour, size in (
@@ -275,7 +275,7 @@ def _lines(
     marks: Sequence[tuple[str, float, tuple[float, float] | None, ModalEstimate]],
     limits: tuple[float, float],
 ) -> None:
-    """Draw the modes kept as lines behind the poles, their 95 % intervals as bands."""
+    """Draw the accepted modes as lines behind the poles, their 95 % intervals as bands."""
     texts = []
     for label, x, interval_95, mode in marks:
         look = style.mode_look(label)

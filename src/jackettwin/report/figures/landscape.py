@@ -1,4 +1,4 @@
-"""What the cost looks like around a solution, how searches went, and how poles move with a parameter."""
+"""Figures of the cost around a solution, the paths of searches, and poles as functions of a parameter."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from jackettwin.soil import Parameter
 from jackettwin.updating import CostCurve, CostSurface, Locus, SearchPath
 
 _BRIGHTEST = 0.9
-"""This share of a cost surface lies below the brightest colour."""
+"""Share of a cost surface below the brightest colour."""
 _COLOURS = (style.BLUE, style.VERMILLION, style.GREEN, style.PURPLE, style.ORANGE, style.SKY)
 _DASHES = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
 _ENDS = {"solution": style.GREEN, "plateau": style.PURPLE, "stalled": style.VERMILLION}
-"""Colour of a search's path, by what its end is."""
+"""Colour of a search's path, by the kind of its end."""
 
 
 def cost_curves(curves: Sequence[CostCurve]) -> go.Figure:
-    """Draw the cost as each parameter moves by ±50 % (thesis figures 8.5, 8.6)."""
+    """Draw the cost as each parameter varies by ±50 % (thesis figures 8.5, 8.6)."""
     figure = go.Figure()
     for i, curve in enumerate(curves):
         p = curve.parameter
@@ -49,17 +49,17 @@ def cost_surface(
     paths: Sequence[SearchPath] = (),
     axes: tuple[int, int] = (0, 1),
 ) -> go.Figure:
-    """Draw log₁₀ of the cost over two parameters, with points and the ways of searches marked.
+    """Draw log₁₀ of the cost over two parameters, with points and paths of searches.
 
     Parameters
     ----------
-    points : (name, x, y) of each
-    axes : places of the surface's parameters in the points of the paths
+    points : (name, x, y) of each point
+    axes : indices of the surface's parameters in the points of the paths
     """
     x, y, (first, second) = surface.x, surface.y, surface.parameters
     level = np.round(np.log10(np.maximum(surface.cost, 1e-16)), 3)
     known = level[np.isfinite(level)]
-    # most colours for what is low: a ridge of a few sets would take them all
+    # most colours are used for low costs: otherwise a ridge of a few sets would use them all
     low, top = (float(known.min()), float(np.quantile(known, _BRIGHTEST))) if known.size else (-1.0, 0.0)
     hover = f"{first.name} %{{x:.3g}} {first.unit}<br>{second.name} %{{y:.3g}} {second.unit}"
     figure = go.Figure(
@@ -100,10 +100,10 @@ def cost_surface(
 
 
 def _ways(paths: Sequence[SearchPath], axes: tuple[int, int]) -> list[go.Scatter]:
-    """Return a line a path and a ring at its start, one entry of the legend for each kind of end."""
+    """Return a line and a starting ring per path, with one legend entry for each kind of end."""
     traces, said = [], set[str]()
     for i, path in enumerate(paths, start=1):
-        # a simplex wanders about: its way is where the cost was lower than before
+        # the path of a simplex consists of the points at which the cost decreased
         lower = np.flatnonzero(path.cost == np.minimum.accumulate(path.cost))
         points, colour = np.vstack([path.points[lower], path.end])[:, list(axes)], _ENDS[path.fate]
         cost = np.append(path.cost[lower], path.end_cost)
@@ -143,7 +143,7 @@ def _logarithmic(p: Parameter, values: FloatArray) -> dict[str, Any]:
 
 
 def root_locus(locus: Locus, labels: Sequence[str]) -> go.Figure:
-    """Draw the poles of each mode in the upper left half plane, limits and the point explored marked."""
+    """Draw the poles of each mode in the upper left half plane, with the limits and the explored point."""
     n = len(labels)
     columns = min(n, 3)
     rows = -(-n // columns)
@@ -176,7 +176,7 @@ def root_locus(locus: Locus, labels: Sequence[str]) -> go.Figure:
 
 
 def _locus_traces(locus: Locus, j: int, label: str) -> list[go.Scatter]:
-    """Return the path of one mode, its two ends and the point from which it was followed."""
+    """Return the path of one mode, its two ends and the point from which it was tracked."""
     path, look, p = locus.poles[:, j], style.mode_look(label), locus.parameter
     text = [f"{p.name} = {scientific(v)} {'' if p.unit == '-' else p.unit}" for v in locus.values]
     traces = [
@@ -197,7 +197,7 @@ def _locus_traces(locus: Locus, j: int, label: str) -> list[go.Scatter]:
     marks = (
         (followed[0], "circle-open", style.INK, f"{p.name} at its lower end"),
         (followed[-1], "square-open", style.INK, f"{p.name} at its upper end"),
-        (locus.origin, "triangle-up", style.VERMILLION, "the point explored"),
+        (locus.origin, "triangle-up", style.VERMILLION, "explored point"),
     )
     for at, symbol, colour, name in marks:
         traces.append(
@@ -222,7 +222,7 @@ def _locus_traces(locus: Locus, j: int, label: str) -> list[go.Scatter]:
 def sensitivities(
     names: Sequence[str], labels: Sequence[str], frequency: FloatArray, damping: FloatArray
 ) -> go.Figure:
-    """Draw by how much one per cent more of every parameter changes frequencies and damping ratios.
+    """Draw the change of frequencies and damping ratios due to an increase of each parameter by one per cent.
 
     Parameters
     ----------
@@ -245,6 +245,8 @@ def sensitivities(
                 row=1,
                 col=col,
             )
-    figure.update_yaxes(title_text=style.title("change of f by 1 % more", "%"), row=1, col=1)
-    figure.update_yaxes(title_text=style.title("change of ζ by 1 % more, in 0.01 %", "-"), row=1, col=2)
+    figure.update_yaxes(title_text=style.title("change of f per 1 % of the parameter", "%"), row=1, col=1)
+    figure.update_yaxes(
+        title_text=style.title("change of ζ per 1 % of the parameter, in 0.01 %", "-"), row=1, col=2
+    )
     return style.finish(figure, height=400, barmode="group", margin={"l": 70, "r": 24, "t": 84, "b": 54})

@@ -1,4 +1,4 @@
-"""What support laws do: storage and loss, creep and relaxation, a cycle of loading, a mass let go."""
+"""Figures of support laws: storage and loss, creep and relaxation, a load cycle, free vibration of a mass."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def moduli(laws: Mapping[str, LawCurves]) -> go.Figure:
     for i, (name, law) in enumerate(laws.items()):
         values = (law.stiffness.real, law.stiffness.imag, law.loss_factor)
         for col, y in enumerate(values, start=1):
-            # a logarithm has no zero: a spring loses nothing
+            # a spring has no loss, which a logarithmic axis cannot show
             shown = np.where(np.isfinite(y) & (y > 0.0), y, np.nan)
             figure.add_trace(_line(i, law.frequency_hz, shown, name, first=col == 1), row=1, col=col)
     figure.update_xaxes(type="log", exponentformat="power", title_text=style.title("frequency", "Hz"))
@@ -67,14 +67,14 @@ def transients(laws: Mapping[str, LawCurves]) -> go.Figure:
 
 
 def cycle(laws: Mapping[str, Law], frequency_hz: float) -> go.Figure:
-    """Draw one cycle of harmonic motion of unit amplitude (thesis figure 4.1): the area is what is lost."""
+    """Draw a cycle of harmonic motion of unit amplitude (thesis figure 4.1); its area is the energy lost."""
     figure = go.Figure()
     rotating = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 200))
     for i, (name, law) in enumerate(laws.items()):
         force = (law.stiffness(2j * np.pi * frequency_hz) * rotating).real
         figure.add_trace(_line(i, rotating.real, force, name))
-    figure.update_xaxes(title_text=style.title("displacement over its amplitude", "-"))
-    figure.update_yaxes(title_text=style.title("force over that amplitude", "N/m"), exponentformat="power")
+    figure.update_xaxes(title_text=style.title("displacement / amplitude", "-"))
+    figure.update_yaxes(title_text=style.title("force / amplitude", "N/m"), exponentformat="power")
     return style.finish(figure, height=420, showlegend=True)
 
 
@@ -84,5 +84,5 @@ def let_go(motions: Mapping[str, FreeVibration]) -> go.Figure:
     for i, (name, motion) in enumerate(motions.items()):
         figure.add_trace(_line(i, motion.time_s, motion.displacement, name))
     figure.update_xaxes(title_text=style.title("time", "s"))
-    figure.update_yaxes(title_text=style.title("displacement over its start", "-"))
+    figure.update_yaxes(title_text=style.title("displacement / initial displacement", "-"))
     return style.finish(figure, height=420, showlegend=True)

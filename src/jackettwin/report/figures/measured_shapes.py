@@ -20,18 +20,19 @@ _SWAY = 0.16
 """Largest drawn displacement, as a share of the height of the sensors."""
 _COLUMNS = 3
 _LEAST_SIZE = 0.1
-"""Drawn height if all sensors are at one height."""
+"""Drawn height if all sensors are at the same height [m]."""
 
 
 @dataclass(frozen=True)
 class SensorLayout:
-    """Places of the sensors in ascending order, and the channels of each.
+    """Positions of the sensors in ascending order, and the channels at each.
 
     Attributes
     ----------
     height : (n_places,)
-        Above sea level [m].
+        Height above sea level [m].
     place : (n_channels,) int
+        Index of each channel's position.
     direction : (n_channels, 3)
     """
 
@@ -41,7 +42,7 @@ class SensorLayout:
 
     @classmethod
     def of(cls, channels: Sequence[Channel]) -> SensorLayout:
-        """Return the places of the channels, all of which must say their height."""
+        """Return the positions of the channels, all of which must have a height."""
         heights = [float(c.height_m) for c in channels if c.height_m is not None]
         order = sorted(set(heights))
         along_x = (1.0, 0.0, 0.0)
@@ -56,7 +57,7 @@ class SensorLayout:
 
 
 def measured_shapes_3d(channels: Sequence[Channel], modes: Sequence[tuple[str, ModalEstimate]]) -> go.Figure:
-    """Draw measured modes, each turning through one cycle of Re(φ e^{iθ}), θ by button or slider.
+    """Draw measured modes, animated through one cycle of Re(φ e^{iθ}), with a button and a slider for θ.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ _POINTS = 300
 _PRIOR_DRAWS = 20_000
 _LN10 = np.log(10.0)
 _DELTA_90 = 2.706
-"""χ² of one degree of freedom below which a profile's 90 % interval lies."""
+"""90 % point of χ² with one degree of freedom, which bounds a profile's interval."""
 
 
 def corner(update: Update, known: Uncertainty) -> go.Figure:
@@ -94,7 +94,7 @@ def _histogram(figure: go.Figure, z: FloatArray, prior: FloatArray, i: int, colo
         x=np.repeat(edges, 2),
         y=np.concatenate([[0.0], np.repeat(before, 2), [0.0]]),
         mode="lines",
-        name="before the data",
+        name="prior",
         showlegend=i == 0,
         line={"color": style.GREY, "width": 1.5},
         hoverinfo="skip",
@@ -106,7 +106,7 @@ def _histogram(figure: go.Figure, z: FloatArray, prior: FloatArray, i: int, colo
 
 def _corner_axes(figure: go.Figure, parameters: Sequence[Parameter], z: FloatArray) -> None:
     n = len(parameters)
-    # all axes at once: one by one, Plotly seeks each among all of them
+    # all axes at once, which is much faster in Plotly than one by one
     axes: dict[str, dict[str, object]] = {}
     for i in range(n):
         for j in range(n):
@@ -138,7 +138,7 @@ def _reach(z: FloatArray) -> tuple[float, float]:
 
 
 def profiles(update: Update, known: Uncertainty) -> go.Figure:
-    """Draw the least χ² over the other parameters as each goes through its bounds, above the best."""
+    """Draw the increase of χ², minimised over the other parameters, as each one varies in its bounds."""
     figure = go.Figure()
     dashes = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
     colours = (style.BLUE, style.VERMILLION, style.GREEN, style.PURPLE, style.ORANGE, style.SKY)
@@ -163,9 +163,9 @@ def profiles(update: Update, known: Uncertainty) -> go.Figure:
     return style.finish(
         figure,
         height=400,
-        xaxis={"title": {"text": style.title("place between the bounds, logarithmic", "%")}},
+        xaxis={"title": {"text": style.title("position between the bounds, logarithmic", "%")}},
         yaxis={
-            "title": {"text": style.title("least χ² above the best", "-")},
+            "title": {"text": style.title("increase of χ², minimised over the others", "-")},
             "range": [-0.3, 12.3],
         },
     )

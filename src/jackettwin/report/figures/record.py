@@ -17,7 +17,7 @@ from jackettwin.report.figures import style
 from jackettwin.report.tables.numbers import words
 
 _BINS = 900
-"""Number of minimum-maximum pairs drawn per channel, more than the columns of a screen."""
+"""Number of minimum-maximum pairs drawn per channel, which exceeds the pixels of a screen."""
 
 
 def time_series(record: Record, *, channels: Sequence[str] | None = None) -> go.Figure:
@@ -65,9 +65,9 @@ def time_series(record: Record, *, channels: Sequence[str] | None = None) -> go.
 
 
 def envelope(y: FloatArray, sample_rate_hz: float) -> tuple[FloatArray, FloatArray]:
-    """Return (time, value) that draw a signal: all samples, or the extremes of each bin in their order.
+    """Return (time, value) for drawing a signal: all samples, or the extremes of each bin in their order.
 
-    A bin that holds a missing sample is drawn as a gap.
+    A bin with a missing sample is drawn as a gap.
     """
     if y.size <= 4 * _BINS:
         return np.arange(y.size) / sample_rate_hz, y
@@ -90,7 +90,7 @@ def spectra(
 ) -> go.Figure:
     """Draw power spectral densities above, singular values below; ``modes`` are (label, estimate).
 
-    ``fit`` is the spectrum that the modes alone would have; its first two singular values are drawn.
+    ``fit`` is the spectrum of the identified modes; its first two singular values are drawn.
     """
     figure = make_subplots(rows=2, cols=1, shared_xaxes=True, vertical_spacing=0.07, row_heights=[0.55, 0.45])
     f = spectrum.frequencies_hz
@@ -144,7 +144,7 @@ def spectra(
 
 
 def _dashes(channels: Sequence[Channel]) -> list[str]:
-    """Return a dash for each channel: by height where all are known, else by turn within a direction."""
+    """Return a dash for each channel, by height if all are known, else in turn within a direction."""
     dashes = ("solid", "dash", "dot", "dashdot")
     heights = [channel.height_m for channel in channels if channel.height_m is not None]
     if len(heights) == len(channels):
@@ -167,7 +167,7 @@ def _fit(figure: go.Figure, fit: Spectrum) -> None:
             mode="lines",
             row=2,
             col=1,
-            name="of the modes alone",
+            name="identified modes only",
             legendgroup="fit",
             showlegend=k == 1,
             line={"width": 2.2 if k == 1 else 1.6, "color": style.rgba(style.ORANGE, 0.85)},
@@ -192,7 +192,7 @@ def _mark(figure: go.Figure, modes: Sequence[tuple[str, ModalEstimate]], limits:
 
 
 def place(channel: Channel) -> str:
-    """Return the label of a channel: name and place."""
+    """Return the label of a channel: name and position."""
     where = (
         f", {channel.height_m:g} m"
         if channel.height_m is not None

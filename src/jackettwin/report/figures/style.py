@@ -28,7 +28,7 @@ _LAWS = {
     "maxwell-3": Appearance(PURPLE, "triangle-up", "solid"),
     "springpot": Appearance(GREEN, "cross", "dashdot"),
 }
-"""Appearance of support laws; one of another package is grey."""
+"""Appearance of support laws; laws of other packages are grey."""
 _KINDS = {
     "fore_aft": (BLUE, "circle"),
     "side_side": (VERMILLION, "square"),
@@ -48,12 +48,12 @@ _VARIANTS = ("", "-open", "-open-dot", "-dot")
 
 
 def law_look(law: str) -> Appearance:
-    """Return the look of a support law, the same on the whole page."""
+    """Return the appearance of a support law, the same on the whole page."""
     return _LAWS.get(law, Appearance(GREY, "x", "longdash"))
 
 
 def mode_look(label: str) -> Appearance:
-    """Return the look of a mode from its label ``kind_number``: colour by kind, fill and dash by number.
+    """Return the appearance of a mode by its label ``kind_number``: colour by kind, fill and dash by number.
 
     ``mode_3``, of unknown kind, is coloured by number; a label without number is grey.
     """
@@ -91,7 +91,7 @@ def rgba(colour: str, alpha: float) -> str:
 def label_lines(
     figure: go.Figure, marks: Sequence[tuple[float, str, str]], limits: tuple[float, float]
 ) -> None:
-    """Write (x, text, colour) upright above the axes, pushed apart where lines stand close."""
+    """Write (x, text, colour) vertically above the axes, spread where lines are close."""
     low, high = limits
     gap = 0.017 * (high - low)
     placed: list[float] = []
@@ -161,7 +161,7 @@ LEGEND_ABOVE: dict[str, Any] = {
     "y": 1.02,
     "yanchor": "bottom",
 }
-"""Outside the axes, so that it never covers data."""
+"""Position of the legend: outside the axes, so that it covers no data."""
 LEGEND_BELOW: dict[str, Any] = {**LEGEND_ABOVE, "y": -0.13, "yanchor": "top"}
 
 

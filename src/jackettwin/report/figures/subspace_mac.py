@@ -20,7 +20,7 @@ _LABEL_FROM = 0.05
 
 
 def mac_matrix(found: Identification, names: Sequence[str]) -> go.Figure:
-    """Draw the MAC between all modes; off the diagonal it shows what the sensors cannot separate."""
+    """Draw the MAC between all modes; large values off the diagonal are modes the sensors cannot separate."""
     labels = [_label(name, mode) for name, mode in zip(names, found.modes, strict=True)]
     shapes = np.array([mode.mode_shape for mode in found.modes])
     values = mac(shapes, shapes)

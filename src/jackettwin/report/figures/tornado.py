@@ -1,4 +1,4 @@
-"""The tornado: by how far each tolerance moves one parameter of the ground."""
+"""Tornado diagram: the effect of each tolerance on one parameter of the ground."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from jackettwin.study import Scrutiny
 
 _WIDTH = 620.0
 _MOST = 8
-"""Tolerances drawn: the table has all."""
+"""Largest number of tolerances drawn; the table has all."""
 _LETTER = 7.4
-"""Width of a letter of the page's font, at most on average [px]."""
+"""Upper limit of the mean width of a letter of the page's font [px]."""
 _FELT = 0.002
 """Changes of a logarithm below this are not drawn."""
 
 
 def tornado(s: Scrutiny, parameter: int, words: str) -> Markup | None:
-    """Draw a bar from one standard deviation less to one more of each tolerance; None if none is felt.
+    """Draw a bar for ± one standard deviation of each tolerance; None if none has a visible effect.
 
     Parameters
     ----------
     parameter : int
-        Its place among the problem's.
+        Index of the parameter in the problem.
     words : str
-        What the parameter is called.
+        Name of the parameter.
     """
     shown = [m for m in s.movers(parameter)[:_MOST] if abs(float(m.effect[parameter])) > _FELT]
     if not shown:
@@ -35,7 +35,7 @@ def tornado(s: Scrutiny, parameter: int, words: str) -> Markup | None:
     row, head, right = 26.0, 24.0, _WIDTH - 64.0
     left = 16.0 + _LETTER * max(len(m.tolerance.words) for m in shown)
     bottom = head + row * len(shown)
-    c = Canvas(_WIDTH, bottom + 44.0, f"What moves the {words}")
+    c = Canvas(_WIDTH, bottom + 44.0, f"Effect of the tolerances on the {words}")
     most = 1.1 * max(abs(expm1(abs(float(m.effect[parameter])))) for m in shown)
     middle = 0.5 * (left + right)
 
@@ -43,7 +43,7 @@ def tornado(s: Scrutiny, parameter: int, words: str) -> Markup | None:
         return middle + 0.5 * (right - left) * change / most
 
     c.box(left, 2, 14, 14, colour=style.ORANGE)
-    c.text(left + 19, 14, "one σ more than stated")
+    c.text(left + 19, 14, "stated value + σ")
     c.box(left + 180, 2, 14, 14, colour=style.SKY)
     c.text(left + 199, 14, "one σ less")
     for i, m in enumerate(shown):

@@ -22,7 +22,7 @@ _ROW = 170
 
 @dataclass(frozen=True)
 class _Points:
-    """Values of one mode over records with what to draw beside them."""
+    """Values of one mode over records with intervals and labels."""
 
     x: FloatArray
     y: FloatArray

@@ -16,7 +16,7 @@ from jackettwin.watching import CauseVerdict
 
 _BAND = 1.645
 _CAUSE_WIDTH = 18
-"""Letters a line of a cause's name beside its alarm."""
+"""Letters per line of a cause's name at its alarm."""
 _SHOWN_IN = {"frequency": (100.0, "%"), "damping": (100.0, "%"), "angle": (180.0 / np.pi, "°")}
 """Display units of changes of each kind."""
 _SYMBOLS = ("diamond-open", "square-open", "triangle-up-open")
@@ -24,7 +24,7 @@ _COLOURS = (style.BLUE, style.GREEN, style.ORANGE)
 
 
 def leading(watched: Watched) -> int:
-    """Return the quantity in which the first alarm is clearest, or the first quantity."""
+    """Return the index of the quantity in which the first alarm is clearest, or of the first quantity."""
     if not watched.alarms:
         return 0
     change = watched.alarms[0].change
@@ -32,13 +32,13 @@ def leading(watched: Watched) -> int:
 
 
 def frequencies(watched: Watched) -> tuple[int, ...]:
-    """Return which quantities are frequencies or directions; all, if none is."""
+    """Return the indices of frequencies and directions, or all if there are none."""
     chosen = tuple(i for i, (kind, _) in enumerate(watched.watch.quantities) if kind != "damping")
     return chosen or tuple(range(len(watched.watch.quantities)))
 
 
 def unexplained_through_time(watched: Watched, chosen: Sequence[int]) -> go.Figure:
-    """Draw daily means of some quantities without the effects of conditions, with band and alarms."""
+    """Draw daily residuals of some quantities after the effects of conditions, with band and alarms."""
     figure = make_subplots(rows=len(chosen), cols=1, shared_xaxes=True, vertical_spacing=0.03)
     for row, i in enumerate(chosen, start=1):
         _line(figure, watched, i, row)
@@ -104,7 +104,7 @@ def _mark(figure: go.Figure, watched: Watched, alarm: Alarm, i: int, row: int, *
 
 
 def _cause(best: CauseVerdict) -> str:
-    """Return the cause in short lines: the alarm may stand at the end of the axis of a small figure."""
+    """Return the cause in short lines, since the alarm may be at the end of the axis of a small figure."""
     text = f"{best.cause}, {100.0 * best.probability:.0f} %" if best.is_clear else "cause not clear"
     return "<br>".join(wrap(text, _CAUSE_WIDTH))
 

@@ -1,4 +1,4 @@
-"""One page that lays modes beside another program's: shapes side by side, and the MAC of each with each."""
+"""The page that compares modes with those of another program: shapes side by side, and all MAC values."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from jackettwin.structure import Assembly
 
 _WIDTH, _HEIGHT, _HEAD = 320.0, 330.0, 58.0
 _SWAY = 0.11
-"""Largest drawn displacement, as a share of what is drawn."""
+"""Largest drawn displacement, as a share of the drawing's height."""
 _CELL = 46.0
 
 
 def write_comparison(
     stages: Sequence[tuple[str, Assembly, ModeComparison]], path: Path, *, title: str, names: tuple[str, str]
 ) -> Path:
-    """Write the page of one comparison or several stages; ``names`` are our program's and the other's."""
+    """Write the page of one comparison or several stages; ``names`` are those of the two programs."""
     sections = []
     for name, assembly, found in stages:
         theirs = expanded(assembly, found.other)
@@ -41,7 +41,7 @@ def write_comparison(
         sections.append(PageSection(name.replace("_", " "), blocks))
         if found.unknown:
             few = ", ".join(found.unknown[:8])
-            note = f"{len(found.unknown)} nodes of {names[1]} are none of this structure: {few}"
+            note = f"{len(found.unknown)} nodes of {names[1]} are not nodes of this structure: {few}"
             sections.append(PageSection(f"{name.replace('_', ' ')}: left out", (Text((note,)),)))
     return write_page(sections, path, title=title, subtitle=f"{names[0]} beside {names[1]}")
 
@@ -73,7 +73,7 @@ def _side_by_side(
 
 
 def _moved(assembly: Assembly, shape: FloatArray) -> FloatArray:
-    """Return the translations of all nodes of the mesh, the largest one."""
+    """Return the translations of all nodes of the mesh, scaled to a largest value of one."""
     motion = np.asarray(assembly.expand @ shape).reshape(-1, 6)[:, :3]
     return np.asarray(motion / np.abs(motion).max())
 
@@ -102,10 +102,10 @@ def _draw(
 
 
 def _matrix(found: ModeComparison, names: tuple[str, str]) -> Markup:
-    """Return the MAC of each mode with each, darker where they agree."""
+    """Return the MAC between all modes, darker where they agree."""
     n, m = found.mac.shape
     left, top = 96.0, 62.0
-    c = Canvas(left + _CELL * m + 10.0, top + 26.0 * n + 10.0, "MAC of each mode with each")
+    c = Canvas(left + _CELL * m + 10.0, top + 26.0 * n + 10.0, "MAC between the modes of both programs")
     c.text(left + _CELL * m / 2, 16, names[1], anchor="middle", bold=True)
     c.text(4, top - 8, names[0], bold=True)
     for j in range(m):

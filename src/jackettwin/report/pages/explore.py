@@ -1,4 +1,4 @@
-"""The page on an explored law: where searches ended, what the cost looks like, what moves the modes."""
+"""The page on an explored law: ends of searches, shape of the cost, sensitivity of the modes."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def write_explore_page(found: Exploration, path: Path) -> Path:
     )
     sections = [
         *([] if found.landscape is None else _cost(found.landscape)),
-        PageSection("What moves the modes", _sensitivity(found)),
+        PageSection("Sensitivity of the modes", _sensitivity(found)),
         PageSection("Root locus", tuple(block for locus in found.loci for block in _locus(found, locus))),
     ]
     law = found.model.family.name
@@ -53,24 +53,24 @@ def _cost(seen: CostLandscape) -> list[PageSection]:
             for n, s in enumerate(u.solutions, start=1)
         ]
         others = [name for name in names if name not in (names[i], names[j])]
-        rest = f" The others ({', '.join(others)}) stay at the point explored." if others else ""
+        rest = f" The others ({', '.join(others)}) have their values at the explored point." if others else ""
         caption = (
-            "Where is the cost low? Its logarithm over two parameters; lines are searches, each from its "
-            f"ring to its end.{rest}"
+            "Where is the cost low? Logarithm of the cost over two parameters; lines are the paths of "
+            f"searches, which start at rings.{rest}"
         )
         shapes.append(
             Plot("cost_surface", caption, figures.cost_surface(seen.surface, points, seen.paths, (i, j)))
         )
-    caption = "How sharp is the minimum? The cost as one parameter moves, the others held."
+    caption = "How sharp is the minimum? Cost as one parameter varies with the others fixed."
     shapes.append(Plot("cost_curves", caption, figures.cost_curves(seen.curves), fits=True))
     return [
-        PageSection("Where searches ended", tuple(blocks)),
-        PageSection("What the cost looks like", tuple(shapes)),
+        PageSection("Ends of the searches", tuple(blocks)),
+        PageSection("Shape of the cost", tuple(shapes)),
     ]
 
 
 def solutions_table(seen: CostLandscape) -> Table:
-    """Return every solution in a column, the lowest first."""
+    """Return every solution in a column, that of lowest cost first."""
     found = seen.update.solutions
     rows = [
         (p.name, *(quantity(float(s.theta[j]), p.unit, digits=3) for s in found))
@@ -83,7 +83,7 @@ def solutions_table(seen: CostLandscape) -> Table:
 
 
 def paths_table(seen: CostLandscape) -> Table:
-    """Return where every search started and ended."""
+    """Return the start and end of every search."""
     parameters = seen.update.problem.parameters
     rows = []
     for i, path in enumerate(seen.paths, start=1):
@@ -95,8 +95,8 @@ def paths_table(seen: CostLandscape) -> Table:
         costs = (f"{value:.3g}" for value in (path.cost[0], path.end_cost))
         rows.append((str(i), start, fate, *costs, str(len(path.cost))))
     caption = (
-        f"Where does each starting point lead ({seen.method})? On a plateau the model is far from the data "
-        "and no parameter changes that; where a search stalled the cost can still fall."
+        f"Where does the search from each starting point end ({seen.method})? On a plateau the model is far "
+        "from the data and no parameter changes that; where a search stalled, the cost can still decrease."
     )
     heads = ("path", "starts at", "ends at", "cost at its start", "at its end", "evaluations")
     return Table(caption, heads, tuple(rows), text_columns=3)
@@ -106,11 +106,11 @@ def _sensitivity(found: Exploration) -> tuple[Block, ...]:
     s = found.sensitivity
     names = [p.name for p in s.parameters]
     drawn = figures.sensitivities(names, found.labels, s.frequency, s.damping)
-    return Plot("sensitivity", "Which parameter moves which mode?", drawn), sensitivity_table(found)
+    return Plot("sensitivity", "Which parameter affects which mode?", drawn), sensitivity_table(found)
 
 
 def sensitivity_table(found: Exploration) -> Table:
-    """Return the modes at the point explored and their derivatives, a row a parameter."""
+    """Return the modes at the explored point and their derivatives, one row per parameter."""
     s = found.sensitivity
     rows = []
     for i, label in enumerate(found.labels):
@@ -123,8 +123,8 @@ def sensitivity_table(found: Exploration) -> Table:
             by = (cell(float(s.frequency[i, j]), "+.4f"), cell(100.0 * float(s.damping[i, j]), "+.3f"))
             rows.append((*(mode if j == 0 else ("", "", "")), p.name, *by))
     caption = (
-        "By how much does each parameter move each mode? Analytic derivatives; central differences deviate "
-        f"by {s.difference:.1g} at most."
+        "How much does each parameter affect each mode? Analytical derivatives; central differences deviate "
+        f"by at most {s.difference:.1g}."
     )
     heads = ("mode", "f [Hz]", "ζ [%]", "parameter θ", "∂ ln f/∂ ln θ [-]", "∂ζ/∂ ln θ [%]")
     return Table(caption, heads, tuple(rows))
@@ -133,18 +133,20 @@ def sensitivity_table(found: Exploration) -> Table:
 def _locus(found: Exploration, locus: Locus) -> tuple[Block, ...]:
     p = locus.parameter
     several = p.name not in [one.name for one in found.model.parameters]
-    together = " Those of all tie groups vary by one factor; this is the first's." if several else ""
+    together = (
+        " The parameters of all tie groups vary by one factor; that of the first is shown." if several else ""
+    )
     low, high = (quantity(value, p.unit, digits=3) for value in (p.low, p.high))
     caption = (
         f"Where do the poles go as {p.name} varies from {low} to {high}? "
-        f"Each branch was followed from the point explored.{together}"
+        f"Each branch is tracked from the explored point.{together}"
     )
     name = f"root_locus_{p.name}"
     return Plot(name, caption, figures.root_locus(locus, found.labels)), locus_table(found, locus)
 
 
 def locus_table(found: Exploration, locus: Locus) -> Table:
-    """Return the ends of every branch, and where it is damped most."""
+    """Return the ends of every branch, and its point of largest damping."""
     rows = []
     for i, (mode, label) in enumerate(zip(locus.modes, found.labels, strict=True)):
         f, zeta = locus.frequency_hz[:, i], locus.damping_ratio[:, i]
@@ -164,6 +166,6 @@ def locus_table(found: Exploration, locus: Locus) -> Table:
     heads = ["mode", "no."]
     for where in ("lower end", "here", "upper end"):
         heads += [f"{where}: f [Hz]", "ζ [%]"]
-    heads += ["most damping [%]", f"at {name}", ""]
-    caption = f"How far can {name} move each mode, and how much damping can it give?"
+    heads += ["largest damping [%]", f"at {name}", ""]
+    caption = f"How far can {name} change each mode, and how much damping can it add?"
     return Table(caption, tuple(heads), tuple(rows))

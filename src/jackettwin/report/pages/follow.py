@@ -1,4 +1,4 @@
-"""The page on a twin followed through time."""
+"""The page on a twin updated day by day."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from jackettwin.version import __version__
 
 
 def build_follow_page(followed: Followed, path: Path) -> Path:
-    """Write one self-contained HTML file on a twin followed through time; return its path.
+    """Write one self-contained HTML file on a twin updated day by day; return its path.
 
     Raises
     ------
@@ -26,10 +26,10 @@ def build_follow_page(followed: Followed, path: Path) -> Path:
     """
     each, others = followed.moments, [n for n in followed.units if n not in followed.stiffness]
     drift = (
-        f"How stiff is the ground? What was known of it after each {each}, with what the model may have "
-        "wrong on all of them alike; band: one slope of all stiffness, 90 %, if it did not jump."
+        f"How stiff is the ground? Stiffness as known after each {each}, with errors of the model that are "
+        "the same on all of them; band: one slope of all stiffness, 90 %, if it did not jump."
     )
-    more = f"What else becomes known, {each} after {each}? Median and 90 %."
+    more = f"What else is known after each {each}? Median and 90 % interval."
     sections = [
         PageSection(
             "Drift",
@@ -53,8 +53,8 @@ def build_follow_page(followed: Followed, path: Path) -> Path:
 
 
 def stiffness_section(followed: Followed) -> PageSection:
-    """Return the stiffness through time, as the report of a living twin begins with it."""
-    said = "What stands below is of all records together, as if the stiffness had been the same on all days."
+    """Return the section on stiffness through time, with which the report of a monitored twin begins."""
+    said = "The results below are of all records together, as if the stiffness had been the same on all days."
     return PageSection(
         "Stiffness through time", (Text((followed.stiffness_statement, said)), *_in_time(followed))
     )
@@ -64,8 +64,8 @@ def _in_time(followed: Followed) -> tuple[Plot, ...]:
     if len(followed.smoothed) < 2:
         return ()
     caption = (
-        "How did the stiffness change since the first day? Points: what was known on the day; band: what all "
-        "days say of it by now; dotted: what to expect. Weather is taken out by the conditions that are told."
+        "How did the stiffness change since the first day? Points: as known on the day; band: as known now "
+        "from all days; dotted: expected. The effect of weather is removed with the stated conditions."
     )
     return (Plot("stiffness_in_time", caption, stiffness_in_time(followed), fits=True),)
 
@@ -85,7 +85,7 @@ def _table(followed: Followed, names: Sequence[str]) -> Table:
         )
     columns = ("time (UTC)", *(["records"] if by_day else []), *(["posterior"] if failed else []))
     return Table(
-        f"What was known after each {followed.moments}? Median and, in brackets, 90 % interval.",
+        f"Parameters as known after each {followed.moments}: median and, in brackets, 90 % interval.",
         (*columns, *map(parameter_words, names)),
         tuple(rows),
         text_columns=len(columns),

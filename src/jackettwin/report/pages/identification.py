@@ -1,4 +1,4 @@
-"""What ``jackettwin identify --report`` shows of one record: no structure, no model, sensors alone."""
+"""The page of ``jackettwin identify --report`` on one record, without structure or model."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from jackettwin.report.tables import records as tables
 from jackettwin.version import __version__
 
 PURE = 0.7
-"""Share of a shape's energy along one axis from which it has its name."""
+"""Smallest share of a shape's energy along one axis for the shape to be named after it."""
 
 
 def build_identification_page(seen: Examination, path: Path) -> Path:
@@ -45,7 +45,7 @@ def build_identification_page(seen: Examination, path: Path) -> Path:
 
 
 def mode_names(seen: Examination) -> tuple[str, ...]:
-    """Return ``fore_aft_1``, ``side_side_1`` where the yaw is known and a shape is clear, else ``mode_1``."""
+    """Return ``fore_aft_1``, ``side_side_1`` if the yaw is known and the shape is clear, else ``mode_1``."""
     found = seen.identification
     rotor = knows_yaw(seen.record) or seen.record.metadata.get("axes") == "rotor"
     along = np.array([c.direction for c in found.channels])
@@ -64,8 +64,8 @@ def _record(seen: Examination, names: tuple[str, ...]) -> list[Block]:
     found = seen.identification
     modes = list(zip(names, found.modes, strict=True))
     caption = (
-        "Power spectral density of each channel by Welch's method, and singular values. Orange: those the "
-        "identified modes alone would have under white forces."
+        "Power spectral density of each channel by Welch's method, and singular values. Orange: singular "
+        "values of the identified modes under white forces."
     )
     fit = modal_fit(seen.record, found)
     return [
@@ -93,9 +93,9 @@ def _shapes(found: Identification, names: tuple[str, ...]) -> list[Block]:
     modes = list(zip(names, found.modes, strict=True))
     if any(channel.height_m is None for channel in found.channels):
         caption = (
-            "Measured mode shapes, channel by channel at the moment of greatest motion: the heights of the "
-            "sensors are not known (height_m in the JSON beside the record), so no structure is drawn."
+            "Measured mode shapes by channel, at the instant of largest motion. The heights of the sensors "
+            "are not known (height_m in the JSON beside the record), so that no structure is drawn."
         )
         return [Plot("measured_shapes", caption, shape_components(found.channels, modes))]
-    caption = "Measured mode shapes: every sensor moves along its own direction, with its own phase."
+    caption = "Measured mode shapes: motion of every sensor along its direction, with its phase."
     return [Plot("measured_shapes", caption, figures_measured.measured_shapes_3d(found.channels, modes))]

@@ -1,4 +1,4 @@
-"""The page on support laws: what they store, lose and do in time, and a mass let go on them."""
+"""The page on support laws: stored and lost energy, behaviour in time, and free vibration of a mass."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ def write_law_page(
 
     Parameters
     ----------
-    laws, curves : by what the user wrote
-    motions : of a mass on each; empty without one
-    frequency_hz : of the cycle of loading and of the numbers in the table
+    laws, curves : laws and their curves, by the text that the user gave
+    motions : free vibration of a mass on each law; empty without a mass
+    frequency_hz : frequency of the load cycle and of the numbers in the table
 
     Raises
     ------
@@ -41,26 +41,26 @@ def write_law_page(
         Plot("moduli", "What does each law store and lose?", figures.moduli(curves), fits=True),
         Plot(
             "cycle",
-            f"One cycle of loading at {frequency_hz:g} Hz: the area inside is the energy lost in it.",
+            f"One load cycle at {frequency_hz:g} Hz: the enclosed area is the energy lost per cycle.",
             figures.cycle(laws, frequency_hz),
             fits=True,
         ),
     )
-    after = "What happens after a step? A dashpot beside the spring also gives an impulse at zero, not drawn."
+    after = "What is the response to a step? A dashpot in parallel adds an impulse at zero, not drawn."
     said = ", ".join(laws)
     sections = [
         PageSection("Harmonic motion", harmonic),
         PageSection("In time", (Plot("transients", after, figures.transients(curves), fits=True),)),
     ]
     if motions:
-        question = "How does a mass on each law come to rest, let go from one?"
+        question = "How does a mass on each law move after release from unit displacement?"
         drawn = Plot("let_go", question, figures.let_go(motions), fits=True)
         sections.append(PageSection("A mass on it", (motion_table(motions), drawn)))
     return write_page(sections, path, title="Support laws", subtitle=f"{said} · jackettwin {__version__}")
 
 
 def law_table(laws: Mapping[str, Law], frequency_hz: float) -> Table:
-    """Return what each law stores and loses at a frequency, and at rest."""
+    """Return storage and loss of each law at a frequency, and its static stiffness."""
     rows = []
     for name, law in laws.items():
         D = complex(law.stiffness(2j * np.pi * frequency_hz))
@@ -85,11 +85,11 @@ def motion_table(motions: Mapping[str, FreeVibration]) -> Table:
         for name, motion in motions.items()
     ]
     heads = ("law", "regime", "f [Hz]", "ζ [%]", "logarithmic decrement [-]", "real poles: rates [rad/s]")
-    return Table("Does the mass swing?", heads, tuple(rows), text_columns=2)
+    return Table("Does the mass oscillate?", heads, tuple(rows), text_columns=2)
 
 
 def _rates(motion: FreeVibration) -> list[float]:
-    """Return the rates of the real poles, those that are rounding beside the fastest pole as zero."""
+    """Return the rates of the real poles, with rounding errors relative to the fastest pole set to zero."""
     least = 1e-12 * float(np.abs(motion.poles).max())
     real = [float(-pole.real) for pole in motion.poles if pole.imag == 0.0]
     return [rate if abs(rate) > least else 0.0 for rate in real]

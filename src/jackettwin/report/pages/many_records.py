@@ -1,4 +1,4 @@
-"""What ``jackettwin identify --report`` shows of many records: modes fused, followed, by group."""
+"""The page of ``jackettwin identify --report`` on many records: fused modes, tracked modes, groups."""
 
 from __future__ import annotations
 
@@ -44,11 +44,11 @@ def build_many_page(together: Together, failed: tuple[Failed, ...], path: Path) 
 
 def _modes(fused: FusedIdentification) -> list[Block]:
     if not fused.modes:
-        return [Text(("No mode is found in enough of the records.",))]
+        return [Text(("No mode was found in enough records.",))]
     named = [(f"mode_{i}", mode) for i, mode in enumerate(fused.modes, start=1)]
     followed = (
-        "Every mode in every record with 95 % intervals; shaded: all records together. What scatters by more "
-        "than its intervals changes between records: by wind, tide, temperature or state."
+        "Every mode in every record with 95 % intervals; shaded: all records together. Scatter beyond the "
+        "intervals is due to changes between records: wind, tide, temperature or operating state."
     )
     if len(fused.records) > MOST_POINTS:
         followed += " Dots are medians of neighbouring records, bars the range of nine in ten."
@@ -84,9 +84,10 @@ def _mode_table(named: list[tuple[str, FusedMode]], n_records: int) -> Table:
         "status",
     )
     caption = (
-        "Modes fused over all records. ± is one standard deviation of the mean; scatter is that between "
-        "records beyond their own uncertainty. The mean rests on the records in which the mode is ok, where "
-        "there are any; the status is the median over all that hold it, unless the records together object."
+        "Modes fused over all records. ± is one standard deviation of the mean; scatter is the standard "
+        "deviation between records in excess of their uncertainty. The mean is taken over the records in "
+        "which the mode is ok, if there are any. The status is the median over all records that contain the "
+        "mode, unless a check across records objects."
     )
     return Table(caption, columns, tuple(rows))
 
@@ -109,7 +110,12 @@ def _groups(groups: tuple[RecordGroup, ...]) -> Table:
         "95 % of ζ [%]",
         "status",
     )
-    return Table("The same by wind speed, yaw and state, where records say.", columns, tuple(rows), 3)
+    return Table(
+        "The same by wind speed, yaw and operating state, if the records state these.",
+        columns,
+        tuple(rows),
+        3,
+    )
 
 
 def _failures(failed: tuple[Failed, ...]) -> Table:

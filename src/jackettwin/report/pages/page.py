@@ -1,4 +1,4 @@
-"""What a page is made of, and how it becomes one self-contained file."""
+"""Elements of a page, and its output as one self-contained file."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Text:
 
 @dataclass(frozen=True)
 class Plot:
-    """A figure under a name that is also its file's."""
+    """A figure with a name, which is also the name of its file."""
 
     name: str
     caption: str
@@ -38,9 +38,9 @@ class Plot:
     big: bool = False
     """Drawn on request only."""
     fits: bool = False
-    """Drawn as narrow as the screen is; others are moved sideways on a small one."""
+    """Whether it is drawn as narrow as a small screen; others are scrolled sideways."""
     picks_of: str = ""
-    """Record of which a click on a pole, frequency over model order, makes a pick."""
+    """Record for which a click on a pole in the stabilisation diagram makes a pick."""
     kind: Literal["plot"] = "plot"
 
     @property
@@ -50,7 +50,7 @@ class Plot:
 
     @property
     def scenes(self) -> int:
-        """How many 3D scenes it has: each holds a WebGL context."""
+        """Number of 3D scenes, each of which needs a WebGL context."""
         return sum(1 for key in self.figure.layout.to_plotly_json() if key.startswith("scene"))
 
     @property
@@ -61,7 +61,7 @@ class Plot:
 
 @dataclass(frozen=True)
 class Drawing:
-    """Drawings that need no script, side by side where there is room; the caption asks what they answer."""
+    """Drawings without script, side by side if there is room; the caption is the question they answer."""
 
     name: str
     caption: str
@@ -71,7 +71,7 @@ class Drawing:
 
 @dataclass(frozen=True)
 class FirstPage:
-    """A light, a headline, answers to questions, and the drawings beside them."""
+    """A light, a headline, answers to questions, and drawings."""
 
     light: Light
     headline: tuple[str, ...]
@@ -82,7 +82,7 @@ class FirstPage:
 
 @dataclass(frozen=True)
 class Embedded:
-    """A page of its own, shown in this one on request."""
+    """A separate page that is shown in this one on request."""
 
     name: str
     caption: str
@@ -102,7 +102,7 @@ Block = Text | Table | Plot | Drawing | FirstPage | Embedded
 
 @dataclass(frozen=True)
 class PageSection:
-    """A heading and what stands under it."""
+    """A heading and the blocks below it."""
 
     title: str
     blocks: tuple[Block, ...]
@@ -110,12 +110,12 @@ class PageSection:
 
     @property
     def anchor(self) -> str:
-        """Fragment of its address."""
+        """Fragment identifier of the section."""
         return "".join(c if c.isalnum() else "-" for c in self.title.lower()).strip("-")
 
 
 def page_text(sections: Sequence[PageSection], *, title: str, subtitle: str = "") -> str:
-    """Return one self-contained HTML page; the plotting library only where something is plotted."""
+    """Return one self-contained HTML page, with the plotting library only if there is a plot."""
     library = packed(get_plotlyjs()) if any(_plots(sections)) else ""
     return _rendered("page.html.j2", sections=sections, title=title, subtitle=subtitle, plotly=library)
 
@@ -126,7 +126,7 @@ def write_page(sections: Sequence[PageSection], path: Path, *, title: str, subti
 
 
 def write_figures(sections: Sequence[PageSection], directory: Path) -> None:
-    """Write every figure as a file of its own: pages beside one shared ``plotly.min.js``, drawings as SVG."""
+    """Write every figure as a file: plots as pages with a shared ``plotly.min.js``, drawings as SVG."""
     for drawing in _drawings(sections):
         for i, svg in enumerate(drawing.drawings, start=1):
             name = drawing.name if len(drawing.drawings) == 1 else f"{drawing.name}_{i}"
@@ -155,7 +155,7 @@ def _plots(sections: Iterable[PageSection]) -> Iterable[Plot]:
 
 
 def packed(text: str) -> str:
-    """Return a text compressed (gzip, base64), as the page's script unpacks it; always the same."""
+    """Return a compressed text (gzip, base64) for the page's script; the result is reproducible."""
     return b64encode(gzip.compress(text.encode(), compresslevel=6, mtime=0)).decode()
 
 

@@ -16,7 +16,7 @@ from jackettwin.report.tables.numbers import quantity
 from jackettwin.version import __version__
 
 _SHOWN = 6
-"""Depths whose curves are drawn."""
+"""Number of depths whose curves are drawn."""
 _NAMES = ("x", "y", "z", "rx", "ry", "rz")
 _PUSHED = (
     TableColumn("load [MN]", "load_n", ".3f", 1e-6),
@@ -25,7 +25,7 @@ _PUSHED = (
     TableColumn("largest moment [MN·m]", "largest_moment_nm", ".2f", 1e-6),
 )
 _ZERO = 1e-9
-"""An entry below this share of the root of its diagonal's is rounding."""
+"""Entries below this share of the root of the product of their diagonal entries are rounding errors."""
 
 
 def write_soil_page(document: Mapping[str, Any], path: Path) -> Path:
@@ -53,7 +53,7 @@ def write_soil_page(document: Mapping[str, Any], path: Path) -> Path:
 
 
 def _head(document: Mapping[str, Any]) -> tuple[Block, ...]:
-    """Return stiffness and loss of the head entry by entry, without what is zero beside its diagonal."""
+    """Return stiffness and loss of the pile head by matrix entry, without zero off-diagonal entries."""
     stiffness, loss = (np.asarray(document[key]) for key in ("head_stiffness", "head_loss"))
     own = np.sqrt(np.abs(np.diag(stiffness)))
     there = np.triu(np.abs(stiffness) > _ZERO * np.outer(own, own))
@@ -68,8 +68,8 @@ def _head(document: Mapping[str, Any]) -> tuple[Block, ...]:
         for i, j in zip(*np.nonzero(there), strict=True)
     )
     caption = (
-        f"What does the head of the pile feel at {document['frequency_hz']:g} Hz? Its impedance, entry by "
-        "entry; the matrix is symmetric, and entries that are not listed are zero."
+        f"Impedance of the pile head at {document['frequency_hz']:g} Hz, by matrix entry; the matrix is "
+        "symmetric, and entries that are not listed are zero."
     )
     columns = ("entry", "stiffness (real part)", "loss (imaginary part)")
     return (Table(caption, columns, rows),)
@@ -85,7 +85,7 @@ def _capacity(document: Mapping[str, Any]) -> tuple[Block, ...]:
         ("tension", capacity["axial_tension_n"]),
         (f"lateral, head moved by {capacity['lateral_displacement_limit_m']:.2f} m", capacity["lateral_n"]),
     )
-    caption = f"How far does the head go? A lateral load {pushed['arm_m']:g} m above it, step by step."
+    caption = f"How far does the head move? A lateral load {pushed['arm_m']:g} m above it, in steps."
     return (
         Table(
             "Which loads can the pile bear? Ultimate capacity.",
@@ -98,7 +98,7 @@ def _capacity(document: Mapping[str, Any]) -> tuple[Block, ...]:
 
 
 def pushover_table(pushed: Mapping[str, Any], caption: str) -> Table:
-    """Return the pushover, a row a step."""
+    """Return the pushover, one row per step."""
     steps = zip(*(pushed[str(column.value)] for column in _PUSHED), strict=True)
     rows = [dict(zip((str(column.value) for column in _PUSHED), step, strict=True)) for step in steps]
     return Table(caption, _PUSHED, rows, text_columns=0, folded=True)
@@ -130,14 +130,14 @@ def _curves(curves: Mapping[str, Any]) -> tuple[Block, ...]:
     )
     return (
         Table(
-            "Which curves are they?",
+            "Which curves are used?",
             ("reaction", "kind", "what it is"),
             tuple((one["reaction"].replace("_", ", "), one["name"], one["words"]) for one in curves["kinds"]),
             text_columns=3,
         ),
         Plot(
             "py",
-            "What does the ground bear sideways? p-y curves at some depths.",
+            "How does the ground resist lateral displacement? p-y curves at some depths.",
             _drawn(stations, "py"),
             fits=True,
         ),

@@ -1,4 +1,4 @@
-"""The page on modes watched through time."""
+"""The page on modes monitored through time."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ from jackettwin.report.tables.numbers import count
 from jackettwin.version import __version__
 
 _LISTED = 0.01
-"""Probability from which a cause stands in the table; all stand in ``watched.json``."""
+"""Smallest probability of a cause in the table; ``watched.json`` has all causes."""
 _PATTERN = (
-    "Change of each quantity, 90 %; beside it what the likeliest causes would have done, at their sizes."
+    "Change of each quantity with its 90 % interval, and the changes that the most likely causes predict."
 )
 
 
 def build_watch_page(watched: Watched, path: Path) -> Path:
-    """Write one self-contained HTML file on modes watched through time; return its path.
+    """Write one self-contained HTML file on modes monitored through time; return its path.
 
     Raises
     ------
@@ -50,8 +50,8 @@ def build_watch_page(watched: Watched, path: Path) -> Path:
     sections = []
     if watched.looks:
         caption = (
-            "What conditions do not explain, day by day. Grey: where nine days of ten lie if nothing has "
-            "changed. Orange: when the change began, 90 %; red: the alarm, and its size."
+            "Daily residuals after the effects of conditions. Grey: range of nine days out of ten without a "
+            "change. Orange: onset of the change, 90 %; red: alarm and size of the change."
         )
         figure = unexplained_through_time(watched, [leading(watched)])
         outcome.append(Plot("leading_through_time", caption, figure, fits=True))
@@ -69,9 +69,8 @@ def build_watch_page(watched: Watched, path: Path) -> Path:
             PageSection("Every mode", (Plot("unexplained_through_time", caption, figure, fits=True),))
         )
         caption = (
-            "Evidence for all changes that are looked for, summed over when they may have begun. "
-            "While nothing changes, the mean time to the dashed line is at least "
-            f"{watched.watch.arl_years:g} years."
+            "Evidence for all tested changes, summed over possible onsets. Without a change, the mean time "
+            f"until the dashed line is reached is at least {watched.watch.arl_years:g} years."
         )
         sections.append(
             PageSection(
@@ -79,10 +78,11 @@ def build_watch_page(watched: Watched, path: Path) -> Path:
                 (Plot("evidence_through_time", caption, evidence_through_time(watched), fits=True),),
             )
         )
-    caption = "How much of the variance of each quantity over the baseline is explained, and by what."
+    caption = "Share of the variance of each quantity over the baseline that each condition explains."
     sections.append(
         PageSection(
-            "What moves the modes", (Plot("explained_shares", caption, explained_shares(watched), fits=True),)
+            "Effects of conditions",
+            (Plot("explained_shares", caption, explained_shares(watched), fits=True),),
         )
     )
     if watched.limits:
@@ -113,7 +113,7 @@ def _alarm(watched: Watched, alarm: Alarm, number: int) -> list[Block]:
     if corrected := corrected_sentence(document):
         blocks.insert(0, Text((f"{corrected[0].upper()}{corrected[1:]}.",)))
     if document["inseparable"]:
-        said = tuple(f"These data do not tell apart: {', '.join(g)}." for g in document["inseparable"])
+        said = tuple(f"These data do not distinguish {', '.join(g)}." for g in document["inseparable"])
         blocks.append(Text(said, "list"))
     if document["next_measurements"]:
         blocks.append(Text((next_sentence(document),)))
@@ -121,7 +121,7 @@ def _alarm(watched: Watched, alarm: Alarm, number: int) -> list[Block]:
 
 
 def _size(cause: dict[str, Any]) -> tuple[str, str]:
-    """Return size and interval in words; what is there or not has no size."""
+    """Return size and interval as text; a cause that is either present or not has no size."""
     if cause["interval_90"] is None or cause["cause"].partition(" (or ")[0].endswith((" lost", " flooded")):
         return "–", "–"
     (low, high), unit = cause["interval_90"], cause["unit"]

@@ -1,4 +1,4 @@
-"""The appendix on the update: every law, the posterior, every solution."""
+"""The appendix on the update: all laws, the posterior, all solutions."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from jackettwin.study import TwinResult
 from jackettwin.updating import Uncertainty, Update, recommended
 
 _SHOWN = 4
-"""Parameters that the table of tolerances has columns for."""
+"""Largest number of parameter columns in the table of tolerances."""
 
 
 def every_law(result: TwinResult) -> list[Block]:
-    """Return modes and parameters of every law at its best fit, damped beside undamped."""
+    """Return modes and parameters of every law at its best fit, with damped and undamped frequencies."""
     if not result.updates:
         return []
     blocks: list[Block] = [tables.key_table(result), tables.parameter_table(result.updates)]
     if result.relaxations:
         blocks.append(tables.relaxation_table(result))
     text = (
-        "A dashpot that is too strong to move acts as a spring: the damped frequencies fit while the "
-        "structure without damping is wrong. Differences beyond 5 % are flagged as locked dampers."
+        "A very strong dashpot does not move and acts as a rigid support: the damped frequencies agree "
+        "although the undamped structure is wrong. Differences beyond 5 % are flagged as locked dampers."
     )
     return [*blocks, Text((text,)), tables.damped_undamped_table(result)]
 
 
 def posterior(result: TwinResult) -> list[Block]:
-    """Return how the posterior was sampled, its draws, its profiles and what it predicts."""
+    """Return the sampling of the posterior, its draws, its profiles and its predictions."""
     known = [(u, u.uncertainty) for u in result.updates if u.uncertainty is not None]
     if not known:
         return []
@@ -46,14 +46,14 @@ def posterior(result: TwinResult) -> list[Block]:
         *blocks,
         Plot(
             "posterior",
-            f"{shown.law}: which values go together? Draws from the posterior on logarithmic axes; "
-            "line: before the data; dotted: 90 %.",
+            f"{shown.law}: how are the parameters correlated? Draws from the posterior on logarithmic axes; "
+            "line: prior; dotted: 90 %.",
             draw.corner(shown, k),
         ),
         Plot(
             "profiles",
-            f"{shown.law}: how sharply do the data fix each parameter? Profiles of the posterior "
-            "density, priors included; below the dashed line: 90 %.",
+            f"{shown.law}: how accurately do the data determine each parameter? Profiles of the posterior "
+            "density; below the dashed line: 90 %.",
             draw.profiles(shown, k),
         ),
         _predictions(shown, k, result),
@@ -61,7 +61,7 @@ def posterior(result: TwinResult) -> list[Block]:
 
 
 def tolerances(result: TwinResult) -> list[Block]:
-    """Return what drawings and sea leave open: before, after, and what it does to the ground."""
+    """Return the tolerances of drawings and sea: prior, posterior, and effect on the ground."""
     u = recommended(result.updates)
     place = [other is u for other in result.updates]
     s = result.scrutiny[place.index(True)] if u is not None and result.scrutiny else None
@@ -84,15 +84,16 @@ def tolerances(result: TwinResult) -> list[Block]:
     ]
     columns = ("tolerance", "σ before", "after", *(f"{name} [%]" for name in names), "settle it", "like")
     caption = (
-        f"{u.law}: what do drawings, weighing and sea leave open? By parameter, its change with one σ more, "
-        "and in brackets its own σ, times so much, were that settled; like: not told apart by these data."
+        f"{u.law}: what are the effects of the tolerances of drawings, weighing and sea? For each parameter "
+        "its change due to one σ and, in brackets, the factor on its σ if that tolerance were known; like: "
+        "not distinguished by these data."
     )
-    text = "Checks of every measured value, and what would explain those that stray, are in result.json."
+    text = "Checks of all measured values, and possible explanations of outlying ones, are in result.json."
     return [Text((text,)), Table(caption, columns, tuple(rows), text_columns=1)]
 
 
 def every_solution(result: TwinResult) -> list[Block]:
-    """Return every distinct solution of each law, and how complete the search was."""
+    """Return all distinct solutions of each law, and the completeness of the search."""
     if not result.updates:
         return []
     said = tuple(f"{u.law}: {u.search.statement}" for u in result.updates)
@@ -107,7 +108,7 @@ def _status(k: Uncertainty) -> str:
         f"posterior of {len(p.log_theta)} draws, R-hat at most {p.convergence.rhat.max():.3f}, "
         f"at least {min(p.convergence.ess_bulk.min(), p.convergence.ess_tail.min()):.0f} effective, "
         f"log evidence {p.log_evidence:.2f} ± {p.log_evidence_std:.2f}"
-        f"{'.' if p.evidence_known else ': its runs do not agree, so that laws are not compared by it.'}"
+        f"{'.' if p.evidence_known else ': its runs disagree, so that it is not used to compare laws.'}"
     )
 
 
@@ -123,7 +124,9 @@ def _predictions(u: Update, k: Uncertainty, result: TwinResult) -> Table:
         for i, mode in enumerate(q.modes)
     ]
     columns = ("mode", "f [Hz]", "undamped f [Hz]", "ζ [%]")
-    return Table(f"{u.law}: what does it predict, measured or not? 90 % intervals.", columns, tuple(rows), 1)
+    return Table(
+        f"{u.law}: predictions of all modes, measured or not, with 90 % intervals.", columns, tuple(rows), 1
+    )
 
 
 def _span(draws: npt.NDArray[np.float64], factor: float, decimals: int) -> str:

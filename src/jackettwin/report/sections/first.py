@@ -1,4 +1,4 @@
-"""The first page: a headline, five answers, and the drawings that belong to them."""
+"""The first page: a headline, five answers, and their drawings."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MODEL, GROUND, DAMPING, NEXT = (
     "Whose damping is it?",
     "What to do next?",
 )
-"""Titles of the questions that go on in the engineer's part."""
+"""Titles of the questions that continue in the engineer's part."""
 
 
 def first_page(a: Answers, said: Said) -> FirstPage:
@@ -28,15 +28,15 @@ def first_page(a: Answers, said: Said) -> FirstPage:
     speeds = campbell(a)
     if speeds is not None:
         caption = (
-            "Does the rotor excite a mode? Measured frequencies with their 90 % intervals against its speed; "
-            f"violet: 1P and {a.blades}P with {100 * MARGIN:.0f} % either side. Higher modes lie above."
+            "Does the rotor excite a mode? Measured frequencies with their 90 % intervals over its speed; "
+            f"violet: 1P and {a.blades}P ± {100 * MARGIN:.0f} %. Higher modes are above the figure."
         )
         drawings.append(Drawing("campbell", caption, (speeds,)))
     bars = damping_bars(a.modes)
     if bars is not None:
         caption = (
-            "Whose damping is it? Each source's part of a mode's damping, and what no source explains; dots: "
-            "measured, with 90 %."
+            "What causes the damping? Each source's part of a mode's damping, and the unexplained part; "
+            "dots: measured, with 90 % intervals."
         )
         drawings.append(Drawing("damping", caption, (bars,)))
     if speeds is None:
@@ -46,16 +46,18 @@ def first_page(a: Answers, said: Said) -> FirstPage:
 
 
 def ground_drawing(a: Answers) -> list[Drawing]:
-    """Return what was thought of the ground and what is known now."""
+    """Return the drawing of prior and posterior of the ground."""
     drawn = ground_intervals(a.ground, a.law, fits=a.fits)
     if drawn is None:
         return []
-    caption = "What did the data add? Each parameter of a foot before and after, 90 %, on a logarithmic axis."
+    caption = (
+        "What did the data add? Prior and posterior of each parameter of a foot, 90 %, logarithmic axis."
+    )
     return [Drawing("ground", caption, (drawn,))]
 
 
 def tornado_drawing(a: Answers) -> list[Drawing]:
-    """Return what moves the best known stiffness of the ground."""
+    """Return the effects of tolerances on the best known stiffness of the ground."""
     stiff = [(i, g) for i, g in enumerate(a.ground) if g.kind == "stiffness" and g.factor is not None]
     if a.scrutiny is None or not a.scrutiny.influences or not stiff:
         return []
@@ -63,18 +65,18 @@ def tornado_drawing(a: Answers) -> list[Drawing]:
     drawn = tornado(a.scrutiny, i, parameter_words(g.name))
     if drawn is None:
         return []
-    caption = "What does that hang on? The fit again, with one tolerance at a time a standard deviation off."
+    caption = "What does that depend on? The fit repeated with one tolerance at a time changed by one σ."
     return [Drawing("tornado", caption, (drawn,))]
 
 
 def shapes(result: TwinResult) -> list[Block]:
-    """Return the updated mode shapes with what was measured."""
+    """Return the updated and measured mode shapes."""
     u = recommended(result.updates)
     drawn = [] if u is None else shape_drawings(result, u)
     if not drawn:
         return []
     caption = (
-        "Do measured and updated shapes agree? Pale: at rest; coloured: the updated model, torsion from "
-        "above; black: what the sensors measured, scaled to the model."
+        "Do measured and updated shapes agree? Pale: at rest; coloured: updated model, torsion seen from "
+        "above; black: measured motion at the sensors, scaled to the model."
     )
     return [Drawing("mode_shapes", caption, tuple(drawn))]

@@ -14,14 +14,14 @@ from jackettwin.study import TwinResult
 
 
 def the_records(result: TwinResult) -> list[Block]:
-    """Return the quality and the spectra of the first record, and which mode is which in every one."""
+    """Return quality and spectra of the first record, and the assignment of modes in every record."""
     if result.shown is None or result.record is None:
         return []
     found = result.shown.identification
     modes = list(zip(result.names[0], found.modes, strict=True))
     caption = (
         f"{result.record.name}: what is a mode, what is noise? Power spectral density of each channel "
-        "(Welch), and singular values of all. Orange: the spectrum of the identified modes alone."
+        "(Welch), and singular values. Orange: spectrum of the identified modes only."
     )
     fit = modal_fit(result.record, found)
     return [
@@ -32,7 +32,7 @@ def the_records(result: TwinResult) -> list[Block]:
 
 
 def further_records(result: TwinResult) -> list[Block]:
-    """Return the diagrams of the first record, the modes of every one, and what became of the others."""
+    """Return the diagrams of the first record, the modes of every record, and rejected candidates."""
     if result.shown is None or result.record is None:
         return []
     first, names = result.shown.identification, result.names[0]
@@ -47,8 +47,8 @@ def further_records(result: TwinResult) -> list[Block]:
     if first.rejected:
         blocks.append(tables.rejected_table(first))
     caption = (
-        f"{result.record.name}: what do the channels look like? Blue along x, vermillion along y; the "
-        "extremes of each bin are drawn."
+        f"{result.record.name}: what did the channels measure? Blue: along x, vermilion: along y; extremes "
+        "of each bin are drawn."
     )
     series = Plot("time_series", caption, figures_record.time_series(result.record), big=True)
     return [*blocks, *diagrams(first, names), *_history(result), series]
@@ -59,7 +59,7 @@ def diagrams(found: Identification, names: tuple[str, ...]) -> list[Block]:
     s = found.settings
     modes = list(zip(names, found.modes, strict=True))
     caption = (
-        f"{found.records[0]}: which poles stay? Stabilisation in frequency: poles of every model order, "
+        f"{found.records[0]}: which poles are stable? Stabilisation diagram: poles of model orders "
         f"{s.orders[0]} to {s.orders[-1]}; lines are the accepted modes, shaded bands their 95 % intervals "
         "where known."
     )
@@ -72,13 +72,13 @@ def diagrams(found: Identification, names: tuple[str, ...]) -> list[Block]:
         ),
         Plot(
             "stabilisation_damping",
-            "Is their damping as stable? The same poles against their damping ratio; above them the "
-            "accepted modes with their 95 % intervals.",
+            "Is their damping stable? The same poles over their damping ratio; above them the accepted "
+            "modes with their 95 % intervals.",
             figures_identification.stabilisation_damping(found, names),
         ),
         Plot(
             "damping_frequency",
-            "Do poles form clusters? Damping against frequency of all poles, with the accepted modes on top.",
+            "Do poles form clusters? Damping over frequency of all poles, with the accepted modes on top.",
             figures_identification.damping_against_frequency(found, names),
         ),
     ]
@@ -86,19 +86,20 @@ def diagrams(found: Identification, names: tuple[str, ...]) -> list[Block]:
         caption = "How well is each mode known from this record? 95 % intervals."
         blocks.append(Plot("intervals", caption, figures_identification.intervals(modes)))
     if modes:
-        blocks += _likeness(found, names)
+        blocks += _shape_figures(found, names)
     return blocks
 
 
-def _likeness(found: Identification, names: tuple[str, ...]) -> list[Block]:
+def _shape_figures(found: Identification, names: tuple[str, ...]) -> list[Block]:
     caption = (
-        "Can the sensors tell the modes apart? MAC between those identified. Off the diagonal, above "
-        "about 0.2: shapes the sensors hardly tell apart, or a pair one record leaves mixed."
+        "Do the sensors distinguish the modes? MAC between identified modes. Values above about 0.2 off the "
+        "diagonal are shapes that the sensors hardly distinguish, or a pair that one record does not "
+        "separate."
     )
     needles = (
-        "Are the shapes real? In the complex plane as the subspace method found them (of the likelihood only "
-        "real parts are kept), one needle a sensor. The needles of a real mode lie on a line; a fan is "
-        "mostly a close pair that one record does not separate."
+        "Are the shapes real? Shapes of the subspace method in the complex plane, one line per sensor. The "
+        "lines of a real mode are collinear; a fan is usually a close pair that one record does not "
+        "separate."
     )
     return [
         Plot("mac", caption, figures_subspace_mac.mac_matrix(found, names)),
@@ -107,7 +108,7 @@ def _likeness(found: Identification, names: tuple[str, ...]) -> list[Block]:
 
 
 def _history(result: TwinResult) -> list[Block]:
-    """Return how intervals shrink with records, for the modes the model knows."""
+    """Return the decrease of intervals with the number of records, for modes of the model."""
     if len(result.identifications) < 2:
         return []
     tracks: dict[str, FusedMode] = {}

@@ -1,4 +1,4 @@
-"""The report's section on the structure: a picture to turn, and what it is made of."""
+"""The report's section on the structure: a 3D view, and a table of its parts."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from jackettwin.arrays import ComplexArray
 from jackettwin.report.pages.page import Block, Embedded
 from jackettwin.report.table import Table
 from jackettwin.report.tables.numbers import UNKNOWN, fixed, words
-from jackettwin.report.view.motions import MeasuredShape, damped_motion, measured_shape
+from jackettwin.report.view.motions import SensorMotion, damped_motion, measured_shape
 from jackettwin.report.view.page import View, render_view
 from jackettwin.report.view.quantities import thickness_quantities
 from jackettwin.study import MeasuredMode, TwinResult
@@ -19,10 +19,8 @@ _STEEL = (210e9, 7850.0)
 
 
 def the_structure(result: TwinResult) -> list[Block]:
-    """Return the structure and its updated modes to turn, on request, and the table of its parts."""
-    caption = (
-        "What does it look like, and how does it move? Turn it, colour it, set its updated modes in motion."
-    )
+    """Return the 3D view of the structure with its updated modes, on request, and the table of its parts."""
+    caption = "How is the structure built, and how does it move? 3D view with properties and updated modes."
     page = Embedded(
         "structure", caption, render_view(structure_view(result)), "Show the structure and its modes"
     )
@@ -50,7 +48,7 @@ def structure_view(result: TwinResult) -> View:
     return View(result.assembly, thickness_quantities(result.assembly), tuple(motions), result.sensors)
 
 
-def _measured(result: TwinResult, mode: MeasuredMode, shape: ComplexArray) -> MeasuredShape | None:
+def _measured(result: TwinResult, mode: MeasuredMode, shape: ComplexArray) -> SensorMotion | None:
     """Return the shape that was measured of a mode, if the record it is of says where its sensors are."""
     for seen in result.observations:
         if not any(mode.estimate is one for one in seen.identification.modes):
@@ -64,7 +62,7 @@ def _measured(result: TwinResult, mode: MeasuredMode, shape: ComplexArray) -> Me
 
 
 def structure_table(result: TwinResult) -> Table:
-    """Return what the structure is made of, part by part."""
+    """Return the parts of the structure with masses and dimensions."""
     mesh, structure = result.assembly.mesh, result.assembly.structure
     p = mesh.properties
     rows: list[tuple[str, ...]] = []
@@ -91,7 +89,9 @@ def structure_table(result: TwinResult) -> Table:
     columns = ("part", "members", "mass [t]", "diameter [m]", "wall [mm]", "E [GPa]", "density [kg/m³]")
     caption = "What is the structure made of?"
     if (np.abs(p.E / _STEEL[0] - 1.0) > 0.1).any() or (np.abs(p.rho / _STEEL[1] - 1.0) > 0.05).any():
-        caption += " Values far from steel's (210 GPa, 7850 kg/m³) stand for what is not drawn."
+        caption += (
+            " Values that differ from those of steel (210 GPa, 7850 kg/m³) account for parts not modelled."
+        )
     return Table(caption, columns, tuple(rows))
 
 

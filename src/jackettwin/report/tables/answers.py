@@ -1,4 +1,4 @@
-"""The answers as tables: measured, designed and updated modes, the ground, whose damping, what to do next."""
+"""The answers as tables: measured, designed and updated modes, ground, sources of damping, next steps."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jackettwin.updating import SOURCES
 
 
 def modes_table(a: Answers, result: TwinResult) -> Table:
-    """Return every measured mode beside the design and the updated model."""
+    """Return every measured mode with the design and the updated model."""
     rows = []
     for mode, m in zip(a.modes, result.measured, strict=True):
         fitted = [what for what, flag in (("f", mode.fits_frequency), ("ζ", mode.fits_damping)) if flag]
@@ -42,8 +42,8 @@ def modes_table(a: Answers, result: TwinResult) -> Table:
         "MAC\n[-]",
     )
     caption = (
-        f"Does the model agree with the measurements? Beneath each value its 90 % interval; updated: "
-        f"{a.law or 'no law'}. MAC: how alike measured and modelled shapes are."
+        f"Does the model agree with the measurements? Below each value its 90 % interval; updated: "
+        f"{a.law or 'no law'}. MAC: agreement of measured and modelled shapes."
     )
     return Table(caption, columns, tuple(rows), 2)
 
@@ -58,7 +58,7 @@ def _cell(span: Span | None, factor: float, decimals: int) -> str:
 
 
 def ground_table(a: Answers) -> Table:
-    """Return what is known of every parameter of the ground, and why."""
+    """Return the verdict on every parameter of the ground, with the reason."""
     rows = tuple(
         (parameter_words(g.name), (verdict_words(g) if a.fits else "does not fit") or UNKNOWN,
          g.reason or UNKNOWN, ranged(g.before, g.unit),
@@ -66,10 +66,10 @@ def ground_table(a: Answers) -> Table:
         for g in a.ground
     )  # fmt: skip
     median = "median" if any(g.verdict for g in a.ground) else "best fit"
-    columns = ("parameter", "verdict", "why", "before the data", f"now, {median}", "factor [-]")
+    columns = ("parameter", "verdict", "why", "prior", f"posterior, {median}", "factor [-]")
     caption = (
         f"What is known of the ground ({a.law})? Values are for one foot, with 90 % intervals in brackets; "
-        f"factor: upper over lower end. Known means {a.usable:g} or less, by the data alone."
+        f"factor: ratio of the ends. Known means at most {a.usable:g} from the data without the prior."
     )
     return Table(caption, columns, rows, 3)
 
@@ -77,15 +77,15 @@ def ground_table(a: Answers) -> Table:
 def ranged(span: Span | None, unit: str) -> str:
     """Return a value above its interval in brackets, as a cell of a table."""
     if span is None:
-        return "any between its bounds"
+        return "uniform between its bounds"
     if span.low is None or span.high is None:
         return span_words(span, unit)
     return f"{value_words(span, unit)}\n({between(span.low, span.high, unit)})"
 
 
 def laws_table(a: Answers) -> Table:
-    """Return every law that was fitted, its probability and its misfit."""
-    # without probabilities the laws stand by cost, those that lock a damper last
+    """Return every fitted law with its probability and misfit."""
+    # without probabilities laws are ordered by cost, with locked dampers last
     laws = a.laws if a.probability_from else tuple(sorted(a.laws, key=lambda one: (one.locked, one.misfit)))
     rows = tuple(
         (
@@ -99,9 +99,9 @@ def laws_table(a: Answers) -> Table:
     source = {
         "evidence": "from the evidence that was sampled for each",
         "approximation": "by Laplace's approximation; --all-laws samples it",
-        "": "not known: the data carry no standard deviations; ranked by cost",
+        "": "not known, as the data have no standard deviations; ordered by cost",
     }[a.probability_from]
-    caption = f"Which law? Probability of each, all equally likely before: {source}."
+    caption = f"Which law? Probability of each with equal priors: {source}."
     marked = frozenset(i for i, law in enumerate(laws) if law.locked)
     return Table(caption, ("law", "", "probability [%]", "misfit, χ² or relative [-]"), rows, 2, marked)
 
@@ -124,21 +124,21 @@ def budget_table(a: Answers) -> Table:
     owners = (*(names.get(s, s) for s in sources), *(["unexplained"] if beyond else []))
     columns = ("mode", "measured\nζ [%]", "model\nζ [%]", *(f"{owner}\nζ [%]" for owner in owners))
     caption = (
-        "How much damping does each source give each mode? Beneath each value its 90 % interval; sources at "
+        "How much damping does each source add to each mode? Below each value its 90 % interval; sources at "
         "the best fit."
     )
     return Table(caption, columns, rows, 1)
 
 
 def next_table(a: Answers) -> Table:
-    """Return what each further measurement would make of what is not known."""
+    """Return the expected effect of each further measurement on parameters that are not known."""
     names = [g.name for g in a.ground if g.verdict in ("weak", "unidentified")]
     now = {g.name: g.factor for g in a.ground}
     rows = [("as it is", *(_number(now[name]) for name in names))]
     rows += [(step_words(a, s), *(_number(s.factors.get(name)) for name in names)) for s in a.next_steps]
     caption = (
-        "What would make the ground known? Expected factor between the ends of each 90 % interval; "
-        f"{a.usable:g} or less counts as known."
+        "What would determine the ground? Expected ratio of the ends of each 90 % interval; at most "
+        f"{a.usable:g} counts as known."
     )
     return Table(
         caption, ("measurement", *(f"{parameter_words(name)} [-]" for name in names)), tuple(rows), 1

@@ -1,4 +1,4 @@
-"""The answers as one light: whether a foundation, or its twin, asks for somebody."""
+"""The answers as one light: whether a foundation, or its twin, needs attention."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ Level = Literal["ok", "look", "act"]
 
 @dataclass(frozen=True)
 class Light:
-    """How urgent the answers are, and why in a few words.
+    """Urgency of the answers, with the reason in a few words.
 
     Attributes
     ----------
     level : {"ok", "look", "act"}
-        ``act``: the model cannot meet the data, or the rotor may excite a first mode. ``look``: something
-        measured is not as designed, or nothing can be said. How well the ground is known does not enter.
+        ``act``: the model cannot reproduce the data, or the rotor may excite a first mode. ``look``: a
+        measured mode is not as designed, or there is no measurement of it. How well the ground is known has
+        no effect.
     words : str
     """
 
@@ -32,7 +33,7 @@ class Light:
 def light(a: Answers) -> Light:
     """Return the light of a run's answers."""
     if not a.fits:
-        return Light("act", "Not to be relied on: the model cannot meet the data")
+        return Light("act", "Not reliable: the model cannot reproduce the data")
     tight = {c.label: c.order for c in a.clearances if c.margin < MARGIN}
     if tight:
         near = listed([f"{words(label)} is near the rotor's {order}" for label, order in tight.items()])
@@ -44,5 +45,5 @@ def light(a: Answers) -> Light:
     if off:
         return Light("look", f"Look: {listed(off)} {'is' if len(off) == 1 else 'are'} not as designed")
     if objection_sentences(a):
-        return Light("look", "Look: something measured is not explained")
-    return Light("ok", "In order: nothing measured speaks against the model")
+        return Light("look", "Look: part of the measurements is not explained")
+    return Light("ok", "In order: no measurement contradicts the model")

@@ -1,4 +1,4 @@
-"""Numbers as people read them: sensible digits, units, a dash for what is not known."""
+"""Formatting of numbers: sensible digits, units, a dash for unknown values."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from jackettwin.intervals import NORMAL_95
 UNKNOWN = "–"
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _WIDE = 0.2
-"""Relative width of an interval whose ends two digits tell apart: they step by up to a tenth."""
+"""Relative width of an interval above which two digits distinguish its ends."""
 
 
 def known(value: float | None) -> bool:
@@ -18,7 +18,7 @@ def known(value: float | None) -> bool:
 
 
 def fixed(value: float | None, decimals: int, *, sign: bool = False) -> str:
-    """Return a number with so many decimals.
+    """Return a number with a given number of decimals.
 
     >>> fixed(-0.00001, 2), fixed(None, 2)
     ('0.00', '–')
@@ -103,7 +103,7 @@ def listed(items: list[str]) -> str:
 
 
 def factor(value: float | None) -> str:
-    """Return how many times, with two digits.
+    """Return a factor with two digits.
 
     >>> factor(1.94), factor(915.3), factor(None)
     ('1.9', '920', '–')
@@ -115,7 +115,7 @@ _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 
 
 def quantity(value: float, unit: str, *, digits: int = 2) -> str:
-    """Return a number of any size with its unit and the prefix that suits; without a unit, none.
+    """Return a number with its unit and a suitable prefix; without a unit, no prefix.
 
     >>> quantity(3.797e9, "N/m"), quantity(0.0352, "-"), quantity(0.9, ""), quantity(9.996e8, "N/m")
     ('3.8 GN/m', '0.035', '0.9', '1 GN/m')
@@ -131,7 +131,7 @@ def quantity(value: float, unit: str, *, digits: int = 2) -> str:
 
 
 def digits_of(low: float, high: float) -> int:
-    """Return how many significant digits tell the ends of an interval of positive numbers apart.
+    """Return the number of significant digits that distinguish the ends of an interval of positive numbers.
 
     >>> digits_of(1.0, 2.0), digits_of(4.1e8, 4.25e8), digits_of(1.0, 1.001)
     (2, 3, 4)

@@ -1,4 +1,4 @@
-"""Tables of records and of the modes identified in them: nothing is computed here."""
+"""Tables of records and of the modes identified in them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from jackettwin.study.result import unpaired_finding
 
 
 def quality_table(seen: Examination) -> Table:
-    """Return how good each channel of a record is."""
+    """Return the quality of each channel of a record."""
     channels = {channel.name: channel for channel in seen.record.channels}
     rows = []
     for q in seen.quality.channels:
@@ -70,9 +70,9 @@ def method_table(compared: Comparison, names: Sequence[str]) -> Table:
         for i, (name, mode) in enumerate(zip(names, compared.reference.modes, strict=True))
     ]
     caption = (
-        f"f [Hz] / ζ [%] of {', '.join(compared.reference.records)} by every method in the same band, none "
-        "refined. ±: standard deviation of ζ, where a method states it. "
-        "Dash: not found. EFDD finds one mode of a close pair and lends light modes damping."
+        f"f [Hz] / ζ [%] of {', '.join(compared.reference.records)} by every method in the same band, "
+        "without refinement. ±: standard deviation of ζ, if the method gives one. Dash: not found. EFDD "
+        "finds one mode of a close pair and overestimates light damping."
     )
     caption += "".join(
         f" {_method_title(method)} not applied: {why}." for method, why in compared.refused.items()
@@ -82,7 +82,7 @@ def method_table(compared: Comparison, names: Sequence[str]) -> Table:
 
 
 def _method_title(method: str) -> str:
-    """Return how a method is written; one that an installed package brings goes by its name."""
+    """Return the printed name of a method; methods of installed packages have their own names."""
     return {
         "ssi-cov": "SSI-cov",
         "ssi-dat": "SSI-dat",
@@ -122,8 +122,8 @@ def identified_table(found: Identification, names: Sequence[str], *, folded: boo
     caption = f"Modes identified in {', '.join(found.records)}."
     if not folded:
         caption += (
-            " Least ±: what a record of this length allows at best, by the long-data law √(1/2πζfT) and by "
-            "the Cramér-Rao bound of the fitted spectrum."
+            " Least ±: smallest attainable value for this length of record, by the long-data law √(1/2πζfT) "
+            "and by the Cramér-Rao bound of the fitted spectrum."
         )
     return Table(caption, columns, tuple(rows), 2, folded=folded)
 
@@ -137,7 +137,7 @@ def _limits(m: ModalEstimate) -> str:
 
 
 def records_table(result: TwinResult) -> Table:
-    """Return every named mode in every record: which is which, and how far the records agree."""
+    """Return the named modes in all records, and how far the records agree."""
     found = [
         dict(zip(names, seen.modes, strict=True))
         for names, seen in zip(result.names, result.identifications, strict=True)
@@ -153,7 +153,7 @@ def records_table(result: TwinResult) -> Table:
         for m in result.measured
     ]
     records = [name for seen in result.identifications for name in seen.records]
-    caption = "Which mode is which in every record: f [Hz] / ζ [%]; a dash where it was not found."
+    caption = "The modes in every record: f [Hz] / ζ [%]; a dash where a mode was not found."
     return Table(caption, ("mode", *records), tuple(rows))
 
 
@@ -165,7 +165,7 @@ def rejected_table(found: Identification) -> Table:
 
 
 def pairing_table(result: TwinResult) -> Table:
-    """Return which identified mode is which of the model, and why the others are none of them."""
+    """Return the assignment of identified modes to those of the model, and why others have no counterpart."""
     rows = [
         (
             words(m.label),
@@ -194,9 +194,9 @@ def pairing_table(result: TwinResult) -> Table:
         "held against",
     )
     return Table(
-        "Which identified mode is which: the modal assurance criterion at the sensors, on the feet that make "
-        "the model most like the records; for modes closer than 6 % in frequency, whose measured shapes mix, "
-        "the share of the shape in the plane of the pair.",
+        "Assignment of identified modes by the modal assurance criterion at the sensors, with the support "
+        "stiffness for which the model agrees best with the records; for modes closer than 6 % in "
+        "frequency, whose measured shapes mix, the share of the shape in the plane of the pair.",
         columns,
         tuple(rows),
     )

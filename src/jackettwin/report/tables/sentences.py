@@ -20,40 +20,41 @@ from jackettwin.report.tables.sentences_model import (
 from jackettwin.soil import family, parameter_words
 
 MARGIN = 0.10
-"""Least distance from the rotor's speeds that designs keep, as a share of them (DNV-ST-0126 speaks of the
-excitation range with a margin; ten per cent is its usual size)."""
+"""Usual smallest distance between natural frequencies and rotor excitation, as a share of the latter
+(DNV-ST-0126 requires a margin; ten per cent is usual)."""
 WIDE = 10.0
-"""Ratio of the ends of an interval above which not even the order of magnitude is known."""
+"""Ratio of the ends of an interval above which the order of magnitude is not known."""
 _NOTHING = 0.005
 """Changes of a logarithm below this are not reported."""
 SMALL = 0.10
-"""Sources that give a smaller share of a mode's damping are not named."""
+"""Sources with a smaller share of a mode's damping are not named."""
 _MOST = 4
-"""Parameters of the ground on the first page; those of single legs follow later."""
+"""Number of ground parameters on the first page; further ones follow later."""
 _SOURCES = {"structure": "the steel", "soil": "the ground", "rotor": "the rotor", "water": "the water"}
 _UNEXPLAINED = "unexplained"
 _ROUGHLY = "known roughly"
 _STEPS = {
-    "feet": "measure at the feet: low-noise accelerometers on one foot, in step with those on the tower; its "
-    "amplitude (to 10 %) gives the stiffness, its lag (to 0.6°) the damping",
-    "decays": "stop the rotor in a calm and record a few free decays: the rotor then damps next to nothing",
+    "feet": "measure at the feet: low-noise accelerometers on one foot, synchronised with those on the "
+    "tower; its amplitude (to 10 %) gives the stiffness, its phase lag (to 0.6°) the damping",
+    "decays": "stop the rotor in calm weather and record a few free decays: the rotor then adds hardly any "
+    "damping",
     "torsion": "measure torsion as well: two accelerometers at one height on opposite sides of the tower",
     "second_bending": "measure the second bending modes as well: accelerometers half-way up the tower",
-    "model": "make the model more certain (weigh the nacelle, check the drawings) and state it under "
-    "update.model_error; a model without error would do this",
+    "model": "reduce the error of the model (weigh the nacelle, check the drawings) and state it under "
+    "update.model_error; the effect is that of a model without error",
 }
 _GERUNDS = {
-    "feet": "motion measured at the feet, in step with the tower's",
-    "decays": "free decays in a calm",
+    "feet": "motion measured at the feet, synchronised with the tower's",
+    "decays": "free decays in calm weather",
     "torsion": "torsion, from two accelerometers at one height",
     "second_bending": "the second bending modes, from accelerometers half-way up",
-    "model": "a model with less error of its own",
+    "model": "a model with a smaller error",
 }
 
 
 @dataclass(frozen=True)
 class AnsweredQuestion:
-    """A question of the first page: its answer in one or two sentences, and what else there is to say."""
+    """A question of the first page with its answer in one or two sentences, and further sentences."""
 
     title: str
     short: tuple[str, ...]
@@ -83,7 +84,7 @@ def sentences(a: Answers) -> Said:
 
 
 def _headline(a: Answers) -> list[str]:
-    """Return the headline; what prevents an answer (misfit, unknown ground) comes first."""
+    """Return the headline; a misfit or an unknown ground comes first."""
     if misfit := misfit_headline(a):
         return [misfit[0], *_stiff_enough(a), *objection_sentences(a)[1:], *misfit[1:]]
     ground = [*_ground_headline(a), condition_headline(a)]
@@ -108,7 +109,7 @@ def span_words(span: Span, unit: str) -> str:
 def percent_words(span: Span, digits: int = 2) -> str:
     """Return a ratio in per cent with its interval."""
     text = f"{100.0 * span.value:.{digits}g} %"
-    if span.low is None or span.high is None or span.high < 1.05 * span.low:  # as good as given
+    if span.low is None or span.high is None or span.high < 1.05 * span.low:  # practically given
         return text
     return f"{text} ({100.0 * span.low:.{digits}g} to {100.0 * span.high:.{digits}g} %)"
 
@@ -129,11 +130,11 @@ def _tight(a: Answers) -> list[Clearance]:
 def _stiff_enough(a: Answers) -> list[str]:
     first, tight = _firsts(a), _tight(a)
     if not first:
-        return ["No first bending mode was measured: nothing can be said of the foundation as a whole."]
+        return ["No first bending mode was measured: the foundation as a whole cannot be assessed."]
     names = listed([words(m.label) for m in first])
     if tight:
         worst = min(tight, key=lambda c: c.margin)
-        where = "lies inside" if worst.margin <= 0.0 else f"comes within {100 * worst.margin:.0f} % of"
+        where = "is inside" if worst.margin <= 0.0 else f"is within {100 * worst.margin:.0f} % of"
         return [f"{words(worst.label).capitalize()} {where} the {worst.order} range of the rotor."]
     off = [m for m in first if m.near_design is False]
     if off:
@@ -143,13 +144,13 @@ def _stiff_enough(a: Answers) -> list[str]:
         return [f"The foundation is stiff enough: {names} {_be(first)} as designed{clear}."]
     if all(m.near_design for m in first):
         beside = listed([_against_design(m) for m in first if not m.as_designed])
-        return [f"The foundation is nearly as designed: {beside}, within the model's own error{clear}."]
+        return [f"The foundation is nearly as designed: {beside}, within the model's error{clear}."]
     higher = any(_softening(m) < 0.0 for m in first)
     sides = {_side(m) for m in first}
     each = [f"{_moved(m)} {_side(m)}" if len(sides) > 1 else _moved(m) for m in first]
     side = "" if len(sides) > 1 else f" {sides.pop()}"
-    why = ": no ground raises a frequency" if higher else ""
-    return [f"{names.capitalize()} {_be(first)} {listed(each)}{side} what rigid feet would give{clear}{why}."]
+    why = ": the ground cannot raise a frequency" if higher else ""
+    return [f"{names.capitalize()} {_be(first)} {listed(each)}{side} the values on rigid feet{clear}{why}."]
 
 
 def _be(modes: Sequence[object]) -> str:
@@ -157,7 +158,7 @@ def _be(modes: Sequence[object]) -> str:
 
 
 def _softening(m: ModeAnswer) -> float:
-    """Return by which share a measured frequency lies below that on rigid feet."""
+    """Return the share by which a measured frequency is below that on rigid feet."""
     return 1.0 - (0.0 if m.measured_hz is None else m.measured_hz.value) / m.rigid_hz
 
 
@@ -170,7 +171,7 @@ def _side(m: ModeAnswer) -> str:
 
 
 def _clear(a: Answers, labels: set[str]) -> str:
-    """Return how far the first modes stay from the rotor's speeds."""
+    """Return the distance of the first modes from the rotor's excitation."""
     texts = []
     for order in dict.fromkeys(c.order for c in a.clearances):
         least = min(
@@ -184,7 +185,7 @@ def _clear(a: Answers, labels: set[str]) -> str:
 
 
 def _against_design(m: ModeAnswer) -> str:
-    """Return measured against designed frequency."""
+    """Return a sentence that compares the measured with the design frequency."""
     if m.measured_hz is None or m.design_hz is None:
         return words(m.label)
     change = 100.0 * (m.measured_hz.value / m.design_hz.value - 1.0)
@@ -196,15 +197,17 @@ def _against_design(m: ModeAnswer) -> str:
 
 
 def _ground_headline(a: Answers) -> list[str]:
-    """Return what is known of the ground."""
+    """Return sentences on how well the ground is known."""
     if not a.ground:
         return []
     if all(g.verdict == "" for g in a.ground):
-        return ["How well the ground is known cannot be said: the data carry no standard deviations."]
+        return ["How well the ground is known cannot be stated: the data have no standard deviations."]
     known = [g for g in a.ground if g.verdict == "identified"]
     weak = [g for g in a.ground if g.verdict == "weak"]
     if not known and not weak:
-        return [f"Nothing of the ground is known from {data_words(a)}: they are the stated priors."]
+        return [
+            f"The ground is not determined by {data_words(a)}: its values are those of the stated priors."
+        ]
     said = []
     for kind in ("stiffness", "damping"):
         of_kind = [g for g in a.ground if g.kind == kind]
@@ -212,7 +215,7 @@ def _ground_headline(a: Answers) -> list[str]:
         if sure:
             said.append(f"The ground's {kind} is known: {listed([_value(g) for g in sure])}.")
         elif all(g.verdict == "unidentified" for g in of_kind) and of_kind:
-            said.append(f"The ground's {kind} is not known from {data_words(a)}.")
+            said.append(f"The ground's {kind} is not determined by {data_words(a)}.")
         elif of_kind:
             some = [g for g in of_kind if g.verdict == "weak"]
             best = [g for g in some if verdict_words(g) == _ROUGHLY] or some
@@ -250,7 +253,7 @@ def _shares(m: ModeAnswer) -> dict[str, float]:
 
 
 def _owner_headline(a: Answers) -> str:
-    """Return which source gives more than half of the measured damping of each first bending mode."""
+    """Return a sentence on the source of more than half of the damping of each first bending mode."""
     by_owner: dict[str, list[str]] = {}
     for m in _firsts(a):
         for owner, share in _shares(m).items():
@@ -266,7 +269,7 @@ def _owner_headline(a: Answers) -> str:
 
 
 def _largest(a: Answers) -> dict[str, list[str]]:
-    """Return the source that gives most of the measured damping of each first bending mode."""
+    """Return the largest source of the measured damping of each first bending mode."""
     found: dict[str, list[str]] = {}
     for m in _firsts(a):
         shares = _shares(m)
@@ -282,9 +285,9 @@ def _next_headline(a: Answers) -> str:
     best = a.next_steps[0]
     kinds = dict.fromkeys(g.kind for g in a.ground if g.name in best.factors)
     if best.what == "records" and not _enough(a, best):
-        return f"No single measurement makes the ground's {listed(list(kinds))} known: see what to do next."
+        return f"No single measurement determines the ground's {listed(list(kinds))}: see what to do next."
     what = _STEPS.get(best.what, _records(a, best)).split(":")[0]
-    return f"What would make the ground's {listed(list(kinds))} known: {_GERUNDS.get(best.what, what)}."
+    return f"The ground's {listed(list(kinds))} would be determined by {_GERUNDS.get(best.what, what)}."
 
 
 def _model(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -293,18 +296,18 @@ def _model(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     if judged:
         good = sum(bool(m.as_designed) for m in judged)
         first = listed([_beside_design(m) for m in _firsts(a)])
-        lie = "lies" if len(judged) == 1 else "lie"
-        short.append(f"{good} of {count(len(judged), 'measured mode')} {lie} where the design says: {first}.")
-        told = (_against_design(m) for m in judged if not m.as_designed)
-        short += [f"{text[0].upper()}{text[1:]}." for text in told]
+        be = "is" if len(judged) == 1 else "are"
+        short.append(f"{good} of {count(len(judged), 'measured mode')} {be} as designed: {first}.")
+        others = (_against_design(m) for m in judged if not m.as_designed)
+        short += [f"{text[0].upper()}{text[1:]}." for text in others]
         more.append(
-            "The design is the model on the foundation that the twin's priors state, within their 90 %."
+            "The design is the model on the foundation of the twin's priors, within their 90 % intervals."
         )
     elif a.modes:
         beside = [
             f"{words(m.label)} {_hertz(m.measured_hz)}, on rigid feet {m.rigid_hz:.4f}" for m in _firsts(a)
         ]
-        short.append(f"The twin states no design foundation (update.priors). Measured: {listed(beside)}.")
+        short.append(f"The twin has no design foundation (update.priors). Measured: {listed(beside)}.")
     short += [] if a.fit is None else [fit_sentence(a.fit)]
     short += _off_unfitted(a)
     short += [*filter(None, objection_sentences(a))]
@@ -317,15 +320,19 @@ def _model(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     ]
     if misses:
         worst, label = max(misses)
-        how = "meets every fitted frequency within" if a.fits else "misses fitted frequencies by up to"
-        more.append(f"Updated, the model {how} {100 * worst:.1f} % ({words(label)}).")
+        how = (
+            "agrees with all fitted frequencies within"
+            if a.fits
+            else "differs from fitted frequencies by up to"
+        )
+        more.append(f"The updated model {how} {100 * worst:.1f} % ({words(label)}).")
     return tuple(short), tuple(more)
 
 
 def _off_unfitted(a: Answers) -> list[str]:
-    """Name the modes that were measured, not fitted, and that the updated model or the design does not meet.
+    """Return sentences on measured modes that were not fitted and differ from updated model or design.
 
-    What the objections name is not said twice.
+    Modes that the objections name are left out.
     """
     found, beside = [], []
     named = {mode_of(check) for check in objected(a) if check.datum.startswith("f")}
@@ -337,10 +344,10 @@ def _off_unfitted(a: Answers) -> list[str]:
             side = "above" if off > 0.0 else "below"
             found.append(f"{words(m.label)} {100.0 * abs(off):.1f} % {side}")
         elif m.as_designed is False:
-            text = f"{_against_design(m)}; it was not fitted, and the updated model allows it"
+            text = f"{_against_design(m)}; it was not fitted, but agrees with the updated model"
             beside.append(f"{text[0].upper()}{text[1:]} ({m.model_hz.value:.4g} Hz{_from_to(m.model_hz)}).")
     what = "it was not fitted" if len(found) == 1 else "they were not fitted"
-    said = [f"Updated, the model puts {listed(found)} what was measured; {what}."] if found else []
+    said = [f"The updated model has {listed(found)} the measured value; {what}."] if found else []
     return [*beside, *said]
 
 
@@ -367,12 +374,12 @@ def _margins(a: Answers) -> list[str]:
     tight = _tight(a)
     if not tight:
         first = {m.label for m in _firsts(a)}
-        return [f"The first modes stay{_clear(a, first).removeprefix(' and')}."] if first else []
+        return [f"The first modes are{_clear(a, first).removeprefix(' and')}."] if first else []
     return [
         f"{words(c.label).capitalize()} is {100 * c.margin:.0f} % from {c.order} "
         f"({c.low_hz:.3g} to {c.high_hz:.3g} Hz), less than the usual {100 * MARGIN:.0f} %."
         if c.margin > 0.0
-        else f"{words(c.label).capitalize()} lies inside {c.order} ({c.low_hz:.3g} to {c.high_hz:.3g} Hz)."
+        else f"{words(c.label).capitalize()} is inside {c.order} ({c.low_hz:.3g} to {c.high_hz:.3g} Hz)."
         for c in tight
     ]
 
@@ -384,13 +391,15 @@ def _ground(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     first, more = _firsts(a), []
     if first and all(_softening(m) > 0.0 for m in first):
         lower = listed([f"{words(m.label)} by {_moved(m)}" for m in first])
-        more.append(f"The ground lowers {lower} below rigid feet: the data can show no more of it than that.")
+        more.append(
+            f"Compared with rigid feet, the ground lowers {lower}; the data show no other effect of it."
+        )
     return tuple(said[:_MOST]), (*said[_MOST:], *more)
 
 
 def _parameter(g: GroundAnswer, fits: bool) -> str:
     name = parameter_words(g.name).capitalize()
-    before = "" if g.before is None else f"; before the data {span_words(g.before, g.unit)}"
+    before = "" if g.before is None else f"; prior {span_words(g.before, g.unit)}"
     verdict = verdict_words(g, fits=fits) or "no interval"
     return f"{name} {span_words(g.value, g.unit)}{before}: {verdict}."
 
@@ -406,7 +415,7 @@ def _law(a: Answers) -> list[str]:
     best = max((one.probability or 0.0 for one in others), default=0.0)
     about = "about " if a.probability_from == "approximation" else ""
     open_ = bool(others) and best >= 0.1 * law.probability
-    verdict = "the data do not tell the laws apart" if open_ else "no other law comes near"
+    verdict = "the data do not distinguish the laws" if open_ else "all other laws are much less probable"
     if not others:
         verdict = "all others lock a damper" if len(a.laws) > 1 else "no other was tried"
         return [f"Recommended law: {law.law} ({why}); {verdict}."]
@@ -426,7 +435,7 @@ def _owners(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
         if m.measured_damping is not None and beyond > SMALL * m.measured_damping.value:
             share = 100.0 * beyond / m.measured_damping.value
             short.append(
-                f"Of the damping measured in {words(m.label)}, {share:.0f} % has no source in the model."
+                f"Of the measured damping of {words(m.label)}, {share:.0f} % has no source in the model."
             )
     missing = [
         _SOURCES[s] for s in ("rotor", "water") if a.modes and all(s not in m.sources for m in a.modes)
@@ -446,11 +455,11 @@ def _budget_words(m: ModeAnswer) -> str:
     if m.unexplained is not None:
         parts.append(f"unexplained {percent_words(Span(m.unexplained))}")
     measured = "" if m.measured_damping is None else percent_words(m.measured_damping)
-    return f"{words(m.label).capitalize()} measures {measured}: {', '.join(parts)}."
+    return f"{words(m.label).capitalize()} has a measured damping of {measured}: {', '.join(parts)}."
 
 
 def _disagrees(m: ModeAnswer) -> bool:
-    """Return whether measured and modelled damping differ beyond their intervals, or by a tenth without."""
+    """Return whether measured and modelled damping differ by more than their intervals (or by a tenth)."""
     a, b = m.measured_damping, m.model_damping
     if a is None or b is None:
         return False
@@ -462,9 +471,9 @@ def _disagreement(m: ModeAnswer) -> str:
     if a is None or b is None:
         return ""
     why = (
-        "the model damps it more than was measured"
+        "the damping in the model is larger than measured"
         if b.value > a.value
-        else "it has damping nothing explains"
+        else "part of its damping is not explained"
     )
     fitted = "" if m.fits_damping else "; its damping was not fitted"
     return (
@@ -485,14 +494,14 @@ def _trust(a: Answers) -> list[str]:
     if judged:
         known = [g for g in judged if g.verdict == "identified"]
         said.append(
-            f"Identifiability: {len(known)} of {count(len(judged), 'ground parameter')} known to a factor of "
-            f"{a.usable:g} or better."
+            f"Identifiability: {len(known)} of {count(len(judged), 'ground parameter')} known within a "
+            f"factor of {a.usable:g}."
         )
     stated = sorted(m.model_error for m in a.modes if m.fits_frequency and m.model_error > 0.0)
     said.append(
-        f"Model error: {_errors(stated)} on frequencies, from the tolerances of drawings and sea."
+        f"Model error: {_errors(stated)} of frequencies, from the tolerances of drawings and sea."
         if stated
-        else "Model error: the twin closes every tolerance; intervals are those of a perfect model."
+        else "Model error: the twin sets all tolerances to zero; intervals are those of an exact model."
     )
     return [*said, *_if_off(a)]
 
@@ -504,7 +513,7 @@ def _errors(stated: list[float]) -> str:
 
 
 def _if_off(a: Answers) -> list[str]:
-    """Return what an error of the model would do to the ground's stiffness: the data do not show it."""
+    """Return the effect of an undetectable error of the model on the ground's stiffness."""
     moved = {} if a.fit is None else a.fit.moved
     of_kind = [g for g in a.ground if g.kind == "stiffness" and g.verdict in ("identified", "weak")]
     parts = [
@@ -512,26 +521,24 @@ def _if_off(a: Answers) -> list[str]:
         for g in of_kind[:_MOST]
         if abs(moved.get(g.name, 0.0)) > _NOTHING
     ]
-    return (
-        [f"Each 1 % by which all frequencies of the model are wrong moves {listed(parts)}."] if parts else []
-    )
+    return [f"An error of 1 % of all frequencies of the model changes {listed(parts)}."] if parts else []
 
 
 def _percent(log_change: float) -> str:
-    """Return a change of a logarithm as per cent; that of a fit far from its data may be of any size."""
+    """Return a change of a logarithm in per cent; large ones, as of poor fits, are not given in numbers."""
     return f"{100.0 * expm1(log_change):.2g} %" if log_change < log(WIDE) else "more than tenfold"
 
 
 def _next(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     if a.fit is not None and not a.fit.fits:
-        return (f"{mend(a.fit)}. Then run again: only a model that fits tells what to measure next.",), ()
+        return (f"{mend(a.fit)}. Then run again: only a model that fits shows what to measure next.",), ()
     first = {step.what == "records": step for step in reversed(a.next_steps)}  # the best of either kind
     short = [_step(a, step) for step in a.next_steps if step in first.values()]
     open_ = [g for g in a.ground if g.verdict != "identified"]
     if a.ground and not open_:
-        short = ["The ground is known well enough to use. Watch it: `jackettwin follow`, `jackettwin watch`."]
+        short = ["The ground is known well enough. Monitor it: `jackettwin follow`, `jackettwin watch`."]
     elif a.ground and all(g.verdict == "" for g in a.ground):
-        short = ["Give every target its standard deviation: then there are intervals, and advice."]
+        short = ["State the standard deviation of every target, to obtain intervals and advice."]
     if a.records_for:
         needs = [f"{words(label)} {n}" for label, n in a.records_for.items()]
         short.append(
@@ -550,7 +557,7 @@ def _step(a: Answers, step: NextStep) -> str:
 
 
 def _gains(a: Answers, step: NextStep) -> list[str]:
-    """Return which stiffness and which damping a step makes most certain, if the change can be seen."""
+    """Return the stiffness and the damping that a step makes most certain, if the change is visible."""
     kinds = {g.name: g.kind for g in a.ground}
     gains: dict[str, tuple[str, float]] = {}  # the most certain parameter of each kind
     for name, left in sorted(step.factors.items(), key=lambda item: item[1]):
@@ -563,7 +570,7 @@ def _gains(a: Answers, step: NextStep) -> list[str]:
 
 
 def step_words(a: Answers, step: NextStep) -> str:
-    """Return what to do in words."""
+    """Return a step in words."""
     return _STEPS.get(step.what, _records(a, step))
 
 
@@ -576,10 +583,10 @@ def _enough(a: Answers, step: NextStep) -> bool:
 
 
 def _records(a: Answers, step: NextStep) -> str:
-    """Return what more records alone do."""
+    """Return the effect of more records in words."""
     days = step.days or 0.0
     times = days * 1440.0 / max(a.minutes, 1e-9)
     length = count(round(days), "day") if days >= 2.0 else count(max(round(24 * days), 1), "hour")
     if _enough(a, step):
-        return f"record {length} of the same ({round(times * a.records)} records instead of {a.records})"
-    return f"more records alone do not make it known, not even {length} of records"
+        return f"record {length} in the same way ({round(times * a.records)} records instead of {a.records})"
+    return f"more records alone do not determine it, not even {length} of records"

@@ -1,4 +1,4 @@
-"""What stands behind the fit, in words: what it does not explain, and what its answers hang on."""
+"""Sentences on what the model does not explain, and on the assumptions that its answers depend on."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from jackettwin.soil import parameter_words
 from jackettwin.updating import DatumCheck, OrderCheck, ShapeCheck, Tolerance, Unseen
 
 _NAMED = 3
-"""Values and tolerances that a sentence names: the table has all."""
+"""Largest number of values and tolerances in a sentence; the table has all."""
 _ANY = 8.0
-"""Standard deviations of a suspect beyond which no size is named: the first order does not hold so far."""
+"""Standard deviations of a tolerance beyond which no size is given, as the linearisation is not valid."""
 _FELT = 0.01
 """Changes of a logarithm below this are not reported."""
 _STEPS = {"-": (0.01, "1 %"), "m": (0.01, "10 mm"), "kg/m³": (100.0, "100 kg/m³"), "power": (0.1, "0.1")}
-"""By unit, the step that a sentence speaks of."""
+"""Step of a tolerance in sentences, by unit."""
 _METRES = {"rna_height", "rna_overhang", "water_level", "foot_level"}
-"""Tolerances in metres that are spoken of by 0.1 m."""
+"""Tolerances in metres whose step is 0.1 m."""
 
 
 def step(tolerance: Tolerance) -> tuple[float, str]:
@@ -39,14 +39,14 @@ def size_words(tolerance: Tolerance, size: float) -> str:
 
 
 def moved_words(tolerance: Tolerance, effect: float) -> str:
-    """Return what a step of a tolerance does to a parameter, ``each 10 mm raises it by 6 %``."""
+    """Return the effect of a step of a tolerance on a parameter, ``each 10 mm raises it by 6 %``."""
     size, text = step(tolerance)
     change = 100.0 * expm1(effect * size / tolerance.std)
     return f"each {text} {'raises' if change > 0.0 else 'lowers'} it by {abs(change):.2g} %"
 
 
 def objected(a: Answers) -> list[DatumCheck]:
-    """Return the measured values that the first screen names because the model does not allow them."""
+    """Return the measured values named on the first page because they contradict the model."""
     if a.scrutiny is None or a.scrutiny.objection is None:
         return []
     strays = [check for check in a.scrutiny.objection.checks if check.objects]
@@ -54,13 +54,13 @@ def objected(a: Answers) -> list[DatumCheck]:
 
 
 def mode_of(check: DatumCheck) -> int | None:
-    """Return the number of the mode that a value is of; None of a shape or a relaxation."""
+    """Return the number of the mode of a value; None for a shape or a relaxation."""
     number = check.datum[1:].partition(" ")[0]
     return int(number) if number.isdigit() else None
 
 
 def objection_sentences(a: Answers) -> list[str]:
-    """Return what the model does not explain, and what would explain it; nothing where chance does."""
+    """Return what the model does not explain, and what would explain it; nothing if chance explains it."""
     if a.scrutiny is None or a.scrutiny.objection is None or not a.scrutiny.objects:
         return []
     o, labels = a.scrutiny.objection, {m.number: m.label for m in a.modes}
@@ -68,27 +68,29 @@ def objection_sentences(a: Answers) -> list[str]:
     said += [_shape(check, labels) for check in o.shapes if check.objects]
     said += [_order(check, labels) for check in o.orders if check.objects]
     if not said and o.suspected:
-        said = [f"the measured modes lie as {listed([t.words for t in o.suspected])} would move them"]
-    together = "the measured modes together are farther from any model within the tolerances than chance goes"
+        said = [f"the measured modes deviate in the pattern of {listed([t.words for t in o.suspected])}"]
+    together = (
+        "together, the measured modes deviate from all models within the tolerances by more than chance"
+    )
     by = [f"{e.tolerance.words} {size_words(e.tolerance, e.size)}" for e in o.explanations]
     return [
         f"Not explained: {listed(said) if said else together}.",
-        f"What would explain most of it: {', or '.join(by)}." if by else "",
+        f"Most of it would be explained by {', or '.join(by)}." if by else "",
     ]
 
 
 def _stray(check: DatumCheck, labels: Mapping[int, str]) -> str:
-    """Return what is said of a value that the model does not allow."""
+    """Return a clause on a value that contradicts the model."""
     mode = mode_of(check)
     label = check.datum if mode is None else words(labels.get(mode, f"mode {mode}"))
     if check.is_direction:
         return (
-            f"the pair of {label} is turned by {abs(degrees(check.miss)):.0f}° from where the model has it "
-            f"(± {degrees(check.std):.0f}°)"
+            f"the direction of the pair of {label} differs by {abs(degrees(check.miss)):.0f}° from that in "
+            f"the model (± {degrees(check.std):.0f}°)"
         )
     what, side = "damping" if check.datum[0] == "ζ" else "frequency", "above" if check.miss > 0.0 else "below"
     return (
-        f"{label}'s {what} is {100 * abs(check.miss):.2g} % {side} what the other modes allow "
+        f"the {what} of {label} is {100 * abs(check.miss):.2g} % {side} the value that the other modes imply "
         f"(± {100 * check.std:.2g} %)"
     )
 
@@ -109,7 +111,7 @@ def _order(check: OrderCheck, labels: Mapping[int, str]) -> str:
 
 
 def condition_headline(a: Answers) -> str:
-    """Return what the ground's answer hangs on; nothing where every tolerance is settled."""
+    """Return the assumption that the ground's answer depends on most; nothing if no tolerance matters."""
     s = a.scrutiny
     if s is None or not s.influences:
         return ""
@@ -118,8 +120,8 @@ def condition_headline(a: Answers) -> str:
         if condition.parameter in by_name:
             t = condition.tolerance
             return (
-                f"{parameter_words(condition.parameter).capitalize()} is known if {_as_stated(t)}: "
-                f"{moved_words(t, condition.effect)}; to settle it, {t.settled_by}."
+                f"{parameter_words(condition.parameter).capitalize()} is known only if {_as_stated(t)}: "
+                f"{moved_words(t, condition.effect)}; to find out, {t.settled_by}."
             )
     moved = [_most(a, i, g) for i, g in enumerate(a.ground) if g.verdict == "identified"]
     return next((text for text in moved if text), "")
@@ -130,7 +132,7 @@ def _as_stated(t: Tolerance) -> str:
 
 
 def _most(a: Answers, i: int, g: GroundAnswer) -> str:
-    """Return which tolerance moves a parameter most, as far as its interval allows for it."""
+    """Return the tolerance with the largest effect on a parameter, which its interval includes."""
     if a.scrutiny is None:
         return ""
     first = a.scrutiny.movers(i)[0]
@@ -138,21 +140,21 @@ def _most(a: Answers, i: int, g: GroundAnswer) -> str:
     if abs(effect) < _FELT:
         return ""
     return (
-        f"Allowed for in that, most by the {first.tolerance.words}: {moved_words(first.tolerance, effect)} "
-        f"({parameter_words(g.name)})."
+        f"The interval of {parameter_words(g.name)} includes the model's tolerances, of which the "
+        f"{first.tolerance.words} has the largest effect: {moved_words(first.tolerance, effect)}."
     )
 
 
 def unseen_sentence(a: Answers) -> str:
-    """Return what may be wrong with the structure and would not show in these data, and how large."""
+    """Return possible errors of the model that these data would not reveal, and their size."""
     if a.scrutiny is None or a.scrutiny.objection is None:
         return ""
     said = [_unseen(a, one) for one in a.scrutiny.objection.unseen]
-    return f"These data would not show {listed(said)}." if said else ""
+    return f"These data would not reveal {listed(said)}." if said else ""
 
 
 def _unseen(a: Answers, one: Unseen) -> str:
-    """Return a suspect with its size, what it would do to the ground, and from where it would be seen."""
+    """Return a suspected error with its size, its effect on the ground and the size the data would reveal."""
     t = one.tolerance
     size = size_words(t, t.std).lstrip("+")
     moved = _moved_most(a, one)
@@ -160,16 +162,16 @@ def _unseen(a: Answers, one: Unseen) -> str:
 
 
 def _moved_most(a: Answers, one: Unseen) -> str:
-    """Return the parameter of the ground that an unseen suspect moves most, and by how much."""
+    """Return the ground parameter that an unrevealed error changes most, and by how much."""
     felt = [(abs(float(e)), float(e), g.name) for e, g in zip(one.effect, a.ground, strict=False)]
     most, effect, name = max(felt, default=(0.0, 0.0, ""))
     if most < _FELT:
         return ""
-    side = "more" if effect > 0.0 else "less"
-    return f", with which {parameter_words(name)} is {100.0 * abs(expm1(effect)):.2g} % {side} than said"
+    change = f"{100.0 * abs(expm1(effect)):.2g} % {'more' if effect > 0.0 else 'less'}"
+    return f", with which {parameter_words(name)} would be {change} than stated"
 
 
 def _seen_from(t: Tolerance, size: float) -> str:
     if size > _ANY * t.std:
-        return "nor of any size that is likely"
-    return f"they would from {size_words(t, size).lstrip('+')}"
+        return "not revealed at any likely size"
+    return f"revealed only from {size_words(t, size).lstrip('+')}"

@@ -1,4 +1,4 @@
-"""Tables of measured against updated: every number is the result's, none is computed but differences."""
+"""Tables of measured and updated values; all numbers are those of the result or their differences."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from jackettwin.updating import Update
 
 
 def key_table(result: TwinResult) -> Table:
-    """Return measured against updated, one row a mode."""
+    """Return measured and updated values, one row per mode."""
     columns = ["mode", "no.", "measured\nf [Hz]", *(f"{u.law}\nf [Hz]" for u in result.updates)]
     columns += ["measured\nζ [%]", *(f"{u.law}\nζ [%]" for u in result.updates)]
     rows = []
@@ -51,7 +51,7 @@ def _mark(text: str, fitted: bool) -> str:
 
 
 def truth_table(result: TwinResult, a: Answers, stated: tuple[StatedMode, ...]) -> Table:
-    """Return the true modes that the records state beside the measured and the updated ones."""
+    """Return the true modes stated by the records with the measured and the updated ones."""
     columns = ["mode", "true\nf [Hz]", "measured\nf [Hz]", "updated\nf [Hz]"]
     columns += ["true\nζ [%]", "measured\nζ [%]", "updated\nζ [%]"]
     place = {m.label: i for i, m in enumerate(result.measured)}
@@ -64,12 +64,12 @@ def truth_table(result: TwinResult, a: Answers, stated: tuple[StatedMode, ...]) 
         row += [percent(true.damping_ratio), percent(m.damping_ratio, m.damping_ratio_std)]
         row += [UNKNOWN if model.model_damping is None else percent(model.model_damping.value)]
         rows.append(tuple(row))
-    caption = "Are the modes true? The means that these records state of their asset, beside what was found."
+    caption = "Are the modes correct? Mean true values stated by these records, and the values found."
     return Table(caption, tuple(columns), tuple(rows), text_columns=1)
 
 
 def true_parameters_table(parameters: tuple[TrueParameter, ...]) -> Table:
-    """Return the true parameters of the support beside the updated ones."""
+    """Return the true parameters of the support with the updated ones."""
     rows = [
         (
             p.law,
@@ -83,7 +83,7 @@ def true_parameters_table(parameters: tuple[TrueParameter, ...]) -> Table:
     ]
     columns = ("law", "parameter", "true", "updated", "90 % interval", "inside")
     return Table(
-        "Are the parameters true? Those the records state beside those found, SI units.",
+        "Are the parameters correct? True values stated by the records, and the values found, in SI units.",
         columns,
         tuple(rows),
         text_columns=2,
@@ -91,7 +91,7 @@ def true_parameters_table(parameters: tuple[TrueParameter, ...]) -> Table:
 
 
 def damped_undamped_table(result: TwinResult) -> Table:
-    """Return damped and undamped frequencies side by side, law by law."""
+    """Return damped and undamped frequencies of each law."""
     columns = ["mode"]
     for u in result.updates:
         flag = ", locked" if u.best.locked_damper else ""
@@ -105,7 +105,7 @@ def damped_undamped_table(result: TwinResult) -> Table:
 
 
 def relaxation_table(result: TwinResult) -> Table:
-    """Return measured real poles beside the updated model's nearest."""
+    """Return measured real poles with the nearest ones of the updated model."""
     rows = []
     for i, r in enumerate(result.relaxations):
         for u in result.updates:
@@ -125,7 +125,8 @@ def relaxation_table(result: TwinResult) -> Table:
         "time constant [s]",
     )
     caption = (
-        "Real poles exp(−at): measured rates beside those of the updated model, nearest by rate and shape."
+        "Real poles exp(−at): measured rates and those of the updated model that are nearest in rate and "
+        "shape."
     )
     return Table(caption, columns, tuple(rows), text_columns=2)
 
@@ -149,10 +150,11 @@ def parameter_table(updates: Sequence[Update]) -> Table:
             text = f"{verdict}{', on its bound' if p.name in u.best.at_bound else ''}"
             named = f"{parameter_words(p.name)}\n{p.name}"
             rows.append((u.law, named, text, _prior(p), span, quantity(float(value), p.unit, digits=3)))
-    columns = ("law", "parameter", "verdict", "before the data", "median (90 % interval)", "best fit")
+    columns = ("law", "parameter", "verdict", "prior", "median (90 % interval)", "best fit")
     return Table(
-        "What are each law's parameters? The median, with its interval, is the value stated everywhere else; "
-        "the best fit is the likeliest point, elsewhere where much is left open. Beneath: the key in files.",
+        "Parameters of each law. The median with its interval is the value used elsewhere in this report; "
+        "the best fit is the most probable point, which may differ if a parameter is uncertain. Below the "
+        "name: the key in files.",
         columns,
         tuple(rows),
         3,
@@ -166,7 +168,7 @@ def _prior(p: Parameter) -> str:
 
 
 def solutions_table(result: TwinResult, u: Update) -> Table:
-    """Return every distinct solution of a law, with the modes that took part in the fit."""
+    """Return all distinct solutions of a law, with the fitted modes."""
     of_solution = u.problem.states[0].residuals.modes
     fitted = [m for m in result.measured if m.mode in of_solution]
     columns = ("solution", "parameters", "cost [-]", "", *(words(m.label) for m in fitted))
@@ -185,7 +187,7 @@ def solutions_table(result: TwinResult, u: Update) -> Table:
         head = ("\n".join(notes), "\n".join(values), scientific(s.cost))
         rows.append((*head, "f [Hz]\nundamped f [Hz]\nζ [%]", *cells))
     caption = (
-        f"{u.law}: are there other solutions? All found, cheapest first, and how many starts ended there; "
-        "* on a bound."
+        f"{u.law}: are there other solutions? All solutions found, by cost, with the number of starts that "
+        "ended at each; * on a bound."
     )
     return Table(caption, columns, tuple(rows), 2, frozenset(marked))

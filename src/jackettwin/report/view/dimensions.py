@@ -1,4 +1,4 @@
-"""Dimensions in a structure's view: levels, widths between legs, diameters of single tubes."""
+"""Dimensions in the view of a structure: levels, widths between legs, diameters of single tubes."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from jackettwin.arrays import FloatArray
 from jackettwin.structure import Assembly, Structure
 
 _SAME_M = 0.05
-"""Distance below which levels are one; the joints of a storey rarely agree to the millimetre."""
+"""Distance below which levels are the same, since joints of a storey rarely agree to the millimetre [m]."""
 _OUTER = 0.8
 """Share of the largest distance from the axis above which a point of a level is on a leg."""
 
 
 def dimensions(assembly: Assembly) -> dict[str, list[Any]]:
-    """Return what to draw, in metres, z from the mean sea level.
+    """Return the dimensions to draw, in metres, with z from the mean sea level.
 
     Returns
     -------
@@ -64,7 +64,7 @@ class _Width:
 
 
 def _width(points: FloatArray) -> _Width | None:
-    """Return the distance of the outermost point from its neighbour as far out; None for a single place."""
+    """Return the distance of the outermost point from its neighbour as far out; None for a single point."""
     radius = np.linalg.norm(points[:, :2] - points[:, :2].mean(axis=0), axis=1)
     outer = points[radius >= _OUTER * radius.max()]
     apart = np.linalg.norm(outer - outer[0], axis=1)

@@ -1,4 +1,4 @@
-"""Motions of a view: modes, a wave passing, a record played back."""
+"""Motions in a view: modes, passage of a wave, motion during a record."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ _MOTION = "motion"
 
 
 @dataclass(frozen=True)
-class MeasuredShape:
-    """Where the sensors went in a mode, beside the model's own places in the same phase.
+class SensorMotion:
+    """Measured motion of the sensors in a mode, in the phase and scale of the model's.
 
     Attributes
     ----------
     places : (n_places, 3)
-        Of the sensors at rest [m], z above the mean sea level.
+        Positions of the sensors at rest [m], z above the mean sea level.
     nodes : (n_places,) int
-        The model's nearest node to each.
+        Nearest node of the model to each sensor.
     shapes : (2, 3·n_places)
-        Displacements on the shapes of the motion, in its scale.
+        Real part and negative imaginary part of the displacements, in the scale of the motion.
     """
 
     places: FloatArray
@@ -50,6 +50,7 @@ class DrawnMotion:
     Attributes
     ----------
     name, note : str
+        Name of the motion and a remark on it.
     group : str
         Heading under which the page lists it.
     shapes : (n_shapes, 3·n_nodes) translations, any scale
@@ -57,13 +58,13 @@ class DrawnMotion:
     step_s : float
         Time between frames.
     start_s : float
-        Time of the first.
+        Time of the first frame.
     cyclic : bool
-        Whether frames repeat; a record stops and starts again.
+        Whether the frames are periodic; a record is not.
     wave : dict, optional
         ``height_m``, ``length_m``, ``direction_rad``: the surface, with its crest at the origin in frame 0.
     load_kn_m : (n_frames, n_elements), optional
-    measured : MeasuredShape, optional
+    measured : SensorMotion, optional
     """
 
     name: str
@@ -76,10 +77,10 @@ class DrawnMotion:
     start_s: float = 0.0
     wave: dict[str, float] | None = None
     load_kn_m: FloatArray | None = None
-    measured: MeasuredShape | None = None
+    measured: SensorMotion | None = None
 
     def document(self) -> dict[str, Any]:
-        """Return plain data; shapes are scaled so that the largest translation ever is one."""
+        """Return plain data; shapes are scaled so that the largest translation over time is one."""
         largest = float(np.abs(self._extreme()).max(initial=0.0))
         scale = 1.0 / largest if largest > 0.0 else 1.0
         return {
@@ -105,7 +106,7 @@ _FRAMES = 48
 
 
 def undamped_motion(assembly: Assembly, name: str, frequency_hz: float, shape: FloatArray) -> DrawnMotion:
-    """Return a standing mode."""
+    """Return an undamped mode."""
     theta = 2.0 * np.pi * np.arange(_FRAMES) / _FRAMES
     return DrawnMotion(
         name,
@@ -122,9 +123,9 @@ def damped_motion(
     name: str,
     eigenvalue: complex,
     shape: ComplexArray,
-    measured: MeasuredShape | None = None,
+    measured: SensorMotion | None = None,
 ) -> DrawnMotion:
-    """Return a complex mode: its parts do not pass through rest together. Its decay is not drawn."""
+    """Return a complex mode, whose points are not in phase. Its decay is not drawn."""
     f = abs(eigenvalue) / (2.0 * np.pi)
     theta = 2.0 * np.pi * np.arange(_FRAMES) / _FRAMES
     parts = np.stack([shape.real, -shape.imag])
@@ -142,7 +143,7 @@ def damped_motion(
 
 def measured_shape(
     assembly: Assembly, sensors: Sequence[Sensor], measured: ComplexArray, shape: ComplexArray
-) -> MeasuredShape | None:
+) -> SensorMotion | None:
     r"""Return a measured shape in the model's amplitude and phase; None if no sensor measures motion.
 
     A measured shape has any amplitude and phase: it is multiplied by
@@ -170,11 +171,11 @@ def measured_shape(
     for k, sensor in enumerate(chosen):
         direction = np.asarray(sensor.direction) / np.linalg.norm(sensor.direction)
         moved[of[k]] += (found[k] - moved[of[k]] @ direction) * direction
-    return MeasuredShape(places[:, 1:], index, np.stack([moved.real.ravel(), -moved.imag.ravel()]))
+    return SensorMotion(places[:, 1:], index, np.stack([moved.real.ravel(), -moved.imag.ravel()]))
 
 
 def wave_motion(assembly: Assembly, passage: Passage) -> DrawnMotion:
-    """Return a wave passing, with the structure at rest under it at every instant."""
+    """Return the passage of a wave with quasi-static displacements of the structure."""
     rest = _translations(assembly, passage.displacement)
     # a few shapes represent all phases
     u, s, vt = np.linalg.svd(rest, full_matrices=False)
@@ -197,7 +198,7 @@ def wave_motion(assembly: Assembly, passage: Passage) -> DrawnMotion:
 
 
 def record_motion(assembly: Assembly, name: str, found: Playback) -> DrawnMotion:
-    """Return a record played back."""
+    """Return the motion during a record."""
     end = found.start_s + found.step_s * len(found.q)
     return DrawnMotion(
         f"record {name}",

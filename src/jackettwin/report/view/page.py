@@ -1,7 +1,7 @@
 """Interactive view of a structure as one self-contained page.
 
-Python provides the data; the page's own script projects and draws them on a canvas.
-z is relative to mean sea level throughout.
+Python provides the data; a script in the page projects and draws them on a canvas. z is from the mean sea
+level.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from jackettwin.response import Sensor, sensor_positions
 from jackettwin.structure import Assembly
 
 _LINES = ("cable", "spring", "beam")
-"""Elements of a deck that are drawn as lines; the springs of a joint have no length."""
+"""Elements of a deck that are drawn as lines; springs at joints have no length."""
 
 
 @dataclass(frozen=True)
 class ColouredQuantity:
-    """A number for every element, to colour by; ``log`` spreads values that span decades."""
+    """A number for every element, for colouring; ``log`` is for values that span decades."""
 
     name: str
     unit: str
@@ -47,8 +47,8 @@ class View:
     Attributes
     ----------
     coefficients : Coefficients, optional
-        Its marine growth is drawn.
-    flooded : members or parts whose bore is full of water
+        Coefficients whose marine growth is drawn.
+    flooded : members or parts that are filled with water
     """
 
     assembly: Assembly

@@ -1,4 +1,4 @@
-"""What a view colours elements by: dimensions, material, mass, and where a mode loses its energy."""
+"""Quantities by which a view colours elements: dimensions, material, mass, dissipation of a mode."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from jackettwin.response import DampedModes, System
 from jackettwin.structure import Assembly, beam
 
 _LIVELY = 0.3
-"""More damped poles are motions of the supports: nothing to look at."""
+"""Damping ratio above which poles are motions of the supports, which are not shown."""
 
 
 def thickness_quantities(assembly: Assembly) -> tuple[ColouredQuantity, ...]:
@@ -37,7 +37,7 @@ def material_quantities(assembly: Assembly) -> tuple[ColouredQuantity, ...]:
 
 
 def damping_quantity(system: System, modes: DampedModes, name: str = "") -> ColouredQuantity | None:
-    """Return where the first of some modes loses its energy: its share by element; None if nowhere."""
+    """Return the share of each element in the dissipation of the first mode; None without dissipation."""
     lively = np.flatnonzero(modes.damping_ratio < _LIVELY)
     if lively.size == 0:
         return None
@@ -55,10 +55,10 @@ def damping_quantity(system: System, modes: DampedModes, name: str = "") -> Colo
 
 
 def dissipation(system: System, pole: complex, shape: ComplexArray) -> FloatArray:
-    """Return each element's part of xᴴ C(λ) x of a mode, (n_elements,): 2ζ|λ| xᴴMx in all.
+    """Return each element's part of xᴴ C(λ) x of a mode, (n_elements,), whose sum is 2ζ|λ| xᴴMx.
 
-    An element has its part of the steel's Rayleigh damping αM + βK, without what αM takes of bodies; what
-    springs and dashpots at a node dissipate is divided among the elements that meet there.
+    An element has its part of the steel's Rayleigh damping αM + βK, without the part αM of bodies. The
+    dissipation of springs and dashpots at a node is divided among the elements that meet there.
 
     Parameters
     ----------

@@ -48,7 +48,7 @@ from jackettwin.version import __version__
 if TYPE_CHECKING:
     from jackettwin.service.workers.question import Question
 
-CANNOT_MEET = "the model cannot meet what was measured on any ground: no interval; see the report"
+CANNOT_MEET = "the model cannot reproduce the measurements on any ground: no interval; see the report"
 """What is said of parameters that come nearest to the data and do not explain them."""
 _GRID = 33
 """Points a side of the cost surface that is kept."""
