@@ -98,3 +98,67 @@ def test_bodies_and_settings_around_a_jacket_count(tmp_path: Path) -> None:
     structure = jacket(tmp_path, around=around)
     assert [m.mass_kg for m in structure.masses if m.node == "tp_top"] == [50000.0]
     assert (structure.subdivide, structure.beam) == (2, "timoshenko")
+
+
+TUBE_AS_NUMBERS = """sections:
+  numbers: {shape: any, area_m2: 0.04900884539600077, second_moment_x_m4: 0.003729573134635659,
+    second_moment_y_m4: 0.003729573134635659, torsion_constant_m4: 0.007459146269271318}
+"""
+"""A = π (D − t) t, I = A ((D/2)² + (D/2 − t)²)/4, J = 2 I of the tube 0.8 × 0.02 m."""
+
+
+def test_braces_given_by_their_numbers_are_the_tubes_they_are_of(tmp_path: Path) -> None:
+    tubes = jacket(tmp_path)
+    bars = jacket(tmp_path, around=TUBE_AS_NUMBERS, more="  members: {'*brace_*': {section: numbers}}")
+    n = sum("brace" in m.name for m in tubes.members)
+    assert len(bars.beams) == n > 0 and {b.part for b in bars.beams} == {"jacket"}
+    assert_allclose(
+        numbered_modes(assemble(bars), 6).omega, numbered_modes(assemble(tubes), 6).omega, rtol=1e-9
+    )
+
+
+@pytest.mark.parametrize("which", ["leg_*", "brace_*", "tp_*"])
+def test_a_section_turned_by_90_degrees_is_one_with_its_axes_exchanged(tmp_path: Path, which: str) -> None:
+    """Whatever members they are of; without the turn the frequencies are others."""
+    around = """sections:
+  upright: {shape: any, area_m2: 0.2, second_moment_x_m4: 0.05, second_moment_y_m4: 0.01,
+    torsion_constant_m4: 0.02}
+  lying: {shape: any, area_m2: 0.2, second_moment_x_m4: 0.01, second_moment_y_m4: 0.05,
+    torsion_constant_m4: 0.02}
+"""
+
+    def omega(words: str) -> np.ndarray:
+        structure = jacket(tmp_path, around=around, more=f"  members: {{'{which}': {{{words}}}}}")
+        return np.asarray(numbered_modes(assemble(structure), 8).omega)
+
+    upright, turned = omega("section: upright"), omega("section: lying, twist_deg: 90")
+    assert_allclose(turned, upright, rtol=1e-9)
+    assert np.abs(omega("section: lying") / upright - 1.0).max() > 1e-3
+
+
+def test_the_last_entry_that_names_a_member_counts(tmp_path: Path) -> None:
+    around = """sections:
+  box: {shape: box, width_m: 0.8, height_m: 0.6, thickness_m: 0.02}
+  can: {outer_diameter_m: 1.6, thickness_m: 0.06}
+materials: {cast: {youngs_modulus_pa: 2.0e11, density_kg_m3: 7900.0}}
+"""
+    more = "  members: {'brace_*': {section: box}, brace_1_1_1: {section: can, material: cast}}"
+    structure = jacket(tmp_path, around=around, more=more)
+    can = next(m for m in structure.members if m.name == "brace_1_1_1")
+    assert (can.section_start.outer_diameter_m, can.material.density_kg_m3) == (1.6, 7900.0)
+    assert {b.shape for b in structure.beams} == {"box"}
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        ("{'bracing_*': {section: box}}", r"jacket\.members\.bracing_\*.*no member is named so.*brace_\*"),
+        ("{'brace_*': {section: bocks}}", r"jacket\.members\.brace_\*\.section.*bocks"),
+        ("{'brace_*': {}}", r"jacket\.members\.brace_\*.*give section or sections"),
+        ("{'brace_*': {section: box, nodes: [a, b]}}", r"jacket\.members\.brace_\*\.nodes"),
+    ],
+)
+def test_members_that_are_not_there_are_refused_by_name(tmp_path: Path, more: str, says: str) -> None:
+    around = "sections: {box: {shape: box, width_m: 0.8, height_m: 0.6, thickness_m: 0.02}}"
+    with pytest.raises(InputError, match=says):
+        jacket(tmp_path, around=around, more=f"  members: {more}")

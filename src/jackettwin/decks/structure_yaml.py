@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import fnmatch
+import re
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from math import radians
 from pathlib import Path
@@ -109,15 +111,20 @@ class MassSchema(BodySchema):
     node: str
 
 
-class MemberSchema(Schema):
-    """A member: one section, or two if conical; ``twist_deg`` turns a section that is no tube about it."""
+class BarSchema(Schema):
+    """What a bar is of: one section, or two if conical; ``twist_deg`` turns one that is no tube about it."""
 
-    name: str | None = None
-    nodes: tuple[str, str]
     section: str | None = None
     sections: tuple[str, str] | None = None
     twist_deg: Angle | None = None
     material: str = "steel"
+
+
+class MemberSchema(BarSchema):
+    """A member and where it stands."""
+
+    name: str | None = None
+    nodes: tuple[str, str]
     part: str = ""
 
 
@@ -136,6 +143,7 @@ class JacketSchema(Schema):
     tower: Placed[Tower]
     rna: RnaSchema | None = None
     appurtenances: dict[str, Placed[Appurtenance]] = {}
+    members: dict[str, BarSchema] = {}
 
 
 class StructureSchema(Schema):
@@ -185,22 +193,23 @@ def build_structure(
     if schema.foundation is not None or schema.tower is not None:
         return replace(_on_foundation(schema, read, folder), name=name)
     if schema.jacket is not None:
-        own = {"nodes", "members", "sections", "materials", "rna", "rigid_links"} & schema.model_fields_set
+        own = {"nodes", "members", "rna", "rigid_links"} & schema.model_fields_set
         require(
             not own,
             "a parametric jacket defines these itself",
             field=min(own, default=None),
-            remedy="keep jacket: or the explicit form",
+            remedy="keep jacket: or the explicit form; jacket.members takes sections of your own",
         )
         return _build_jacket(schema.jacket, schema, name=name, folder=folder)
     remedy = "add members:, or a parametric jacket:"
     require(schema.members, "required key is missing", field="members", remedy=remedy)
     bars = [_build_bar(m, f"members.{i}", schema) for i, m in enumerate(schema.members)]
+    members, beams = _sorted(bars)
     structure = Structure(
         name=name,
         nodes=schema.nodes,
-        members=tuple(bar for bar in bars if isinstance(bar, Member)),
-        beams=tuple(bar for bar in bars if isinstance(bar, Beam)),
+        members=members,
+        beams=beams,
         masses=tuple(m.build(m.node, field=f"masses.{i}") for i, m in enumerate(schema.masses)),
         rigid_links=tuple(RigidLink(link.leader, link.follower) for link in schema.rigid_links),
         reactions=tuple(Reaction(node) for node in schema.reaction_nodes),
@@ -273,6 +282,40 @@ def _build_bar(m: MemberSchema, place: str, schema: StructureSchema) -> Member |
     return Beam(name, *m.nodes, section, material, radians(m.twist_deg or 0.0), m.part, SHAPES[start.shape])
 
 
+def _sorted(bars: Iterable[Member | Beam]) -> tuple[tuple[Member, ...], tuple[Beam, ...]]:
+    """Return the tubes and the beams of other sections."""
+    bars = tuple(bars)
+    tubes = tuple(bar for bar in bars if isinstance(bar, Member))
+    return tubes, tuple(bar for bar in bars if isinstance(bar, Beam))
+
+
+def _with_own_sections(structure: Structure, own: dict[str, BarSchema], file: StructureSchema) -> Structure:
+    """Return a parametric jacket with the sections that a file gives members of it by name.
+
+    Parameters
+    ----------
+    own : by the members' names, in which ``*`` stands for anything; of several that name one the last counts
+
+    Raises
+    ------
+    InputError
+        If nothing is named so, or a section or material is missing or does not fit.
+    """
+    bars: dict[str, Member | Beam] = {m.name: m for m in structure.members}
+    ends = {m.name: (m.start, m.end, m.part) for m in structure.members}
+    for pattern, given in own.items():
+        place, named = f"members.{pattern}", fnmatch.filter(bars, pattern)
+        kinds = ", ".join(sorted({re.sub(r"\d+.*", "*", name) for name in bars}))
+        remedy = "jackettwin view names the members; * stands for anything"
+        require(named, "no member is named so", field=place, value=pattern, allowed=kinds, remedy=remedy)
+        for name in named:
+            start, end, part = ends[name]
+            whole = MemberSchema(name=name, nodes=(start, end), part=part, **given.model_dump())
+            bars[name] = _build_bar(whole, place, file)
+    members, beams = _sorted(bars.values())
+    return replace(structure, members=members, beams=beams)
+
+
 def _build_jacket(
     schema: JacketSchema, around: StructureSchema, *, name: str, folder: Path | None
 ) -> Structure:
@@ -287,6 +330,7 @@ def _build_jacket(
             rna=None,
             sea_level_z_m=around.sea_level_z_m,
         )
+        structure = _with_own_sections(structure, schema.members, around)
         for key, appurtenance in schema.appurtenances.items():
             with located(field=f"appurtenances.{key}"):
                 masses += appurtenance.on(structure, key)
