@@ -11,6 +11,8 @@ from jackettwin.decks import read_structure
 from jackettwin.soil import Prony, family
 from jackettwin.structure import Assembly, Rayleigh, assemble
 from jackettwin.updating import Problem, Residuals, SupportModel, Target, single, support_model
+from jackettwin.updating.search.descent import descend
+from jackettwin.updating.search.shorter_law import shorter_law
 from jackettwin.updating.search.solutions import search
 
 OC4 = Path(__file__).parents[2] / "qualify" / "decks" / "oc4_jacket.dat"
@@ -83,9 +85,9 @@ def test_a_zener_truth_leaves_one_branch(oc4: Assembly, law: str, branches: list
 @pytest.mark.parametrize(
     ("truth", "theta", "laws"),
     [
-        ("prony-2", [2e9, 0.05, 2.0, 0.4, 30.0], ("prony-2", "prony-3")),
-        ("zener", [5e8, 1e8, 3e8], ("prony-2", "prony-3")),
-        ("prony-3", [5e8, 0.2, 3.0, 0.3, 6.0, 0.5, 6.0], ("prony-3",)),
+        ("prony-2", [2e9, 0.05, 2.0, 0.4, 30.0], ("prony-2", "prony-3", "prony-4")),
+        ("zener", [5e8, 1e8, 3e8], ("prony-2", "prony-3", "prony-4")),
+        ("prony-3", [5e8, 0.2, 3.0, 0.3, 6.0, 0.5, 6.0], ("prony-3", "prony-4")),
     ],
 )
 def test_a_search_asks_the_structure_three_times_as_often_as_with_one_branch_at_most(
@@ -112,6 +114,23 @@ def test_a_search_asks_the_structure_three_times_as_often_as_with_one_branch_at_
         search(single(model(oc4, law), targets), starts=8)
         cost[law] = asked
     assert all(cost[law] <= 3 * cost["zener"] for law in laws), cost
+
+
+@pytest.mark.parametrize("spare", [[0.6, 1.0, 0.01, 30.0], [0.01, 20.0, 0.6, 20.0]], ids=["faster", "slower"])
+def test_what_is_left_of_two_branches_is_the_zener_law_behind_them(oc4: Assembly, spare: list[float]) -> None:
+    """A branch of 1 % at another time is left out, whichever it is; k0, k1 and τ = c/k1 come back."""
+    targets = planted(oc4, "zener", [5e8, 3e8, 3e8])  # k1 = 0.6 k0, τ = 1 s
+    problem = single(model(oc4, "prony-2"), Residuals(targets, relative=True))
+    end = descend(problem, np.log([5e8, *spare]))
+    left = shorter_law(problem, end)
+    assert end.settled and left is not None
+    np.testing.assert_allclose(np.exp(left), [5e8, 3e8, 1.0], rtol=1e-4)
+
+
+def test_nothing_is_left_out_of_a_law_whose_branches_the_data_need(oc4: Assembly) -> None:
+    theta = [5e8, 0.2, 0.5, 0.3, 8.0]
+    problem = single(model(oc4, "prony-2"), Residuals(planted(oc4, "prony-2", theta), relative=True))
+    assert shorter_law(problem, descend(problem, np.log(theta) + 0.1)) is None
 
 
 def test_the_law_is_regularised_by_lognormal_priors_where_data_have_deviations(oc4: Assembly) -> None:

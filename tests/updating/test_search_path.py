@@ -37,7 +37,7 @@ def test_steps_bent_along_a_valley_end_at_its_lowest_point() -> None:
 def test_bounds_and_held_coordinates_are_kept() -> None:
     low, high = np.full(2, -3.0), np.array([0.5, 3.0])
     np.testing.assert_allclose(damped_least_squares(banana, np.zeros(2), low, high), [0.5, 0.25], rtol=1e-6)
-    held = damped_least_squares(banana, np.array([0.2, 2.0]), low, high, held=0)
+    held = damped_least_squares(banana, np.array([0.2, 2.0]), low, high, held=(0,))
     np.testing.assert_allclose(held, [0.2, 0.04], rtol=1e-9)
     start = np.array([0.4, 0.16])
     assert damped_least_squares(banana, start, low, high, enough=1.0) is start

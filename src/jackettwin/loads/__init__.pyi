@@ -52,12 +52,8 @@ from .operation.bem import (
     Control as Control,
     OperatingPoint as OperatingPoint,
     operating_point as operating_point,
-    steady_operation as steady_operation,
 )
-from .operation.dynamic_inflow import (
-    OPERATING_LOG_STD as OPERATING_LOG_STD,
-    operating_damping as operating_damping,
-)
+from .operation.dynamic_inflow import operating_damping as operating_damping
 from .operation.excitation import (
     TowerOutline as TowerOutline,
     Turbulent as Turbulent,

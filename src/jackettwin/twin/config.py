@@ -19,7 +19,6 @@ from jackettwin.response import Sensor
 from jackettwin.soil import DEFAULT_LAWS
 from jackettwin.structure import Assembly, Rayleigh, Structure, assemble
 from jackettwin.twin.calibration import Calibrations
-from jackettwin.twin.life.settings import LifeSettings
 from jackettwin.twin.operation import OperationRule
 from jackettwin.twin.water import WaterConfig, moving_mass
 from jackettwin.updating import MOST_EVALUATIONS, Problem, Target, points_of
@@ -149,12 +148,8 @@ class UpdateSettings(Schema):
     """Nacelle dashpots to update as well, at the mean wind speed."""
     rotor: str | None = None
     """A windIO file or shipped rotor from which the dashpots' priors and patterns follow."""
-    rotor_state: Literal["parked", "operating"] = "parked"
-    """What the rotor does in the records that may update the supports."""
-    rotor_schedule: str | None = None
-    """A CSV of its speed and pitch by wind; None leaves them to the windIO file's control."""
-    shaft: Literal["locked", "free"] | None = None
-    """Whether the rotor turns with the nacelle: by default a parked one does, one at work does not."""
+    shaft: Literal["locked", "free"] = "locked"
+    """Whether the parked rotor turns with the nacelle."""
     wind_speed_m_s: Positive | None = None
     """Instead of the mean over the records' conditions."""
     water: tuple[Literal["water_mass", "water_damping"], ...] = ()
@@ -243,8 +238,6 @@ class TwinConfig:
     """How its days are watched for change."""
     tolerances: TwinTolerances = TwinTolerances()
     """What drawings and sea leave open."""
-    life: LifeSettings | None = None
-    """How damage at the welds is counted; None counts none."""
     rotor_speed_rpm: tuple[float, float] | None = None
     """Lowest and highest speed of the rotor in operation; None leaves it to ``update.rotor``."""
     mode_damping: Mapping[int, float] = field(default_factory=dict)

@@ -12,12 +12,10 @@ from jackettwin.files import digest
 from jackettwin.identification import Examination, IdentificationSettings, Pick
 from jackettwin.records import Record
 from jackettwin.response import Sensor, UndampedModes, mode_kinds, mode_labels, observation_matrix, sees
-from jackettwin.structure import Assembly, assemble
+from jackettwin.structure import Assembly
 from jackettwin.twin.calibration import Calibrations, sensors_at
 from jackettwin.twin.config import PAIRED_MODES, TwinConfig, assembled
-from jackettwin.twin.life.likely_structures import StressModel
 from jackettwin.twin.operation import OperationRule
-from jackettwin.twin.tolerances.registry import directions
 from jackettwin.updating import Feet, modes_by_foot_stiffness, numbered_modes, pairing_score
 
 
@@ -49,8 +47,6 @@ class TwinModel:
         What held of the sensors for a while, instead of ``sensors``.
     operation : OperationRule
         Which state of operation a record was in, and whether it may update the supports.
-    stress : StressModel or None
-        What damage at the welds is told with; None tells none.
     """
 
     name: str
@@ -65,7 +61,6 @@ class TwinModel:
     with_shapes: bool = False
     calibrations: Calibrations = ()
     operation: OperationRule = OperationRule()
-    stress: StressModel | None = None
 
     def __repr__(self) -> str:
         modes = ", ".join(self.labels)
@@ -83,8 +78,6 @@ class TwinModel:
             parts["calibrations"] = self.calibrations
         if self.operation.states:
             parts["operation"] = self.operation.states
-        if self.stress is not None:
-            parts["life"] = [self.stress.settings.curve, self.stress.settings.edition]
         if self.assembly is not None:
             for name in ("mass", "stiffness"):
                 matrix = getattr(self.assembly, name).tocsc()
@@ -194,21 +187,4 @@ def twin_model(config: TwinConfig, assembly: Assembly | None = None) -> TwinMode
         with_shapes=config.update.mac_std is not None,
         calibrations=config.calibrations,
         operation=config.operation,
-        stress=_stress_model(config, assembly, numbered),
-    )
-
-
-def _stress_model(config: TwinConfig, assembly: Assembly, numbered: UndampedModes) -> StressModel | None:
-    """Return what damage is told with, if the twin asks for it."""
-    if config.life is None:
-        return None
-    beam, rotary, subdivide = config.beam, config.rotary_inertia, config.subdivide
-    return StressModel(
-        config.life,
-        assembly,
-        assemble(config.structure, beam_theory=beam, rotary_inertia=rotary, subdivide=subdivide),
-        config.rayleigh,
-        numbered,
-        directions(config, assembly),
-        None if config.water is None else config.water.depth_m,
     )

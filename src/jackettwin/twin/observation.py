@@ -11,7 +11,6 @@ from jackettwin.files import StoredSchema
 from jackettwin.findings import Finding
 from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.response import Sensor
-from jackettwin.twin.life.sensed_damage import SensedDamage
 from jackettwin.updating import Counterpart
 
 
@@ -62,8 +61,6 @@ class Observation:
         For each identified mode, what it was held against in the model; empty without a structure.
     truth : mapping
         What the record says is true of its structure (simulated ones do): ``true_modes``, ``true_support``.
-    damage : SensedDamage or None
-        At the welds that it damages most; None if the twin does not ask for life, or no weld is of tubes.
     """
 
     record_id: str
@@ -80,7 +77,6 @@ class Observation:
     findings: tuple[Finding, ...] = ()
     held: tuple[Counterpart, ...] = ()
     truth: Mapping[str, Any] = field(default_factory=dict)
-    damage: SensedDamage | None = None
 
     def __repr__(self) -> str:
         labels = ", ".join(filter(None, self.labels)) or "none"

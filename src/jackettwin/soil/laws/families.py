@@ -56,6 +56,8 @@ class Family(ABC):
         Whether stiffness and loss are stated at a reference frequency.
     relaxes : bool
         Whether a structure on it has real poles; a springpot's relaxation is a continuum.
+    omissible : tuple of int
+        Parameters that a part of the law vanishes with: the stiffness of each of several branches.
     """
 
     name: ClassVar[str]
@@ -63,6 +65,7 @@ class Family(ABC):
     parameters: ClassVar[tuple[Parameter, ...]]
     needs_frequency: ClassVar[bool] = False
     relaxes: ClassVar[bool] = True
+    omissible: ClassVar[tuple[int, ...]] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -98,14 +101,6 @@ class Family(ABC):
         Laws whose parameters data of a few modes determine need none.
         """
         return {}
-
-    def weakest(self, values: FloatArray) -> int | None:
-        """Return the parameter that a law can best do without, None where each has a meaning of its own."""
-        return None
-
-    def moved(self, values: FloatArray, like: FloatArray) -> FloatArray:
-        """Return the values (n_parameters,) with what is weakest at the place that it has in another law."""
-        return values
 
     def __reduce__(self) -> tuple[Callable[[str], Family], tuple[str]]:
         """A law crosses processes by its name: every process has the same laws."""
@@ -247,22 +242,6 @@ class FreeBranches(Family):
         rows[:, BRANCHES + 1 :: 2] = 1.0 / np.cumprod(faster, axis=1)
         return rows, rows[:, :, None] * _powers(n)
 
-    def weakest(self, values: FloatArray) -> int:
-        """Return the stiffness of the weakest branch."""
-        return 1 + 2 * int(np.argmin(values[1::2]))
-
-    def moved(self, values: FloatArray, like: FloatArray) -> FloatArray:
-        """Return the law with its weakest branch at the place that another's has: times stay in order."""
-        (g, tau), (g_like, tau_like) = _branches(values), _branches(like)
-        weak, to = int(np.argmin(g)), int(np.argmin(g_like))
-        others = np.delete(tau, weak)
-        ends = np.concatenate([[np.inf], others, [0.0]])
-        time = min(max(tau_like[to], _APART * ends[to + 1]), ends[to] / _APART)
-        times, out = np.insert(others, to, time), np.empty_like(values)
-        out[0], out[1::2], out[2] = values[0], np.insert(np.delete(g, weak), to, g[weak]), times[0]
-        out[4::2] = times[:-1] / times[1:]
-        return out
-
     def priors(self, reference_hz: float) -> Mapping[str, tuple[float, float]]:
         """Return priors about a loss factor of 0.1 that frequency hardly changes."""
         times, g = maxwell_3_times(reference_hz), float(np.mean(MAXWELL_3_WEIGHTS))
@@ -281,11 +260,6 @@ def _powers(n: int) -> FloatArray:
         powers[stiffness + 1, 2] = 1.0
         powers[stiffness + 1, 4 : 3 + 2 * j : 2] = -1.0
     return powers
-
-
-def _branches(values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return relative stiffness and relaxation time of every branch of one law."""
-    return values[1::2], values[2] / np.cumprod(np.concatenate([[1.0], values[4::2]]))
 
 
 def _free_branches(n: int) -> tuple[Parameter, ...]:
@@ -307,6 +281,7 @@ class PronyOne(FreeBranches):
     name = "prony-1"
     words = "a spring beside one free Maxwell branch"
     parameters = _free_branches(1)
+    omissible = (1,)
 
 
 class PronyTwo(FreeBranches):
@@ -315,6 +290,7 @@ class PronyTwo(FreeBranches):
     name = "prony-2"
     words = "a spring beside two free Maxwell branches"
     parameters = _free_branches(2)
+    omissible = (1, 3)
 
 
 class PronyThree(FreeBranches):
@@ -323,6 +299,7 @@ class PronyThree(FreeBranches):
     name = "prony-3"
     words = "a spring beside three free Maxwell branches"
     parameters = _free_branches(3)
+    omissible = (1, 3, 5)
 
 
 class PronyFour(FreeBranches):
@@ -331,6 +308,7 @@ class PronyFour(FreeBranches):
     name = "prony-4"
     words = "a spring beside four free Maxwell branches"
     parameters = _free_branches(4)
+    omissible = (1, 3, 5, 7)
 
 
 def _empty(values: FloatArray, *, branches: int) -> tuple[FloatArray, FloatArray]:

@@ -13,8 +13,7 @@ from typing import Literal, NamedTuple, cast
 
 from jackettwin.errors import look_up, require, require_between
 from jackettwin.plugins import plugins_of_type
-from jackettwin.soil.ground.curves import Curve, ScaledCurve
-from jackettwin.soil.ground.pisa import StockyGround
+from jackettwin.soil.ground.curves import Curve
 from jackettwin.soil.ground.profile import Clay, Point, Sand
 from jackettwin.soil.ground.py_curves import dry_stiff_clay_py, sand_py, soft_clay_py, stiff_clay_py
 from jackettwin.soil.ground.tz_curves import (
@@ -31,8 +30,6 @@ from jackettwin.soil.piles.piles import Pile
 REACTIONS = ("sand_py", "clay_py", "sand_tz", "clay_tz", "sand_qz", "clay_qz")
 """Lateral, along the shaft, under the tip, in either soil: fields of :class:`CurveOptions`."""
 LAYERING = ("overburden", "georgiadis")
-PISA = "pisa"
-"""Name of the lateral curves that come with moments along the shaft, and shear and moment at the base."""
 
 
 @dataclass(frozen=True)
@@ -51,15 +48,9 @@ class CurveOptions:
     clay_tz: str = "rp2geo"
     sand_qz: str = "rp2geo"
     clay_qz: str = "rp2geo"
-    p_multiplier: float = 1.0
-    """On every p-y curve: of a pile in a group, behind others of its row."""
-    t_multiplier: float = 1.0
-    """On every t-z curve: shaft friction that cycles along the axis have left, or set-up has added."""
 
     def __post_init__(self) -> None:
         require_between("cycles", self.cycles, 1.0, 1e9)
-        for name in ("p_multiplier", "t_multiplier"):
-            require_between(name, getattr(self, name), 0.01, 5.0)
         require(
             self.layering in LAYERING,
             "unknown way of layering",
@@ -79,21 +70,6 @@ class CurveOptions:
             value=self.clay_py,
             allowed="table, if cyclic",
         )
-        for key in ("sand_py", "clay_py"):
-            require(
-                not (self.cyclic and getattr(self, key) == PISA),
-                "PISA's curves are for static loads",
-                field=key,
-                value=PISA,
-                allowed="rp2geo or table, if cyclic",
-            )
-
-    def is_stocky(self, soil: Sand | Clay) -> bool:
-        """Return whether lateral curves in a soil come with moments and with base terms."""
-        return self._kind(soil) == PISA
-
-    def _kind(self, soil: Sand | Clay) -> str:
-        return str(getattr(self, _reaction(soil, "py")))
 
     def kinds(self, soils: Collection[Sand | Clay]) -> tuple[SoilCurve, ...]:
         """Return the kind of curve that stands for each reaction of some soils."""
@@ -103,9 +79,7 @@ class CurveOptions:
     def curve(self, of: Literal["py", "tz", "qz"], point: Point, pile: Pile) -> Curve:
         """Return the lateral, shaft or tip reaction of the ground at one depth of a pile."""
         reaction = _reaction(point.soil, of)
-        found = soil_curves(reaction)[getattr(self, reaction)].build(point, pile, self)
-        factor = {"py": self.p_multiplier, "tz": self.t_multiplier, "qz": 1.0}[of]
-        return found if factor == 1.0 else ScaledCurve(found, factor)
+        return soil_curves(reaction)[getattr(self, reaction)].build(point, pile, self)
 
 
 def _reaction(soil: Sand | Clay, of: str) -> str:
@@ -179,18 +153,10 @@ def _clay_qz(point: Point, pile: Pile, options: CurveOptions) -> Curve:
     return tip_qz(bearing_pa=q, D=pile.outer_diameter_m, area_m2=pile.tip_area_m2)
 
 
-def _pisa(point: Point, pile: Pile, options: CurveOptions) -> Curve:
-    return StockyGround(point, pile.outer_diameter_m, pile.length_m).lateral
-
-
 SOIL_CURVES = (
     SoilCurve("sand_py", "rp2geo", "API RP 2GEO, O'Neill & Murchison (1983)", _sand_py),
     SoilCurve("clay_py", "table", "Matlock (1970), points of the code; stiff clay by its layer", _clay_py),
     SoilCurve("clay_py", "cube-root", "Matlock's parabola, static only; stiff clay by its layer", _clay_py),
-    SoilCurve(
-        "sand_py", PISA, "PISA, dense Dunkirk sand (Burd et al. 2020), with base and side terms", _pisa
-    ),
-    SoilCurve("clay_py", PISA, "PISA, Cowden till (Byrne et al. 2020), with base and side terms", _pisa),
     SoilCurve("sand_tz", "rp2geo", "API RP 2GEO: peak at 1 % of the diameter", _sand_tz),
     SoilCurve("sand_tz", "rp2a", "API RP 2A-WSD: straight to the peak at 2.54 mm", _sand_tz),
     SoilCurve("clay_tz", "rp2geo", "API RP 2GEO: peak at 1 % of the diameter, then a residual", _clay_tz),

@@ -78,9 +78,7 @@ def data_of(config: TwinConfig, model: TwinModel, state: TwinState, wind: float 
             value=config.update.weighting,
             allowed="auto or covariance",
         )
-    return operating_states(
-        config, measured, state, fitted, wind, assembly=model.structure, numbered=model.modes
-    )
+    return operating_states(config, measured, state, fitted, wind)
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,9 @@ from jackettwin.arrays import FloatArray
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.search.descent import End
 from jackettwin.updating.search.path import Path, constrained, held_minimum
+from jackettwin.updating.search.shorter_law import ShorterLaws
 
-_SAME = 0.02
+SAME = 0.02
 """End points closer than this in every ln θ are one."""
 _STAGES = 10
 """Steps of the walk from one end point to another."""
@@ -40,67 +41,44 @@ def gather(
     known : clusters gathered before, known to be distinct
     most_steps : of all walks between them
     """
-    before = known or []
+    before, shorter = known or [], ShorterLaws(problem)
     distinct = {id(end) for end, _ in before}
     kept: list[tuple[End, int]] = []
     left = most_steps
     for end, count in sorted([*before, *ends], key=lambda pair: pair[0].cost):
-        for i, (other, others) in enumerate(kept):
-            if id(end) in distinct and id(other) in distinct:
-                continue
-            same = bool(np.abs(end.z - other.z).max() < _SAME)
-            if not same and left > 0:
-                same, steps = linked(problem, other, end)
-                left -= steps
-            if same:
-                kept[i] = (other, others + count)
+        others = [i for i, (other, _) in enumerate(kept) if not distinct >= {id(end), id(other)}]
+        # a look before any walk: most end points lie on top of another
+        place = next((i for i in others if np.abs(end.z - kept[i][0].z).max() < SAME), None)
+        for i in others:
+            if place is not None or left <= 0:
                 break
-        else:
+            same, steps = linked(problem, kept[i][0], end, shorter)
+            left -= steps
+            place = i if same else None
+        if place is None:
             kept.append((end, count))
+        else:
+            kept[place] = (kept[place][0], kept[place][1] + count)
     return kept, left > 0
 
 
-def linked(problem: Problem, low: End, high: End) -> tuple[bool, int]:
+def linked(problem: Problem, low: End, high: End, shorter: ShorterLaws | None = None) -> tuple[bool, int]:
     """Return whether a walk from the higher end point to the lower one never has to climb, and its steps.
 
-    One coordinate is stepped and the others are refitted, first the coordinate in which the two lie farthest
-    apart. If the cost falls on the way, the higher end point was a shoulder and no minimum. What may as well
-    be nothing in a law may stand at another place in the lower one.
+    It leads through a shorter law that both hold; else one coordinate is stepped and the others are refitted,
+    first the coordinate in which the two lie farthest apart. If the cost falls on the way, the higher end
+    point was a shoulder and no minimum.
+
+    Parameters
+    ----------
+    shorter : ShorterLaws, optional
+        Those that are known already.
     """
-    found, taken = _joined(problem, low, high)
-    through = None if found else _through_nothing(problem, low, high)
-    if through is not None:
-        found, steps = _joined(problem, low, through)
-        taken += steps
-    return found, taken
-
-
-def _through_nothing(problem: Problem, low: End, high: End) -> End | None:
-    """Return the higher end point with the weakest part of its laws put where the lower has it.
-
-    The part is first taken away; None if the cost does not allow that.
-    """
-    family, path, here = problem.model.family, Path(problem), high
-    allowance, n = problem.allowance(high.cost), len(family.parameters)
-    if problem.model.tie_groups.one_loss:
-        return None  # its laws share parameters
-    of_laws = problem.states[0].weights[: problem.model.n_of_law]
-    for columns in (of_laws == 1.0).argmax(axis=1).reshape(-1, n):
-        weakest = family.weakest(np.exp(here.z[columns]))
-        if weakest is None:
-            return None
-        j = int(columns[weakest])
-        without, _, _ = _walk(path, here, j, float(problem.prior.low[j]), allowance)
-        if without is None:
-            return None
-        z, like = without.copy(), np.exp(low.z[columns])
-        z[columns] = np.log(family.moved(np.exp(without[columns]), like))
-        z, j = np.clip(z, problem.prior.low, problem.prior.high), int(columns[family.weakest(like) or 0])
-        z, cost = constrained(path, z, j, float(z[j]), enough=high.cost + allowance)
-        if cost > high.cost + allowance:
-            return None
-        here = End(z, cost, True)
-    return here
+    left = [(shorter or ShorterLaws(problem))(end) for end in (low, high)]
+    if left[0] is not None and left[1] is not None and left[0].shape == left[1].shape:
+        if np.abs(left[0] - left[1]).max() < SAME:
+            return True, 0
+    return _joined(problem, low, high)
 
 
 def _joined(problem: Problem, low: End, high: End) -> tuple[bool, int]:
@@ -172,7 +150,9 @@ def _reach(path: Path, end: End, j: int, limit: float, allowance: float) -> Floa
     """
     near, ceiling = path.surrogate(end.z), end.cost + allowance
     if near is not None:
-        far = _farthest(lambda z: held_minimum(path.problem, near, z, j, ceiling), end.z, j, limit, ceiling)
+        far = _farthest(
+            lambda z: held_minimum(path.problem, near, z, (j,), ceiling), end.z, j, limit, ceiling
+        )
         if path.total(far) <= ceiling + _LOOSE * allowance:
             return far
     return _farthest(lambda z: constrained(path, z, j, float(z[j])), end.z, j, limit, ceiling)

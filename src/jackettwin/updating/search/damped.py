@@ -36,7 +36,7 @@ def damped_least_squares(
     low: FloatArray,
     high: FloatArray,
     *,
-    held: int | None = None,
+    held: tuple[int, ...] = (),
     tolerance: float = 1e-9,
     enough: float = 0.0,
     most: int = 60,
@@ -47,8 +47,8 @@ def damped_least_squares(
     ----------
     rows : residuals and Jacobian at a point
     start, low, high : (d,)
-    held : int, optional
-        A coordinate that does not move.
+    held : tuple of int
+        Coordinates that do not move.
     tolerance : float
         It ends where a step moves no coordinate by so much, or lowers the cost by less than this share of it.
     enough : float
@@ -56,15 +56,17 @@ def damped_least_squares(
     most : int
         Steps.
     """
+    low, high = low.copy(), high.copy()
+    for side in (low, high):
+        side[list(held)] = start[list(held)]
     z, damping, width = start, _FIRST, high - low
-    movable = np.arange(z.size) != held
     r, J = rows(z)
     cost = float(r @ r)
     for _ in range(most):
         if cost <= enough:
             break
         gradient = r @ J
-        free = movable & ~(((z <= low) & (gradient > 0.0)) | ((z >= high) & (gradient < 0.0)))
+        free = ~(((z <= low) & (gradient > 0.0)) | ((z >= high) & (gradient < 0.0)))
         U, s, Vt = np.linalg.svd(J * (width * free), full_matrices=False)
         while damping < _LAST:
             u = _bent_step(rows, z, r, J, U * (s / (s * s + damping)), Vt, width, low, high)

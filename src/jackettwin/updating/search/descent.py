@@ -15,6 +15,8 @@ from jackettwin.updating.search.path import Path, Trail, creep, minimum
 _POINT = 0.02
 """A well-determined minimum moves by less than this in ln θ when the pull is taken away. In a flat valley of
 the cost the point moves further, and the one with the pull is kept."""
+_ROUGH = 1e-6
+"""Share of the cost to which a point in a valley of a law's branches is sought."""
 _EXACT = 1e-8
 """Poles are right to this (relative): the condensed model against the full one."""
 
@@ -59,7 +61,9 @@ def descend(
             break
     else:
         z = creep(path, z, path, tolerance=1e-10)  # off a plateau
-    z, arrived = minimum(path, z, path.pull(path.total(z)))
+    # in a valley of branches that are not needed the place hardly matters: they are left out to compare ends
+    tolerance = _ROUGH if problem.model.family.omissible else 1e-8
+    z, arrived = minimum(path, z, path.pull(path.total(z)), tolerance=tolerance)
     if arrived and _flat(path, z):
         return replace(_judged(problem, z), evaluations=path.evaluations)
     free, _ = minimum(path, z)

@@ -111,11 +111,11 @@ def creep(
     *,
     tolerance: float,
     most: int = _STEPS,
-    held: int | None = None,
+    held: tuple[int, ...] = (),
 ) -> FloatArray:
-    """Return where least squares end that ask the structure at every step, one coordinate held or none."""
+    """Return where least squares end that ask the structure at every step, some coordinates held or none."""
     prior, z = path.problem.prior, start.copy()
-    free = np.flatnonzero(np.arange(z.size) != held)
+    free = np.setdiff1d(np.arange(z.size), held)
 
     def full(y: FloatArray) -> FloatArray:
         z[free] = y
@@ -147,7 +147,7 @@ def minimum(
     start: FloatArray,
     pulled: Callable[[Rows], Rows] = unchanged,
     *,
-    held: int | None = None,
+    held: tuple[int, ...] = (),
     tolerance: float = 1e-8,
     within: float = np.inf,
 ) -> tuple[FloatArray, bool]:
@@ -156,8 +156,8 @@ def minimum(
     Parameters
     ----------
     pulled : adds to the residuals
-    held : int, optional
-        A coordinate that does not move.
+    held : tuple of int
+        Coordinates that do not move.
     tolerance : float
         It ends where a round lowers the cost by less than this share of it.
     within : float
@@ -205,22 +205,24 @@ def constrained(
     enough : float
         A cost that need not be lowered.
     """
-    start = z.copy()
+    start, held = z.copy(), (parameter,)
     start[parameter] = value
     if near is not None:
-        there, _ = held_minimum(path.problem, near, start, parameter, enough)
+        there, _ = held_minimum(path.problem, near, start, held, enough)
         if path.total(there) <= enough:
             return there, path.total(there)
-    there = minimum(path, start, held=parameter, tolerance=_ROUGH)[0] if z.size > 1 else start
+        if path.total(there) < squares(near(start)[0]):
+            start = there
+    there = minimum(path, start, held=held, tolerance=_ROUGH)[0] if z.size > 1 else start
     return there, path.total(there)
 
 
 def held_minimum(
-    problem: Problem, near: Rows, start: FloatArray, parameter: int, enough: float = 0.0
+    problem: Problem, near: Rows, start: FloatArray, held: tuple[int, ...], enough: float = 0.0
 ) -> tuple[FloatArray, float]:
-    """Return the least point of a surrogate with one ln θ held, or one that is low enough, and its cost."""
+    """Return the least point of a surrogate with some ln θ held, or one that is low enough, and its cost."""
     prior = problem.prior
     there = damped_least_squares(
-        near, start, prior.low, prior.high, held=parameter, tolerance=_ROUGH, enough=enough
+        near, start, prior.low, prior.high, held=held, tolerance=_ROUGH, enough=enough
     )
     return there, squares(near(there)[0])

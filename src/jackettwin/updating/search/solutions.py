@@ -13,7 +13,7 @@ from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError, require
 from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.problem import Problem
-from jackettwin.updating.search.clusters import extent, gather
+from jackettwin.updating.search.clusters import SAME, extent, gather
 from jackettwin.updating.search.descent import End, descend, descend_simplex, settle
 from jackettwin.updating.search.start_points import given_points
 
@@ -233,8 +233,13 @@ def _kept(problem: Problem, clusters: list[tuple[End, int]]) -> list[tuple[End, 
 
 def _solutions(problem: Problem, kept: list[tuple[End, int]]) -> tuple[Solution, ...]:
     """Return the solutions that clusters of end points are."""
+    stay: list[tuple[End, int]] = []
+    moved: list[tuple[End, int]] = []
+    for end, count in kept:
+        middle = settle(problem, end)
+        (stay if np.abs(middle.z - end.z).max() < SAME else moved).append((middle, count))
     # two ends of one cluster may only be seen to be one from its middle
-    clusters, _ = gather(problem, [(settle(problem, end), count) for end, count in kept])
+    clusters, _ = gather(problem, moved, known=stay)
     return tuple(_solution(problem, end, count) for end, count in clusters)
 
 
