@@ -344,9 +344,9 @@ def _table() -> tuple[KnownTolerance, ...]:
 REMAINDERS = {"remainder_frequency": 0.003, "remainder_damping": 0.07}
 """What beams, joints and laws miss of each mode by itself, as shares: 0.2 to 0.5 % of a frequency that a
 finer mesh or a shell model moves, and what laws of other forms differ by in damping between modes."""
-SCALES = (1.0, 1.4, 2.0)
+SCALES = (1.0, 1.4)
 """By how much all tolerances and remainders of a twin may be larger together than the table says, equally
-likely: as said up to twice that, in even steps of the logarithm. Nobody has measured them on many assets."""
+likely: twice the variance. Nobody has measured them on many assets."""
 TOLERANCES = {known.tolerance.name: known for known in _table()}
 
 

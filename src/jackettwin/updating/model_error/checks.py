@@ -34,6 +34,8 @@ _LARGEST = 8.0
 """Standard deviations of a tolerance beyond which it is no explanation: nor does the first order hold."""
 _WORTH = 4.0
 """χ² that an explanation takes off to be one: two standard deviations."""
+_SURELY = float(ndtri(0.9))
+"""Standard deviations beyond the limit of what is objected to nine times in ten."""
 _TOLD = 1e-9
 """Precision, in that of the measurement, below which the others say nothing of a datum."""
 
@@ -90,13 +92,13 @@ class Explanation:
 
 @dataclass(frozen=True, eq=False)
 class Unseen:
-    """A suspect that at its size would be objected to less than every second time.
+    """A suspect that at its size would be objected to less than nine times in ten.
 
     Attributes
     ----------
     tolerance : Tolerance
     seen_from : float
-        Size in its unit from which it would be every second time or more, as far as the first order holds;
+        Size in its unit from which it would be nine times in ten or more, as far as the first order holds;
         infinite if it moves nothing.
     effect : (n_parameters,)
         By how much ln θ is another than it is said to be, where the suspect is true at its size.
@@ -214,7 +216,7 @@ def _suspects(
         power = max(float(gamma @ W @ gamma), 0.0)
         if float(gamma @ W @ rows.r) ** 2 > limit**2 * max(power, _TOLD):
             suspected[tolerance.name] = tolerance
-        size = tolerance.std * (limit / sqrt(power) if power > 0.0 else np.inf)
+        size = tolerance.std * ((limit + _SURELY) / sqrt(power) if power > 0.0 else np.inf)
         known = unseen.get(tolerance.name)
         if size > tolerance.std and (known is None or size > known.seen_from):
             unseen[tolerance.name] = Unseen(tolerance, size, moved @ gamma)
