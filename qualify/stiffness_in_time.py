@@ -24,7 +24,7 @@ from jackettwin.updating import Residuals, SupportModel, Target, single, support
 
 FIRST_SEED, LOSS, GROWN = 5000, 0.1, 1.3
 """Seeds below were used while it was written."""
-ALONE = tuple(sorted({*range(20, 961, 20), 64, 96, 128, 192, 256}))
+ALONE = tuple(sorted({*range(20, 961, 20), 48, 64}))
 """Days of the first history whose cost alone is measured."""
 KNOWN = 0.15
 """Standard deviation of ln k by all records together, as with a model error of a third of a per cent."""

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.stats import binomtest
-from wrong_models import held, twin
+from wrong_models import held, told, twin
 
 CASES = range(200, 212)
 """Twelve kinds of wrongness."""
+VISCOUS, SOFT = 100048, 100182
+"""An asset on dashpots under a twin of hysteretic ground, and one on feet that are soft sideways."""
 
 
 def test_intervals_of_wrong_models_hold_the_truth_and_those_of_a_true_one_do_not() -> None:
@@ -20,3 +22,11 @@ def test_intervals_of_wrong_models_hold_the_truth_and_those_of_a_true_one_do_not
     width = np.median([r["product"]["length"][-2] for r in found])
     oracle = np.median([r["oracle"]["length"][-2] for r in found])
     assert np.exp(width) < 2.5 * np.exp(oracle)
+
+
+def test_another_law_is_asked_for_and_soft_feet_are_said_to_be_invisible() -> None:
+    viscous, soft = twin(VISCOUS), twin(SOFT)
+    assert viscous["kind"] == "another law of the ground" and soft["kind"] == "soft horizontal feet"
+    assert viscous["product"]["suspected"] == ["law"] and viscous["product"]["objects"]
+    assert not soft["product"]["objects"] and "soft_sideways" in soft["product"]["unseen"]
+    assert told(viscous) and told(soft)

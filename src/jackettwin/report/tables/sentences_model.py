@@ -35,6 +35,8 @@ def size_words(tolerance: Tolerance, size: float) -> str:
         return f"{100.0 * size:+.2g} %".replace("-", "−")
     if tolerance.unit == "m" and tolerance.name not in _METRES:
         return f"{1000.0 * size:+.2g} mm".replace("-", "−")
+    if tolerance.unit == "power":
+        return f"by ω^{size:.2g}".replace("-", "−")
     return f"{size:+.2g} {tolerance.unit}".replace("-", "−")
 
 

@@ -46,8 +46,8 @@ _LEAST_SPREAD = 5e-4
 """Standard deviation of ln f that conditions may explain where less is seen."""
 _EPOCH = np.datetime64("1970-01-01")
 _MOST_DRAWS = 60
-_HALVINGS = 26
-"""Of the interval of six standard deviations that a quantile is looked for in: to 10⁻⁷ of it."""
+_HALVINGS = 18
+"""Of the interval of six standard deviations that a quantile is looked for in: to 4·10⁻⁶ of it."""
 _LEAST_WEIGHT = 1e-4
 """Of a part of a mixture that counts."""
 _FARTHEST = 4.0

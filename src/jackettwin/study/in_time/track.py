@@ -39,9 +39,10 @@ from jackettwin.watching import (
     smoothed,
 )
 
-LEARNT_DAYS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
-"""Numbers of days after which conditions are standardised and slopes taken anew, and all is followed
-again."""
+LEARNT_DAYS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48)
+"""Numbers of days after which conditions are standardised and slopes taken anew, and all is followed again.
+Later it would cost more than a day may, and change little: what a standard deviation of a condition was taken
+to be only sizes the prior of its coefficient."""
 STEP_DAYS = 32
 """Days after which the oldest as many of a window of twice the length are final, and left behind."""
 SURE = 0.95
@@ -113,7 +114,7 @@ class StiffnessTrack:
     kept : what stays; None before the first day that tells anything
     bank, lagged : after the last day
     window : rows of the window, their noise as it was taken
-    half : the track without its last days, as it was run when conditions were learnt on this very day
+    half : the track after the first ``STEP_DAYS`` of the window, once it has as many
     """
 
     model: TwinModel
@@ -139,7 +140,7 @@ class StiffnessTrack:
         )
         if self.bank is None or len(track.dates) in LEARNT_DAYS:
             return track._learnt_anew(about)
-        return track._ran((date,))
+        return track._ran((date,))._halved()
 
     def _learnt_anew(self, about: Sensitivity) -> StiffnessTrack:
         known = normalisation_of(self.model, self.every, self.dates, about)
@@ -148,16 +149,23 @@ class StiffnessTrack:
         changes = () if self.kept is None else self.kept.changes
         n, of = len(self.dates), _chained("", self.every, self.dates)
         kept = Tracked(known, identified=n, of=of, changes=changes, settled=n, settled_changes=changes)
-        begun, cut = replace(self, kept=kept), max(n - STEP_DAYS, 0)
-        half = begun._from_start(self.dates[:cut])
-        return replace(half._ran(self.dates[cut:]), half=half)
+        return replace(self, kept=kept)._from_start(self.dates)
 
     def _from_start(self, dates: Sequence[str]) -> StiffnessTrack:
         """Return the track with the days of its window taken again."""
         if self.kept is None:
             raise ValueError("a track that has not begun")
         start, lagged = _start(self.kept)
-        return replace(self, bank=start, lagged=lagged, window=())._ran(dates)
+        begun = replace(self, bank=start, lagged=lagged, window=(), half=None)._ran(dates[:STEP_DAYS])
+        if len(dates) < STEP_DAYS:
+            return begun
+        return replace(begun, half=begun)._ran(dates[STEP_DAYS:])
+
+    def _halved(self) -> StiffnessTrack:
+        """Return the track that remembers itself, if its window has as many days as become final at once."""
+        if self.kept is None or len(self.dates) - self.kept.days != STEP_DAYS:
+            return self
+        return replace(self, half=self)
 
     def _ran(self, dates: Sequence[str]) -> StiffnessTrack:
         """Return the track with the rows of some more days."""
@@ -169,7 +177,7 @@ class StiffnessTrack:
         for r in range(read.days.size):
             bank, noise[r] = after_row(bank, read, r)
         window = (*window, replace(read, noise=noise)) if read.days.size else window
-        return replace(self, bank=bank, lagged=lagged, window=window, half=None)
+        return replace(self, bank=bank, lagged=lagged, window=window)
 
     def level(self, reference: Reference) -> StiffnessLevel | None:
         """What is known of the last day."""
@@ -226,10 +234,12 @@ class StiffnessTrack:
         cut = n - STEP_DAYS
         whole = self._window_levels(reference)
         gone = {date: whole[date] for date in self.dates[kept.days : cut] if date in whole}
-        before = self.half or self._from_start(self.dates[kept.days : cut])
-        if before.bank is None:
+        before = self.half
+        if before is None or before.bank is None:
             raise ValueError("a track that has not begun")
-        all_roots = replace(before, bank=rooted(before.bank), window=())._ran(self.dates[cut:])
+        all_roots = replace(self, bank=rooted(before.bank), lagged=before.lagged, window=())._ran(
+            self.dates[cut:]
+        )
         start = rooted(before.bank, all_roots.bank)
         known = max(kept.identified, cut)
         window = replace(
