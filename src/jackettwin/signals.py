@@ -120,15 +120,27 @@ def local_peaks(values: FloatArray, prominence: float = 0.0) -> IntArray:
     turns = np.flatnonzero(rise)  # a flat top lies between the last rise and the next fall
     tops = (rise[turns[:-1]] > 0.0) & (rise[turns[1:]] < 0.0)
     peaks = (turns[:-1][tops] + 1 + turns[1:][tops]) // 2
-    if prominence <= 0.0:
+    if prominence <= 0.0 or not peaks.size:
         return np.asarray(peaks)
-    return np.array([k for k in peaks if _prominence(values, k) >= prominence], dtype=np.intp)
+    return np.array(_standing_out(values, peaks, prominence), dtype=np.intp)
 
 
-def _prominence(values: FloatArray, k: int) -> float:
-    """Return how far a peak stands above the higher of the valleys beside it."""
-    valleys = []
-    for side in (values[k::-1], values[k:]):
-        higher = np.flatnonzero(side > values[k])
-        valleys.append(side[: higher[0] if len(higher) else None].min())
-    return float(values[k] - max(valleys))
+def _standing_out(values: FloatArray, peaks: IntArray, prominence: float) -> list[int]:
+    """Return the peaks after a rise and before a fall by a prominence; those of one height count alike."""
+    kept: list[int] = []
+    tops: list[int] = []
+    valleys = np.minimum.reduceat(
+        values, np.append(0, peaks)
+    ).tolist()  # before each peak, and after the last
+    low, highest = valleys[0], -np.inf
+    for k, value, after in zip(peaks.tolist(), values[peaks].tolist(), valleys[1:], strict=True):
+        if value == highest:
+            tops.append(k)
+        elif value > highest and (tops or value - low >= prominence):
+            highest, tops = value, [k]
+        if not tops:
+            low = min(low, after)
+        elif highest - after >= prominence:
+            kept += tops
+            low, highest, tops = after, -np.inf, []
+    return kept

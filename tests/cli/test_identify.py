@@ -122,3 +122,13 @@ def test_a_report_under_another_name_than_that_of_a_page_is_refused(tmp_path: Pa
     page = tmp_path / "modes.txt"
     code, _, err = run(str(RECORDS / "pile_U12_s301.parquet"), "--report", str(page))
     assert code == 2 and "'modes.txt' is no name of a page" in err and not page.exists()
+
+
+def test_modes_are_laid_beside_a_structure(tmp_path: Path) -> None:
+    record, out = str(RECORDS / "kv_U12_s311.parquet"), tmp_path / "m.uff"
+    code, text, _ = run(record, "--quick", "--model", "jacket15", "--json", "--out", str(out))
+    assert code == 0 and out.read_text("ascii").count("\n    55\n") == len(json.loads(text)["modes"])
+    best = {pair["label"] for pair in json.loads(text)["model"]["pairs"] if pair["mac"] > 0.95}
+    assert {"side_side_1", "fore_aft_1"} <= best
+    code, _, message = run(record, "--quick", "--model", "no_such_structure")
+    assert code == 2 and "no_such_structure" in message

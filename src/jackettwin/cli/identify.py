@@ -73,6 +73,7 @@ class _Method(click.types.StringParamType):
 )
 @click.option("--band", help="LOW,HIGH in Hz: where modes are sought; default from the lowest clear peak.")
 @click.option("--quick", is_flag=True, help="A quick look: no uncertainty, no refinement, no further checks.")
+@click.option("--model", help="Structure whose mode shapes are laid beside: MAC at the sensors.")
 @click.option("--compare", is_flag=True, help="One record by every method, side by side.")
 @click.option("--real-poles", is_flag=True, help="Look for relaxations as well: poles that do not oscillate.")
 @click.option(
@@ -83,8 +84,8 @@ class _Method(click.types.StringParamType):
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
-    help="File to write (.json, .csv or .nc), or a folder for all three; a folder also keeps the result of "
-    "every record, so that a run that was stopped goes on where it was.",
+    help="File to write (.json, .csv, .nc, or .uff of shapes), or a folder for the first three, which also "
+    "keeps the result of every record, so that a run that was stopped goes on where it was.",
 )
 @click.option(
     "--sample-rate", type=FiniteFloat(min=0.0, min_open=True), help="Hz, of files that do not say it."
@@ -107,6 +108,7 @@ def identify_command(
     report: Path | None,
     band: str | None,
     quick: bool,
+    model: str | None,
     compare: bool,
     real_poles: bool,
     picks_file: str | None,
@@ -129,7 +131,7 @@ def identify_command(
     known = None if fresh or report is not None else cache.kept_document(place())
     if known is not None:
         messages.print("identified before, and nothing has changed since; --fresh identifies again")
-        _deliver(known, out, as_json, _print_many if "groups" in known else _print_one)
+        _deliver(known, out, as_json, _print_many if "groups" in known else _print_one, model)
         return
     from jackettwin.files import check_room
     from jackettwin.records import record_files
@@ -157,7 +159,7 @@ def identify_command(
             show = _print_many
         if report is None and not document.get("failed"):
             cache.keep_document(document, place())
-        _deliver(document, out, as_json, show)
+        _deliver(document, out, as_json, show, model)
 
 
 def _place(
@@ -201,20 +203,47 @@ def _deliver(
     out: Path | None,
     as_json: bool,
     show: Callable[[Mapping[str, Any]], None],
+    model: str | None,
 ) -> None:
+    if model is not None:
+        document = {**document, "model": _beside(document, model)}
     if out is not None:
         _export(document, out)
     if as_json:
         print_json(document)
     else:
         show(document)
+        if model is not None:
+            _print_beside(document["model"], model)
+
+
+def _beside(document: Mapping[str, Any], model: str) -> dict[str, Any]:
+    from jackettwin.decks import read_structure
+    from jackettwin.structure import assemble
+    from jackettwin.study import beside_model
+
+    return beside_model(document, assemble(read_structure(model)))
+
+
+def _print_beside(found: Mapping[str, Any], model: str) -> None:
+    """Print which mode of a structure each identified one is most like."""
+    columns = (
+        TableColumn("f [Hz]", "frequency_hz", ".4f"),
+        TableColumn("status", "status"),
+        TableColumn("most like", "label"),
+        TableColumn("f [Hz]", "model_frequency_hz", ".4f"),
+        TableColumn("difference [%]", "relative_difference", ".1f", 100.0),
+        TableColumn("MAC", "mac", ".3f"),
+    )
+    pairs = [pair for pair in found["pairs"] if pair is not None]
+    show_table(Table(f"{model} at {len(found['channels'])} channels", columns, pairs))
 
 
 def _export(document: Mapping[str, Any], out: Path) -> None:
     from jackettwin.files import write_json
-    from jackettwin.study import WRITERS, export_modes
+    from jackettwin.study import ALWAYS, export_modes
 
-    for path in [out / f"modes{ending}" for ending in WRITERS] if _folder(out) else [out]:
+    for path in [out / f"modes{ending}" for ending in ALWAYS] if _folder(out) else [out]:
         export_modes(document, path)
         messages.print(f"wrote {path}")
     if _folder(out):

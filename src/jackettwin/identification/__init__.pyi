@@ -4,7 +4,11 @@ from .decays.relaxations import (
     ReleaseRelaxations as ReleaseRelaxations,
     release_relaxations as release_relaxations,
 )
-from .document import identification_document as identification_document, limits_document as limits_document
+from .document import (
+    channels_document as channels_document,
+    identification_document as identification_document,
+    limits_document as limits_document,
+)
 from .estimate import (
     Identification as Identification,
     ModalEstimate as ModalEstimate,

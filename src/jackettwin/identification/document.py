@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from jackettwin.identification.comparison import Comparison
     from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
     from jackettwin.identification.relaxation_limits import AmbientLimits
+    from jackettwin.records import Channel
 
 
 def identification_document(
@@ -54,6 +55,21 @@ def identification_document(
         "notes": list(found.notes),
         **({} if compared is None else {"methods": _comparison_document(compared)}),
         "conditions": dict(conditions),
+        "channels": channels_document(found.channels),
+    }
+
+
+def channels_document(channels: Sequence[Channel]) -> dict[str, Any]:
+    """Return what the channels of a mode shape measure, where and in which direction, by name."""
+    return {
+        c.name: {
+            "quantity": c.quantity,
+            "unit": c.unit,
+            "height_m": c.height_m,
+            "node": c.node,
+            "direction": list(c.direction),
+        }
+        for c in channels
     }
 
 

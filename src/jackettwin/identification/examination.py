@@ -133,7 +133,7 @@ def examine(
     chosen, repeated = each_sample_once(chosen)
     chosen, stepped = zeros_in_line(chosen)
     chosen, crossed = axes_in_line(chosen)
-    quality = assess(chosen)
+    quality = assess(chosen, thorough=not settings.quick)
     alarms = (f for f in (*repeated, *stepped, *too_short(chosen)) if f.severity == "alarm")
     doubts = (*alarms, *(f for f in quality.findings if f.code in UNFIT and not f.repaired))
     steps: tuple[Step, ...] = (

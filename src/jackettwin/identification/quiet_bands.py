@@ -64,7 +64,10 @@ def searched(ready: Prepared, settings: IdentificationSettings) -> PoleSearch:
     resolved = ready.settings
     found = clusters(poles, distance=settings.cluster_distance, orders=resolved.orders, scale=ready.scale)
     rate = resolved.sample_rate_hz
-    tones = find_tones(poles, found, ready.y, ready.scale, rate, settings, ready.drifting)
+    if settings.quick:
+        tones = Tones(frozenset(), (), tuple(ready.drifting), ready.y)
+    else:
+        tones = find_tones(poles, found, ready.y, ready.scale, rate, settings, ready.drifting)
     return PoleSearch(poles, candidates_of(poles, found, tones, ready, settings), tones)
 
 

@@ -112,6 +112,11 @@ class IdentificationSettings(Schema):
             )
         return self
 
+    @property
+    def quick(self) -> bool:
+        """Whether poles and shapes alone are asked for, without what tells modes from tones."""
+        return self.blocks == 0 and not self.refine
+
     def with_method(self, method: str) -> IdentificationSettings:
         """Return the settings with another method, checked like one from a file."""
         return validate(IdentificationSettings, {**dict(self), "method": method})

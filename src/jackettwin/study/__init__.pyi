@@ -33,8 +33,9 @@ from .life.updated_system import (
     updated_systems as updated_systems,
     with_record as with_record,
 )
-from .many_records.export import WRITERS as WRITERS, export_modes as export_modes
+from .many_records.export import ALWAYS as ALWAYS, WRITERS as WRITERS, export_modes as export_modes
 from .many_records.long_records import LONG as LONG, PIECE_S as PIECE_S
+from .many_records.model_shapes import beside_model as beside_model
 from .measurements import MeasuredMode as MeasuredMode, sensors_of as sensors_of
 from .modes_in_time import MODES_IN_TIME as MODES_IN_TIME, write_modes_in_time as write_modes_in_time
 from .result import DampingExcess as DampingExcess, TwinResult as TwinResult

@@ -103,10 +103,12 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
     level, differentiated = accelerated(detrend(usable))
     top = _band_top_hz(level, settings) or np.inf
     level = _decimated(level, top, settings)
-    rotor = estimated_speed(level.data, level.sample_rate_hz)
+    rotor = None if settings.quick else estimated_speed(level.data, level.sample_rate_hz)
     tones, slowly_drifting, without = steady_tones(level.data, level.sample_rate_hz)
-    drifting, without = drifting_tones(without, level.sample_rate_hz, highest_hz=top)
-    drifting = (*slowly_drifting, *drifting)
+    drifting = slowly_drifting
+    if not settings.quick:
+        more, without = drifting_tones(without, level.sample_rate_hz, highest_hz=top)
+        drifting = (*drifting, *more)
     if tones or drifting:
         level = replace(level, data=without)
         settings = _above_tones(level, settings, min([*tones, *(tone.swept_hz[0] for tone in drifting)]))

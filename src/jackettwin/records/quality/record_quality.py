@@ -10,7 +10,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.findings import Finding
 from jackettwin.quantities import VIBRATIONS
-from jackettwin.records.clocks import clock_findings, clocks_of, in_step
+from jackettwin.records.clocks import LoggerClocks, clock_findings, clocks_of, in_step
 from jackettwin.records.processing import filters
 from jackettwin.records.quality import faults, sensor_polarity
 from jackettwin.records.quality.aliasing import not_filtered
@@ -80,22 +80,28 @@ class Quality:
         }
 
 
-def assess(record: Record) -> Quality:
+def assess(record: Record, *, thorough: bool = True) -> Quality:
     """Look for gaps, spikes, clipping, frozen and dead channels, drift, swapped signs and a bad clock.
 
     Never fails, whatever the samples are.
+
+    Parameters
+    ----------
+    thorough : bool
+        Whether clocks are compared and changes within the record and missing filters are sought: two thirds
+        of the time.
     """
     unreadable = np.isinf(record.data) | (np.abs(record.data) > LARGEST)
     record = replace(record, data=np.where(unreadable, np.nan, record.data))
     held = [faults.hold_length(row) for row in record.data]
     spikes = [faults.spikes(row, hold=hold) for row, hold in zip(record.data, held, strict=True)]
     slow_free = _without_slow(record, spikes)
-    clocks = clocks_of(record, slow_free)
+    known = clocks_of(record, slow_free) if thorough else LoggerClocks(stop=record.data.shape[1])
     # channels are compared after correction of their clocks
-    together = in_step(slow_free, clocks, record.sample_rate_hz)
-    groups = list(sensor_polarity.parallel_groups(record, together[:, clocks.start : clocks.stop]))
+    together = in_step(slow_free, known, record.sample_rate_hz)
+    groups = list(sensor_polarity.parallel_groups(record, together[:, known.start : known.stop]))
     reversed_channels = sensor_polarity.reversed_channels(record, groups)
-    changed = _changed(record, together)
+    changed = _changed(record, together) if thorough else {}
     judged = [
         _judge(
             record, i, held[i], spikes[i], slow_free[i], reversed_channels.get(channel.name), changed.get(i)
@@ -108,13 +114,13 @@ def assess(record: Record) -> Quality:
     findings += [Finding("unit", name, wrong.words) for name, wrong in units.items()]
     findings += [Finding("file", params={"text": str(text)}) for text in record.metadata.get("remarks", ())]
     findings += [*_unreadable(record, unreadable), *_weak(record, channels), *_clock(record)]
-    findings += _folded(record, channels, slow_free)
-    findings += clock_findings(record, clocks)
+    findings += _folded(record, channels, slow_free) if thorough else []
+    findings += clock_findings(record, known)
     vibrating = [q.score for q, c in zip(channels, record.channels, strict=True) if c.quantity in VIBRATIONS]
     scores = vibrating or [q.score for q in channels]
     suspect = np.array([mask for _, mask, _ in judged], dtype=np.bool_).reshape(record.data.shape)
     score = float(np.mean(scores)) if scores else 0.0
-    return Quality(score, channels, tuple(findings), suspect | unreadable, clocks)
+    return Quality(score, channels, tuple(findings), suspect | unreadable, known)
 
 
 def shortest_stuck(sample_rate_hz: float) -> int:

@@ -19,6 +19,8 @@ _STEP = 2.4
 """Distance of the bars above the poles, in model orders."""
 _FEWEST_LINES = 20
 """Spectral lines below which a spectrum is too coarse to draw behind poles."""
+_BEHIND = 3
+"""Number of singular values behind the poles: two rise together where two modes are close."""
 
 
 class _PoleClass(NamedTuple):
@@ -40,7 +42,7 @@ _CLASSES = (
 def stabilisation(
     found: Identification, names: Sequence[str], *, band: tuple[float, float] | None = None
 ) -> go.Figure:
-    """Draw poles of every model order over frequency with the first singular value; accepted modes as lines.
+    """Draw poles of every model order over frequency with the singular values; accepted modes as lines.
 
     Parameters
     ----------
@@ -228,15 +230,16 @@ def _background(figure: go.Figure, spectrum: Spectrum, low: float, high: float) 
     keep = (f >= max(low, float(f[1]))) & (f <= high)
     if keep.sum() < _FEWEST_LINES:
         return
-    figure.add_scatter(
-        x=f[keep],
-        y=spectrum.singular_values[0][keep],
-        yaxis="y2",
-        mode="lines",
-        name="first singular value",
-        line={"color": style.rgba(style.ORANGE, 0.9), "width": 1.3},
-        hovertemplate="%{x:.4f} Hz<br>%{y:.3g} 1/Hz<extra></extra>",
-    )
+    for k, values in enumerate(spectrum.singular_values[:_BEHIND]):
+        figure.add_scatter(
+            x=f[keep],
+            y=values[keep],
+            yaxis="y2",
+            mode="lines",
+            name=f"singular value {k + 1}",
+            line={"color": style.rgba(style.ORANGE, 0.9 / (k + 1)), "width": 1.3 if k == 0 else 0.9},
+            hovertemplate="%{x:.4f} Hz<br>%{y:.3g} 1/Hz<extra></extra>",
+        )
 
 
 def _poles(
@@ -293,7 +296,7 @@ def _order_axes(figure: go.Figure, title: str, limits: tuple[float, float]) -> g
         xaxis={"title": {"text": title}, "range": limits},
         yaxis={"title": {"text": style.title("model order", "-")}, "rangemode": "tozero"},
         yaxis2={
-            "title": {"text": style.title("first singular value", "1/Hz")},
+            "title": {"text": style.title("singular values", "1/Hz")},
             "overlaying": "y",
             "side": "right",
             "type": "log",

@@ -7,7 +7,13 @@ from dataclasses import asdict
 from typing import Any
 
 from jackettwin.files import Streamed, named
-from jackettwin.identification import FusedIdentification, FusedMode, convergence, identification_document
+from jackettwin.identification import (
+    FusedIdentification,
+    FusedMode,
+    channels_document,
+    convergence,
+    identification_document,
+)
 from jackettwin.identification.picks import plain_picks
 from jackettwin.study.document import MODAL
 from jackettwin.study.many_records.groups import RecordGroup
@@ -34,6 +40,7 @@ def many_document(batch: Batch, together: Together) -> dict[str, Any]:
         "failed": [asdict(one) for one in batch.failed],
         "records_identified": len(batch),
         "duration_s": together.duration_s,
+        "channels": {} if together.fused is None else channels_document(together.fused.channels),
         "warnings": [*map(str, batch.findings), *together.warnings],
     }
 

@@ -1,4 +1,4 @@
-"""Identified modes as files for other programs: JSON whole, CSV and NetCDF as one table of modes.
+"""Identified modes as files for other programs: JSON whole, CSV and NetCDF as a table, UFF as shapes.
 
 The table holds the modes of every set in the document: ``fused``, each group, each record.
 """
@@ -17,6 +17,7 @@ import scipy  # scipy.io is loaded where it is used
 
 from jackettwin.errors import InputError
 from jackettwin.files import atomic_path, write_json
+from jackettwin.study.many_records.shapes_uff import write_shapes_uff
 
 NUMBERS = {
     "frequency_hz": "Hz",
@@ -40,7 +41,7 @@ Row = dict[str, Any]
 
 
 def export_modes(document: Mapping[str, Any], path: Path) -> None:
-    """Write a document of ``jackettwin identify`` as the extension says: ``.json``, ``.csv`` or ``.nc``.
+    """Write a document of ``jackettwin identify`` as the extension says: one of ``WRITERS``.
 
     Raises
     ------
@@ -182,4 +183,7 @@ WRITERS: dict[str, Callable[[Mapping[str, Any], Path], None]] = {
     ".json": write_json,
     ".csv": _write_csv,
     ".nc": _write_netcdf,
+    ".uff": write_shapes_uff,
 }
+ALWAYS = (".json", ".csv", ".nc")
+"""What a folder gets; shapes in UFF need channels that say where they point."""
