@@ -128,18 +128,20 @@ def test_as_a_method_it_states_intervals(tower: ModalSystem, rng: np.random.Gene
         assert abs(np.log(near.frequency_hz / f)) < 4.0 * near.frequency_std_hz / f
 
 
-def test_the_first_pair_of_a_record_without_noise_is_found() -> None:
+@pytest.mark.parametrize(
+    ("name", "pair_hz"), [("pile_U12_s308", (0.1743, 0.1788)), ("pile_U12_s301", (0.1734, 0.1778))]
+)
+def test_the_first_pair_of_a_record_without_noise_is_found(name: str, pair_hz: tuple[float, float]) -> None:
     """One shape leaves the other direction unexplained, 10⁴ times the noise: the search has to get there.
 
+    In the second record the broad side-side mode has no peak, and the narrow one beside it alone no width.
     Frequencies of the pair as the subspace method with its refinement finds them.
     """
-    record = moving_channels(
-        read_record(Path(str(files("jackettwin"))) / "data/records/pile_U12_s308.parquet")
-    )
+    record = moving_channels(read_record(Path(str(files("jackettwin"))) / f"data/records/{name}.parquet"))
     settings = IdentificationSettings(method="bayoma", lowest_frequency_hz=0.11, highest_frequency_hz=0.5)
     found = identify(record, settings).modes
     assert len(found) == 2
-    for mode, f in zip(found, (0.1743, 0.1788), strict=True):
+    for mode, f in zip(found, pair_hz, strict=True):
         low, high = mode.frequency_interval_95 or (0.0, 0.0)
         assert low < f < high
         assert high / low < 1.1

@@ -106,7 +106,7 @@ def test_a_short_record_says_what_it_is_too_short_for(tower, rng):
     """Half a minute: nine cycles of the first pair, which no spectrum of it shows."""
     record = simulate(tower, rng, duration_s=30.0, sample_rate_hz=10.0)
     result = identify(record)
-    assert any("30 s hold" in text and "cycles" in text for text in result.warnings)
+    assert any("30 s contain" in text and "cycles" in text for text in result.warnings)
     assert any("the band starts at" in text for text in result.warnings)
     assert not [t for t in identify(simulate(tower, rng, sample_rate_hz=5.0)).warnings if "cycles" in t]
 

@@ -89,7 +89,7 @@ class BandPosterior:
 def band_posterior(lines: ComplexArray, f: FloatArray, starts_hz: list[float]) -> BandPosterior | None:
     """Return the most probable modes of a band; None if it tells none.
 
-    As many modes as peaks are tried, and one more.
+    As many modes as peaks are tried, and one more where it has a peak or the others alone make no sense.
 
     Parameters
     ----------
@@ -100,17 +100,20 @@ def band_posterior(lines: ComplexArray, f: FloatArray, starts_hz: list[float]) -
     starts_hz : list of float
         Frequencies of the peaks.
     """
-    found = []
     scaled = lines / np.sqrt(np.mean(np.abs(lines) ** 2))
     starts_hz = starts_hz[: len(lines)]
     trials, beside = [starts_hz], _peak_beside(scaled, f, starts_hz)
     if beside is not None:
         trials.append([*starts_hz, beside])
-    for starts in trials:
-        one = _one_mode(scaled, f, starts[0]) if len(starts) == 1 else _modes(scaled, f, starts)
-        if one is not None:
-            found.append(one)
+    found = [one for starts in trials if (one := _told(scaled, f, starts)) is not None]
+    if not found and len(starts_hz) < min(MOST_MODES, len(lines)):
+        # a broad mode beneath a narrow one has no peak of its own, and without it the narrow one has no width
+        return _told(scaled, f, [*starts_hz, starts_hz[0]])
     return max(found, key=lambda one: one.evidence, default=None)
+
+
+def _told(lines: ComplexArray, f: FloatArray, starts_hz: list[float]) -> BandPosterior | None:
+    return _one_mode(lines, f, starts_hz[0]) if len(starts_hz) == 1 else _modes(lines, f, starts_hz)
 
 
 def _peak_beside(lines: ComplexArray, f: FloatArray, starts_hz: list[float]) -> float | None:
