@@ -41,6 +41,29 @@ def test_a_loggers_steps_become_int16(tmp_path: Path, step: float) -> None:
     )
 
 
+@pytest.mark.parametrize("gain", [1.0, 9.80665, 9.81, 1e-3])
+def test_32_bit_floats_in_a_loggers_unit_take_at_most_five_bytes(tmp_path: Path, gain: float) -> None:
+    """As HDF5, MATLAB and OpenFAST keep them, put into m/s² by their reader."""
+    single = (0.05 * np.random.default_rng(2).standard_normal((4, 12_000))).astype(np.float32)
+    data = single.astype(float) * gain
+    data[1, 5] = np.nan
+    path = tmp_path / "x.parquet"
+    size = write_waveform(record(data), path)
+    assert size / data.size <= 5.0
+    back = read_waveform(path)
+    np.testing.assert_array_equal(back.data, data)
+    assert record_id(back) == record_id(record(data))
+
+
+def test_a_logger_of_24_bits_takes_at_most_five_bytes(tmp_path: Path) -> None:
+    counts = np.random.default_rng(3).integers(-(2**23), 2**23, (2, 12_000))
+    data = np.array([[float(f"{c * 1e-6:.6f}") for c in row] for row in counts])
+    data[0, :10] = np.nan
+    size = write_waveform(record(data), tmp_path / "x.parquet")
+    assert size / data.size <= 5.0
+    np.testing.assert_array_equal(read_waveform(tmp_path / "x.parquet").data, data)
+
+
 def test_what_has_no_step_is_kept_as_it_is(tmp_path: Path) -> None:
     data = np.random.default_rng(2).standard_normal((2, 500))
     path = tmp_path / "x.parquet"
@@ -51,5 +74,11 @@ def test_what_has_no_step_is_kept_as_it_is(tmp_path: Path) -> None:
 def test_a_range_beyond_int16_is_not_squeezed_into_it() -> None:
     x = np.arange(-40_000.0, 40_000.0, 2.0) / 8.0
     packed, step = packed_samples(np.append(x, x[0] + 0.125))
+    assert (packed.dtype, step) == (np.int32, [0.125, 1.0])
+
+
+def test_a_value_that_no_integer_or_single_float_is_stays_whole() -> None:
+    x = np.append(np.array([1e300, np.inf, -np.inf, np.nan]), np.pi * np.arange(1, 50.0))
+    packed, step = packed_samples(x)
+    np.testing.assert_array_equal(packed, x)
     assert step is None
-    assert packed.dtype == np.float64

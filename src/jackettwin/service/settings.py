@@ -85,6 +85,12 @@ class ServiceSettings(BaseSettings):
     """Days after which a password must be replaced by another one; None for never."""
     raw_days: float | None = None
     """Days for which the samples of observed records are kept, 0 for ever; None leaves the store's policy."""
+    observation_days: float | None = Field(default=None, ge=0.0)
+    """The same for what each record said; its day stays, and is not summed anew after that."""
+    job_days: float | None = Field(default=None, ge=0.0)
+    """The same for work that has ended."""
+    audit_days: float | None = Field(default=None, ge=0.0)
+    """The same for the audit log."""
     upload_limit_bytes: int = 512 * 2**20
     """Largest file that is taken."""
     samples_limit: int = 200_000_000

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 _PLAIN, _COLUMNS = b"{", b"\x01"
 """First bytes of a document as text, and of one in columns whose words are those of ``words_1.txt``."""
+FORGOTTEN = ""
+"""Stands for a document that was kept for as long as the store's policy says."""
 _PLACE = "\x02"
 """Stands in the text for a number of the column."""
 _SMALL, _LARGE = 1e-30, 1e30
@@ -38,6 +40,8 @@ def _rounded(text: str) -> float:
 
 def pack(document: str) -> bytes:
     """Return the bytes that are kept of a document: as text, if columns would lose a digit of it."""
+    if document == FORGOTTEN:
+        return b""
     import numpy as np
 
     numbers: list[float] = []
@@ -63,7 +67,7 @@ def pack(document: str) -> bytes:
 
 def unpack(packed: bytes) -> str:
     """Return the document that :func:`pack` was given, or that an older version kept as text."""
-    if packed[:1] == _PLAIN:
+    if packed[:1] == _PLAIN or not packed:
         return packed.decode()
     if packed[:1] != _COLUMNS:
         raise ValueError("packed by a newer version")

@@ -238,6 +238,11 @@ def read_audit(connection: Connection, limit: int, before: int | None = None) ->
     return [AuditLine(**row._mapping) for row in connection.execute(query)]
 
 
+def forget_audit(connection: Connection, before: datetime) -> int:
+    """Forget the lines of the audit log before a time; return how many."""
+    return connection.execute(delete(audit).where(audit.c.time_utc < before)).rowcount
+
+
 def change_password(
     connection: Connection, name: str, password_hash: str, now: datetime, but: str = ""
 ) -> None:

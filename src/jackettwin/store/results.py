@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, Delete, Select, Table, delete, func, insert, select
+from sqlalchemy import ColumnElement, Connection, Delete, Select, Table, delete, func, insert, select, update
 
 from jackettwin.store import handling
+from jackettwin.store.columns import FORGOTTEN
 from jackettwin.store.records import between
 from jackettwin.store.tables import (
     assets,
@@ -96,6 +97,7 @@ def newest_observations(
 ) -> list[StoredObservation]:
     """Return the observations of the records that began last, oldest first."""
     query = select(observations).filter_by(asset=asset, model_hash=model_hash).limit(limit)
+    query = query.where(observations.c.document != FORGOTTEN)
     rows = connection.execute(query.order_by(observations.c.start_utc.desc(), observations.c.record_id)).all()
     return [StoredObservation(**row._mapping) for row in reversed(rows)]
 
@@ -116,6 +118,16 @@ def find_observation(
     query = select(observations).filter_by(asset=asset, record_id=record_id, model_hash=model_hash)
     row = connection.execute(query).first()
     return None if row is None else StoredObservation(**row._mapping)
+
+
+def forget_observations(connection: Connection, before: datetime) -> list[str]:
+    """Forget what the records before a midnight (UTC) said one by one; return the assets that they are of.
+
+    That there were observations stays known; the days keep what they say together.
+    """
+    old = (observations.c.start_utc < before, observations.c.document != FORGOTTEN)
+    forgotten = update(observations).where(*old).values(document=FORGOTTEN)
+    return sorted(set(connection.scalars(forgotten.returning(observations.c.asset))))
 
 
 def count_observations(connection: Connection, asset: str) -> dict[str, int]:

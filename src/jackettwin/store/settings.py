@@ -8,8 +8,10 @@ from sqlalchemy import Connection, delete, insert, select
 
 from jackettwin.store.tables import settings
 
-RAW_DAYS = "raw_days"
-"""How many days raw samples of observed records are kept; without it, for ever."""
+RAW_DAYS, OBSERVATION_DAYS = "raw_days", "observation_days"
+JOB_DAYS, AUDIT_DAYS = "job_days", "audit_days"
+"""How many days raw samples of observed records, observations, ended work and the audit log are kept; without
+one, for ever."""
 
 
 MQTT_CLIENT = "mqtt_client"

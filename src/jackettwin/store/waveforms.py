@@ -1,4 +1,4 @@
-"""Raw samples as Parquet files by asset and day, int16 with a scale where that loses nothing."""
+"""Raw samples as Parquet files by asset and day, in the fewest bytes that lose nothing."""
 
 from __future__ import annotations
 
@@ -19,11 +19,10 @@ from jackettwin.files import atomic_path
 from jackettwin.records import Channel, Record
 
 SCHEMA_VERSION = 1
-_MISSING = -32768
-"""Stands for a missing sample."""
-_LARGEST = 32767
 _FINEST = 10**8
 """Largest denominator of a step: loggers write eight decimals at most."""
+_GAINS = (1.0, 9.80665, 9.81, 9.80665e-3, 1e-3, 1e-2, 1e-6)
+"""By which readers multiply what loggers write as 32-bit floats in g, mg, mm/s², cm/s² or µm."""
 
 
 def waveform_path(asset: str, start_utc: datetime, record_id: str) -> str:
@@ -51,7 +50,13 @@ def write_waveform(record: Record, path: Path) -> int:
     table = pa.Table.from_arrays(arrays, names=[f"c{i}" for i in range(len(arrays))])
     about = json.dumps(described, default=str).encode()
     with atomic_path(path) as temporary:
-        pq.write_table(table.replace_schema_metadata({b"jackettwin": about}), temporary, compression="zstd")
+        pq.write_table(
+            table.replace_schema_metadata({b"jackettwin": about}),
+            temporary,
+            compression="zstd",
+            use_dictionary=False,
+            use_byte_stream_split=[f.name for f in table.schema if pa.types.is_floating(f.type)],
+        )
     return path.stat().st_size
 
 
@@ -85,32 +90,49 @@ def read_waveform(path: Path) -> Record:
 
 
 def packed_samples(x: FloatArray) -> tuple[npt.NDArray[Any], list[float] | None]:
-    """Return samples as int16 and their step, or as they are and None.
+    """Return samples as int16, int32 or float32 and their step, or as they are and None.
 
     The step is kept as (numerator, denominator): a logger's 0.0012 is 12/10000 to the last bit, but not
     12 · 0.0001.
     """
+    counted = _counts(x)
+    if counted is not None:
+        return counted
+    for gain in _GAINS:
+        with np.errstate(over="ignore"):  # then it is infinite, and not equal
+            single = (x / gain).astype(np.float32)
+        if np.array_equal(_unpacked(single, [gain, 1.0]), x, equal_nan=True):
+            return single, [gain, 1.0]
+    return x, None
+
+
+def _counts(x: FloatArray) -> tuple[npt.NDArray[Any], list[float]] | None:
+    """Return samples as multiples of a step, if they are; of 32 bits if a range needs them."""
     known = np.unique(x[np.isfinite(x)])
     if known.size < 2:
-        return x, None
+        return None
     step = float(np.diff(known).min())
     decimal = Fraction(step).limit_denominator(_FINEST)
     for numerator, denominator in ((step, 1.0), (float(decimal.numerator), float(decimal.denominator))):
         if numerator <= 0.0:
             continue
         counts = np.round(x * (denominator / numerator))
-        if np.nanmax(np.abs(counts)) > _LARGEST:
+        largest = np.nanmax(np.abs(counts))
+        kind = next((k for k in (np.int16, np.int32) if largest <= np.iinfo(k).max), None)
+        if kind is None:
             continue
-        packed = np.where(np.isfinite(counts), counts, _MISSING).astype(np.int16)
+        packed = np.where(np.isfinite(counts), counts, np.iinfo(kind).min).astype(kind)
         if np.array_equal(_unpacked(packed, [numerator, denominator]), x, equal_nan=True):
             return packed, [numerator, denominator]
-    return x, None
+    return None
 
 
 def _unpacked(stored: npt.NDArray[Any], step: list[float] | None) -> FloatArray:
+    """Return samples; the least integer there is stands for a missing one."""
+    samples = np.asarray(stored, dtype=float)
     if step is None:
-        return np.asarray(stored, dtype=float)
-    counts = stored.astype(float)
-    counts[stored == _MISSING] = np.nan
+        return samples
+    if np.issubdtype(stored.dtype, np.integer):
+        samples = np.where(stored == np.iinfo(stored.dtype).min, np.nan, samples)
     numerator, denominator = step
-    return np.asarray(counts * numerator / denominator)
+    return np.asarray(samples * numerator / denominator)

@@ -241,6 +241,13 @@ def any_queued(connection: Connection, kind: str, *, gone: bool = False) -> bool
     return connection.scalar(query) is not None
 
 
+def forget_jobs(connection: Connection, before: datetime) -> int:
+    """Forget work on records that ended before a time; what was set aside waits for a person."""
+    over = work.c.state.in_(("done", "failed", "cancelled"))
+    old = (work.c.kind == OBSERVE, over, work.c.ended_utc < before)
+    return connection.execute(delete(work).where(*old)).rowcount
+
+
 def queue_sizes(connection: Connection, seen: Assets = None) -> dict[str, int]:
     """Return how much work of the assets that somebody may see is in each state."""
     query = select(work.c.state, func.count()).where(among(work.c.asset, seen)).group_by(work.c.state)

@@ -43,14 +43,16 @@ def add_conditions(
 def _observe_again(connection: Connection, place: Place, asset: str, changed: set[datetime]) -> int:
     """Queue the records that overlap the interval of a changed condition."""
     since, until = min(changed) - timedelta(days=1), max(changed) + streams.INTERVAL
-    adopted, again = assets.found_version(connection, asset).version, 0
+    adopted, again = assets.found_version(connection, asset), 0
     starts = sorted(changed)
     for record in records.all_with_samples(connection, asset, since, until):
         end = record.start_utc + timedelta(seconds=record.duration_s)
         first = bisect_right(starts, record.start_utc - streams.INTERVAL)
         if first < len(starts) and starts[first] < end:
             jobs = work.jobs_of(connection, asset, record.record_id)
-            again += bool(
-                [work.renew(connection, job.id, place.now()) for job in jobs if job.version >= adopted]
-            )
+            known = [job.id for job in jobs if job.version >= adopted.version]
+            again += any([work.renew(connection, number, place.now()) for number in known])
+            if not jobs:  # forgotten since they ended long ago
+                work.enqueue(connection, adopted, record.record_id, place.now())
+                again += 1
     return again

@@ -32,6 +32,7 @@ from jackettwin.store import (
     tables,
     work,
 )
+from jackettwin.store.columns import FORGOTTEN
 from jackettwin.store.results import StoredState
 
 if TYPE_CHECKING:
@@ -259,7 +260,8 @@ def fold(
     """Bring the state of a day up to date.
 
     A day is a sum over its records that does not depend on their order. A record that is new to it is added;
-    one that was observed again, or taken out, makes the day be summed anew.
+    one that was observed again, or taken out, makes the day be summed anew, unless what its records said one
+    by one is forgotten: then it stays what it is.
     """
     day, model_hash = f"{changed.start_utc:%Y-%m-%d}", changed.model_hash
     stored = None if anew else results.find_state(connection, asset, model_hash, day)
@@ -268,6 +270,8 @@ def fold(
         todo = list(
             results.observations_between(connection, asset, model_hash, start, start + timedelta(days=1))
         )
+        if any(seen.document == FORGOTTEN for seen in todo):
+            return
         results.drop_state(connection, asset, model_hash, day)
     else:
         todo = [changed]
