@@ -33,12 +33,53 @@ def test_rules_and_dashboard_ask_for_measures_there_are(client: TestClient, serv
     asked = [rule["expr"] for rule in rules] + [p["targets"][0]["expr"] for p in panels]
     names = {name for expression in asked for name in re.findall(r"jackettwin_\w+", expression)}
     known = measured(client)
+    known |= {f"{name}_bucket": kind for name, kind in known.items() if kind == "histogram"}
     # no asset has an alarm here: the measure has no rows, and then no type is said of it
     assert names - {"jackettwin_alarms_open"} <= set(known)
     assert len(names) >= 10
     rising = {name for e in asked if "increase(" in e for name in re.findall(r"jackettwin_\w+", e)}
     assert {known[name] for name in rising} == {"counter"}
     assert {name for name, kind in known.items() if kind == "counter"} == rising
+
+
+def test_latency_is_told_by_route_and_never_by_path(client: TestClient) -> None:
+    client.get("/api/v1/assets/wtg")
+    client.get("/api/v1/assets/nobody")
+    client.get("/somewhere/else")
+    text = client.get("/api/v1/metrics").text
+    told = 'jackettwin_request_seconds_count{method="GET",route="/api/v1/assets/{asset}",status="%s"} 1.0'
+    assert told % 200 in text and told % 404 in text
+    assert "nobody" not in text and "somewhere" not in text
+
+
+def test_slow_queries_are_counted_and_the_log_says_which(
+    client: TestClient, service: Service, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Not of whom: what a query is given may be a secret."""
+    client.get("/api/v1/assets/wtg")
+    assert "jackettwin_slow_queries_total 0.0" in client.get("/api/v1/metrics").text
+    service.measured.watch(service.database, 0.0)
+    client.get("/api/v1/assets/wtg")
+    assert "jackettwin_slow_queries_total 0.0" not in client.get("/api/v1/metrics").text
+    assert "SELECT assets" in caplog.text and "wtg" not in caplog.text
+
+
+def test_a_request_is_a_span_of_the_trace_it_came_with(client: TestClient) -> None:
+    pytest.importorskip("opentelemetry.sdk", reason="optional: the user installs OpenTelemetry")
+    from opentelemetry import trace
+    from opentelemetry.sdk.trace import TracerProvider
+    from opentelemetry.sdk.trace.export import SimpleSpanProcessor
+    from opentelemetry.sdk.trace.export.in_memory_span_exporter import InMemorySpanExporter
+
+    told, provider = InMemorySpanExporter(), TracerProvider()
+    provider.add_span_processor(SimpleSpanProcessor(told))
+    trace.set_tracer_provider(provider)
+    caller = "4bf92f3577b34da6a3ce929d0e0e4736"
+    client.get("/api/v1/assets/wtg", headers={"traceparent": f"00-{caller}-00f067aa0ba902b7-01"})
+    (span,) = [s for s in told.get_finished_spans() if s.kind is trace.SpanKind.SERVER]
+    assert span.name == "GET /api/v1/assets/{asset}"
+    assert f"{span.context.trace_id:032x}" == caller
+    assert span.attributes["http.response.status_code"] == 200
 
 
 def test_health_says_what_is_lacking(

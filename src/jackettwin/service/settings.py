@@ -91,6 +91,8 @@ class ServiceSettings(BaseSettings):
     """The same for work that has ended."""
     audit_days: float | None = Field(default=None, ge=0.0)
     """The same for the audit log."""
+    slow_query_s: float = Field(default=1.0, gt=0.0)
+    """Time from which on a query of the database is counted, and told to the log."""
     upload_limit_bytes: int = 512 * 2**20
     """Largest file that is taken."""
     samples_limit: int = 200_000_000

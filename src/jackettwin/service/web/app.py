@@ -145,10 +145,15 @@ class Guard:
         """Pass a request on, or answer it."""
         if scope["type"] != "http":
             return await self._app(scope, receive, send)
+        with self._service.measured.request(scope) as said:
+            await self._answer(scope, receive, send, said)
+
+    async def _answer(self, scope: Scope, receive: Receive, send: Send, said: dict[str, Any]) -> None:
         request = Request(scope)
 
         async def with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
+                said["status"] = message["status"]
                 headers = MutableHeaders(scope=message)
                 for name, value in self._headers.items():
                     headers.setdefault(name, value)
