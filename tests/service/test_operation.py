@@ -65,6 +65,7 @@ def test_slow_queries_are_counted_and_the_log_says_which(
 
 
 def test_a_request_is_a_span_of_the_trace_it_came_with(client: TestClient) -> None:
+    """FastAPI makes them, if OpenTelemetry is there."""
     pytest.importorskip("opentelemetry.sdk", reason="optional: the user installs OpenTelemetry")
     from opentelemetry import trace
     from opentelemetry.sdk.trace import TracerProvider

@@ -1,4 +1,4 @@
-"""How long requests and queries take: measures of one server while it runs; spans if somebody wants them."""
+"""How long requests and queries take: measures of one server while it runs."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import logging
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from prometheus_client import CollectorRegistry, Counter, Histogram
@@ -44,16 +43,11 @@ class Measured:
     def request(self, scope: MutableMapping[str, Any]) -> Iterator[dict[str, Any]]:
         """Measure a request; its answer's ``status`` is put into what is given."""
         began, said = time.perf_counter(), {"status": 500}
-        with _span(scope) as span:
-            try:
-                yield said
-            finally:
-                route = _route(scope)
-                took, status = time.perf_counter() - began, str(said["status"])
-                self.requests.labels(scope["method"], route, status).observe(took)
-                if span is not None:
-                    span.update_name(f"{scope['method']} {route}")
-                    span.set_attributes({"http.route": route, "http.response.status_code": said["status"]})
+        try:
+            yield said
+        finally:
+            took, status = time.perf_counter() - began, str(said["status"])
+            self.requests.labels(scope["method"], _route(scope), status).observe(took)
 
     def watch(self, database: Engine, slow_s: float) -> None:
         """Count queries that take longer than so many seconds; the log says which, and not of whom."""
@@ -76,27 +70,3 @@ def _route(scope: Mapping[str, Any]) -> str:
     if template is None:
         return UNKNOWN
     return "/".join(scope["path"].split("/")[: -template.count("/")]) + template
-
-
-@cache
-def _telemetry() -> tuple[Any, Any] | None:
-    """Return OpenTelemetry's propagation and traces, if the user has installed them."""
-    try:
-        from opentelemetry import propagate, trace
-    except ImportError:
-        return None
-    return propagate, trace
-
-
-@contextmanager
-def _span(scope: Mapping[str, Any]) -> Iterator[Any]:
-    """Give a span within the trace of who asks; None without OpenTelemetry."""
-    found = _telemetry()
-    if found is None:
-        yield None
-        return
-    propagate, trace = found
-    within = propagate.extract({name.decode("latin-1"): v.decode("latin-1") for name, v in scope["headers"]})
-    tracer = trace.get_tracer("jackettwin")
-    with tracer.start_as_current_span(scope["method"], context=within, kind=trace.SpanKind.SERVER) as span:
-        yield span
