@@ -82,3 +82,70 @@ def test_a_table_that_cannot_be_read_says_why(client: TestClient) -> None:
     assert (answer.status_code, answer.json()["field"]) == (422, "time")
     assert "/" not in answer.json().get("value", "")
     assert NOON == T0
+
+
+OPENOA = (
+    "time,asset_id,WTUR_W,WMET_HorWdSpd,WMET_HorWdDirRel,WROT_BlPthAngVal,WMET_EnvTmp\n"
+    "2025-03-01T12:00:00Z,wtg,4980.5,11.2,-3.5,4.1,6.0\n"
+    "2025-03-01T12:00:00Z,other,0.0,3.1,90.0,85.0,6.5\n"
+)
+"""As OpenOA's schema for SCADA has it: names of IEC 61400-25, rows of all turbines in one table."""
+
+
+def test_names_of_the_standard_are_ours_and_rows_of_others_are_not(tmp_path: Path) -> None:
+    path = tmp_path / "scada.csv"
+    path.write_text(OPENOA)
+    table = read_table(path, asset="wtg")
+    assert {name: values[T0] for name, values in table.items()} == {
+        "power_kw": 4980.5,
+        "mean_wind_speed_m_s": 11.2,
+        "yaw_deg": -3.5,
+        "pitch_deg": 4.1,
+        "air_temperature_c": 6.0,
+    }
+    with pytest.raises(InputError, match="several turbines") as refused:
+        read_table(path, asset="third")
+    assert refused.value.allowed == "other, wtg"
+
+
+EVENTS = (
+    "Time On;Time Off;Category\n"
+    "2025-03-01 12:00;2025-03-01 12:30;Forced outage\n"
+    "2025-03-01 12:25;2025-03-01 12:44;Curtailment by grid operator\n"
+    "2025-03-01 13:00;;Scheduled maintenance\n"
+    "2025-03-01 13:20;2025-03-01 13:30;Ice\n"
+)
+
+
+def test_stops_and_curtailments_are_states_of_ten_minutes(tmp_path: Path) -> None:
+    path = tmp_path / "events.csv"
+    path.write_text(EVENTS)
+    states = read_table(path, zone="UTC")["state"]
+    told = {f"{time:%H:%M}": state for time, state in states.items()}
+    assert told == {
+        "12:00": "stopped",
+        "12:10": "stopped",
+        "12:20": "stopped",
+        "12:30": "curtailed",
+        "12:40": "changing",
+        "13:00": "stopped",
+        "13:10": "stopped",
+        "13:20": "stopped",
+    }
+    path.write_text(EVENTS.replace("12:44", "11:44"))
+    with pytest.raises(InputError, match="ends before it begins"):
+        read_table(path)
+
+
+def test_a_record_within_a_stop_is_of_that_state(client: TestClient, service: Service) -> None:
+    """And one that a stop cuts through is of none that updates; before, it was of what it said itself."""
+    for k in (0, 1):
+        upload(client, k)
+    turn(service)
+    begins, ends = hour(0) - timedelta(minutes=20), hour(0) + timedelta(minutes=40)
+    events = f"begin,end,event\n{begins:%Y-%m-%d %H:%M},{ends:%Y-%m-%d %H:%M},fault\n"
+    answer = client.post("/api/v1/assets/wtg/conditions.csv", files={"file": ("e.csv", events.encode())})
+    assert answer.json()["observed_again"] == 1
+    with writing(service.database) as connection:
+        found = streams.conditions_between(connection, "wtg", hour(0), hour(0) + timedelta(minutes=10))
+        assert found["state"] == "stopped"

@@ -58,7 +58,7 @@ def test_slow_queries_are_counted_and_the_log_says_which(
     """Not of whom: what a query is given may be a secret."""
     client.get("/api/v1/assets/wtg")
     assert "jackettwin_slow_queries_total 0.0" in client.get("/api/v1/metrics").text
-    service.measured.watch(service.database, 0.0)
+    service.latency.watch(service.database, 0.0)
     client.get("/api/v1/assets/wtg")
     assert "jackettwin_slow_queries_total 0.0" not in client.get("/api/v1/metrics").text
     assert "SELECT assets" in caplog.text and "wtg" not in caplog.text

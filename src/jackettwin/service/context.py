@@ -17,8 +17,8 @@ from jackettwin.service import workers
 from jackettwin.service.answer_cache import AnswerCache
 from jackettwin.service.day_cache import DayCache
 from jackettwin.service.event_feed import Feed
+from jackettwin.service.latency import Latency
 from jackettwin.service.login_attempts import LoginAttempts
-from jackettwin.service.measured import Measured
 from jackettwin.service.settings import ServiceSettings
 from jackettwin.store import open_database, private_folder
 
@@ -48,7 +48,7 @@ class Service:
     login_attempts: LoginAttempts = field(default_factory=LoginAttempts)
     days: DayCache = field(default_factory=DayCache)
     answers: AnswerCache = field(default_factory=AnswerCache)
-    measured: Measured = field(default_factory=Measured)
+    latency: Latency = field(default_factory=Latency)
     periodic: list[Callable[[], None]] = field(default_factory=list)
     wake: Callable[[], None] = lambda: None
     turning: Callable[[], bool] = lambda: True
@@ -91,5 +91,5 @@ def open_service(settings: ServiceSettings) -> Service:
     made = Service(
         settings, database, workers.WorkerCluster(settings), f"{os.getpid()}-{secrets.token_hex(4)}"
     )
-    made.measured.watch(database, settings.slow_query_s)
+    made.latency.watch(database, settings.slow_query_s)
     return made

@@ -108,7 +108,7 @@ def add_conditions(database: Engine, store: Path, asset: str, table: Path, **how
     with reading(database) as connection:
         assets.found_version(connection, asset)
         _refuse_archived(connection, asset)
-    values = read_table(table, **how)
+    values = read_table(table, asset=asset, **how)
     with writing(database) as connection:
         return keep_conditions(connection, _opened(database, store), asset, values, "command line")
 

@@ -145,7 +145,7 @@ class Guard:
         """Pass a request on, or answer it."""
         if scope["type"] != "http":
             return await self._app(scope, receive, send)
-        with self._service.measured.request(scope) as said:
+        with self._service.latency.request(scope) as said:
             await self._answer(scope, receive, send, said)
 
     async def _answer(self, scope: Scope, receive: Receive, send: Send, said: dict[str, Any]) -> None:

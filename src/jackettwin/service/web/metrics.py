@@ -106,7 +106,7 @@ def exposition(service: Service, seen: rights.Assets = None) -> bytes:
     if broker is not None:
         gauge("broker_connected", "Whether the MQTT broker answers", float(broker))
         counter("packets_refused", "Packets that could not be kept", service.packets_refused())
-    return generate_latest(measures.registry) + generate_latest(service.measured.registry)
+    return generate_latest(measures.registry) + generate_latest(service.latency.registry)
 
 
 def _measure_assets(measures: _Measures, connection: Connection, seen: rights.Assets, now: datetime) -> None:

@@ -100,7 +100,7 @@ def take_conditions(
         service.settings.spool, "table.csv", _limited(stream, service.settings.upload_limit_bytes), None
     )
     try:
-        asked = partial(read_conditions, zone=zone, end_stamped=end_stamped)
+        asked = partial(read_conditions, asset=asset, zone=zone, end_stamped=end_stamped)
         future = service.cluster.submit(asked, str(path), priority=100)
         values = service.cluster.result(future, service.settings.parse_limit_s)
     except TimeoutError:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, date, datetime, timedelta
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -15,8 +15,11 @@ from pyarrow import csv
 from jackettwin.errors import InputError
 from jackettwin.records import read_zone
 from jackettwin.records.readers.stamps import in_utc
+from jackettwin.service.workers.event_tables import BEGINS, ENDS, KINDS, by_ten_minutes, is_of_events
 
 Value = float | str | None
+_WHOSE = "asset_id"
+"""The column that says whose a row is, as OpenOA's schema calls it."""
 _TIMES = ("time_utc", "time", "timestamp", "datetime", "date_time", "date", "zeit", "pctimestamp")
 """What the column of times may be called, once its name is written in small letters and underscores."""
 _STAMPS = ["%Y-%m-%d %H:%M:%S", "%Y-%m-%d %H:%M", "%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M", csv.ISO8601]
@@ -25,9 +28,16 @@ _MOST_ROWS = 2_000_000
 
 
 def read_table(
-    path: Path, *, zone: str = "UTC", names: Mapping[str, str] | None = None, end_stamped: bool = False
-) -> dict[str, dict[datetime, Value]]:
+    path: Path,
+    *,
+    zone: str = "UTC",
+    names: Mapping[str, str] | None = None,
+    end_stamped: bool = False,
+    asset: str | None = None,
+) -> Mapping[str, Mapping[datetime, Value]]:
     """Return the conditions of a CSV file, {name: {start of the interval: value}}.
+
+    A table of events, which have a begin, an end and a kind, is one of states of operation.
 
     Parameters
     ----------
@@ -37,6 +47,8 @@ def read_table(
         Of columns to take under another name; the others keep theirs in small letters and underscores.
     end_stamped : bool
         Whether a row bears the end of its ten minutes.
+    asset : str, optional
+        Of whom to take the rows where a column ``asset_id`` says whose each is.
 
     Raises
     ------
@@ -46,6 +58,9 @@ def read_table(
     table = _read(path)
     given = names or {}
     called = {column: given.get(column, plain_name(column)) for column in table.column_names}
+    table = _of_asset(table, called, asset, path)
+    if is_of_events(called.values()):
+        return {"state": _events(table, called, zone, path)}
     times = next((column for column in called if called[column] in _TIMES), None)
     kind = None if times is None else table.schema.field(times).type
     if times is None or not (pa.types.is_timestamp(kind) or pa.types.is_date(kind)):
@@ -62,16 +77,80 @@ def read_table(
     return {
         name: {t: _value(v) for t, v in zip(starts, table[column].to_pylist(), strict=True) if t is not None}
         for column, name in called.items()
-        if column != times
+        if column != times and name != _WHOSE
     }
 
 
-def plain_name(column: str) -> str:
-    """Return a column's name in small letters and underscores.
+def _of_asset(table: Any, called: Mapping[str, str], asset: str | None, path: Path) -> Any:
+    """Return the rows of an asset; all of a table that does not say whose they are, or of one asset alone."""
+    column = next((column for column, name in called.items() if name == _WHOSE), None)
+    if column is None or asset is None:
+        return table
+    whose = [str(value) for value in table[column].to_pylist()]
+    if asset not in whose and len(set(whose)) > 1:
+        raise InputError(
+            "the table is of several turbines, and none is this one",
+            file=path,
+            field=_WHOSE,
+            value=asset,
+            allowed=", ".join(sorted(set(whose))[:20]),
+            remedy="call the asset as it is called there",
+        )
+    return table.filter([w == asset for w in whose]) if asset in whose else table
 
-    >>> plain_name("Wind Speed (m/s)")
-    'wind_speed_m_s'
+
+def _events(table: Any, called: Mapping[str, str], zone: str, path: Path) -> Mapping[datetime, str]:
+    """Return the states of operation of a table of events."""
+    column = {name: column for column, name in called.items()}
+    chosen = [next(column[n] for n in names if n in column) for names in (BEGINS, ENDS, KINDS)]
+    begins, ends, kinds = (table[name].to_pylist() for name in chosen)
+    wrong = next((t for t in (*begins, *ends) if t is not None and not isinstance(t, date)), None)
+    if wrong is not None:
+        raise InputError(
+            "not a time",
+            file=path,
+            field=chosen[0],
+            value=wrong,
+            allowed="2025-03-01 12:00:00 or with a zone",
+        )
+    clock = read_zone(zone)
+    rows = [
+        (_utc(begin, clock), None if end is None else _utc(end, clock), str(kind))
+        for begin, end, kind in zip(begins, ends, kinds, strict=True)
+        if begin is not None and kind is not None
+    ]
+    try:
+        return by_ten_minutes(rows)
+    except InputError as error:
+        raise error.at(file=path) from None
+
+
+IEC_61400_25 = {
+    "wtur_w": "power_kw",
+    "wtur_turst": "state",
+    "wmet_horwdspd": "mean_wind_speed_m_s",
+    "wmet_horwddir": "wind_direction_deg",
+    "wmet_horwddirrel": "yaw_deg",
+    "wmet_envtmp": "air_temperature_c",
+    "wrot_rotspd": "rotor_speed_rpm",
+    "wrot_blpthangval": "pitch_deg",
+    "wnac_wdspd": "nacelle_wind_speed_m_s",
+    "wnac_dir": "nacelle_direction_deg",
+}
+"""Data names of IEC 61400-25-2 in the units of OpenOA (kW, m/s, deg, °C, rpm), and ours."""
+
+
+def plain_name(column: str) -> str:
+    """Return a column's name in small letters and underscores, or ours for a name of IEC 61400-25.
+
+    >>> plain_name("Wind Speed (m/s)"), plain_name("WMET.HorWdSpd"), plain_name("WROT_RotSpd")
+    ('wind_speed_m_s', 'mean_wind_speed_m_s', 'rotor_speed_rpm')
     """
+    plain = _plain(column)
+    return IEC_61400_25.get(plain, plain)
+
+
+def _plain(column: str) -> str:
     return re.sub(r"[^a-z0-9]+", "_", column.strip().lower()).strip("_")[:64]
 
 

@@ -187,12 +187,12 @@ def examine_twin(folder: str, most_freedoms: int, memory_bytes: int) -> Any:
         )
 
 
-def read_conditions(path: str, *, zone: str, end_stamped: bool) -> Any:
+def read_conditions(path: str, *, asset: str, zone: str, end_stamped: bool) -> Any:
     """Read a table of conditions; an error of its input comes back, without our path."""
     from jackettwin.service.workers.condition_tables import read_table
 
     try:
-        return read_table(Path(path), zone=zone, end_stamped=end_stamped)
+        return read_table(Path(path), asset=asset, zone=zone, end_stamped=end_stamped)
     except InputError as error:
         error.file = None
         return error

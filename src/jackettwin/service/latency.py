@@ -23,7 +23,7 @@ UNKNOWN = "none"
 """The route of what is answered before there is one: paths of strangers are no labels."""
 
 
-class Measured:
+class Latency:
     """Latency of requests by route, and queries that took longer than they should."""
 
     def __init__(self) -> None:
