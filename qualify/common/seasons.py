@@ -34,15 +34,17 @@ class Kind:
 
     Attributes
     ----------
-    memory : "two days", "six hours", "week", "flicker" (1/f from hours to a season), "telegraph" (two
-        levels),
-        or "none"
+    memory : "two days", "six hours", "week", "month", "flicker" (1/f from hours to a season), "telegraph"
+        (two levels), or "none"
     unexplained : standard deviation of it in ln f
     shared : share of its variance that both modes of a pair have in common
     common : share that all modes have in common
     wrong : by which the stated standard deviations are wrong, one factor exp(± wrong) a mode
     heavy : noise of Student's t with 4 degrees of freedom instead of a normal one, twice as strong in storms
     curved : wind and waves act as squares
+    growth : by which ln f of the first pair falls in a year as marine growth thickens, most in late summer
+    storms : by which the worst storm of the series lowers it: the ground softens and heals within weeks
+    ground : by which it swings over the year with a temperature of the ground that nobody measures
     """
 
     memory: str = "two days"
@@ -52,6 +54,9 @@ class Kind:
     wrong: float = 0.15
     heavy: bool = False
     curved: bool = False
+    growth: float = 0.0
+    storms: float = 0.0
+    ground: float = 0.0
     outliers: float = 0.004
     clusters_a_year: float = 170.0
     records_a_cluster: float = 20.0
@@ -112,6 +117,7 @@ def seasons(seed: int, days: float, kind: Kind | None = None) -> Seasons:
         + wind_effect[:, None] * WIND
         + wave_effect[:, None] * WAVE
         + process
+        + benign(seed, grid, air, wave, kind)[at]
     )
     ln_zeta = 0.02 * drawn_wave[:, None] + 0.02 * (drawn_wind[:, None] - 8.0) * np.array([1.0, 0.3, 0.2, 0.2])
     ln_zeta = ln_zeta + 0.05 * unexplained(rng, t, days, replace(kind, unexplained=1.0))
@@ -140,6 +146,37 @@ def seasons(seed: int, days: float, kind: Kind | None = None) -> Seasons:
         {"sea_level_m": level[at], "air_temperature_c": air[at], "wind_speed_m_s": drawn_wind, "hs_m":
         drawn_wave}, process, expected, f_std, angle, angle_std * wrong_a,
     )  # fmt: skip
+
+
+def benign(seed: int, t: np.ndarray, air: np.ndarray, wave: np.ndarray, kind: Kind) -> np.ndarray:
+    """Return (n, 4) what slow processes that harm nobody add to ln f: growth, storms that heal, the ground.
+
+    Each turbine has its own rate, time to heal and lag.
+    """
+    rng = np.random.default_rng((1814, seed))
+    rate, healing, lag = rng.uniform(0.5, 1.5), rng.uniform(10.0, 40.0), rng.uniform(25.0, 60.0)
+    season = 2.0 * np.pi * (t - 240.0) / 365.25
+    thickness = (t + 0.9 * np.sin(season) * 365.25 / (2.0 * np.pi)) / 365.25
+    hit = np.maximum(wave - 3.5, 0.0) ** 1.5
+    softened = _behind(hit, t[1] - t[0], healing)
+    anomaly = 1.5 * _ou(rng, t, 30.0)
+    warmth = _behind(air + anomaly, t[1] - t[0], lag)
+    slow = (
+        -kind.growth * rate * np.array([1.0, 1.0, 0.6, 0.7])[:, None] * thickness,
+        -kind.storms * rate * np.array([1.0, 0.9, 0.4, 0.5])[:, None] * softened / max(softened.max(), 1e-12),
+        -kind.ground * rate * np.array([1.0, 1.0, 0.5, 0.4])[:, None] * (warmth - warmth.mean()) / 7.0,
+    )
+    return np.sum(slow, axis=0).T
+
+
+def _behind(x: np.ndarray, gap: float, memory: float) -> np.ndarray:
+    """Return what follows a series with a time constant, from its own mean on."""
+    keep = np.exp(-gap / memory)
+    out, value = np.empty(x.size), float(x.mean())
+    for i, one in enumerate(x):
+        value = keep * value + (1.0 - keep) * one
+        out[i] = value
+    return out
 
 
 def _angles(
@@ -246,4 +283,4 @@ def _slow(rng: np.random.Generator, t: np.ndarray, days: float, memory: str) -> 
     if memory == "telegraph":
         flips = np.cumsum(rng.exponential(4.0, int(days) + 20))
         return 1.0 - 2.0 * (np.searchsorted(flips, t) % 2)
-    return _ou(rng, t, {"two days": 2.0, "six hours": 0.25, "week": 7.0}[memory])
+    return _ou(rng, t, {"two days": 2.0, "six hours": 0.25, "week": 7.0, "month": 30.0}[memory])

@@ -285,7 +285,7 @@ def _gaps(watch: Watch, rest: History) -> list[str]:
 def _explained(
     watch: Watch, baseline: History
 ) -> tuple[dict[tuple[str, int], dict[str, float]], dict[tuple[str, int], float]]:
-    rows, _ = regressors(watch.design, baseline, fresh(watch.design))
+    rows, _ = regressors(watch.design, baseline, fresh(watch.design, baseline))
     explained: dict[tuple[str, int], dict[str, float]] = {}
     unexplained: dict[tuple[str, int], float] = {}
     for block in watch.blocks:

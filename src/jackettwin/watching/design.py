@@ -15,6 +15,16 @@ from jackettwin.watching.history import History
 LAGS_DAYS = (0.25, 1.5)
 """Time constants with which the temperatures of steel and ground follow the air [days]. The weights of the
 three regressors (no lag and these two) represent lags from none to some days."""
+GROUND_DAYS = 40.0
+"""Time constant with which the ground some metres down, which is seldom measured, follows the air [days]."""
+HEALING_DAYS = 20.0
+"""Time constant with which ground that a storm has softened recovers [days]."""
+_SEVERAL = 6.0
+"""Number of time constants that a baseline must cover to tell a slow regressor from an intercept."""
+_ROUGH = 1.0
+"""Standard deviations above the mean from which a sea softens the ground, by the square of the excess."""
+_WAVES = re.compile(r"(^|_)(hs|hm0|hsig)(_|$)|wave_?height|significant", re.IGNORECASE)
+_WIND = re.compile(r"^(?!.*(dir|yaw|turb|std|deg)).*wind", re.IGNORECASE)
 _TEMPERATURE = re.compile(r"temp|^t_?air|^t_?steel|°c|_c$|deg_?c", re.IGNORECASE)
 _FEWEST_COLD = 0.02
 """Share of the baseline below freezing from which temperatures below zero have a separate slope, for frozen
@@ -23,9 +33,9 @@ _FEWEST_OF_STATE = 50
 """Fewest rows of an operating state for its own slopes, and for an intercept."""
 YEAR_DAYS, WHOLE_YEAR_DAYS = 365.25, 330.0
 """Length of a year, and of a baseline from which the time of year replaces a missing temperature [days]."""
-_CURVED, _LINEAR, _LEVEL = 0.5, 1.0, 20.0
+_CURVED, _LINEAR, _LEVEL, _SLOW = 0.5, 1.0, 20.0, 0.3
 """Prior standard deviations of coefficients, in standard deviations of the quantity over the baseline.
-A linear term may explain all of it, a quadratic one half; the intercept is unknown."""
+A linear term may explain all of it, a quadratic one half, a slow one a third; the intercept is unknown."""
 
 
 @dataclass(frozen=True)
@@ -57,10 +67,11 @@ class Column:
     name : name of the condition
     source : its column in the history
     lag_days : time constant of the lag; 0 for none
-    shape : "line", "square" (of the standardised condition, minus one), "frost" (the part below zero), or
-        "sine" and "cosine" (of the time of day or of the year)
+    shape : "line", "square" (of the standardised condition, minus one), "frost" (the part below zero),
+        "storm" (the square of what exceeds usual seas), "sine" and "cosine" (of the time of day or of the
+        year), or "trend" (the time)
     centre, scale : mean and standard deviation over the baseline; ``scale`` is the period [days] of a sine or
-        cosine
+        cosine, a year of a trend
     prior : prior standard deviation of the coefficient, in standard deviations of the quantity
     """
 
@@ -167,6 +178,26 @@ def design_of(baseline: History) -> Design:
     return Design(tuple(columns), known, min(2, len(known)))
 
 
+def with_slow_processes(design: Design, baseline: History) -> Design:
+    """Return the design with regressors of harmless processes that take weeks or years.
+
+    These are ground that storms soften and that recovers, ground that follows the air, and marine growth.
+    Each is added if the baseline is long enough to separate it from the intercept. They are not for following
+    a stiffness through time, of whose changes they would explain a part.
+    """
+    span, lines = float(np.ptp(baseline.days)), [c for c in design.columns if c.shape == "line"]
+    there = [c for c in lines if c.lag_days == 0.0]
+    slow = []
+    if span > _SEVERAL * HEALING_DAYS:
+        rough = [c for pattern in (_WAVES, _WIND) for c in there if pattern.search(c.name)][:1]
+        slow += [replace(c, shape="storm", lag_days=HEALING_DAYS, prior=_CURVED) for c in rough]
+    if span > WHOLE_YEAR_DAYS:
+        slow += [replace(c, lag_days=GROUND_DAYS, prior=_SLOW) for c in lines if c.lag_days == max(LAGS_DAYS)]
+        middle = float(baseline.days[0]) + 0.5 * span
+        slow.append(Column("time", -1, 0.0, "trend", middle, YEAR_DAYS, _SLOW))
+    return replace(design, columns=(*design.columns, *slow))
+
+
 def with_time_of_year(design: Design) -> Design:
     """Return the design with the time of year as regressor, which replaces a missing temperature."""
     if any(c.lag_days > 0.0 or c.name == "time of year" for c in design.columns):
@@ -180,9 +211,19 @@ def _whole_days(baseline: History) -> bool:
     return bool(np.ptp(np.histogram(baseline.days % 1.0, 8, (0.0, 1.0))[0]) < 0.5 * baseline.days.size)
 
 
-def fresh(design: Design) -> Lagged:
-    """Return the state of lagged regressors before the first row."""
-    return Lagged(-np.inf, np.zeros(len(design.columns)))
+def fresh(design: Design, baseline: History | None = None) -> Lagged:
+    """Return the state of lagged regressors before the first row.
+
+    With a baseline, regressors with lags of weeks start from their values at its end, which is a whole year
+    later; the others start from the first row.
+    """
+    slow = np.array([column.lag_days >= HEALING_DAYS for column in design.columns], dtype=np.bool_)
+    none = Lagged(-np.inf, np.zeros(len(design.columns)))
+    if baseline is None or not slow.any():
+        return none
+    first = regressors(design, baseline.rows(np.arange(baseline.days.size) == 0), none)[1].values
+    last = regressors(design, baseline, none)[1].values
+    return Lagged(float(baseline.days[0]), np.where(slow, last, first))
 
 
 def regressors(design: Design, history: History, lagged: Lagged) -> tuple[FloatArray, Lagged]:
@@ -211,6 +252,8 @@ def regressors(design: Design, history: History, lagged: Lagged) -> tuple[FloatA
 
 def _standard(column: Column, history: History) -> FloatArray:
     """Return a standardised condition after its nonlinearity, without lag."""
+    if column.shape == "trend":
+        return np.asarray((history.days - column.centre) / column.scale)
     if column.shape in ("sine", "cosine"):
         turn = 2.0 * np.pi * history.days / column.scale
         return np.asarray(np.sin(turn) if column.shape == "sine" else np.cos(turn))
@@ -218,6 +261,8 @@ def _standard(column: Column, history: History) -> FloatArray:
     if column.shape == "frost":
         return np.asarray(np.minimum(x, 0.0) / column.scale)
     x = (x - column.centre) / column.scale
+    if column.shape == "storm":
+        return np.asarray(np.maximum(x - _ROUGH, 0.0) ** 2)
     return np.asarray(x * x - 1.0 if column.shape == "square" else x)
 
 

@@ -22,10 +22,10 @@ from scipy.stats import norm
 from jackettwin.arrays import FloatArray
 from jackettwin.watching.block import WINDOW_DAYS, Block, residuals
 from jackettwin.watching.day_parts import INSIDE
-from jackettwin.watching.design import fresh, regressors
+from jackettwin.watching.design import regressors
 from jackettwin.watching.directions import SHARES, Directions, log_along
 from jackettwin.watching.history import History
-from jackettwin.watching.hours import Hours, by_hour
+from jackettwin.watching.hours import by_hour
 from jackettwin.watching.memory import empty_bank, filtered
 from jackettwin.watching.state import Watch
 
@@ -109,10 +109,10 @@ def sight(watch: Watch, baseline: History, days: float) -> Sight | None:
     last = float(baseline.days[-1])
     if last - float(baseline.days[0]) < _WHOLE * days or days <= watch.patience_days:
         return None
-    rows, _ = regressors(watch.design, baseline, fresh(watch.design))
-    chosen = baseline.days > last - days
-    records = baseline.rows(chosen)
-    known = [_informed(block, records, rows[chosen], watch.last_day) for block in watch.blocks]
+    records = baseline.rows(baseline.days > last - days)
+    records = replace(records, days=records.days + np.ceil(last) - np.floor(records.days[0]))
+    rows, _ = regressors(watch.design, records, watch.lagged)
+    known = [_informed(block, records, rows, watch.last_day) for block in watch.blocks]
     gap = days / np.unique(np.floor(records.days)).size
     staked = SHARES["scatter"] + sum(SHARES[block.kind] for block in watch.blocks)
     needed = watch.log_threshold - np.log(max(gap, 1.0) * (1.0 - INSIDE)) + np.log(staked)
@@ -129,20 +129,14 @@ def sight(watch: Watch, baseline: History, days: float) -> Sight | None:
 def _informed(
     block: Block, records: History, rows: FloatArray, last_day: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return, by model, A of a step before a repetition of some records, and the weight."""
+    """Return, by model, A of a step before some records, and the weight."""
     y, _, variance, _ = residuals(block, records, rows)
     hours = by_hour(records.days, records.states, np.nan_to_num(rows), y, variance, WINDOW_DAYS)
-    later = _shifted(hours, last_day)
     live = [i for i, weight in enumerate(block.log_weights) if np.exp(weight) > _LEAST]
     info = []
     for i in live:
         belief = block.beliefs[i]
         bank = empty_bank(len(block.kept), belief.mean.size).with_begin()
-        info.append(filtered(block.memories[i], belief, bank, later, last_day).bank.info[0])
+        info.append(filtered(block.memories[i], belief, bank, hours, last_day).bank.info[0])
     weights = np.exp(block.log_weights[live])
     return np.array(info), np.asarray(weights / weights.sum())
-
-
-def _shifted(hours: Hours, last_day: float) -> Hours:
-    """Return hourly averages shifted in time to follow a day."""
-    return replace(hours, days=hours.days - hours.days[0] + last_day + 1.0)

@@ -21,7 +21,7 @@ from jackettwin.watching.memory import Belief, Filtered, Memory, empty_bank, fil
 Spectrum = tuple[tuple[float, ...], tuple[float, ...]]
 """Time constants [days] and shares of the variance."""
 
-SHORT_DAYS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
+SHORT_DAYS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
 """Time constants of a single short process."""
 LONG_DAYS = (12.0, 90.0)
 """Time constants of the two parts of an additional long process: weeks, and a season,

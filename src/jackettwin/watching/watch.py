@@ -37,7 +37,14 @@ from jackettwin.watching.block import (
 )
 from jackettwin.watching.change import Change, change_of
 from jackettwin.watching.day_parts import INSIDE, divided
-from jackettwin.watching.design import WHOLE_YEAR_DAYS, Slope, design_of, fresh, regressors
+from jackettwin.watching.design import (
+    WHOLE_YEAR_DAYS,
+    Slope,
+    design_of,
+    fresh,
+    regressors,
+    with_slow_processes,
+)
 from jackettwin.watching.directions import SHARES, Pattern, directions_of
 from jackettwin.watching.history import History, Kind, typical
 from jackettwin.watching.hours import ENOUGH
@@ -132,8 +139,8 @@ def start(
         If the baseline is too short to learn from.
     """
     kept = columns_to_watch(baseline)
-    design = design_of(baseline)
-    rows, lagged = regressors(design, baseline, fresh(design))
+    design = with_slow_processes(design_of(baseline), baseline)
+    rows, lagged = regressors(design, baseline, fresh(design, baseline))
     frequency = typical(baseline.frequency)
     blocks = []
     for kind, columns in kept.items():
