@@ -122,6 +122,8 @@ FAULTS = (
         ("processes age with the square root of time", "np.exp(-gaps[r] * rates[k])", "np.exp(-np.sqrt(gaps[r] * rates[k]))"),
     )),
     *_of("updating", rows=(
+        ("a shape's noise counts all sensors", "expected = (1.0 - k / n) * float(m.std @ m.std) / square", "expected = float(m.std @ m.std) / square"),
+        ("what is unseen moves the ground the other way", "np.asarray(inverse - inverse @ rows.J @ moved), np.asarray(-moved)", "np.asarray(inverse - inverse @ rows.J @ moved), np.asarray(moved)"),
         ("a 90 % interval is one of 68 %", "half = NORMAL_90 * self.std_per_day", "half = self.std_per_day"),
         ("posterior intervals are of 68 %", "np.quantile(self.log_theta, [0.05, 0.95], axis=0)", "np.quantile(self.log_theta, [0.16, 0.84], axis=0)"),
         ("damping predicted with the other sign", "-damped.poles.real / size", "damped.poles.real / size"),
