@@ -263,6 +263,16 @@ def test_what_these_data_would_not_show_is_said_with_its_size() -> None:
     )
 
 
+def test_another_law_that_is_not_revealed_is_spoken_of_by_powers_of_frequency() -> None:
+    law = replace(SOFT, name="law", words="loss that grows otherwise", std=1.0, unit="power")
+    found = Objection((), 8.0, 8, 0.4, unseen=(Unseen(law, 1.1, np.array([0.0, -0.2])),))
+    shorts = sentences(replace(ANSWERS, scrutiny=Scrutiny(found))).questions[0].short
+    assert (
+        "These data would not reveal loss that grows otherwise (ω^1, with which loss factor would be 18 % "
+        "less than stated; revealed only from ω^1.1)." in shorts
+    )
+
+
 def test_a_strange_shape_and_another_order_have_sentences() -> None:
     found = replace(
         Objection((), 8.0, 8, 0.4),

@@ -36,7 +36,7 @@ def size_words(tolerance: Tolerance, size: float) -> str:
     if tolerance.unit == "m" and tolerance.name not in _METRES:
         return f"{1000.0 * size:+.2g} mm".replace("-", "−")
     if tolerance.unit == "power":
-        return f"by ω^{size:.2g}".replace("-", "−")
+        return f"ω^{size:.2g}".replace("-", "−")
     return f"{size:+.2g} {tolerance.unit}".replace("-", "−")
 
 
