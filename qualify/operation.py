@@ -40,9 +40,9 @@ from jackettwin.simulate.motion.model import TrueMode, true_modes, with_aerodyna
 WINDS = (4.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0)
 BENDING = (8.0, 12.0, 20.0)
 """Winds in which the blades bend and the airflow about them lags, too."""
-DURATION_S, OFFSET_M, STEP_S = 100.0, 0.3, 0.01
+DURATION_S, OFFSET_M, STEP_S = 45.0, 0.3, 0.02
 STARTED_S = {"fore-aft": 4.0, "side-side": 4.0}
-LASTS_S = {"fore-aft": 45.0, "side-side": 96.0}
+LASTS_S = {"fore-aft": 35.0, "side-side": 41.0}
 """Of the decays: fore-aft nothing is left after seven periods."""
 STEADY = {"fore-aft": "YawBrTAxp", "side-side": "YawBrTAyp"}
 LABELS = {"fore-aft": "fore_aft_1", "side-side": "side_side_1"}

@@ -27,14 +27,28 @@ _SHOWN = 12
 @click.command("simulate")
 @click.argument("scenario", default=DEFAULT_SCENARIO)
 @click.option("--out", help="The record, NAME.json beside it; default out/NAME.parquet.")
+@click.option(
+    "--section-forces",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Write section forces and reactions as series: .parquet, or OpenFAST's .outb.",
+)
+@click.option("--members", metavar="NAME,…", help="Of which; default: those on the ground and the interface.")
 @answers
-def simulate_command(scenario: str, out: str | None) -> Reply:
+def simulate_command(
+    scenario: str, out: str | None, section_forces: Path | None, members: str | None
+) -> Reply:
     """Simulate SCENARIO and write its record.
 
     SCENARIO is a shipped name or a YAML file.
     """
     from jackettwin.records import write_record
-    from jackettwin.simulate import read_scenario, rotor_notes, simulate
+    from jackettwin.simulate import (
+        force_series,
+        read_scenario,
+        rotor_notes,
+        simulate,
+        write_force_series,
+    )
     from jackettwin.structure import assemble, check
 
     chosen = read_scenario(scenario)
@@ -42,6 +56,12 @@ def simulate_command(scenario: str, out: str | None) -> Reply:
     with working(f"simulate {chosen.name}"):
         done = simulate(chosen)
     write_record(done.record, path)
+    if section_forces is not None:
+        names = () if members is None else tuple(name.strip() for name in members.split(","))
+        with working(f"section forces of {chosen.name}"):
+            write_force_series(force_series(chosen, names), section_forces)
+    elif members is not None:
+        raise InputError("needs --section-forces", field="--members", value=members, remedy="name its file")
     asset = chosen.asset
     odd = check(assemble(asset.structure)).warnings
     notes = [
@@ -55,7 +75,8 @@ def simulate_command(scenario: str, out: str | None) -> Reply:
         _show(done, path)
         say_all(notes, "note")
 
-    return Reply({**done.document(), "record": str(path), "notes": notes}, show)
+    forces = None if section_forces is None else str(section_forces)
+    return Reply({**done.document(), "record": str(path), "section_forces": forces, "notes": notes}, show)
 
 
 def _unusual_shares(done: Simulation, *, loops: bool) -> list[str]:

@@ -9,4 +9,5 @@ from .scenario.asset import Asset as Asset
 from .scenario.files import read_scenario as read_scenario, shipped_scenarios as shipped_scenarios
 from .scenario.scenario import Scenario as Scenario
 from .scenario.sets import read_set as read_set, shipped_sets as shipped_sets
+from .section_series import force_series as force_series, write_force_series as write_force_series
 from .weld_life import scenario_life as scenario_life

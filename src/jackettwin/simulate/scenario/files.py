@@ -11,7 +11,7 @@ from jackettwin.loads import WaterSchema
 from jackettwin.response import observation_matrix
 from jackettwin.simulate.scenario.air import RotorSchema, WindSchema, build_air, build_turbine
 from jackettwin.simulate.scenario.asset import AssetSchema
-from jackettwin.simulate.scenario.pushes import StartSchema, read_forces
+from jackettwin.simulate.scenario.pushes import GivenForces, OutputForcesSchema, StartSchema, read_forces
 from jackettwin.simulate.scenario.scenario import Instrument, Scenario, SimulationClock
 from jackettwin.simulate.scenario.sea import CurrentSchema, WavesSchema, build_sea
 from jackettwin.structure import Structure, assemble
@@ -23,7 +23,7 @@ class ScenarioSchema(AssetSchema):
     water: WaterSchema | None = None
     waves: WavesSchema | None = None
     current: CurrentSchema | None = None
-    forces: str | None = None
+    forces: str | OutputForcesSchema | None = None
     start: StartSchema | None = None
     wind: WindSchema | None = None
     rotor: RotorSchema | None = None
@@ -83,9 +83,17 @@ def scenario_from(data: Any, path: Path) -> Scenario:
             clock=schema.time,
             instruments=instruments or _standard_instruments(structure),
             sensor_seed=schema.sensor_seed,
-            forces=None if schema.forces is None else read_forces(path.parent / schema.forces, structure),
+            forces=_forces(schema.forces, structure, path.parent),
             pull=pull,
         )
+
+
+def _forces(given: str | OutputForcesSchema | None, structure: Structure, folder: Path) -> GivenForces | None:
+    if given is None:
+        return None
+    return (
+        read_forces(folder / given, structure) if isinstance(given, str) else given.build(structure, folder)
+    )
 
 
 def _check_instruments(instruments: tuple[Instrument, ...], structure: Structure) -> None:

@@ -5,14 +5,16 @@ from __future__ import annotations
 import csv
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, located, look_up, require
-from jackettwin.files import Schema, read_text
+from jackettwin.files import Schema, read_text as read_lines
+from jackettwin.quantities import plain_unit, to_si
+from jackettwin.records.readers.openfast import read_text
 from jackettwin.structure import Structure
 
 COMPONENTS = ("fx_n", "fy_n", "fz_n", "mx_n_m", "my_n_m", "mz_n_m")
@@ -22,6 +24,7 @@ _LONGEST = 2_000_000
 """Rows that a file of forces may have."""
 _LARGEST = 1e10
 """No push has more newtons, or newton metres."""
+Component = Literal["fx_n", "fy_n", "fz_n", "mx_n_m", "my_n_m", "mz_n_m"]
 Part = Annotated[float, Field(ge=-1e3, le=1e3)]
 
 
@@ -104,6 +107,52 @@ class Pull:
     release_s: float
 
 
+class OutputForcesSchema(Schema):
+    """``forces`` of another program's output: which of its channels act on which node, in the file's units.
+
+    Channels are what acts on the structure along its global axes; ``factor`` −1 turns reactions about.
+    ``discard_s`` is left out of the file's beginning, whose rest begins with the record.
+    """
+
+    file: str
+    node: str
+    channels: Annotated[dict[Component, str], Field(min_length=1)]
+    factor: Annotated[float, Field(ge=-100.0, le=100.0)] = 1.0
+    discard_s: Annotated[float, Field(ge=0.0, le=86400.0)] = 0.0
+
+    def build(self, structure: Structure, folder: Path) -> GivenForces:
+        """Return the forces.
+
+        Raises
+        ------
+        InputError
+            If the file is no OpenFAST output, or lacks a channel, or its unit is not that of a force.
+        """
+        path = folder / self.file
+        with located(field="forces"):
+            look_up(structure.nodes, self.node, "node", field="node")
+            require(path.is_file(), "no such file", field="file", value=str(path), remedy="check the path")
+        with located(file=path, field="forces"):
+            found = read_text(path)
+            assert found.times_s is not None
+            kept = found.times_s >= found.times_s[0] + self.discard_s
+            t = found.times_s[kept] - found.times_s[kept][0] if kept.any() else np.empty(0)
+            require(
+                t.size > 1, "nothing is left", field="discard_s", value=self.discard_s, remedy="discard less"
+            )
+            values = np.zeros((t.size, 1, 6))
+            for component, channel in self.channels.items():
+                look_up(dict.fromkeys(found.names), channel, "channel", field=f"channels.{component}")
+                unit = plain_unit(found.channels[channel].unit or "")
+                with located(field=f"channels.{component}"):
+                    scale = self.factor * to_si("moment" if component.startswith("m") else "force", unit)
+                values[:, 0, COMPONENTS.index(component)] = (
+                    scale * found.data[found.names.index(channel)][kept]
+                )
+            _check(t, values)
+        return GivenForces(t, (self.node,), values)
+
+
 def read_forces(path: Path, structure: Structure) -> GivenForces:
     """Read a CSV with the columns ``time_s`` and ``NODE.fx_n`` (…``fz_n``, ``mx_n_m``…``mz_n_m``).
 
@@ -112,7 +161,7 @@ def read_forces(path: Path, structure: Structure) -> GivenForces:
     InputError
         Names the file, and the column that is missing, unknown or no number.
     """
-    reader = csv.reader(read_text(path, what="file of forces").splitlines()[: _LONGEST + 1])
+    reader = csv.reader(read_lines(path, what="file of forces").splitlines()[: _LONGEST + 1])
     header = [name.strip() for name in next(reader, [])]
     with located(file=path, field="forces"):
         try:
