@@ -79,7 +79,7 @@ def test_the_folder_holds_the_next_prior_and_a_page(run, tmp_path: Path) -> None
 
 def test_before_the_third_day_nothing_is_said_of_a_drift(run) -> None:  # type: ignore[no-untyped-def]
     done = run(replace(found(2), warnings=()))
-    assert "Too early to speak of a drift: 3 days with data are needed." in done.stdout
+    assert "Too early to estimate a drift: 3 days with data are needed." in done.stdout
     assert json.loads(run(found(2), "--json").stdout)["drift"] is None
 
 

@@ -89,7 +89,7 @@ def test_points_to_start_from_are_given_on_the_command_line_or_in_the_file(twin:
         ("k=abc", "--start: not NAME=VALUE"),
         ("k=-1", "--start: not positive"),
         ("kk=1e9", "--start: a start names no parameters of the law"),
-        ("k=1e3", "starts[0].k: a start outside the bounds"),
+        ("k=1e3", "starts[0].k: a start is outside the bounds"),
     ],
 )
 def test_a_wrong_point_is_refused(twin: Path, option: str, message: str) -> None:

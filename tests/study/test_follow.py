@@ -211,7 +211,7 @@ def test_of_a_drift_too_short_to_be_seen_nothing_is_said(followed: Followed) -> 
     drift = followed.drift
     assert drift is not None
     blind = replace(drift, z=np.zeros_like(drift.z), covariance=np.eye(len(drift.z)))
-    assert "not even a doubling a day would be seen" in replace(followed, drift=blind).statement
+    assert "would not reveal even a doubling a day" in replace(followed, drift=blind).statement
 
 
 def test_what_cannot_be_followed(

@@ -82,7 +82,7 @@ def test_relaxations_alone_are_refused(tmp_path: Path) -> None:
 
 def test_rates_in_another_unit_are_refused(config: TwinConfig) -> None:
     fast = replace(config, relaxations=(GivenRelaxation(3500.0, 1.0),))
-    with pytest.raises(InputError, match=r"rate_rad_s.*far faster"):
+    with pytest.raises(InputError, match=r"rate_rad_s.*far above"):
         run_twin(fast)
 
 

@@ -307,5 +307,5 @@ def test_records_of_noise_are_told_from_those_of_another_structure(tmp_path: Pat
     with pytest.raises(InputError, match="this is noise, or the record is too short.*connected"):
         run_twin(replace(config, records=(file,)))
     stated = config.identification.model_copy(update={"lowest_frequency_hz": 0.1})
-    with pytest.raises(InputError, match="no record shows any mode.*spectra"):
+    with pytest.raises(InputError, match="no mode was identified in any record.*spectra"):
         run_twin(replace(config, records=(file,), identification=stated))

@@ -70,5 +70,5 @@ def test_a_twin_names_the_series_that_its_data_chose() -> None:
     assert fit.law in members(["prony"])
     document = update_document(result, 0)
     assert document["series"] in [one.value for one in result.assumptions]
-    assert f"({fit.law})" in document["series"] or "the most that are tried" in document["series"]
+    assert f"({fit.law})" in document["series"] or "the largest number tried" in document["series"]
     assert update_document(run_twin(config, laws=("zener",), posteriors="none"), 0)["series"] is None

@@ -138,7 +138,7 @@ def test_frequencies_alone_are_given_their_modes_and_the_assignment_is_said(tmp_
     assert [(t.mode, t.frequency_hz) for t in config.targets] == [(4, 0.7362), (2, 0.1838), (1, 0.1819)]
     assert config.assigned == (4, 2)
     measured = target_modes(config, tuple(f"mode_{k}" for k in range(1, 13)), pinned_hz=np.full(12, 0.75))
-    (said,) = [line for line in cautions(config, None, measured, ()) if "without a name" in line]
+    (said,) = [line for line in cautions(config, None, measured, ()) if "without a mode's name" in line]
     assert "0.7362 Hz is mode_4 (mode 4)" in said and "0.1838 Hz is mode_2" in said and "0.1819" not in said
 
 

@@ -163,5 +163,5 @@ def test_relative_rates_have_no_likelihood(zener: SupportModel) -> None:
 
 @pytest.mark.parametrize(("rate", "log_std"), [(0.0, 0.1), (-1.0, 0.1), (1.0, 0.0), (float("nan"), None)])
 def test_what_is_no_rate_is_refused(rate: float, log_std: float | None) -> None:
-    with pytest.raises(InputError, match="positive rate"):
+    with pytest.raises(InputError, match="rate and standard deviation of a relaxation must be positive"):
         RelaxationTarget("a1", rate, log_std)

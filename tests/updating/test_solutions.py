@@ -139,14 +139,14 @@ def test_a_search_that_does_not_settle_stops_and_says_so(
     problem, told = single(models["kelvin-voigt"], frequencies_alone), list[str]()
     stopped = search(problem, starts=1, most_evaluations=1, progress=Told(inside=told.append))
     assert stopped.starts == 1 and stopped.spent is not None and stopped.spent > 1
-    assert stopped.statement.startswith(f"Not settled after {stopped.spent} evaluations: 1 starts")
-    assert told[0] == "1 of 1 starts, 0 distinct solutions before them"
+    assert stopped.statement.startswith(f"Not complete after {stopped.spent} evaluations: 1 starts")
+    assert told[0] == "1 of 1 starts, 0 distinct solutions from earlier ones"
     assert all(text.startswith("search") for text in told[1:])
     told.clear()
     settled = search(problem, starts=1, progress=Told(inside=told.append))
     assert settled.spent is None and settled.starts > 1
     assert len([text for text in told if " starts" in text]) == settled.starts
-    assert "Not settled" not in settled.statement
+    assert "Not complete" not in settled.statement
 
 
 def test_a_search_that_ends_nowhere_says_what_is_in_reach(
@@ -158,7 +158,10 @@ def test_a_search_that_ends_nowhere_says_what_is_in_reach(
         return replace(descend(*args, **options), settled=False)
 
     monkeypatch.setattr("jackettwin.updating.search.solutions.descend", lost)
-    with pytest.raises(InputError, match=r"supports' reach \(got \{1: 0\.1.*undamped mode 1 .*to 0\.18\d Hz"):
+    with pytest.raises(
+        InputError,
+        match=r"no support can reproduce the data \(got \{1: 0\.1.*undamped mode 1 .*to 0\.18\d Hz",
+    ):
         search(single(models["kelvin-voigt"], frequencies_alone), starts=1)
 
 

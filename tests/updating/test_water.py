@@ -79,7 +79,7 @@ def test_more_water_than_the_structure_weighs_is_refused(
     jacket15: Assembly, maxwell_3: Callable[..., SupportModel]
 ) -> None:
     heavy = {"water_mass": 2.1 * jacket15.mass}
-    with pytest.raises(InputError, match="cannot hold that much water"):
+    with pytest.raises(InputError, match="cannot include that much water"):
         maxwell_3(nuisance=NuisanceParameters((), matrices=heavy))
 
 

@@ -29,7 +29,7 @@ from jackettwin.updating import (
 from jackettwin.version import __version__
 
 MODAL = "frequency_hz", "frequency_std_hz", "damping_ratio", "damping_ratio_std"
-"""What measured and fused modes have."""
+"""Numbers that measured and fused modes both have."""
 
 
 def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
@@ -58,7 +58,7 @@ def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
 
 
 def _recognised(seen: Observation, labels: tuple[str, ...], compared: Comparison | None) -> dict[str, Any]:
-    """Return a record's document with what each mode is in the model, and was held against."""
+    """Return a record's document with each mode's label and the model's mode it was compared with."""
     document = identification_document(seen.identification, seen.quality, seen.conditions, compared)
     modes = zip(document["modes"], seen.identification.modes, seen.labels, seen.held, strict=True)
     for plain, mode, label, held in modes:
@@ -74,7 +74,7 @@ def ranking_document(updates: Sequence[Update]) -> list[dict[str, Any]]:
 
 
 def series_sentence(result: TwinResult) -> str | None:
-    """Return how many branches a Prony series without a number was given, and why; None if none was asked."""
+    """Return the number of branches of a Prony series without a given one, and why; else None."""
     return next((one.value for one in result.assumptions if one.key == SERIES), None)
 
 
@@ -151,7 +151,7 @@ def _relaxation(r: MeasuredRelaxation) -> dict[str, Any]:
 
 
 def _compared_relaxations(measured: tuple[MeasuredRelaxation, ...], u: Update) -> list[dict[str, Any]]:
-    """Return each measured real pole beside the model's nearest, best and in the posterior."""
+    """Return each measured real pole with the model's nearest at the best fit and in the posterior."""
     known = u.uncertainty
     return [
         {
@@ -166,7 +166,7 @@ def _compared_relaxations(measured: tuple[MeasuredRelaxation, ...], u: Update) -
 
 
 def _parameters(u: Update) -> dict[str, dict[str, Any]]:
-    """Return what is known of each parameter: its median, or without one its best fit."""
+    """Return the estimate of each parameter: its median, or its best fit where there is no posterior."""
     known = u.uncertainty
     best = [float(value) for value in u.best.theta]
     middle = best if known is None else [float(value) for value in known.median]
@@ -194,7 +194,7 @@ def _log_evidence(known: Uncertainty | None) -> float | None:
 
 
 def _uncertainty(u: Update, known: Uncertainty) -> dict[str, Any]:
-    """Return what the posterior says beside the parameters."""
+    """Return the results of the posterior other than the parameters."""
     posterior, q = known.posterior, known.predictive
     names = [p.name for p in u.problem.parameters]
     return {
@@ -245,7 +245,7 @@ def _quantiles(draws: FloatArray) -> dict[str, Any]:
 
 
 def _budget(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, Any]]:
-    """Return each mode's damping ratio by source; where no drag is modelled, water's part is not known.
+    """Return each mode's damping ratio by source; without a model of drag the water's part is null.
 
     Shares are of the measured damping ratio; of the model's where none was measured.
     """

@@ -1,4 +1,4 @@
-"""A twin file drafted from a structure and its records: what they say, and what nobody has said yet."""
+"""A twin file drafted from a structure and its records, and a list of the data still missing."""
 
 from __future__ import annotations
 
@@ -18,32 +18,32 @@ from jackettwin.updating import numbered_modes
 from jackettwin.version import __version__
 
 STEEL_DAMPING = 0.005
-"""Ratio of critical at the first frequency: what welded steel towers and jackets are usually given."""
+"""Damping ratio at the first frequency that is usually assumed of welded steel towers and jackets."""
 _UPDATE = (
     "tolerances:                         # what drawings leave open; other tolerances have defaults: CHECK",
     "  rna_mass: 0.015                   # {weighed: true} where the nacelle was weighed",
     "  growth: 0.04                      # metres; {weighed: true} where divers found none",
     "update:",
-    "  damping_of: fore_aft              # whose damping the ground must explain",
-    "  # priors: {k: {median: 1.0e9, log_std: 0.7}}   # what the design says of a foot [N/m]",
-    "  # rotor: turbine.yaml             # windIO file: what a parked rotor damps in the wind",
-    "# rotor_speed_rpm: [5.0, 7.6]       # lowest and highest in operation: margins to 1P and 3P",
+    "  damping_of: fore_aft              # modes whose damping the ground is fitted to",
+    "  # priors: {k: {median: 1.0e9, log_std: 0.7}}   # design value of a foot's stiffness [N/m]",
+    "  # rotor: turbine.yaml             # windIO file: aerodynamic damping of the parked rotor",
+    "# rotor_speed_rpm: [5.0, 7.6]       # operating range, for the margins to 1P and 3P",
 )
-"""What no file says: the tolerances that move the ground most, the rest for the user to fill in."""
+"""Keys that no file gives: the tolerances that affect the ground most, and keys for the user to fill in."""
 _PLAIN = re.compile(r"^[A-Za-z_][\w./\-]*$")
 
 
 @dataclass(frozen=True)
 class SensorPlace:
-    """A channel as the draft places it.
+    """A channel, and where the draft places its sensor.
 
     Attributes
     ----------
     sensor : Sensor
     why : str
-        Where place and direction come from.
+        Source of position and direction.
     lacks : str
-        What is missing to make a sensor of it; empty if nothing is.
+        Data that the sensor still lacks; empty if none.
     """
 
     sensor: Sensor
@@ -53,14 +53,14 @@ class SensorPlace:
 
 @dataclass(frozen=True)
 class Draft:
-    """A twin file and what is missing to trust it.
+    """A drafted twin file and the data it lacks.
 
     Attributes
     ----------
     text : str
         YAML with comments.
     places : tuple of Place
-        One a channel that measures motion.
+        One for each channel that measures motion.
     missing : tuple of str
         Sentences on what to add.
     """
@@ -71,7 +71,7 @@ class Draft:
 
     @property
     def complete(self) -> bool:
-        """Whether the twin can be run: at least one sensor has its place."""
+        """Whether the twin can be run: at least one sensor has a position."""
         return any(not place.lacks for place in self.places)
 
 
@@ -87,15 +87,15 @@ def draft_twin(
     Parameters
     ----------
     source : str
-        The structure as the file names it.
+        Path of the structure as written into the file.
     assembly : Assembly
-        Of the structure, with its geometric stiffness.
-    records : sequence of (path as the file names it, record)
-        At least one; sensors are those of the first.
+        The structure's, with its geometric stiffness.
+    records : sequence of (path as written into the file, record)
+        At least one; the sensors are those of the first.
     unsaid : Unsaid
-        What the user said of the logger.
+        Properties of the logger that the user gave.
     further : sequence of str
-        Records that are listed without having been read.
+        Records that are listed but not read.
     """
     first, stated = with_conditions(records[0][1]), stated_model(records[0][1].metadata)
     places = tuple(_place(channel, assembly) for channel in moving_channels(first).channels)
@@ -124,7 +124,7 @@ def draft_twin(
 
 
 def _place(channel: Channel, assembly: Assembly) -> SensorPlace:
-    """Return where a channel's sensor sits, and what is missing to say so."""
+    """Return the position of a channel's sensor, and the data it lacks."""
     structure, read = assembly.structure, read_name(channel.name)
     node, height, why = channel.node, channel.height_m, []
     if node is None and height is None and read.level in (levels := _levels(structure)):
@@ -143,7 +143,7 @@ def _place(channel: Channel, assembly: Assembly) -> SensorPlace:
 
 
 def _levels(structure: Structure) -> dict[str, str]:
-    """Return the nodes that names of parts mean, where the structure leaves no choice."""
+    """Return the node of each named part where the structure has exactly one candidate."""
     levels = {"tower top": structure.top_node} if _has_tower(structure) else {}
     if len(structure.interface_nodes) == 1:  # where the transition piece ends and the tower begins
         levels |= dict.fromkeys(("transition piece", "tower bottom"), structure.interface_nodes[0])
@@ -155,7 +155,7 @@ def _has_tower(structure: Structure) -> bool:
 
 
 def _middle(structure: Structure) -> float | None:
-    """Return the height of the middle of the tower above the sea; None where nobody knows where it begins."""
+    """Return the height of the middle of the tower above the sea; None if its lower end is not known."""
     bottom = _levels(structure).get("tower bottom")
     if bottom is None or not _has_tower(structure):
         return None
@@ -179,7 +179,7 @@ def _lacks(sensor: Sensor, assembly: Assembly) -> str:
 
 
 def _sensor_line(place: SensorPlace) -> str:
-    """Return a sensor's line, commented out if something of it is missing."""
+    """Return a sensor's line, commented out if any of its data are missing."""
     s = place.sensor
     at = f"node: {_text(s.node)}" if s.node is not None else f"height_m: {_number(s.height_m)}"
     direction = ", ".join(f"{v:g}" for v in s.direction) if any(s.direction) else "?, ?, ?"
@@ -190,7 +190,7 @@ def _sensor_line(place: SensorPlace) -> str:
 
 
 def _modelling(assembly: Assembly, stated: Mapping[str, object]) -> list[str]:
-    """Return the keys that say how the structure is modelled: the record's, where it comes from a model."""
+    """Return the modelling keys of the structure: those of the record, where a model simulated it."""
     why = "as the record states it" if "gravity" in stated else "self-weight softens"
     lines = [f"gravity: {str(assembly.gravity).lower():<28}# {why}: 1 to 4 % on the first frequencies"]
     structure = assembly.structure
@@ -202,7 +202,7 @@ def _modelling(assembly: Assembly, stated: Mapping[str, object]) -> list[str]:
 
 
 def _water(structure: Structure) -> list[str]:
-    """Return the line of the water around a structure whose feet stand in it."""
+    """Return the line of the water around a structure whose feet are below the sea level."""
     feet = [structure.nodes[node][2] for node in structure.reaction_nodes]
     depth = structure.sea_level_z_m - min(feet, default=structure.sea_level_z_m)
     if not depth > 0.0:
@@ -214,7 +214,7 @@ def _water(structure: Structure) -> list[str]:
 
 
 def _logger(unsaid: Unsaid) -> list[str]:
-    """Return the line of what the user said of the logger."""
+    """Return the line of the logger's properties that the user gave."""
     said = {
         "unit": unsaid.unit and _text(unsaid.unit),
         "gain": unsaid.gain,
@@ -222,13 +222,13 @@ def _logger(unsaid: Unsaid) -> list[str]:
         "sample_rate_hz": unsaid.sample_rate_hz,
     }
     given = ", ".join(f"{key}: {value}" for key, value in said.items() if value is not None)
-    return [f"logger: {{{given}}}   # of files that do not say it"] if given else []
+    return [f"logger: {{{given}}}   # for files that do not state it"] if given else []
 
 
 def _missing(
     places: Sequence[SensorPlace], records: Sequence[Record], structure: Structure
 ) -> tuple[str, ...]:
-    """Return what nobody has said, most needed first."""
+    """Return the missing data, the most needed first."""
     missing = [f"{place.sensor.channel}: {place.lacks}" for place in places if place.lacks]
     if not _has_tower(structure):
         top = structure.nodes[structure.top_node][2] - structure.sea_level_z_m
@@ -258,22 +258,22 @@ def _missing(
 
 
 def _levels_missing(places: Sequence[SensorPlace], structure: Structure) -> list[str]:
-    """Return what feet and sensors say against the sea level: z or heights count from elsewhere."""
+    """Return contradictions of the sea level by feet or sensor heights, whose datum may be another."""
     feet = min((structure.nodes[node][2] for node in structure.reaction_nodes), default=None)
     if feet is None:
         return []
     depth = structure.sea_level_z_m - feet
     if depth <= 0.0:
         return [
-            f"sea_level_z_m of the structure: its feet stand at z = {feet:g} m and still water at "
-            f"{structure.sea_level_z_m:g} m; heights of sensors count from still water"
+            f"sea_level_z_m of the structure: its feet are at z = {feet:g} m and still water at "
+            f"{structure.sea_level_z_m:g} m; heights of sensors are measured from still water"
         ]
     heights = [place.sensor.height_m for place in places if place.sensor.height_m is not None]
     top = structure.nodes[structure.top_node][2] - structure.sea_level_z_m
     if heights and top < max(heights) <= top + depth:
         return [
-            f"the heights, up to {max(heights):g} m, may count from the sea bed: {depth:g} m less would "
-            "be above still water"
+            f"the heights, up to {max(heights):g} m, may be measured from the sea bed; "
+            f"above still water they would be {depth:g} m less"
         ]
     return []
 
@@ -286,7 +286,7 @@ def _described(record: Record) -> str:
 
 
 def _text(text: str) -> str:
-    """Return a text as YAML takes it, in quotes where it could be read as something else."""
+    """Return a text as YAML, in quotes where YAML would read it as another type."""
     return text if _PLAIN.match(text) else json.dumps(text, ensure_ascii=False)
 
 

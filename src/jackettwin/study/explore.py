@@ -1,4 +1,4 @@
-"""A twin's law explored: what its parameters do to modes and cost, and which way the search took."""
+"""Exploration of a twin's law: effect of its parameters on modes and cost, and the paths of the search."""
 
 from __future__ import annotations
 
@@ -37,18 +37,18 @@ from jackettwin.updating import (
 
 @dataclass(frozen=True)
 class ExploreSettings:
-    """What is explored.
+    """Extent of an exploration.
 
     Attributes
     ----------
     modes : numbers; empty for the first five, and those measured
     along : parameters of the root loci; empty for all of the law
     over : the two parameters of the cost surface; empty for the first two
-    grid : points of the surface along each of them
-    starts : how many of the search's own starting points are followed
-    points : {parameter: value} of further starting points; a parameter left out has the solution's value
+    grid : points of the surface along each parameter
+    starts : number of the search's own starting points whose paths are computed
+    points : {parameter: value} of further starting points; omitted parameters have the solution's values
     method : {"least-squares", "nelder-mead"} of the paths
-    at : {parameter: value} of the point to explore; a parameter left out has the solution's value
+    at : {parameter: value} of the point to explore; omitted parameters have the solution's values
     """
 
     modes: tuple[int, ...] = ()
@@ -63,7 +63,7 @@ class ExploreSettings:
 
 @dataclass(frozen=True)
 class CostLandscape:
-    """What the cost looks like, and how searches went through it.
+    """The cost as a function of the parameters, and the paths of searches over it.
 
     Attributes
     ----------
@@ -71,8 +71,8 @@ class CostLandscape:
         Every solution; nothing is sampled.
     surface : CostSurface or None
         None for a law with one parameter.
-    curves : one a parameter
-    paths : one a starting point
+    curves : one for each parameter
+    paths : one for each starting point
     method : of the paths
     """
 
@@ -85,16 +85,16 @@ class CostLandscape:
 
 @dataclass(frozen=True)
 class Exploration:
-    """What the parameters of one law do.
+    """Effect of the parameters of one law.
 
     Attributes
     ----------
     name : of the twin or structure
     model : SupportModel
-    theta : (n_parameters,) the model's parameters at the point explored
+    theta : (n_parameters,) parameters of the model at the point explored
     labels : of the modes of ``sensitivity``
     sensitivity : ModeSensitivity
-    loci : one a parameter
+    loci : one for each parameter
     landscape : CostLandscape or None
         None where nothing was measured.
     """
@@ -123,12 +123,12 @@ def explore(
     law : str, optional
         Default: the first of the twin file.
     progress : Progress
-        Told of the steps of ``run_twin`` for one law and of two more.
+        Receives the steps of ``run_twin`` for one law and two more.
 
     Raises
     ------
     InputError
-        If the twin cannot be run, or a mode, parameter or value is none of its own.
+        If the twin cannot be run or has no such mode or parameter, or a value is out of bounds.
     """
     chosen = (law or config.update.laws[0],)
     result = run_twin(config, laws=chosen, posteriors="none", progress=progress, keep=keep)
@@ -148,19 +148,19 @@ def explore_update(
 
     Parameters
     ----------
-    seed : of the starting points that are followed
+    seed : of the starting points
     progress : Progress
-        Told of two steps.
+        Receives two steps.
 
     Raises
     ------
     InputError
-        If a mode, parameter or value is none of its own.
+        If the law has no such mode or parameter, or a value is out of bounds.
     """
     problem = update.problem
     with located(field="at"):
         at = _point(problem, settings.at, update.best.theta)
-    progress("cost and ways of the search")
+    progress("cost and paths of the search")
     landscape = _landscape(update, settings, at, seed=seed, progress=progress)
     theta = problem.vectors(np.log(at)[None], problem.states[0])[0]
     progress("modes along the parameters")
@@ -170,7 +170,7 @@ def explore_update(
 def explore_model(
     name: str, model: SupportModel, theta: FloatArray, settings: ExploreSettings = ExploreSettings()
 ) -> Exploration:
-    """Explore a structure on supports of which nothing was measured: modes, and no cost.
+    """Explore a structure on supports without measurements: its modes only, without a cost.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def explore_model(
     Raises
     ------
     InputError
-        If a mode or a parameter is none of the model's.
+        If the model has no such mode or parameter.
     """
     return _explored(name, model, theta, settings, (), None)
 
@@ -208,7 +208,7 @@ def _explored(
 def _with_modes(
     model: SupportModel, modes: tuple[int, ...], *, said: bool
 ) -> tuple[SupportModel, tuple[int, ...]]:
-    """Return the model reaching to the modes; those of them that it has, unless they were asked for."""
+    """Return the model with at least these modes; modes that it lacks are omitted unless requested."""
     there = numbered_modes(model.assembly, max(modes)).omega.size
     beyond = [mode for mode in modes if mode > there]
     require(
@@ -223,7 +223,7 @@ def _with_modes(
 
 
 def _all(model: SupportModel) -> tuple[str, ...]:
-    """Return the names to follow: the law's own where all tie groups have them, and what is free beside."""
+    """Return the parameters of the loci: the law's own if all tie groups have them, and other free ones."""
     one_loss = model.tie_groups.one_loss
     names = [p.name for p in model.parameters[: model.n_of_law]] if one_loss else model.family.names
     return (*names, *(p.name for p in model.parameters[model.n_of_law :]))
@@ -257,7 +257,7 @@ def _landscape(
 
 
 def _axes(problem: Problem, names: Sequence[str]) -> tuple[int, int] | None:
-    """Return the places of two parameters; the first two without names, None if there is one only."""
+    """Return the indices of two parameters; the first two without names, None if there is only one."""
     known = [p.name for p in problem.parameters]
     if not names:
         return (0, 1) if len(known) > 1 else None
@@ -273,7 +273,7 @@ def _point(problem: Problem, given: Mapping[str, float], otherwise: FloatArray) 
     Raises
     ------
     InputError
-        If a name is none of the parameters, or a value is outside its bounds.
+        If there is no such parameter, or a value is outside its bounds.
     """
     known = [p.name for p in problem.parameters]
     theta = otherwise.copy()
@@ -308,7 +308,7 @@ def exploration_document(found: Exploration) -> dict[str, Any]:
 
 
 def sensitivity_rows(s: ModeSensitivity, labels: Sequence[str]) -> list[dict[str, Any]]:
-    """Return the modes at a point and by how much every parameter moves them, a row a mode.
+    """Return a row for each mode at a point, with its sensitivity to every parameter.
 
     Parameters
     ----------

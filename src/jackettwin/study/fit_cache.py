@@ -1,4 +1,4 @@
-"""Fits of the laws, kept by the content they were made of: nothing is searched or sampled twice."""
+"""Cache of the laws' fits by the content of their inputs: no fit is computed twice."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jackettwin.updating import ErrorModel, Fit, Problem, Update, update, with_p
 from jackettwin.version import __version__
 
 FIT = StoredSchema("fit", Fit)
-"""How fits are kept."""
+"""Format of stored fits."""
 
 
 def fitted(
@@ -24,13 +24,13 @@ def fitted(
     progress: Progress = SILENT,
     keep: Keep = NOT_KEPT,
 ) -> Update:
-    """Return the update of one law to a problem, found again if it was made before.
+    """Return the update of one law to a problem, from the cache if it is stored there.
 
     Parameters
     ----------
     shown : mode numbers
     sampled : bool
-        Whether its posterior is wanted, too.
+        Whether the posterior is sampled too.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def fitted(
 def with_kept_posterior(
     fit: Update, how: UpdateSettings, *, progress: Progress = SILENT, keep: Keep = NOT_KEPT
 ) -> Update:
-    """Return a fitted law with its posterior, found again if it was sampled before."""
+    """Return a fitted law with its posterior, from the cache if it is stored there."""
 
     def compute() -> Fit:
         return with_posterior(
@@ -70,9 +70,9 @@ def with_kept_posterior(
 
 
 def fit_key(problem: Problem, shown: tuple[int, ...], how: UpdateSettings, *, sampled: bool) -> str:
-    """Return the identity of a fit: the same key, the same result to the last digit.
+    """Return the identity of a fit: equal keys give equal results to the last digit.
 
-    The data, the priors and every number of the model count, wherever in a twin's files they come from.
+    It depends on the data, the priors and every number of the model, but not on the files they come from.
     """
     model = problem.model
     steel = {name: getattr(model.assembly, name) for name in ("mass", "stiffness")}
@@ -98,7 +98,7 @@ def _numbers(matrix: Matrix | None) -> list[object]:
 
 
 def _errors(model: ErrorModel | None) -> list[object]:
-    """Return every number of what a model may miss."""
+    """Return every number of a model's errors."""
     if model is None:
         return []
     each = [

@@ -17,17 +17,17 @@ from jackettwin.twin.targets_table import LEAST_SHARE, MOST_SHARE
 from jackettwin.updating import Residuals, Target
 
 _FAR_ABOVE = 3.0
-"""A target this many times above the model's highest numbered mode is in another unit."""
+"""Ratio to the model's highest numbered mode above which a target must be in another unit."""
 _FITS = 0.2
-"""A mode fits that lies less than this below its frequency on rigid feet, or half of it above."""
+"""Relative distance of a plausible mode below its frequency on rigid feet; above it, half of this."""
 _STIFFEST = 1.5
-"""One this many times above its own mode on pinned feet is another mode's: supports only soften."""
+"""Ratio to its mode on pinned feet above which a target belongs to another mode: supports only soften."""
 
 
 def target_modes(
     config: TwinConfig, labels: tuple[str, ...], *, pinned_hz: FloatArray
 ) -> tuple[MeasuredMode, ...]:
-    """Return the modes that the twin file gives.
+    """Return the target modes of the twin file.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def target_modes(
     Raises
     ------
     InputError
-        If a target is none of them, or far above.
+        If the model has no such mode, or the target is far above it.
     """
     _check_labels(config, labels)
     most = _FAR_ABOVE * float(pinned_hz.max())
@@ -64,7 +64,7 @@ def target_modes(
         own = float(pinned_hz[target.mode - 1])
         if (target.frequency_hz or 0.0) > _STIFFEST * own:
             raise InputError(
-                "no support lifts this mode so high",
+                "no support stiffness gives this mode so high a frequency",
                 file=config.path,
                 field=f"targets.{place}.frequency_hz",
                 value=target.frequency_hz,
@@ -74,7 +74,7 @@ def target_modes(
     for given in config.relaxations:
         if given.rate_rad_s > 2.0 * pi * most:
             raise InputError(
-                "relaxes far faster than the modes of the model oscillate",
+                "the relaxation rate is far above the frequencies of the model's modes",
                 file=config.path,
                 field="targets.rate_rad_s",
                 value=given.rate_rad_s,
@@ -104,12 +104,12 @@ def target_modes(
 def _refuse_misnumbered(
     config: TwinConfig, place: int, labels: tuple[str, ...], pinned_hz: FloatArray
 ) -> None:
-    """Refuse a target far from its own mode where another mode, not among the targets, would fit.
+    """Refuse a target far from its own mode where the value fits another mode that is not a target.
 
     Raises
     ------
     InputError
-        Names the mode that fits.
+        Names the mode that the value fits.
     """
     target = config.targets[place]
     if target.frequency_hz is None:
@@ -123,7 +123,7 @@ def _refuse_misnumbered(
     if fitting:
         best = min(fitting, key=lambda i: abs(share[i] - 1.0))
         raise InputError(
-            "the frequency is far from its mode's, and another mode's fits",
+            "the frequency is far from that of its mode and fits another mode",
             file=config.path,
             field=f"targets.{place}.frequency_hz",
             value=target.frequency_hz,
@@ -135,12 +135,12 @@ def _refuse_misnumbered(
 
 
 def updating(config: TwinConfig, state: TwinState) -> TwinState:
-    """Return what is known from the records that may update the supports; the others are tracked only.
+    """Return the state of the records that may update the supports; the other records are tracked only.
 
     Raises
     ------
     InputError
-        If there is none.
+        If no record may.
     """
     rule = config.operation
     if rule.updates is None:
@@ -170,12 +170,12 @@ def recorded_modes(
     Parameters
     ----------
     clearest : callable, optional
-        Gives a mode as the record shows it that is most like the model, and the MAC.
+        Gives a mode as identified from the record that is most similar to the model, and the MAC.
 
     Raises
     ------
     InputError
-        If none of the records' modes is one of the model.
+        If none of the records' modes is paired with a mode of the model.
     """
     _check_labels(config, labels)
     totals = state.totals.get(ALL)
@@ -231,9 +231,9 @@ def _measured_mode(
 def residuals(
     config: TwinConfig, measured: tuple[MeasuredMode, ...], relaxations: tuple[MeasuredRelaxation, ...] = ()
 ) -> Residuals:
-    """Return the residuals of all measured modes; what takes no part in the fit is None.
+    """Return the residuals of all measured modes; None for values that are not fitted.
 
-    They are relative if any of the data, relaxations among them, has no standard deviation.
+    They are relative if any datum, including relaxations, has no standard deviation.
     """
     errors = [config.update.model_error(m.mode) for m in measured]
     complete = all(
@@ -254,7 +254,7 @@ def residuals(
     relative = weighting == "relative" or not complete
     require(
         relative or config.update.weights is None,
-        "weights are of the relative cost (8.4); standard deviations weigh these data",
+        "weights apply to the relative cost (8.4) only; these data are weighted by standard deviations",
         file=config.path,
         field="update.weights",
         remedy="leave weights out, or set weighting: relative",
@@ -265,7 +265,7 @@ def residuals(
 
 
 def _weighed(target: Target, weights: Weights | None) -> Target:
-    """Return a target with the weights of its mode; a value of weight zero takes no part."""
+    """Return a target with the weights of its mode; a value of weight zero is not fitted."""
     if weights is None:
         return target
     f, zeta = weights.of_mode(target.mode)
@@ -279,7 +279,7 @@ def _weighed(target: Target, weights: Weights | None) -> Target:
 
 
 def _target(m: MeasuredMode, error: ModelError, relative: bool) -> Target:
-    """Return what is fitted of a mode; a stated error of the model stands in for an unknown deviation."""
+    """Return the fitted data of a mode; a stated model error replaces an unknown standard deviation."""
     f = m.frequency_hz if m.fits_frequency else None
     zeta = m.damping_ratio if m.fits_damping else None
     if relative:

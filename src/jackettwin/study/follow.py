@@ -1,9 +1,9 @@
-"""Day after day: what the records so far say of the supports, and whether their stiffness drifts.
+"""Supports estimated after each day from all records so far, and the drift of their stiffness.
 
-Records are fused in the data, where they are independent of each other; errors of the model are not, and
-enter once. The posterior after a day is that of the prior and of all records so far: what taking each day's
-posterior as the next day's prior comes to, without the loss of handing draws on. Its cost does not depend on
-how many days there were, since the state holds their sums.
+The data of records are independent of each other and are fused; errors of the model are common to all records
+and enter once. The posterior after a day is that of the prior and all records so far. It equals the result of
+using each day's posterior as the next day's prior, without the error of approximating posteriors by draws.
+Its cost does not depend on the number of days, since the state holds their sums.
 """
 
 from __future__ import annotations
@@ -50,22 +50,22 @@ def follow(
     progress: Progress = SILENT,
     keep: Keep = NOT_KEPT,
 ) -> Followed:
-    """Return what is known after each day of a twin's records.
+    """Return the estimate after each day of a twin's records.
 
     Parameters
     ----------
     law : str, optional
-        Instead of the twin file's first, or the prior's.
+        Replaces the first of the twin file, or that of the prior.
     each : {"day", "record"}
-        Whether the records of a UTC day count together, or each on its own.
+        Whether an estimate is made after each UTC day or after each record.
     prior : Followed, optional
-        To go on from; records that are in it already are left out, whatever their files are called.
+        Result to continue; records that it contains are skipped, even under other file names.
     workers : int
-        Processes that observe records.
+        Number of processes that identify records.
     progress : Progress
-        Told what is being done: once a record, then once a day.
+        Receives a step for each record, then for each day.
     keep : Keep
-        Keeps what was identified for the next run.
+        Stores identified records for the next run.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def follow_observations(
     prior: Followed | None = None,
     progress: Progress = SILENT,
 ) -> Followed:
-    """Return what is known after each day, from what records show; see :func:`follow`."""
+    """Return the estimate after each day from identified records; see :func:`follow`."""
     ordered = sorted(observations, key=lambda seen: (_start(seen), seen.record_id))
     state = empty_state(model) if prior is None else prior.state
     moments, findings = [], []
@@ -131,26 +131,26 @@ def follow_days(
     prior: Followed | None = None,
     progress: Progress = SILENT,
 ) -> tuple[Followed | None, Followed]:
-    """Return what is known after all days but the last, which may still grow, and after all of them.
+    """Return the result after all days but the last, which may still receive records, and after all days.
 
-    It is what :func:`follow` says without a drift, which asks for all days at once. Only days after the first
-    ``same`` and those of the window are loaded; states hold sums alone.
+    It equals the result of :func:`follow` without the drift, which needs all days at once. Only the window's
+    days and those after the first ``same`` are loaded; states hold sums only.
 
     Parameters
     ----------
     every : Days
-        Of records that may update the supports.
+        Days of records that may update the supports.
     before : TwinState
         Sums of the first ``same`` days.
     same : int
-        How many of the first days are as they were for ``prior``.
+        Number of first days that are unchanged since ``prior``.
 
     Raises
     ------
     InputError
-        If no day shows a mode of the model, or a mode has no standard deviation.
+        If no day has a mode of the model, or a mode has no standard deviation.
     KeyError
-        If a day is needed that cannot be loaded.
+        If a needed day cannot be loaded.
     """
     dates = [own for own in every.identities if own != UNDATED]
     total, until, first = before, before, None
@@ -170,7 +170,7 @@ def follow_days(
 
 
 def _until(state: TwinState, days: int) -> TwinState:
-    """Return sums of the first days of a state, without them."""
+    """Return the sums of a state's first days, without the days themselves."""
     dates = [own for own in state.days if own != UNDATED]
     if days == 0:
         return replace(state, days={}, totals={}, clearest={})
@@ -178,7 +178,7 @@ def _until(state: TwinState, days: int) -> TwinState:
 
 
 def _same_days(state: TwinState, prior: Followed | None) -> set[str]:
-    """Return the days, from the first on, that are as an earlier run had them."""
+    """Return the leading days that are unchanged since an earlier run."""
     before = {} if prior is None else prior.state.days
     dates = (date_ for date_ in state.days if date_ != UNDATED)
     return set(takewhile(lambda date_: state.days[date_] is before.get(date_), dates))
@@ -192,7 +192,7 @@ def _observed(
     progress: Progress,
     keep: Keep,
 ) -> tuple[tuple[Observation, ...], tuple[str, ...]]:
-    """Return what the records show that the prior does not know, and what is worth saying of them."""
+    """Return the observations that the prior does not contain, and warnings about their records."""
     known = () if prior is None else [own for day in prior.state.days.values() for own in day.records]
     results = observe_files(
         config.records,

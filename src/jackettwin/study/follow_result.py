@@ -1,4 +1,4 @@
-"""A twin followed through time: its state, what is known after each day, and whether it drifts."""
+"""Result of following a twin through time: its state, the estimate after each day, and the drift."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ from jackettwin.updating import Drift
 from jackettwin.version import __version__
 
 FEWEST_DAYS = 3
-"""Days with data before a drift is looked for."""
+"""Days with data that the estimate of a drift needs."""
 STIFFNESS = "N/m"
 """Unit of the parameters that may drift."""
 SECONDS_A_DAY = 86400.0
 _BLIND = 100.0
-"""Per cent a day: where no smaller drift would be seen, nothing can be said of any."""
+"""Smallest detectable drift in per cent a day above which no statement on drift is made."""
 
 
 @dataclass(frozen=True)
 class Known:
-    """What is known of the parameters after a day: of stiffness as it is then, of others by all days so far.
+    """Estimate of the parameters after a day: stiffness on that day, others over all days so far.
 
     Attributes
     ----------
@@ -41,15 +41,15 @@ class Known:
     time_utc : datetime
         The middle of the day's records.
     records : int
-        Of the day.
+        Number of records of the day.
     evidence : str
-        Identity of the state it was estimated from: another one makes it out of date.
+        Identity of the state that it was estimated from; it is outdated if the state has another.
     median : {parameter: value}
     interval_90 : {parameter: (low, high)}
     status : str
-        ``"ok"``, or why there is no posterior; then median and interval are Laplace's.
+        ``"ok"``, or the reason for a missing posterior; then median and interval are by Laplace's method.
     relative : (low, median, high) or None
-        The stiffness of the day over that of the first, 90 %.
+        Ratio of the day's stiffness to the first day's: median and 90 % interval.
     """
 
     date: str
@@ -64,13 +64,13 @@ class Known:
 
 @dataclass(frozen=True)
 class Pooled:
-    """What all records up to the end of a day say together: asked when they have grown by a third.
+    """Estimate from all records up to the end of a day, made when their number has grown by a third.
 
     Attributes
     ----------
-    records : how many there were
+    records : number of records
     median, interval_90, status : of every parameter, as of :class:`Known`
-    about : how frequencies follow the stiffness there, or None if no mode can be followed
+    about : sensitivity of frequencies to the stiffness there, or None if no mode can be followed
     reference : draws of the stiffness
     """
 
@@ -84,30 +84,30 @@ class Pooled:
 
 @dataclass(frozen=True)
 class Followed:
-    """A twin followed through time: what the next day starts from.
+    """Result of following a twin through time, from which the next run continues.
 
     Attributes
     ----------
     law : str
     reference_hz : float
-        The first frequency on pinned feet: it tells a changed structure.
+        The first frequency on pinned feet, by which a changed structure is detected.
     wind_m_s : float or None
-        That nacelle dashpots are stated at.
+        Wind speed at which nacelle dashpots are stated.
     units : {parameter: unit}
-    days : in the order of time
+    days : in order of time
     drift : Drift or None
-        Of all stiffness together, from the first day on; None before the third day.
+        Of the common stiffness since the first day; None before the third day.
     state : TwinState
         Of all records.
     warnings : sentences
     pooled : {date: Pooled}
-        On the days after which all records together were asked.
+        On the days after which all records were evaluated together.
     track : Tracked or None
-        What the stiffness is followed on from.
+        State from which the tracking of the stiffness continues.
     smoothed : {date: StiffnessLevel}
-        The stiffness on each day, by all days together.
+        The stiffness on each day, estimated from all days.
     ahead : {days: StiffnessLevel}
-        What is to be expected so many days after the last one.
+        Forecast so many days after the last one.
     """
 
     name: str
@@ -130,7 +130,7 @@ class Followed:
 
     @property
     def moments(self) -> str:
-        """What is followed from one to the next: ``day``, or ``record``."""
+        """The interval between estimates: ``day`` or ``record``."""
         return "record" if any("T" in day.date for day in self.days) else "day"
 
     @property
@@ -150,42 +150,40 @@ class Followed:
 
     @property
     def window_begins_after(self) -> str:
-        """The day before those that are taken again by the next run; empty before the first."""
+        """The last day before those that the next run evaluates again; empty if there is none."""
         before = 0 if self.track is None else self.track.days
         tracked = [day.date for day in self.days if day.relative is not None]
         return tracked[before - 1] if before else ""
 
     @property
     def statement(self) -> str:
-        """What is known of the stiffness through time: one slope unless it jumped, and where it is now."""
+        """Sentences on the stiffness over time: one slope without a sudden change, and its latest value."""
         return " ".join(filter(None, (self._slope, self.stiffness_statement)))
 
     @property
     def stiffness_statement(self) -> str:
-        """When the stiffness jumped, and where it is now."""
+        """Sentences on sudden changes of the stiffness and its present value."""
         last = next(iter(self.days[-1:]), None)
         if last is None or last.relative is None or len(self.days) < FEWEST_DAYS:
             return ""
         low, middle, high = (f"{x:.3f}" for x in last.relative)
         now = (
-            f"On {last.time_utc:%Y-%m-%d} the stiffness is {middle} of what it was on the first day, "
+            f"On {last.time_utc:%Y-%m-%d} the stiffness is {middle} of that of the first day, "
             f"90 % interval {low} to {high}."
         )
         return " ".join((*map(_sudden, self.changes), now))
 
     @property
     def _slope(self) -> str:
-        if self.changes:  # a slope through a step says nothing
+        if self.changes:  # a slope across a step has no meaning
             return ""
         if self.drift is None:
-            return f"Too early to speak of a drift: {FEWEST_DAYS} days with data are needed."
+            return f"Too early to estimate a drift: {FEWEST_DAYS} days with data are needed."
         slope, low, high = 100.0 * np.expm1([self.drift.slope_per_day, *self.drift.interval_90])
         what, most = " and ".join(map(parameter_words, self.stiffness)), max(abs(low), abs(high))
         over = f"{round(self.days_since_first[-1], 1):g} days"
         if not self.drift.detected and most > _BLIND:
-            return (
-                f"Too early to speak of a drift of {what}: in {over} not even a doubling a day would be seen."
-            )
+            return f"Too early to estimate a drift of {what}: {over} would not reveal even a doubling a day."
         found = "No drift found" if not self.drift.detected else "Rising" if low > 0.0 else "Falling"
         change = "changes" if len(self.stiffness) == 1 else "change"
         said = (
@@ -193,12 +191,14 @@ class Followed:
             f"over {over}."
         )
         return (
-            said if self.drift.detected else f"{said} A drift of more than {most:.2g} % a day would be seen."
+            said
+            if self.drift.detected
+            else f"{said} A drift of more than {most:.2g} % a day would be detected."
         )
 
 
 def _sudden(change: SuddenChange) -> str:
-    """Return what is said of a sudden change."""
+    """Return the sentence on a sudden change."""
     first, when, last = (f"{day_utc(x):%Y-%m-%d}" for x in change.days)
     low, middle, high = (100.0 * (x - 1.0) for x in change.factor)
     verb = "fell" if middle < 0.0 else "rose"
@@ -207,23 +207,23 @@ def _sudden(change: SuddenChange) -> str:
 
 
 def day_utc(day: float) -> datetime:
-    """Return a time that is given in days since 1970."""
+    """Return the UTC time of a number of days since 1970."""
     return datetime(1970, 1, 1, tzinfo=UTC) + timedelta(days=day)
 
 
 def since_first(times: Sequence[datetime]) -> FloatArray:
-    """Return times after the first [d], (n_times,)."""
+    """Return times since the first [d], (n_times,)."""
     return np.array([(time - times[0]).total_seconds() / SECONDS_A_DAY for time in times])
 
 
 FOLLOWED = StoredSchema("followed", Followed)
 """``followed.json``."""
 STORED = "state"
-"""Key of what the next run goes on from."""
+"""Key of the state from which the next run continues."""
 
 
 def follow_document(followed: Followed) -> dict[str, Any]:
-    """Return the document of ``jackettwin follow``, with what the next day starts from."""
+    """Return the document of ``jackettwin follow``, with the state from which the next run continues."""
     drift = followed.drift
     return {
         "name": followed.name,
@@ -262,7 +262,7 @@ def _span(span: Span3) -> dict[str, Any]:
 
 
 def days_document(followed: Followed) -> list[dict[str, Any]]:
-    """Return what was known after each day."""
+    """Return the estimate after each day."""
     return [
         {
             "time_utc": day.time_utc.isoformat(),
@@ -279,7 +279,7 @@ def days_document(followed: Followed) -> list[dict[str, Any]]:
 
 
 def in_time_document(followed: Followed) -> dict[str, Any]:
-    """Return the stiffness of each day by all days, what jumped, and what to expect; over the first day's."""
+    """Return the smoothed stiffness of each day, its jumps and forecast, as ratios to the first day's."""
     return {
         "smoothed": {date: _span(level.relative) for date, level in followed.smoothed.items()},
         "changes": [
@@ -296,12 +296,12 @@ def in_time_document(followed: Followed) -> dict[str, Any]:
 
 
 def read_followed(path: Path) -> Followed:
-    """Read what an earlier run of ``jackettwin follow`` left.
+    """Read the result of an earlier run of ``jackettwin follow``.
 
     Raises
     ------
     InputError
-        If the file is not what ``jackettwin follow`` writes.
+        If ``jackettwin follow`` did not write the file.
     """
     remedy = "give the followed.json of an earlier run"
     try:

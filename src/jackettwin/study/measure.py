@@ -1,4 +1,4 @@
-"""The records of a twin, observed: what each shows, and the state they make together."""
+"""Observation of a twin's records, and the state that they form."""
 
 from __future__ import annotations
 
@@ -32,21 +32,21 @@ from jackettwin.updating import Target
 
 @dataclass(frozen=True)
 class Measured:
-    """What the records say.
+    """Observations of a twin's records.
 
     Attributes
     ----------
-    observations : one a record, the first of those with the same samples; without those of other structures,
-        unless all are
+    observations : one for each record with different samples; records of other structures are left out unless
+        all are
     state : TwinState
-        Which all of them make.
+        Formed by all records.
     shown : Examination or None
-        Of the first record that shows something, for figures.
+        Of the first record with a result, for figures.
     findings : tuple of Finding
-        Of making the state: records that are known already, or overlap.
-    failed : records that could not be identified, and why; the others go on without them
+        On records that the state contains already or that overlap.
+    failed : records that could not be identified, and the reasons
     in_all : (number, seconds), optional
-        Of the state's records and of their durations, if the observations are the newest of them alone.
+        Number and total duration of the state's records, if ``observations`` are only the newest.
     """
 
     observations: tuple[Observation, ...]
@@ -58,11 +58,11 @@ class Measured:
 
     @property
     def sensors(self) -> tuple[Sensor, ...]:
-        """Where the channels of the first record sit."""
+        """Sensors of the first record's channels."""
         return self.observations[0].sensors if self.observations else ()
 
     def clearest(self, mode: int) -> tuple[ModalEstimate, float] | None:
-        """Return a mode as the record most like the model shows it, and the MAC; None if none does."""
+        """Return the estimate of a mode with the highest MAC among the records, and that MAC, or None."""
         shown = [one.modes[mode] for one in self.observations if mode in one.modes]
         best = max(shown, key=lambda pair: pair[1].mac, default=None)
         return None if best is None else (best[0], best[1].mac)
@@ -77,12 +77,13 @@ def measure(
     progress: Progress = SILENT,
     keep: Keep = NOT_KEPT,
 ) -> Measured:
-    """Return what every record of a twin shows, and the state that they make.
+    """Return the observation of every record of a twin, and the state that they form.
 
     Raises
     ------
     InputError
-        If no record can be read and identified, or a sensor and a channel disagree; names file and field.
+        If no record can be read and identified, or a sensor and a channel disagree; the error names file and
+        field.
     """
     shown: Examination | None = None
     results: list[tuple[int, Seen | Exception]] = []
@@ -94,7 +95,7 @@ def measure(
                 shown = examined(record, model, compare=compare, keep=keep)
                 results.append((i, Seen("", observed(record, shown, model))))
             break
-        except Exception as error:  # of many records, one that fails must not stop the others
+        except Exception as error:  # one record that fails must not stop the others
             results.append((i, error))
     n = len(results)
     others = observe_files(

@@ -1,4 +1,4 @@
-"""What was measured, as an update takes it: modes paired with those of the model, and relaxations."""
+"""Measured data of an update: modes paired with those of the model, and relaxations."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ class MeasuredMode:
     label : str
         ``fore_aft_1``, ``side_side_2``, ``torsion_1`` …
     estimate : ModalEstimate or None
-        What was identified; None if the value was given as a target.
+        The identified mode; None if the value was given as a target.
     mac : float or None
         Between the measured shape and the model's at the sensors.
     fits_frequency, fits_damping : bool
-        Whether the value took part in the update.
+        Whether the value was fitted in the update.
     correlation : float
-        Of the logarithms of frequency and damping ratio.
+        Correlation of the logarithms of frequency and damping ratio.
     """
 
     mode: int
@@ -54,10 +54,10 @@ class MeasuredRelaxation:
         ``a1``, ``a2``, … by rate.
     rate_rad_s : float
     rate_std_rad_s : float or None
-    channels : at which its shape is known
+    channels : where its shape is known
     shape : (n_channels,) complex, empty if it is not known
     records : int
-        In how many records it was found; 0 if it was given as a target.
+        Number of records in which it was found; 0 if it was given as a target.
     """
 
     name: str

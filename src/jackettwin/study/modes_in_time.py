@@ -1,4 +1,4 @@
-"""Modes through time as the table that ``jackettwin watch`` reads: a row a mode and time."""
+"""Modes over time as the table that ``jackettwin watch`` reads, a row for each mode and time."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from jackettwin.twin import UNDATED, Observation, TwinModel, TwinState
 from jackettwin.twin.pair_angles import pair_angles
 
 MODES_IN_TIME = "modes_in_time.csv"
-"""How commands call the file."""
+"""Name of the file that commands write."""
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 Row = dict[str, Any]
 
 
 def rows_of_records(records: Iterable[Observation]) -> list[Row]:
-    """Return a row for each named mode of each record that says when it began, in the order of time."""
+    """Return a row for each named mode of each record with a start time, in order of time."""
     rows = []
     for seen in records:
         if seen.start_utc is None:
@@ -42,13 +42,13 @@ def rows_of_records(records: Iterable[Observation]) -> list[Row]:
 
 
 def _said(conditions: Mapping[str, Any]) -> Row:
-    """Return the state of operation and the numbers that a record says of itself."""
+    """Return a record's state of operation and its numeric conditions."""
     numbers = {n: x for n, x in conditions.items() if isinstance(x, (int, float)) and not n.endswith("seed")}
     return {"state": conditions.get("state")} | numbers
 
 
 def rows_of_days(model: TwinModel, state: TwinState) -> list[Row]:
-    """Return a row for each mode, day and state of operation: what is left of records in a twin's state."""
+    """Return a row for each mode, day and state of operation, from the daily sums of a twin's state."""
     dates, days = [date for date in state.days if date != UNDATED], Days.of(state)
     history = history_of(Columns.of(model, days, dates), days, dates)
     rows = []
@@ -64,14 +64,14 @@ def rows_of_days(model: TwinModel, state: TwinState) -> list[Row]:
 
 
 def _row(time: datetime, label: str, numbers: Iterable[float | None], said: Row) -> Row:
-    """Return a row; what is not known is None."""
+    """Return a row with None for unknown values."""
     known = dict(zip(QUANTITIES, numbers, strict=True)) | said
     finite = {n: None if isinstance(x, float) and not isfinite(x) else x for n, x in known.items()}
     return {"time_utc": time.astimezone(UTC).isoformat(), "label": label} | finite
 
 
 def write_modes_in_time(rows: list[Row], path: Path) -> None:
-    """Write a table of modes as CSV; what a row does not know is empty. Without rows nothing is written."""
+    """Write a table of modes as CSV with empty cells for unknown values; write no file without rows."""
     names = dict.fromkeys(name for row in rows for name in row)
     columns = {name: [row.get(name) for row in rows] for name in names}
     told = {name: values for name, values in columns.items() if any(x is not None for x in values)}

@@ -1,4 +1,4 @@
-"""What a run takes for granted, and what to beware of."""
+"""Assumptions and warnings of a run."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from jackettwin.study.scrutiny import Scrutiny
 from jackettwin.twin import TwinConfig, stated_model
 from jackettwin.updating import Update
 
-_MODES = "Modes are numbered by their order on pinned feet and followed by mass-weighted MAC."
+_MODES = "Modes are numbered by their order on pinned feet and tracked by mass-weighted MAC."
 
 
 def tolerance_assumptions(
     config: TwinConfig, s: Scrutiny | None, parameters: Iterable[str]
 ) -> tuple[Assumption, ...]:
-    """Return the tolerances of a twin: those still open, which moves the answer most first, then the settled.
+    """Return the tolerances of a twin: the open ones by their effect on the result, then the closed ones.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def modelling_assumptions(
     beams = (
         f"{theory} beams, {'with' if rotary else 'without'} rotary inertia; "
         + ("gravity's P-Δ stiffness is on" if config.gravity else "no gravity stiffness")
-        + (f"; {', '.join(config.of_records)}: as the records state it." if config.of_records else ".")
+        + (f"; {', '.join(config.of_records)}: as the records state." if config.of_records else ".")
     )
     fitted = ", ".join(filter(None, [*map(_fitted, measured), *map(_relaxed, relaxations)]))
     found = [
@@ -99,24 +99,24 @@ def _beside_law(config: TwinConfig, wind: float | None) -> list[Assumption]:
         found.append(Assumption("rotor", parked))
     if config.update.water:
         water = (
-            f"Factors on the water are updated: {', '.join(config.update.water)}. Drag is linear, in one "
-            "mean sea for all records; radiation damping is left out."
+            f"Factors of the water are updated: {', '.join(config.update.water)}. Drag is linear, in one "
+            "mean sea for all records; radiation damping is neglected."
         )
         found.append(Assumption("water", water))
     if config.update.parameters:
-        further = f"Updated beside the law: {', '.join(config.update.parameters)}."
+        further = f"Also updated, besides the law: {', '.join(config.update.parameters)}."
         found.append(Assumption("parameters", further))
     if len(config.records) > 1:
         fused = (
-            f"{len(config.records)} records are fused on the logarithms, weighted by precision, with their "
-            "scatter."
+            f"{len(config.records)} records are fused as precision-weighted means of logarithms; the "
+            "scatter between records is included."
         )
         found.append(Assumption("records", fused))
     return found
 
 
 def _steel(config: TwinConfig) -> str:
-    """Say how the steel is damped."""
+    """Return the sentence on the steel's damping."""
     said = []
     if config.rayleigh != Rayleigh():
         said.append(f"Rayleigh, {100 * config.rayleigh_ratio:.3g} % at its minimum")
@@ -130,7 +130,9 @@ def _acts_on(config: TwinConfig) -> str:
     nodes = config.structure.reaction_nodes
     of = f"of {len(nodes)} reaction nodes"
     if config.tie == MUDLINE:
-        tied = f"{nodes[0]}, which all feet follow rigidly" if nodes == (MUDLINE,) else f"foot {nodes[0]}"
+        tied = (
+            f"{nodes[0]}, to which all feet are rigidly tied" if nodes == (MUDLINE,) else f"foot {nodes[0]}"
+        )
         what = "sway and rocking" if config.heads is None else "the 6×6 stiffness"
         return f"acts on {what} of {tied}"
     return (
@@ -148,8 +150,8 @@ def _relaxed(r: MeasuredRelaxation) -> str:
 
 
 def without_relaxation(laws: tuple[str, ...]) -> tuple[str, ...]:
-    """Return why laws were left out of an update to real poles."""
-    return tuple(f"{law}: left out, a structure on it has no real poles." for law in laws)
+    """Return why laws were omitted from an update to real poles."""
+    return tuple(f"{law}: omitted, as a structure on it has no real poles." for law in laws)
 
 
 def cautions(
@@ -159,12 +161,12 @@ def cautions(
     updates: tuple[Update, ...],
     labels: tuple[str, ...] = (),
 ) -> tuple[str, ...]:
-    """Return what the reader should beware of; ``labels`` are those of the model's numbered modes."""
+    """Return the warnings to the reader; ``labels`` are those of the model's numbered modes."""
     lines = []
     if config.assigned:
         ours = [m for m in measured if m.mode in config.assigned]
         pairs = ", ".join(f"{m.frequency_hz:.4g} Hz is {m.label} (mode {m.mode})" for m in ours)
-        lines.append(f"Frequencies without a name were taken for the nearest modes: {pairs}.")
+        lines.append(f"Frequencies without a mode's name were assigned to the nearest modes: {pairs}.")
     if found is not None:
         lines += [f"left out: {one.problem}" for one in found.failed]
         lines += [str(finding) for finding in found.findings]
@@ -178,13 +180,14 @@ def cautions(
     for u in updates:
         if u.best.locked_damper:
             lines.append(
-                f"{u.law}: every solution locks a damper; its undamped structure is more than 5 % off."
+                f"{u.law}: in every solution a damper locks, and frequencies of the undamped structure "
+                "differ by more than 5 %."
             )
         if u.best.at_bound:
-            lines.append(f"{u.law}: {', '.join(u.best.at_bound)} ended on a bound.")
+            lines.append(f"{u.law}: {', '.join(u.best.at_bound)} lies on a bound.")
         lines += [
             f"{u.law}: {m.label} misses its frequency by {100 * (f / m.frequency_hz - 1.0):+.1f} %"
-            f"{'.' if m.fits_frequency else '; it was not fitted: the measured one may be another.'}"
+            f"{'.' if m.fits_frequency else '; it was not fitted: the measured mode may be another.'}"
             for m, f in zip(measured, u.modes.frequency_hz, strict=True)
             if m.frequency_hz is not None and _misses(config, m, float(f))
         ]
@@ -192,26 +195,26 @@ def cautions(
 
 
 def _of_another_model(config: TwinConfig, found: Measured) -> list[str]:
-    """Return where records state that they come from a structure modelled otherwise than the twin's."""
+    """Return the records that state another modelling of the structure than the twin's."""
     ours = config.modelling()
     differences: dict[str, list[str]] = {}
     for seen in found.observations:
         for key, value in stated_model(seen.truth).items():
             if value != ours[key]:
-                text = f"{key} {_word(value)}; the twin has {_word(ours[key])}, which moves its frequencies"
-                differences.setdefault(f"{text}: write {key}: {_word(value)}, or leave it out", []).append(
+                text = f"{key} {_word(value)}; the twin has {_word(ours[key])}, which changes its frequencies"
+                differences.setdefault(f"{text}: write {key}: {_word(value)}, or omit the key", []).append(
                     seen.name
                 )
     return [f"{', '.join(names)}: simulated with {text}." for text, names in differences.items()]
 
 
 def _word(value: object) -> str:
-    """Return a value as YAML has it."""
+    """Return a value as YAML writes it."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def _of_records(found: Measured) -> list[str]:
-    """Return what was found of the records, each sentence once with all that it holds of."""
+    """Return the findings on the records, each sentence once with all records that it applies to."""
     places: dict[str, list[str]] = {}
     for seen in found.observations:
         said = [(_place(seen.name, f), f["text"]) for f in seen.quality.get("findings", ())]
@@ -223,7 +226,7 @@ def _of_records(found: Measured) -> list[str]:
 
 
 def _place(record: str, finding: Mapping[str, Any]) -> str:
-    """Return where a finding was made: a record, or a channel of it."""
+    """Return the subject of a finding: a record, or one of its channels."""
     return f"{record}, {finding['subject']}" if finding["subject"] else record
 
 
@@ -233,8 +236,8 @@ def _wind_without_rotor(config: TwinConfig, found: Measured, measured: tuple[Mea
     if config.update.dashpots or not winds or not fitted:
         return []
     return [
-        f"The records were taken in wind, up to {max(winds):.3g} m/s, and the twin has no rotor: its "
-        f"damping of {', '.join(fitted)} is attributed to the supports, whose own is then an upper limit. "
+        f"The records were taken in wind, up to {max(winds):.3g} m/s, and the twin has no rotor: its damping "
+        f"of {', '.join(fitted)} is attributed to the supports, so that their damping is an upper limit. "
         "Give update.rotor or update.dashpots."
     ]
 
@@ -242,7 +245,7 @@ def _wind_without_rotor(config: TwinConfig, found: Measured, measured: tuple[Mea
 def _unweighted(
     config: TwinConfig, measured: tuple[MeasuredMode, ...], updates: tuple[Update, ...]
 ) -> list[str]:
-    """Say that a few missing standard deviations took the weight, and all intervals, from the other data."""
+    """Warn that missing standard deviations of some data prevent weights and intervals for all data."""
     if config.update.weighting != "auto" or all(u.problem.weighted for u in updates):
         return []
     stds = [(f"f{m.mode}", m.frequency_std_hz) for m in measured if m.fits_frequency]
@@ -262,7 +265,7 @@ def _rotor_without_wind(config: TwinConfig, updates: tuple[Update, ...]) -> list
     if config.update.rotor is None or known:
         return []
     return [
-        "The wind is not known, so that the rotor's geometry gives the dashpots' pattern and no prior. "
+        "The wind speed is not known: the rotor's geometry gives the dashpots' pattern but no prior. "
         "Give update.wind_speed_m_s."
     ]
 
@@ -272,7 +275,7 @@ def _dashpots(config: TwinConfig, u: Update) -> list[int]:
 
 
 def _strangers(found: Measured, labels: tuple[str, ...], *, every: bool) -> list[str]:
-    """Return a line for each mode that is ``ok``, or for every one, without a counterpart in the model."""
+    """Return a line for each mode (``ok`` ones unless ``every``) without a counterpart in the model."""
     reasons = (
         (one.name, unpaired_finding(mode, against, labels))
         for one in found.observations
@@ -283,7 +286,7 @@ def _strangers(found: Measured, labels: tuple[str, ...], *, every: bool) -> list
 
 
 def _misses(config: TwinConfig, m: MeasuredMode, f: float) -> bool:
-    """Return whether a fitted frequency is off by 1 % and three standard deviations, any by a tenth."""
+    """Return whether a frequency differs by over three standard deviations and 1 % (10 % if not fitted)."""
     if m.frequency_hz is None:
         return False
     std = hypot(m.frequency_std_hz or 0.0, config.update.model_error(m.mode).frequency * m.frequency_hz)

@@ -1,4 +1,4 @@
-"""In which direction the lower mode of each measured pair moves, as a check of the model takes it."""
+"""Direction of the lower mode of each measured bending pair, as data for a check of the model."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from jackettwin.updating import PairDirection
 def measured_directions(
     state: TwinState | None, sensors: Sequence[Sensor], assembly: Assembly, measured: Sequence[MeasuredMode]
 ) -> tuple[PairDirection, ...]:
-    """Return the direction of each pair that the records show; none of a twin whose modes are given.
+    """Return the direction of each pair in the records; none if the twin's modes are given as targets.
 
-    Both modes must have a frequency with its deviation, and some place two horizontal sensors.
+    Both modes need a frequency with its standard deviation, and one position needs two horizontal sensors.
     """
     places = stations(sensors)
     if state is None or not places:
@@ -37,7 +37,7 @@ def measured_directions(
 
 
 def _angles(state: TwinState) -> dict[int, AngleSums]:
-    """Return what all days say of the direction of each lower mode, by its number."""
+    """Return the sums of all days for the direction of each lower mode, by its number."""
     found: dict[int, AngleSums] = {}
     for day in state.days.values():
         for operation in day.operations.values():
@@ -47,7 +47,7 @@ def _angles(state: TwinState) -> dict[int, AngleSums]:
 
 
 def _pair(number: int, by_label: Mapping[str, MeasuredMode]) -> tuple[MeasuredMode, MeasuredMode] | None:
-    """Return both measured modes of the bending pair that a mode is of."""
+    """Return both measured modes of the bending pair that a mode belongs to."""
     label = next((name for name, m in by_label.items() if m.mode == number), "")
     names = [label.replace("side_side_", "fore_aft_"), label.replace("fore_aft_", "side_side_")]
     if names[0] == names[1] or any(name not in by_label for name in names):

@@ -1,4 +1,4 @@
-"""A twin's question for one law: its supports' parameters against what was measured."""
+"""The inverse problem of a twin under one law: parameters of its supports from measured data."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ from jackettwin.updating import (
 
 @dataclass(frozen=True)
 class UpdateEvidence:
-    """What every law is fitted to.
+    """Data that every law is fitted to.
 
     Attributes
     ----------
     assembly : Assembly
     state : TwinState or None
-        What the records say; None if the twin file gives targets.
+        State of the records; None if the twin file gives targets.
     states : {operating state: residuals and factors of the parameters}
     rotor : RotorDamping
     relaxations : tuple of MeasuredRelaxation
@@ -54,7 +54,7 @@ class UpdateEvidence:
 
 
 def law_problem(config: TwinConfig, evidence: UpdateEvidence, law: str) -> Problem:
-    """Return the residuals of all operating states against the parameters of one law.
+    """Return the problem of one law: residuals of all operating states as functions of its parameters.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def law_problem(config: TwinConfig, evidence: UpdateEvidence, law: str) -> Probl
 
 
 def model_problem(config: TwinConfig, evidence: UpdateEvidence, model: SupportModel) -> Problem:
-    """Return the residuals of all operating states against the parameters of a model."""
+    """Return the problem of a model: residuals of all operating states as functions of its parameters."""
     relaxations = relaxation_targets(
         config,
         model,
@@ -85,9 +85,9 @@ def model_problem(config: TwinConfig, evidence: UpdateEvidence, model: SupportMo
 
 
 def error_model(config: TwinConfig, model: SupportModel) -> ErrorModel | None:
-    """Return what a twin's model may miss: its tolerances and remainders; None if the twin closes them all.
+    """Return the errors of a twin's model, tolerances and remainders; None if the twin sets all to zero.
 
-    ``update.model_error`` takes the place of the remainder of the modes that it names.
+    ``update.model_error`` replaces the remainder of the modes that it names.
     """
     usual = {name: config.tolerances.std(name, std) for name, std in REMAINDERS.items()}
     stated: dict[str, float] = {}
@@ -112,7 +112,7 @@ def tied_problem(
     growth: Growth | None = None,
     error_model: ErrorModel | None = None,
 ) -> Problem:
-    """Return the problem of a model in some states, its legs tied as the twin says."""
+    """Return the problem of a model in some states, its legs tied as the twin states."""
     law = {p.name + side for p in model.family.parameters for side in ("", *model.tie_groups.sides)}
     with located(file=config.path):
         return joint(
@@ -129,7 +129,7 @@ def tied_problem(
 
 
 def law_model(config: TwinConfig, evidence: UpdateEvidence, law: str) -> SupportModel:
-    """Return the structure on supports of one law, its parameters bounded and informed as the twin says.
+    """Return the structure on supports of one law, with the twin's bounds and priors of the parameters.
 
     Raises
     ------
@@ -171,7 +171,7 @@ def law_model(config: TwinConfig, evidence: UpdateEvidence, law: str) -> Support
 
 
 def _place(error: InputError) -> str | None:
-    """Return the block of the twin file that the field of an error of the model stands in."""
+    """Return the block of the twin file that contains the field named by an error of the model."""
     block = (error.field or "").partition(".")[0]
     return {"bounds": "update", "priors": "update", "mode": "targets"}.get(block)
 
@@ -188,7 +188,7 @@ def _heads(config: TwinConfig) -> Support | None:
 def measured_shapes(
     config: TwinConfig, model: SupportModel, evidence: UpdateEvidence
 ) -> tuple[ShapeTarget, ...]:
-    """Return the shape of each fitted mode where it is most like the model's; none without ``mac_std``."""
+    """Return the measured shape of highest MAC of each fitted mode; none without ``mac_std``."""
     state = evidence.state
     first, _ = next(iter(evidence.states.values()))
     if state is None:
@@ -209,11 +209,11 @@ def _given_shapes(config: TwinConfig, model: SupportModel, data: Residuals) -> t
         return ()
     if data.relative:
         raise InputError(
-            "shapes count beside data with standard deviations, not beside relative errors",
+            "shapes can be fitted with data that have standard deviations, not with relative errors",
             file=config.path,
             field="update.mac_std",
             value=config.update.mac_std,
-            remedy="give every target its standard deviation, or leave shapes out",
+            remedy="give every target its standard deviation, or omit the shapes",
         )
     places = {sensor.channel: sensor for sensor in config.sensors}
     shapes = []
@@ -228,5 +228,5 @@ def _given_shapes(config: TwinConfig, model: SupportModel, data: Residuals) -> t
 
 
 def _of_law(given: Mapping[str, tuple[float, float]], names: set[str]) -> dict[str, tuple[float, float]]:
-    """Return what is given for these parameters, with or without a tie's suffix: laws share one file."""
+    """Return the entries of these parameters, with or without a tie's suffix, as all laws share one file."""
     return {k: v for k, v in given.items() if any(k == n or k.startswith(f"{n}_") for n in names)}

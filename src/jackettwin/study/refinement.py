@@ -1,4 +1,4 @@
-"""Refinement files: which frequencies are known of which parts, and what of the structure may change."""
+"""Refinement files: known frequencies of parts of a structure, and its properties to update."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from jackettwin.twin.schema import StructureOrName
 from jackettwin.updating import Factor, Refinement, RefinementStage, refine
 
 WORSE = 1e-3
-"""Relative misfit by which a mode must be met worse than before to be named: least squares trade less."""
+"""Least growth of a mode's relative misfit that is reported; least squares trade smaller amounts."""
 STEEL = ("youngs_modulus", "density")
 """Properties of parts that are ``structure.steel`` of a twin file; the others are ``structure.adjusted``."""
 
@@ -30,7 +30,7 @@ class FreeSchema(AdjustedPlace):
     tolerance: Positive | None = None
 
     def factor(self) -> Factor:
-        """Return it as the engine takes it."""
+        """Return it as a factor of the refinement."""
         of, name = self.place
         low, high = self.bounds or (None, None)
         return Factor(name, self.what, low, high, self.tolerance, of)
@@ -56,7 +56,7 @@ class RefinementSchema(Schema):
 
 @dataclass(frozen=True)
 class RefinementConfig:
-    """What a refinement file says."""
+    """Contents of a refinement file."""
 
     path: Path
     structure: Structure
@@ -65,7 +65,7 @@ class RefinementConfig:
     own_feet: bool = False
 
     def refine(self) -> Refinement:
-        """Return what its stages make of its structure.
+        """Return the structure refined by the stages.
 
         Raises
         ------
@@ -104,8 +104,7 @@ def _stage(index: int, schema: StageSchema) -> RefinementStage:
 def refinement_document(result: Refinement) -> dict[str, Any]:
     """Return the document of ``jackettwin refine``.
 
-    ``worse`` says of a mode that the stage left it further off than it was, ``worse_at_the_end`` that the
-    later stages did.
+    ``worse`` states that the stage increased a mode's misfit, ``worse_at_the_end`` that later stages did.
     """
     steel: dict[str, dict[str, float]] = {}
     adjusted = []

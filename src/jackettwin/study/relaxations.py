@@ -1,4 +1,4 @@
-"""Measured relaxations of a twin: given as targets or found in its records, as data of the update."""
+"""Measured relaxations of a twin, from targets or records, as data of the update."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from jackettwin.twin.state import ClearShape, RateSums
 from jackettwin.updating import RelaxationTarget, SupportModel
 
 _LEAST_SHARE = 0.5
-"""A relaxation that fewer of the records show is left out."""
+"""Least share of the records in which a relaxation must be found to be fitted."""
 
 
 def measured_relaxations(config: TwinConfig, state: TwinState | None) -> tuple[MeasuredRelaxation, ...]:
-    """Return the relaxations of the twin file, or those that its records share; the slowest first."""
+    """Return the relaxations of the twin file, or those common to its records, the slowest first."""
     if state is None:
         fused = [_as_measured(given, records=0) for given in config.relaxations]
     else:
@@ -37,7 +37,7 @@ def measured_relaxations(config: TwinConfig, state: TwinState | None) -> tuple[M
 
 
 def placed(state: TwinState) -> tuple[Sensor, ...]:
-    """Return where the channels of all shapes that a state keeps sit."""
+    """Return the sensors of all shapes in a state."""
     return tuple({s.channel: s for shape in state.clearest.values() for s in shape.sensors}.values())
 
 
@@ -49,7 +49,7 @@ def relaxation_targets(
     sensors: tuple[Sensor, ...],
     relative: bool,
 ) -> tuple[RelaxationTarget, ...]:
-    """Return what a model is fitted to: rates with the model's error, shapes where they are known."""
+    """Return the relaxations as targets: rates with the model's error, and shapes where known."""
     places: Mapping[str, Sensor] = {sensor.channel: sensor for sensor in (*config.sensors, *sensors)}
     targets = []
     for one in measured:
@@ -63,35 +63,35 @@ def relaxation_targets(
 
 
 def relaxing(config: TwinConfig, laws: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the laws under which a structure has real poles at all.
+    """Return the laws under which a structure has real poles.
 
     Raises
     ------
     InputError
-        If none has.
+        If no law gives real poles.
     """
     kept = tuple(law for law in laws if all(family(name).relaxes for name in members([law])))
     if not kept:
         raise InputError(
-            "no structure on this law has real poles, and one was measured",
+            "a relaxation was measured, but no structure on this law has real poles",
             file=config.path,
             field="update.laws",
             value=", ".join(laws),
-            remedy="another law, or leave the relaxations out (targets; identification.real_poles: false)",
+            remedy="another law, or omit the relaxations (targets; identification.real_poles: false)",
         )
     return kept
 
 
 @dataclass(frozen=True)
 class _Group:
-    """One relaxation over all records, and its clearest shape."""
+    """One relaxation over all records, and its most certain shape."""
 
     sums: RateSums
     shape: ClearShape | None
 
 
 def _distinct(rates: Mapping[str, RateSums], clearest: Mapping[str, ClearShape]) -> list[_Group]:
-    """Return the distinct relaxations: neighbouring rates of like shapes are one, the surest decides."""
+    """Return the distinct relaxations: close rates with similar shapes are one, the most certain first."""
     groups: list[_Group] = []
     for key, sums in sorted(rates.items(), key=lambda item: (-item[1].w, item[0])):
         one = _Group(sums, clearest.get(f"a{key}"))
@@ -105,7 +105,7 @@ def _distinct(rates: Mapping[str, RateSums], clearest: Mapping[str, ClearShape])
 
 
 def _apart(one: _Group, other: _Group) -> float:
-    """Return |Δ ln a| + 1 − MAC at the channels of both, as identification joins relaxations."""
+    """Return |Δ ln a| + 1 − MAC at common channels, by which identification joins relaxations."""
     unlike = 0.0
     if one.shape is not None and other.shape is not None:
         values = [dict(zip(_names(s), s.shape, strict=True)) for s in (one.shape, other.shape)]

@@ -1,4 +1,4 @@
-"""What one run of the twin produced: everything the report shows, nothing it would have to compute."""
+"""Result of one run of the twin, complete for the report, which computes nothing."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from jackettwin.updating import LEAST_MAC, Counterpart, Update
 
 @dataclass(frozen=True)
 class DampingExcess:
-    """Measured damping of a mode beside what the steel and the updated support give it.
+    """Measured damping of a mode compared with that of the steel and the updated support.
 
     Attributes
     ----------
     support : float
-        The steel's, the soil's and the water's part of the model's ratio.
+        Part of the steel, the soil and the water in the model's damping ratio.
     rotor : float
-        The part of the nacelle's dashpots; 0 without them.
+        Part of the nacelle's dashpots; 0 without them.
     """
 
     label: str
@@ -37,17 +37,17 @@ class DampingExcess:
 
     @property
     def excess(self) -> float:
-        """What no support explains; negative if the steel's damping is too high."""
+        """Measured damping ratio beyond the support's; negative if the steel's damping is too high."""
         return self.measured - self.support
 
     @property
     def explained(self) -> bool:
-        """Whether the support explains the measured ratio: within two standard deviations, or 5 %."""
+        """Whether the support explains the measured ratio within two standard deviations or 5 %."""
         return abs(self.excess) <= self._allowance
 
     @property
     def carried(self) -> bool:
-        """Whether the rotor's dashpots carry what the support does not explain."""
+        """Whether the rotor's dashpots explain the excess over the support's damping."""
         return not self.explained and abs(self.excess - self.rotor) <= self._allowance
 
     @property
@@ -57,34 +57,34 @@ class DampingExcess:
 
 @dataclass(frozen=True, repr=False)
 class TwinResult:
-    """Everything one run produced.
+    """Result of one run.
 
     Attributes
     ----------
     numbered, labels
-        Undamped modes on pinned supports and what to call them.
+        Undamped modes on pinned supports and their labels.
     observations : tuple of Observation
-        One a record.
+        One for each record.
     shown : Examination or None
-        Of the first record, for figures: its quality, the repaired record, poles and spectra.
+        Examination of the first record, for figures: quality, repaired record, poles and spectra.
     measured : tuple of MeasuredMode
-        In the order of mode numbers.
+        In order of mode numbers.
     updates : tuple of Update
-        One a law; each covers the modes of ``measured``.
+        One for each law; each covers the modes of ``measured``.
     excess : tuple of tuple of DampingExcess
-        For each update, every mode with measured damping.
+        For each update, one for every mode with measured damping.
     assumptions : tuple of Assumption
     warnings : tuple of str
         Sentences for the report.
     relaxations : tuple of MeasuredRelaxation
-        Real poles that the supports were updated to, too, by rate.
+        Real poles that the supports were fitted to, by rate.
     rotor_speed_hz : (lowest, highest) or None
-        Of the rotor in operation, where the twin says it or its rotor does.
+        Of the rotor in operation, if the twin or its rotor states it.
     blades : int
     in_all : (number, seconds), optional
-        Of all records that were measured and of their durations, if ``observations`` are some of them.
+        Number and total duration of all records, if ``observations`` are only some of them.
     scrutiny : tuple of Scrutiny
-        What stands behind each of ``updates``.
+        Scrutiny of each of ``updates``.
     """
 
     name: str
@@ -115,7 +115,7 @@ class TwinResult:
 
     @property
     def extent(self) -> tuple[int, float]:
-        """How many records were measured, and how long they are together [s]."""
+        """Number of records and their total duration [s]."""
         return self.in_all or (len(self.observations), sum(seen.duration_s for seen in self.observations))
 
     @property
@@ -125,21 +125,21 @@ class TwinResult:
 
     @property
     def names(self) -> tuple[tuple[str, ...], ...]:
-        """For each record, the label of each identified mode; empty without a counterpart in the model."""
+        """Label of each identified mode of each record; empty without a counterpart in the model."""
         return tuple(seen.labels for seen in self.observations)
 
     @property
     def identifications(self) -> tuple[Identification, ...]:
-        """What was identified, one a record; only that of the first has poles and spectra."""
+        """Identification of each record; only the first has poles and spectra."""
         found = tuple(seen.identification for seen in self.observations)
         if self.shown is None or not found:
             return found[1:]
-        # with what the model says of its modes
+        # with the labels of the model's modes
         return (replace(self.shown.identification, modes=found[0].modes), *found[1:])
 
     @property
     def unpaired(self) -> tuple[tuple[ModalEstimate, Counterpart], ...]:
-        """Identified modes the model has no counterpart for, and what they were held against."""
+        """Identified modes without a counterpart in the model, and the model's modes compared with them."""
         return tuple(
             (mode, against)
             for seen in self.observations
@@ -149,7 +149,7 @@ class TwinResult:
 
 
 def unpaired_finding(mode: ModalEstimate, held: Counterpart, labels: tuple[str, ...]) -> Finding | None:
-    """Return why an identified mode has no counterpart in the model; None if it has one."""
+    """Return the reason that an identified mode has no counterpart in the model; None if it has one."""
     if held.verdict == "paired":
         return None
     params: dict[str, Any] = {
@@ -163,7 +163,7 @@ def unpaired_finding(mode: ModalEstimate, held: Counterpart, labels: tuple[str, 
 
 
 def held_document(mode: ModalEstimate, held: Counterpart, labels: tuple[str, ...]) -> dict[str, Any]:
-    """Return what an identified mode was held against as plain JSON data."""
+    """Return the model's mode that an identified mode was compared with as plain JSON data."""
     finding = unpaired_finding(mode, held, labels)
     return {
         "label": _label(held, labels),

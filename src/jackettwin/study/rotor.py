@@ -1,4 +1,4 @@
-"""The parked rotor of a twin: what wind it stood in, and what damping to expect of it."""
+"""The parked rotor of a twin: its wind speed and its expected damping."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from jackettwin.twin import ALL, OperationTotal, TwinConfig, TwinState
 from jackettwin.updating import DASHPOTS, Residuals, Target
 
 _LOG_STD = {"c_fore_aft": 0.8, "c_side_side": 0.4}
-"""How far it may be off: blades bend, air lags, turbulence takes 11–18 %; drag is small."""
+"""Standard deviation of ln c: blades bend, the flow lags, turbulence reduces c by 11–18 %; drag is small."""
 _BLADES = 3
-"""Of a rotor nobody describes."""
+"""Number of blades of a rotor without a description."""
 _ANY_WIND_M_S = 10.0
-"""A parked rotor's damping is proportional to the wind."""
+"""Arbitrary wind speed for the damping of a parked rotor, which is proportional to it."""
 _SIDES = {"c_fore_aft": (0, 2, 4), "c_side_side": (1, 3, 5)}
-"""The tower top's DOFs that a rotor straight in the wind couples with each other."""
+"""Degrees of freedom of the tower top that a rotor without yaw error couples with each other."""
 
 States = dict[str, tuple[Residuals, Mapping[str, float]]]
 
@@ -38,7 +38,7 @@ def mean_wind(config: TwinConfig, state: TwinState | None) -> float | None:
 
 
 def rotor_speed_hz(config: TwinConfig) -> tuple[tuple[float, float] | None, int]:
-    """Return lowest and highest speed of the rotor [Hz], as the twin or its rotor says, and its blades."""
+    """Return the speed range of the rotor [Hz], as the twin or its rotor states, and its number of blades."""
     blades, speed = _BLADES, None
     if config.update.rotor is not None:
         with located(file=config.path, field="update"):
@@ -53,17 +53,17 @@ def rotor_speed_hz(config: TwinConfig) -> tuple[tuple[float, float] | None, int]
 
 @dataclass(frozen=True)
 class RotorDamping:
-    """What the rotor's geometry says of the nacelle's dashpots; empty without a rotor.
+    """Dashpots of the nacelle derived from the rotor's geometry; empty without a rotor.
 
-    A dashpot of c N·s/m takes from the first bending mode in its direction what c on the tower top's
-    translation would; the rotor's 6×6 matrix says what it takes from all others: in the second bending mode
-    the blades turn with the tower's slope.
+    A dashpot of c N·s/m damps the first bending mode in its direction like a damper c on the tower top's
+    translation. Its effect on all other modes follows from the rotor's 6×6 matrix, for in the second bending
+    mode the blades rotate with the tower's slope.
 
     Attributes
     ----------
     patterns : {dashpot: (6, 6)}
     priors : {dashpot: median and standard deviation of ln c}
-        Known only with the wind.
+        Known only if the wind speed is known.
     """
 
     patterns: Mapping[str, FloatArray]
@@ -97,10 +97,10 @@ def rotor_damping(
 
 
 def _per_wind(rotor: Rotor, shaft: str) -> FloatArray:
-    """Return the damping (6, 6) of a feathered rotor for each m/s of wind: symmetric, averaged over azimuth.
+    """Return the symmetric damping (6, 6) of a feathered rotor per m/s of wind, averaged over azimuth.
 
-    Of the whole geometry: cone and prebend bring the blades upwind of the hub, which doubles what a pitching
-    or yawing tower top loses to straight blades.
+    The geometry includes cone and prebend, which place the blades upwind of the hub and so double the damping
+    of a pitching or yawing tower top compared with straight blades.
     """
     C = linearise(rotor, _ANY_WIND_M_S, pitch=0.5 * np.pi, shaft=shaft).damping / _ANY_WIND_M_S
     return np.asarray(0.5 * (C + C.T))
@@ -113,16 +113,16 @@ def operating_states(
     residuals: Residuals,
     wind: float | None,
 ) -> States:
-    """Return the data by wind speed: what the rotor damps is fitted in each wind, all else once.
+    """Return the data by wind speed: modes that the rotor damps in each wind, all other modes once.
 
     A parked rotor's damping is proportional to the wind (thin aerofoils at the same angle), so that one
-    unknown serves every wind. The model's error stays where it is common to all winds: in the first state.
+    unknown suffices for all winds. The model error, common to all winds, is assigned to the first state.
     """
     if state is None or wind is None or residuals.relative or "c_side_side" not in config.update.dashpots:
         return {"": (residuals, {})}
-    # fore-aft the rotor's drag is a small part: there its growth drowns in the records' scatter
+    # fore-aft the rotor's drag is small, and its growth is less than the scatter between records
     wanted = [m.mode for m in measured if m.fits_damping and m.label.startswith("side_side")]
-    # a dashpot without the rotor's pattern touches the first modes alone
+    # a dashpot without the rotor's pattern damps the first modes only
     touched = (1, 2) if config.update.rotor is None else (1, 2, 4, 5)
     winds = {name: (total, total.conditions.wind_m_s) for name, total in state.totals.items() if name != ALL}
     apart = [mode for mode in wanted if mode in touched and _in_several_winds(mode, winds)]
@@ -146,6 +146,6 @@ def operating_states(
 
 
 def _in_several_winds(mode: int, winds: Mapping[str, tuple[OperationTotal, float | None]]) -> bool:
-    """Tell whether a mode was seen in several states of operation, all of which say their wind."""
+    """Return whether a mode was measured in several states of operation, all with a known wind speed."""
     seen = [v for total, v in winds.values() if mode in total.modes]
     return len(seen) > 1 and None not in seen

@@ -1,4 +1,4 @@
-"""The main job: records to modes to updated supports."""
+"""The run of a twin: from records to modes to updated supports."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from jackettwin.updating import Update, likely, recommended, series
 Posteriors = Literal["all", "likely", "none"]
 log = logging.getLogger(__name__)
 _MOST_REASONS = 20
-"""Lines that say why nothing that was identified is a mode of the model."""
+"""Largest number of lines with reasons that no identified mode is a mode of the model."""
 
 
 def run_twin(
@@ -54,23 +54,22 @@ def run_twin(
     Parameters
     ----------
     laws : tuple of str, optional
-        Instead of the twin file's.
+        Replaces those of the twin file.
     compare : bool
-        Identify the first record by every method, to set side by side.
+        Identify the first record by every method, for comparison.
     posteriors : {"all", "likely", "none"}
-        Whether every law's posterior is sampled, or that of the law to recommend: the others are fitted.
+        Laws whose posterior is sampled: all, the recommended one, or none; all laws are fitted.
     workers : int
-        Processes that identify records.
+        Number of processes that identify records.
     progress : Progress
-        Told what is being done, once a step; ``count_steps`` says how many there are.
+        Receives a message at each step; ``count_steps`` gives their number.
     keep : Keep
-        Keeps what was identified and fitted for the next run.
+        Stores identified records and fits for the next run.
 
     Raises
     ------
     InputError
-        If records, sensors or targets do not fit the structure.
-        Or are out of the supports' reach.
+        If records, sensors or targets do not fit the structure, or no support can produce the targets.
     """
     config.require_records()
     progress("assemble the structure")
@@ -93,12 +92,12 @@ def updated_twin(
     progress: Progress = SILENT,
     keep: Keep = NOT_KEPT,
 ) -> TwinResult:
-    """Return a twin updated to what its records show, or to its targets if there are none.
+    """Return a twin updated to its records, or to its targets if there are no records.
 
     Raises
     ------
     InputError
-        If what was measured does not fit the structure, or is out of the supports' reach.
+        If the measured modes do not fit the structure, or no support can produce them.
     """
     assembly, numbered, labels = model.structure, model.modes, model.labels
     state = None if found is None else updating(config, found.state)
@@ -130,7 +129,7 @@ def updated_twin(
             updates.append(fit(chosen.law))
         else:
             updates.append(fit(law))
-    # a series may end with a law that is listed, too
+    # a series may end with a law that is also listed
     updates = list({u.law: u for u in updates}.values())
     if posteriors == "likely":
         updates = _with_one_posterior(config, updates, progress, keep)
@@ -179,7 +178,7 @@ def _of_tolerances(
 def _recorded(
     config: TwinConfig, found: Measured, state: TwinState, labels: tuple[str, ...]
 ) -> tuple[MeasuredMode, ...]:
-    """Return the modes of the records; where none is the model's, the log has what the records show."""
+    """Return the modes of the records; if none is in the model, log the identified modes."""
     try:
         return recorded_modes(config, state, labels, found.clearest)
     except InputError:
@@ -188,23 +187,23 @@ def _recorded(
         if any(one.identification.modes for one in found.observations):
             raise
         raise InputError(
-            "no record shows any mode",
+            "no mode was identified in any record",
             file=config.path,
             field="records",
             value=[path.name for path in config.records],
-            remedy="look at their spectra (`jackettwin identify RECORD --report PAGE`); see that the sensors "
-            "are connected and finer than the motion, and measure in more wind or for longer",
+            remedy="look at their spectra (`jackettwin identify RECORD --report PAGE`); check that the "
+            "sensors are connected and resolve the motion, and measure in more wind or for longer",
         ) from None
 
 
 def count_steps(config: TwinConfig, laws: tuple[str, ...] | None = None) -> int:
-    """Return how many steps ``run_twin`` announces."""
+    """Return the number of steps that ``run_twin`` reports."""
     return 1 + len(config.records) + len(laws or config.update.laws)
 
 
 @contextmanager
 def _said_where(config: TwinConfig) -> Iterator[None]:
-    """Name the place in the twin file of data that no support reaches."""
+    """Add the place in the twin file to errors about data that no support can produce."""
     try:
         yield
     except InputError as error:
@@ -215,7 +214,7 @@ def _said_where(config: TwinConfig) -> Iterator[None]:
 def _with_one_posterior(
     config: TwinConfig, updates: list[Update], progress: Progress, keep: Keep
 ) -> list[Update]:
-    """Return the updates, the likely one with its posterior."""
+    """Return the updates, the most probable one with its posterior."""
     chosen = likely(updates)
     return [
         with_kept_posterior(u, config.update, progress=progress, keep=keep) if u is chosen else u

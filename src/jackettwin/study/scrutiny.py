@@ -1,4 +1,4 @@
-"""What stands behind a fit: what it does not explain, what it hangs on, and what would settle that."""
+"""Scrutiny of a fit: unexplained data, tolerances it depends on, and data that would determine more."""
 
 from __future__ import annotations
 
@@ -35,16 +35,16 @@ from jackettwin.updating import (
 
 @dataclass(frozen=True)
 class Condition:
-    """A parameter that would be known if one tolerance were settled.
+    """A parameter that would be determined if one tolerance were known exactly.
 
     Attributes
     ----------
     parameter : str
     tolerance : Tolerance
     factor : float
-        Upper over lower end of the 90 % interval that it would have.
+        Ratio of the upper to the lower end of its 90 % interval in that case.
     effect : float
-        Change of ln θ with one standard deviation more than stated.
+        Change of ln θ if the tolerance is one standard deviation above its stated value.
     """
 
     parameter: str
@@ -55,16 +55,16 @@ class Condition:
 
 @dataclass(frozen=True)
 class Scrutiny:
-    """What stands behind the fit of one law.
+    """Scrutiny of the fit of one law.
 
     Attributes
     ----------
     objection : Objection or None
-        What the fit does not explain; None without standard deviations.
+        Data that the fit does not explain; None without standard deviations.
     influences : tuple of Influence
-        Of every open tolerance on the parameters, in the order of the problem's.
+        Of every open tolerance on the parameters, in the problem's order.
     conditions : tuple of Condition
-        The nearest way to each parameter that is not known and would be.
+        For each undetermined parameter, the tolerance whose knowledge would determine it best.
     """
 
     objection: Objection | None
@@ -73,11 +73,11 @@ class Scrutiny:
 
     @property
     def objects(self) -> bool:
-        """Whether chance does not explain what was measured."""
+        """Whether chance cannot explain the misfit."""
         return self.objection is not None and self.objection.objects
 
     def movers(self, parameter: int) -> tuple[Influence, ...]:
-        """Return the tolerances by how far they move a parameter, the most first."""
+        """Return the influences of the tolerances on a parameter, the largest first."""
         return tuple(sorted(self.influences, key=lambda one: -abs(float(one.effect[parameter]))))
 
 
@@ -88,11 +88,11 @@ def scrutiny(
     pairs: Sequence[PairDirection] = (),
     observations: Sequence[Observation] = (),
 ) -> Scrutiny:
-    """Return what stands behind a fit.
+    """Return the scrutiny of a fit.
 
     Parameters
     ----------
-    suspects : what else may be wrong with the structure, to explain what the tolerances do not
+    suspects : further possible errors of the structure, tried on data that the tolerances do not explain
     pairs : measured directions of bending pairs
     observations : records that show shapes
     """
@@ -161,7 +161,7 @@ def _conditions(u: Update, found: tuple[Influence, ...]) -> tuple[Condition, ...
 
 
 def scrutiny_document(s: Scrutiny, parameters: Sequence[str]) -> dict[str, Any]:
-    """Return what stands behind a fit as plain JSON data."""
+    """Return the scrutiny of a fit as plain JSON data."""
     return {
         "objection": None if s.objection is None else _objection_document(s.objection, parameters),
         "tolerances": [
@@ -235,7 +235,7 @@ def _objection_document(o: Objection, parameters: Sequence[str]) -> dict[str, An
 
 
 def _miss(check: DatumCheck) -> dict[str, float]:
-    """Return by how much a datum is missed, directions in degrees."""
+    """Return the residual of a datum; of directions in degrees."""
     if check.is_direction:
         return {"measured_less_predicted_deg": degrees(check.miss), "std_deg": degrees(check.std)}
     return {"measured_over_predicted_less_one": check.miss, "std": check.std}

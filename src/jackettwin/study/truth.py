@@ -1,4 +1,4 @@
-"""What a run found beside what is known to be true, where its records say so (simulated ones do)."""
+"""Comparison of a run with the true values, which simulated records state."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jackettwin.study.result import TwinResult
 
 @dataclass(frozen=True)
 class StatedMode:
-    """A mode as the records state it: the mean over them; its damping by source if they state that."""
+    """The true mode, as the mean over records; its damping by source if they state that."""
 
     label: str
     frequency_hz: float
@@ -23,7 +23,7 @@ class StatedMode:
 
 @dataclass(frozen=True)
 class TrueParameter:
-    """A parameter of the support as the records state it, and what an update made of it."""
+    """The true value of a support's parameter, and its estimate by an update."""
 
     law: str
     name: str
@@ -34,7 +34,7 @@ class TrueParameter:
 
     @property
     def covered(self) -> bool | None:
-        """Whether the 90 % interval holds the truth; None without an interval."""
+        """Whether the 90 % interval contains the true value; None without an interval."""
         if self.interval_90 is None:
             return None
         low, high = self.interval_90
@@ -42,7 +42,7 @@ class TrueParameter:
 
 
 def true_modes(result: TwinResult) -> tuple[StatedMode, ...]:
-    """Return the true modes of the measured ones, averaged over all records that state them."""
+    """Return the true values of the measured modes, averaged over all records that state them."""
     stated: dict[str, list[dict[str, Any]]] = {}
     for seen in result.observations:
         for mode in seen.truth.get("true_modes") or []:
@@ -61,7 +61,7 @@ def _mean(label: str, modes: list[dict[str, Any]]) -> StatedMode:
 
 
 def true_parameters(result: TwinResult) -> tuple[TrueParameter, ...]:
-    """Return the support's true parameters beside the update under the same law.
+    """Return the support's true parameters with their estimates under the same law.
 
     Only supports given as a short form, ``kelvin-voigt:k=…,c=…``, have parameters to compare.
     """
@@ -91,7 +91,7 @@ def true_parameters(result: TwinResult) -> tuple[TrueParameter, ...]:
 
 
 def truth_document(result: TwinResult) -> dict[str, Any] | None:
-    """Return the comparison as plain data; None if nothing is known."""
+    """Return the comparison as plain data; None without true values."""
     modes = true_modes(result)
     if not modes:
         return None

@@ -1,4 +1,4 @@
-"""How far the condensed model reaches: up to the last numbered mode and the fastest relaxation asked for."""
+"""Frequency band of the condensed model, up to the last numbered mode and the fastest relaxation."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.tie_groups import TieGroups
 
 _ROOM = 1.2
-"""The band ends this much above the highest mode on pinned supports, which supports can only lower."""
+"""Ratio of the band's limit to the highest mode on pinned supports, which supports can only lower."""
 _BEYOND = 2.0
-"""And this much above the fastest measured relaxation."""
+"""Ratio of the band's limit to the fastest measured relaxation."""
 
 
 def numbered_modes(assembly: Assembly, number: int) -> UndampedModes:
-    """Return the undamped modes whose order numbers all modes: on pinned feet, a monopile's clamped."""
+    """Return the undamped modes that define the mode numbers: on pinned feet, a monopile's clamped."""
     return undamped_modes(build_system(assembly, standing(assembly.structure)), number)
 
 
@@ -41,19 +41,19 @@ def condensed_for(
     highest_mode: int,
     fastest_rate: float,
 ) -> Condensed:
-    """Return a structure condensed on its feet, every tie group a group of its own.
+    """Return a structure condensed to its feet, with one group for every tie group.
 
     Parameters
     ----------
     pinned_hz : (n,)
-        Of its numbered modes, up to the highest or the last that it has.
+        Frequencies of its numbered modes, up to the highest requested or the last it has.
 
     Raises
     ------
     InputError
-        If the structure has fewer modes, or its steel overdamps the highest or the fastest.
+        If the structure has fewer modes, or its steel overdamps the highest mode or the fastest relaxation.
     """
-    # distinct stand-in laws, so that every tie group stays a group of its own
+    # distinct placeholder laws, so that tie groups are not merged
     stand_ins: list[Law] = [Prony(k0=1e9 + i) for i in range(len(groups.suffixes))]
     system = build_system(
         assembly,
@@ -69,21 +69,21 @@ def condensed_for(
 
 
 def _check_band(rayleigh: Rayleigh, pinned_hz: FloatArray, highest_mode: int, fastest_rate: float) -> None:
-    """Refuse modes that the structure has not, and modes and rates that its steel would overdamp."""
+    """Raise an error for modes that do not exist, and for modes and rates that the steel would overdamp."""
     if len(pinned_hz) < highest_mode:
         raise InputError(
             "the structure has fewer modes",
             field="mode",
             value=highest_mode,
             allowed=f"1 to {len(pinned_hz)}",
-            remedy="leave the higher ones out, or divide its members (subdivide)",
+            remedy="leave out the higher ones, or divide its members (subdivide)",
         )
     widest = widest_band_hz(rayleigh.beta)
     reached = int(np.searchsorted(_ROOM * pinned_hz, widest))
     remedy = "leave them out, or state less damping (damping.rayleigh)"
     if reached < highest_mode:
         raise InputError(
-            "the steel's damping grows with frequency, too strong for so high a mode",
+            "the steel's damping increases with frequency and is too strong for so high a mode",
             field="mode",
             value=highest_mode,
             allowed=f"1 to {reached} with this damping",
@@ -92,7 +92,7 @@ def _check_band(rayleigh: Rayleigh, pinned_hz: FloatArray, highest_mode: int, fa
     fastest = 2.0 * pi * widest / _BEYOND
     if fastest_rate > fastest:
         raise InputError(
-            "the steel's damping grows with frequency, too strong for so fast a relaxation",
+            "the steel's damping increases with frequency and is too strong for so fast a relaxation",
             field="rate_rad_s",
             value=fastest_rate,
             allowed=f"up to {fastest:.3g} rad/s with this damping",

@@ -1,13 +1,13 @@
-r"""Damping budget: where the damping of each mode comes from.
+r"""Damping budget: contributions of the parts of the model to the damping of each mode.
 
-The imaginary part of :math:`x^H F(λ)\,x = 0` says that what a mode loses is what its parts take,
+By the imaginary part of :math:`x^H F(λ)\,x = 0`, the dissipation of a mode is the sum of that of the parts,
 
 .. math::
 
     -2\,\mathrm{Re}λ\; x^H M x
     = x^H (αM + βK)\,x + \sum_g \frac{\mathrm{Im}\,D_g(λ)}{\mathrm{Im}\,λ}\; x^H S_g\, x,
 
-exactly, for any law. Each term over :math:`2|λ|\,x^H M x` is that part's share of ζ.
+exactly, for any law. Each term divided by :math:`2|λ|\,x^H M x` is that part's contribution to ζ.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from jackettwin.soil import law_stiffness
 from jackettwin.updating.model import SupportModel
 
 SOURCES = ("structure", "soil", "rotor", "water")
-"""Water is the last, and left out where no drag is modelled: then its share is not known."""
+"""Sources of damping; water is left out if no drag is modelled, as its contribution is then not known."""
 
 LITERATURE = {"structure": (0.01, 0.02), "soil": (0.005, 0.015), "water": (0.001, 0.004)}
 """Damping ratios of first bending modes that the literature reports by source, thesis section 2.1."""
@@ -31,7 +31,7 @@ LITERATURE = {"structure": (0.01, 0.02), "soil": (0.005, 0.015), "water": (0.001
 
 @dataclass(frozen=True)
 class Budget:
-    """Damping ratio by source, NaN for a mode that has no pole.
+    """Damping ratio by source, NaN for a mode without a pole.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ def damping_budget(
     Parameters
     ----------
     draws : (n, n_parameters), optional
-        θ from the posterior; intervals are quantiles over them.
+        Draws of θ from the posterior, whose quantiles give the intervals.
     """
     here = model.predict_many(theta[None], modes)
     ratio = _ratios(model, model.points(theta[None]), here)[0]
@@ -65,7 +65,7 @@ def damping_budget(
 
 
 def _interval_90(draws: FloatArray) -> FloatArray:
-    """Return the central interval over the first axis, NaN for modes that no draw has."""
+    """Return the central 90 % interval over the first axis, NaN for modes that no draw has."""
     known = ~np.isnan(draws).all(axis=(0, 2))
     interval = np.full((*draws.shape[1:], 2), np.nan)
     interval[known] = np.moveaxis(np.nanquantile(draws[:, known], [0.05, 0.95], axis=0), 0, -1)
@@ -73,9 +73,9 @@ def _interval_90(draws: FloatArray) -> FloatArray:
 
 
 def beyond_literature(label: str, ratios: Mapping[str, float | None]) -> tuple[str, ...]:
-    """Return a sentence for every source whose damping ratio leaves the range of ``LITERATURE``.
+    """Return a sentence for every source whose damping ratio is outside the range of ``LITERATURE``.
 
-    The ranges are those of first bending modes: other modes, and what is not known, are not judged.
+    The ranges are those of first bending modes; other modes and unknown ratios are not checked.
 
     >>> beyond_literature("fore_aft_1", {"structure": 0.012, "soil": 0.0002, "water": None})
     ('soil gives fore_aft_1 0.02 % damping, less than the 0.5 to 1.5 % of the literature',)
@@ -114,7 +114,7 @@ def _ratios(model: SupportModel, points: Points, found: NumberedModes) -> FloatA
     drag = of_matrices.pop("water_damping", None)
     steel = a * m + b * k + sum(of_matrices.values())
     lost = np.stack([steel, soil, rotor, *([] if drag is None else [drag])], axis=-1)
-    # M and K of the coordinates leave out what the truncated modes move (1e-4): close the sum on ζ itself
+    # M and K of the coordinates lack the contribution of truncated modes (1e-4): scale the sum to ζ
     zeta = -pole.real / np.abs(pole)
     ratio = lost * (zeta / lost.sum(axis=-1))[..., None]
     return np.where(known[..., None], ratio, np.nan)

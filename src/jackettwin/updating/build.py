@@ -1,4 +1,4 @@
-"""A structure and one law to the model that is updated: its parameters, bounded and informed."""
+"""Construction of the updated model from a structure and a law, with bounds and priors of its parameters."""
 
 from __future__ import annotations
 
@@ -33,26 +33,26 @@ def support_model(
     heads: Support | None = None,
     informed: bool = False,
 ) -> SupportModel:
-    """Return the model with one law on the feet: their three translations, or what pile heads hold.
+    """Return the model with one law on the feet's translations, or on the DOFs of pile heads.
 
     Parameters
     ----------
     tie : {"all", "horizontal-vertical", "per-leg", "per-leg-horizontal-vertical"}
-        Which translations share parameters.
+        Translations that share parameters.
     bounds : dict, optional
-        Narrower or wider bounds by parameter name: with the tie's suffix, that of its side, or none.
+        Bounds by parameter name, with the tie's suffix, that of its side, or none.
     priors : dict, optional
-        Lognormal priors by parameter name, as for the bounds; the others are flat in ln θ.
+        Lognormal priors by parameter name, as for the bounds; other priors are uniform in ln θ.
     highest_mode : int
-        The last numbered mode that will be asked for.
+        Highest mode number that will be requested.
     fastest_rate : float
-        Of the real poles that will be asked for [rad/s].
+        Largest rate of the real poles that will be requested [rad/s].
     nuisance : NuisanceParameters, optional
         Nacelle dashpots and steel damping to update as well.
     heads : Support, optional
         Pile heads whose 6×6 stiffness the laws scale (:func:`jackettwin.updating.tie_groups.tie_groups`).
     informed : bool
-        Whether the law and the heads give priors to the parameters that have none.
+        Whether the law and the heads provide priors for parameters without one.
 
     Raises
     ------
@@ -101,23 +101,23 @@ def support_model(
 def _inside_band(
     parameters: tuple[Parameter, ...], given: Mapping[str, tuple[float, float]], beta: float
 ) -> tuple[Parameter, ...]:
-    """Return the parameters with the steel's damping bounded so that it overdamps no mode of the band.
+    """Return the parameters with bounds of the steel's damping such that it overdamps no mode of the band.
 
-    Strong damping at a low frequency grows beyond what the condensed model takes, β = ζ/ω: the usual
-    bounds give way, the ratio's upper and the frequency's lower one alike; given ones are refused.
+    The condensed model limits β = ζ/ω. The default upper bound of the ratio and lower bound of the frequency
+    are reduced equally; for bounds given by the user an error is raised.
     """
     ratio, frequency = (next(p for p in parameters if p.name == s.name) for s in STEEL)
-    # a hair inside: a search may stand on both bounds, whose logarithms round
+    # slightly inside, because of rounding when a search is on both bounds
     excess = ratio.high / (2.0 * pi * frequency.low) / beta * (1.0 + 1e-9)
     if excess <= 1.0:
         return parameters
     if ratio.name in given or frequency.name in given:
         raise InputError(
-            "steel damping that grows with frequency, too strong for the modes asked for",
+            "the steel's damping increases with frequency and is too strong for the requested modes",
             field=f"bounds.{ratio.name if ratio.name in given else frequency.name}",
             value=[ratio.high, frequency.low],
             allowed=f"highest ratio over lowest frequency up to {2.0 * pi * beta:.3g} 1/Hz",
-            remedy="narrow the bounds, or leave the highest modes out",
+            remedy="narrow the bounds, or leave out the highest modes",
         )
     narrow = {
         ratio.name: replace(ratio, high=ratio.high / sqrt(excess)),

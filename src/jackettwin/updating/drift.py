@@ -1,11 +1,11 @@
-r"""Whether parameters drift from day to day: one slope through the data of all days, with its interval.
+r"""Drift of parameters over days: one slope fitted to the data of all days, with its interval.
 
 .. math:: \ln θ(t) = \ln θ_0 + t \ln g
 
-The slope ln g is fitted with everything else to all days at once (:class:`jackettwin.updating.joint.Growth`);
-errors of the model that all days share are unknowns of their own, so that more days do not average them out
-and a steady error is no drift. Days that scatter more than their uncertainty says widen the interval by the
-root of χ² per degree of freedom (Birge 1932).
+The slope ln g is fitted together with all parameters to all days (:class:`jackettwin.updating.joint.Growth`).
+Errors of the model that are common to all days are additional unknowns: more days do not average them out,
+and a constant error is not mistaken for a drift. If the scatter of the days exceeds their uncertainty, the
+interval is multiplied by the root of χ² per degree of freedom (Birge 1932).
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ class Drift:
 
     Attributes
     ----------
-    names : of all parameters; the slope's is the last
-    z : (d,) ln θ at day zero, and the slope ln g a day
+    names : names of all parameters; the last is the slope
+    z : (d,) ln θ at day zero, and the slope ln g per day
     covariance : (d, d) of z
     scatter : float
-        Root of χ² per degree of freedom, at least 1; in the covariance.
+        Root of χ² per degree of freedom, at least 1; the covariance includes its square.
     """
 
     names: tuple[str, ...]
@@ -43,7 +43,7 @@ class Drift:
 
     @property
     def slope_per_day(self) -> float:
-        """Change of ln θ a day."""
+        """Change of ln θ per day."""
         return float(self.z[-1])
 
     @property
@@ -59,11 +59,11 @@ class Drift:
 
     @property
     def detected(self) -> bool:
-        """Whether the 95 % interval of the slope leaves out zero: one false alarm in twenty."""
+        """Whether the 95 % interval of the slope excludes zero (one false alarm in twenty)."""
         return abs(self.slope_per_day) > NORMAL_95 * self.std_per_day
 
     def line(self, name: str, days: FloatArray) -> FloatArray:
-        """Return a growing parameter at some days, (n_days, 3): median, low and high of 90 %."""
+        """Return a parameter with drift at some days, (n_days, 3): median and ends of the 90 % interval."""
         i = self.names.index(name)
         along = np.zeros((days.size, self.z.size))
         along[:, i], along[:, -1] = 1.0, days
@@ -78,13 +78,13 @@ def find_drift(problem: Problem, start: FloatArray) -> Drift:
     Parameters
     ----------
     problem : Problem
-        Of all days, with a :class:`~jackettwin.updating.joint.Growth`.
+        Problem of all days, with a :class:`~jackettwin.updating.joint.Growth`.
     start : (d − 1,) ln θ of the other parameters
 
     Raises
     ------
     InputError
-        If nothing grows in this problem, or its data carry no standard deviations.
+        If the problem has no growing parameter, or its data have no standard deviations.
     """
     names = tuple(p.name for p in problem.parameters)
     if names[-1] != GROWTH or not problem.weighted:

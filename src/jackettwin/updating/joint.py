@@ -1,4 +1,4 @@
-"""From a model and data in several operating states to one problem: what the states share, and what not."""
+"""Construction of one problem from a model and data in several operating states."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ from jackettwin.updating.problem import Problem, State
 from jackettwin.updating.tie_groups import SIDES
 
 GROWTH = "growth_per_day"
-"""Parameter: the factor by which others grow from one day to the next."""
+"""Parameter: factor by which other parameters grow per day."""
 _FAR = 8.0
-"""Bounds of a lognormal parameter that has none of its own, in standard deviations from the median."""
+"""Bounds of a lognormal parameter without given bounds, in standard deviations from the median."""
 
 
 @dataclass(frozen=True)
 class Growth:
-    """Some parameters grow in time by one common factor a day, θ(t) = θ · g^t.
+    """Growth of some parameters by one common factor per day, θ(t) = θ · g^t.
 
     Attributes
     ----------
-    parameters : names of those that grow
-    days : {state: t}
+    parameters : names of the growing parameters
+    days : {state: t} day of each state
     log_std : float
-        Standard deviation of ln g before the data; its median is 0.
+        Prior standard deviation of ln g, whose median is 0.
     """
 
     parameters: tuple[str, ...]
@@ -50,7 +50,7 @@ def single(model: SupportModel, residuals: Residuals) -> Problem:
     Raises
     ------
     InputError
-        If a parameter has a lognormal prior but the residuals carry no standard deviations.
+        If a parameter has a lognormal prior but the residuals have no standard deviations.
     """
     return joint(model, {"": (residuals, {})})
 
@@ -73,31 +73,31 @@ def joint(
     Parameters
     ----------
     states : {name: (residuals, factors)}
-        Factors by parameter name: what a shared parameter is multiplied by in this state.
+        Factors on shared parameters in this state, by parameter name.
     per_state : tuple of str
-        Parameters with a value of their own in each state, named ``parameter@state``.
+        Parameters with a separate value in each state, named ``parameter@state``.
     shapes : tuple of ShapeTarget
-        Measured shapes, in the first state; its residuals hold their modes, too.
+        Measured shapes in the first state, whose residuals must include their modes.
     relaxations : tuple of RelaxationTarget
-        Measured real poles, in the first state.
+        Measured real poles in the first state.
     shared : tuple of str
-        Parameters of the law with one value for all tie groups: every leg its stiffness, all one loss factor.
-        Where legs are split, ``k_vertical`` is shared by the legs' vertical springs.
+        Parameters of the law with one value for all tie groups, e.g. one loss factor for legs of different
+        stiffness. If legs are split, ``k_vertical`` is shared by the legs' vertical springs.
     scatter : {parameter of the law: s₀}, optional
-        Those of all tie groups have a common mean, about which they scatter by an unknown standard deviation
-        of ln θ, about s₀ (:mod:`jackettwin.updating.posterior.scatter`).
+        The values of all tie groups scatter about a common mean with an unknown standard deviation of ln θ of
+        about s₀ (:mod:`jackettwin.updating.posterior.scatter`).
     errors : {datum: log_std}, optional
-        Errors of the model that all states share, by datum (``f1``, ``ζ4``): each is a factor ``error_f1`` on
-        the model's value, lognormal around one. More states do not average them out.
+        Errors of the model that are common to all states, by datum (``f1``, ``ζ4``): each is a lognormal
+        factor ``error_f1`` with median one on the model's value. More states do not average them out.
     growth : Growth, optional
         Adds the parameter ``growth_per_day``.
     error_model : ErrorModel, optional
-        What the model may miss beside that; without standard deviations of the data it has no place.
+        Further errors of the model; only possible if the data have standard deviations.
 
     Raises
     ------
     InputError
-        If a name is none of the model's, or priors meet residuals without standard deviations.
+        If a name does not exist in the model, or there are priors but residuals without standard deviations.
     """
     errors, alias = errors or {}, _alias(model, (*shared, *(scatter or {})), shared)
     names = [p.name for p in model.parameters]
@@ -133,7 +133,7 @@ def joint(
 
 
 def _alias(model: SupportModel, given: tuple[str, ...], shared: tuple[str, ...]) -> dict[str, str]:
-    """Return {the model's name: the problem's} of shared parameters; refuse what is none of the law's."""
+    """Return {name in the model: name in the problem} of shared parameters, which must belong to the law."""
     law = {p.name + side: None for side in ("", *model.tie_groups.sides) for p in model.family.parameters}
     for name in given:
         require(
@@ -143,9 +143,9 @@ def _alias(model: SupportModel, given: tuple[str, ...], shared: tuple[str, ...])
 
 
 def _members(model: SupportModel, name: str) -> list[list[str]]:
-    """Return the parameters that a name stands for, those of legs split into two sides apart by side.
+    """Return the parameters that a name stands for, separately by side if legs are split.
 
-    ``k`` is every leg's; ``k_vertical`` that of every leg's vertical spring.
+    ``k`` is that of every leg, ``k_vertical`` that of every leg's vertical spring.
     """
     tie_groups, law = model.tie_groups, [p.name for p in model.family.parameters]
     by_side: dict[str, list[str]] = {}
@@ -157,7 +157,7 @@ def _members(model: SupportModel, name: str) -> list[list[str]]:
 
 
 def _common_errors(data: list[str], place: Mapping[str, int]) -> FloatArray:
-    """Return which error of the model enters which datum, (n_data, n_parameters)."""
+    """Return the matrix of model errors in the data, (n_data, n_parameters)."""
     errors = np.zeros((len(data), len(place)))
     for row, datum in enumerate(data):
         if f"error_{datum}" in place:
@@ -166,7 +166,7 @@ def _common_errors(data: list[str], place: Mapping[str, int]) -> FloatArray:
 
 
 def _prior(model: SupportModel, parameters: tuple[Parameter, ...], scatter: Mapping[str, float]) -> Prior:
-    """Return the parameters' priors; those of tie groups that scatter are drawn together."""
+    """Return the priors of the parameters; scattering tie groups have a joint prior."""
     place = {p.name: i for i, p in enumerate(parameters)}
     legs = []
     for name, scale in scatter.items():
@@ -180,7 +180,7 @@ def _prior(model: SupportModel, parameters: tuple[Parameter, ...], scatter: Mapp
 
 
 def _factor(name: str, log_std: float) -> Parameter:
-    """Return a parameter around one."""
+    """Return a lognormal parameter with median one."""
     return Parameter(name, exp(-_FAR * log_std), exp(_FAR * log_std), "-", 1.0, log_std)
 
 
@@ -198,5 +198,5 @@ def _no_priors_without_deviations(problem: Problem) -> None:
             "a prior needs data with standard deviations",
             field="update.priors",
             value=informed,
-            remedy="give every target its standard deviation, or leave the priors out",
+            remedy="give every target its standard deviation, or leave out the priors",
         )

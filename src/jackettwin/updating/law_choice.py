@@ -1,4 +1,4 @@
-"""Which law to recommend, and how probable each is."""
+"""Choice of the recommended law, and probabilities of the laws."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ from jackettwin.updating.posterior.laplace import log_covariance
 from jackettwin.updating.update import Update
 
 PREFERRED = 0.1
-"""The first law of the file is kept unless another is ten times as probable: weaker evidence is no reason to
-overrule the engineer who knows the ground (Kass & Raftery 1995, section 3.2)."""
+"""Ratio of probabilities above which the first law in the file is recommended: another law must be ten times
+as probable to override the engineer's choice (strong evidence; Kass & Raftery 1995, section 3.2)."""
 
 
 @dataclass(frozen=True)
 class LawRank:
-    """Where a law stands among those that were fitted.
+    """Rank of a law among the fitted ones.
 
     Attributes
     ----------
     place : int
-        1 is the best; laws whose costs differ by no more than counts as the same share a place.
+        1 is the best; laws with practically equal costs have the same rank.
     law : str
     parameters : int
-        How many are free: a law with more never fits worse than one that it contains.
+        Number of free parameters; a law never fits worse than one that it contains.
     cost : float
-        Of its best solution, thesis (8.4); χ² with standard deviations.
+        Cost of its best solution, thesis (8.4); χ² if the data have standard deviations.
     solutions : int
     locked : bool
-        Whether its best solution locks a damper: such laws come last.
+        Whether its best solution locks a damper; such laws come last.
     """
 
     place: int
@@ -65,15 +65,15 @@ def ranked(updates: Sequence[Update]) -> tuple[LawRank, ...]:
 
 
 def _head(ranks: Sequence[tuple[int, Update]]) -> Update:
-    """Return the first law of the last place."""
+    """Return the first law of the last rank."""
     return next(u for place, u in ranks if place == ranks[-1][0])
 
 
 def better(longer: Update, shorter: Update) -> bool:
-    """Tell whether data want the longer of two laws, one of which holds the other.
+    """Tell whether the data require the longer of two nested laws.
 
-    With standard deviations it is ten times as probable by Laplace's approximation of the evidence; without,
-    it lowers the cost by more than counts as the same. One that alone locks a damper is no better.
+    With standard deviations it must be ten times as probable by Laplace's approximation of the evidence;
+    without, it must reduce the cost noticeably. If only the longer law locks a damper, it is not better.
     """
     if longer.best.locked_damper != shorter.best.locked_damper:
         return shorter.best.locked_damper
@@ -84,14 +84,14 @@ def better(longer: Update, shorter: Update) -> bool:
 
 
 def recommended(updates: Sequence[Update]) -> Update | None:
-    """Return the law to report, of those that lock no damper: a sampled one, else the likely one."""
+    """Return the recommended law without locked damper: a sampled one, else the likely one."""
     free = [u for u in updates if not u.best.locked_damper]
     sampled = [u for u in free if u.uncertainty is not None]
     return likely(sampled or free or list(updates))
 
 
 def likely(updates: Sequence[Update]) -> Update | None:
-    """Return the first law; where another is ten times as probable, the simplest that comes near that one."""
+    """Return the first law or, if another is ten times as probable, the simplest one comparable to that."""
     if not updates:
         return None
     first = next((u for u in updates if not u.best.locked_damper), updates[0])
@@ -106,9 +106,9 @@ def likely(updates: Sequence[Update]) -> Update | None:
 
 
 def approximate_probability(updates: Sequence[Update]) -> dict[str, float]:
-    """Return each law's probability by Laplace's approximation of its evidence, unless its damper is locked.
+    """Return the probability of each law without locked damper, by Laplace's approximation of the evidence.
 
-    Nothing where the data carry no standard deviations.
+    The result is empty if the data have no standard deviations.
     """
     free = [u for u in updates if not u.best.locked_damper and u.problem.weighted]
     if not free:
@@ -119,7 +119,7 @@ def approximate_probability(updates: Sequence[Update]) -> dict[str, float]:
 
 def _log_evidence(u: Update) -> float:
     r"""Return ln L(ẑ) + ln p(ẑ) + ½ ln det 2πΣ at the best fit (MacKay 2003, eq. (27.3))."""
-    # a best fit on its bound is inside the prior
+    # a best fit on a bound belongs to the prior
     z = np.clip(np.log(u.best.theta), u.problem.prior.low, u.problem.prior.high)
     log_l, _ = u.problem.log_likelihood(z[None], None)
     spread = 0.5 * np.linalg.slogdet(2.0 * np.pi * log_covariance(u.problem, u.best.theta))[1]
@@ -127,7 +127,7 @@ def _log_evidence(u: Update) -> float:
 
 
 def series(fit: Callable[[str], Update], progress: Progress = SILENT) -> tuple[Update, str]:
-    """Return the shortest series that one more branch does not better, and why, as a sentence.
+    """Return the shortest series that one more branch does not improve, with a sentence on the reason.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def series(fit: Callable[[str], Update], progress: Progress = SILENT) -> tuple[U
         if not better(other, chosen):
             return chosen, _why(chosen, other, branches - 1)
         chosen = other
-    return chosen, f"{SERIES}: {len(longer) + 1} branches, the most that are tried."
+    return chosen, f"{SERIES}: {len(longer) + 1} branches, the largest number tried."
 
 
 def _why(chosen: Update, other: Update, branches: int) -> str:
@@ -153,5 +153,5 @@ def _why(chosen: Update, other: Update, branches: int) -> str:
     elif chosen.problem.weighted:
         reason = "one more is not ten times as probable"
     else:
-        reason = "one more meets the data no better"
+        reason = "one more does not improve the fit"
     return f"{SERIES}: {number} ({chosen.law}); {reason} (cost {cost:.3g}, with one more {least:.3g})."

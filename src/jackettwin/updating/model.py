@@ -1,4 +1,4 @@
-"""The model that is updated: free support parameters in, followed poles and their gradients out."""
+"""The updated model: poles of numbered modes and their gradients as functions of support parameters."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ from jackettwin.updating.tie_groups import TieGroups
 
 @dataclass(frozen=True)
 class Prediction:
-    """What the model says of some modes at one parameter vector.
+    """Prediction of some modes at one parameter vector.
 
     Attributes
     ----------
     poles : (n_modes,) λ, NaN where a mode has no successor
     slopes : (n_modes, n_parameters) dλ/d ln θ
     numbered : NumberedModes
-        The same as one set, to start neighbours from.
+        The same as one set, from which neighbouring vectors can start.
     """
 
     poles: ComplexArray
@@ -52,29 +52,29 @@ class Prediction:
 
 @dataclass(frozen=True)
 class SupportModel:
-    """A structure whose reaction nodes stand on one family of laws.
+    """A structure whose reaction nodes are supported by one family of laws.
 
     Attributes
     ----------
     assembly, rayleigh
-        The steel.
+        Structure and damping of the steel.
     family : Family
     parameters : tuple of Parameter
-        One set of the family's for each tie group.
+        Parameters of the family for each tie group, then the nuisance parameters.
     tie_groups : TieGroups
         The tie groups.
     condensed : Condensed
-        The structure on its support DOFs; its groups are the tie groups.
+        The structure condensed to its support DOFs; its groups are the tie groups.
     reference_hz : float
-        Where storage stiffness and loss factor are stated: the first pinned frequency.
+        Frequency at which storage stiffness and loss factor are stated: the first pinned frequency.
     highest_mode : int
-        The last numbered mode inside the condensed model's band.
+        Highest mode number in the condensed model's band.
     nuisance : NuisanceParameters
-        Free parameters beside those of the law: they follow them in ``parameters``.
+        Free parameters in addition to those of the law, which they follow in ``parameters``.
     fastest_rate : float
-        Relaxations up to this rate [rad/s] are well inside the band, too.
+        Largest rate [rad/s] of relaxations inside the band.
     directions : ToleranceDirections, optional
-        What the structure's tolerances do to it, on the condensed model.
+        Effects of the structure's tolerances on the condensed model.
     """
 
     assembly: Assembly
@@ -90,7 +90,7 @@ class SupportModel:
     directions: ToleranceDirections | None = None
 
     def reaching(self, mode: int) -> SupportModel:
-        """Return the model with a band up to a numbered mode; itself if it reaches there."""
+        """Return the model with a band up to a numbered mode; the same object if the mode is in its band."""
         if mode <= self.highest_mode:
             return self
         pinned_hz = numbered_modes(self.assembly, mode).frequency_hz
@@ -108,7 +108,7 @@ class SupportModel:
 
     @cached_property
     def n_of_law(self) -> int:
-        """How many of the parameters are the law's, on all tie groups."""
+        """Number of parameters of the law on all tie groups."""
         return len(self.tie_groups.parameters(self.family))
 
     def _numbers(self, own: FloatArray) -> FloatArray:
@@ -123,7 +123,7 @@ class SupportModel:
         return theta[..., :n], theta[..., n:]
 
     def points(self, theta: FloatArray) -> Points:
-        """Return parameter vectors (n_sets, n_parameters) as what the condensed model takes."""
+        """Return parameter vectors (n_sets, n_parameters) as input of the condensed model."""
         own, extra = self._split(theta)
         n_sets, n_groups, p = len(theta), len(self.tie_groups.suffixes), len(self.family.parameters)
         numbers, powers = self._numbers(own), self.tie_groups.exponents(self.family)
@@ -146,7 +146,7 @@ class SupportModel:
         Parameters
         ----------
         theta : (n_parameters,)
-        s : (n_s,) where [rad/s]
+        s : (n_s,) Laplace variable [rad/s]
 
         Returns
         -------
@@ -196,13 +196,13 @@ class SupportModel:
         Parameters
         ----------
         near : Prediction, optional
-            Of the same modes at a neighbouring vector: ten times faster if it is close.
+            Prediction of the same modes at a neighbouring vector, which makes the search ten times faster.
         """
         found = self.predict_many(theta[None], modes, near=None if near is None else near.numbered)
         return Prediction(found.poles[0], found.slopes[0], found)
 
     def undamped_hz(self, theta: FloatArray, modes: tuple[int, ...]) -> FloatArray:
-        """Return the undamped frequencies of numbered modes (NaN if not followed)."""
+        """Return the undamped frequencies of numbered modes (NaN if not found)."""
         found = numbered_poles(self.condensed, self.points(theta[None]).undamped(), modes)
         return np.asarray(np.abs(found.poles[0]) / (2.0 * pi))
 
@@ -237,7 +237,7 @@ class SupportModel:
 
 
 def _taken(values: npt.NDArray[Any], which: IntArray) -> npt.NDArray[Any]:
-    """Return values[..., which], NaN where ``which`` is −1; there may be no value at all."""
+    """Return values[..., which], NaN where ``which`` is −1; ``values`` may be empty."""
     padded = np.concatenate([values, np.full((*values.shape[:-1], 1), np.nan, values.dtype)], axis=-1)
     return np.asarray(padded[..., which])
 
@@ -252,7 +252,7 @@ class ExactModes:
     shapes : (assembly.n_dof, n_modes)
     undamped_hz : (n_modes,)
     damped : DampedModes
-        All of them, with the real poles.
+        All damped modes, with the real poles.
     """
 
     poles: ComplexArray

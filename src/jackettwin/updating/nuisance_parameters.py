@@ -1,7 +1,7 @@
-"""What else the modes depend on, as free parameters: the rotor's dashpots, the water, the steel's damping.
+"""Free parameters other than those of the support law: the rotor's dashpots, water, damping of the steel.
 
-Another package adds one by an entry point in ``jackettwin.parameters`` that is a :class:`NuisanceParameter`
-with a ``matrix``; a twin file asks for it by name in ``update.parameters``.
+An installed package adds one by an entry point in ``jackettwin.parameters`` that is a
+:class:`NuisanceParameter` with a ``matrix``; a twin file selects it by name in ``update.parameters``.
 """
 
 from __future__ import annotations
@@ -21,26 +21,26 @@ from jackettwin.soil import K0, MASS, OMEGA0, C, Law, Parameter, Prony, Spring
 from jackettwin.structure import Assembly, Rayleigh
 
 DASHPOTS = {"c_fore_aft": 0, "c_side_side": 1}
-"""Dashpots on the top node and the direction each acts in: x, y, the nacelle at zero yaw."""
+"""Dashpots on the top node with their directions: x and y of the nacelle at zero yaw."""
 PLUGINS = "jackettwin.parameters"
 """Entry points of packages that add parameters: each is a :class:`NuisanceParameter`."""
 
 
 @dataclass(frozen=True)
 class NuisanceParameter:
-    """A free parameter beside those of the support law: the size of a matrix on the structure's DOFs.
+    """A free parameter other than those of the support law: the size of a matrix on the structure's DOFs.
 
     Attributes
     ----------
     parameter : Parameter
         Its name, bounds and prior.
     acts_as : {"stiffness", "damping", "mass"}
-        What the matrix is.
+        Meaning of the matrix.
     at_rest : float
-        The value that the structure's own matrices hold: 1 for a factor on mass that is in them already.
+        Value that is contained in the structure's matrices: 1 for a factor on mass that they include.
     matrix : function of the assembly, optional
-        Returns the symmetric matrix for a value of 1, (assembly.n_dof, assembly.n_dof). None if other keys of
-        the twin file give it: ``update.rotor``, ``water``.
+        Returns the symmetric matrix for a value of 1, (assembly.n_dof, assembly.n_dof). None if it is given
+        by other keys of the twin file (``update.rotor``, ``water``).
     """
 
     parameter: Parameter
@@ -54,7 +54,7 @@ NUISANCE_PARAMETERS = {
     for one in (
         NuisanceParameter(Parameter("c_fore_aft", 1e2, 1e7, "N·s/m"), "damping"),
         NuisanceParameter(Parameter("c_side_side", 1e2, 1e7, "N·s/m"), "damping"),
-        # factors on the water; C_a and growth are known to a fifth, C_D and the sea to a half
+        # factors on the water: C_a and growth are known to 20 %, C_D and the sea to 50 %
         NuisanceParameter(Parameter("water_mass", 0.5, 2.0, "-", 1.0, 0.2), "mass", at_rest=1.0),
         NuisanceParameter(Parameter("water_damping", 0.05, 20.0, "-", 1.0, 0.5), "damping"),
     )
@@ -62,46 +62,48 @@ NUISANCE_PARAMETERS = {
 
 
 def nuisance_parameters() -> dict[str, NuisanceParameter]:
-    """Return every parameter beside the law's by its name, those of installed packages included."""
+    """Return all nuisance parameters by name, including those of installed packages."""
     added = plugins_of_type(PLUGINS, NuisanceParameter).values()
     return {**NUISANCE_PARAMETERS, **{one.parameter.name: one for one in added}}
 
 
 def matrix_of(name: str, *, field: str = "update.parameters") -> Callable[[Assembly], Matrix]:
-    """Return what makes the matrix of a parameter that installed packages add.
+    """Return the function for the matrix of a parameter of an installed package.
 
     Raises
     ------
     InputError
-        If there is no such parameter, or another key of the twin file asks for it.
+        If there is no such parameter, or it belongs to another key of the twin file.
     """
     table = {known: one.matrix for known, one in nuisance_parameters().items() if one.matrix is not None}
-    remedy = "install the package that adds it; dashpots, water and steel_damping are keys of their own"
-    return look_up(table, name, "parameter beside the law's", field=field, remedy=remedy)
+    remedy = "install the package that adds it; dashpots, water and steel_damping have separate keys"
+    return look_up(table, name, "parameter in addition to the law's", field=field, remedy=remedy)
 
 
 _PLACES = {"stiffness": K0, "damping": C, "mass": MASS}
 STEEL = (Parameter("rayleigh_ratio", 1e-4, 0.03, "-"), Parameter("rayleigh_frequency_hz", 0.1, 1.0, "Hz"))
-"""Ratio and frequency of the steel's least damping: wide, and narrowed where they would overdamp a mode."""
+"""Smallest damping ratio of the steel and its frequency: wide bounds, narrowed if they would overdamp a
+mode."""
 
 
 @dataclass(frozen=True)
 class NuisanceParameters:
-    """Free parameters beside those of the support law.
+    """Free parameters other than those of the support law.
 
     Attributes
     ----------
     dashpots : tuple of str
-        Of ``DASHPOTS``.
+        Names from ``DASHPOTS``.
     rayleigh : bool
         Whether ratio and frequency of the steel's smallest damping are free.
     patterns : {dashpot: (6, 6)}
-        What a dashpot of 1 N·s/m is on the top node's translations and rotations; without, a translation's.
+        Matrix of a dashpot of 1 N·s/m on the top node's translations and rotations; by default on one
+        translation.
     matrices : {parameter: (assembly.n_dof, assembly.n_dof)}
-        What the other parameters of :func:`nuisance_parameters` are at a value of one: mass of water and
-        growth that the assembly holds, damping of its drag.
+        Matrices of the other parameters of :func:`nuisance_parameters` at a value of one: mass of water and
+        growth in the assembly, damping by drag.
     given : {name: (assembly.n_dof, assembly.n_dof)}
-        Damping that is not free: the structure's by mode.
+        Damping that is not free: modal damping of the structure.
     """
 
     dashpots: tuple[str, ...] = ()
@@ -135,7 +137,7 @@ class NuisanceParameters:
         return Rayleigh.minimum(float(values[-2]), float(values[-1])) if self.rayleigh else fixed
 
     def effects(self, values: FloatArray) -> tuple[Matrix | None, tuple[tuple[Matrix, Law], ...]]:
-        """Return what they add to the assembly's mass, None if nothing, and their springs and dampers."""
+        """Return the added mass matrix (None if zero), and matrices with their stiffness or damping laws."""
         table = nuisance_parameters()
         mass: Matrix | None = None
         spread: list[tuple[Matrix, Law]] = []
@@ -181,25 +183,25 @@ class NuisanceParameters:
         return ab, jacobian
 
     def check_mass(self, mass: FloatArray, patterns: Sequence[FloatArray], low: float) -> None:
-        """Refuse water that weighs more than the structure it is said to be part of.
+        """Raise an error if the water would have more mass than the structure that includes it.
 
         Parameters
         ----------
-        mass : (n, n) of the structure, water included
-        patterns : (n, n) of dashpots and matrices
-        low : least factor on the water's mass
+        mass : (n, n) mass of the structure, including water
+        patterns : (n, n) matrices of dashpots and parameters
+        low : smallest factor on the water's mass
 
         Raises
         ------
         InputError
-            If what is left at the least factor is no mass.
+            If the mass at the smallest factor is not positive definite.
         """
         if "water_mass" not in self.matrices:
             return
         water = patterns[len(self.dashpots) + list(self.matrices).index("water_mass")]
         require(
             np.linalg.eigvalsh(mass - (1.0 - low) * water)[0] > 0.0,
-            "the structure's mass cannot hold that much water",
+            "the structure's mass cannot include that much water",
             field="water.adds_mass",
             value=False,
             remedy="adds_mass: true if the structure has the mass of its steel; else less growth or C_a",

@@ -1,4 +1,4 @@
-"""What is known of the parameters before the data: densities of z = ln θ between bounds."""
+"""Priors of the parameters: densities of z = ln θ between bounds."""
 
 from __future__ import annotations
 
@@ -38,17 +38,17 @@ class Prior(Protocol):
         """Return ln p (n,) of points (n, d); −inf outside the bounds."""
 
     def rows(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return what is not flat as residuals of one point (d,), −2 ln p + constant, and their Jacobian."""
+        """Return the non-uniform part of −2 ln p at a point (d,) as squared residuals, and their Jacobian."""
 
 
 @dataclass(frozen=True)
 class BoxPrior:
-    """Independent priors: flat between two bounds, or normal and cut at them.
+    """Independent priors: uniform between two bounds, or normal and truncated at them.
 
     Attributes
     ----------
     low, high : (d,) bounds of z
-    mean, scale : (d,) of the normal before the cut; scale is inf where the prior is flat
+    mean, scale : (d,) mean and standard deviation of the untruncated normal; scale is inf for a uniform prior
     """
 
     low: FloatArray
@@ -58,7 +58,7 @@ class BoxPrior:
 
     @classmethod
     def of(cls, parameters: tuple[Parameter, ...]) -> BoxPrior:
-        """Return the prior that parameters state."""
+        """Return the prior of parameters."""
         low, high = (np.log([getattr(p, side) for p in parameters]) for side in ("low", "high"))
         mean = np.log([1.0 if p.median is None else p.median for p in parameters])
         return cls(low, high, mean, np.array([p.log_std or np.inf for p in parameters]))
@@ -75,7 +75,7 @@ class BoxPrior:
 
     @property
     def std(self) -> FloatArray:
-        """Standard deviation of each z: a flat one's width over √12, a cut normal's own."""
+        """Standard deviation of each z: width over √12 of a uniform prior, or that of a truncated normal."""
         a, b, mass = self._standard()
         phi_a, phi_b = (np.exp(-0.5 * t * t) / sqrt(2.0 * pi) for t in (a, b))
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,4 +1,4 @@
-"""What is solved and sampled: a support model, its data in one or several operating states, and a prior."""
+"""The problem of an update: a support model, its data in one or several operating states, and a prior."""
 
 from __future__ import annotations
 
@@ -27,27 +27,27 @@ from jackettwin.updating.prior import Prior
 NEVER = -1e30
 """Log-likelihood where a target mode does not exist."""
 _LOST = 10.0
-"""Residual of a mode that cannot be followed: worse than any that can."""
+"""Residual of a mode that is lost, larger than that of any mode that is found."""
 
 Found = tuple[NumberedModes, ...]
-"""Modes at many parameter vectors, one entry a state: where neighbours start from."""
+"""Modes at many parameter vectors, one entry per state, from which neighbouring points start."""
 
 
 @dataclass(frozen=True)
 class State:
     """Data measured in one operating state.
 
-    The model's parameters in this state are ``exp(weights @ z + shifts)``: shared between states or its own,
-    multiplied by a known factor, or grown with time.
+    The model's parameters in this state are ``exp(weights @ z + shifts)``: common to all states or separate,
+    multiplied by a known factor, or growing with time.
 
     Attributes
     ----------
-    weights : (n_model, d)
-    shifts : (n_model,) logarithms of known factors: a rotor's dashpot grows with the wind
-    errors : (n_residuals, d) what z adds to the logarithms of the model's values: errors of the model that
-        all states share
+    weights : (n_model, d) derivatives of the model's ln θ by z
+    shifts : (n_model,) logarithms of known factors, e.g. of a rotor's dashpot that increases with the wind
+    errors : (n_residuals, d) derivatives of the logarithms of the model's values by z, for model errors that
+        are common to all states
     shapes : tuple of ShapeTarget
-        Of modes that the residuals hold, too.
+        Shapes of modes that the residuals include.
     relaxations : tuple of RelaxationTarget
     """
 
@@ -61,7 +61,7 @@ class State:
 
     @property
     def names(self) -> list[str]:
-        """What each residual is of: frequencies and damping ratios, then shapes, then relaxations."""
+        """Names of the residuals: frequencies and damping ratios, then shapes, then relaxations."""
         shapes = (f"MAC{shape.mode}" for shape in self.shapes)
         return [*self.residuals.names, *shapes, *(relaxation.name for relaxation in self.relaxations)]
 
@@ -99,16 +99,16 @@ class State:
 
 @dataclass(frozen=True)
 class Problem:
-    """A support model and everything measured of it.
+    """A support model with its data and prior.
 
     Attributes
     ----------
     parameters : tuple of Parameter
-        The model's, and for a state-dependent one a copy for each state.
+        Parameters of the model, with one copy per state of those that depend on the state.
     prior : Prior
-        Of their logarithms z.
+        Prior of their logarithms z.
     error_model : ErrorModel, optional
-        What the model may miss, marginalised at every point; None of a model that is taken for true.
+        Errors of the model, marginalised at every point; None for a model without errors.
     """
 
     model: SupportModel
@@ -119,7 +119,7 @@ class Problem:
 
     @property
     def relative(self) -> bool:
-        """Whether the cost is the thesis's: no likelihood, no prior."""
+        """Whether the cost is that of the thesis, without likelihood and prior."""
         return any(state.residuals.relative for state in self.states)
 
     @property
@@ -129,32 +129,32 @@ class Problem:
 
     @property
     def negligible(self) -> float:
-        """Cost that does not matter: χ² by one, or each relative residual by 1e-4."""
+        """Negligible difference of the cost: one in χ², or 1e-4 of each relative residual."""
         return self._total_weight * 1e-8 if self.relative else 1.0
 
     @property
     def hopeless(self) -> float:
-        """Cost above the best from which a minimum explains nothing: χ² by 50, relative residuals of 10 %."""
+        """Cost above the best at which a minimum explains nothing: 50 in χ², or 10 % relative residuals."""
         return self._total_weight * 1e-2 if self.relative else 50.0
 
     @property
     def _total_weight(self) -> float:
-        """Sum of the weights of the data: their number if none is weighed."""
+        """Sum of the weights of the data, or their number without weights."""
         poles = sum(state.residuals.total_weight - state.residuals.count for state in self.states)
         return self.n_data + poles
 
     def allowance(self, cost: float) -> float:
-        """Return by how much a cost may rise and still count as the same: solutions apart by less are one."""
+        """Return the increase of the cost that counts as equal: solutions separated by less are one."""
         return max(self.negligible, 1e-3 * cost)
 
     @property
     def n_data(self) -> int:
-        """Number of data residuals: they come before the priors'."""
+        """Number of residuals of the data, which come before those of the priors."""
         return sum(len(state.names) for state in self.states)
 
     @property
     def data_names(self) -> list[str]:
-        """What each residual is of: ``f1``, ``ζ4``, with the state's name if there are several."""
+        """Names of the residuals of the data, ``f1``, ``ζ4``, with the state's name if there are several."""
         several = len(self.states) > 1
         return [
             f"{name} ({state.name})" if several else name for state in self.states for name in state.names
@@ -167,7 +167,7 @@ class Problem:
     def evaluate(self, z: FloatArray, near: Found | None) -> tuple[FloatArray, FloatArray, Found | None]:
         """Return residuals, their Jacobian by z and the modes at one point (d,); None if a mode is lost.
 
-        The priors that are not flat follow the data's residuals.
+        Residuals of non-uniform priors follow those of the data.
         """
         values, rows = [], []
         found, lost = self._modes(z[None], near, slopes=True), False
@@ -183,7 +183,7 @@ class Problem:
             values.append(value)
             rows.append(jacobian)
         if self.error_model is not None and not lost:
-            # how the errors' weights change with z is left out of the slopes: nothing, where the data are met
+            # the derivative of the errors' weights by z is neglected; it vanishes for zero residuals
             root = self.whitening(found)
             values, rows = [root @ np.concatenate(values)], [root @ np.concatenate(rows)]
         if not self.relative:
@@ -195,7 +195,7 @@ class Problem:
     def gains(self, found: Found) -> FloatArray:
         """Return the derivatives Γ (n, n_data, n_errors) of the residuals by the errors of the model.
 
-        Shapes and relaxations have their own standard deviations, which hold the model's error.
+        The standard deviations of shapes and relaxations include the model's error.
 
         Parameters
         ----------
@@ -211,32 +211,32 @@ class Problem:
         return np.concatenate(parts, axis=1)
 
     def whitening(self, found: Found) -> FloatArray:
-        """Return what the residuals are multiplied by where the modes are these, (n_data, n_data).
+        """Return the whitening matrix of the residuals at given modes, (n_data, n_data).
 
-        Without an error model it is one.
+        It is the identity without an error model.
         """
         return np.eye(self.n_data) if self.error_model is None else inverse_root(self.gains(found)[0])
 
     @property
     def plain(self) -> Problem:
-        """The problem of a model that is taken for true."""
+        """The problem of a model without errors."""
         return replace(self, error_model=None)
 
     @property
     def error_data(self) -> tuple[str, ...]:
-        """Names of the data that have a remainder of the model's error, each once."""
+        """Names of the data with a remainder of the model's error, each once."""
         return tuple(dict.fromkeys(name for state in self.states for name in state.residuals.names))
 
     def drawn_errors(self, z: FloatArray, rng: np.random.Generator) -> DrawnErrors:
-        """Return the model's errors drawn with the data at points (n, d): tolerances, then ``error_data``.
+        """Return draws of the model's errors given the data at points (n, d): tolerances and ``error_data``.
 
         Raises
         ------
         ValueError
-            Of a model that is taken for true.
+            If the model has no errors.
         """
         if self.error_model is None:
-            raise ValueError("a model that is taken for true has no errors")
+            raise ValueError("the problem has no error model")
         found = self._modes(z, self.anchor(z[0]), slopes=False)
         r, known = self._all_residuals(z, found)
         gains = self.gains(tuple(modes.some(known) for modes in found))
@@ -247,7 +247,7 @@ class Problem:
         return DrawnErrors(errors, scale)
 
     def anchor(self, z: FloatArray) -> Found | None:
-        """Return the modes at one point (d,), for many others to start from; None if a mode is lost there."""
+        """Return the modes at one point (d,), from which others can start; None if a mode is lost."""
         found = self._modes(z[None], None, slopes=False)
         return None if any(np.isnan(modes.poles).any() for modes in found) else found
 
@@ -264,9 +264,9 @@ class Problem:
         return log_l, found
 
     def costs(self, z: FloatArray, near: Found | None) -> FloatArray:
-        """Return the cost (n,) of points (n, d): squares of all residuals, NaN where a mode does not exist.
+        """Return the cost (n,) of points (n, d), the sum of squared residuals; NaN if a mode does not exist.
 
-        Of one point it is the square of what ``evaluate`` returns: priors that are not flat count.
+        The residuals are those of ``evaluate``, including non-uniform priors.
         """
         cost, found = np.full(len(z), np.nan), self._modes(z, near, slopes=False)
         r, known = self._all_residuals(z, found)
@@ -277,7 +277,7 @@ class Problem:
         return cost
 
     def _all_residuals(self, z: FloatArray, found: Found) -> tuple[FloatArray, BoolArray]:
-        """Return the residuals (n_known, n_data) of the points that have everything, and which these are."""
+        """Return the residuals (n_known, n_data) of the points without lost modes, and which these are."""
         relaxed = [self.relaxed(z, state) for state in self.states]
         known = np.ones(len(z), dtype=np.bool_)
         for modes, rates in zip(found, relaxed, strict=True):
@@ -291,7 +291,7 @@ class Problem:
     def _modes(self, z: FloatArray, near: Found | None, *, slopes: bool) -> Found:
         """Return the modes of every state at points (n, d).
 
-        Without a neighbour the other states start from the first one's modes: only the rotor differs.
+        Without a neighbour the other states start from the modes of the first, since only the rotor differs.
         """
         found: list[NumberedModes] = []
         for i, state in enumerate(self.states):
@@ -316,7 +316,7 @@ class Problem:
 
 
 def _complete(modes: NumberedModes, relaxed: tuple[Relaxation, ...]) -> BoolArray:
-    """Return at which points (n,) the model has every mode and every relaxation."""
+    """Return at which points (n,) the model has all modes and relaxations."""
     complete = ~np.isnan(modes.poles).any(axis=1)
     for found in relaxed:
         complete &= ~np.isnan(found.rate)

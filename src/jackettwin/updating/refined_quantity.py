@@ -11,23 +11,24 @@ from jackettwin.errors import require
 from jackettwin.structure import PROPERTIES, Structure, adjusted
 
 _WIDEST = 3.0
-"""Tolerances that bounds lie apart from where a quantity is, unless they are given."""
+"""Default distance of the bounds from the present value, in tolerances."""
 
 
 @dataclass(frozen=True)
 class Factor:
-    """A quantity of a structure that may change: a factor on it, or what is added to it.
+    """A quantity of a structure that may change, by a factor or an addition.
 
     Attributes
     ----------
     name_of : str
-        The part, the node of a body (``rna`` for the top), the spring or the foot (``all``).
+        Name of the part, node of the body (``rna`` for the top), spring or foot (``all``).
     what : str
-        A key of ``PROPERTIES`` of its kind.
+        Property: a key of ``PROPERTIES`` of its kind.
     low, high : float, optional
-        Bounds, both or none; by default 0.1 and 10 of a factor, and three tolerances from where it is.
+        Bounds, both or none; by default 0.1 and 10 for a factor, and three tolerances about the present
+        value.
     tolerance : float, optional
-        Standard deviation of what is known of it: of ln of a factor, of what is added in its own unit.
+        Prior standard deviation: of ln of a factor, or of an addition in its unit.
     of : {"part", "body", "spring", "foot"}
     """
 
@@ -51,16 +52,16 @@ class Factor:
         )
         require(
             low <= rest <= high,
-            "bounds leave out what the structure has now",
+            "the bounds exclude the present value",
             field="bounds",
             value=[low, high],
             allowed=f"around {rest:g}",
-            remedy="change the structure itself first, or widen them",
+            remedy="change the structure first, or widen the bounds",
         )
 
     @property
     def is_factor(self) -> bool:
-        """Whether it multiplies what is there; else it is added."""
+        """Whether it multiplies the present value; otherwise it is added."""
         return PROPERTIES[self.of][self.what].is_factor
 
     @property
@@ -72,7 +73,7 @@ class Factor:
 
     @property
     def scale(self) -> float:
-        """The unit that it is searched in: of a factor, its logarithm."""
+        """Scale of the search variable; for a factor it is that of the logarithm."""
         low, high = self.bounds
         return 1.0 if self.is_factor else self.tolerance or 0.5 * (high - low)
 
@@ -83,11 +84,11 @@ class Factor:
 
     @property
     def key(self) -> str:
-        """Its name with its kind, which no other quantity of the structure shares."""
+        """Name with the kind, which is unique in a structure."""
         return f"{self.of} {self.name}"
 
     def value(self, z: float) -> float:
-        """Return the factor, or what is added, at a place z of the search."""
+        """Return the factor or the addition at a value z of the search variable."""
         return float(np.exp(z)) if self.is_factor else float(self.scale * z)
 
     def place(self, value: float) -> float:
@@ -95,7 +96,7 @@ class Factor:
         return float(np.log(value)) if self.is_factor else value / self.scale
 
     def on(self, structure: Structure, value: float) -> Structure:
-        """Return the structure with it changed."""
+        """Return the structure with this quantity changed."""
         return adjusted(structure, self.of, self.name_of, self.what, value)
 
 

@@ -1,4 +1,4 @@
-"""A structure fitted stage by stage to frequencies that are known of its parts (thesis 5.4)."""
+"""Fit of a structure, stage by stage, to known frequencies of its parts (thesis 5.4)."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from jackettwin.updating.refined_quantity import Factor
 from jackettwin.updating.steel import only_parts
 
 _STEP = 1e-4
-"""Of a parameter in its own scale, for the slopes of the matrices: exact for all that enters linearly."""
+"""Step of the search variable for derivatives of the matrices, which are exact for linear quantities."""
 _INSIDE = 0.01
-"""Share of its range that a search begins off a bound: on it, it would not move."""
+"""Initial distance of the search from a bound, as a share of the range; on a bound it would not move."""
 _NOTHING = 1e-12
-"""Share of a matrix that is rounding."""
+"""Relative change of a matrix below which it is rounding."""
 
 
 @dataclass(frozen=True)
 class StageFit:
-    """A refined structure and how well it meets its frequencies on pinned feet.
+    """A refined structure and the agreement with its frequencies on pinned feet.
 
     Attributes
     ----------
-    factors : mapping of the quantity's name to its value: a factor, or what was added
-    std : mapping of the quantity's name to the standard deviation of ln of a factor, or of what was added
-        Of what tolerances and frequencies say together; infinite where they say nothing.
+    factors : mapping of the quantity's name to its value, a factor or an addition
+    std : mapping of the quantity's name to the standard deviation of ln of a factor, or of an addition
+        Posterior from tolerances and frequencies; infinite if they do not determine it.
     at_bound : names of the quantities that ended on a bound
     modes : mode numbers
     target_hz, before_hz, after_hz : (n_modes,)
@@ -58,29 +58,30 @@ def fit_stage(
     gravity: bool = False,
     own_feet: bool = False,
 ) -> StageFit:
-    r"""Return the structure whose free quantities meet the target frequencies on pinned feet.
+    r"""Return the structure with free quantities fitted to the target frequencies on pinned feet.
 
-    Bounded least squares of :math:`\ln(f/f_t)/σ_f` and of every quantity with a tolerance in its tolerance,
-    with :math:`∂\ln f/∂p = φ^T(∂K/∂p − ω² ∂M/∂p)φ/2ω²`; modes are followed by shape from the start.
+    Bounded least squares of :math:`\ln(f/f_t)/σ_f` and of the changes of quantities in units of their
+    tolerances, with :math:`∂\ln f/∂p = φ^T(∂K/∂p − ω² ∂M/∂p)φ/2ω²`; modes are tracked by shape from the
+    start.
 
     Parameters
     ----------
     frequency_std : float
-        Relative standard deviation σ_f of the targets; it weighs them against tolerances.
+        Relative standard deviation σ_f of the targets.
     own_feet : bool
-        Stand on the stiffness that the structure's own file gives its feet, not on pins.
+        Whether the feet have the stiffness given in the structure's file, instead of being pinned.
 
     Raises
     ------
     InputError
-        If a quantity changes nothing, or more quantities without tolerance are free than frequencies are
-        known. Without quantities the frequencies are only compared.
+        If a quantity has no effect, or there are more free quantities without tolerance than frequencies.
+        Without quantities the frequencies are only compared.
     """
     modes = tuple(sorted(target_hz))
     free = [f.name for f in factors if f.tolerance is None]
     require(
         len(free) <= len(modes),
-        "more factors than frequencies cannot be told apart",
+        "there are more factors than frequencies",
         field="free",
         value=free,
         allowed=f"up to {len(modes)} factors without tolerance",
@@ -110,7 +111,7 @@ def fit_stage(
 
 
 class _Problem:
-    """Residuals of a stage and their slopes in the place z of its quantities."""
+    """Residuals of a stage and their derivatives by the search variables z."""
 
     def __init__(
         self,
@@ -137,7 +138,7 @@ class _Problem:
                 self._require_effect(i, factor)
 
     def at(self, z: FloatArray) -> Structure:
-        """Return the structure at a place."""
+        """Return the structure at a point z."""
         structure = self.structure
         for factor, place in zip(self.factors, z, strict=True):
             if place != 0.0:
@@ -154,7 +155,7 @@ class _Problem:
         return np.concatenate([off, self._weights * z])
 
     def jacobian(self, z: FloatArray) -> FloatArray:
-        """Return the slopes of the residuals by z."""
+        """Return the derivatives of the residuals by z."""
         omega, phi = self._followed(z)
         slopes = np.empty((omega.size, z.size))
         for j in range(z.size):
@@ -164,7 +165,7 @@ class _Problem:
         return np.vstack([slopes / self._frequency_std, np.diag(self._weights)])
 
     def std(self, z: FloatArray) -> FloatArray:
-        """Return standard deviations of the places; infinite where neither targets nor tolerances tell."""
+        """Return standard deviations of z; infinite where neither targets nor tolerances determine it."""
         if not z.size:
             return z
         J = self.jacobian(z)
@@ -182,14 +183,14 @@ class _Problem:
         return undamped_modes(build_system(assembly, feet(assembly.structure)), self._number)
 
     def _followed(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return ω and φ of the targets' modes, followed by shape from the start."""
+        """Return ω and φ of the targets' modes, tracked by shape from the start."""
         found = self._modes(self._assembled(z))
         reference, mass = self._reference, self._start.mass
         order = track_modes(mass, reference.omega, reference.shapes, found.shapes)[self._rows]
         return found.omega[order], found.shapes[:, order]
 
     def _slopes_of_matrices(self, z: FloatArray, j: int) -> tuple[Any, Any]:
-        """Return ∂K/∂z_j and ∂M/∂z_j, those of the feet's own stiffness included."""
+        """Return ∂K/∂z_j and ∂M/∂z_j, including those of the feet's stiffness."""
         low, high = self.limits[:, j]
         ends = [np.array(z, dtype=np.float64) for _ in range(2)]
         for end, sign in zip(ends, (-_STEP, _STEP), strict=True):
@@ -205,22 +206,22 @@ class _Problem:
         return assembly.stiffness + foot_stiffness(assembly), assembly.mass
 
     def _require_effect(self, index: int, factor: Factor) -> None:
-        """Refuse a quantity that changes neither stiffness nor mass: the density of a massless part."""
+        """Raise an error for a quantity without effect, e.g. the density of a massless part."""
         z = np.zeros(len(self.factors))
         slopes, matrices = self._slopes_of_matrices(z, index), self._matrices(z)
         if any(abs(s).max() > _NOTHING * abs(m).max() for s, m in zip(slopes, matrices, strict=True)):
             return
         require(
             False,
-            "changes nothing: there is none of it to scale",
+            "has no effect: its present value is zero",
             field="property",
             value=factor.name,
             allowed=", ".join(self._effective(factor)),
-            remedy="a part without density takes added_mass_kg, or a body on a node of it takes its mass",
+            remedy="use added_mass_kg for a part without density, or the mass of a body on one of its nodes",
         )
 
     def _effective(self, factor: Factor) -> list[str]:
-        """Return the properties of the same thing that there are."""
+        """Return the properties of the same part that have an effect."""
         before = self._matrices(np.zeros(len(self.factors)))
         found = []
         for what, kind in PROPERTIES[factor.of].items():
@@ -240,17 +241,17 @@ class _Problem:
 
 @dataclass(frozen=True)
 class RefinementStage:
-    """One stage: some parts on pinned feet, their measured frequencies and what may change.
+    """One stage: parts on pinned feet, with their measured frequencies and free quantities.
 
     Attributes
     ----------
     parts : tuple of str
-        Empty for the whole structure.
+        Parts of this stage; empty for the whole structure.
     target_hz : mapping of mode number to frequency
     factors : tuple of Factor
-        Empty for a stage that only compares.
+        Free quantities; empty for a stage that only compares.
     frequency_std : float
-        Relative, of the targets.
+        Relative standard deviation of the targets.
     """
 
     parts: tuple[str, ...]
@@ -259,20 +260,20 @@ class RefinementStage:
     frequency_std: float = 0.005
 
     def of(self, structure: Structure) -> Structure:
-        """Return what of the structure stands in this stage."""
+        """Return the part of the structure in this stage."""
         return only_parts(structure, self.parts) if self.parts else structure
 
 
 @dataclass(frozen=True)
 class Refinement:
-    """The refined structure and what each stage did.
+    """The refined structure and the result of each stage.
 
     Attributes
     ----------
-    final_hz : one array a stage
-        The frequencies of its modes when all stages are done: what later stages made of them.
+    final_hz : one array per stage
+        Frequencies of its modes after all stages.
     changes : tuple of (factor, value)
-        Products of all stages' factors and sums of what they added, in the order they were first freed.
+        Products of the factors and sums of the additions of all stages, in order of first appearance.
     """
 
     structure: Structure
@@ -288,12 +289,12 @@ def refine(
     gravity: bool = False,
     own_feet: bool = False,
 ) -> Refinement:
-    """Fit stage after stage; each starts from what the earlier ones found.
+    """Fit the stages in sequence; each starts from the result of the previous one.
 
     Raises
     ------
     InputError
-        If a stage names an unknown part or has more factors than frequencies; the field says which stage.
+        If a stage names an unknown part or has more factors than frequencies; the field names the stage.
     """
     fits: list[StageFit] = []
     changes: dict[str, tuple[Factor, float]] = {}

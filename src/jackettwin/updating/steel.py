@@ -1,4 +1,4 @@
-"""A structure part by part on pinned feet, as thesis section 5.4 compares it."""
+"""Parts of a structure on pinned feet, for the comparison of thesis section 5.4."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jackettwin.updating.band import numbered_modes
 
 
 def only_parts(structure: Structure, parts: tuple[str, ...]) -> Structure:
-    """Return the structure with only some of its parts and what stands on their nodes.
+    """Return the structure with only some of its parts and the bodies on their nodes.
 
     Raises
     ------
@@ -43,8 +43,8 @@ class Stage:
 
     Attributes
     ----------
-    parts : names of the parts standing
-    added : those of them that the stage before has not
+    parts : names of the parts in this stage
+    added : parts that the previous stage does not have
     mass_kg : float
     assembly : Assembly
     modes : UndampedModes
@@ -71,17 +71,17 @@ class Stage:
 
 
 def stages(structure: Structure, number: int, *, gravity: bool = False) -> tuple[Stage, ...]:
-    """Return a stage for every part, in the order the structure names them; the last is the whole.
+    """Return a stage for every part, in the order of the structure; the last is the whole structure.
 
-    Parts that do not hold together with those before them, such as legs that only braces join, are no stage:
-    they come with the next part.
+    Parts that are not connected with the previous ones, such as legs that are joined only by braces, are
+    added with the next part.
     """
     parts = tuple(dict.fromkeys(one.part for one in structure.bars)) or ("",)
     found: list[Stage] = []
     before = 0
     for k in range(1, len(parts) + 1):
         standing: Structure | None = (
-            structure  # the whole keeps what no member holds, rigid links' ends among it
+            structure  # the whole structure includes nodes without members, e.g. ends of rigid links
         )
         if k < len(parts):
             standing = _if_joined(structure, parts[:k])
@@ -95,7 +95,7 @@ def stages(structure: Structure, number: int, *, gravity: bool = False) -> tuple
 
 
 def _if_joined(structure: Structure, parts: tuple[str, ...]) -> Structure | None:
-    """Return only some parts of the structure; None if they are not one piece on all its feet."""
+    """Return some parts of the structure; None if they are not connected to each other and all feet."""
     try:
         return only_parts(structure, parts)
     except InputError:

@@ -1,4 +1,4 @@
-"""What the laws stand on: which DOFs of which feet share parameters, and in what proportion."""
+"""Tie groups: DOFs of feet that share parameters of the law, and their proportions."""
 
 from __future__ import annotations
 
@@ -34,31 +34,31 @@ Group = tuple[tuple[int, ...], tuple[str, ...]]
 SPLIT_LEGS = "per-leg-horizontal-vertical"
 TIES = ("all", "horizontal-vertical", "per-leg", SPLIT_LEGS, MUDLINE)
 _HORIZONTAL, _VERTICAL = (0, 1, 3, 4, 5), (2,)
-"""A pile's sway and rotation are one spring; its axis is another."""
+"""Groups of a pile head's motions: horizontal translations with rotations, and vertical translation."""
 SIDES = {"_horizontal": _HORIZONTAL, "_vertical": _VERTICAL}
 _EVERY = (0, 1, 2, 3, 4, 5)
 _TRANSLATIONS = np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 
 
 _STIFFNESS_LOG_STD, _LOSS_LOG_STD = 0.7, 1.0
-"""How far designers' stiffness and loss factor may be off: standard deviations of ln θ."""
+"""Uncertainty of the design's stiffness and loss factor: standard deviations of ln θ."""
 
 
 @dataclass(frozen=True)
 class TieGroups:
-    """Patterns of the tie groups: D of a group times its pattern is what holds a foot.
+    """Patterns of the tie groups: the stiffness of a foot is D of a group times the pattern.
 
     Attributes
     ----------
-    suffixes : of each group's parameters
-    patterns : (group, node, 6×6) of every foot
-    sides : of each group, ``_horizontal`` or ``_vertical`` where every leg is split into both; else empty
-    stiffness : (n_groups,) storage stiffness [N/m] of each group in the support the patterns come from, or
-        None: then they are plain translations
-    loss_factor : of that support at the reference frequency
-    masses : (node, 6×6) of what moves with the feet
-    one_loss : whether the groups have a stiffness each and share the law's other parameters: the two at the
-        mudline, its sway and its rocking
+    suffixes : suffix of each group's parameters
+    patterns : (group, node, 6×6) pattern of every foot
+    sides : ``_horizontal`` or ``_vertical`` for each group if every leg is split into both; else empty
+    stiffness : (n_groups,) storage stiffness [N/m] of each group in the support that defines the patterns;
+        None for plain translations
+    loss_factor : loss factor of that support at the reference frequency
+    masses : (node, 6×6) masses that move with the feet
+    one_loss : whether each group has its own stiffness and the law's other parameters are common, as for the
+        two groups at the mudline, sway and rocking
     """
 
     suffixes: tuple[str, ...]
@@ -82,7 +82,7 @@ class TieGroups:
         }
 
     def exponents(self, family: Family) -> FloatArray:
-        """Return by which powers of the parameters the laws' numbers are, (n_groups · p, n_parameters)."""
+        """Return the exponents of the parameters in the laws' coefficients, (n_groups · p, n_parameters)."""
         return (
             mudline_exponents(family)
             if self.one_loss
@@ -90,7 +90,7 @@ class TieGroups:
         )
 
     def support(self, laws: list[Law]) -> Support:
-        """Return the support with one law a group."""
+        """Return the support with one law per group."""
         if self.one_loss and self.stiffness is None:
             return on_mudline(self.patterns[0][1], laws)
         springs = tuple(Spring(node, pattern, laws[g]) for g, node, pattern in self.patterns)
@@ -107,14 +107,14 @@ def tie_groups(
     tie : one of ``TIES``
     heads : Support, optional
         Pile heads whose 6×6 storage stiffness at ``reference_hz`` the laws scale: a law's stiffness is then
-        the head's along its axis (horizontally for ``_horizontal``), and all else keeps its proportion.
-        Without, the laws act on the three translations alone.
+        that of the head along its axis (horizontal for ``_horizontal``), with all entries in proportion. By
+        default the laws act on the three translations.
 
     Raises
     ------
     InputError
-        If the tie is unknown, there are no reaction nodes, the heads hold a foot rigidly or not at all, or
-        there are none under a structure that would turn over.
+        If the tie is unknown, there are no reaction nodes, the heads fix a foot or leave it free, or there
+        are none for a structure that would be unstable.
     """
     require(tie in TIES, "unknown tie", field="support.tie", value=tie, allowed=", ".join(TIES))
     require(structure.reactions, "no reaction nodes to support", field="structure.reaction_nodes", value=[])
@@ -122,7 +122,8 @@ def tie_groups(
         return _at_mudline(structure, heads, reference_hz or 1.0)
     if heads is None and standing(structure) != pinned(structure):
         raise InputError(
-            "a structure on one foot, or on feet in a line, turns over on springs that do not hold rotations",
+            "a structure on one foot, or on feet in a line, is unstable on springs without rotational "
+            "stiffness",
             field="support.stiffness",
             remedy="give a foundation or a support file whose 6×6 stiffness the laws scale",
         )
@@ -147,10 +148,10 @@ def tie_groups(
 
 
 def priors_of(groups: TieGroups, reference_hz: float) -> dict[str, tuple[float, float]]:
-    """Return lognormal priors, median and standard deviation of ln θ, from the heads behind the patterns.
+    """Return lognormal priors (median, standard deviation of ln θ) from the heads that define the patterns.
 
-    Linearised p-y and t-z curves miss the small-strain stiffness by a factor of two or three, and the loss
-    by more.
+    Linearised p-y and t-z curves differ from the small-strain stiffness by a factor of two or three, and from
+    the loss by more.
     """
     priors: dict[str, tuple[float, float]] = {}
     if groups.stiffness is None or groups.loss_factor is None:
@@ -159,7 +160,7 @@ def priors_of(groups: TieGroups, reference_hz: float) -> dict[str, tuple[float, 
         priors |= {f"{name}{suffix}": (k, _STIFFNESS_LOG_STD) for name in ("k", "k0")}
         if groups.one_loss and suffix:
             if suffix != groups.suffixes[0]:
-                continue  # the sway's loss stands for both
+                continue  # the loss factor of sway is used for both
             suffix = ""
         if loss > 0.0:
             alpha = 2.0 / pi * float(np.arctan(loss))
@@ -170,17 +171,17 @@ def priors_of(groups: TieGroups, reference_hz: float) -> dict[str, tuple[float, 
 
 
 def _at_mudline(structure: Structure, heads: Support | None, reference_hz: float) -> TieGroups:
-    """Return sway and rocking of the one node that holds the foundation.
+    """Return the groups for sway and rocking of the one node at the mudline.
 
     Raises
     ------
     InputError
-        If the structure has several feet, or the heads do not hold the node.
+        If the structure has several feet, or the heads do not support the node.
     """
     nodes = structure.reaction_nodes
     require(
         len(nodes) == 1,
-        "one matrix at the mudline holds one node",
+        "one matrix at the mudline supports one node",
         field="structure.reaction_nodes",
         value=list(nodes),
         remedy="jackettwin.soil.tied_at_mudline ties the feet to one",
@@ -198,7 +199,7 @@ def _at_mudline(structure: Structure, heads: Support | None, reference_hz: float
     sizes = [complex(np.mean(np.diag(part)[i : i + 2])) for part, i in zip(parts, (0, 3), strict=True)]
     require(
         sizes[1].real > 0.0,
-        "this support does not hold the mudline against turning",
+        "this support has no rotational stiffness at the mudline",
         field="support.stiffness",
         value=sizes[1].real,
         allowed="a rocking stiffness above 0",

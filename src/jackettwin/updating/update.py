@@ -1,4 +1,4 @@
-"""Fit one law, sample its posterior and collect the results."""
+"""Update with one law: search, posterior and results."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ from jackettwin.updating.search.solutions import (
 Sampler = Literal["smc", "nested"]
 
 _PREDICTED = (1, 2, 3, 4, 5)
-"""Modes that are predicted whether they were measured or not."""
+"""Modes that are predicted, measured or not."""
 _DRAWS = 400
-"""Number of draws that predictions and damping budgets are computed from."""
+"""Number of draws for predictions and damping budgets."""
 
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """What is known beside the best solution. Only with standard deviations of every target.
+    """Uncertainty of the parameters, available if all targets have standard deviations.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Uncertainty:
     status : str
         ``"ok"``, or why there is no posterior.
     laplace_log_std : (d,) standard deviation of ln θ by Gauss–Newton
-    log_theta : (n, d) draws from which everything below is computed
+    log_theta : (n, d) draws from which all further attributes are computed
     """
 
     posterior: Posterior | None
@@ -81,18 +81,18 @@ class Uncertainty:
 
 @dataclass(frozen=True)
 class Fit:
-    """What an update found: the part of it that takes long to compute.
+    """Result of an update: the part that takes long to compute.
 
     Attributes
     ----------
     search : Search
-        Every solution, best first, and how sure it is that these are all.
+        All solutions, best first, and the completeness of the list.
     modes : ExactModes
-        Of the full model at the best solution, in the order of the modes shown.
+        Modes of the full model at the best solution, in the order of ``shown``.
     budget : Budget
         Sources of the damping of each of these modes.
     uncertainty : Uncertainty or None
-        None if the targets carry no standard deviations, or nothing was sampled.
+        None if the targets have no standard deviations, or nothing was sampled.
     """
 
     search: Search
@@ -109,11 +109,11 @@ class Update:
     ----------
     problem : Problem
     model : SupportModel
-        That was updated, reaching up to the highest mode shown.
+        The updated model, with a band up to the highest mode in ``shown``.
     shown : mode numbers
-        Of ``modes`` and ``budget``: measured ones, whether they were fitted or not.
+        Mode numbers of ``modes`` and ``budget``: measured modes, fitted or not.
     fit : Fit
-        What was found.
+        The result.
     """
 
     problem: Problem
@@ -129,17 +129,17 @@ class Update:
 
     @property
     def search(self) -> Search:
-        """Every solution, best first, and how sure it is that these are all."""
+        """All solutions, best first, and the completeness of the list."""
         return self.fit.search
 
     @property
     def solutions(self) -> tuple[Solution, ...]:
-        """Every solution, best first."""
+        """All solutions, best first."""
         return self.search.solutions
 
     @property
     def best(self) -> Solution:
-        """The cheapest solution without a locked damper that is near the data; else the cheapest of all."""
+        """The solution of lowest cost near the data without a locked damper; else that of lowest cost."""
         return best_solution(self.search.solutions)
 
     @property
@@ -149,7 +149,7 @@ class Update:
 
     @property
     def central_hz(self) -> FloatArray:
-        """Frequencies of the shown modes as they are told: medians of the posterior, else the best fit."""
+        """Reported frequencies of the shown modes: medians of the posterior, else the best fit."""
         known = self.uncertainty
         return self._central(
             self.modes.frequency_hz, None if known is None else known.predictive.frequency_hz
@@ -157,7 +157,7 @@ class Update:
 
     @property
     def central_damping(self) -> FloatArray:
-        """Damping ratios of the shown modes as they are told: medians of the posterior, else the best fit."""
+        """Reported damping ratios of the shown modes: medians of the posterior, else the best fit."""
         known = self.uncertainty
         return self._central(
             self.modes.damping_ratio, None if known is None else known.predictive.damping_ratio
@@ -179,7 +179,7 @@ class Update:
 
     @property
     def uncertainty(self) -> Uncertainty | None:
-        """What is known beside the best solution; None without standard deviations, or if not sampled."""
+        """Uncertainty of the parameters; None without standard deviations, or if not sampled."""
         return self.fit.uncertainty
 
     @property
@@ -202,25 +202,25 @@ def update(
     sampled: bool = True,
     progress: Progress = SILENT,
 ) -> Update:
-    """Return every solution of one law, the best one recomputed on the full model, and what is known of it.
+    """Return all solutions of one law, the best one with the full model, and its uncertainty.
 
     Parameters
     ----------
     modes : mode numbers, optional
-        To show the full model's; default: those of the first operating state's data.
+        Modes of the full model to report; default: those of the first operating state's data.
     starts : int or sequence of {parameter: value}
-        Number of scattered starts of the search, or the points that it starts from.
+        Number of scattered starts of the search, or the starting points.
     particles : int
-        Of each of the posterior's four islands, or live points of each nested run; doubled once if they do
-        not agree.
+        Number of particles of each of the posterior's four islands, or of live points of each nested run;
+        doubled once if they disagree.
     sampler : {"smc", "nested"}
         Tempered sequential Monte Carlo, or dynesty.
     most_evaluations : int
-        After which the search adds no further starts.
+        Number of evaluations after which the search adds no further starts.
     sampled : bool
-        Whether the posterior is sampled; else there are solutions, and no uncertainty.
+        Whether the posterior is sampled; otherwise there is no uncertainty.
     progress : Progress
-        Told what is being done, and how far it is.
+        Receives the present step and its progress.
 
     Raises
     ------
@@ -248,7 +248,7 @@ def with_posterior(
     seed: int = 0,
     progress: Progress = SILENT,
 ) -> Update:
-    """Return a fitted law with its posterior and what follows; without standard deviations as it is."""
+    """Return a fitted law with its posterior and results from it; unchanged without standard deviations."""
     problem, model, shown = fitted.problem, fitted.model, fitted.shown
     if not problem.weighted:
         return fitted
@@ -265,7 +265,7 @@ def with_posterior(
 
 
 def law_probability(updates: Sequence[Update]) -> dict[str, float] | None:
-    """Return the probability of each law, all equally likely before; None without evidence of all."""
+    """Return the probability of each law with equal priors; None unless the evidence of all is known."""
     found = [u.uncertainty.posterior for u in updates if u.uncertainty is not None]
     known = [posterior for posterior in found if posterior is not None and posterior.evidence_known]
     if len(known) < len(updates):
@@ -276,14 +276,14 @@ def law_probability(updates: Sequence[Update]) -> dict[str, float] | None:
 
 
 def best_solution(solutions: Sequence[Solution]) -> Solution:
-    """Return the cheapest solution without a locked damper whose frequencies are near those of the cheapest.
+    """Return the best solution without a locked damper, if its frequencies are near those of the lowest.
 
-    A locked damper is suspect because the undamped structure is then far from what was measured. A solution
-    without one that is itself as far off is no better: without any other, the cheapest of all is returned.
+    A locked damper is implausible because the undamped structure then differs strongly from the measurements.
+    If all solutions without one differ as strongly, the solution of lowest cost is returned.
 
     Parameters
     ----------
-    solutions : cheapest first
+    solutions : solutions in order of cost
     """
     cheapest = solutions[0]
     for s in solutions:
@@ -335,7 +335,7 @@ def _uncertainty(
 
 
 def _missed(problem: Problem, model: SupportModel, z: FloatArray, seed: int) -> Missed | None:
-    """Return what tells the asset's modes from the model's at draws (n, d): the errors of the fit."""
+    """Return the model errors as a function of draws (n, d), to convert the model's modes to the asset's."""
     if problem.error_model is None:
         return None
     rng = np.random.default_rng(seed)
@@ -353,7 +353,7 @@ def posterior_or_status(
 ) -> tuple[Posterior | None, str]:
     """Return the posterior and ``"ok"``, or None and why it did not converge.
 
-    If it or its evidence is not known with the first draws, twice as many are tried.
+    If it has not converged or its evidence is not known, twice as many draws are tried.
     """
     found, status = None, "ok"
     for n in (particles, 2 * particles):

@@ -1,4 +1,4 @@
-"""What is asked of all days, and what is known after each of them."""
+"""Estimation problem common to all days, and the estimates after each of them."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ from jackettwin.updating import (
 from jackettwin.updating.search.solutions import search
 
 GROWN = 1.3
-"""Growth of the number of records after which all together are asked again: until then they tell an eighth
-more of damping, and a posterior costs a thousand times what a day of stiffness does."""
+"""Growth of the number of records after which the posterior of all is sampled again. Until then they reduce
+the deviation of damping by an eighth, and a posterior costs a thousand times a day's update of stiffness."""
 
 
 def question_of(
@@ -52,7 +52,7 @@ def question_of(
     law: str | None = None,
     prior: Followed | None = None,
 ) -> FollowQuestion:
-    """Return what is asked of every day, fixed by the last one; of an earlier run, what that one asked."""
+    """Return the estimation problem of every day, as of the last day or as an earlier run had it."""
     rotor = rotor_damping(config, model.structure, model.modes, wind if prior is None else prior.wind_m_s)
     own = config.update.laws[0] if prior is None else prior.law
     return FollowQuestion(config, model, state, rotor, law or own, wind, prior)
@@ -61,7 +61,7 @@ def question_of(
 def _evidence(
     config: TwinConfig, model: TwinModel, rotor: RotorDamping, wind: float | None, state: TwinState
 ) -> UpdateEvidence:
-    """Return what some records say, as a law is fitted to it."""
+    """Return the data of some records in the form that a law is fitted to."""
     relaxations = measured_relaxations(config, state)
     return UpdateEvidence(model.structure, state, data_of(config, model, state, wind), rotor, relaxations)
 
@@ -83,7 +83,7 @@ def data_of(config: TwinConfig, model: TwinModel, state: TwinState, wind: float 
 
 @dataclass(frozen=True)
 class InTime:
-    """What is known up to a day: the stiffness so far, of each day, and what all records said together."""
+    """Estimates up to a day: the stiffness track, the estimate of each day, and those of all records."""
 
     track: StiffnessTrack
     days: tuple[Known, ...] = ()
@@ -91,11 +91,11 @@ class InTime:
 
     @property
     def last(self) -> Pooled | None:
-        """What all records said together when they were asked the last time."""
+        """The latest estimate from all records together."""
         return next(reversed(dict(self.pooled).values()), None)
 
     def with_day(self, date_: str, pooled: Pooled, *, asked: bool) -> InTime:
-        """Return what is known after one more day; ``asked`` if all records were asked after it."""
+        """Return the estimates after one more day; ``asked`` if all records were evaluated after it."""
         every = {**self.pooled, date_: pooled} if asked else self.pooled
         if pooled.about is None:
             return replace(self, pooled=every)
@@ -104,11 +104,11 @@ class InTime:
         return replace(self, track=track, pooled=every)
 
     def with_known(self, known: Known) -> InTime:
-        """Return it with what is known after the last day."""
+        """Return it with the estimate after the last day."""
         return replace(self, days=(*self.days, known))
 
     def again(self, date_: str, known: Known | None, pooled: Pooled | None) -> InTime:
-        """Return what is known with a day that an earlier run knew already."""
+        """Return the estimates with a day that an earlier run evaluated already."""
         of = pooled or self.last
         if known is None or of is None:
             return self
@@ -117,7 +117,7 @@ class InTime:
 
 @dataclass(frozen=True)
 class FollowQuestion:
-    """What is asked of the state after each day; ``state`` holds all of them."""
+    """Estimation problem of the state after each day; ``state`` holds all days."""
 
     config: TwinConfig
     model: TwinModel
@@ -134,7 +134,7 @@ class FollowQuestion:
 
     @cached_property
     def support(self) -> SupportModel:
-        """The model of the supports; made when all records are asked, which a new day seldom does."""
+        """The model of the supports, made only if all records are evaluated, which most days do not need."""
         evidence = _evidence(self.config, self.model, self.rotor, self.wind, self.state)
         if evidence.relaxations:
             relaxing(self.config, (self.law,))
@@ -167,7 +167,7 @@ class FollowQuestion:
             )
 
     def followed(self, found: InTime, state: TwinState, *, to_go_on: bool = False) -> Followed:
-        """Return what is known, and the state that it is of; no more than is gone on from, if so told."""
+        """Return the result and its state; with ``to_go_on`` only what the next run continues from."""
         last = None if to_go_on else found.last
         return Followed(
             name=self.config.name,
@@ -185,12 +185,12 @@ class FollowQuestion:
         )
 
     def after_days(self, every: Days, same: int, before: TwinState, progress: Progress) -> InTime:
-        """Return what is known after each day; an earlier run knew it of the first ones.
+        """Return the estimates after each day; those of the first days may be from an earlier run.
 
         Parameters
         ----------
-        same : how many of the first days are as the earlier run had them
-        before : sums of these
+        same : number of first days unchanged since the earlier run
+        before : sums of these days
         """
         dates = [own for own in every.identities if own != UNDATED]
         prior = self.prior
@@ -205,9 +205,9 @@ class FollowQuestion:
         return found
 
     def _resumed(self, every: Days, same: Sequence[str]) -> tuple[InTime, int]:
-        """Return what an earlier run leaves to go on from, and after how many of the days.
+        """Return the estimates of an earlier run to continue from, and the number of days that they cover.
 
-        That is all of it if all its days are as they were, else as it was when its window moved, or nothing.
+        These are all if its days are unchanged, else those when its window last moved, or none.
         """
         empty, prior = InTime(StiffnessTrack(self.model, every)), self.prior
         if prior is None or prior.track is None:
@@ -228,7 +228,7 @@ class FollowQuestion:
     def after_day(
         self, found: InTime, date_: str, day: Day, running: TwinState, progress: Progress
     ) -> InTime:
-        """Return what is known after one more day, ``running`` the sums up to its end."""
+        """Return the estimates after one more day; ``running`` holds the sums up to its end."""
         time = day.time_utc
         if time is None or not day.operations or ALL not in running.totals or not running.totals[ALL].modes:
             return found
@@ -252,7 +252,7 @@ class FollowQuestion:
         return found.with_known(self._on_the_day(known, level))
 
     def _on_the_day(self, known: Known, level: StiffnessLevel | None) -> Known:
-        """Return what is known with the stiffness of the day."""
+        """Return the estimate with the stiffness of the day."""
         if level is None:
             return known
         stiff = [name for name, unit in self.units.items() if unit == STIFFNESS]
@@ -265,7 +265,7 @@ class FollowQuestion:
         )
 
     def after_records(self, moments: Sequence[tuple[Observation, TwinState]], progress: Progress) -> InTime:
-        """Return what is known after each record; the stiffness is that of the day so far."""
+        """Return the estimates after each record; the stiffness is that of the day so far."""
         found = InTime(StiffnessTrack(self.model, Days.of(empty_state(self.model))))
         if self.prior is not None:
             found = replace(found, days=self.prior.days, pooled=dict(self.prior.pooled))
@@ -284,7 +284,7 @@ class FollowQuestion:
         return found
 
     def pooled(self, state: TwinState, progress: Progress = SILENT) -> Pooled:
-        """Return what some records say together."""
+        """Return the estimate from some records together."""
         evidence = _evidence(self.config, self.model, self.rotor, self.wind, state)
         highest = max(mode for data, _ in evidence.states.values() for mode in data.modes)
         problem = model_problem(self.config, evidence, self.support.reaching(highest))
@@ -308,12 +308,12 @@ class FollowQuestion:
         )
 
     def _identity(self, state: TwinState) -> str:
-        """Return the identity of everything that an estimate follows from."""
+        """Return the identity of everything that an estimate depends on."""
         return digest([state.totals, state.clearest, self.wind, self.law])
 
 
 def _draws(config: TwinConfig, problem: Problem, progress: Progress) -> tuple[FloatArray, str]:
-    """Return draws of ln θ and ``"ok"``; those of Laplace's method, and why, if there is no posterior."""
+    """Return draws of ln θ and ``"ok"``; without a posterior, draws by Laplace's method and the reason."""
     how = config.update
     posterior, status = posterior_or_status(
         problem, sampler=how.sampler, particles=how.particles, seed=how.seed, progress=progress

@@ -1,4 +1,4 @@
-"""One slope of all stiffness through the frequencies and damping of all days."""
+"""One common slope of all stiffness, fitted to frequencies and damping of all days."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from jackettwin.twin import ALL, UNDATED, TwinConfig, TwinState
 from jackettwin.updating import Drift, Growth, find_drift
 
 _WHOLE_SPAN = 2.0
-"""Prior standard deviation of the logarithm by which stiffness drifts over the whole time."""
+"""Prior standard deviation of the change of ln k by drift over the whole time."""
 MOST_SPANS = 10
-"""Spans of days that a drift is fitted to: its cost is that of the tenth day, however many there are."""
+"""Largest number of spans of days that a drift is fitted to, so that its cost stays that of ten days."""
 
 
 def slope(question: FollowQuestion, state: TwinState, days: Sequence[Known]) -> Drift | None:
-    """Return the slope of all stiffness through the frequencies and damping of spans of days."""
+    """Return the common slope of all stiffness, fitted to frequencies and damping of spans of days."""
     if len(days) < FEWEST_DAYS:
         return None
     config = question.config
@@ -44,7 +44,7 @@ def slope(question: FollowQuestion, state: TwinState, days: Sequence[Known]) -> 
 
 
 def spans_of(state: TwinState) -> list[TwinState]:
-    """Return the days in spans of 1, 2, 4, … days, ``MOST_SPANS`` at most, those with modes."""
+    """Return the days with modes in spans of 1, 2, 4, … days, ``MOST_SPANS`` at most."""
     dates = [own for own in state.days if own != UNDATED]
     days = {own: date.fromisoformat(own).toordinal() for own in dates}
     width = 1
@@ -61,7 +61,7 @@ def spans_of(state: TwinState) -> list[TwinState]:
 
 
 def _mean_time(span: TwinState, first: datetime) -> float:
-    """Return when the records of a span were taken, in days after the first day."""
+    """Return the mean time of a span's records, in days after the first day."""
     times = [(day.time_utc, len(day.records)) for day in span.days.values()]
     known = [(time, weight) for time, weight in times if time is not None]
     at = since_first([first, *(time for time, _ in known)])[1:]
@@ -76,7 +76,7 @@ def _usual(config: TwinConfig, own: float | None, wind: float | None) -> dict[st
 
 
 def _model_errors(config: TwinConfig, labels: tuple[str, ...]) -> dict[str, float]:
-    """Return what the model may miss of each datum, every day alike."""
+    """Return the model error of each datum, the same on every day."""
     errors = {}
     for mode in config.update.modes:
         error = config.update.model_error(mode)

@@ -1,14 +1,14 @@
-r"""The ground's stiffness through time: what frequencies say of it, less what the weather does to them.
+r"""The ground's stiffness over time, from frequencies corrected for the weather.
 
-All stiffness grows or falls together, k(t) = k₁ e^{x(t)} with k₁ that of the first day. Frequencies follow it
-less the stiffer the ground is, all of them alike: ln f = ln f₁ + s h(x) with
+All stiffness changes by one factor, k(t) = k₁ e^{x(t)}, where k₁ is that of the first day. Frequencies are
+the less sensitive to it the stiffer the ground is: ln f = ln f₁ + s h(x) with
 
 .. math:: h(x) = (1 - e^{-ax}) / a
 
-and one a for all modes; it is 1 where the ground gives a small share of all flexibility, for frequencies are
-linear in 1/k then. So ℓ = h(x) is the level of :mod:`jackettwin.watching.level`; s and a are the model's. How
-stiff the ground is decides how much frequencies tell of a change, so that each draw of the posterior counts
-with its own slope e^{-aΔ} s. What all records say together is of the ground at the mean of ℓ so far.
+and one a for all modes. It is 1 where the ground's share of the flexibility is small, for frequencies are
+then linear in 1/k. So ℓ = h(x) is the level of :mod:`jackettwin.watching.level`; the model gives s and a.
+Since the sensitivity depends on the ground's stiffness, each draw of the posterior has its own slope e^{-aΔ}
+s. The estimate from all records together holds for the ground at the mean of ℓ so far.
 """
 
 from __future__ import annotations
@@ -38,18 +38,18 @@ from jackettwin.watching import (
 )
 
 _APART = 0.4
-"""Change of ln k, both ways, that slopes and bend are taken from."""
+"""Step of ln k, up and down, of the finite differences for slopes and bend."""
 _LEAST_SLOPE = 0.02
-"""Share of the steepest mode's slope below which a mode tells nothing."""
+"""Share of the steepest mode's slope below which a mode is not used."""
 _MOST_MODES = 6
 _LEAST_SPREAD = 5e-4
-"""Standard deviation of ln f that conditions may explain where less is seen."""
+"""Least standard deviation of ln f that conditions may explain."""
 _EPOCH = np.datetime64("1970-01-01")
 _MOST_DRAWS = 60
 _HALVINGS = 18
-"""Of the interval of six standard deviations that a quantile is looked for in: to 4·10⁻⁶ of it."""
+"""Halvings of the interval of six standard deviations in which a quantile is searched: to 4·10⁻⁶ of it."""
 _LEAST_WEIGHT = 1e-4
-"""Of a part of a mixture that counts."""
+"""Least weight of a mixture's component that is used."""
 _FARTHEST = 4.0
 """Largest change of ln k: a factor of 50."""
 
@@ -59,11 +59,11 @@ Span3 = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """How frequencies follow a common change x of ln k: ln f = s h(x), h(x) = (1 − e^{−ax})/a.
+    """Sensitivity of frequencies to a common change x of ln k: ln f = s h(x), h(x) = (1 − e^{−ax})/a.
 
     Attributes
     ----------
-    modes : their numbers
+    modes : mode numbers
     slopes : (m,) s at ``log_k``
     bend : a
     log_k : mean of ln k of the stiffness parameters
@@ -78,13 +78,13 @@ class Sensitivity:
 def sensitivity(
     problem: Problem, z: FloatArray, stiff: Sequence[int], modes: tuple[int, ...]
 ) -> Sensitivity | None:
-    """Return how the frequencies of some modes follow the stiffness about a point z = ln θ.
+    """Return the sensitivity of some modes' frequencies to the stiffness at a point z = ln θ.
 
-    None if none of them can be followed there.
+    None if no mode can be followed there.
 
     Parameters
     ----------
-    stiff : places of the stiffness parameters
+    stiff : indices of the stiffness parameters
     """
     points = np.array([z, z, z])
     points[np.ix_([0, 2], list(stiff))] += np.array([[-_APART], [_APART]])
@@ -106,37 +106,37 @@ def sensitivity(
 
 @dataclass(frozen=True)
 class Reference:
-    """What all records up to a day say together: draws of ln of the stiffnesses, (n, n_stiff)."""
+    """Posterior of all records up to a day: draws of ln k of every stiffness, (n, n_stiff)."""
 
     log_k: FloatArray
 
     @classmethod
     def of(cls, log_theta: FloatArray, stiff: Sequence[int]) -> Reference:
-        """Return some of a posterior's draws."""
+        """Return a reference of some of a posterior's draws."""
         chosen = np.linspace(0, len(log_theta) - 1, min(_MOST_DRAWS, len(log_theta))).round().astype(np.intp)
         return cls(log_theta[np.ix_(chosen, np.array(stiff, dtype=np.intp))])
 
 
 class StiffnessLevel(NamedTuple):
-    """Stiffness at a time: over that of the first day, and of each parameter; 5, 50 and 95 %."""
+    """Stiffness at a time: its ratio to the first day's, and each parameter; quantiles of 5, 50 and 95 %."""
 
     relative: Span3
     absolute: tuple[Span3, ...]
 
 
 def level_of(mixture: Mixture, reference: Reference, about: Sensitivity) -> StiffnessLevel:
-    """Return the stiffness that a level stands for; see :func:`levels_of`."""
+    """Return the stiffness at a level; see :func:`levels_of`."""
     return levels_of((mixture,), reference, about)[0]
 
 
 def levels_of(
     mixtures: Sequence[Mixture], reference: Reference, about: Sensitivity
 ) -> tuple[StiffnessLevel, ...]:
-    """Return the stiffness that levels stand for; all of them are mixtures with the same weights.
+    """Return the stiffness at levels, which are mixtures with the same weights.
 
-    The reference's draws are of the ground at the mean level r of its records. On the first day ln k was less
-    by x_r, and the level's slope more by e^{a x_r}, with e^{-ad} h(x_r) e^{a x_r} = r, where d is how far a
-    draw lies from where the slopes are taken.
+    The reference's draws hold for the ground at the mean level r of its records. On the first day ln k was
+    less by x_r and the slope greater by the factor e^{a x_r}, with e^{-ad} h(x_r) e^{a x_r} = r, where d is
+    the difference of ln k between a draw and the point of the slopes.
     """
     if not mixtures:
         return ()
@@ -195,7 +195,7 @@ def _quantiles(
 
 
 def change_of(jump: Jump, reference: Reference, about: Sensitivity) -> Span3:
-    """Return the factor on the stiffness that a jump stands for."""
+    """Return the factor by which a jump changes the stiffness."""
     low, middle, high = jump.size
     flatter = np.exp(-about.bend * (float(np.median(reference.log_k.mean(axis=1))) - about.log_k))
     inside = np.minimum(np.array([low, middle, high]) / flatter * about.bend, 1.0 - np.exp(-_FARTHEST))
@@ -205,7 +205,7 @@ def change_of(jump: Jump, reference: Reference, about: Sensitivity) -> Span3:
 
 @dataclass(frozen=True)
 class Normalisation:
-    """What rows are made by: as the first days have it, so that later ones go on in the same way."""
+    """Normalisation of the rows, taken from the first days and used for all later ones."""
 
     columns: Columns
     design: Design
@@ -218,7 +218,7 @@ class Normalisation:
 def normalisation_of(
     model: TwinModel, every: Days, dates: Sequence[str], about: Sensitivity
 ) -> Normalisation | None:
-    """Return by what rows are made, from some days; None if they show no mode of those that tell."""
+    """Return the normalisation from some days; None if they have no mode that is sensitive to stiffness."""
     columns = Columns.of(model, every, dates)
     seen = [i for i, number in enumerate(about.modes) if number in columns.numbers]
     if not seen:
@@ -244,7 +244,7 @@ def _of_modes(columns: Columns, about: Sensitivity, history: History) -> tuple[F
 def readings_of(
     known: Normalisation, every: Days, dates: Sequence[str], lagged: Lagged, copied: Container[str]
 ) -> tuple[Readings, Lagged]:
-    """Return the rows of some days, and what late regressors remember after them."""
+    """Return the rows of some days, and the state of lagged regressors after them."""
     history = history_of(known.columns, every, dates)
     rows, lagged = regressors(known.design, history, lagged)
     frequency, std = _of_modes(known.columns, known.about, history)

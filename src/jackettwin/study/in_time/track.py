@@ -1,8 +1,8 @@
-"""The stiffness followed day by day: what was known, what is known by now, and what to expect.
+"""Tracking of the stiffness day by day: filtered, smoothed and forecast values.
 
-The filter's state is kept as it was before a window of some weeks, and the days of the window are taken again
-in every run: so later days correct the window's, a day costs the same whatever came before, and a run that
-goes on from another gives what one run over all days gives, bit for bit.
+The filter's state before a window of some weeks is stored, and every run evaluates the days of the window
+again. So later days correct those of the window, the cost of a day does not depend on the number before it,
+and a continued run gives the same result as one run over all days, bit for bit.
 """
 
 from __future__ import annotations
@@ -40,26 +40,26 @@ from jackettwin.watching import (
 )
 
 LEARNT_DAYS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48)
-"""Numbers of days after which conditions are standardised and slopes taken anew, and all is followed again.
-Later it would cost more than a day may, and change little: what a standard deviation of a condition was taken
-to be only sizes the prior of its coefficient."""
+"""Numbers of days after which conditions are standardised anew, slopes are computed anew and all days are
+evaluated again. Later this would cost too much for a day and change little, since the standard deviation of a
+condition only scales the prior of its coefficient."""
 STEP_DAYS = 32
-"""Days after which the oldest as many of a window of twice the length are final, and left behind."""
+"""Number of oldest days that become final and leave the window when it has twice this length."""
 SURE = 0.95
-"""Probability from which a jump is called a change."""
+"""Probability from which a jump is reported as a change."""
 AHEAD_DAYS = (30, 90, 365)
-"""What is forecast: so many days after the last one."""
+"""Horizons of the forecast in days after the last one."""
 
 
 @dataclass(frozen=True)
 class SuddenChange:
-    """The stiffness changed within days.
+    """A change of the stiffness within days.
 
     Attributes
     ----------
-    probability : that it did, when it was said
-    days : 5, 50 and 95 % of when, in days since 1970
-    factor : 5, 50 and 95 % of the stiffness after it over that before
+    probability : of the change, when it was first reported
+    days : quantiles of 5, 50 and 95 % of its time, in days since 1970
+    factor : quantiles of 5, 50 and 95 % of the ratio of the stiffness after it to that before
     """
 
     probability: float
@@ -69,20 +69,19 @@ class SuddenChange:
 
 @dataclass(frozen=True)
 class Tracked:
-    """What is kept from one run to the next.
+    """State of the track that is stored between runs.
 
     Attributes
     ----------
-    normal : how rows are made
-    start, lagged : what is known before the window, and what late regressors remember; None before the first
-        row
-    days : before the window
-    identified, of : number of days that all this follows from, and their identity
+    normal : normalisation of the rows
+    start, lagged : states of the filter and of lagged regressors before the window; None before the first row
+    days : number of days before the window
+    identified, of : number of days that this state depends on, and their identity
     copied : dates after which the mean level so far became the reference
     final : {date: StiffnessLevel} of days before the window, smoothed
-    changes : found so far
-    settled, settled_changes : how many days there were when the window moved or conditions were learnt last,
-        and what had been found by then: from there, days that changed since are followed again
+    changes : sudden changes found so far
+    settled, settled_changes : number of days when the window last moved or conditions were last learnt, and
+        the changes found by then; later days are evaluated again if they changed
     """
 
     normal: Normalisation
@@ -98,23 +97,23 @@ class Tracked:
     settled_changes: tuple[SuddenChange, ...] = ()
 
     def until(self, date: str) -> Tracked:
-        """Return what was kept after the day on which it was settled, its date given."""
+        """Return the stored state as of the day, of given date, when the window last moved."""
         copied = tuple(one for one in self.copied if one <= date)
         return replace(self, copied=copied, changes=self.settled_changes)
 
 
 @dataclass(frozen=True)
 class StiffnessTrack:
-    """The stiffness up to a day.
+    """The track of the stiffness up to a day.
 
     Attributes
     ----------
-    model, every : whose days they are
-    dates : all so far
-    kept : what stays; None before the first day that tells anything
-    bank, lagged : after the last day
-    window : rows of the window, their noise as it was taken
-    half : the track after the first ``STEP_DAYS`` of the window, once it has as many
+    model, every : model, and its days
+    dates : of all days so far
+    kept : stored state; None before the first day with a usable mode
+    bank, lagged : states of the filter and of lagged regressors after the last day
+    window : rows of the window, with the noise used for them
+    half : the track after the first ``STEP_DAYS`` of the window, if there are so many
     """
 
     model: TwinModel
@@ -132,8 +131,8 @@ class StiffnessTrack:
 
         Parameters
         ----------
-        about : how frequencies follow the stiffness, as is known by now
-        copied : whether what all records say together was asked after this day
+        about : present estimate of the sensitivity of frequencies to the stiffness
+        copied : whether all records were evaluated together after this day
         """
         track = replace(
             self, dates=(*self.dates, date), copied=(*self.copied, date) if copied else self.copied
@@ -152,7 +151,7 @@ class StiffnessTrack:
         return replace(self, kept=kept)._from_start(self.dates)
 
     def _from_start(self, dates: Sequence[str]) -> StiffnessTrack:
-        """Return the track with the days of its window taken again."""
+        """Return the track with the days of its window evaluated again."""
         if self.kept is None:
             raise ValueError("a track that has not begun")
         start, lagged = _start(self.kept)
@@ -180,13 +179,13 @@ class StiffnessTrack:
         return replace(self, bank=bank, lagged=lagged, window=window)
 
     def level(self, reference: Reference) -> StiffnessLevel | None:
-        """What is known of the last day."""
+        """The stiffness on the last day."""
         if self.kept is None or self.bank is None:
             return None
         return level_of(self.bank.mixture, reference, self.kept.normal.about)
 
     def ahead(self, reference: Reference) -> dict[int, StiffnessLevel]:
-        """What is to be expected so many days after the last one."""
+        """The forecast so many days after the last one."""
         if self.kept is None or self.bank is None:
             return {}
         return {
@@ -195,7 +194,7 @@ class StiffnessTrack:
         }
 
     def with_changes(self, reference: Reference) -> StiffnessTrack:
-        """Return the track that knows of a jump that is sure by now; a later word on the same counts."""
+        """Return the track with a jump that is now certain, in place of an earlier estimate of it."""
         if self.kept is None or self.bank is None:
             return self
         jump, about = self.bank.jump, self.kept.normal.about
@@ -209,7 +208,7 @@ class StiffnessTrack:
         return replace(self, kept=kept)
 
     def levels(self, reference: Reference) -> dict[str, StiffnessLevel]:
-        """What all days together say of each: those of the window, and before."""
+        """The smoothed stiffness of each day, in the window and before."""
         if self.kept is None:
             return {}
         return {**self.kept.final, **self._window_levels(reference)}
@@ -227,7 +226,7 @@ class StiffnessTrack:
         return {str(epoch + day): level for day, level in zip(last, found, strict=True)}
 
     def moved(self, reference: Reference) -> StiffnessTrack:
-        """Return the track with a window that is not too long: its oldest days become final."""
+        """Return the track with the oldest days of a too long window made final."""
         kept, n = self.kept, len(self.dates)
         if kept is None or n - kept.days < 2 * STEP_DAYS:
             return self
@@ -250,18 +249,18 @@ class StiffnessTrack:
         return replace(self, kept=window)._from_start(self.dates[cut:])
 
     def stored(self) -> Tracked | None:
-        """Return what the next run goes on from."""
+        """Return the state from which the next run continues."""
         return None if self.kept is None else replace(self.kept, copied=self.copied)
 
 
 def joined(parts: Sequence[Readings]) -> Readings:
-    """Return rows as one."""
+    """Return the rows of several parts as one."""
     fields = ("days", "rows", "values", "noise", "copied")
     return Readings(*(np.concatenate([getattr(part, name) for part in parts]) for name in fields))
 
 
 def _chained(of: str, every: Days, dates: Sequence[str]) -> str:
-    """Return the identity of some days after others."""
+    """Return the identity of days appended to those of identity ``of``."""
     for date in dates:
         of = digest([of, date, every.identities[date]])
     return of
@@ -270,11 +269,11 @@ def _chained(of: str, every: Days, dates: Sequence[str]) -> str:
 def resumed(
     model: TwinModel, every: Days, kept: Tracked, dates: Sequence[str], *, unchanged: bool = False
 ) -> StiffnessTrack:
-    """Return the track after some days, from what an earlier run kept; empty if that is not of these days.
+    """Return the track after some days from an earlier run's state; empty if that is of other days.
 
     Parameters
     ----------
-    unchanged : whether it is known already that the days are those of the earlier run
+    unchanged : whether the days are already known to be those of the earlier run
     """
     empty, n = StiffnessTrack(model, every), kept.identified
     if n > len(dates) or not (unchanged or kept.of == _chained("", every, dates[:n])):
@@ -283,7 +282,7 @@ def resumed(
 
 
 def _start(kept: Tracked) -> tuple[Hypotheses, Lagged]:
-    """Return what is known before the window, and what late regressors remember there."""
+    """Return the states of the filter and of lagged regressors before the window."""
     if kept.start is not None and kept.lagged is not None:
         return kept.start, kept.lagged
     design, about = kept.normal.design, kept.normal.about

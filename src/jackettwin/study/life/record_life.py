@@ -1,4 +1,4 @@
-"""Damage and life of every weld of a structure through a record of a few sensors."""
+"""Fatigue damage and life of every weld of a structure from a record of a few sensors."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ from jackettwin.twin.calibration import calibrated
 from jackettwin.updating import Update
 
 _YIELD_PA = 355e6
-"""Joints are planned with a yield strength, which fatigue does not use."""
+"""Yield strength that the design of joints requires and fatigue does not use."""
 DRAWS = 2
-"""Motions about the mean, in pairs, whose damage is averaged."""
+"""Number of sampled motions about the mean, in antithetic pairs, whose damage is averaged."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class WeldMap:
     Attributes
     ----------
     joints : tuple of JointStresses
-    rows : for every joint, (n_braces, 3, n_coordinates) nominal stress of unit coordinates
+    rows : for every joint, (n_braces, 3, n_coordinates) nominal stress at unit coordinates
     at_rest : for every joint, (n_braces, 3) nominal stress under the steel's weight
     """
 
@@ -77,7 +77,7 @@ class WeldMap:
 
 @dataclass(frozen=True)
 class RecordLife:
-    """Life of every weld, shortest first, if all time were like the record.
+    """Life of every weld, shortest first, assuming that all time is like the record.
 
     Attributes
     ----------
@@ -92,19 +92,19 @@ class RecordLife:
 
 
 def weld_map(system: System, model: MotionModel, dry: Assembly) -> WeldMap:
-    """Return the stresses of a structure's welds from a motion of its model.
+    """Return the map from a motion of the model to the stresses of the structure's welds.
 
     Parameters
     ----------
-    dry : the assembly with the mass of steel alone, whose weight shares forces between K, Y and X joints
+    dry : the assembly with the steel's mass only, whose weight divides forces between K, Y and X joints
 
     Raises
     ------
     InputError
-        If no brace stands on a chord.
+        If no brace is welded to a chord.
     """
     joints = joint_stresses(model.assembly.structure, joint_plans(model.assembly, _YIELD_PA))
-    require(joints, "no brace stands on a chord", field="structure", remedy="joints of tubes are checked")
+    require(joints, "no brace is welded to a chord", field="structure", remedy="joints of tubes are checked")
     weight = static_displacement(system, self_weight(dry))
     still = section_forces(model.assembly, weight[None], along=element_weight(dry)[None])
     moving = section_rows(model)
@@ -116,11 +116,11 @@ def weld_map(system: System, model: MotionModel, dry: Assembly) -> WeldMap:
 
 
 def sensed(config: TwinConfig, path: Path, *, feel_gravity: bool = False) -> tuple[SensorReadings, Weather]:
-    """Return what a record's sensors read of a twin's structure, repaired, and its wind and sea.
+    """Return a record's repaired sensor readings on a twin's structure, and its wind and sea.
 
     Parameters
     ----------
-    feel_gravity : whether accelerometers read −g times their lean
+    feel_gravity : whether accelerometers also read −g times their tilt
 
     Raises
     ------
@@ -149,12 +149,12 @@ def life_of_record(
     draws: int = DRAWS,
     supports: int = 1,
 ) -> RecordLife:
-    """Return the life of a twin's welds through a record, on its updated supports.
+    """Return the life of a twin's welds from a record, on its updated supports.
 
     Parameters
     ----------
-    draws : motions on each of the supports
-    supports : how many of the posterior's supports count, the most probable one first
+    draws : number of motions on each of the supports
+    supports : number of the posterior's supports, the most probable first
     """
     dry = assemble(
         config.structure,
@@ -176,20 +176,20 @@ def record_life(
     draws: int = DRAWS,
     seed: int = 0,
 ) -> RecordLife:
-    """Return damage and life of every weld through what sensors read.
+    """Return damage and life of every weld from sensor readings.
 
-    Damage is the mean over motions that are as probable as the real one: that of the smoothest motion alone
-    would be too low, as it lacks what the sensors did not see.
+    Damage is the mean over motions drawn from their posterior. The damage of the mean motion would be too
+    low, as it lacks the motion that the sensors do not measure.
 
     Parameters
     ----------
-    systems : the structure on its most probable supports, then on as probable others
-    draws : motions on each
+    systems : the structure on its most probable supports, then on draws of the posterior
+    draws : number of motions on each
 
     Raises
     ------
     InputError
-        If no brace stands on a chord, or no tube reaches into the water.
+        If no brace is welded to a chord, or no tube reaches below the water level.
     """
     of_systems = [
         _cycles(system, readings, weather, dry, draws, seed + k) for k, system in enumerate(systems)

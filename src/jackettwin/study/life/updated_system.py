@@ -1,4 +1,4 @@
-"""The structure on the supports that a twin's records or targets made of it, and as probable others."""
+"""The structure on supports updated by a twin's records or targets, and on draws of their posterior."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _MOST_DRAWS = 100
 
 
 def updated(config: TwinConfig, *, progress: Progress = SILENT, keep: Keep = NOT_KEPT) -> Update:
-    """Return a twin's supports under its likely law.
+    """Return a twin's update under its most probable law.
 
     Raises
     ------
@@ -40,10 +40,7 @@ def updated(config: TwinConfig, *, progress: Progress = SILENT, keep: Keep = NOT
 
 
 def updated_systems(update: Update, *, draws: int = 0, seed: int = 0) -> tuple[System, ...]:
-    """Return the structure on its most probable supports, then on ``draws`` others of the posterior.
-
-    Without a posterior there are no others.
-    """
+    """Return the structure on its most probable supports, then on ``draws`` of any posterior."""
     known = update.uncertainty
     best = np.log(update.best.theta) if known is None else np.log(known.median)
     others = np.empty((0, best.size))
@@ -56,7 +53,7 @@ def updated_systems(update: Update, *, draws: int = 0, seed: int = 0) -> tuple[S
 
 
 def with_record(config: TwinConfig, record: Path) -> TwinConfig:
-    """Return a twin that updates itself with a record if it has nothing else to."""
+    """Return a twin that is updated by a record if it has neither records nor targets."""
     if config.records or config.targets:
         return config
     return replace(config, records=(record,))

@@ -1,4 +1,4 @@
-"""Many identified records as plain JSON data; what grows with their number is made as it is written."""
+"""Many identified records as plain JSON data; lists that grow with their number are streamed."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from jackettwin.study.many_records.summary import Together
 
 
 def many_document(batch: Batch, together: Together) -> dict[str, Any]:
-    """Return the document of ``jackettwin identify`` for several records: fused, by group, one by one.
+    """Return the document of ``jackettwin identify`` for several records: fused, by group, and each record.
 
     ``records``, ``rejected``, ``quality`` and ``picks`` are ``Streamed``.
     """
@@ -69,7 +69,7 @@ def _rejected(batch: Batch) -> Iterator[dict[str, Any]]:
 
 
 def fused_mode_document(mode: FusedMode, channels: Sequence[str]) -> dict[str, Any]:
-    """Return one fused mode; the scatter is that between records beyond their own uncertainty."""
+    """Return one fused mode; the scatter is that between records in excess of their uncertainty."""
     return {
         **named(mode, *MODAL, "frequency_interval_95", "damping_ratio_interval_95"),
         "relative_scatter_frequency": mode.scatter_frequency,

@@ -1,4 +1,4 @@
-"""Identified modes as files for other programs: JSON whole, CSV and NetCDF as a table, UFF as shapes.
+"""Export of identified modes: the whole document as JSON, a table as CSV or NetCDF, shapes as UFF.
 
 The table holds the modes of every set in the document: ``fused``, each group, each record.
 """
@@ -29,19 +29,19 @@ NUMBERS = {
     "damping_ratio_low_95": "1",
     "damping_ratio_high_95": "1",
 }
-"""Columns of numbers and their units; what is not known is empty in CSV, NaN in NetCDF."""
+"""Columns of numbers and their units; unknown values are empty in CSV and NaN in NetCDF."""
 
 SHAPES = ("mode_shape_real", "mode_shape_imag")
 STATUS_LENGTH = 24
 """Characters of a status: the longest has 22, and rows of NetCDF-3 are padded to four bytes."""
 ROWS_AT = 4
-"""Where a NetCDF-3 file says how many rows it holds."""
+"""Byte offset of the number of rows in a NetCDF-3 file."""
 
 Row = dict[str, Any]
 
 
 def export_modes(document: Mapping[str, Any], path: Path) -> None:
-    """Write a document of ``jackettwin identify`` as the extension says: one of ``WRITERS``.
+    """Write a document of ``jackettwin identify`` in the format of its extension, one of ``WRITERS``.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def export_modes(document: Mapping[str, Any], path: Path) -> None:
 
 
 def mode_rows(document: Mapping[str, Any]) -> Iterator[Row]:
-    """Yield one row a mode: its set, its number in it, its numbers and its shape by channel."""
+    """Yield a row for each mode: its set, its number in the set, its values and its shape by channel."""
     if "groups" not in document:
         yield from _rows(", ".join(document["records"]), document["modes"])
         return
@@ -86,7 +86,7 @@ def _rows(name: str, modes: Sequence[Mapping[str, Any]]) -> Iterator[Row]:
 
 
 def group_name(group: Mapping[str, Any]) -> str:
-    """Return a group of records by its conditions."""
+    """Return the name of a group of records, from its conditions."""
     wind, yaw = group["wind_speed_m_s"], group["yaw_deg"]
     parts = [
         "" if wind is None else f"wind {wind[0]:g} to {wind[1]:g} m/s",
@@ -113,12 +113,12 @@ def _write_csv(document: Mapping[str, Any], path: Path) -> None:
 
 
 def _write_netcdf(document: Mapping[str, Any], path: Path) -> None:
-    """Write NetCDF-3: dimensions mode (unlimited) and channel, one variable a column.
+    """Write NetCDF-3: dimensions mode (unlimited) and channel, one variable for each column.
 
-    The variables along an unlimited dimension lie row by row at the file's end: SciPy writes the header and
-    what is fixed, and the rows follow as they come. No more than one of them is in memory.
+    Variables along the unlimited dimension are stored row by row at the file's end: SciPy writes the header
+    and the fixed variables, and the rows are appended one by one, so that only one is in memory.
     """
-    channels = _channels(mode_rows(document)) or [""]  # a length of none would mean unlimited
+    channels = _channels(mode_rows(document)) or [""]  # a length of zero would mean unlimited
     width = max([1, *(len(row["set"].encode()) for row in mode_rows(document))])
     layout = _row_layout(width, len(channels))
     with scipy.io.netcdf_file(str(path), "w", version=2) as file:
@@ -130,7 +130,7 @@ def _write_netcdf(document: Mapping[str, Any], path: Path) -> None:
         rows = [file.createVariable(name, "c", ("mode", f"{name}_length")) for name in ("set", "status")]
         rows += [_column(file, name, ("mode",), unit) for name, unit in NUMBERS.items()]
         rows += [_column(file, part, ("mode", "channel"), "1") for part in SHAPES]
-        for column in rows:  # a first row, for SciPy to find the sizes; it is written over
+        for column in rows:  # a first row gives SciPy the sizes; it is overwritten
             column[0] = b" " if column.typecode() == "c" else 0.0
     with path.open("r+b") as stream:
         stream.seek(-layout.itemsize, os.SEEK_END)
@@ -150,7 +150,7 @@ def _column(file: Any, name: str, dimensions: tuple[str, ...], unit: str) -> Any
 
 
 def _row_layout(width: int, n_channels: int) -> np.dtype[np.void]:
-    """Return how a row lies in the file: in the order of the variables, each padded to four bytes."""
+    """Return the layout of a row in the file: variables in order, each padded to four bytes."""
     numbers = [(name, ">f8") for name in NUMBERS]
     shapes = [(part, ">f8", (n_channels,)) for part in SHAPES]
     texts = [("set", f"S{width}"), ("padding", f"V{-width % 4}"), ("status", f"S{STATUS_LENGTH}")]
@@ -170,7 +170,7 @@ def _packed(row: Row, channels: Sequence[str], layout: np.dtype[np.void]) -> np.
 
 
 def _texts(file: Any, name: str, dimension: str, texts: Sequence[str]) -> None:
-    """Store texts as NetCDF-3 can: a matrix of characters, padded with blanks."""
+    """Store texts as a matrix of characters padded with blanks, since NetCDF-3 has no strings."""
     raw = [text.encode() for text in texts]
     width = max([1, *map(len, raw)])
     file.createDimension(f"{name}_length", width)

@@ -1,4 +1,4 @@
-"""Records of like conditions together: damping of a turbine depends on wind, yaw and state."""
+"""Groups of records of similar conditions: a turbine's damping depends on wind, yaw and state."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from jackettwin.identification import FusedIdentification, fused_records
 from jackettwin.identification.many_records.tracking import TrackedModes
 
 WIND_BIN_M_S = 2.0
-"""Width of a wind speed bin, around whole multiples (IEC 61400-1)."""
+"""Width of a wind speed bin, centred on whole multiples (IEC 61400-1)."""
 YAW_BIN_DEG = 30.0
 """Width of a yaw sector, centred on north, 30°, …"""
 
@@ -21,9 +21,9 @@ Key = tuple[Interval | None, Interval | None, str | None]
 
 @dataclass(frozen=True)
 class RecordGroup:
-    """Records of one bin of wind speed, one yaw sector and one state; None where records do not say.
+    """Records of one wind speed bin, one yaw sector and one state; None where records do not state it.
 
-    ``records`` are positions among all records.
+    ``records`` are indices among all records.
     """
 
     wind_speed_m_s: Interval | None
@@ -34,7 +34,7 @@ class RecordGroup:
 
 
 def grouped(followed: TrackedModes) -> tuple[RecordGroup, ...]:
-    """Return the groups of records followed under ``group_key``, each fused; by state, wind speed and yaw."""
+    """Return the fused groups of records tracked under ``group_key``, by state, wind speed and yaw."""
     members: dict[Key, list[int]] = {}
     for i, key in enumerate(followed.keys):
         members.setdefault(key, []).append(i)  # type: ignore[arg-type]
@@ -43,7 +43,7 @@ def grouped(followed: TrackedModes) -> tuple[RecordGroup, ...]:
 
 
 def group_key(conditions: Mapping[str, Any]) -> Key:
-    """Return wind speed bin, yaw sector and state of a record; None for what it does not say."""
+    """Return wind speed bin, yaw sector and state of a record; None for what it does not state."""
     wind = _number(conditions, "mean_wind_speed_m_s", "wind_speed_m_s")
     yaw = _number(conditions, "yaw_deg")
     state = conditions.get("state")

@@ -1,8 +1,8 @@
-"""Many records: memory flat, nothing done twice.
+"""Identification of many records in constant memory, without repeating stored results.
 
-Observations go to a folder as they come and are read back one by one, in the order of the files: none stays
-in memory. What is kept there is found by content, so a run that was stopped gives to the last digit what it
-would have given in one go.
+Each observation is written to a folder and read back later in the order of the files, so that none stays in
+memory. Stored observations are found by the content of their records: a run continued after an interruption
+gives the same result to the last digit as an uninterrupted one.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ from jackettwin.twin.observe_files import failure
 
 @dataclass(frozen=True)
 class Batch:
-    """Observed records, on disk: iterating reads them in the order of the files.
+    """Observed records on disk; iteration reads them in the order of the files.
 
     Attributes
     ----------
     results : tuple of Path
-        One file for every record that was observed, each record once.
+        One file for each distinct record that was observed.
     failed : tuple of Failed
-        The others.
+        Records that could not be observed.
     findings : tuple of Finding
-        Records whose samples are those of another.
+        One for each record with the same samples as another.
     """
 
     results: tuple[Path, ...]
@@ -53,20 +53,20 @@ def observe_many(
     workers: int | None = None,
     progress: Progress = SILENT,
 ) -> Batch:
-    """Observe records on all cores; one that cannot be observed is listed and stops nothing.
+    """Observe records on all cores; one that cannot be observed is listed and skipped.
 
     Parameters
     ----------
     model : TwinModel
-        One without a structure identifies, and recognises nothing.
+        Without a structure, modes are identified but not labelled.
     keep : KeptInFolder
-        What is there is not observed again, what is new is put there as it comes.
+        Stored observations are reused; each new one is stored at once.
     unsaid : Unsaid, optional
-        Rate and unit, for files that do not say them.
+        Rate and unit for files that do not state them.
     workers : int, optional
-        Processes; default one a core. One works in this process.
+        Number of processes, by default one for each core. With 1, this process does the work.
     progress : Progress
-        Told of every record.
+        Receives a step for every record.
     """
     results: dict[int, Path] = {}
     failed: dict[int, Failed] = {}
@@ -76,7 +76,9 @@ def observe_many(
             failed[i] = failure(files[i], seen)
         elif seen.observation is not None:
             results[i], own[i] = keep.place(OBSERVATION, seen.key), seen.observation.record_id
-            if not results[i].exists():  # no room: that is said here, where it can be raised
+            if (
+                not results[i].exists()
+            ):  # the disk was full: the worker could not store it, so store it here and raise the error
                 OBSERVATION.write(seen.observation, results[i])
     first: dict[str, int] = {}
     doubled = [i for i in sorted(own) if first.setdefault(own[i], i) != i]

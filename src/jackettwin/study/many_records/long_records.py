@@ -1,4 +1,4 @@
-"""Long records as the ten-minute records they are made of, each a file of its own."""
+"""Division of long records into ten-minute records, each in its own file."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from jackettwin.errors import InputError
 from jackettwin.records import Unsaid, read_record_pieces, write_record
 
 PIECE_S = 600.0
-"""Length of a piece [s]: what conditions are steady over, and the records of every turbine's logger."""
+"""Length of a piece [s], over which conditions are about steady; turbine loggers use the same length."""
 LONG = 6
-"""More pieces than this (an hour) make a record long."""
+"""Number of pieces (one hour) above which a record is divided."""
 WORTH_A_LOOK_BYTES = 500_000
-"""No smaller file holds more than an hour of vibrations."""
+"""Size below which no file can hold more than an hour of vibrations."""
 
 
 def without_long(
@@ -23,9 +23,9 @@ def without_long(
     unsaid: Unsaid,
     step: Callable[[str], None] = lambda _: None,
 ) -> tuple[Path, ...]:
-    """Return the files, with the pieces of each long one in its place, written into ``folder``.
+    """Return the files, each long one replaced by its pieces, which are written into ``folder``.
 
-    A file that cannot be read is left in its place for others to refuse, behind the pieces before its fault.
+    A file that cannot be read stays in the list, after any pieces before its fault, and is refused later.
     """
     return tuple(chain.from_iterable(_cut(file, folder, unsaid, step) for file in files))
 
@@ -40,7 +40,7 @@ def _cut(file: Path, folder: Path, unsaid: Unsaid, step: Callable[[str], None]) 
         if len(first) <= LONG:
             yield file
             return
-        step(f"cut {file.name} into pieces of {PIECE_S:g} s")
+        step(f"divide {file.name} into pieces of {PIECE_S:g} s")
         for piece in chain(first, pieces):
             path = folder / f"{piece.name}.parquet"
             write_record(piece, path)

@@ -1,4 +1,4 @@
-"""What many records say together: followed once, fused over all of them and by group."""
+"""Many records together: their modes tracked once, then fused over all records and by group."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ class Together:
     Attributes
     ----------
     fused : FusedIdentification or None
-        None if the records share no sensors: then each stands for itself, and ``warnings`` say so.
-    groups : of like wind speed, yaw and state
+        None if the records share no sensors, which ``warnings`` state.
+    groups : of similar wind speed, yaw and state
     duration_s : of all records
     """
 
@@ -30,7 +30,7 @@ class Together:
 
 
 def fuse_batch(batch: Batch) -> Together:
-    """Return what the records of a batch say together, each read once."""
+    """Return the fused modes of a batch's records; each record is read once."""
     try:
         followed = follow((one.identification, group_key(one.conditions)) for one in batch)
     except InputError as error:

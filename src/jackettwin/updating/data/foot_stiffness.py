@@ -1,10 +1,10 @@
-"""The numbered modes on feet of decreasing stiffness: the candidates that measured modes are compared with.
+"""The numbered modes on feet of decreasing stiffness, with which measured modes are compared.
 
 Modes are numbered on pinned feet. Springs under the feet lower some of them far more than others (the second
 bending pair of a jacket by a third) and change their shapes, so that a measured mode may resemble its
-counterpart only on softer feet. At each stiffness a mode is recognised by its shape on pinned feet, as in a
-fit. Followed from one stiffness to the next instead, two modes that mix as they cross (second bending and
-torsion, where the nacelle's mass sits beside the axis) would swap their numbers.
+counterpart only on feet of lower stiffness. At each stiffness a mode is recognised by its shape on pinned
+feet, as in a fit. If modes were tracked from one stiffness to the next, two modes that mix as they cross
+(second bending and torsion, if the nacelle's mass is eccentric) would exchange their numbers.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from jackettwin.soil import Prony, on_translations, standing
 from jackettwin.structure import Assembly
 
 STIFFEST_N_M, SOFTEST_N_M = 1e11, 1e7
-"""Stiffness of a foot on each translation [N/m]: beyond the first it is as good as pinned; softer feet than
-the second carry no wind turbine."""
+"""Range of the stiffness of a foot on each translation [N/m]: with the first the feet are practically pinned;
+with less than the second they cannot carry a wind turbine."""
 PER_DECADE = 4
-"""Steps of the stiffness: from one to the next no frequency of the first pairs moves by more than a
-fourteenth, half of what pairing allows."""
+"""Steps of the stiffness per decade, in which no frequency of the first pairs changes by more than 7 %, half
+of the tolerance of pairing."""
 LOWEST_SHARE = 0.5
-"""The stiffness is lowered until the first mode has lost half of its frequency: no foundation is softer."""
+"""Share of the first mode's frequency down to which the stiffness is reduced; no foundation is softer."""
 EXTRA = 6
-"""Further modes computed at every step, among which the numbered ones are looked for."""
+"""Number of additional modes computed at every step, to find the numbered ones."""
 
 
 @dataclass(frozen=True)
@@ -38,9 +38,9 @@ class Feet:
     Attributes
     ----------
     stiffness_n_m : float
-        Of each translation of each foot; inf for the feet that modes are numbered on.
+        Stiffness of each translation of each foot; inf for the feet on which modes are numbered.
     frequency_hz : (n_modes,)
-        In the order of the numbers, not of frequency; NaN where a mode was not recognised.
+        In the order of the mode numbers, not of frequency; NaN where a mode was not recognised.
     shapes : (n_dof, n_modes)
     """
 
@@ -52,8 +52,8 @@ class Feet:
 def modes_by_foot_stiffness(assembly: Assembly, numbered: UndampedModes) -> tuple[Feet, ...]:
     """Return the numbered modes on pinned feet, then on springs of decreasing stiffness.
 
-    A structure whose modes are numbered on a clamped foot (a monopile) has these alone: springs on the
-    translations do not hold it.
+    For a structure whose modes are numbered on a clamped foot (a monopile) only these are returned, since
+    springs on the translations do not support it.
     """
     path = [Feet(np.inf, numbered.frequency_hz, numbered.shapes)]
     on_pins = all(len(dofs) == len("xyz") for _, dofs in standing(assembly.structure).fixed)
@@ -63,7 +63,7 @@ def modes_by_foot_stiffness(assembly: Assembly, numbered: UndampedModes) -> tupl
     ):
         try:
             found = _on_springs(assembly, float(stiffness), numbered)
-        except InputError:  # it falls over under its own weight
+        except InputError:  # unstable under its weight
             break
         if not found.frequency_hz[0] >= LOWEST_SHARE * numbered.frequency_hz[0]:
             break
@@ -72,7 +72,7 @@ def modes_by_foot_stiffness(assembly: Assembly, numbered: UndampedModes) -> tupl
 
 
 def _on_springs(assembly: Assembly, stiffness: float, numbered: UndampedModes) -> Feet:
-    """Return the numbered modes on springs; one not recognised has its pinned shape and no frequency."""
+    """Return the numbered modes on springs; an unrecognised one has its pinned shape and no frequency."""
     system = build_system(assembly, on_translations(assembly.structure, Prony(k0=stiffness)))
     modes = undamped_modes(system, len(numbered.frequency_hz) + EXTRA)
     successor = track_modes(assembly.mass, numbered.frequency_hz, numbered.shapes, modes.shapes)

@@ -11,10 +11,10 @@ from jackettwin.arrays import FloatArray
 from jackettwin.updating.problem import Problem
 
 UNLIKELY = 0.01
-"""Probability of so large a χ² below which the model is called wrong, or the stated standard deviations too
-small. One run in a hundred of a true model is called wrong."""
+"""Probability of a larger χ² below which the model counts as wrong, or the stated standard deviations as too
+small. One run in a hundred of a correct model counts as wrong."""
 _SEEN = 0.5
-"""A parameter counts as fitted if one standard deviation of its prior moves the data by so many of theirs."""
+"""Least change of the data, in their standard deviations, by one standard deviation of a fitted parameter."""
 
 
 @dataclass(frozen=True)
@@ -24,11 +24,11 @@ class Misfit:
     Attributes
     ----------
     chi2 : float
-        Sum of squares of all residuals in standard deviations, those of the priors included.
+        Sum of squares of all residuals in standard deviations, including those of the priors.
     freedom : int
-        Number of residuals without those that fitted parameters take away; at least 1.
+        Number of residuals minus the number of fitted parameters; at least 1.
     probability : float
-        That a true model has a larger χ².
+        Probability that a correct model has a larger χ².
     """
 
     chi2: float
@@ -37,15 +37,15 @@ class Misfit:
 
     @property
     def fits(self) -> bool:
-        """Whether chance explains the distance."""
+        """Whether chance explains the misfit."""
         return self.probability >= UNLIKELY
 
 
 def misfit(problem: Problem, theta: FloatArray) -> Misfit | None:
-    """Return the distance of a best fit (d,) from its data; None without standard deviations or freedom.
+    """Return the misfit of a best fit (d,); None without standard deviations or degrees of freedom.
 
-    A parameter that no datum depends on takes no degree of freedom: those taken are the large singular values
-    of the Jacobian by the parameters in units of their prior standard deviations.
+    A parameter that no datum depends on uses no degree of freedom. The number of fitted parameters is that of
+    large singular values of the Jacobian by the parameters in units of their prior standard deviations.
     """
     if not problem.weighted:
         return None

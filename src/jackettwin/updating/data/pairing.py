@@ -1,4 +1,4 @@
-"""Which measured mode is which mode of the model."""
+"""Assignment of measured modes to modes of the model."""
 
 from __future__ import annotations
 
@@ -16,32 +16,32 @@ from jackettwin.response import near_degenerate
 Verdict = Literal["paired", "shape", "frequency", "taken"]
 
 FREQUENCY_WIDTH = 0.15
-"""How far (standard deviation of ln f) a measured mode may lie from the model's."""
+"""Standard deviation of ln f of a measured mode about the model's."""
 MIXING = 0.06
-"""Modes closer than this (relative) mix in a measured shape, for their half-power bands, 2ζf, overlap."""
+"""Modes closer than this (relative) mix in a measured shape, since their half-power bands 2ζf overlap."""
 LEAST_MAC = 0.8
-"""A shape less like the model's is no match: true pairs of OpenFAST records reach 0.87 and more,
-false ones (another direction, a blade mode) 0.73 and less."""
+"""Smallest MAC of a pair: correct pairs of OpenFAST records have 0.87 or more, false ones (another direction,
+a blade mode) 0.73 or less."""
 LEAST_VISIBLE = 0.1
-"""A mode that moves the sensors less than this share of the most visible one cannot have been measured."""
+"""Smallest motion at the sensors relative to that of the most visible mode for a mode to be measurable."""
 
 
 @dataclass(frozen=True)
 class Counterpart:
-    """The mode of the model that is most like a measured one.
+    """The mode of the model that is most similar to a measured one.
 
     Attributes
     ----------
     mode : int
-        Of the model, from 0.
+        Index of the model's mode, from 0.
     frequency_hz : float
-        Of the model's.
+        Its frequency.
     difference : float
-        Measured frequency over the model's, less one.
+        Ratio of the measured frequency to the model's, minus one.
     mac : float
         Share of the measured shape in the model's (or in the plane of its close pair).
     verdict : {"paired", "shape", "frequency", "taken"}
-        Paired, or why not: another shape, another frequency, or another measured mode is more like it.
+        Paired, or why not: another shape, another frequency, or another measured mode is more similar to it.
     """
 
     mode: int
@@ -56,17 +56,17 @@ def pair(
 ) -> dict[int, tuple[int, float]]:
     """Return {model mode (from 0): (index of the estimate, subspace MAC)}.
 
-    Two bending modes a few percent apart mix in any measured shape, the more the weaker one is excited, so
-    close model modes that the sensors see are compared as a subspace: its MAC is the share of the measured
-    shape that lies in it (the MAC if it is one mode).
-    The score is this times a Gaussian of ln f, with a little of the single MAC to say which is which; the
-    assignment maximises its sum, so that two measured modes never share a model mode.
+    Two bending modes a few per cent apart mix in a measured shape, the more the weaker one is excited. Close
+    model modes that are visible to the sensors are therefore compared as a subspace; its MAC is the share of
+    the measured shape within it (the MAC for a single mode). The score is this MAC times a Gaussian in ln f,
+    plus a small share of the single MAC to distinguish modes of a subspace. The assignment maximises the sum
+    of scores, so that two measured modes never share a model mode.
 
     Parameters
     ----------
     estimates : measured modes
-    frequency_hz : (n_modes,) of the model, in any order; NaN for a mode that cannot be compared
-    shapes : (n_channels, n_modes) mass-normalised, at the sensors, in the channels' order
+    frequency_hz : (n_modes,) frequencies of the model, in any order; NaN for a mode that cannot be compared
+    shapes : (n_channels, n_modes) mass-normalised shapes at the sensors, in the channels' order
     """
     return {one.mode: (i, one.mac) for i, one in _paired(estimates, frequency_hz, shapes).items()}
 
@@ -74,7 +74,7 @@ def pair(
 def pairing_score(
     estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
 ) -> float:
-    """Return how like a model the measured modes are: the score of ``pair`` summed over the pairs."""
+    """Return the similarity of measured modes to a model: the score of ``pair`` summed over the pairs."""
     found = _paired(estimates, frequency_hz, shapes)
     return float(sum(h.mac * _nearness(np.log1p(h.difference)) for h in found.values()))
 
@@ -82,18 +82,18 @@ def pairing_score(
 def counterparts(
     estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
 ) -> tuple[Counterpart, ...]:
-    """Return for each measured mode its counterpart, else the mode most like it and why it is none.
+    """Return for each measured mode its counterpart, or the most similar mode and why it is not paired.
 
     Parameters
     ----------
     estimates, frequency_hz, shapes
-        As those of ``pair``.
+        As in ``pair``.
     """
     if not estimates or not np.isfinite(frequency_hz).any():
         return ()
     visible, _, subspace_mac, apart = _compared(estimates, frequency_hz, shapes)
     paired = _paired(estimates, frequency_hz, shapes)
-    # in logarithms: the nearness of what is far off would underflow
+    # in logarithms, since the Gaussian of distant frequencies would underflow
     likely = np.log(np.maximum(subspace_mac, 1e-12)) - 0.5 * (apart / FREQUENCY_WIDTH) ** 2
     found = []
     for i, k in enumerate(np.argmax(likely, axis=1)):
@@ -133,12 +133,12 @@ def _nearness(apart: Any) -> Any:
 def subspace_mac_nearby(
     estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
 ) -> FloatArray:
-    """Return for each measured mode its best subspace MAC with modes of the model near it; 0 if none is near.
+    """Return for each measured mode its largest subspace MAC with model modes near it; 0 if none is near.
 
     Parameters
     ----------
     estimates, frequency_hz, shapes
-        As those of ``pair``.
+        As in ``pair``.
     """
     _, _, subspace_mac, apart = _compared(estimates, frequency_hz, shapes)
     best: FloatArray = np.where(np.abs(apart) <= 2.0 * FREQUENCY_WIDTH, subspace_mac, 0.0).max(axis=1)

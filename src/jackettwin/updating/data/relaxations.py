@@ -1,10 +1,9 @@
-r"""Real poles as data: the rate of a measured relaxation against the model's nearest.
+r"""Real poles as data: the rate of a measured relaxation and the nearest one of the model.
 
 .. math:: r = \frac{\ln(a_\mathrm{model}/a)}{σ}
 
-or, without a standard deviation, relative to the measured rate as in thesis (8.4). The relaxation belongs to
-the model's pole with the least |Δ ln a|, plus 1 − MAC where its shape was measured: the measure by which
-identification tells relaxations apart.
+or, without a standard deviation, relative to the measured rate as in thesis (8.4). The relaxation is paired
+with the model's pole of smallest |Δ ln a|, plus 1 − MAC if its shape was measured, as in identification.
 """
 
 from __future__ import annotations
@@ -33,7 +32,7 @@ class RelaxationTarget:
     log_std : float or None
         Standard deviation of ln a; None makes the residual relative.
     at_sensors : (n_channels, n) motion of the sensors for each coordinate of the condensed model, or None
-    shape : (n_channels,) measured there, or None
+    shape : (n_channels,) measured shape, or None
     """
 
     name: str
@@ -45,7 +44,7 @@ class RelaxationTarget:
     def __post_init__(self) -> None:
         if not self.rate > 0.0 or not (self.log_std is None or self.log_std > 0.0):
             raise InputError(
-                "a relaxation has a positive rate and standard deviation",
+                "rate and standard deviation of a relaxation must be positive",
                 field="targets.rate_rad_s",
                 value=[self.rate, self.log_std],
             )
@@ -61,7 +60,7 @@ class RelaxationTarget:
         return 0.0 if self.log_std is None else log(sqrt(2.0 * pi) * self.log_std)
 
     def nearest(self, model: SupportModel, theta: FloatArray, *, slopes: bool = False) -> Relaxation:
-        """Return the model's relaxation that this one belongs to, at parameter vectors (n_sets, n)."""
+        """Return the model's relaxation that is paired with this one, at parameter vectors (n_sets, n)."""
         points = model.points(theta)
         points = points if slopes else points.plain()
         return nearest_relaxation(

@@ -2,8 +2,8 @@ r"""Mode shapes as data: one minus the MAC at the sensors, over its standard dev
 
 .. math:: r = \frac{1}{σ}\left(1 - \frac{|m^H y|^2}{(m^H m)(y^H y)}\right), \quad y = T x
 
-with the measured shape m, the model's coordinates x and T their motion at the sensors. The record has been
-turned to rotor axes before, so that a yawed nacelle does not spoil m.
+with the measured shape m, the model's coordinates x and T their motion at the sensors. The record was rotated
+to rotor axes before, so that yaw does not affect m.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ class ShapeTarget:
     mode : int
     at_sensors : (n_channels, n) motion of the sensors for each coordinate of the condensed model, at the
         measured frequency
-    shape : (n_channels,) measured
+    shape : (n_channels,) measured shape
     std : float
-        Of 1 − MAC: noise at the sensors and what the model's shapes lack.
+        Standard deviation of 1 − MAC, due to noise at the sensors and errors of the model's shapes.
     """
 
     mode: int
@@ -47,7 +47,7 @@ class ShapeTarget:
         shape: ComplexArray,
         std: float,
     ) -> ShapeTarget:
-        """Return the shape that sensors of a model's structure measured."""
+        """Return the target of a shape measured by sensors on the model's structure."""
         expansion = model.condensed.expansion(2j * pi * frequency_hz)
         return cls(mode, np.asarray(observation_matrix(model.assembly, sensors) @ expansion), shape, std)
 

@@ -1,4 +1,4 @@
-"""What the model is updated to: frequencies and damping ratios of numbered modes."""
+"""Targets of the update: frequencies and damping ratios of numbered modes."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.errors import InputError, require
 
 _LEAST = 1e-9
-"""A damping ratio below this, or negative, counts as this: its logarithm exists."""
+"""Damping ratios below this, or negative, are set to it, so that the logarithm exists."""
 
 
 @dataclass(frozen=True)
 class Target:
-    """A mode known from elsewhere; ``mode`` counts from 1 on pinned supports.
+    """A measured or given mode; ``mode`` is its number, from 1, on pinned supports.
 
-    A value that is None takes no part in the fit. The standard deviations weigh the residuals; with None
-    the residual is relative, as in thesis (8.4), and its square counts with a weight, w_ω or w_ζ there.
+    A value that is None is not fitted. Residuals are divided by the standard deviations; with None the
+    residual is relative, as in thesis (8.4), and its square is multiplied by a weight, w_ω or w_ζ there.
     ``correlation`` is that of ln f and ln ζ.
     """
 
@@ -35,7 +35,7 @@ class Target:
 
     @property
     def log_stds(self) -> tuple[float | None, float | None]:
-        """Standard deviations of ln f and ln ζ, where value and deviation are known."""
+        """Standard deviations of ln f and ln ζ, None if value or deviation is not known."""
         return (
             _ratio(self.frequency_std_hz, self.frequency_hz),
             _ratio(self.damping_ratio_std, self.damping_ratio),
@@ -68,22 +68,22 @@ class Residuals:
         modes = [target.mode for target in self.targets]
         if len(set(modes)) != len(modes):
             raise InputError(
-                "a mode is given twice", field="targets.mode", value=modes, remedy="one target a mode"
+                "a mode is given twice", field="targets.mode", value=modes, remedy="give one target per mode"
             )
         require(self.used, "no target has a frequency or a damping ratio", field="targets", value=modes)
         for t in self.targets:
             if not -1.0 < t.correlation < 1.0:
                 raise InputError(
-                    "a correlation lies between −1 and 1", field="targets.correlation", value=t.correlation
+                    "a correlation must be between −1 and 1", field="targets.correlation", value=t.correlation
                 )
             for weight in (t.frequency_weight, t.damping_weight):
                 require(
                     0.0 < weight < inf,
-                    "a weight is positive",
+                    "a weight must be positive",
                     field="update.weights",
                     value=weight,
                     allowed="> 0",
-                    remedy="leave out a value that is not to count",
+                    remedy="leave out a value that is not to be fitted",
                 )
 
     @cached_property
@@ -137,13 +137,13 @@ class Residuals:
 
     @cached_property
     def _weight(self) -> FloatArray:
-        """Weight of every squared residual; those with a standard deviation are weighed by that."""
+        """Weight of every squared residual; 1 for those with a standard deviation."""
         pairs = [weight for t in self.used for weight in (t.frequency_weight, t.damping_weight)]
         return np.where(self._logarithmic, 1.0, np.array(pairs)[self._places])
 
     @property
     def total_weight(self) -> float:
-        """Sum of the weights: the number of residuals if none is weighed."""
+        """Sum of the weights: the number of residuals if none has a weight."""
         return float(self._weight.sum())
 
     @cached_property
@@ -163,12 +163,12 @@ class Residuals:
         return np.asarray(np.linalg.inv(np.linalg.cholesky(correlation * np.outer(std, std))))
 
     def values(self, poles: ComplexArray, *, shift: FloatArray | float = 0.0) -> FloatArray:
-        """Return residuals (n_sets, count) alone for many sets of poles (n_sets, n_modes).
+        """Return residuals (n_sets, count) for many sets of poles (n_sets, n_modes).
 
         Parameters
         ----------
         shift : (n_sets, count), optional
-            Added to the logarithms of the model's values: what the model itself may miss.
+            Added to the logarithms of the model's values, to represent errors of the model.
         """
         size = np.abs(poles)
         pairs = np.stack([size / (2.0 * pi), -poles.real / size], axis=-1)
@@ -190,7 +190,7 @@ class Residuals:
         return np.asarray(self._whitener @ (pairs / scale[:, None]))
 
     def gains(self, poles: ComplexArray, slopes: ComplexArray) -> FloatArray:
-        """Return the residuals' derivatives (n_sets, count, n) by what moves the poles of many sets.
+        """Return the residuals' derivatives (n_sets, count, n) by quantities φ that change the poles.
 
         Parameters
         ----------

@@ -1,9 +1,9 @@
-"""Branches of a root locus: poles followed from value to value of a parameter, each under its own name.
+"""Branches of a root locus: poles tracked as a parameter varies, each with its mode number.
 
-Where two modes come close and exchange their shapes, or cross, sorting by frequency would jump from one
-branch to the other, and so would names by likeness to a fixed shape. Here every step goes where the slope of
-the branch points, is checked against the slopes at both of its ends and against a meeting of two branches on
-the way, and is halved until neither is in doubt.
+Where two modes come close and exchange their shapes, or cross, sorting by frequency or by similarity to a
+fixed shape would jump from one branch to the other. Each step is therefore predicted with the slope of the
+branch, checked against the slopes at both ends and against a crossing of two branches within the step, and
+halved until both checks pass.
 """
 
 from __future__ import annotations
@@ -21,27 +21,27 @@ At = Callable[[float, NumberedModes | None], NumberedModes]
 """Modes of one set at a value of the parameter's logarithm, from those at a neighbouring one."""
 
 _STEPS = 128
-"""Steps from bound to bound where nothing happens."""
+"""Number of steps from bound to bound if none is halved."""
 _SHORTEST = 2.0**-9
-"""Of a first step: where a branch still breaks, it ends."""
+"""Smallest step as a share of the first; if a branch cannot be continued with it, the branch ends."""
 _ASTRAY = 0.1
-"""A step's end may differ from what the slopes at both ends promise by this share of the step."""
+"""Largest error of predicting a step's end by the slopes at both ends, as a share of the step."""
 _MEETING = 0.25
-"""Two branches may not come nearer than this share of their distance within one step."""
+"""Smallest distance of two branches within one step, as a share of their distance at its ends."""
 _STILL = 1e-6
-"""A pole that moves by less than this share of itself stands still."""
+"""Relative change of a pole below which it counts as unchanged."""
 
 
 @dataclass(frozen=True)
 class Branches:
-    """Poles at values of a parameter, a column a branch.
+    """Poles at values of a parameter, one column per branch.
 
     Attributes
     ----------
     z : (n,) ascending logarithms of the parameter
-    poles : (n, n_branches), NaN from where a branch has ended: it no longer oscillates, and whatever pair
-        comes off the real axis later is another's
-    origin : place among them of the value at which the branches have the modes' names
+    poles : (n, n_branches), NaN after the end of a branch, where its mode stops oscillating; a pair that
+        leaves the real axis later belongs to another branch
+    origin : index of the value at which the branches have the modes' numbers
     """
 
     z: FloatArray
@@ -50,11 +50,11 @@ class Branches:
 
 
 def branches(at: At, start: float, low: float, high: float) -> Branches:
-    """Return the branches through the modes at ``start``, followed down to ``low`` and up to ``high``.
+    """Return the branches through the modes at ``start``, tracked down to ``low`` and up to ``high``.
 
     Parameters
     ----------
-    at : gives the modes of one set, with their slopes by z, in the first column
+    at : function that returns the modes of one set with their slopes by z in the first column
     """
     first = at(start, None)
     width = high - low
@@ -89,7 +89,7 @@ def _way(
 
 
 def _successors(here: NumberedModes, order: IntArray, there: NumberedModes, h: float) -> IntArray:
-    """Return which pole there continues each branch: near where its slope points, and like it in shape."""
+    """Return the pole that continues each branch: near the prediction by its slope, and of similar shape."""
     promised = (here.poles + h * here.slopes[:, :, 0])[0, order]
     poles, onto = there.poles[0], np.array(order)
     known = np.flatnonzero(np.isfinite(promised) & np.isfinite(poles[order]))
@@ -112,7 +112,7 @@ def _squares(shapes: ComplexArray) -> FloatArray:
 
 
 def _astray(here: NumberedModes, order: IntArray, there: NumberedModes, onto: IntArray, h: float) -> bool:
-    """Return whether a branch was lost, met another, or moved otherwise than the slopes at both ends say."""
+    """Return whether a branch was lost, met another, or deviates from the slopes at both ends."""
     before, after = here.poles[0, order], there.poles[0, onto]
     if (np.isfinite(before) & ~np.isfinite(after)).any():
         return True
@@ -123,7 +123,7 @@ def _astray(here: NumberedModes, order: IntArray, there: NumberedModes, onto: In
 
 
 def _meet(before: ComplexArray, after: ComplexArray) -> bool:
-    """Return whether two poles that are apart come close on straight ways between two places."""
+    """Return whether two distinct poles come close on straight lines between two steps."""
     i, j = np.triu_indices(before.size, 1)
     start, end = before[i] - before[j], after[i] - after[j]
     farthest = np.maximum(np.abs(start), np.abs(end))

@@ -1,4 +1,4 @@
-"""What the cost looks like around a point: over one parameter, over two."""
+"""The cost around a point, as a function of one or two parameters."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from jackettwin.updating.problem import Problem
 
 @dataclass(frozen=True)
 class CostSurface:
-    """Cost over two parameters, all others as at a point.
+    """Cost as a function of two parameters, with all others fixed.
 
     Attributes
     ----------
-    parameters : the first is along x
+    parameters : the two parameters; the first is along x
     x, y : (n_x,) and (n_y,) values
     cost : (n_y, n_x), NaN where the model lacks a mode of the data
     """
@@ -41,13 +41,13 @@ class CostCurve:
 def cost_surface(
     problem: Problem, theta: FloatArray, axes: tuple[int, int], x: FloatArray, y: FloatArray
 ) -> CostSurface:
-    """Return the cost over two parameters (thesis figures 8.2, 8.3).
+    """Return the cost as a function of two parameters (thesis figures 8.2, 8.3).
 
     Parameters
     ----------
-    theta : (d,) the others' values
-    axes : places of the two among the problem's parameters
-    x, y : values of the two
+    theta : (d,) values of the other parameters
+    axes : indices of the two among the problem's parameters
+    x, y : values of the two parameters
     """
     moved = np.tile(theta, (y.size * x.size, 1))
     moved[:, axes[0]], moved[:, axes[1]] = np.tile(x, y.size), np.repeat(y, x.size)
@@ -58,9 +58,9 @@ def cost_surface(
 def cost_curve(
     problem: Problem, theta: FloatArray, parameter: int, *, span: float = 0.5, n: int = 41
 ) -> CostCurve:
-    """Return the cost as one parameter goes from 1 − span to 1 + span times its value, within its bounds.
+    """Return the cost as one parameter varies from 1 − span to 1 + span times its value, within its bounds.
 
-    These are the thesis's figures 8.5 and 8.6. The value itself is one of the points.
+    Thesis figures 8.5 and 8.6. The value itself is one of the points.
     """
     p, value = problem.parameters[parameter], float(theta[parameter])
     low, high = max(1.0 - span, p.low / value), min(1.0 + span, p.high / value)

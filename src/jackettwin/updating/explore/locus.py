@@ -1,4 +1,4 @@
-"""Root locus of a support model: where the poles of its modes go as a parameter goes from bound to bound."""
+"""Root locus of a support model: poles of its modes as a parameter varies between its bounds."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ class Locus:
     Attributes
     ----------
     parameter : Parameter
-        Its bounds are the ends of the locus; a law's parameter of several tie groups is that of the first,
-        and the others keep their ratio to it.
-    modes : numbers of the branches at ``origin``
-    values : (n,) ascending
+        Its bounds are the ends of the locus. A law's parameter of several tie groups is that of the first
+        group; the others vary in proportion.
+    modes : mode numbers of the branches at ``origin``
+    values : (n,) ascending values of the parameter
     poles : (n, n_modes) λ [rad/s], NaN where a branch no longer oscillates
-    origin : place of the point from which the branches were followed
+    origin : index of the point from which the branches were tracked
     """
 
     parameter: Parameter
@@ -47,7 +47,7 @@ class Locus:
         return np.asarray(-self.poles.real / np.abs(self.poles))
 
     def most_damped(self, branch: int) -> tuple[float, float]:
-        """Return where a branch has its largest damping ratio, and the ratio; NaN without one."""
+        """Return the value at the largest damping ratio of a branch, and the ratio; NaN without one."""
         ratio = self.damping_ratio[:, branch]
         if np.isnan(ratio).all():
             return float("nan"), float("nan")
@@ -56,14 +56,15 @@ class Locus:
 
 
 def root_locus(model: SupportModel, theta: FloatArray, parameter: str, modes: tuple[int, ...]) -> Locus:
-    """Return the poles of modes as a parameter goes from its lower to its upper bound.
+    """Return the poles of modes as a parameter varies from its lower to its upper bound.
 
     Parameters
     ----------
-    theta : (n_parameters,) point from which the branches are followed and at which they are named
+    theta : (n_parameters,) point from which the branches are tracked and at which they are numbered
     parameter : str
-        One of the model's, or of its law: then all tie groups' change by the same factor.
-    modes : numbers, on pinned supports
+        A parameter of the model, or of its law; in the latter case those of all tie groups vary by the same
+        factor.
+    modes : mode numbers, on pinned supports
 
     Raises
     ------
@@ -94,7 +95,7 @@ def root_locus(model: SupportModel, theta: FloatArray, parameter: str, modes: tu
 
 
 def moving(model: SupportModel, name: str) -> list[int]:
-    """Return the places of a parameter: one, or those of every tie group if it is the law's.
+    """Return the indices of a parameter: one, or those of every tie group if it belongs to the law.
 
     Raises
     ------

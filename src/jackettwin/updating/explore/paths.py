@@ -1,4 +1,4 @@
-"""The ways of searches: from every starting point down to its end, and what that end is."""
+"""Paths of searches from every starting point to their ends, and the kinds of these."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from jackettwin.updating.search.path import Trail
 from jackettwin.updating.search.solutions import SearchMethod, Solution
 
 Fate = Literal["solution", "plateau", "stalled"]
-"""What an end is: a solution; a place where the model is far from the data and no parameter changes that; or
-no minimum at all, where the search gave up."""
+"""Kind of an end: a solution; a plateau, where the model is far from the data and no parameter changes that;
+or a point that is no minimum, where the search stalled."""
 _NEAR = 0.02
-"""An end nearer than this to a solution in every ln θ is that solution."""
+"""Largest difference of every ln θ between an end and the solution it counts as."""
 
 
 @dataclass(frozen=True)
@@ -30,12 +30,12 @@ class SearchPath:
     Attributes
     ----------
     points : (n, d) θ at every evaluation, the start first
-    cost : (n,)
-    end : (d,) θ
+    cost : (n,) cost at these points
+    end : (d,) θ at the end
     end_cost : float
     fate : {"solution", "plateau", "stalled"}
     solution : int or None
-        Place of the solution it ended in.
+        Index of the solution at which it ended.
     """
 
     points: FloatArray
@@ -54,14 +54,14 @@ def search_paths(
     method: SearchMethod = "least-squares",
     progress: Progress = SILENT,
 ) -> tuple[SearchPath, ...]:
-    """Return the ways of searches from some points.
+    """Return the paths of searches from some points.
 
     Parameters
     ----------
     starts : (n, d) θ, between the bounds
-    solutions : of the same problem
+    solutions : solutions of the same problem
     method : {"least-squares", "nelder-mead"}
-        Ours, or the thesis's simplex.
+        The method of this package, or the simplex method of the thesis.
     """
     paths = []
     low, high = problem.prior.low, problem.prior.high
@@ -78,7 +78,7 @@ def search_paths(
 
 
 def _solution(problem: Problem, end: End, solutions: Sequence[Solution]) -> int | None:
-    """Return the place of the solution that an end is, or is joined to without a climb."""
+    """Return the index of the solution of an end: the same point, or connected to it without a barrier."""
     if not end.settled:
         return None
     for i, known in enumerate(solutions):

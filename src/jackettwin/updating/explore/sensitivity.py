@@ -1,4 +1,4 @@
-"""How much frequencies and damping ratios change with every parameter."""
+"""Sensitivity of frequencies and damping ratios to every parameter."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from jackettwin.updating.data.targets import polar
 from jackettwin.updating.model import SupportModel
 
 _STEP = 1e-4
-"""Of ln θ: the error of a central difference is the third derivative times 2e-9, and rounding 1e-11."""
+"""Step of ln θ: the error of a central difference is 2e-9 times the third derivative, plus 1e-11 of
+rounding."""
 
 
 @dataclass(frozen=True)
@@ -22,14 +23,13 @@ class ModeSensitivity:
 
     Attributes
     ----------
-    parameters : the model's
-    modes : numbers
+    parameters : parameters of the model
+    modes : mode numbers
     frequency_hz, damping_ratio : (n_modes,)
-    frequency : (n_modes, n_parameters) ∂ ln f/∂ ln θ: per cent of frequency for a per cent of the parameter
-    damping : (n_modes, n_parameters) ∂ζ/∂ ln θ: change of the ratio when the parameter grows by one per cent,
-        times a hundred
+    frequency : (n_modes, n_parameters) ∂ ln f/∂ ln θ: per cent of frequency per per cent of the parameter
+    damping : (n_modes, n_parameters) ∂ζ/∂ ln θ: a hundred times the change of ζ per per cent of the parameter
     difference : float
-        Largest deviation of any of them from central differences.
+        Largest deviation from central differences.
     """
 
     parameters: tuple[Parameter, ...]
@@ -42,12 +42,12 @@ class ModeSensitivity:
 
 
 def sensitivity(model: SupportModel, theta: FloatArray, modes: tuple[int, ...]) -> ModeSensitivity:
-    """Return the analytic derivatives of some modes at a point, beside central differences.
+    """Return the analytical derivatives of some modes at a point, checked by central differences.
 
     Parameters
     ----------
     theta : (n_parameters,)
-    modes : numbers, on pinned supports
+    modes : mode numbers, on pinned supports
     """
     model = model.reaching(max(modes))
     found = model.predict_many(theta[None], modes)

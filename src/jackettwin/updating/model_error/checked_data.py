@@ -1,4 +1,4 @@
-"""All that was measured about a fit, whitened, with what parameters and errors of the model do to it."""
+"""All measured data of a fit, whitened, with their derivatives by parameters and by errors of the model."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ Column = tuple[Direction, FloatArray]
 
 @dataclass(frozen=True, eq=False)
 class CheckedData:
-    """All data about a fit, whitened by what is measured, with how parameters and errors move them.
+    """All data of a fit, whitened by their measurement uncertainty, with derivatives.
 
     Attributes
     ----------
     r, J, gains : residuals, their derivatives by ln θ and by the errors of the model; the priors' rows last
-    known, asked : lists of (error, (n,) what it does to the residuals)
+    known, asked : lists of (error, (n,) derivative of the residuals)
         Tolerances, and suspects.
-    names, scale : of the data: ln of measured over model, or an angle, for one of the residual
+    names, scale : names of the data, and ln of measured over model (or angle) per unit of residual
     """
 
     r: FloatArray
@@ -44,13 +44,13 @@ def checked_data(
     suspects: Sequence[Direction],
     pairs: Sequence[PairDirection],
 ) -> CheckedData | None:
-    """Return all data about a fit (d,) of ln θ; None where a mode is lost.
+    """Return all data of a fit (d,) of ln θ; None if a mode is lost.
 
     Parameters
     ----------
-    beside : modes that were measured and not fitted; of these the frequencies count
-    suspects : errors beside those of the error model
-    pairs : directions of pairs of modes that were measured
+    beside : modes that were measured but not fitted, whose frequencies are included
+    suspects : errors in addition to those of the error model
+    pairs : measured directions of pairs of modes
     """
     whole = _with_beside(problem, beside)
     found = whole.anchor(z)
@@ -75,7 +75,7 @@ def checked_data(
     else:
         gains = _under(gains, [np.zeros(0)] * len(turned), pulls.size)
     return CheckedData(
-        # priors that are not flat are data of their own
+        # priors that are not uniform count as data
         np.concatenate([r[:n], [row.residual for _, row in turned], pulls]),
         np.concatenate([J[:n], *(row.slopes[None] for _, row in turned), pull_rows]),
         gains,
@@ -87,7 +87,7 @@ def checked_data(
 
 
 def _under(gains: FloatArray, rows: Sequence[FloatArray], n_zero: int) -> FloatArray:
-    """Return gains with more rows, filled up with zeros, and rows of zeros."""
+    """Return gains with further rows, filled with zeros, and rows of zeros."""
     filled = [np.pad(row, (0, gains.shape[1] - row.size))[None] for row in rows]
     return np.concatenate([gains, *filled, np.zeros((n_zero, gains.shape[1]))])
 

@@ -1,12 +1,12 @@
-r"""What a fitted model cannot explain, and which error would explain it.
+r"""Data that a fitted model cannot explain, and errors of the model that would explain them.
 
-About the best fit, residuals r of all measured data, whitened by what is measured, follow
+About the best fit, residuals r of all measured data, whitened by the measurement uncertainty, follow
 
 .. math:: r \sim N(0, K), \quad K = I + ΓΓ^T + J P^{-1} J^T, \qquad W = K^{-1}.
 
-A datum left out is missed by :math:`(Wr)_i/W_{ii}` with variance :math:`1/W_{ii}` (Rasmussen & Williams 2006,
-5.12), whether it was fitted or not. An error γ of unknown size takes :math:`(γ^T W r)^2/γ^T W γ` off χ²; of
-a suspect that is asked for by its name this is a test of its own. The directions of pairs are data, too.
+The prediction of a datum from all others has the error :math:`(Wr)_i/W_{ii}` with variance :math:`1/W_{ii}`
+(Rasmussen & Williams 2006, 5.12), whether it was fitted or not. An error γ of unknown size reduces χ² by
+:math:`(γ^T W r)^2/γ^T W γ`; for each suspect this is a separate test. The directions of pairs are data, too.
 """
 
 from __future__ import annotations
@@ -29,32 +29,32 @@ from jackettwin.updating.model_error.pair_directions import PairDirection
 from jackettwin.updating.problem import Problem
 
 _MOST = 3
-"""Explanations that are named."""
+"""Largest number of explanations that are named."""
 _LARGEST = 8.0
-"""Standard deviations of a tolerance beyond which it is no explanation: nor does the first order hold."""
+"""Standard deviations of a tolerance above which it is no explanation, and the linearisation is not valid."""
 _WORTH = 4.0
-"""χ² that an explanation takes off to be one: two standard deviations."""
+"""Smallest reduction of χ² by an explanation: two standard deviations."""
 _SURELY = float(ndtri(0.9))
-"""Standard deviations beyond the limit of what is objected to nine times in ten."""
+"""Standard deviations beyond the limit at which an error is revealed with a probability of 0.9."""
 _TOLD = 1e-9
-"""Precision, in that of the measurement, below which the others say nothing of a datum."""
+"""Relative precision of a prediction from other data below which these do not determine a datum."""
 
 
 @dataclass(frozen=True)
 class DatumCheck:
-    """A measured value beside what all the others say of it.
+    """A measured value compared with its prediction from all other data.
 
     Attributes
     ----------
     datum : str
-        ``f1``, ``ζ4``; ``α1`` of the direction in which the lower mode of a pair moves.
+        ``f1``, ``ζ4``; ``α1`` for the direction in which the lower mode of a pair moves.
     miss : float
-        Measured over predicted, less one; of a direction measured less predicted [rad].
+        Ratio of measured to predicted value, minus one; for a direction the difference [rad].
     std : float
-        Standard deviation of that: prediction and measurement.
+        Standard deviation of ``miss``, from prediction and measurement.
     fitted : bool
     objects : bool
-        Whether chance does not explain it, among so many data.
+        Whether it exceeds chance, given the number of data.
     """
 
     datum: str
@@ -65,23 +65,23 @@ class DatumCheck:
 
     @property
     def is_direction(self) -> bool:
-        """Whether it is an angle, not a share."""
+        """Whether ``miss`` is an angle, not a ratio."""
         return self.datum.startswith("α")
 
 
 @dataclass(frozen=True)
 class Explanation:
-    """An error that would explain what the model does not.
+    """An error of the model that would explain the deviations.
 
     Attributes
     ----------
     tolerance : Tolerance
     size : float
-        In the tolerance's unit.
+        Size of the error, in the tolerance's unit.
     stds : float
         The same in its standard deviations.
     gain : float
-        χ² that it takes off.
+        Reduction of χ².
     """
 
     tolerance: Tolerance
@@ -92,16 +92,16 @@ class Explanation:
 
 @dataclass(frozen=True, eq=False)
 class Unseen:
-    """A suspect that at its size would be objected to less than nine times in ten.
+    """A suspected error that the data would reveal with a probability below 0.9.
 
     Attributes
     ----------
     tolerance : Tolerance
     seen_from : float
-        Size in its unit from which it would be nine times in ten or more, as far as the first order holds;
-        infinite if it moves nothing.
+        Size in its unit from which this probability is 0.9 or more, to first order; infinite if it changes
+        no datum.
     effect : (n_parameters,)
-        By how much ln θ is another than it is said to be, where the suspect is true at its size.
+        Difference of ln θ from its stated value if the error is present at its size.
     """
 
     tolerance: Tolerance
@@ -111,19 +111,19 @@ class Unseen:
 
 @dataclass(frozen=True)
 class Objection:
-    """What a fitted model does not explain.
+    """Deviations that a fitted model does not explain.
 
     Attributes
     ----------
     checks : tuple of DatumCheck
-        Of every measured value, fitted or not.
+        Checks of all measured values, fitted or not.
     chi2, freedom, probability : float
-        Of all values that are fitted, and of frequencies and directions that are not.
+        χ² of all fitted values and of the frequencies and directions that are not fitted.
     explanations : tuple of Explanation
-        The best first; empty where nothing is to be explained.
+        The best first; empty if there is nothing to explain.
     unseen : tuple of Unseen
     suspected : tuple of Tolerance
-        Suspects that the data ask for, beyond chance.
+        Suspects whose effect is in the data, beyond chance.
     shapes : tuple of ShapeCheck
         Of modes whose shape was measured.
     orders : tuple of OrderCheck
@@ -142,7 +142,7 @@ class Objection:
 
     @property
     def objects(self) -> bool:
-        """Whether chance does not explain what was measured."""
+        """Whether the deviations exceed chance."""
         each = [check.objects for checks in (self.checks, self.shapes, self.orders) for check in checks]
         return self.probability < UNLIKELY or any(each) or bool(self.suspected)
 
@@ -154,13 +154,13 @@ def objection(
     suspects: Sequence[Direction] = (),
     pairs: Sequence[PairDirection] = (),
 ) -> Objection | None:
-    """Return what a problem's best fit (d,) of ln θ leaves unexplained; None without standard deviations.
+    """Return the unexplained deviations of a best fit (d,) of ln θ; None without standard deviations.
 
     Parameters
     ----------
-    beside : modes that were measured and not fitted; of these the frequencies are checked
-    suspects : errors beside those of the error model that may explain it
-    pairs : directions of pairs of modes that were measured
+    beside : modes that were measured but not fitted, whose frequencies are checked
+    suspects : possible errors in addition to those of the error model
+    pairs : measured directions of pairs of modes
     """
     if not problem.weighted:
         return None
@@ -206,7 +206,7 @@ def _left(rows: CheckedData, precision: FloatArray, without: str = "") -> tuple[
 def _suspects(
     rows: CheckedData, precision: FloatArray, limit: float
 ) -> tuple[tuple[Unseen, ...], tuple[Tolerance, ...]]:
-    """Return the suspects that would not be seen at their size, wherever, and those that are asked for."""
+    """Return the suspected errors that would not be revealed at any place, and those to be explained."""
     unseen: dict[str, Unseen] = {}
     suspected: dict[str, Tolerance] = {}
     _, moved = _left(rows, precision)
@@ -226,13 +226,13 @@ def _suspects(
 def _checks(
     rows: CheckedData, fitted: set[str], W: FloatArray, Wr: FloatArray, limit: float
 ) -> tuple[DatumCheck, ...]:
-    """Return each datum beside what all the others say of it."""
+    """Return each datum with its prediction from all others."""
     own = np.diag(W)
     judged = [i for i in range(len(rows.names)) if own[i] > _TOLD and np.isfinite(rows.scale[i])]
     stray = _strays(W, Wr, judged, limit)
     checks = []
     for i in judged:
-        # residuals are of the model over the measured
+        # residuals are of model over measured values
         miss, name = -float(Wr[i] / own[i] * rows.scale[i]), rows.names[i]
         by = miss if name.startswith("α") else exp(min(miss, 50.0)) - 1.0
         std = float(rows.scale[i] / np.sqrt(own[i]))
@@ -241,9 +241,9 @@ def _checks(
 
 
 def _strays(W: FloatArray, Wr: FloatArray, judged: Sequence[int], limit: float) -> set[int]:
-    """Return the data that the others do not allow: the worst first, without it the next.
+    """Return the data that contradict the others: the worst, then the next worst without it, and so on.
 
-    One datum far off makes others look wrong that were fitted together with it.
+    One outlier makes other data that were fitted with it appear wrong.
     """
     stray: set[int] = set()
     while left := [i for i in judged if i not in stray and W[i, i] > _TOLD]:
@@ -258,7 +258,7 @@ def _strays(W: FloatArray, Wr: FloatArray, judged: Sequence[int], limit: float) 
 
 
 def _explanations(columns: list[Column], W: FloatArray, Wr: FloatArray) -> tuple[Explanation, ...]:
-    """Return the single errors that take most off χ², each name once."""
+    """Return the single errors that reduce χ² most, each name once."""
     best: dict[str, Explanation] = {}
     for direction, gamma in columns:
         seen = float(gamma @ W @ gamma)

@@ -1,11 +1,12 @@
-r"""How poles move with what drawings do not fix, to first order.
+r"""First-order effects of the structure's tolerances on poles.
 
 A tolerance φ changes the mass and the stiffness of the structure by φ∂M and φ∂K, and a pole by
 
 .. math:: \frac{∂λ}{∂φ} = -\frac{x^T [(λ^2 + aλ)\,∂M + (1 + bλ)\,∂K]\, x}{x^T F'(λ)\, x},
 
-F symmetric (Adhikari 2001): the slope that :func:`jackettwin.response.numbered_poles` has for the parameters
-of the supports, here from the shapes that it returns, for matrices that are spread over the whole structure.
+for symmetric F (Adhikari 2001). It is computed from the shapes that
+:func:`jackettwin.response.numbered_poles` returns, for matrices that are distributed over the whole
+structure.
 """
 
 from __future__ import annotations
@@ -22,28 +23,28 @@ from jackettwin.soil import law_slope, law_stiffness
 from jackettwin.structure import Assembly
 
 _SPLIT = 0.5
-"""Relative distance of squares within which a mode and a mass on springs split, so that the mass no longer
-counts by x/(1 − x), x = (ω/ω_b)², which has no bound there, but by x(1 − x)/((1 − x)² + 0.5²)."""
+"""Regularisation near the resonance of a mass on springs: its effect is x(1 − x)/((1 − x)² + 0.5²), x =
+(ω/ω_b)², instead of x/(1 − x), which is unbounded there."""
 
 
 @dataclass(frozen=True)
 class Tolerance:
-    """Something that drawings, weighing or the sea leave open.
+    """A property of the structure that drawings, weighing or the sea leave uncertain.
 
     Attributes
     ----------
     name : str
-        As a twin file calls it, ``rna_mass``.
+        Name in a twin file, e.g. ``rna_mass``.
     words : str
-        As a sentence calls it, "mass of the rotor–nacelle assembly".
+        Name in sentences, e.g. "mass of the rotor–nacelle assembly".
     std : float
-        Standard deviation about what the twin states.
+        Standard deviation about the value in the twin.
     unit : str
-        Of ``std``; ``-`` for a share of what is stated.
+        Unit of ``std``; ``-`` for a share of the stated value.
     source : str
-        Where the size comes from.
+        Source of the size.
     settled_by : str
-        What would settle it, as an imperative.
+        Action that would determine it, as an imperative.
     beyond : str
         Of a suspect, the tolerance that allows for some of the same: whether the data ask for the suspect, or
         would show it, is judged as if nobody had allowed for it.
@@ -60,20 +61,20 @@ class Tolerance:
 
 @dataclass(frozen=True)
 class Direction:
-    """What one standard deviation of a tolerance does to a structure.
+    """Change of a structure due to one standard deviation of a tolerance.
 
     Attributes
     ----------
-    mass, stiffness : (assembly.n_dof, assembly.n_dof), or None where nothing changes
+    mass, stiffness : (assembly.n_dof, assembly.n_dof), or None without a change
     feet : (n_feet, 6), optional
-        Share by which the stiffness of each foot's DOFs changes, in the order of the reaction nodes.
+        Relative change of the stiffness of each foot's DOFs, in the order of the reaction nodes.
     loss_growth : float
-        Power p of the frequency by which the ground's loss grows faster than its law says. What is not lost
-        at the frequencies below stiffens the less (Kramers and Kronig, for slow changes: d ln Re D/d ln ω =
-        2/π · Im D/Re D), so that ∂D = p (i − 2/π) Im D ln(ω/ω₁), ω₁ the first pinned frequency.
+        Power p of the frequency by which the ground's loss increases in addition to its law. The storage
+        stiffness changes accordingly (Kramers–Kronig relation for slow changes: d ln Re D/d ln ω = 2/π · Im
+        D/Re D), so that ∂D = p (i − 2/π) Im D ln(ω/ω₁), with ω₁ the first pinned frequency.
     resonance_hz : float
-        Where the mass sits on springs of its own, as blades do: below their frequency it counts as if there
-        were more of it, above as if it were missing. Zero of a mass that moves along.
+        Resonance frequency of a mass on springs, as of blades: below it the effective mass is larger, above
+        it negative. Zero for a rigidly attached mass.
     """
 
     tolerance: Tolerance
@@ -86,16 +87,16 @@ class Direction:
 
 @dataclass(frozen=True, eq=False)
 class ToleranceDirections:
-    """ToleranceDirections on a condensed structure.
+    """Effects of tolerances on a condensed structure.
 
     Attributes
     ----------
     assembly : Assembly
     condensed : Condensed
-        Of that assembly.
+        Condensed model of that assembly.
     each : tuple of Direction
     n_soil : int
-        How many of the condensed model's groups, the first ones, are the ground's.
+        Number of leading groups of the condensed model that belong to the ground.
     """
 
     assembly: Assembly
@@ -110,15 +111,15 @@ class ToleranceDirections:
 
     @cached_property
     def _upper(self) -> tuple[IntArray, IntArray, FloatArray]:
-        """Rows and columns of an upper triangle, and how often each entry counts in a quadratic form."""
+        """Rows and columns of an upper triangle, and the factor of each entry in a quadratic form."""
         i, j = np.triu_indices(self.condensed.n)
         return i, j, np.where(i == j, 1.0, 2.0)
 
     def _columns(self, mode: int) -> FloatArray:
         """Return M, the supports' patterns, then ∂M, ∂K and the feet's patterns on a mode's coordinates.
 
-        The coordinates' shapes are those at the mode's frequency on pinned feet, which is near all of its
-        poles, so that the truncated modes move along; (n(n + 1)/2, n_columns).
+        Shape (n(n + 1)/2, n_columns). The coordinates' shapes include truncated modes at the mode's frequency
+        on pinned feet, which is near all of its poles.
         """
         if mode not in self._patterns:
             condensed = self.condensed
@@ -141,16 +142,16 @@ class ToleranceDirections:
         return self._patterns[mode]
 
     def _on_feet(self, shares: FloatArray) -> list[FloatArray]:
-        """Return by how much feet that change by these shares change the patterns of the support's groups."""
+        """Return the changes of the support groups' patterns due to relative changes of the feet."""
         condensed, factor = self.condensed, np.zeros(self.condensed.n)
         for node, share in zip(self.assembly.structure.reaction_nodes, shares, strict=True):
             for dof, own in zip(self.assembly.dofs(node), share, strict=True):
                 factor[np.flatnonzero(condensed.boundary == dof)] = own
-        # a foot's pattern touches its own DOFs alone
+        # a foot's pattern acts on the DOFs of that foot only
         return [group.S * 0.5 * (factor[:, None] + factor[None, :]) for group in condensed.pencil.groups]
 
     def slopes(self, found: NumberedModes) -> ComplexArray:
-        """Return dλ/dφ (n_sets, n_modes, n_directions), each φ in its standard deviations."""
+        """Return dλ/dφ (n_sets, n_modes, n_directions), with φ in standard deviations."""
         i, j, _ = self._upper
         x = found.shapes
         forms = self._forms(found.modes, x[:, :, i] * x[:, :, j])
@@ -158,13 +159,13 @@ class ToleranceDirections:
         return np.asarray(-above / below[..., None])
 
     def coupling(self, found: NumberedModes) -> ComplexArray:
-        """Return what each φ adds to the rate between two modes, x₂ᵀ∂F x₁/x₂ᵀF′x₂ (n_sets, n_directions).
+        """Return the coupling of two modes by each φ, x₂ᵀ∂F x₁/x₂ᵀF′x₂ (n_sets, n_directions).
 
         Both forms are taken at the mean of the two poles: the modes of a pair are close.
 
         Parameters
         ----------
-        found : of two modes, x₁ and x₂
+        found : two modes, x₁ and x₂
         """
         i, j, _ = self._upper
         first, second = found.shapes[:, 0], found.shapes[:, 1]
@@ -185,7 +186,7 @@ class ToleranceDirections:
         return forms
 
     def _on_springs(self, pole: ComplexArray) -> FloatArray:
-        """Return by how much each mass counts at poles, (n_sets, n_modes, n_directions)."""
+        """Return the factor on each mass at poles, (n_sets, n_modes, n_directions)."""
         own = 2.0 * pi * np.array([one.resonance_hz or np.inf for one in self.each])
         x = (np.abs(pole)[..., None] / own) ** 2
         return np.where(np.isinf(own), 1.0, x * (1.0 - x) / ((1.0 - x) ** 2 + _SPLIT**2))

@@ -1,4 +1,4 @@
-"""What a model may miss: tolerances that all modes feel together, and a small remainder of each mode."""
+"""Errors of a model: tolerances that affect all modes together, and a small remainder of each mode."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from jackettwin.updating.model_error.directions import Tolerance, ToleranceDirec
 
 @dataclass(frozen=True, eq=False)
 class DrawnErrors:
-    """Errors of a model drawn with the data.
+    """Draws of the model's errors given the data.
 
     Attributes
     ----------
-    errors : (n_sets, n) in their standard deviations as they are said to be; NaN where a mode is lost
+    errors : (n_sets, n) errors in their stated standard deviations; NaN where a mode is lost
         Tolerances first, then the remainders of the data.
-    scale : (n_sets,) by how much all of them are larger
+    scale : (n_sets,) common factor on all standard deviations
     """
 
     errors: FloatArray
@@ -31,23 +31,23 @@ class DrawnErrors:
 
 @dataclass(frozen=True, eq=False)
 class ErrorModel:
-    """Errors of a model, all independent and counted in their standard deviations.
+    """Errors of a model, independent and in units of their standard deviations.
 
     The first are the tolerances of ``directions``, the others a remainder of each datum by its name, ``f1``
-    or ``ζ4``. Operating states share them all: more records do not average them out. So may turbines of one
-    design: what is drawn wrong is one unknown of all of them, by the tolerance's name.
+    or ``ζ4``. They are common to all operating states, so that more records do not average them out.
+    Tolerances may also be common to turbines of one design, by their name.
 
     Attributes
     ----------
     directions : ToleranceDirections
     remainder : {datum: standard deviation of its logarithm}
-        Of data whose remainder differs from the usual one.
+        Remainders that differ from the usual one.
     usual_frequency, usual_damping : float
         Standard deviation of the logarithm of any other mode's frequency and damping ratio.
     scales : tuple of float
-        By how much all of these may be larger together than they are said to be, each equally likely: the
-        sizes are judgements themselves. The posterior and the predictions weigh them by the data; χ², the
-        search and the objections take the sizes as they are said.
+        Equally likely common factors on all of these standard deviations, which are themselves estimates. The
+        posterior and the predictions weight the factors by the data; χ², the search and the objections use
+        the stated sizes.
     """
 
     directions: ToleranceDirections
@@ -58,11 +58,11 @@ class ErrorModel:
 
     @property
     def tolerances(self) -> tuple[Tolerance, ...]:
-        """What the directions are of, in their order."""
+        """The tolerances of the directions, in their order."""
         return tuple(one.tolerance for one in self.directions.each)
 
     def on(self, condensed: Condensed) -> ErrorModel:
-        """Return the same errors on another condensed model of the structure: one that reaches higher."""
+        """Return the same errors on another condensed model of the structure, with a wider band."""
         if condensed is self.directions.condensed:
             return self
         return replace(self, directions=replace(self.directions, condensed=condensed))
@@ -77,8 +77,8 @@ class ErrorModel:
 
         Parameters
         ----------
-        found : of the residuals' modes
-        data : names that have a remainder of their own, those of other operating states among them
+        found : the residuals' modes
+        data : names of all data with a remainder, including those of other operating states
         """
         common = residuals.gains(found.poles, self.directions.slopes(found))
         own = np.zeros((residuals.count, len(data)))
@@ -90,13 +90,13 @@ class ErrorModel:
     def factors(
         self, found: NumberedModes, drawn: DrawnErrors, data: tuple[str, ...], rng: np.random.Generator
     ) -> FloatArray:
-        """Return what drawn errors multiply frequencies and damping ratios by, (2, n_sets, n_modes).
+        """Return the factors of drawn errors on frequencies and damping ratios, (2, n_sets, n_modes).
 
         Parameters
         ----------
-        found : of any modes; one without data draws its remainder anew
-        drawn : n_sets of :meth:`jackettwin.updating.Problem.drawn_errors`
-        data : whose remainders follow the tolerances
+        found : any modes; the remainder of a mode without data is drawn here
+        drawn : n_sets draws of :meth:`jackettwin.updating.Problem.drawn_errors`
+        data : names of the data whose remainders follow the tolerances
         """
         n, errors = len(self.tolerances), drawn.errors
         shift = np.einsum("vkmn,kn->vkm", self.shifts(found), errors[:, :n])

@@ -1,4 +1,4 @@
-"""How much each tolerance moves each parameter, what the data say of it, and what settling it would give."""
+"""Effect of each tolerance on each parameter, its posterior, and the gain from determining it."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from jackettwin.updating.model_error.marginal import covariance
 from jackettwin.updating.problem import Problem
 
 _ALIKE = 0.95
-"""Cosine between what two tolerances do to the data, the parameters refitted, from which the data cannot tell
-them apart: 0.95 leaves a third of either's effect."""
+"""Cosine between the effects of two tolerances on the data, after refitting the parameters, above which the
+data do not distinguish them: at 0.95 a third of either's effect is different."""
 _FELT = 0.05
-"""Standard deviations of the data below which a tolerance moves nothing, so that it is like no other."""
+"""Effect on the data, in their standard deviations, below which a tolerance is not compared with others."""
 
 
 @dataclass(frozen=True)
 class Influence:
-    """One tolerance in one fit.
+    """Influence of one tolerance in one fit.
 
     Attributes
     ----------
     tolerance : Tolerance
     mean, std : float
-        After the data, in its standard deviations before; of several unknowns that are alike, each foot's,
-        the one that the data say most of.
+        Posterior, in units of the prior standard deviation; of several unknowns with one name (one per foot),
+        the one that the data determine best.
     effect : (n_parameters,)
-        Change of ln θ where it is one standard deviation more than stated.
+        Change of ln θ due to one standard deviation.
     settled : (n_parameters,)
-        Standard deviation of ln θ if it were known, over that now.
-    alike : names of tolerances that the data cannot tell it from: only their sum is known
+        Ratio of the standard deviation of ln θ, if the tolerance were known, to the present one.
+    alike : names of tolerances that the data do not distinguish from it
     """
 
     tolerance: Tolerance
@@ -46,7 +46,8 @@ class Influence:
 def influences(problem: Problem, z: FloatArray) -> tuple[Influence, ...]:
     """Return the influence of every tolerance of a problem's error model about a point (d,) of ln θ.
 
-    To first order in parameters and tolerances. Empty without an error model, or where a mode is lost.
+    It is of first order in parameters and tolerances. The result is empty without an error model or if a mode
+    is lost.
     """
     found = None if problem.error_model is None else problem.anchor(z)
     if problem.error_model is None or found is None:
@@ -83,7 +84,7 @@ def influences(problem: Problem, z: FloatArray) -> tuple[Influence, ...]:
 
 
 def _deviation(gains: FloatArray, J: FloatArray, precision: FloatArray) -> FloatArray:
-    """Return the standard deviation (d,) of ln θ with some errors open."""
+    """Return the standard deviation (d,) of ln θ with some errors unknown."""
     information = J.T @ np.linalg.solve(covariance(gains), J) + precision
     return np.asarray(np.sqrt(np.diag(np.linalg.inv(information))))
 
@@ -91,9 +92,9 @@ def _deviation(gains: FloatArray, J: FloatArray, precision: FloatArray) -> Float
 def errors_after(
     gains: FloatArray, J: FloatArray, precision: FloatArray, r: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return mean and standard deviation of every error after the data, parameters and errors together.
+    """Return posterior mean and standard deviation of every error, with parameters and errors unknown.
 
-    To first order: residuals r + J δz + Γφ are standard normal, δz has a precision before, φ variance one.
+    To first order, residuals r + J δz + Γφ are standard normal, δz has a prior precision and φ variance one.
 
     Parameters
     ----------
@@ -111,12 +112,12 @@ def errors_after(
 
 
 def _seen(gains: FloatArray, J: FloatArray, precision: FloatArray) -> FloatArray:
-    """Return what the tolerances do to the data once the parameters are refitted, (n_data, n)."""
+    """Return the effects of the tolerances on the data after refitting the parameters, (n_data, n)."""
     return np.asarray(gains - J @ np.linalg.solve(J.T @ J + precision, J.T @ gains))
 
 
 def _alike(seen: FloatArray, own: list[int]) -> list[int]:
-    """Return the tolerances that act on the data as these do."""
+    """Return the tolerances with the same effect on the data as these."""
     size = np.linalg.norm(seen, axis=0)
     felt = size > _FELT
     cosine = np.abs(seen.T @ seen) / np.outer(np.maximum(size, 1e-12), np.maximum(size, 1e-12))

@@ -1,13 +1,14 @@
-r"""Errors that data share, marginalised: normal unknowns φ that enter residuals linearly.
+r"""Marginalisation of errors that are common to data: normal unknowns φ that enter residuals linearly.
 
-With residuals r whitened by what is measured, and their derivatives Γ by independent φ of variance one,
+With residuals r whitened by the measurement uncertainty, and their derivatives Γ by independent φ of variance
+one,
 
 .. math:: r + Γφ \sim N(0, I) \quad\Rightarrow\quad r \sim N(0, A), \qquad A = I + ΓΓ^T,
 
 .. math:: φ \mid r \sim N(-Γ^T A^{-1} r,\; I - Γ^T A^{-1} Γ).
 
-How large the errors are is itself a judgement: with scales s that are equally likely, r is a mixture of
-N(0, I + s²ΓΓᵀ), and data that pull the errors to their ends make the larger scale likely.
+The sizes of the errors are estimates themselves: with equally likely scales s, r is a mixture of N(0, I +
+s²ΓΓᵀ), and data that need large errors make a larger scale likely.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ def covariance(gains: FloatArray) -> FloatArray:
 
 
 def inverse_root(gains: FloatArray) -> FloatArray:
-    """Return the symmetric A^(−1/2) (n_data, n_data): so whitened, a residual stays nearest to its datum."""
+    """Return the symmetric A^(−1/2) (n_data, n_data), which changes residuals least of all whitenings."""
     w, v = np.linalg.eigh(covariance(gains))
     return np.asarray((v / np.sqrt(w)) @ v.T)
 
@@ -36,7 +37,7 @@ def log_density(r: FloatArray, gains: FloatArray, scales: Sequence[float] = (1.0
 
     Parameters
     ----------
-    scales : of all errors together, equally likely
+    scales : equally likely common scales of all errors
     """
     each = _log_densities(r, gains, scales)
     return np.asarray(logsumexp(each, axis=0) - np.log(len(scales)))
@@ -68,7 +69,7 @@ def errors_given(r: FloatArray, gains: FloatArray) -> tuple[FloatArray, FloatArr
 def drawn_scales(
     r: FloatArray, gains: FloatArray, scales: Sequence[float], rng: np.random.Generator
 ) -> FloatArray:
-    """Return one scale (n_sets,) for each of many residuals (n_sets, n_data), as likely as these make it."""
+    """Return one scale (n_sets,) drawn for each of many residuals (n_sets, n_data)."""
     log_p = _log_densities(r, gains, scales)
     share = np.cumsum(np.exp(log_p - logsumexp(log_p, axis=0)), axis=0)
     which = (rng.random(len(r)) > share[:-1]).sum(axis=0)

@@ -1,14 +1,14 @@
-r"""In which direction the lower mode of a bending pair moves, beside where the model has it.
+r"""Direction of the lower mode of a bending pair, measured and in the model.
 
 Two close modes are the axes of a symmetric 2 × 2 matrix of frequencies. In the model's axes its entry off the
 diagonal is
 
 .. math:: e = \tfrac12 \frac{f_2 - f_1}{f} \sin 2(α - α_0),
 
-linear in what disturbs the structure however close the two frequencies are, unlike the angle α itself: to
-first order :math:`e = g\,\mathrm{Re}(κ/λ)`, κ of :meth:`ToleranceDirections.coupling` and g the turn of the
-lower mode with the upper one added. One foot softer than the others turns a pair; what is alike in all
-directions does not.
+which is linear in a disturbance of the structure however close the two frequencies are, unlike the angle α:
+to first order :math:`e = g\,\mathrm{Re}(κ/λ)`, with κ of :meth:`ToleranceDirections.coupling` and g the
+rotation of the lower mode per unit of the upper one added. A foot of lower stiffness rotates a pair; a change
+that is equal in all directions does not.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from jackettwin.updating.model_error.directions import ToleranceDirections
 from jackettwin.updating.problem import Problem
 
 CLOSE = 0.03
-"""Modes farther apart than this are no pair: other modes turn them as much as each other. Second pairs of
-jackets lie 5 to 20 % apart, first ones 0.5 to 2 %."""
+"""Relative difference of frequencies above which modes are no pair, since other modes then rotate them as
+well. Second pairs of jackets differ by 5 to 20 %, first ones by 0.5 to 2 %."""
 _STEP = 0.01
-"""Of ln θ, for the derivative of e: the turn of a symmetric jacket's pairs with its ground is nothing."""
+"""Step of ln θ for the derivative of e, which is zero for a symmetric jacket."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,12 +36,12 @@ class PairDirection:
     Attributes
     ----------
     modes : (int, int)
-        Their numbers in the model, in any order.
+        Mode numbers in the model, in any order.
     angle_rad, std_rad : float
-        From x towards y, and its standard deviation.
+        Angle from x towards y, and its standard deviation.
     apart : float
         Difference of the two measured frequencies over their mean.
-    motion : (n_places, 2, assembly.n_dof) horizontal motion of the places that show it
+    motion : (n_places, 2, assembly.n_dof) horizontal motion of the measured places
     """
 
     modes: tuple[int, int]
@@ -52,20 +52,20 @@ class PairDirection:
 
     @property
     def datum(self) -> str:
-        """``α1``: by the lower of the two numbers."""
+        """Name of the datum, ``α1``, by the lower of the two numbers."""
         return f"α{min(self.modes)}"
 
 
 @dataclass(frozen=True, eq=False)
 class DirectionRow:
-    """A pair's direction as one more residual: e of the model less e measured, over its deviation.
+    """A pair's direction as a residual: error of e in the model over its standard deviation.
 
     Attributes
     ----------
     residual : float
-    slopes : (n_parameters,) by ln θ
+    slopes : (n_parameters,) derivatives by ln θ
     scale : float
-        Angle [rad] for one of the residual.
+        Angle [rad] per unit of residual.
     """
 
     residual: float
@@ -76,7 +76,7 @@ class DirectionRow:
 def direction_row(problem: Problem, z: FloatArray, pair: PairDirection) -> DirectionRow | None:
     """Return the residual of a pair's direction at a point (d,) of ln θ.
 
-    None where a mode is lost, and of modes that are no pair, measured or modelled.
+    None if a mode is lost, or if the modes are no pair in measurement or model.
     """
     std = _std(problem, pair)
     at = np.concatenate([z[None], z + _STEP * np.eye(z.size)])
@@ -107,10 +107,10 @@ def direction_gains(
 
 
 def _std(problem: Problem, pair: PairDirection) -> float:
-    """Return the standard deviation of e: of what is measured, and of a remainder of the model.
+    """Return the standard deviation of e from the measurement and the model's remainder.
 
-    A remainder that is as large in f₁ and f₂ and prefers no direction is as large off the diagonal as half
-    of their difference: over √2.
+    For a remainder that is equal for f₁ and f₂ and isotropic, the entry off the diagonal has the standard
+    deviation of half their difference, 1/√2 of that of one frequency.
     """
     errors = problem.error_model
     remainder = 0.0 if errors is None else errors.own(f"f{pair.modes[0]}")
@@ -127,7 +127,7 @@ def _ordered(found: NumberedModes) -> tuple[ComplexArray, ComplexArray]:
 def _lower(
     problem: Problem, pair: PairDirection, poles: ComplexArray, shapes: ComplexArray
 ) -> tuple[float, float]:
-    """Return the direction of the lower of two modes [rad], and how far the upper one turns it."""
+    """Return the direction of the lower of two modes [rad], and its rotation per unit of the upper one."""
     expand = problem.model.condensed.expand
     low, high = (pair.motion @ expand(pole, x) for pole, x in zip(poles, shapes, strict=True))
     angle, _ = principal_direction(low)

@@ -1,8 +1,8 @@
-"""Errors that turbines of one design share: what drawings have wrong, they have wrong on every one of them.
+"""Errors that are common to turbines of one design, such as errors of their drawings.
 
-What is weighed, grown over or driven at one place stays each turbine's own. The derivatives Γ of all
-residuals are stacked with one column for a shared error and one for each turbine's own, so that every formula
-of :mod:`jackettwin.updating.model_error.marginal` holds for the farm as it does for one turbine.
+Errors of weighing, marine growth or pile driving are separate for each turbine. The derivatives Γ of all
+residuals are stacked with one column for a common error and one per turbine for separate ones, so that the
+formulas of :mod:`jackettwin.updating.model_error.marginal` apply to a farm as to one turbine.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from jackettwin.updating.problem import Problem
 
 @dataclass(frozen=True, eq=False)
 class StackedErrors:
-    """Errors of the models of several turbines, all independent and of variance one.
+    """Errors of the models of several turbines, independent and of variance one.
 
     Attributes
     ----------
-    gains : (n_data of all, n_errors) derivatives Γ of all residuals, turbine after turbine
-    names : tuple of (turbine, error), the turbine None of an error that all share
+    gains : (n_all_data, n_errors) derivatives Γ of all residuals, turbine after turbine
+    names : tuple of (turbine, error); the turbine is None for a common error
     """
 
     gains: FloatArray
@@ -36,10 +36,10 @@ class StackedErrors:
 def stacked(
     gains: Mapping[str, FloatArray], names: Mapping[str, Sequence[str]], shared: Collection[str]
 ) -> StackedErrors:
-    """Return the errors of several turbines, those of ``shared`` names as one column each.
+    """Return the errors of several turbines, with one column for each common error (``shared``).
 
-    An error of several columns of one name, of each foot, is shared column by column. A turbine may lack a
-    shared error.
+    An error with several columns of one name (one per foot) is common column by column. A turbine need not
+    have all common errors.
 
     Parameters
     ----------
@@ -66,16 +66,16 @@ def stacked(
 def shared_errors(
     problems: Mapping[str, Problem], z: Mapping[str, FloatArray], shared: Collection[str]
 ) -> dict[str, tuple[float, float]]:
-    """Return mean and standard deviation of each shared error after the data of all turbines.
+    """Return posterior mean and standard deviation of each common error given the data of all turbines.
 
-    In its standard deviations before, about each turbine's best fit, its own parameters and errors open; to
-    first order. Of an error of several columns, the best known.
+    They are in units of the prior standard deviation and of first order about each turbine's best fit, with
+    its parameters and separate errors unknown. For an error with several columns, the best known is returned.
 
     Parameters
     ----------
     problems : {turbine: its problem, with an error model}
     z : {turbine: (d,) ln θ of its best fit}
-    shared : names of tolerances, or of remainders (``f1``), that are one unknown of all turbines
+    shared : names of tolerances, or of remainders (``f1``), that are common to all turbines
 
     Raises
     ------

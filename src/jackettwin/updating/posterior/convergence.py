@@ -1,4 +1,4 @@
-"""Whether draws are a posterior: rank-normalised split R-hat and effective sample sizes, by ArviZ."""
+"""Convergence of draws: rank-normalised split R-hat and effective sample sizes, by ArviZ."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from jackettwin.arrays import FloatArray
 
 LARGEST_RHAT = 1.1
 SMALLEST_ESS = 50.0
-"""Effective draws below which a 90 % interval is noise."""
+"""Number of effective draws below which a 90 % interval is unreliable."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Convergence:
 
     @property
     def problem(self) -> str | None:
-        """What is wrong in a few words; None if nothing is."""
+        """The problem in a few words; None if there is none."""
         if not float(self.rhat.max()) <= LARGEST_RHAT:
             return f"R-hat {self.rhat.max():.2f}"
         least = min(float(self.ess_bulk.min()), float(self.ess_tail.min()))

@@ -1,15 +1,16 @@
 r"""Evidence of a law from draws of its posterior, by bridge sampling.
 
-With draws θ from the posterior and :math:`\tilde θ` from a density q that is known, any Z that solves
+With draws θ from the posterior and :math:`\tilde θ` from a known density q, the Z that solves
 
 .. math::
     Z = \frac{\frac{1}{m}\sum_j L p(\tilde θ_j) / [s_1 L p(\tilde θ_j) + s_2 Z q(\tilde θ_j)]}
              {\frac{1}{n}\sum_i q(θ_i) / [s_1 L p(θ_i) + s_2 Z q(θ_i)]}
 
-is consistent, with the least variance of all bridges if s₁ : s₂ are as the numbers of independent draws (Meng
-& Wong 1996, section 4; Gronau et al. 2017). Neither density need cover the other's tails. Here q is a mixture
-of normals on other runs' draws, each as wide as the draws around it (West 1993; Givens & Raftery 1996), which
-follows bent valleys and separate hills. What lies beyond a bound has likelihood zero.
+is consistent, and has the smallest variance of all bridges if s₁ : s₂ is the ratio of the numbers of
+independent draws (Meng & Wong 1996, section 4; Gronau et al. 2017). Neither density needs to cover the tails
+of the other. Here q is a mixture of normals centred at draws of other runs, each with the covariance of the
+neighbouring draws (West 1993; Givens & Raftery 1996), which adapts to curved valleys and separate maxima. The
+likelihood outside the bounds is zero.
 """
 
 from __future__ import annotations
@@ -27,11 +28,11 @@ from jackettwin.updating.problem import NEVER
 
 _KERNELS = 100
 _NEIGHBOURS = 0.1
-"""Share of the draws that a kernel is as wide as."""
+"""Share of the draws whose covariance is that of a kernel."""
 _INDEPENDENT = 0.25
-"""Share of a run's draws counted as independent: they are the last few states of its particles."""
+"""Share of a run's draws that count as independent; draws are the last few states of its particles."""
 _FLOOR = 1e-9
-"""Least width of a kernel, in the prior's standard deviations."""
+"""Smallest width of a kernel, in the prior's standard deviations."""
 _TOLERANCE = 1e-6
 _ITERATIONS = 1000
 
@@ -45,12 +46,12 @@ def bridged_evidence(
 ) -> FloatArray:
     """Return ln Z (n_runs,) of independent runs, each bridged to a density fitted to the others' draws.
 
-    So the runs' ln Z do not share their errors, and their spread says how well the mean is known.
+    The errors of the runs' ln Z are therefore independent, and their scatter gives the uncertainty of the
+    mean.
 
     Parameters
     ----------
-    log_likelihood : ln L (n,) at points (n, d)
-        Called with as many points within the bounds as there are draws.
+    log_likelihood : function that returns ln L (n,) at points (n, d) within the bounds
     z : (n_runs, n_draws, d) draws from the posterior, at least two runs
     log_l : (n_runs, n_draws) ln L of the draws
     """
@@ -76,7 +77,7 @@ def bridge(at_draws: FloatArray, at_trial: FloatArray, *, independent: float) ->
 
     Examples
     --------
-    Where q is the posterior, every draw alone says Z.
+    If q is the posterior, every single draw gives Z.
 
     >>> round(bridge(np.full(5, -3.0), np.full(9, -3.0), independent=5.0), 6)
     -3.0
@@ -94,7 +95,7 @@ def bridge(at_draws: FloatArray, at_trial: FloatArray, *, independent: float) ->
 
 @dataclass(frozen=True)
 class Kernels:
-    """An even mixture of normals.
+    """A mixture of normals with equal weights.
 
     Attributes
     ----------
@@ -106,13 +107,13 @@ class Kernels:
     roots: FloatArray
 
     def draw(self, n: int, rng: np.random.Generator) -> FloatArray:
-        """Return draws (n, d), evenly from all kernels."""
+        """Return draws (n, d), equally many from all kernels."""
         which = np.resize(rng.permutation(len(self.centres)), n)
         steps = rng.standard_normal((n, self.centres.shape[1]))
         return np.asarray(self.centres[which] + np.einsum("nij,nj->ni", self.roots[which], steps))
 
     def evenly_with(self, other: Kernels) -> Kernels:
-        """Return the mixture of as many of these as of others, which are repeated as need be."""
+        """Return the mixture of these with equally many of other kernels, which are repeated if necessary."""
         repeats = np.resize(np.arange(len(other.centres)), len(self.centres))
         return Kernels(
             np.concatenate([self.centres, other.centres[repeats]]),
@@ -132,7 +133,7 @@ class Kernels:
 def fitted(z: FloatArray, scale: FloatArray, rng: np.random.Generator) -> Kernels:
     """Return kernels on some of the draws (n, d), each with the covariance of its nearest neighbours.
 
-    Near is meant in the metric of all draws, so that a narrow valley's length does not count for its width.
+    Distances are in the metric of all draws, so that the length of a narrow valley does not affect its width.
 
     Parameters
     ----------
@@ -152,5 +153,5 @@ def fitted(z: FloatArray, scale: FloatArray, rng: np.random.Generator) -> Kernel
 
 
 def root_of(covariance: FloatArray) -> FloatArray:
-    """Return the lower Cholesky factor of a covariance that may lack a direction: few draws, or rounding."""
+    """Return the lower Cholesky factor of a covariance that may be singular."""
     return np.asarray(la.cholesky(covariance + 1e-6 * np.diag(np.diag(covariance)), lower=True))

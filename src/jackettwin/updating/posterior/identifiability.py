@@ -1,4 +1,4 @@
-"""What the data say about each parameter, and why."""
+"""Identifiability of each parameter from the data, with reasons."""
 
 from __future__ import annotations
 
@@ -15,43 +15,44 @@ from jackettwin.updating.problem import Found, Problem
 Decider = Literal["data", "bounds", "prior", "misfit", "no posterior"]
 
 USABLE = 2.0
-"""Longest interval of an identified parameter, upper end of the 90 % over the lower: a stiffness known to a
-factor of √2 either way. Beyond it two foundations that differ as much as designs do fit the same data."""
+"""Largest ratio of the ends of the 90 % interval of an identified parameter: a stiffness known within a
+factor of √2 either way. With a larger ratio, foundations of different designs fit the same data."""
 BY_DATA, WEAK = 0.5, 0.8
-"""Posterior over prior standard deviation of ln θ up to which the data outweigh a prior three to one in
-precision, and from which they tell nothing."""
+"""Ratio of posterior to prior standard deviation of ln θ up to which the precision of the data is three times
+that of the prior, and above which the data give no information."""
 _NEAR_BOUND = 0.5
-"""An end of the interval that is nearer to a bound than this times its distance to the median is set by the
-bound."""
+"""An end of the interval is determined by a bound if its distance to the bound is below this share of its
+distance to the median."""
 _TRADES = 0.7
-"""Correlation from which two parameters are said to compensate for each other."""
+"""Correlation above which two parameters are reported to compensate each other."""
 _UNSEEN = 0.5
-"""Standard deviations of the data that a prior standard deviation of a parameter moves, at the median."""
+"""Median effect of one prior standard deviation of a parameter on the data, in their standard deviations,
+below which the data do not depend on it."""
 _LARGEST_LOG = 700.0
 """Larger exponents overflow."""
 _DESIGN_POINTS = 48
-"""Points of the prior at which the precision to expect is computed."""
+"""Number of points of the prior at which the expected precision is computed."""
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the data tell of one parameter.
+    """Identifiability of one parameter.
 
     Attributes
     ----------
     verdict : ``identified``, ``weak`` or ``unidentified``
-        Identified: the data alone made the interval, and it is short enough to use (``USABLE``).
+        Identified: the interval is determined by the data and short enough (``USABLE``).
     ratio : float
-        Posterior over prior standard deviation of ln θ.
+        Ratio of posterior to prior standard deviation of ln θ.
     ratio_before : float
-        The same, expected from the precision of the measurements alone: the median over the prior.
+        The same ratio expected from the precision of the measurements: the median over the prior.
     verdict_before : str
     reason : str
     decided_by : {"data", "bounds", "prior", "misfit", "no posterior"}
-        What the interval comes from. Without convergence it is not known, and if the model cannot meet the
-        data the interval is too short.
+        What determines the interval. Without convergence it is not known, and if the model cannot reproduce
+        the data the interval is too short.
     interval_factor : float
-        Upper over lower end of the 90 % interval.
+        Ratio of the ends of the 90 % interval.
     """
 
     name: str
@@ -65,14 +66,14 @@ class Verdict:
 
 
 def verdict_of(ratio: float, factor: float, decided_by: Decider = "data") -> str:
-    """Return the word for what the data say about a parameter.
+    """Return the verdict on a parameter.
 
     Parameters
     ----------
     ratio : float
-        Posterior over prior standard deviation of ln θ.
+        Ratio of posterior to prior standard deviation of ln θ.
     factor : float
-        Upper over lower end of the 90 % interval.
+        Ratio of the ends of the 90 % interval.
 
     Examples
     --------
@@ -93,9 +94,9 @@ def identifiability(
     ----------
     z : (n, d) draws of ln θ from the posterior
     converged : bool
-        Whether they are of the posterior; else nothing is called identified.
+        Whether the draws have converged; otherwise no parameter is identified.
     misfit : Misfit, optional
-        Of the best fit; where chance does not explain it, nothing is called identified.
+        Misfit of the best fit; if it exceeds chance, no parameter is identified.
     """
     prior = problem.prior.std
     ratio = z.std(axis=0) / prior
@@ -123,7 +124,7 @@ def identifiability(
 
 
 def _deciders(problem: Problem, z: FloatArray, ratio: FloatArray, converged: bool) -> list[Decider]:
-    """Return what the interval of each parameter comes from."""
+    """Return what determines the interval of each parameter."""
     low, middle, high = np.quantile(z, [0.05, 0.5, 0.95], axis=0)
     at_bound = (low - problem.prior.low < _NEAR_BOUND * (middle - low)) | (
         problem.prior.high - high < _NEAR_BOUND * (high - middle)
@@ -149,7 +150,7 @@ def information(problem: Problem, z: FloatArray, near: Found | None = None) -> F
 
 
 def expected_ratio(problem: Problem, z: FloatArray) -> FloatArray:
-    """Return posterior over prior standard deviation (d,) to expect: the median over points (n, d)."""
+    """Return the expected ratio of posterior to prior standard deviation (d,), median over points (n, d)."""
     near = problem.anchor(z.mean(axis=0))
     known = [m for m in (information(problem, point, near) for point in z) if m is not None]
     prior = problem.prior.std
@@ -160,7 +161,7 @@ def expected_ratio(problem: Problem, z: FloatArray) -> FloatArray:
 def _reasons(
     problem: Problem, z: FloatArray, ratio: FloatArray, factor: FloatArray, deciders: list[Decider]
 ) -> list[str]:
-    """Return a sentence a parameter: which datum fixes it, or what its interval is made of instead."""
+    """Return a sentence per parameter on the datum that determines it, or on what else does."""
     _, J, _ = problem.evaluate(np.median(z, axis=0), None)
     J = np.abs(J[: problem.n_data]) * problem.prior.std
     data = problem.data_names
@@ -175,16 +176,20 @@ def _reasons(
         if verdict_of(float(ratio[j]), float(factor[j]), deciders[j]) == "identified":
             reasons.append(f"fixed by {data[strongest]}: {span}")
         elif deciders[j] == "no posterior":
-            reasons.append("the posterior did not converge: the interval is Laplace's")
+            reasons.append("the posterior did not converge: the interval is that of Laplace's approximation")
         elif deciders[j] == "misfit":
-            reasons.append(f"the model cannot meet the data, so that its interval is too short: {span}")
+            reasons.append(f"the model cannot reproduce the data, so that the interval is too short: {span}")
         elif np.linalg.norm(J[:, j]) < _UNSEEN:
-            reasons.append("no datum sees it: its prior moves them by less than half a standard deviation")
+            reasons.append(
+                "no datum depends on it: its prior changes them by less than half a standard deviation"
+            )
         elif abs(value) >= _TRADES:
             reasons.append(f"trades with {names[partner]} (correlation {value:+.2f}); {span}")
         elif deciders[j] == "data":
-            reasons.append(f"{data[strongest]} sees it best, {span}: {USABLE:g} or less would be of use")
+            reasons.append(
+                f"{data[strongest]} depends on it most, {span}: a factor of {USABLE:g} or less is needed"
+            )
         else:
             made = "its prior" if deciders[j] == "prior" else "a bound"
-            reasons.append(f"{made} decides the interval, {span}; {data[strongest]} sees it best")
+            reasons.append(f"{made} determines the interval, {span}; {data[strongest]} depends on it most")
     return reasons

@@ -1,4 +1,4 @@
-"""The posterior as a normal in ln θ around one solution: what a Gauss–Newton Hessian knows."""
+"""Laplace's approximation of the posterior: a normal in ln θ around one solution."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from jackettwin.updating.problem import Problem
 def log_covariance(problem: Problem, theta: FloatArray) -> FloatArray:
     """Return the covariance (d, d) of ln θ: (JᵀJ + P)⁻¹ with the prior's precision P.
 
-    A flat prior counts as a normal one of the same standard deviation, so that what no data see keeps it.
+    A uniform prior is treated as a normal one of the same standard deviation, which remains if the data have
+    no effect.
     """
     _, J, _ = problem.evaluate(np.log(theta), None)
     flat = np.array([p.median is None for p in problem.parameters])
@@ -19,7 +20,7 @@ def log_covariance(problem: Problem, theta: FloatArray) -> FloatArray:
 
 
 def laplace_draws(problem: Problem, theta: FloatArray, *, n: int = 400, seed: int = 0) -> FloatArray:
-    """Return draws (n, d) of ln θ from the normal around ``theta``, kept inside the bounds."""
+    """Return draws (n, d) of ln θ from the normal around ``theta``, limited to the bounds."""
     rng = np.random.default_rng(seed)
     z = rng.multivariate_normal(np.log(theta), log_covariance(problem, theta), n)
     return np.clip(z, problem.prior.low, problem.prior.high)

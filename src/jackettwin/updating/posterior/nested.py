@@ -1,4 +1,4 @@
-"""Posterior and evidence by nested sampling with dynesty: slower than the swarm, and independent of it."""
+"""Posterior and evidence by nested sampling with dynesty: slower than SMC, but independent of it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from jackettwin.updating.problem import Problem
 _DRAWS = 400
 """Equally weighted draws taken from each run."""
 _SAID_EVERY = 100
-"""Evaluations between two words of progress: some tenths of a second."""
+"""Number of evaluations between progress messages: some tenths of a second."""
 
 
 def sample_nested(
@@ -34,16 +34,16 @@ def sample_nested(
     live : int
         Live points of each run.
     remaining : float
-        ln Z that may be left in the live points.
+        Largest ln Z remaining in the live points at the end.
     progress : Progress
-        Told within the present step how often the likelihood was evaluated.
+        Receives the number of likelihood evaluations.
 
     Raises
     ------
     InputError
-        If dynesty is not installed, or the residuals carry no standard deviations.
+        If dynesty is not installed, or the residuals have no standard deviations.
     NumericalError
-        If the runs do not agree.
+        If the runs disagree.
     """
     try:
         from dynesty import NestedSampler

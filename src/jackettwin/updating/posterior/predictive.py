@@ -1,4 +1,4 @@
-"""What the posterior says of what nobody measured: other modes, the undamped structure, the supports."""
+"""Predictions of the posterior for other modes, the undamped structure and the supports."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from jackettwin.updating.model import SupportModel
 
 Missed = Callable[[NumberedModes], FloatArray]
 _FIRST, _FOURTH = 1, 4
-"""The modes whose frequencies a support's stiffness and loss factor are stated at."""
+"""Modes at whose frequencies a support's stiffness and loss factor are stated."""
 
 
 @dataclass(frozen=True)
@@ -28,10 +28,10 @@ class Predictive:
     modes : mode numbers
     frequency_hz, damping_ratio, undamped_hz : (n_draws, n_modes)
     support : {name: (n_draws,)}
-        Of each tie group, as data see it: ``static_stiffness``, ``storage_stiffness`` and ``loss_factor`` at
-        the first pinned frequency, ``stiffness_growth`` and ``loss_factor_growth`` to the fourth's.
+        Quantities of each tie group: ``static_stiffness``, ``storage_stiffness`` and ``loss_factor`` at the
+        first pinned frequency, ``stiffness_growth`` and ``loss_factor_growth`` to the fourth.
     rates : {name: (n_draws,)}
-        Of measured relaxations [rad/s].
+        Rates of measured relaxations [rad/s].
     """
 
     modes: tuple[int, ...]
@@ -54,7 +54,7 @@ def predict_quantities(
     Parameters
     ----------
     missed : function of the modes at the draws, optional
-        Returns by what the asset's frequencies and damping ratios differ from the model's, (2, n_draws,
+        Returns the factors of the asset's frequencies and damping ratios on the model's, (2, n_draws,
         n_modes).
     """
     damped = _from_first(model, theta, modes, undamped=False)
@@ -72,7 +72,7 @@ def predict_quantities(
 
 
 def support_quantities(model: SupportModel, theta: FloatArray) -> dict[str, FloatArray]:
-    """Return the supports as data see them (see :class:`Predictive`)."""
+    """Return the quantities of the supports (see :class:`Predictive`)."""
     pinned = model.condensed.pinned.omega
     s = np.asarray(1j * pinned[[_FIRST - 1, min(_FOURTH, pinned.size) - 1]], dtype=np.complex128)
     rows = model.points(theta).plain().rows
@@ -91,7 +91,7 @@ def support_quantities(model: SupportModel, theta: FloatArray) -> dict[str, Floa
 def _from_first(
     model: SupportModel, theta: FloatArray, modes: tuple[int, ...], *, undamped: bool
 ) -> NumberedModes:
-    """Return the modes of all draws, each started from the first draw's."""
+    """Return the modes of all draws, each search started from the first draw's modes."""
     points = model.points(theta).plain()
     start = model.points(theta[:1]).plain()
     if undamped:

@@ -1,12 +1,12 @@
-r"""Legs that share a mean and scatter about it: a hierarchical prior, its scatter integrated out.
+r"""Hierarchical prior of legs that scatter about a common mean, with the scatter marginalised.
 
 The logarithms of d legs are :math:`z = \bar z + Qy` with orthonormal deviations y, :math:`y ∼ N(0, s^2 I)`,
-and a scatter s that is unknown itself, :math:`s^2 ∼ ν s_0^2/χ^2_ν`. Without s the deviations are multivariate
-Student (Gelman et al. 2013, section 5),
+and an unknown scatter s, :math:`s^2 ∼ ν s_0^2/χ^2_ν`. After marginalising s the deviations have a
+multivariate Student distribution (Gelman et al. 2013, section 5),
 
 .. math:: p(y) ∝ \left(1 + \frac{y^T y}{ν s_0^2}\right)^{-(ν + d - 1)/2},
 
-and given y the scatter is known in closed form, :math:`s^2 ∼ (ν s_0^2 + y^T y)/χ^2_{ν + d - 1}`. The mean
+and given y the scatter has the distribution :math:`s^2 ∼ (ν s_0^2 + y^T y)/χ^2_{ν + d - 1}`. The mean
 :math:`\bar z` has the prior of one leg.
 """
 
@@ -28,7 +28,7 @@ FREEDOM = 3.0
 """ν: one leg in ten scatters by more than 1.6 s₀, one in a hundred by more than 4.5 s₀."""
 _REDRAWS = 20
 _LOG2_POINTS = 12
-"""Sobol points, as a power of two, that tell the mass between the bounds to about 1e-3."""
+"""Exponent of the number of Sobol points (2ⁿ) for the mass between bounds, whose error is about 1e-3."""
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ class Legs:
 
     Attributes
     ----------
-    name : of the parameter without the leg's
-    columns : (d,) of the legs in z
+    name : name of the parameter without that of the leg
+    columns : (d,) indices of the legs in z
     scale : s₀
     """
 
@@ -48,7 +48,7 @@ class Legs:
 
     @property
     def Q(self) -> FloatArray:
-        """Orthonormal basis (d, d − 1) of what differs between the legs."""
+        """Orthonormal basis (d, d − 1) of deviations from the mean of the legs."""
         return np.asarray(la.null_space(np.ones((1, self.columns.size))))
 
     def deviations(self, z: FloatArray) -> FloatArray:
@@ -64,9 +64,9 @@ class Legs:
         return np.asarray(constant - 0.5 * (FREEDOM + p) * np.log1p(q / FREEDOM))
 
     def from_unit(self, u: FloatArray) -> FloatArray:
-        """Return deviations of the legs (..., d) from their mean, of probabilities u (..., d − 1).
+        """Return deviations of the legs (..., d) from their mean at probabilities u (..., d − 1).
 
-        Each y follows from those before it: Student with a degree of freedom more.
+        Given the previous components, each y is Student distributed with one more degree of freedom.
         """
         y = np.zeros_like(u)
         square = np.zeros(u.shape[:-1])
@@ -99,12 +99,12 @@ class Legs:
 
 @dataclass(frozen=True)
 class ScatteredPrior:
-    """Independent priors, but legs scatter about a common mean; cut at the bounds.
+    """Independent priors, except for legs that scatter about a common mean; truncated at the bounds.
 
     Attributes
     ----------
     box : BoxPrior
-        Of each parameter alone; a leg's is that of their mean.
+        Prior of each parameter; for legs it is that of their mean.
     legs : tuple of Legs
     """
 
@@ -139,11 +139,11 @@ class ScatteredPrior:
         return np.clip(z, self.low, self.high)
 
     def from_unit(self, u: FloatArray) -> FloatArray:
-        """Return the z of independent uniform numbers u (..., d); what falls beyond a bound lands on it."""
+        """Return the z of independent uniform numbers u (..., d), limited to the bounds."""
         return np.clip(self._unbounded(u), self.low, self.high)
 
     def _unbounded(self, u: FloatArray) -> FloatArray:
-        """Return z: the first number of a group is its mean's, the others are its deviations'."""
+        """Return z; the first number of a group gives its mean, the others its deviations."""
         z = self.box.from_unit(u)
         for group in self.legs:
             first = z[..., group.columns[:1]]
@@ -152,7 +152,7 @@ class ScatteredPrior:
 
     @cached_property
     def log_mass(self) -> float:
-        """Logarithm of the probability that legs about a mean between the bounds lie between them, too."""
+        """Logarithm of the probability that all legs are between the bounds if their mean is."""
         u = scipy.stats.qmc.Sobol(self.low.size, rng=0).random_base2(_LOG2_POINTS)
         z = self._unbounded(u)
         return log(float(np.mean(np.all((z >= self.low) & (z <= self.high), axis=1))))
@@ -162,7 +162,7 @@ class ScatteredPrior:
         centred, total = self._centred(z), np.zeros(len(z))
         alone = self.box.log_densities(centred)
         for group in self.legs:
-            # the legs' means stand for all of them; Q and 1/√d are orthonormal
+            # the density of the mean replaces those of the legs; Q and 1/√d are orthonormal
             total += group.log_density(z) - 0.5 * log(group.columns.size)
             alone[:, group.columns[1:]] = 0.0
         total += alone.sum(axis=1)
@@ -195,12 +195,12 @@ class ScatteredPrior:
 
 @dataclass(frozen=True)
 class Scatter:
-    """How far legs scatter about their mean, standard deviation of ln θ.
+    """Scatter of legs about their mean, as standard deviation of ln θ.
 
     Attributes
     ----------
-    draws : (n,) from the posterior
-    before : (low, high) 90 % of the prior
+    draws : (n,) draws from the posterior
+    before : (low, high) 90 % interval of the prior
     """
 
     name: str
@@ -209,7 +209,7 @@ class Scatter:
 
 
 def leg_scatter(prior: Prior, z: FloatArray, *, seed: int = 0) -> tuple[Scatter, ...]:
-    """Return every scatter that goes with draws z (n, d) of the parameters; empty without legs.
+    """Return the scatters for draws z (n, d) of the parameters; empty without legs.
 
     Examples
     --------

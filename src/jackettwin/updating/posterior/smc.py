@@ -1,13 +1,13 @@
 """Posterior of one law by tempered sequential Monte Carlo, and its evidence.
 
-Particles drawn from the prior go through a ladder of tempered posteriors
-prior · Lᵝ, β from 0 to 1; each rung reweights and resamples them (Del Moral, Doucet & Jasra 2006; Ching &
-Chen 2007) and draws new ones from a mixture of normals, on those that are left and on the posterior's
-hilltops. Its density is known, so that the next rung's weights are exact whatever the mixture (population
-Monte Carlo, Cappé et al. 2004), and a posterior as sharp as years of data make it costs no more rungs than
-that of some days. Where the mixture fits badly, and on the last rung, Markov chains move the particles.
-Several independent islands run side by side: only if they agree is the result called a posterior. Their
-draws give the evidence (:mod:`jackettwin.updating.posterior.evidence`).
+Particles drawn from the prior pass through a sequence of tempered posteriors prior · Lᵝ, with β from 0 to 1.
+At each stage they are reweighted and resampled (Del Moral, Doucet & Jasra 2006; Ching & Chen 2007), and new
+ones are drawn from a mixture of normals, centred at the remaining particles and at the maxima of the
+posterior. As the density of the mixture is known, the next weights are exact for any mixture (population
+Monte Carlo, Cappé et al. 2004), and a sharp posterior from years of data needs no more stages than one from
+some days. If the mixture fits badly, and at the last stage, Markov chains move the particles. Several
+independent islands are run; the result is accepted as a posterior only if they agree. Their draws give the
+evidence (:mod:`jackettwin.updating.posterior.evidence`).
 """
 
 from __future__ import annotations
@@ -34,24 +34,25 @@ from jackettwin.updating.problem import Found, Problem
 from jackettwin.updating.search.descent import bottom
 
 _ESS = 0.5
-"""Each rung of the ladder keeps this share of the particles effective."""
+"""Share of effective particles after each stage."""
 _REDRAWN = 0.65
-"""Particles drawn anew on a rung are used if at least this share of all is effective, or ``_ESS`` on the last
-rung; otherwise Markov chains move the old ones. It exceeds ``_ESS`` so that the next step is long."""
+"""New particles of a stage are used if at least this share is effective (``_ESS`` at the last stage);
+otherwise Markov chains move the old ones. It exceeds ``_ESS`` so that the next step is long."""
 _MOVES = 12
-"""Moves of every particle on the last rung, and wherever they are not drawn anew."""
+"""Number of moves of every particle at the last stage, and at stages without new particles."""
 _KEPT = 3
-"""On the last rung the swarm is kept after every so many moves (waste-free, Dau & Chopin 2022)."""
+"""Number of moves between draws at the last stage (waste-free, Dau & Chopin 2022)."""
 _FRESH = 4
-"""So many times as many points are drawn anew as there are particles."""
+"""Ratio of the number of new points to that of particles."""
 _CLIMBS = 12
-"""Most descents that start from draws of the prior that are likelier than their neighbours."""
+"""Largest number of descents, which start from draws of the prior that are local maxima among the draws."""
 _WIDER = (1.0, 1.5, 2.5)
-"""Widths of the normals on a maximum, in standard deviations there: the posterior has heavier tails."""
+"""Widths of the normals at a maximum, in Laplace deviations, as the posterior has heavier tails."""
 _SCOUTS = 40
-"""So many particles of an island are evaluated first; the others start from the modes of the nearest."""
+"""Number of particles of an island that are evaluated first; the others start from the modes of the nearest
+one."""
 _LARGEST_SPREAD = 0.5
-"""Standard deviation of log Z between islands beyond which it is not known."""
+"""Standard deviation of log Z between islands above which the evidence is not known."""
 
 
 @dataclass(frozen=True)
@@ -67,11 +68,11 @@ class Posterior:
         Mean over the islands and its standard deviation.
     evidence_known : bool
         Whether the islands agree on it.
-    names : of the parameters
+    names : names of the parameters
     runs : int
-        Independent ones, each as long, one after the other.
+        Number of independent runs of equal length, whose draws are concatenated.
     convergence : Convergence
-        How well the islands agree.
+        Agreement of the islands.
     """
 
     log_theta: FloatArray
@@ -97,7 +98,7 @@ class Posterior:
 
 @dataclass(frozen=True)
 class _Swarm:
-    """Particles of one island and what is known of them."""
+    """Particles of one island with their modes and likelihoods."""
 
     z: FloatArray
     log_l: FloatArray
@@ -134,18 +135,18 @@ def sample_posterior(
     Parameters
     ----------
     problem : Problem
-        Its residuals weighted by standard deviations, not relative.
+        Problem whose residuals have standard deviations.
     particles, islands : int
-        Particles on each of the independent islands.
+        Number of particles of each island, and of independent islands.
     progress : Progress
-        Told within the present step after each rung of each island's ladder.
+        Receives a message after each stage of each island.
 
     Raises
     ------
     InputError
-        If the residuals carry no standard deviations: there is no likelihood.
+        If the residuals have no standard deviations, so that there is no likelihood.
     NumericalError
-        If the islands do not agree: there are draws, but they are no posterior.
+        If the islands disagree.
     """
     if not problem.weighted:
         raise InputError(
@@ -181,7 +182,7 @@ def gathered(
     Raises
     ------
     NumericalError
-        If the runs do not agree: there are draws, but they are no posterior.
+        If the runs disagree.
     """
     found, spread = convergence(z), float(log_z.std(ddof=1))
     if found.problem is not None or not np.isfinite(spread):
@@ -204,7 +205,7 @@ def gathered(
 
 
 def _by_particle(kept: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:
-    """Return what was kept of each particle one after the other, as a chain that shows its correlation."""
+    """Return the states of each particle in sequence, as a chain with its autocorrelation."""
     return np.asarray(np.stack(kept, axis=1).reshape(-1, *kept[0].shape[1:]))
 
 
@@ -241,10 +242,10 @@ def _renewed(
     tops: Kernels,
     tell: Callable[[], None],
 ) -> tuple[_Swarm, FloatArray]:
-    """Return other particles of the same tempered posterior, and ln of the density they are drawn from.
+    """Return new particles of the same tempered posterior, and ln of the density from which they are drawn.
 
-    Half of them are drawn around the hilltops of the posterior itself: where they fit, the next step is the
-    last, however sharp it is; and a narrow hill that few particles stand on is not lost.
+    Half of them are drawn around the maxima of the posterior. If these fit well, the next step is the last
+    one, however sharp the posterior is; and narrow maxima with few particles are not lost.
     """
     n = swarm.log_l.size
     mixture = fitted(swarm.z, prior.std, rng).evenly_with(tops)
@@ -259,7 +260,7 @@ def _renewed(
 
 
 def _hilltops(problem: Problem, scattered: _Swarm) -> Kernels:
-    """Return normals around the tops of the posterior that draws from the prior lead to."""
+    """Return normals around the maxima of the posterior that are reached from draws of the prior."""
     centres: list[FloatArray] = []
     roots: list[FloatArray] = []
     for i in _tops(scattered):
@@ -273,7 +274,7 @@ def _hilltops(problem: Problem, scattered: _Swarm) -> Kernels:
 
 
 def _tops(swarm: _Swarm) -> IntArray:
-    """Return the particles likelier than all their neighbours, the likeliest few of them."""
+    """Return the most likely few of the particles that are more likely than all their neighbours."""
     x = swarm.z / np.ptp(swarm.z, axis=0)
     _, near = KDTree(x).query(x, k=min(2 * x.shape[1] + 1, len(x)))
     top = np.flatnonzero(swarm.log_l >= swarm.log_l[near].max(axis=1))
@@ -288,7 +289,7 @@ def _walk(
     rng: np.random.Generator,
     tell: Callable[[], None],
 ) -> list[_Swarm]:
-    """Return the swarm after every few of its moves."""
+    """Return the states of the swarm after every few moves."""
     kept = []
     for move in range(1, _MOVES + 1):
         swarm = _moved(problem, prior, swarm, beta, rng, wide=move % 4 == 0)
@@ -303,8 +304,9 @@ def _moved(
 ) -> _Swarm:
     """Return the swarm after one move of each half by differences of the other.
 
-    The half that lends the differences stands still, which leaves the joint distribution exactly invariant; a
-    swarm that moves at once by its own differences ends a few per cent too narrow.
+    The half that provides the differences is not moved, which leaves the joint distribution exactly
+    invariant; if all particles move at once by their own differences, the result is a few per cent too
+    narrow.
     """
     order = rng.permutation(swarm.log_l.size)
     still, moving = (swarm.take(half) for half in np.array_split(order, 2))
@@ -320,7 +322,7 @@ def _moved(
 
 
 def _nearest(prior: Prior, z: FloatArray, known: _Swarm) -> Found:
-    """Return for each point the modes of the nearest particle, in shares of the bounds, to start from."""
+    """Return for each point the modes of the nearest particle (distance relative to the bounds) as start."""
     width = prior.high - prior.low
     _, nearest = KDTree(known.z / width).query(z / width)
     return tuple(modes.some(np.asarray(nearest)) for modes in known.found)
@@ -332,7 +334,7 @@ def _evaluate(problem: Problem, prior: Prior, z: FloatArray, near: Found | None)
 
 
 def _next_beta(swarm: _Swarm, log_q: FloatArray, beta: float, least: float) -> float:
-    """Return the largest β up to 1 that leaves so many particles effective, by bisection."""
+    """Return the largest β up to 1 with at least a given share of effective particles, by bisection."""
 
     def enough(at: float) -> bool:
         return _effective(at * swarm.log_l + swarm.log_p - log_q) >= least
@@ -358,11 +360,11 @@ def _systematic(weight: FloatArray, n: int, rng: np.random.Generator) -> IntArra
 
 
 def _proposal(z: FloatArray, others: FloatArray, rng: np.random.Generator, *, wide: bool) -> FloatArray:
-    """Return differential-evolution steps (ter Braak 2006): they follow the shape of the swarm."""
+    """Return differential-evolution steps (ter Braak 2006), which adapt to the shape of the swarm."""
     (n, d), m = z.shape, len(others)
     a = rng.integers(m, size=n)
     b = (a + rng.integers(1, m, n)) % m
-    # full steps now and then jump between separate hills
+    # occasional full steps jump between separate maxima
     gamma = 1.0 if wide else 2.38 / np.sqrt(2.0 * d) * rng.uniform(0.2, 1.0)
     jitter = 0.02 * others.std(axis=0) * rng.standard_normal(z.shape)
     return np.asarray(z + gamma * (others[a] - others[b]) + jitter)

@@ -1,4 +1,4 @@
-"""Which end points belong together: a cluster is one solution, with its extent."""
+"""Clustering of end points: a cluster is one solution, with its extent."""
 
 from __future__ import annotations
 
@@ -13,17 +13,18 @@ from jackettwin.updating.search.path import Path, constrained, held_minimum
 from jackettwin.updating.search.shorter_law import ShorterLaws
 
 SAME = 0.02
-"""End points closer than this in every ln θ are one."""
+"""End points closer than this in every ln θ are the same."""
 _STAGES = 10
-"""Steps of the walk from one end point to another."""
+"""Number of steps of the walk from one end point to another."""
 _MOST_STEPS = 10_000
-"""Most steps of all walks between end points: about a minute. Those not compared by then are listed apart."""
+"""Largest number of steps of all walks: about a minute. End points not compared by then are listed
+separately."""
 _JUMP = 4.0
-"""If the other parameters move by more than so many steps at once, they may have jumped over a ridge."""
+"""Change of the other parameters in one step, in steps, above which they may have crossed a ridge."""
 _LOOSE = 0.1
-"""Where a surrogate leads, the cost may be higher by this share of what may be neglected."""
+"""Share of the negligible cost by which the cost may be higher at a point found with a surrogate."""
 _NARROW = 0.05
-"""A solution whose ln θ the cost fixes better than this is a point, not a cluster."""
+"""A solution whose ln θ are determined better than this is a point, not a cluster."""
 
 
 def gather(
@@ -33,13 +34,13 @@ def gather(
     known: list[tuple[End, int]] | None = None,
     most_steps: int = _MOST_STEPS,
 ) -> tuple[list[tuple[End, int]], bool]:
-    """Return one end point a cluster, lowest first, and how many ended in it; and whether all were compared.
+    """Return one end point per cluster with its number of searches, lowest first, and if all were compared.
 
     Parameters
     ----------
-    ends : end points and how many searches each stands for
-    known : clusters gathered before, known to be distinct
-    most_steps : of all walks between them
+    ends : end points with the number of searches that each represents
+    known : previous clusters, which are distinct
+    most_steps : largest number of steps of all walks between them
     """
     before, shorter = known or [], ShorterLaws(problem)
     distinct = {id(end) for end, _ in before}
@@ -63,16 +64,16 @@ def gather(
 
 
 def linked(problem: Problem, low: End, high: End, shorter: ShorterLaws | None = None) -> tuple[bool, int]:
-    """Return whether a walk from the higher end point to the lower one never has to climb, and its steps.
+    """Return whether a path of falling cost leads from the higher end point to the lower, and its steps.
 
-    It leads through a shorter law that both hold; else one coordinate is stepped and the others are refitted,
-    first the coordinate in which the two lie farthest apart. If the cost falls on the way, the higher end
-    point was a shoulder and no minimum.
+    The path is trivial if both reduce to the same shorter law. Otherwise one coordinate is stepped and the
+    others are refitted, starting with the coordinate in which the two differ most. If the cost falls on the
+    way, the higher end point was a shoulder and no minimum.
 
     Parameters
     ----------
     shorter : ShorterLaws, optional
-        Those that are known already.
+        Shorter laws that were computed already.
     """
     left = [(shorter or ShorterLaws(problem))(end) for end in (low, high)]
     if left[0] is not None and left[1] is not None and left[0].shape == left[1].shape:
@@ -82,7 +83,7 @@ def linked(problem: Problem, low: End, high: End, shorter: ShorterLaws | None = 
 
 
 def _joined(problem: Problem, low: End, high: End) -> tuple[bool, int]:
-    """Return whether some coordinate's walk leads from the higher end point to the lower, and its steps."""
+    """Return whether a walk along some coordinate leads from the higher end to the lower, and its steps."""
     span = np.abs(high.z - low.z) / (problem.prior.high - problem.prior.low)
     allowance, taken = problem.allowance(high.cost), 0
     for j in np.argsort(-span):
@@ -96,9 +97,9 @@ def _joined(problem: Problem, low: End, high: End) -> tuple[bool, int]:
 
 
 def _walk(path: Path, start: End, j: int, to: float, allowance: float) -> tuple[FloatArray | None, int, bool]:
-    """Return where a walk along one coordinate ends, its steps, and whether the cost fell on the way.
+    """Return the end of a walk along one coordinate, its steps, and whether the cost decreased on the way.
 
-    None if it climbs before.
+    The end is None if the cost rises before it is reached.
     """
     here, step = start.z, abs(start.z[j] - to) / _STAGES
     near, ceiling = path.surrogate(here), start.cost + allowance
@@ -133,7 +134,7 @@ def extent(problem: Problem, end: End) -> tuple[FloatArray, list[FloatArray]]:
     if np.linalg.cond(curvature) < 1e12:
         spread = np.sqrt(allowance * np.diag(np.linalg.inv(curvature)))
     sides = np.stack([end.z - spread, end.z + spread], axis=1)
-    # with a likelihood the posterior says how far, and better
+    # with a likelihood the posterior gives the range more accurately
     for j in np.flatnonzero(spread > _NARROW) if problem.relative else ():
         for side, limit in enumerate((problem.prior.low[j], problem.prior.high[j])):
             point = _reach(path, end, int(j), float(limit), allowance)
@@ -143,10 +144,10 @@ def extent(problem: Problem, end: End) -> tuple[FloatArray, list[FloatArray]]:
 
 
 def _reach(path: Path, end: End, j: int, limit: float, allowance: float) -> FloatArray:
-    """Return the point with the farthest value of one ln θ that keeps the cost.
+    """Return the point with the farthest value of one ln θ at practically equal cost.
 
-    It is sought on the surrogate at the end, for poles stay there where the cost does; if the cost is not
-    kept where that leads, by asking the structure at every step.
+    It is sought with the surrogate at the end point, since equal cost implies nearly equal poles; if the cost
+    increases at the point found, with the full model.
     """
     near, ceiling = path.surrogate(end.z), end.cost + allowance
     if near is not None:
@@ -165,7 +166,7 @@ def _farthest(
     limit: float,
     ceiling: float,
 ) -> FloatArray:
-    """Return the farthest point below a ceiling: walk towards the limit of one ln θ, halve the step."""
+    """Return the farthest point with a cost below a limit, by steps in one ln θ that are halved."""
     last = float(here[j])
     step = (limit - last) / _STAGES
     for _ in range(3 * _STAGES):

@@ -1,12 +1,13 @@
 r"""Least squares in narrow curved valleys: Levenberg–Marquardt with geodesic acceleration.
 
-A step v of
+The step v of
 
 .. math:: (J^T J + λ S^{-2})\, v = -J^T r
 
-is bent by a/2 along the valley, a the solution for the second derivative of the residuals along v (Transtrum
-& Sethna 2012, *Improvements to the Levenberg–Marquardt algorithm*); a step that would be bent too sharply is
-shortened. S are the widths between the bounds. For functions that are cheap: it evaluates twice a step.
+is corrected by a/2, with a the solution for the second derivative of the residuals along v (Transtrum &
+Sethna 2012, *Improvements to the Levenberg–Marquardt algorithm*); a step with too large a correction is
+shortened. S contains the widths between the bounds. Each step needs two evaluations, so that the method is
+meant for inexpensive functions.
 """
 
 from __future__ import annotations
@@ -21,13 +22,13 @@ Rows = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 """Residuals (n,) and their Jacobian (n, d) at a point (d,)."""
 
 _MOST_BENT = 0.75
-"""A step is shortened where the bend a is a larger share of the step v."""
+"""Largest ratio of the correction a to the step v; otherwise the step is shortened."""
 _PROBE = 0.1
 """Share of the step over which the second derivative is taken."""
 _LONGER, _SHORTER = 5.0, 3.0
-"""Damping is divided by the first after a step and multiplied by the second where one fails."""
+"""Divisor of the damping after a successful step, and its factor after a failure."""
 _FIRST, _LAST = 1e-4, 1e14
-"""Damping to begin with, and where no step is short enough: the point is a minimum to rounding."""
+"""Initial damping, and damping at which the iteration ends, since no step is short enough."""
 
 
 def damped_least_squares(
@@ -48,13 +49,13 @@ def damped_least_squares(
     rows : residuals and Jacobian at a point
     start, low, high : (d,)
     held : tuple of int
-        Coordinates that do not move.
+        Fixed coordinates.
     tolerance : float
-        It ends where a step moves no coordinate by so much, or lowers the cost by less than this share of it.
+        The iteration ends if a step changes all coordinates, or the relative cost, by less than this.
     enough : float
-        It ends, too, where the cost is no higher.
+        The iteration also ends if the cost is not higher than this.
     most : int
-        Steps.
+        Largest number of steps.
     """
     low, high = low.copy(), high.copy()
     for side in (low, high):
@@ -97,16 +98,16 @@ def _bent_step(
     low: FloatArray,
     high: FloatArray,
 ) -> FloatArray | None:
-    """Return the step (d,) as a share of the bounds' width, None if it would be bent too sharply.
+    """Return the step (d,) relative to the bounds' width, None if its correction is too large.
 
     Parameters
     ----------
-    left, right : (n, k), (k, d) whose product, transposed, solves for a residual
+    left, right : (n, k), (k, d) factors of the transposed solution matrix for a residual
     """
     v = -(r @ left) @ right
     there = z + (_PROBE * width) * v
     if (there < low).any() or (there > high).any():
-        return v  # there is nothing to ask beyond the bounds
+        return v  # no evaluation beyond the bounds
     bend = (2.0 / _PROBE) * ((rows(there)[0] - r) / _PROBE - J @ (width * v))
     a = -0.5 * ((bend @ left) @ right)
     return v + a if 2.0 * np.linalg.norm(a) <= _MOST_BENT * np.linalg.norm(v) else None

@@ -1,4 +1,4 @@
-"""Local searches: from a start down to the minimum that it leads to."""
+"""Local searches from a start to the minimum that it leads to."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from jackettwin.updating.search.damped import Rows
 from jackettwin.updating.search.path import Path, Trail, creep, minimum
 
 _POINT = 0.02
-"""A well-determined minimum moves by less than this in ln θ when the pull is taken away. In a flat valley of
-the cost the point moves further, and the one with the pull is kept."""
+"""Change of ln θ below which a minimum is well determined when the regularisation is removed. In a flat
+valley of the cost the point moves further, and the regularised one is returned."""
 _ROUGH = 1e-6
-"""Share of the cost to which a point in a valley of a law's branches is sought."""
+"""Relative accuracy of the cost of a point in a valley of a law's branches."""
 _EXACT = 1e-8
-"""Poles are right to this (relative): the condensed model against the full one."""
+"""Relative error of the poles of the condensed model."""
 
 
 @dataclass(frozen=True)
 class End:
-    """Where a local search ended.
+    """End of a local search.
 
     Attributes
     ----------
     z : (d,) ln θ
     cost : float
-        Without the pull to the middle.
+        Cost without the regularisation.
     settled : bool
-        Whether it is a minimum: nothing lower nearby, and the same cost from a cold start.
+        Whether it is a minimum: the cost is not lower nearby, and equal after a cold start.
     evaluations : int
         Number of evaluations of the model that the search took.
     """
@@ -47,9 +47,10 @@ def descend(
 ) -> End:
     r"""Return the end of a least-squares descent.
 
-    A weak pull towards the middle of the bounds leads off plateaus and gives a flat valley of the cost one
-    lowest point. To keep away from known solutions, the residuals are first multiplied by
-    :math:`\prod_i (1 + σ²/\|z - z_i\|²)` (deflation, Farrell et al. 2015); the last steps go without.
+    A weak regularisation towards the middle of the bounds leads away from plateaus and makes the minimum of a
+    flat valley unique. To avoid known solutions, the residuals are first multiplied by
+    :math:`\prod_i (1 + σ²/\|z - z_i\|²)` (deflation, Farrell et al. 2015); the last steps are without this
+    factor.
     """
     path = Path(problem, trail)
     if known:
@@ -60,32 +61,32 @@ def descend(
         if path.total(z) <= problem.hopeless:
             break
     else:
-        z = creep(path, z, path, tolerance=1e-10)  # off a plateau
-    # in a valley of branches that are not needed the place hardly matters: they are left out to compare ends
+        z = creep(path, z, path, tolerance=1e-10)  # away from a plateau
+    # in a valley of redundant branches the position hardly matters, as they are omitted to compare end points
     tolerance = _ROUGH if problem.model.family.omissible else 1e-8
     z, arrived = minimum(path, z, path.pull(path.total(z)), tolerance=tolerance)
     if arrived and _flat(path, z):
         return replace(_judged(problem, z), evaluations=path.evaluations)
     free, _ = minimum(path, z)
     if not arrived and np.abs(free - z).max() >= _POINT:
-        # a minimum that the pulled search was too slow to reach stays
+        # a minimum that the regularised search was too slow to reach is retained
         z, _ = minimum(path, free, path.pull(path.total(free)))
     moved = np.abs(free - z).max() >= _POINT
     return replace(_judged(problem, z if moved else free), evaluations=path.evaluations)
 
 
 def bottom(problem: Problem, start: FloatArray, near: Found) -> FloatArray:
-    """Return the nearest minimum roughly, from a start whose modes are known."""
+    """Return the approximate nearest minimum, from a start with known modes."""
     path = Path(problem)
     path.last = near
     return creep(path, start, path, tolerance=1e-3, most=30)
 
 
 def settle(problem: Problem, end: End) -> End:
-    """Return the minimum as it is, or the point of a flat valley nearest the middle of the bounds.
+    """Return the minimum, or the point of a flat valley nearest the middle of the bounds.
 
-    Data without standard deviations count as right to 1e-4. Where they are met far better, and so know more
-    than that of every parameter, the point is theirs and not the pull's.
+    Data without standard deviations are assumed accurate to 1e-4. If they are fitted far better and determine
+    all parameters, the point is not regularised.
     """
     path = Path(problem)
     if not _flat(path, end.z):
@@ -96,7 +97,7 @@ def settle(problem: Problem, end: End) -> End:
 
 
 def _flat(path: Path, z: FloatArray) -> bool:
-    """Return whether some direction from bound to bound hardly changes the cost: a valley."""
+    """Return whether the cost hardly changes in some direction from bound to bound."""
     J, prior = path(z)[1], path.problem.prior
     if len(J) < z.size:
         return True
@@ -105,7 +106,7 @@ def _flat(path: Path, z: FloatArray) -> bool:
 
 
 def _resolved(path: Path, z: FloatArray) -> bool:
-    """Return whether data determine every parameter as exactly as they are met, by Fisher's information."""
+    """Return whether the data determine all parameters, by Fisher's information at the fit's accuracy."""
     (r, J), prior = path(z), path.problem.prior
     inside = ((z - prior.low > _POINT) & (prior.high - z > _POINT)).all()
     if not inside or len(r) <= z.size:
@@ -118,7 +119,7 @@ def _resolved(path: Path, z: FloatArray) -> bool:
 
 
 def descend_simplex(problem: Problem, start: FloatArray, *, trail: Trail | None = None) -> End:
-    """Return the end of the thesis's simplex search (section 8.2): settled only where it is a minimum."""
+    """Return the end of the thesis's simplex search (section 8.2), settled only if it is a minimum."""
     fit = minimize(
         Path(problem, trail).total,
         start,
@@ -130,7 +131,7 @@ def descend_simplex(problem: Problem, start: FloatArray, *, trail: Trail | None 
 
 
 def _deflated(path: Path, known: tuple[FloatArray, ...]) -> Rows:
-    """Return residuals and Jacobian multiplied by a factor m that grows without bound at known solutions."""
+    """Return residuals and Jacobian multiplied by a factor m that is infinite at known solutions."""
     width = 0.1 * (path.problem.prior.high - path.problem.prior.low)
 
     def factor(z: FloatArray) -> tuple[float, FloatArray]:

@@ -1,8 +1,8 @@
-"""One way of a search: residuals along it, and the nearest minimum.
+"""Evaluation along the path of a search, and descent to the nearest minimum.
 
-Two descents stand side by side. From afar the structure is asked at every step (``creep``). Near the data its
-poles are as good as linear in the supports' stiffness, and each round goes to the minimum of a surrogate
-(``minimum``): three or four evaluations of the structure, where a curved valley took two hundred.
+There are two descents. Far from the data the full model is evaluated at every step (``creep``). Near the data
+the poles are nearly linear in the supports' stiffness, and each round finds the minimum of a surrogate
+(``minimum``), with three or four evaluations of the full model instead of two hundred in a curved valley.
 """
 
 from __future__ import annotations
@@ -18,34 +18,34 @@ from jackettwin.updating.search.damped import Rows, damped_least_squares
 from jackettwin.updating.search.surrogate import Surrogate
 
 _RIDGE = 1e-2
-"""Weight of the pull towards the middle of the bounds, as a share of a negligible cost."""
+"""Weight of the regularisation towards the middle of the bounds, as a share of a negligible cost."""
 _ROUNDS = 8
-"""Most surrogates on the way to one minimum."""
+"""Largest number of surrogates for one minimum."""
 _STILL = 1e-7
-"""A round that moves every ln θ by less has arrived."""
+"""The search has converged if a round changes every ln θ by less than this."""
 _NEAR = 0.01
-"""And so has one that moves them by less, if the cost is as it was."""
+"""The search has also converged if a round changes every ln θ by less than this at unchanged cost."""
 _ROUGH = 1e-3
-"""Share of the cost that matters with one parameter held."""
+"""Relative accuracy of the cost with one parameter fixed."""
 _HONEST = 0.25
-"""A surrogate is believed while the cost falls by at least this share of what it promises."""
+"""Smallest ratio of the actual to the predicted decrease of the cost for a surrogate to be used further."""
 _STEPS = 200
 
 Trail = list[tuple[FloatArray, float]]
-"""Points ln θ (d,) that a search came by and the cost at each, in their order."""
+"""Points ln θ (d,) of a search and the cost at each, in order of evaluation."""
 
 
 class Path:
-    """Residuals and Jacobian along one search path: each prediction starts from the one before.
+    """Residuals and Jacobian along one search path; each prediction starts from the previous one.
 
     Attributes
     ----------
     last : Found or None
-        The modes at the point that was evaluated last; None if one was lost.
+        Modes at the last evaluated point; None if one was lost.
     evaluations : int
-        Of the model, so far.
+        Number of evaluations of the model so far.
     trail : list, optional
-        Takes every point that is evaluated, and its cost.
+        Receives every evaluated point and its cost.
     """
 
     def __init__(self, problem: Problem, trail: Trail | None = None) -> None:
@@ -57,7 +57,7 @@ class Path:
         self.answer: tuple[FloatArray, FloatArray] = (np.zeros(0), np.zeros(0))
 
     def __call__(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return residuals and Jacobian; the last ones are kept."""
+        """Return residuals and Jacobian; the last ones are stored."""
         if self.at is None or not np.array_equal(z, self.at):
             r, J, self.last = self.problem.evaluate(z, self.last)
             self.answer, self.at = (r, J), z.copy()
@@ -67,7 +67,7 @@ class Path:
         return self.answer
 
     def surrogate(self, z: FloatArray) -> Rows | None:
-        """Return what is cheap and right near a point; None if a mode is lost there."""
+        """Return the surrogate at a point; None if a mode is lost there."""
         rows = self(z)
         return None if self.last is None else Surrogate(self.problem, z, rows, self.last)
 
@@ -76,9 +76,9 @@ class Path:
         return squares(self(z)[0])
 
     def pull(self, cost: float) -> Callable[[Rows], Rows]:
-        """Return what adds a pull to the middle of the bounds to residuals, weak beside a cost.
+        """Return a function that adds a weak regularisation towards the middle of the bounds.
 
-        It leads off plateaus and gives a flat valley of the cost one lowest point.
+        It leads away from plateaus and makes the minimum of a flat valley unique.
         """
         low, high = self.problem.prior.low, self.problem.prior.high
         weight = np.sqrt(_RIDGE * self.problem.allowance(cost)) / (high - low)
@@ -100,7 +100,7 @@ def squares(r: FloatArray) -> float:
 
 
 def unchanged(rows: Rows) -> Rows:
-    """Return residuals as they are: no pull."""
+    """Return residuals without regularisation."""
     return rows
 
 
@@ -113,7 +113,7 @@ def creep(
     most: int = _STEPS,
     held: tuple[int, ...] = (),
 ) -> FloatArray:
-    """Return where least squares end that ask the structure at every step, some coordinates held or none."""
+    """Return the end of least squares with the full model in every step, some coordinates fixed or none."""
     prior, z = path.problem.prior, start.copy()
     free = np.setdiff1d(np.arange(z.size), held)
 
@@ -132,7 +132,7 @@ def creep(
         np.clip(start, prior.low, prior.high)[free],
         jac=jacobian,
         bounds=(prior.low[free], prior.high[free]),
-        # a third of the steps of the default in the curved valleys of laws with several branches
+        # needs a third of the default's steps in the curved valleys of laws with several branches
         method="dogbox",
         xtol=tolerance,
         ftol=max(1e-2 * tolerance, 1e-14),
@@ -151,17 +151,17 @@ def minimum(
     tolerance: float = 1e-8,
     within: float = np.inf,
 ) -> tuple[FloatArray, bool]:
-    """Return the minimum near a point, and whether it is one: by surrogates, or else by asking at every step.
+    """Return the minimum near a point by surrogates or the full model, and whether it has converged.
 
     Parameters
     ----------
-    pulled : adds to the residuals
+    pulled : function that adds the regularisation to the residuals
     held : tuple of int
-        Coordinates that do not move.
+        Fixed coordinates.
     tolerance : float
-        It ends where a round lowers the cost by less than this share of it.
+        The search ends if a round lowers the cost by less than this share.
     within : float
-        It ends, too, where a ln θ is farther from the start.
+        The search also ends if a ln θ is farther than this from the start.
     """
     rows, z = pulled(path), start
     cost = squares(rows(z)[0])
@@ -196,14 +196,14 @@ def constrained(
     near: Rows | None = None,
     enough: float = 0.0,
 ) -> tuple[FloatArray, float]:
-    """Return the point of least cost with one ln θ held, and its cost.
+    """Return the point of smallest cost with one ln θ fixed, and its cost.
 
     Parameters
     ----------
     near : optional
         A surrogate to try first.
     enough : float
-        A cost that need not be lowered.
+        Cost at which the search may stop.
     """
     start, held = z.copy(), (parameter,)
     start[parameter] = value

@@ -1,4 +1,4 @@
-"""Profile likelihoods: the least χ² at each value of one parameter, the others free."""
+"""Profile likelihoods: the smallest χ² at each value of one parameter, with the others free."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from jackettwin.updating.search.path import Path, constrained
 
 _REFINEMENTS = 4
 _NEAR, _STEP = 8.0, 2.0
-"""Steps of χ² larger than this are halved where χ² is less than so much above the lowest."""
+"""Where χ² is below the lowest plus the first, steps that change χ² by more than the second are halved."""
 
 
 @dataclass(frozen=True)
 class Profile:
-    """The least cost over the others as one parameter goes through its bounds.
+    """The smallest cost over all other parameters as one parameter varies within its bounds.
 
     Attributes
     ----------
-    values : (n,) of the parameter
-    cost : (n,) least χ², prior included
+    values : (n,) values of the parameter
+    cost : (n,) smallest χ², including the prior
     """
 
     name: str
@@ -31,9 +31,9 @@ class Profile:
 
 
 def profile(problem: Problem, theta: FloatArray, parameter: int, *, n: int = 11) -> Profile:
-    """Return the profile of one parameter from a solution outwards, each point started from its neighbour.
+    """Return the profile of one parameter outwards from a solution, each point started from its neighbour.
 
-    Where it rises fast near its lowest point, points are added in between.
+    Where it rises steeply near its lowest point, intermediate points are added.
     """
     z = np.log(theta)
     low, high = problem.prior.low[parameter], problem.prior.high[parameter]

@@ -1,9 +1,9 @@
-"""Branches that data can do without: two fits are one solution if the same shorter law is left of both.
+"""Omission of redundant branches: two fits are the same solution if both reduce to the same shorter law.
 
-A series of several branches meets data of fewer in a valley with many arms: the branch that is not needed may
-stand at any time, and a walk in one parameter after the other does not lead from one arm into the next. All
-arms meet where that branch is nothing. So each end point is led there, weakest branch first, as long as the
-cost stays; what is left is a few numbers, compared at a glance.
+If the data need fewer branches than a law has, the cost has a valley with many arms, since a redundant branch
+may have any relaxation time. Walks along single parameters do not lead from one arm into the next. All arms
+meet where the branch has no stiffness. Hence each end point is moved there, weakest branch first, while the
+cost does not rise, and the remaining parameters are compared.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from jackettwin.updating.search.descent import End
 from jackettwin.updating.search.path import Path, held_minimum, minimum
 
 _NOTHING = -23.0
-"""Logarithm of a relative stiffness that no pole notices: 1e-10, a hundredth of what poles are right to."""
+"""Logarithm of a negligible relative stiffness: 1e-10, a hundredth of the relative error of poles."""
 _ROUGH = 1e-3
-"""Share of the cost that matters where branches are left out."""
+"""Relative accuracy of the cost when branches are omitted."""
 _FAR = 100.0
-"""Times the allowed cost beyond which a surrogate's promise is a refusal."""
+"""Ratio to the allowed cost above which a surrogate's prediction rejects an omission."""
 _BETWEEN = np.linspace(0.0, 1.0, 10)[1:-1]
-"""Where the cost is asked for on the way to nothing."""
+"""Points at which the cost is computed on the way to a vanishing branch."""
 
 
 class ShorterLaws:
-    """The shorter law of each end point, sought once.
+    """The shorter law of each end point, computed once.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Search for every solution: from scattered starts, then away from the solutions already known."""
+"""Search for all solutions: from scattered starts, then with known solutions excluded."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ SearchMethod = Literal["least-squares", "nelder-mead"]
 METHODS = ("least-squares", "nelder-mead")
 
 LOCKED_DAMPER = 0.05
-"""Relative distance of an undamped frequency from the damped one, beyond which a damper is called locked: it
-carries the load that the spring should."""
+"""Relative difference of undamped and damped frequency above which a damper counts as locked: it carries the
+load instead of the spring."""
 _MOST = 16
-"""Starts are doubled up to this many times their number while a solution has been found only once."""
+"""Largest factor on the number of starts, which is doubled while some solution has been found only once."""
 MOST_EVALUATIONS = 40_000
-"""Starts are no longer doubled after so many evaluations of the model: about half a minute."""
+"""Number of evaluations of the model after which starts are no longer doubled: about half a minute."""
 _HOPELESS = 4
-"""The search gives up when so many times the starts have led to no minimum."""
+"""The search stops if this many times the number of starts have led to no minimum."""
 _DEFLATED = 6
-"""Most searches that are kept away from the known solutions; a quarter of the starts if these are few."""
+"""Largest number of searches with known solutions excluded; a quarter of the starts if these are few."""
 _CONFIDENCE = 0.95
 
 
@@ -41,21 +41,21 @@ class Solution:
     Attributes
     ----------
     theta : (n_parameters,)
-        Of a cluster, the point nearest the middle of the bounds.
+        For a cluster, the point nearest the middle of the bounds.
     cost : float
         Sum of squared residuals.
     frequency_hz, undamped_hz, damping_ratio : (n_targets,) in the first operating state
-    rates : (n_relaxations,) of the measured relaxations [rad/s]
+    rates : (n_relaxations,) rates of the measured relaxations [rad/s]
     locked_damper : bool
         Whether an undamped frequency is more than 5 % from the damped one.
     locks_within : bool
-        Whether a damper is locked here or anywhere at the ends of the cluster.
+        Whether a damper is locked here or at an end of the cluster.
     at_bound : tuple of str
         Parameters that ended on a bound.
     found : int
-        How many starts ended here.
+        Number of starts that ended here.
     extent : (n_parameters, 2)
-        Range of each parameter, the others refitted, over which the cost does not rise noticeably.
+        Range of each parameter, with the others refitted, in which the cost does not rise noticeably.
     """
 
     theta: FloatArray
@@ -79,9 +79,9 @@ class Begun:
     ----------
     start, end : (n_parameters,)
     cost : float
-        At its end.
+        Cost at the end.
     settled : bool
-        Whether the end is a minimum; a simplex may stall in a valley before it.
+        Whether the end is a minimum; a simplex may stall in a valley.
     """
 
     start: FloatArray
@@ -92,25 +92,25 @@ class Begun:
 
 @dataclass(frozen=True)
 class Search:
-    """Every solution that was found, cheapest first, and how sure it is that these are all.
+    """All solutions found, lowest cost first, and the completeness of the list.
 
     Attributes
     ----------
     starts : int
-        Searches from scattered points.
+        Number of searches from scattered points.
     deflated : int
-        Further searches, kept away from the known solutions by deflating them (Farrell et al. 2015).
+        Number of further searches with known solutions excluded by deflation (Farrell et al. 2015).
     missed_share_95 : float or None
-        If there is a solution that was missed, fewer than this share of random starts lead to it, with 95 %
-        confidence. None if it started from given points: what others lead to is not known.
+        Upper limit, with 95 % confidence, of the share of random starts that lead to a missed solution. None
+        if the search started from given points.
     spent : int or None
-        Evaluations after which the search stopped, although some solution had been found only once; None if
-        it ended by itself.
+        Number of evaluations after which the search stopped although some solution had been found only once;
+        None if it ended regularly.
     stalled : int
-        Searches of both kinds that ended above every solution: on the way, on a shoulder, or on a plateau
-        where the model is far from the data.
+        Number of searches of both kinds that ended above every solution: stalled, on a shoulder, or on a
+        plateau far from the data.
     begun : tuple of Begun
-        Where the searches from given points ended.
+        Ends of the searches from given points.
     """
 
     solutions: tuple[Solution, ...]
@@ -123,18 +123,18 @@ class Search:
 
     @property
     def statement(self) -> str:
-        """How complete the list is, in a sentence."""
+        """A sentence on the completeness of the list."""
         n = len(self.solutions)
         once = sum(s.found == 1 for s in self.solutions)
-        unsettled = "" if self.spent is None else f"Not settled after {self.spent:,} evaluations: "
-        # end points that nobody had the time to compare may be one solution
+        unsettled = "" if self.spent is None else f"Not complete after {self.spent:,} evaluations: "
+        # end points that were not compared for lack of time may be one solution
         if self.spent is not None and not once:
-            often = ", more of which may be one"
+            often = ", some of which may be the same"
         else:
             often = f", {once} of them found only once" if once else ", each found more than once"
         many = f"{n} distinct solution{'s' if n > 1 else ''}{often}"
         stalled = (
-            f"; {self.stalled} of these searches stalled above, on the way or on a plateau"
+            f"; {self.stalled} of these searches stalled at a higher cost, in a valley or on a plateau"
             if self.stalled
             else ""
         )
@@ -142,13 +142,13 @@ class Search:
             points = f"{self.starts} given point{'s' if self.starts > 1 else ''}"
             return (
                 f"{unsettled}Searches from {points} ended in {many}{stalled}. "
-                "What other starts lead to is not known."
+                "Other starts may lead to other solutions."
             )
         share = 100 * self.missed_share_95
         return (
-            f"{unsettled}{self.starts} starts and {self.deflated} searches away from known solutions ended "
-            f"in {many}{stalled}. If one was missed, fewer than {share:.2g} % of random starts lead to it "
-            "(95 % confidence)."
+            f"{unsettled}{self.starts} starts and {self.deflated} searches with known solutions excluded "
+            f"ended in {many}{stalled}. If a solution was missed, fewer than {share:.2g} % of random starts "
+            "lead to it (95 % confidence)."
         )
 
 
@@ -163,34 +163,36 @@ def search(
 ) -> Search:
     """Return the distinct solutions, best first.
 
-    Starts are scrambled Sobol points in the logarithms between the bounds, doubled in number while a solution
-    has been found only once. Further searches are then kept away from the known solutions. Given points are
-    taken as they are, one search each and no others, as the thesis does.
+    Starts are scrambled Sobol points in the logarithms between the bounds, doubled in number while some
+    solution has been found only once. Known solutions are then excluded from further searches. From given
+    points there is one search each and no others, as in the thesis.
 
     Parameters
     ----------
     method : {"least-squares", "nelder-mead"}
-        Gradient least squares, or the thesis's simplex (section 8.2), which starts only ``starts`` times.
+        Gradient-based least squares, or the thesis's simplex (section 8.2) with ``starts`` searches only.
     starts : int or sequence of {parameter: value}
-        Number of scattered starts, or the points to start from
+        Number of scattered starts, or the starting points
         (:func:`jackettwin.updating.search.start_points.given_points`).
     most_evaluations : int
-        Of the model, after which no further starts are added to the first ones.
+        Number of evaluations of the model after which no starts are added.
     progress : Progress
-        Told within the present step after each start how far the search is.
+        Receives a message after each start.
 
     Raises
     ------
     InputError
-        If the method is unknown, there is no start, a point is none of the problem's, or no search ends
-        anywhere: the data are out of reach.
+        If the method is unknown, there is no start, a point does not belong to the problem, or no search ends
+        in a minimum.
     """
     if method not in METHODS:
         raise InputError("unknown method", field="update.method", value=method, allowed=", ".join(METHODS))
     run = descend if method == "least-squares" else descend_simplex
     if not isinstance(starts, int):
         return _from_points(problem, run, given_points(problem, starts), progress)
-    require(starts >= 1, "at least one start", field="update.starts", value=starts, allowed="≥ 1")
+    require(
+        starts >= 1, "there must be at least one start", field="update.starts", value=starts, allowed="≥ 1"
+    )
     deflated = min(_DEFLATED, max(2, starts // 4)) if method == "least-squares" else 0
     points = _scatter(problem, starts * (_MOST if method == "least-squares" else 1), seed)
     clusters: list[tuple[End, int]] = []
@@ -205,7 +207,7 @@ def search(
             ends.append(end)
             tried, spent = tried + 1, spent + end.evaluations
             new += [(end, 1)] if end.settled else []
-            progress.within(f"{tried} of {n} starts, {len(clusters)} distinct solutions before them")
+            progress.within(f"{tried} of {n} starts, {len(clusters)} distinct solutions from earlier ones")
         clusters, compared = gather(problem, new, known=clusters)
         enough = all(count > 1 for _, count in clusters) if clusters else n >= _HOPELESS * starts
         if enough or not compared or 2 * n > len(points) or spent >= most_evaluations:
@@ -225,7 +227,7 @@ def search(
 
 
 def _kept(problem: Problem, clusters: list[tuple[End, int]]) -> list[tuple[End, int]]:
-    """Return the clusters that explain something; refuse data that none does."""
+    """Return the clusters that explain the data; raise an error if there is none."""
     if not clusters:
         raise _out_of_reach(problem)
     return [v for v in clusters if v[0].cost <= clusters[0][0].cost + problem.hopeless]
@@ -248,7 +250,7 @@ def _stalled(problem: Problem, ends: list[End], kept: list[tuple[End, int]]) -> 
 
 
 def _ended_in(problem: Problem, end: End, clusters: list[tuple[End, int]]) -> bool:
-    """Return whether an end is as low as some solution: many that are higher are counted among its starts."""
+    """Return whether the cost of an end is as low as that of some solution."""
     low = (cluster.cost for cluster, _ in clusters)
     return end.settled and any(abs(end.cost - cost) <= problem.allowance(cost) for cost in low)
 
@@ -256,7 +258,7 @@ def _ended_in(problem: Problem, end: End, clusters: list[tuple[End, int]]) -> bo
 def _from_points(
     problem: Problem, run: Callable[[Problem, FloatArray], End], points: FloatArray, progress: Progress
 ) -> Search:
-    """Return what searches from given points (n, d) end in."""
+    """Return the ends of searches from given points (n, d)."""
     ends: list[End] = []
     for i, point in enumerate(points, start=1):
         ends.append(run(problem, point))
@@ -271,7 +273,7 @@ def _from_points(
 
 
 def _out_of_reach(problem: Problem) -> InputError:
-    """Return an error that compares the data with the frequencies that the supports can give."""
+    """Return an error that compares the data with the frequencies possible with these supports."""
     first = problem.states[0]
     targets = first.residuals.used
     ends = problem.vectors(np.stack([problem.prior.low, problem.prior.high]), first)
@@ -282,7 +284,7 @@ def _out_of_reach(problem: Problem) -> InputError:
         if t.frequency_hz is not None and not np.isnan(b)
     ]
     return InputError(
-        "no start of the search ended in a minimum: the data are out of the supports' reach",
+        "no start of the search ended in a minimum: no support can reproduce the data",
         value={t.mode: t.frequency_hz and round(float(t.frequency_hz), 5) for t in targets},
         allowed="undamped " + ", ".join(reach) if reach else None,
         remedy="check mode numbers, frequencies, damping ratios, their standard deviations and update.bounds",
@@ -308,9 +310,9 @@ def _deflate(
     ends: list[End],
     progress: Progress,
 ) -> list[tuple[End, int]]:
-    """Return the clusters and what further searches find that are kept away from them; all join the ends."""
+    """Return the clusters, extended by further searches with these excluded; their ends are appended."""
     for i, point in enumerate(points, start=1):
-        progress.within(f"search {i} of {len(points)} away from {len(clusters)} known solutions")
+        progress.within(f"search {i} of {len(points)} with {len(clusters)} known solutions excluded")
         end = descend(problem, point, known=tuple(cluster.z for cluster, _ in clusters))
         ends.append(end)
         if end.settled:

@@ -1,4 +1,4 @@
-"""Starting points that the user gives, by the names of the parameters."""
+"""Starting points given by the user, by names of parameters."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from jackettwin.updating.problem import Problem
 def given_points(problem: Problem, points: Sequence[Mapping[str, float]]) -> FloatArray:
     """Return starting points as z = ln θ, (n, d).
 
-    A name stands for the parameter of that name and for those that a tie or a state adds its own words to:
-    ``k`` for ``k_horizontal`` and ``k_vertical``, unless these are given, too. A parameter that a point does
-    not name starts from the median of its prior, or from the middle of its bounds.
+    A name stands for the parameter of that name and for those with the suffix of a tie group or state: ``k``
+    for ``k_horizontal`` and ``k_vertical``, unless these are given. A parameter that is not given starts from
+    the median of its prior, or from the middle of its bounds.
 
     Parameters
     ----------
@@ -25,9 +25,11 @@ def given_points(problem: Problem, points: Sequence[Mapping[str, float]]) -> Flo
     Raises
     ------
     InputError
-        If there is no point, a name is no parameter's, or a value lies outside the bounds.
+        If there is no point, a name is not that of a parameter, or a value is outside the bounds.
     """
-    require(points, "at least one start", field="update.starts", value=[], remedy="give points, or a number")
+    require(
+        points, "there must be a start", field="update.starts", value=[], remedy="give points, or a number"
+    )
     return np.array([_point(problem, point, f"update.starts[{i}]") for i, point in enumerate(points)])
 
 
@@ -47,7 +49,7 @@ def _point(problem: Problem, point: Mapping[str, float], field: str) -> FloatArr
         value = (p.median or float(np.sqrt(p.low * p.high))) if said is None else point[said]
         require(
             p.low <= value <= p.high,
-            "a start outside the bounds",
+            "a start is outside the bounds",
             field=f"{field}.{said}",
             value=value,
             allowed=f"{p.low:g} to {p.high:g} {p.unit}",
@@ -58,7 +60,7 @@ def _point(problem: Problem, point: Mapping[str, float], field: str) -> FloatArr
 
 
 def points_of(problem: Problem, points: Sequence[Mapping[str, float]]) -> tuple[Mapping[str, float], ...]:
-    """Return the points all of whose names are parameters of a problem's: several laws share one list."""
+    """Return the points whose names are all parameters of the problem, since several laws share one list."""
     names = [p.name for p in problem.parameters]
     return tuple(
         point for point in points if all(any(_stands_for(problem, n, own) for own in names) for n in point)
@@ -66,7 +68,7 @@ def points_of(problem: Problem, points: Sequence[Mapping[str, float]]) -> tuple[
 
 
 def _stands_for(problem: Problem, name: str, parameter: str) -> bool:
-    """Tell whether a name means a parameter; ``c`` is no short form of the rotor's ``c_fore_aft``."""
+    """Tell whether a name stands for a parameter; ``c`` does not stand for the rotor's ``c_fore_aft``."""
     beside = tuple(p.name for p in problem.model.nuisance.parameters)
     ties = () if parameter.startswith(beside) and beside else (f"{name}_",)
     return parameter == name or parameter.startswith((*ties, f"{name}@"))

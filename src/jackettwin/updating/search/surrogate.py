@@ -1,14 +1,14 @@
-r"""A problem near one point, cheap to evaluate: poles linear in the supports' complex stiffness.
+r"""Surrogate of a problem near one point, with poles linear in the supports' complex stiffness.
 
-A pole knows a law only through its complex stiffness D there, in which it is nearly linear even where D is
-far from linear in the law's parameters. With the modes known at one point z₀,
+A pole depends on a law only through its complex stiffness D at the pole. It is nearly linear in D even if D
+is strongly non-linear in the law's parameters. With the modes known at one point z₀,
 
 .. math:: r(z) ≈ r_0 + \sum_{m, g} \frac{∂r}{∂D_g(λ_m)} \left[D_g(λ_m; z) - D_g(λ_m; z_0)\right]
           + \sum_j \frac{∂r}{∂θ_j} (θ_j - θ_{j,0}) + R (z - z_0),
 
-θ_j the parameters that are no law's (dashpots, masses of water), R the slopes of whatever these leave over:
-shapes and relaxations. At z₀ residuals and their Jacobian are the problem's own. So the curved valleys of
-laws with several branches are walked without the structure.
+with θ_j the parameters of no law (dashpots, mass of water) and R the remaining derivatives, of shapes and
+relaxations. At z₀ residuals and Jacobian equal those of the problem. Curved valleys of laws with several
+branches are thus followed without evaluating the structure.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ Rows = tuple[FloatArray, FloatArray]
 
 @dataclass(frozen=True, eq=False)
 class _StatePart:
-    """What one state's laws and other parameters do to the residuals of all.
+    """Contribution of one state's laws and other parameters to the residuals of all states.
 
     Attributes
     ----------
     model : SupportModel
     state : State
-    poles : (n_modes,) where the laws are asked for their stiffness
+    poles : (n_modes,) poles at which the laws are evaluated
     laws : (n_data, 2 n_groups n_modes) derivatives of the residuals by Re D, then Im D
-    others : (n_data, n_others) derivatives by the logarithms of the parameters that are no law's
+    others : (n_data, n_others) derivatives by the logarithms of the parameters of no law
     """
 
     model: SupportModel
@@ -46,7 +46,7 @@ class _StatePart:
     others: FloatArray
 
     def __call__(self, z: FloatArray) -> Rows:
-        """Return this part of the residuals (n_data,), but for a constant, and its derivatives by z."""
+        """Return this part of the residuals (n_data,), up to a constant, and its derivatives by z."""
         weights = self.state.weights
         theta = np.exp(weights @ z + self.state.shifts)
         D, dD = self.model.law_response(theta, self.poles)
@@ -63,8 +63,8 @@ class Surrogate:
     Parameters
     ----------
     z : (d,) the point
-    rows : its residuals and their Jacobian, as ``problem.evaluate`` returns them
-    found : its modes
+    rows : residuals and Jacobian of ``problem.evaluate`` at the point
+    found : modes at the point
     """
 
     def __init__(self, problem: Problem, z: FloatArray, rows: Rows, found: Found) -> None:
@@ -99,7 +99,8 @@ def _state_part(
     _, dD = problem.model.law_response(theta, poles)
     n_laws = dD.shape[1]
     dD = dD.reshape(-1, poles.size, n_laws)
-    # dλ/dz = (∂λ/∂D) dD/dz: a parameter of this law alone tells ∂λ/∂D, best the one that moves D most
+    # dλ/dz = (∂λ/∂D) dD/dz: ∂λ/∂D follows from any parameter of this law only; the one with most effect
+    # is used
     touched = (dD != 0.0).any(axis=1)
     alone = np.where((touched & (touched.sum(axis=0) == 1))[:, None], dD, 0.0)
     best = np.abs(alone).argmax(axis=2)[..., None]
