@@ -103,7 +103,9 @@ def test_a_point_of_no_law_is_refused_in_the_file(twin: Path) -> None:
     twin.write_text(FREQUENCIES.replace("starts: 8", "starts: [{k: 5.7e+9, k1: 1.0e+8}]"))
     result = CliRunner().invoke(main, ["update", str(twin)])
     assert result.exit_code == 2, result.output
-    assert "update.starts[0]: a start names parameters of no one law" in " ".join(result.stderr.split())
+    assert "update.starts[0]: no fitted law has all parameters of this starting point" in " ".join(
+        result.stderr.split()
+    )
 
 
 def test_all_laws_are_ranked_by_cost(tmp_path: Path) -> None:

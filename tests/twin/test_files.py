@@ -45,7 +45,7 @@ def test_scientific_notation_without_sign_is_a_number(tmp_path: Path) -> None:
         (
             "tie: all",
             "tie: per-leg, shared: [k], scatter: {k: 0.3}",
-            r"support\.scatter.*shared or scatters, not both",
+            r"support\.scatter.*both shared and scattered",
         ),
         ("tie: all", "law: zenner", r"no such law.*did you mean 'zener'"),
         ("support: {tie: all}\n", "support: {tie: all}\nsupport: {tie: all}\n", r"'support' is given twice"),
@@ -54,12 +54,12 @@ def test_scientific_notation_without_sign_is_a_number(tmp_path: Path) -> None:
         (
             "damping_ratio: 0.0127",
             "damping_ratio_std: 0.002",
-            r"targets\.0\.damping_ratio_std: a standard deviation without its value.*0\.002",
+            r"targets\.0\.damping_ratio_std: a standard deviation is given without its value.*0\.002",
         ),
         (
             "targets:",
             "update: {mac_std: 0.02}\ntargets:",
-            r"update\.mac_std: no target has a shape to be compared.*0\.02.*mode_shape",
+            r"update\.mac_std: mac_std is given but no target has a shape.*0\.02.*mode_shape",
         ),
         (
             "targets:",
@@ -98,8 +98,12 @@ def test_a_target_may_have_a_shape(tmp_path: Path) -> None:
     [
         ("mac_std: 0.02", "starts: 3", r"update\.mac_std: shapes need the standard deviation of 1 − MAC"),
         ("{x: 1.0, y", "{x: 1.0, z", r"targets\.0\.mode_shape: no sensor .*\['z'\].*allowed: x, y"),
-        ("{x: 1.0, y: [0.1, 0.01]}", "{x: 1.0}", r"targets\.mode_shape: a shape at one sensor"),
-        ("frequency_hz: 0.1819,", "", r"targets\.mode_shape: a shape without its frequency.*frequency_hz"),
+        ("{x: 1.0, y: [0.1, 0.01]}", "{x: 1.0}", r"targets\.mode_shape: a shape needs at least two sensors"),
+        (
+            "frequency_hz: 0.1819,",
+            "",
+            r"targets\.mode_shape: the target has a shape but no frequency.*frequency_hz",
+        ),
     ],
 )
 def test_shapes_that_cannot_count_are_refused(tmp_path: Path, old: str, new: str, message: str) -> None:

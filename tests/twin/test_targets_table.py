@@ -44,7 +44,7 @@ def test_a_column_of_bare_deviations_is_of_the_quantity_before_it(tmp_path: Path
     assert only["frequency_std_hz"] == 0.001
     assert only["damping_ratio_std"] == pytest.approx(0.0015)
     share = table(tmp_path / "s.csv", "Mode,Freq. [Hz],std [%]", "FA1,0.25,0.4")
-    with pytest.raises(InputError, match="is a share of the frequency.*Hz"):
+    with pytest.raises(InputError, match="is in per cent of the frequency.*Hz"):
         read_targets_table(share)
 
 
@@ -92,11 +92,11 @@ def test_a_decrement_is_no_ratio_and_a_row_without_numbers_no_mode(tmp_path: Pat
 @pytest.mark.parametrize(
     ("lines", "message"),
     [
-        (["mode,f [Hz],damping", "FA1,0.25,1.2"], "looks like a percentage"),
+        (["mode,f [Hz],damping", "FA1,0.25,1.2"], "seems to be a percentage"),
         (["mode,f [Hz]", "FA1,about 0.25"], "row 2.f \\[Hz\\]: is not a number"),
         (["what,f [Hz]", "FA1,0.25"], "no column for the name of the mode"),
         (["mode,value", "FA1,0.25"], "no column for the frequency"),
-        (["mode,f [Hz]"], "holds no modes"),
+        (["mode,f [Hz]"], "contains no modes"),
         (["Mode,Frequency [Hz]", "1st FA,0,1819"], "row 2: has more cells than"),
     ],
 )
@@ -114,7 +114,7 @@ def test_a_twin_takes_the_table_and_names_among_its_targets(tmp_path: Path) -> N
     config = read_twin(tmp_path / "twin.yaml")
     assert sorted(target.mode for target in config.targets) == [1, 2]
     (tmp_path / "twin.yaml").write_text("structure: jacket15\ntargets: [{mode: FA9, frequency_hz: 0.2}]\n")
-    with pytest.raises(InputError, match="no mode of the structure is called so") as refused:
+    with pytest.raises(InputError, match="no mode of the structure has this name") as refused:
         read_twin(tmp_path / "twin.yaml")
     assert refused.value.field == "targets.0.mode"
 

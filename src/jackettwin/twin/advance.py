@@ -1,9 +1,8 @@
-"""The second of the pair: a state and an observation become the next state. Cheap, to be folded in time.
+"""Second function of the pair: the next state from a state and an observation, at low cost.
 
-The fold is commutative: every observation belongs to the day it began on (UTC), and what it adds there does
-not depend on what came before. One that comes late changes its own day; what was estimated for later days is
-then out of date, and a finding says from when on. One whose samples are known already changes nothing, and
-neither does one of another structure.
+The order of observations does not matter: each is added to the sums of the UTC day on which it began. A late
+observation changes its own day; estimates for later days are then outdated, and a finding states from which
+day on. An observation with samples that the state contains already, or of another structure, changes nothing.
 """
 
 from __future__ import annotations
@@ -38,13 +37,13 @@ from jackettwin.twin.state import (
 WIND_BIN_M_S = 2.0
 """Width of a wind speed bin, around whole multiples (IEC 61400-1)."""
 BESIDE = re.compile("level|temp", re.IGNORECASE)
-"""Names of conditions beside wind and waves that a state keeps: those that move frequencies."""
+"""Names of conditions, besides wind and waves, that a state stores because they affect frequencies."""
 RATE_BIN = 0.1
-"""Width of a bin of logarithmic rates: as near as poles of one relaxation lie over the model orders."""
+"""Width of a bin of logarithmic rates, about the spread of one relaxation's poles over the model orders."""
 
 
 def advance(state: TwinState, observation: Observation) -> tuple[TwinState, tuple[Finding, ...]]:
-    """Return the state that knows one more observation, and what is worth saying of it.
+    """Return the state with one more observation, and findings on that observation.
 
     Raises
     ------
@@ -73,7 +72,7 @@ def advance(state: TwinState, observation: Observation) -> tuple[TwinState, tupl
 def advance_all(
     state: TwinState, observations: Iterable[Observation]
 ) -> tuple[TwinState, tuple[Finding, ...]]:
-    """Return the state that knows some more observations, and what is worth saying of them."""
+    """Return the state with some more observations, and findings on them."""
     findings: list[Finding] = []
     for observation in observations:
         state, found = advance(state, observation)
@@ -88,9 +87,9 @@ def day_of(observation: Observation) -> str:
 
 
 def operation_of(observation: Observation, *, by_wind: bool) -> str:
-    """Return the state of operation a record counts in: what its conditions say, and its bin of wind speed.
+    """Return the state of operation of a record, from its conditions, with its wind speed bin.
 
-    Winds are bins of 2 m/s, so that there are a dozen states of operation and not one for every record.
+    Wind speed bins are 2 m/s wide, which gives about a dozen states of operation.
     """
     state = observation.conditions.get("state")
     wind = observation.wind_m_s if by_wind else None
@@ -117,7 +116,7 @@ def _added(day: Day, seen: Observation, state: TwinState) -> Day:
 
 
 def _operation(seen: Observation) -> Operation:
-    """Return what one record says."""
+    """Return the sums of one record."""
     wind, duration = seen.wind_m_s, seen.duration_s
     height, period = (seen.conditions.get(key) for key in ("wave_height_m", "wave_period_s"))
     waved = height is not None and period is not None
@@ -150,7 +149,7 @@ def _operation(seen: Observation) -> Operation:
 
 
 def _beside(seen: Observation) -> dict[str, NumberSum]:
-    """Return the levels and temperatures that a record says."""
+    """Return the levels and temperatures that a record states."""
     return {
         name: NumberSum(1, whole(float(value)))
         for name, value in sorted(seen.conditions.items())
@@ -159,7 +158,7 @@ def _beside(seen: Observation) -> dict[str, NumberSum]:
 
 
 def _shapes(seen: Observation, of_modes: bool) -> dict[str, ClearShape]:
-    """Return the shapes of a record's real poles, and of its modes if they are wanted."""
+    """Return the shapes of a record's real poles, and with ``of_modes`` those of its modes."""
     by_channel = {sensor.channel: sensor for sensor in seen.sensors}
     sensors = tuple(by_channel[c.name] for c in seen.identification.channels if c.name in by_channel)
     if len(sensors) < len(seen.identification.channels):
@@ -177,7 +176,7 @@ def _shapes(seen: Observation, of_modes: bool) -> dict[str, ClearShape]:
 
 
 def _bin(pole: RealPole, seen: Observation) -> str:
-    """Return what tells relaxations apart: about which rate, and the channel that moves most."""
+    """Return the key that distinguishes relaxations: a bin of the rate, and the channel that moves most."""
     channel = seen.identification.channels[int(np.argmax(np.abs(pole.mode_shape)))].name
     return f"{floor(log(pole.rate_rad_s) / RATE_BIN)}:{channel}"
 
@@ -188,11 +187,11 @@ def _since_midnight(time: datetime) -> float:
 
 
 def _overlapping(seen: Observation, day: Day) -> list[Finding]:
-    """Say that other samples of the same minutes are known: another file of the same sensors counts twice."""
+    """Report that the state contains other samples of the same period, which would then be counted twice."""
     if seen.start_utc is None:
         return []
     start = _since_midnight(seen.start_utc)
-    # a record that ends as the next one starts does not overlap it, whatever a rate's rounding says
+    # consecutive records do not overlap, although rounding of the rate may suggest it
     margin = 0.01 * seen.duration_s
     if any(
         at < start + seen.duration_s - margin and start < at + t - margin for at, t in day.records.values()

@@ -1,4 +1,4 @@
-"""What held of a sensor for a while: its gain and sign, and where it sat."""
+"""Calibration of a sensor during a period: its gain, sign, position and direction."""
 
 from __future__ import annotations
 
@@ -15,16 +15,17 @@ from jackettwin.response import Sensor
 
 @dataclass(frozen=True)
 class Calibration:
-    """A sensor from one time to another.
+    """Calibration of a sensor from one time to another.
 
     Attributes
     ----------
     sensor : Sensor
-        Where it sat, and which way it pointed.
+        The sensor's position and direction in this period.
     factor : float
-        What the logger's samples are multiplied by: gain and sign.
+        Factor on the logger's samples: gain and sign.
     from_utc, to_utc : datetime or None
-        Time zone aware; records that begin from the first on and before the second. None is for ever.
+        Time zone aware; applies to records that begin at or after the first and before the second. None means
+        no limit.
     """
 
     sensor: Sensor
@@ -33,7 +34,7 @@ class Calibration:
     to_utc: datetime | None = None
 
     def holds_at(self, time: datetime | None) -> bool:
-        """Tell whether it holds at a time; of a record without a start, only what holds for ever does."""
+        """Return whether it applies at a time; without a start, only a calibration without limits does."""
         if time is None:
             return self.from_utc is None and self.to_utc is None
         started = self.from_utc is None or self.from_utc <= time
@@ -44,12 +45,12 @@ Calibrations = tuple[Calibration, ...]
 
 
 def holding(calibrations: Iterable[Calibration], time: datetime | None) -> dict[str, Calibration]:
-    """Return what holds of each channel at a time, {channel: calibration}."""
+    """Return the calibration of each channel at a time, {channel: calibration}."""
     return {c.sensor.channel: c for c in calibrations if c.holds_at(time)}
 
 
 def calibrated(record: Record, calibrations: Calibrations) -> Record:
-    """Return a record with its samples as its sensors' calibrations at its start correct them."""
+    """Return a record with samples corrected by the calibrations of its sensors at its start."""
     held = holding(calibrations, record.start_utc)
     factors = np.array([held[c].factor if c in held else 1.0 for c in record.channel_names])
     if np.all(factors == 1.0):
@@ -60,13 +61,13 @@ def calibrated(record: Record, calibrations: Calibrations) -> Record:
 def sensors_at(
     sensors: tuple[Sensor, ...], calibrations: Calibrations, time: datetime | None
 ) -> tuple[Sensor, ...]:
-    """Return where the sensors sat at a time."""
+    """Return the sensors with their positions and directions at a time."""
     held = holding(calibrations, time)
     return tuple(held[s.channel].sensor if s.channel in held else s for s in sensors)
 
 
 def uncalibrated(calibrations: Calibrations, time: datetime | None) -> tuple[Finding, ...]:
-    """Name the sensors that have a history of calibrations, but none that holds at a time."""
+    """Return findings on the sensors with calibrations of which none applies at a time."""
     held = holding(calibrations, time)
     channels = dict.fromkeys(c.sensor.channel for c in calibrations)
     return tuple(Finding("sensor_uncalibrated", channel) for channel in channels if channel not in held)

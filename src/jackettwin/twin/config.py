@@ -1,4 +1,4 @@
-"""What a twin is made of, checked and in SI units."""
+"""Checked configuration of a twin in SI units."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]
 Weight = Annotated[float, Field(ge=0.0, le=1e12)]
 DEFAULT_STARTS = 32
 PAIRED_MODES = 12
-"""Modes of the model that measured modes may be paired with."""
+"""Number of the model's modes that measured modes may be paired with."""
 USUAL_MODES = (1, 2, 3, 4, 5)
-"""Both bending pairs and torsion."""
+"""Numbers of both bending pairs and torsion."""
 
 
 class ModelError(Schema):
-    """Relative standard deviation by which the model itself may miss some modes, or rates of relaxations."""
+    """Relative standard deviation of the model's error in some modes or in rates of relaxations."""
 
     modes: tuple[Annotated[int, Field(ge=1, le=50)], ...] = ()
     frequency: Ratio = 0.0
@@ -43,7 +43,7 @@ class ModelError(Schema):
 
 
 class ToleranceSchema(Schema):
-    """A tolerance of ``tolerances``: its standard deviation, or that it was weighed or inspected."""
+    """A tolerance of ``tolerances``: its standard deviation, or a flag that it was weighed or inspected."""
 
     std: Annotated[float, Field(ge=0.0)] | None = None
     weighed: bool = False
@@ -56,9 +56,9 @@ class TwinTolerances:
     Attributes
     ----------
     given : {name: standard deviation}
-        Of the tolerances that the twin sizes; 0 closes one.
+        Of the tolerances that the twin specifies; 0 closes one.
     others : bool
-        Whether the tolerances that it does not name are open.
+        Whether the tolerances that it does not specify are open.
     """
 
     given: Mapping[str, float] = field(default_factory=dict)
@@ -70,16 +70,16 @@ class TwinTolerances:
 
 
 class LognormalPrior(Schema):
-    """What is known of a parameter beforehand; the standard deviation is that of its logarithm."""
+    """Lognormal prior of a parameter; the standard deviation is that of its logarithm."""
 
     median: Positive
     log_std: Positive
 
 
 class Weights(Schema):
-    """What squared relative errors count by, w_ω and w_ζ of thesis (8.4): one number, or one a mode.
+    """Weights of squared relative errors, w_ω and w_ζ of thesis (8.4): one number, or one for each mode.
 
-    A mode without one counts by 1; by 0 it takes no part in the fit.
+    The default is 1; a value with weight 0 is not fitted.
     """
 
     frequency: Weight | dict[Annotated[int, Field(ge=1, le=50)], Weight] = 1.0
@@ -96,7 +96,7 @@ class Weights(Schema):
 
 @dataclass(frozen=True)
 class GivenRelaxation:
-    """A relaxation known from elsewhere.
+    """A relaxation given as a target.
 
     Attributes
     ----------
@@ -115,10 +115,10 @@ class GivenRelaxation:
 class UpdateSettings(Schema):
     """``update`` of a twin file: how the supports are updated.
 
-    ``damping_of`` names the modes whose damping the supports must explain: ``fore_aft``, ``all``, ``none``,
-    or labels; by default that of all targets, of records ``fore_aft``. ``modes`` are the numbers of the
-    fitted modes; by default both bending pairs and torsion, beyond which blades and brace details matter
-    more than supports, and all targets.
+    ``damping_of`` names the modes whose damping is fitted: ``fore_aft``, ``all``, ``none``,
+    or labels; the default is all for targets and ``fore_aft`` for records. ``modes`` are the numbers of the
+    fitted modes. The default is all for targets, and both bending pairs and torsion for records; higher modes
+    depend more on blades and brace details than on supports.
     """
 
     laws: Annotated[tuple[str, ...], Field(min_length=1)] = DEFAULT_LAWS
@@ -127,46 +127,46 @@ class UpdateSettings(Schema):
         Annotated[int, Field(ge=1, le=10000)]
         | Annotated[tuple[Annotated[dict[str, Positive], Field(min_length=1)], ...], Field(min_length=1)]
     ) = DEFAULT_STARTS
-    """How many scattered points the search starts from, or the points themselves; a law that no point is of
-    starts from as many scattered ones as by default."""
+    """Number of scattered starting points of the search, or the points themselves. A law without a given
+    point starts from the default number of scattered points."""
     most_evaluations: Annotated[int, Field(ge=1, le=10**9)] = MOST_EVALUATIONS
-    """Of the model, after which the search adds no further starts."""
+    """Number of model evaluations after which the search adds no further starts."""
     seed: Annotated[int, Field(ge=0)] = 0
     particles: Annotated[int, Field(ge=20, le=100000)] = 150
     sampler: Literal["smc", "nested"] = "smc"
     bounds: dict[str, tuple[float, float]] = {}
     priors: dict[str, LognormalPrior] = {}
-    """By parameter name; the others are flat in ln θ."""
+    """Priors by parameter name; those of other parameters are flat in ln θ."""
     weighting: Literal["auto", "relative", "covariance"] = "auto"
     weights: Weights | None = None
     modes: tuple[Annotated[int, Field(ge=1)], ...] = USUAL_MODES
     damping_of: Literal["fore_aft", "all", "none"] | tuple[str, ...] = "fore_aft"
     model_errors: Annotated[tuple[ModelError, ...], Field(alias="model_error")] = ()
     mac_std: Positive | None = None
-    """Standard deviation of 1 − MAC; None leaves mode shapes out of the fit."""
+    """Standard deviation of 1 − MAC; with None, mode shapes are not fitted."""
     dashpots: tuple[Literal["c_fore_aft", "c_side_side"], ...] = ()
-    """Nacelle dashpots to update as well, at the mean wind speed."""
+    """Nacelle dashpots that are also updated, stated at the mean wind speed."""
     rotor: str | None = None
-    """A windIO file or shipped rotor from which the dashpots' priors and patterns follow."""
+    """A windIO file or shipped rotor that gives the dashpots' priors and patterns."""
     shaft: Literal["locked", "free"] = "locked"
-    """Whether the parked rotor turns with the nacelle."""
+    """Whether the parked rotor's shaft is locked to the nacelle."""
     wind_speed_m_s: Positive | None = None
-    """Instead of the mean over the records' conditions."""
+    """Wind speed that replaces the mean over the records' conditions."""
     water: tuple[Literal["water_mass", "water_damping"], ...] = ()
-    """Factors on the water to update as well."""
+    """Factors of the water that are also updated."""
     parameters: tuple[str, ...] = ()
-    """Other parameters to update as well, of those that installed packages add."""
+    """Parameters of installed packages that are also updated."""
     steel_damping: Literal["fixed", "free"] = "fixed"
-    """Whether ratio and frequency of the steel's least damping are updated as well."""
+    """Whether ratio and frequency of the steel's minimum damping are also updated."""
 
     def starts_for(self, problem: Problem) -> int | tuple[Mapping[str, float], ...]:
-        """Return what the search of one law starts from."""
+        """Return the starting points of the search of one law, or their number."""
         if isinstance(self.starts, int):
             return self.starts
         return points_of(problem, self.starts) or DEFAULT_STARTS
 
     def fits_damping(self, label: str) -> bool:
-        """Return whether the damping of a mode takes part in the fit."""
+        """Return whether the damping of a mode is fitted."""
         if isinstance(self.damping_of, tuple):
             return label in self.damping_of
         return self.damping_of == "all" or label.startswith(self.damping_of)
@@ -181,19 +181,19 @@ class UpdateSettings(Schema):
 
     @property
     def rate_error(self) -> float:
-        """Relative standard deviation by which the model may miss the rate of a relaxation."""
+        """Relative standard deviation of the model's error in the rate of a relaxation."""
         return hypot(*(error.rate for error in self.model_errors))
 
 
 class WatchSettings(Schema):
-    """``watch`` of a twin file: what is learnt from and promised when its days are watched for change."""
+    """``watch`` of a twin file: baseline and false alarm rate of the monitoring for change."""
 
     baseline_days: Annotated[float, Field(ge=30.0, le=3653.0)] = 365.0
-    """Days from the first record that tell what is normal; a year has a round of seasons."""
+    """Length of the baseline from the first record in days; a year includes all seasons."""
     arl_years: Annotated[float, Field(ge=0.1, le=1000.0)] = 10.0
-    """A false alarm once in so many years, or more rarely, of all quantities together."""
+    """Least mean time in years between false alarms of all quantities together."""
     relearn: date | None = None
-    """First day of a new baseline, on a person's word: after a repair, a change, an adopted model."""
+    """First day of a new baseline that a person requested, as after a repair or a change."""
 
 
 @dataclass(frozen=True)
@@ -223,37 +223,37 @@ class TwinConfig:
     shapes: Mapping[int, Mapping[str, complex]]
     """Of targets, at sensors of the twin: {mode: {channel: value}}."""
     relaxations: tuple[GivenRelaxation, ...]
-    """Targets that do not oscillate."""
+    """Targets that are relaxations."""
     identification: IdentificationSettings
     picks: tuple[Pick, ...]
     """Poles to take instead of the automatic selection, for the records they name."""
     update: UpdateSettings
     unsaid: Unsaid = Unsaid()
-    """What holds for records whose files do not say it."""
+    """Properties of records whose files do not state them."""
     calibrations: Calibrations = ()
-    """What held of the sensors for a while."""
+    """Calibrations of the sensors, each for a period."""
     operation: OperationRule = OperationRule()
-    """Which state of operation a record was in, and whether it may update the supports."""
+    """Rule for the state of operation of a record, and whether it may update the supports."""
     watch: WatchSettings = WatchSettings()
-    """How its days are watched for change."""
+    """Settings of the monitoring for change."""
     tolerances: TwinTolerances = TwinTolerances()
-    """What drawings and sea leave open."""
+    """Tolerances of drawings and sea."""
     rotor_speed_rpm: tuple[float, float] | None = None
-    """Lowest and highest speed of the rotor in operation; None leaves it to ``update.rotor``."""
+    """Lowest and highest speed of the rotor in operation; with None, that of ``update.rotor``."""
     mode_damping: Mapping[int, float] = field(default_factory=dict)
     """Damping ratios of the structure's own modes on pinned feet, by number."""
     assigned: tuple[int, ...] = ()
-    """Modes that were found for targets that give a frequency and no mode."""
+    """Modes that were assigned to targets without a mode's name or number."""
     of_records: tuple[str, ...] = ()
-    """Keys of the model (``gravity``, …) that the file leaves to its records, which state them."""
+    """Keys of the model (``gravity``, …) that the file omits and the records state."""
 
     def require_records(self) -> None:
-        """Refuse a record that is not there, before any other is read.
+        """Raise an error if the file of any record is missing, before reading any.
 
         Raises
         ------
         InputError
-            Names the twin file and the record's place in it.
+            If a file is missing; the error names the twin file and the entry.
         """
         for i, path in enumerate(self.records):
             require(
@@ -269,7 +269,7 @@ class TwinConfig:
         return f"TwinConfig({self.name!r}, {self.structure!r}, {data}, laws {', '.join(self.update.laws)})"
 
     def modelling(self) -> dict[str, object]:
-        """Return how the structure is modelled, by the keys of a twin file."""
+        """Return the modelling options of the structure, by the keys of a twin file."""
         s = self.structure
         return {
             "gravity": self.gravity,
@@ -280,7 +280,7 @@ class TwinConfig:
 
 
 def assembled(config: TwinConfig) -> Assembly:
-    """Return the assembled structure of a twin, with the water that moves with it."""
+    """Return the assembled structure of a twin, including the water's added mass."""
     assembly = assemble(
         config.structure,
         beam_theory=config.beam,

@@ -1,15 +1,16 @@
-r"""Sums that are the same to the last bit in whatever order they are added: what a state keeps of a mode.
+r"""Sums of a mode's data that do not depend, to the last bit, on the order of addition.
 
 Every contribution is rounded once to a multiple of 2⁻²⁴ and added as a whole number, which is exact,
-commutative and associative; so records may come late, twice over two workers or in any order.
+commutative and associative; so the order of records and the division of work do not matter.
 
 Of n records with frequencies f, damping ratios ζ, lengths T and stated variances of ln f and ln ζ,
 
 .. math:: p = ζ / \mathrm{var}(\ln f), \qquad q = 2π f T,
 
-are the weights of ln f and of ζ that do not depend on the damping that all share (at which variances are
-taken, as in :mod:`jackettwin.identification.many_records.fusion`): var(ln f) is :math:`\barζ/p`, var(ζ/ζ̄) is
-:math:`r/(\barζ q)` with r the geometric mean of what records claim over the least possible.
+are the weights of ln f and of ζ, which do not depend on the common damping (at which variances are computed,
+as in :mod:`jackettwin.identification.many_records.fusion`): var(ln f) is :math:`\barζ/p`, var(ζ/ζ̄) is
+:math:`r/(\barζ q)` where r is the geometric mean over records of the ratio of the stated variance to the
+least possible.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from jackettwin.identification import ModalEstimate
 from jackettwin.identification.many_records.fusion import Average
 
 UNIT = 2**24
-"""Whole numbers a unit: 6e-8, three digits below what ten minutes tell of any sum."""
+"""Whole numbers per unit. The step of 6e-8 is 1/1000 of any sum's uncertainty from ten minutes."""
 
 Sums = TypeVar("Sums", bound=tuple[Any, ...])
 """A named tuple of whole numbers, or of such tuples."""
@@ -34,22 +35,22 @@ def whole(value: float) -> int:
 
 
 def plus(a: Sums, b: Sums) -> Sums:
-    """Return the sums of both."""
+    """Return the sum of both, element by element."""
     return type(a)(*(plus(x, y) if isinstance(x, tuple) else x + y for x, y in zip(a, b, strict=True)))
 
 
 def negated(a: Sums) -> Sums:
-    """Return what takes sums out again when it is added."""
+    """Return the negative of sums, element by element."""
     return type(a)(*(negated(x) if isinstance(x, tuple) else -x for x in a))
 
 
 class ModeSums(NamedTuple):
-    """What records say of one mode, as whole numbers of 2⁻²⁴ (counts as they are).
+    """Sums of records for one mode, as whole numbers in units of 2⁻²⁴; counts are plain.
 
     Attributes
     ----------
     n, known : int
-        Records that show the mode, and those of them that state a covariance.
+        Number of records with the mode, and of those that state a covariance.
     p, px, pxx : int
         Sums of the weights of ln f, and of weight times ln f and its square.
     q, qz, qzz : int
@@ -71,7 +72,7 @@ class ModeSums(NamedTuple):
 
 
 def of_estimate(mode: ModalEstimate, duration_s: float) -> ModeSums:
-    """Return what one record says of a mode; without a covariance it weighs as the best possible would."""
+    """Return the sums of one record; without a covariance its weight is that of the least variance."""
     x, zeta = log(mode.frequency_hz), mode.damping_ratio
     cycles = 2.0 * pi * mode.frequency_hz * duration_s
     p, known, log_ratio, correlation = cycles, 0, 0, 0
@@ -95,12 +96,12 @@ def of_estimate(mode: ModalEstimate, duration_s: float) -> ModeSums:
 
 
 class ModeTotal(NamedTuple):
-    """The sums of a mode over days, and what tells how far the days lie apart.
+    """The sums of a mode over days, with sums for the scatter between days.
 
     Attributes
     ----------
     days : int
-        With the mode.
+        Number of days with the mode.
     f_days, z_days : int
         Sums over the days of (Σpx)²/Σp and of (Σqζ)²/Σq.
     """
@@ -119,10 +120,10 @@ def of_day(sums: ModeSums) -> ModeTotal:
 def average(total: ModeTotal) -> Average:
     r"""Return the mean of a mode with its uncertainty.
 
-    Weighted means of ln f and of ζ; their variances are those of the weights, widened by the larger of χ² per
-    degree of freedom over the records and over the days (Birge 1932): records of one day share its tide and
-    its wind, and days that lie apart are no chance. The scatter beyond the records' own uncertainty is
-    DerSimonian and Laird's (1986) for equal weights.
+    Weighted means of ln f and of ζ; their variances follow from the weights, multiplied by χ² per degree of
+    freedom over the records or over the days, whichever is larger (Birge 1932), since records of one day
+    share tide and wind. The scatter in excess of the records' uncertainty is that of DerSimonian and Laird
+    (1986) for equal weights.
     """
     s = total.sums
     zeta = s.qz / s.q
@@ -143,14 +144,14 @@ def average(total: ModeTotal) -> Average:
 
 @dataclass(frozen=True)
 class _Spread:
-    """χ² per degree of freedom, at least 1, and what the records' scatter exceeds their own by."""
+    """χ² per degree of freedom, at least 1, and the records' scatter in excess of their uncertainty."""
 
     widened: float
     excess: float
 
 
 def _spread(n: int, days: int, square: int, weight: int, squares: int, by_day: int, scale: float) -> _Spread:
-    """Return how far records and days lie apart, from whole numbers: differences without rounding."""
+    """Return the scatter of records and days, from whole numbers to avoid rounding of differences."""
     records = scale * (squares * weight - square) / weight / UNIT
     between = scale * (by_day * weight - square) / weight / UNIT
     by_records = records / (n - 1) if n > 1 else 1.0

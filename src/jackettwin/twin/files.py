@@ -1,4 +1,4 @@
-"""Twin files: YAML to a checked configuration."""
+"""Reading of twin files: from YAML to a checked configuration."""
 
 from __future__ import annotations
 
@@ -44,11 +44,11 @@ from jackettwin.updating import (
 )
 
 _STRUCTURE_KEYS = {"jacket", "members"}
-"""Either is in every structure file and in no twin."""
+"""Keys of which every structure file has one and no twin file has any."""
 
 
 def shipped_twins() -> tuple[str, ...]:
-    """Return the names of the twins that come with the package."""
+    """Return the names of the twins that the package contains."""
     return shipped("twins")
 
 
@@ -58,7 +58,7 @@ def read_twin(source: str | Path, *, records_follow: bool = False) -> TwinConfig
     Parameters
     ----------
     records_follow : bool
-        The records come from elsewhere: the file need not name any, nor targets.
+        Whether records are supplied later, so that the file needs neither records nor targets.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def read_twin(source: str | Path, *, records_follow: bool = False) -> TwinConfig
 
 
 def _stated(keys: object, folder: Path) -> dict[str, Any]:
-    """Return what records say of the model they come from and the twin file does not."""
+    """Return the modelling keys that the records state and the twin file omits."""
     records = keys.get("records") if isinstance(keys, dict) else None
     if not isinstance(keys, dict) or not isinstance(records, list):
         return {}
@@ -95,7 +95,7 @@ def _stated(keys: object, folder: Path) -> dict[str, Any]:
 
 
 def _keys(path: Path) -> dict[str, Any]:
-    """Return the keys of a twin file; of a structure or a record in its place say how one is made of it."""
+    """Return the keys of a twin file; the error for a structure or record states how to make a twin of it."""
     is_record = any(path.suffix.lower() in form.extensions for form in formats())
     remedy = f"jackettwin init STRUCTURE {path} writes a twin"
     require(not is_record, "is a record, not a twin", file=path, remedy=remedy)
@@ -107,7 +107,7 @@ def _keys(path: Path) -> dict[str, Any]:
 
 
 def _with_numbers(schema: TwinSchema, path: Path) -> TwinSchema:
-    """Return the schema with the numbers of modes that are named (``mode: 1st FA``), or not even that."""
+    """Return the schema with numbers for modes given by name (``mode: 1st FA``) or by frequency only."""
     unnamed = [i for i, target in enumerate(schema.targets) if target.is_unnamed]
     if not unnamed and not any(isinstance(target.mode, str) for target in schema.targets):
         return schema
@@ -135,7 +135,7 @@ def _number(name: str, labels: tuple[str, ...]) -> int:
     label = read_mode_label(name)
     require(
         label in labels,
-        "no mode of the structure is called so",
+        "no mode of the structure has this name",
         field="mode",
         value=name,
         allowed=", ".join(labels),
@@ -160,7 +160,7 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
     low, high = schema.rotor_speed_rpm or (0.0, 0.0)
     require(
         low <= high,
-        "the rotor's speeds are reversed",
+        "the rotor's lowest speed exceeds its highest",
         field="rotor_speed_rpm",
         value=[low, high],
         allowed="[lowest, highest]",
@@ -170,10 +170,10 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
     steel = damping.rayleigh or RayleighSchema(ratio=0.0, frequency_hz=1.0)
     require(
         not damping.modes or schema.update.steel_damping == "fixed",
-        "the steel's damping is given by mode or free",
+        "the steel's damping cannot be both given by mode and free",
         field="damping.modes",
         value=list(damping.modes),
-        remedy="leave one of damping.modes and update.steel_damping: free out",
+        remedy="omit damping.modes or update.steel_damping: free",
     )
     structure = _structure(schema, folder)
     return TwinConfig(
@@ -210,7 +210,7 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
 
 
 def _tolerances(schema: TwinSchema) -> TwinTolerances:
-    """Return what the twin says of tolerances, all of which are known ones."""
+    """Return the twin's tolerances after checking their names."""
     if schema.tolerances == "none":
         return TwinTolerances(others=False)
     known, given = {**tolerances(), **REMAINDERS}, {}
@@ -219,7 +219,7 @@ def _tolerances(schema: TwinSchema) -> TwinTolerances:
         own = said if isinstance(said, ToleranceSchema) else ToleranceSchema(std=said)
         require(
             own.weighed or own.std is not None,
-            "neither a standard deviation nor weighed",
+            "neither a standard deviation nor weighed is given",
             field=f"tolerances.{name}",
             remedy="give std: 0.01, weighed: true, or a number",
         )
@@ -241,40 +241,45 @@ def _targets(schema: TwinSchema) -> tuple[tuple[Target, ...], tuple[GivenRelaxat
     relaxations = tuple(target for target in built if isinstance(target, GivenRelaxation))
     require(
         modes or not relaxations,
-        "relaxations alone do not fix the supports of a structure",
+        "relaxations alone do not determine the supports of a structure",
         field="targets",
         value=f"{len(relaxations)} without mode",
-        remedy="give at least one mode as well: {mode: 1, frequency_hz: …}",
+        remedy="also give at least one mode: {mode: 1, frequency_hz: …}",
     )
     return modes, relaxations
 
 
 def _shapes(schema: TwinSchema, targets: tuple[Target, ...]) -> dict[int, dict[str, complex]]:
-    """Return the shapes of the targets that are modes; ``update.mac_std`` weighs them."""
+    """Return the shapes of the targets that are modes; ``update.mac_std`` is their weight."""
     shapes = {t.number: t.shape for t in schema.targets if t.number is not None and t.mode_shape}
     std = schema.update.mac_std
     require(
         not shapes or std is not None,
-        "shapes need the standard deviation of 1 − MAC to count beside the rest",
+        "fitting shapes needs the standard deviation of 1 − MAC",
         field="update.mac_std",
         allowed="> 0",
-        remedy="e.g. mac_std: 0.02; or leave mode_shape out",
+        remedy="e.g. mac_std: 0.02; or omit mode_shape",
     )
     require(
         not schema.targets or std is None or shapes,
-        "no target has a shape to be compared",
+        "mac_std is given but no target has a shape",
         field="update.mac_std",
         value=std,
-        remedy="give targets a mode_shape: {channel: value, …}, or leave mac_std out",
+        remedy="give targets a mode_shape: {channel: value, …}, or omit mac_std",
     )
     with located(field="targets.mode_shape"):
         for t in (t for t in targets if t.mode in shapes):
-            remedy = "give frequency_hz of the mode, too"
-            require(t.frequency_hz is not None, "a shape without its frequency", value=t.mode, remedy=remedy)
+            remedy = "also give frequency_hz of the mode"
+            require(
+                t.frequency_hz is not None,
+                "the target has a shape but no frequency",
+                value=t.mode,
+                remedy=remedy,
+            )
             seen = list(shapes[t.mode])
             require(
                 len(seen) > 1,
-                "a shape at one sensor says nothing",
+                "a shape needs at least two sensors",
                 value=seen,
                 allowed="two channels or more",
             )
@@ -313,11 +318,11 @@ def _check_ties(support: SupportSchema, update: UpdateSettings) -> None:
             remedy="tie: per-leg or horizontal-vertical",
         )
     both = sorted({*support.shared} & {*support.scatter})
-    require(not both, "a parameter is shared or scatters, not both", field="scatter", value=both)
+    require(not both, "a parameter cannot be both shared and scattered", field="scatter", value=both)
 
 
 def _check_update(update: UpdateSettings, given_modes: Container[int | None]) -> None:
-    """Refuse unknown bounds and priors now, not after the records have been identified."""
+    """Raise an error on unknown bounds and priors before any record is identified."""
     known = {p.name for law in (*DEFAULT_LAWS, *members(update.laws)) for p in family(law).parameters}
     for name in update.parameters:
         matrix_of(name, field="parameters")
@@ -342,7 +347,7 @@ def _check_update(update: UpdateSettings, given_modes: Container[int | None]) ->
 
 
 def _check_starts(update: UpdateSettings) -> None:
-    """Refuse points to start from that are of no law which is fitted."""
+    """Raise an error on starting points that belong to no fitted law."""
     beside = {p.name for p in NuisanceParameters(_dashpots(update), rayleigh=True).parameters}
     beside |= {*update.water, *update.parameters}
     laws = {
@@ -357,7 +362,7 @@ def _check_starts(update: UpdateSettings) -> None:
                 )
                 for own in laws.values()
             ),
-            "a start names parameters of no one law",
+            "no fitted law has all parameters of this starting point",
             field=f"starts[{i}]",
             value=", ".join(point),
             allowed="; ".join(f"{law}: {', '.join(own)}" for law, own in laws.items()),
@@ -365,7 +370,7 @@ def _check_starts(update: UpdateSettings) -> None:
 
 
 def _dashpots(update: UpdateSettings) -> tuple[str, ...]:
-    """Return the dashpots of the rotor: those asked for, all where a rotor is given without."""
+    """Return the requested dashpots of the rotor; all if a rotor is given without dashpots."""
     return tuple(dict.fromkeys(update.dashpots or (DASHPOTS if update.rotor else ())))
 
 
@@ -377,7 +382,7 @@ def _structure(schema: TwinSchema, folder: Path) -> Structure:
 
 
 def _water(schema: TwinSchema, structure: Structure, folder: Path) -> WaterConfig | None:
-    """Return the water; a sea alone is water without growth."""
+    """Return the water; with ``sea`` only, water without growth."""
     sea, given = schema.sea, schema.water
     if sea is None and given is None:
         return None
@@ -393,7 +398,7 @@ def _water(schema: TwinSchema, structure: Structure, folder: Path) -> WaterConfi
 
 
 def _update_settings(schema: TwinSchema, folder: Path) -> UpdateSettings:
-    """Return the settings with what follows from the rest of the file."""
+    """Return the settings, completed from the rest of the file."""
     u = schema.update
     first = [schema.support.law] if schema.support.law else []
     said: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""What a run was asked with, value by value: what two runs do not share is found by name."""
+"""Inputs of a run as a flat table of values, by which two runs are compared."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from pydantic import BaseModel
 from jackettwin.twin.config import TwinConfig
 
 _NOT_ASKED = ("name", "path", "records", "assigned", "of_records")
-"""Of a twin: its name, files, whose content is in the provenance, and what follows from the rest."""
+"""Excluded fields: names, files, whose content is in the provenance, and derived values."""
 _NAMES = ("name", "channel", "node", "leader", "mode")
-"""What tells the items of a list apart, as far as they have it."""
+"""Keys that identify the items of a list, if an item has them."""
 
 Scalar = str | float | int | bool | None
 
 
 def inputs_document(config: TwinConfig) -> dict[str, Scalar]:
-    """Return every value of a twin by its place, ``water.level_m`` for one, in the order of the twin."""
+    """Return every value of a twin by its path, such as ``water.level_m``, in the order of the twin."""
     return {
         name: value
         for f in fields(config)
@@ -49,7 +49,7 @@ def _flat(value: Any, name: str) -> Iterator[tuple[str, Scalar]]:
 
 
 def _items(items: Any, name: str) -> Iterator[tuple[str, Scalar]]:
-    """Yield the items of a list by what tells them apart, numbers and texts as one value."""
+    """Yield the items of a list by their identifying keys; numbers and texts form one value."""
     if all(item is None or isinstance(item, (str, int, float)) for item in items):
         yield name, ", ".join(str(_scalar(item)) for item in items)
         return

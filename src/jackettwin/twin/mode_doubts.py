@@ -1,4 +1,4 @@
-"""Which identified modes the model speaks against: what resembles none of its modes, or follows the sea."""
+"""Rejection by the model of identified modes that resemble none of its modes or are forced by the sea."""
 
 from __future__ import annotations
 
@@ -19,30 +19,30 @@ if TYPE_CHECKING:
     from jackettwin.updating import Counterpart, Feet
 
 BELOW = 0.8
-"""Share of the lowest recognised frequency, below which a record holds no other mode of that shape."""
+"""Share of the lowest recognised frequency below which no other mode can have its shape."""
 THE_SEAS = 0.95
-"""Share of a shape from which it is the sea's. Peaks of waves on simulated jackets reach 0.967 to 1, modes of
-bending blades 0.91 at most."""
+"""Share of a shape from which the sea is its cause. On simulated jackets peaks of waves have 0.967 to 1,
+modes of bending blades at most 0.91."""
 
 
 def unlike_model(
     found: Identification, held: Sequence[Counterpart], sea: Sequence[float] | FloatArray
 ) -> Identification:
-    """Doubt what no mode of the model resembles, and what moves as the sea would force the structure.
+    """Return the identification with doubt on modes unlike the model's, and on shapes forced by the sea.
 
-    Waves and the rotor make peaks between the modes, which subspace methods take for modes. Of those that do
-    not move as under waves, what the refinement confirmed stays: a model may lack modes, as of blades. Below
-    its lowest mode a structure follows forces in the shape of that mode: a second peak of this shape there is
-    of the forces, however narrow.
+    Waves and the rotor cause peaks between the modes, which subspace methods identify as modes. A peak
+    without the shape of wave response is not doubted if the refinement confirmed it, since a model may lack
+    modes, as of blades. Below its lowest mode a structure responds to forces in the shape of that mode, so
+    that a second peak with this shape, however narrow, is due to the forces.
 
     Parameters
     ----------
     sea : (n_modes,)
-        Share of each shape that forces of the sea make, of :func:`sea_share`.
+        Share of each shape that forces of the sea explain, by :func:`sea_share`.
     """
     seen = [m.frequency_hz for m, one in zip(found.modes, held, strict=True) if one.verdict == "paired"]
     if not seen:
-        return found  # nothing of the model is in this record: it tells nothing of what is left
+        return found  # no mode is recognised: the model gives no evidence on the others
     modes = []
     for mode, one, share in zip(found.modes, held, sea, strict=True):
         if one.verdict != "paired" and mode.method != "decay" and share >= THE_SEAS:
@@ -56,27 +56,27 @@ def unlike_model(
 
 
 LOSS = 0.02
-"""Loss factor η of every mode: it only keeps a force at a mode's own frequency finite."""
+"""Loss factor η of every mode, which only keeps the response at a natural frequency finite."""
 
 
 def sea_share(
     modes: tuple[ModalEstimate, ...], assembly: Assembly, at: sp.csr_array, feet: Feet
 ) -> FloatArray:
-    r"""Return the share of each measured shape that horizontal forces of the sea make, (n_modes,).
+    r"""Return the share of each measured shape that horizontal forces of the sea explain, (n_modes,).
 
-    A force p at still water moves the sensors by
+    A force p at still water level displaces the sensors by
 
     .. math:: y(\omega) = \sum_i \frac{\phi_i\,(\phi_i^T p)}{\omega_i^2 (1 + i\eta) - \omega^2}.
 
-    Waves of few directions press on all legs at once where their length fits the distance of the legs: the
-    force has peaks, and so has the motion, as narrow as those of modes. Their shape is y's, not that of any
-    mode. That of a bending blade is another: it pulls at the tower's top.
+    Waves from few directions load all legs in phase at lengths that match the distance of the legs, so that
+    the force and the motion have peaks as narrow as those of modes. Their shape is that of y and of no mode.
+    The shape due to a bending blade differs, for its force acts on the tower's top.
 
     Parameters
     ----------
-    at : (n_channels, n_dof) what the channels see of every motion
+    at : (n_channels, n_dof) observation matrix of the channels
     feet : Feet
-        With the modes that the response is made of.
+        With the modes of the sum.
     """
     force = _still_water(assembly)
     known = np.isfinite(feet.frequency_hz)
@@ -95,7 +95,7 @@ def _share(mode: ModalEstimate, seen: FloatArray, pressed: FloatArray, omega2: F
 
 
 def _still_water(assembly: Assembly) -> FloatArray | None:
-    """Return unit forces along x and y on all that crosses still water, (n_dof, 2); None if nothing does."""
+    """Return unit forces along x and y on members that cross still water, (n_dof, 2); None without any."""
     mesh = assembly.mesh
     z = mesh.coordinates[:, 2] - assembly.structure.sea_level_z_m
     crossing = np.flatnonzero((z[mesh.start] < 0.0) != (z[mesh.end] < 0.0))

@@ -1,4 +1,4 @@
-"""All that the pair of functions needs of a twin: made once of its file, the same in every process."""
+"""Data of a twin for observing and advancing, made once from its file and the same in every process."""
 
 from __future__ import annotations
 
@@ -21,32 +21,32 @@ from jackettwin.updating import Feet, modes_by_foot_stiffness, numbered_modes, p
 
 @dataclass(frozen=True)
 class TwinModel:
-    """What a record is observed with and a state is of: no path, no record, no law.
+    """Model with which records are observed and to which a state belongs, without paths, records or laws.
 
     Attributes
     ----------
     name : str
     assembly : Assembly or None
-        The structure whose modes are recognised; None recognises none.
+        The structure whose modes are recognised; with None no mode is.
     numbered : UndampedModes or None
         Its modes on pinned feet.
     feet : tuple of Feet
-        These modes on softer and softer feet: measured ones are recognised on the likest.
+        These modes on increasingly soft feet; measured modes are recognised on the most similar.
     labels : tuple of str
-        Of these.
+        Labels of the numbered modes.
     identification : IdentificationSettings
     sensors : tuple of Sensor
-        Only these channels, at these places; empty takes all that measure motion, where the record says.
+        The channels used and their positions; if empty, all that measure motion, as the record states.
     picks : tuple of Pick
         Poles to take instead of the automatic selection, for the records they name.
     by_wind : bool
-        Whether the state keeps winds apart, because a rotor's damping is to be told from the ground's.
+        Whether the state separates wind speeds, to distinguish the rotor's damping from the ground's.
     with_shapes : bool
-        Whether the state keeps the clearest shapes, because they are fitted.
+        Whether the state stores the best shapes, to fit them.
     calibrations : tuple of Calibration
-        What held of the sensors for a while, instead of ``sensors``.
+        Calibrations of sensors, each for a period, which replace ``sensors``.
     operation : OperationRule
-        Which state of operation a record was in, and whether it may update the supports.
+        Rule for the state of operation of a record, and whether it may update the supports.
     """
 
     name: str
@@ -68,7 +68,7 @@ class TwinModel:
 
     @cached_property
     def model_hash(self) -> str:
-        """Identity of the structure, its sensors and what a state keeps: states of another are not merged."""
+        """Identity of structure, sensors and contents of a state; only states of equal models are merged."""
         parts: dict[str, object] = {
             "sensors": self.sensors,
             "by_wind": self.by_wind,
@@ -89,7 +89,7 @@ class TwinModel:
 
     @cached_property
     def numbering(self) -> str:
-        """Identity of the modes that measured ones are recognised as, on every feet."""
+        """Identity of the model's modes on all feet, by which measured modes are recognised."""
         return digest([self.labels, [[f.frequency_hz, f.shapes] for f in self.feet]])
 
     @property
@@ -107,20 +107,20 @@ class TwinModel:
         return self.numbered
 
     def settings_hash(self, record: str) -> str:
-        """Identity of how a record of this name is identified: settings and the picks that name it."""
+        """Identity of the settings and picks for the identification of a record of this name."""
         picks = [pick for pick in self.picks if pick.record in (None, record)]
         return digest([dict(self.identification), picks])
 
     def with_picks(self, picks: tuple[Pick, ...]) -> TwinModel:
-        """Return the model with other poles chosen by hand."""
+        """Return the model with other manually chosen poles."""
         return replace(self, picks=picks)
 
     def placed(self, record: Record) -> tuple[Sensor, ...]:
-        """Return the sensors behind a record's channels, where they sat at its start."""
+        """Return the sensors of a record's channels, with positions at its start."""
         return placed_sensors(sensors_at(self.sensors, self.calibrations, record.start_utc), record)
 
     def sees(self, seen: Examination) -> sp.csr_array:
-        """Return what the identified channels of a record see of every motion, (n_channels, n_dof).
+        """Return the observation matrix of a record's identified channels, (n_channels, n_dof).
 
         Raises
         ------
@@ -133,7 +133,7 @@ class TwinModel:
         )
 
     def likest_feet(self, seen: Examination) -> Feet | None:
-        """Return the feet on which the model is most like what a record shows; the stiffest of equals.
+        """Return the feet on which the model is most similar to a record's modes; the stiffest of equals.
 
         Raises
         ------
@@ -150,7 +150,7 @@ class TwinModel:
 
 
 def placed_sensors(given: tuple[Sensor, ...], record: Record) -> tuple[Sensor, ...]:
-    """Return the sensors behind the channels; they point as the record's channels do once turned."""
+    """Return the sensors of the channels, with the directions of the record's channels after rotation."""
     by_channel = {sensor.channel: sensor for sensor in given}
     return tuple(
         replace(by_channel[c.name], direction=c.direction)
@@ -161,7 +161,7 @@ def placed_sensors(given: tuple[Sensor, ...], record: Record) -> tuple[Sensor, .
 
 
 def twin_model(config: TwinConfig, assembly: Assembly | None = None) -> TwinModel:
-    """Return the model of a twin; with ``assembly`` its structure is not assembled again.
+    """Return the model of a twin; ``assembly`` avoids assembling its structure again.
 
     Raises
     ------
@@ -169,7 +169,7 @@ def twin_model(config: TwinConfig, assembly: Assembly | None = None) -> TwinMode
         If a sensor sits where the structure has no place.
     """
     assembly = assembled(config) if assembly is None else assembly
-    if config.sensors:  # wrong places are the twin file's, not those of the first record
+    if config.sensors:  # report wrong positions as errors of the twin file, not of the first record
         with located(file=config.path):
             observation_matrix(assembly, config.sensors)
     number = max([PAIRED_MODES, *(target.mode + 2 for target in config.targets)])

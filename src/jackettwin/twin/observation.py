@@ -1,4 +1,4 @@
-"""What is kept of a record: everything the twin will ever ask of it, in some kilobytes."""
+"""Observation: all data of a record that the twin uses later, in some kilobytes."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from jackettwin.updating import Counterpart
 
 @dataclass(frozen=True)
 class Recognised:
-    """Which mode of the model an identified mode is.
+    """Mode of the model that an identified mode is recognised as.
 
     Attributes
     ----------
     mode : int
-        Its number on pinned feet, from 1.
+        Number of the mode on pinned feet, from 1.
     label : str
         ``fore_aft_1`` …
     mac : float
-        With the subspace of the model's modes nearby.
+        MAC with the subspace of neighbouring modes of the model.
     """
 
     mode: int
@@ -35,32 +35,32 @@ class Recognised:
 
 @dataclass(frozen=True)
 class Observation:
-    """One record as the twin sees it; the same record, model and version give the same observation.
+    """Observation of one record; equal records, models and versions give equal observations.
 
     Attributes
     ----------
     record_id : str
         Hash of samples, rate, start and channels.
     model_hash, settings_hash, code_version : str
-        What it was made with.
+        Model, settings and version that it was made with.
     name : str
-        Of the record; says nothing of its identity.
+        Name of the record, which does not identify it.
     start_utc : datetime or None
     conditions : mapping
-        Wind, yaw, state of operation and whatever else the record says or its channels tell.
+        Wind, yaw, state of operation and other conditions from the record's metadata or channels.
     quality : mapping
         ``Quality.summary()``.
     identification : Identification
-        Without poles and spectrum, which figures need: those are made of the record again.
+        Without the poles and spectrum of figures, which are computed again from the record.
     recognised : tuple of Recognised or None
         For each identified mode; None if the model has no such mode.
     sensors : tuple of Sensor
-        Where the identified channels sit and which way they point; empty if the record does not say.
+        Positions and directions of the identified channels; empty if not stated.
     findings : tuple of Finding
     held : tuple of Counterpart
-        For each identified mode, what it was held against in the model; empty without a structure.
+        For each identified mode, the model's mode it was compared with; empty without a structure.
     truth : mapping
-        What the record says is true of its structure (simulated ones do): ``true_modes``, ``true_support``.
+        True values that simulated records state: ``true_modes``, ``true_support``.
     """
 
     record_id: str
@@ -85,7 +85,7 @@ class Observation:
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """For each identified mode, which of the model's it is; empty if none."""
+        """Label of each identified mode; empty if it is not recognised."""
         return tuple("" if known is None else known.label for known in self.recognised)
 
     @property
@@ -95,36 +95,36 @@ class Observation:
 
     @property
     def mismatched(self) -> bool:
-        """Whether the record shows modes and none of them is the model's: it is of another structure."""
+        """Whether the record has modes but none of the model's, so that it is of another structure."""
         shown = any(mode.status.is_a_mode for mode in self.identification.modes)
         return shown and any(f.code == "no_mode_of_the_model" for f in self.findings)
 
     @property
     def modes(self) -> dict[int, tuple[ModalEstimate, Recognised]]:
-        """The modes of the model that the record shows, {number: (estimate, which one)}."""
+        """The recognised modes of the record, {number: (estimate, recognised mode)}."""
         pairs = zip(self.identification.modes, self.recognised, strict=True)
         return {known.mode: (mode, known) for mode, known in pairs if known is not None}
 
     @property
     def named_modes(self) -> dict[str, ModalEstimate]:
-        """The modes of the model that the record shows and that are modes, by label."""
+        """The recognised modes of the record that are not doubted, by label."""
         return {known.label: mode for mode, known in self.modes.values() if mode.status.is_a_mode}
 
     @property
     def wind_m_s(self) -> float | None:
-        """Mean wind speed [m/s], if the record says it."""
+        """Mean wind speed [m/s], if the record states it."""
         value = self.conditions.get("mean_wind_speed_m_s")
         return None if value is None else float(value)
 
 
 _QUIET = ("drift", "file", "gaps", "held", "spikes", "stuck")
-"""Faults of version 1 that limit no conclusion."""
+"""Faults of version 1 that have no effect on results."""
 
 
 def _findings_have_codes(document: dict[str, Any]) -> dict[str, Any]:
-    """Return version 2: what the quality of a record says has ``code`` and ``subject``.
+    """Return version 2, in which findings on the quality of a record have ``code`` and ``subject``.
 
-    Sentences of version 1 were made when a fault was found; they stay as they are.
+    Version 1 stored complete sentences, which are not changed.
     """
     quality = document["quality"]
     said = [
@@ -140,4 +140,4 @@ def _findings_have_codes(document: dict[str, Any]) -> dict[str, Any]:
 
 
 OBSERVATION = StoredSchema("observation", Observation, (_findings_have_codes,))
-"""How observations are kept."""
+"""Format of stored observations."""

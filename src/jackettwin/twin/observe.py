@@ -1,4 +1,4 @@
-"""The first of the pair: a record and a model become an observation. Stateless, to be mapped over records."""
+"""First function of the pair: an observation from a record and a model, without state."""
 
 from __future__ import annotations
 
@@ -18,16 +18,17 @@ from jackettwin.updating import Counterpart, Feet, counterparts, pair
 from jackettwin.version import __version__
 
 TRUTH = ("true_modes", "true_support", "model")
-"""What records of a known structure say of it in their metadata."""
+"""Metadata keys of records of a known structure."""
 
 
 def observe(record: Record, model: TwinModel) -> Observation:
-    """Return what a record shows of a twin: its quality, its modes and which of the model's they are.
+    """Return the observation of a record: its quality, and its modes with their labels in the model.
 
     Raises
     ------
     InputError
-        If no channel carries a signal, the record cannot be identified, or a sensor sits nowhere.
+        If no channel carries a signal, the record cannot be identified, or a sensor's position is not on the
+        structure.
     """
     return observed(record, examined(record, model), model)
 
@@ -35,12 +36,12 @@ def observe(record: Record, model: TwinModel) -> Observation:
 def examined(
     record: Record, model: TwinModel, *, compare: bool = False, keep: Keep = NOT_KEPT
 ) -> Examination:
-    """Return a record examined with a model's settings: what figures need, and an observation leaves out.
+    """Return the examination of a record with a model's settings, which figures need.
 
     Raises
     ------
     InputError
-        If a channel carries nothing, or the record cannot be identified.
+        If a channel has no signal, or the record cannot be identified.
     """
     sensors = sensors_at(model.sensors, model.calibrations, record.start_utc)
     return examine(
@@ -54,14 +55,14 @@ def examined(
 
 
 def observed(record: Record, seen: Examination, model: TwinModel) -> Observation:
-    """Return what is kept of a record that was examined.
+    """Return the observation of an examined record.
 
     Parameters
     ----------
     record : Record
-        As it was read: its samples are its identity.
+        As read; its samples define its identity.
     seen : Examination
-        What :func:`examined` made of it.
+        Result of :func:`examined`.
 
     Raises
     ------
@@ -103,7 +104,7 @@ def observed(record: Record, seen: Examination, model: TwinModel) -> Observation
 
 
 def _unsaid(model: TwinModel, record: Record) -> tuple[Finding, ...]:
-    """Say which conditions are missing, if the state of operation is unknown for the want of them."""
+    """Return findings on missing conditions if these leave the state of operation unknown."""
     missing = model.operation.missing(record.conditions)
     if not missing or model.operation.with_state(record.conditions)["state"] != UNKNOWN:
         return ()
@@ -112,7 +113,7 @@ def _unsaid(model: TwinModel, record: Record) -> tuple[Finding, ...]:
 
 @dataclass(frozen=True)
 class _Known:
-    """Which modes of the model the identified ones are, and what is worth saying of it."""
+    """Recognised modes of an identification, and findings on them."""
 
     recognised: tuple[Recognised | None, ...]
     held: tuple[Counterpart, ...]
@@ -120,7 +121,7 @@ class _Known:
 
 
 def _known(seen: Examination, model: TwinModel, feet: Feet | None) -> _Known:
-    """Return which modes of the model the identified ones are, on the likest feet."""
+    """Return the recognised modes, compared on the most similar feet."""
     modes = seen.identification.modes
     if model.numbered is None or feet is None:
         return _Known((None,) * len(modes), (), ())

@@ -1,8 +1,7 @@
-"""Records of files, observed: every core at work, nothing done twice, one that fails stops nothing.
+"""Observation of record files in parallel, reusing stored observations and skipping failed files.
 
-Whoever observes files does it here: the main job, following in time, the identification of many. What is
-kept is found by content, so that a file that changed is observed again; processes are started for what is
-left only.
+The run, the following in time and the identification of many records use this module. Stored observations are
+found by content, so that a changed file is observed again; processes are started only for the other files.
 """
 
 from __future__ import annotations
@@ -24,13 +23,13 @@ from jackettwin.twin.observe import observe
 from jackettwin.version import __version__
 
 FEWEST_FOR_PROCESSES = 3
-"""Fewer records are done sooner than other processes are started."""
-DIED = "the process that worked on it ended abruptly, twice: out of memory?"
+"""Least number of records for which processes are started; fewer are faster in this process."""
+DIED = "its process ended abruptly twice, perhaps because memory was short"
 
 
 @dataclass(frozen=True)
 class Failed:
-    """A record that could not be observed, and why."""
+    """A record that could not be observed, and the reason."""
 
     record: str
     problem: str
@@ -38,14 +37,14 @@ class Failed:
 
 @dataclass(frozen=True)
 class Seen:
-    """What a file shows.
+    """Result of a file.
 
     Attributes
     ----------
     key : str
-        What the observation is kept under.
+        Key of the stored observation.
     observation : Observation or None
-        None if the record is known already, and was not asked for.
+        None if the caller knows the record already.
     """
 
     key: str
@@ -54,7 +53,7 @@ class Seen:
 
 @dataclass(frozen=True)
 class _Work:
-    """What is done with every file."""
+    """Processing of each file."""
 
     model: TwinModel
     unsaid: Unsaid | None
@@ -63,7 +62,7 @@ class _Work:
     dated: bool
 
     def see(self, file: Path, *, make: bool = True) -> Seen | None:
-        """Return what a file shows; unless ``make``, None if nothing is known of it yet."""
+        """Return the result of a file; without ``make`` only a stored one, or None."""
         record = read_record(file, self.unsaid)
         if self.dated and record.start_utc is None:
             raise undated(file)
@@ -91,22 +90,22 @@ def observe_files(
     progress: Progress = SILENT,
     keep: Keep = NOT_KEPT,
 ) -> Iterator[tuple[int, Seen | Exception]]:
-    """Yield the position of every file and what it shows, or why nothing, as they come.
+    """Yield the index of every file with its result or error, in order of completion.
 
     Parameters
     ----------
     unsaid : Unsaid, optional
-        Rate and unit, for files that do not say them.
+        Rate and unit for files that do not state them.
     known : collection of str
         Identities of records that are not observed again.
     dated : bool
-        Whether a record without a start is an error: it is told before anything is identified in it.
+        Whether a record without a start is an error, raised before its identification.
     workers : int, optional
-        Processes; default one a core. One works in this process.
+        Number of processes, by default one for each core. With 1, this process does the work.
     progress : Progress
-        Told of every file.
+        Receives a step for every file.
     keep : Keep
-        Keeps observations for the next time.
+        Stores observations for later runs.
     """
     work = _Work(model, unsaid, keep, frozenset(known), dated)
     left: list[int] = []
@@ -120,7 +119,7 @@ def observe_files(
             if seen is None:
                 break
             yield i, seen
-        except Exception as error:  # of many records, one that fails must not stop the others
+        except Exception as error:  # one record that fails must not stop the others
             yield i, error
     else:
         return
@@ -131,7 +130,7 @@ def observe_files(
 
 
 def _one(work: _Work, file: Path) -> Seen | Exception | None:
-    """Return what one file shows, or the error, which is for the other process to raise or to list."""
+    """Return the result of one file, or the error, which the calling process raises or lists."""
     try:
         return work.see(file)
     except Exception as error:
@@ -139,12 +138,12 @@ def _one(work: _Work, file: Path) -> Seen | Exception | None:
 
 
 def undated(record: str | Path) -> InputError:
-    """Return the error of a record that has no place in time."""
+    """Return the error of a record without a start time."""
     return InputError(
         "a record without a start cannot be followed in time",
         file=record,
         field="start_utc",
-        remedy="give start_utc in the description beside it (NAME.json), or a time column with a date",
+        remedy="give start_utc in its description (NAME.json), or a time column with a date",
     )
 
 
@@ -157,12 +156,12 @@ def observation_key(record: Record, model: TwinModel) -> str:
 def sorted_out(
     files: Sequence[Path], results: Iterable[tuple[int, Seen | Exception]]
 ) -> tuple[tuple[Observation, ...], tuple[Failed, ...]]:
-    """Return the observations in the order of their files, and the files that show nothing.
+    """Return the observations in the order of their files, and the failed files.
 
     Raises
     ------
     Exception
-        Of a file that is not there, or the first one if no file shows anything.
+        Of a missing file, or of the first file if all failed.
     """
     found = dict(results)
     errors = {i: result for i, result in sorted(found.items()) if isinstance(result, Exception)}
@@ -175,6 +174,6 @@ def sorted_out(
 
 
 def failure(file: Path, error: Exception) -> Failed:
-    """Return a record that could not be observed, with the reason: the input, or a fault of ours."""
+    """Return a record that could not be observed, with the reason: its input, or a fault of jackettwin."""
     ours = f"{file}: a fault of jackettwin, {type(error).__name__}: "
     return Failed(str(file), f"{'' if isinstance(error, JackettwinError) else ours}{error}")

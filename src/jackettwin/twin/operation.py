@@ -1,4 +1,4 @@
-"""Which state of operation a turbine was in, and whether its records may update the supports."""
+"""Rule for a turbine's state of operation, and whether its records may update the supports."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from jackettwin.errors import look_up
 from jackettwin.files import Schema
 
 UNKNOWN = "unknown"
-"""The state of operation of a record whose conditions are none of the rule's."""
+"""The state of operation of a record that meets no rule."""
 Condition = tuple[float | None, float | None] | tuple[str, ...]
-"""What a condition must be: between two numbers, either of which may be open, or one of some words."""
+"""Requirement on a condition: between two numbers, either of which may be open, or one of some words."""
 
 
 class OperationRule(Schema):
@@ -21,10 +21,10 @@ class OperationRule(Schema):
 
     Attributes
     ----------
-    states : {state: {condition: what it must be}}
-        The first state all of whose conditions hold is the record's; none leaves it to what the record says.
+    states : {state: {condition: requirement}}
+        The record's state is the first whose conditions all hold. Without states the record states it.
     updates : tuple of str or None
-        Of the states; the records of all others are tracked only. None lets all update.
+        States whose records may update; records of others are tracked only. With None all may update.
     """
 
     states: dict[str, dict[str, Condition]] = {}
@@ -38,19 +38,19 @@ class OperationRule(Schema):
         return self
 
     def with_state(self, conditions: Mapping[str, Any]) -> dict[str, Any]:
-        """Return conditions with the state of operation that they are."""
+        """Return conditions with the state of operation that follows from them."""
         if not self.states:
             return dict(conditions)
         fitting = (name for name, wanted in self.states.items() if _all_hold(wanted, conditions))
         return {**conditions, "state": next(fitting, UNKNOWN)}
 
     def missing(self, conditions: Mapping[str, Any]) -> tuple[str, ...]:
-        """Return the conditions that the rule asks for and a record does not say."""
+        """Return the conditions that the rule needs and a record does not state."""
         asked = dict.fromkeys(name for wanted in self.states.values() for name in wanted)
         return tuple(name for name in asked if conditions.get(name) is None)
 
     def may_update(self, operation: str) -> bool:
-        """Tell whether the records of a state of operation may update; behind a comma stands the wind."""
+        """Return whether records of a state of operation may update; its wind speed bin follows a comma."""
         return self.updates is None or operation.partition(", ")[0] in self.updates
 
 

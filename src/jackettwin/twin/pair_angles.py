@@ -1,4 +1,4 @@
-"""In which direction the lower mode of a bending pair moves: weakened on one side, a jacket turns it."""
+"""Direction of the lower mode of a bending pair, which changes if one side of a jacket is weakened."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from jackettwin.response import Sensor, principal_direction
 from jackettwin.twin.observation import Observation
 
 MOST_STD_RAD = float(np.radians(20.0))
-"""A direction known less well is none: drawn from all there are, it would have 52°."""
+"""Largest standard deviation of a usable direction; a uniformly distributed one has 52°."""
 _LEVEL = 0.1
-"""Vertical share of a sensor's direction from which it is no horizontal one."""
+"""Vertical component of a sensor's direction from which it does not count as horizontal."""
 
 Stations = list[tuple[list[int], FloatArray]]
 
 
 def pair_angles(seen: Observation) -> dict[str, tuple[float, float]]:
-    """Return by label of the lower mode its direction and standard deviation [rad], from x towards y.
+    """Return the lower mode's direction and standard deviation [rad], from x towards y, by its label.
 
-    In the axes that the record was identified in: the rotor's, if its yaw is known. A pair whose frequencies
-    differ by no more than they are unsure by has no direction of its own, and is left out; so is one that no
-    place with two horizontal sensors shows.
+    The axes are those of the record's identification: the rotor's, if its yaw is known. A pair is omitted if
+    its frequencies differ by less than their uncertainty, which leaves the direction undefined, or if no
+    position has two horizontal sensors.
     """
     sensors = {sensor.channel: sensor for sensor in seen.sensors}
     places = stations([sensors.get(channel.name) for channel in seen.identification.channels])
@@ -42,11 +42,11 @@ def pair_angles(seen: Observation) -> dict[str, tuple[float, float]]:
 
 
 def stations(sensors: Sequence[Sensor | None]) -> Stations:
-    """Return the places with sensors along two horizontal directions: their channels, and directions (n, 2).
+    """Return positions with sensors in two horizontal directions: their channels and directions (n, 2).
 
     Parameters
     ----------
-    sensors : of each channel; None of one that has no place
+    sensors : of each channel; None without a position
     """
     places: dict[object, list[tuple[int, FloatArray]]] = {}
     for row, sensor in enumerate(sensors):
@@ -63,8 +63,8 @@ def stations(sensors: Sequence[Sensor | None]) -> Stations:
 def _direction(lower: ModalEstimate, upper: ModalEstimate, places: Stations) -> tuple[float, float]:
     """Return the direction of the lower mode [rad] and its standard deviation.
 
-    To first order two modes mix by what disturbs them over how far their frequencies are apart: here by what
-    identification is unsure of. The entries of the shape add their own.
+    To first order, a perturbation mixes two modes by its ratio to the difference of their frequencies; here
+    the perturbation is the uncertainty of the identification. The shape's uncertainty is added.
     """
     if lower.frequency_std_hz is None or upper.frequency_std_hz is None:
         return 0.0, np.inf

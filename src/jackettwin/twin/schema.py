@@ -1,4 +1,4 @@
-"""What a twin file may hold: one schema for each of its keys."""
+"""Schemas of a twin file, one for each of its keys."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from jackettwin.updating import Target
 Vector = tuple[float, float, float]
 
 _OF_RELAXATIONS = {"rate_rad_s", "rate_std_rad_s"}
-"""What only a relaxation among the targets has."""
+"""Keys of targets that only relaxations have."""
 _STANDARD_DEVIATIONS = {"frequency_hz": "frequency_std_hz", "damping_ratio": "damping_ratio_std"}
 
 
@@ -49,10 +49,10 @@ class DampingSchema(Schema):
 
 
 class SupportSchema(Schema):
-    """``support``: the law to report first, what shares parameters, and pile heads that the laws scale.
+    """``support``: the law to report first, the tie of the parameters, and pile heads that the laws scale.
 
-    ``shared`` parameters have one value for all tie groups; ``scatter`` says by how much, in ln θ, the others
-    may be expected to differ between them.
+    ``shared`` parameters have one value for all tie groups; ``scatter`` is the expected standard
+    deviation of ln θ of the others between tie groups.
     """
 
     law: str | None = None
@@ -63,7 +63,7 @@ class SupportSchema(Schema):
 
 
 class CalibrationSchema(Schema):
-    """What held of a sensor for a while: what to multiply its samples by, and where it sat if elsewhere."""
+    """Calibration for a period: the factor on the samples, and another position if the sensor was moved."""
 
     from_utc: AwareDatetime | None = None
     to_utc: AwareDatetime | None = None
@@ -74,7 +74,7 @@ class CalibrationSchema(Schema):
     direction: Vector | None = None
 
     def build(self, sensor: Sensor) -> Calibration:
-        """Return it, of a sensor that sits there otherwise."""
+        """Return the calibration of a sensor, whose other data are those of ``sensor``."""
         moved = self.node is not None or self.height_m is not None
         then = replace(sensor, direction=self.direction or sensor.direction)
         if moved:
@@ -87,7 +87,7 @@ def _since(calibration: Calibration) -> datetime:
 
 
 class SensorSchema(Schema):
-    """A sensor: where a channel of the record sits in the structure, and what it sees there."""
+    """A sensor: position, direction and measured quantity of a channel of the record."""
 
     channel: str
     node: str | None = None
@@ -99,11 +99,11 @@ class SensorSchema(Schema):
     calibrations: list[CalibrationSchema] = []
 
     def build(self) -> Sensor:
-        """Return where it sits."""
+        """Return the sensor."""
         return Sensor(**self.model_dump(exclude={"calibrations"}))
 
     def history(self) -> Calibrations:
-        """Return what held of it from when to when.
+        """Return its calibrations, each with its period.
 
         Raises
         ------
@@ -123,7 +123,7 @@ class SensorSchema(Schema):
 
 
 class LoggerSchema(Schema):
-    """What holds for all records whose files do not say it: unit, gain, clock and rate."""
+    """Unit, gain, clock and rate of records whose files do not state them."""
 
     unit: str | None = None
     gain: float | None = None
@@ -131,12 +131,12 @@ class LoggerSchema(Schema):
     sample_rate_hz: Positive | None = None
 
     def build(self) -> Unsaid:
-        """Return it as the readers take it.
+        """Return the properties in the form of the readers.
 
         Raises
         ------
         InputError
-            If the unit is none of a vibration, or the clock no zone.
+            If the unit is not one of a vibration, or the time zone is unknown.
         """
         if self.unit is not None:
             vibration_of(plain_unit(self.unit))
@@ -146,7 +146,7 @@ class LoggerSchema(Schema):
 
 
 class TargetSchema(Schema):
-    """A mode known from elsewhere, or a relaxation: ``rate_rad_s``; either with its shape at the sensors."""
+    """A target: a mode, or a relaxation (``rate_rad_s``), either with its shape at the sensors if known."""
 
     mode: Annotated[int, Field(ge=1, le=50)] | str | None = None
     frequency_hz: Positive | None = None
@@ -168,13 +168,13 @@ class TargetSchema(Schema):
         Raises
         ------
         InputError
-            If it is neither a mode nor a relaxation, or its shape is not at the sensors.
+            If it is neither a mode nor a relaxation, or its shape has other channels than the sensors.
         """
         given = {name for name in self.model_fields_set if getattr(self, name) is not None}
         for value, std in _STANDARD_DEVIATIONS.items():
             require(
                 std not in given or value in given,
-                "a standard deviation without its value",
+                "a standard deviation is given without its value",
                 field=std,
                 value=getattr(self, std),
                 remedy=f"give {value}, or leave {std} out",
@@ -186,14 +186,14 @@ class TargetSchema(Schema):
             field="mode_shape",
             value=strangers,
             allowed=", ".join(channels) or None,
-            remedy="say under sensors: where it sits",
+            remedy="give its position under sensors:",
         )
         if isinstance(self.mode, int) and not given & _OF_RELAXATIONS:
             values = self.model_dump(exclude={*_OF_RELAXATIONS, "mode", "mode_shape"})
             return Target(mode=self.mode, **values)
         if self.rate_rad_s is None or given - _OF_RELAXATIONS - {"mode_shape"}:
             raise InputError(
-                "one target is a mode or a relaxation",
+                "a target must be either a mode or a relaxation",
                 value=sorted(given),
                 remedy="a mode: {mode, frequency_hz, …}; a relaxation: {rate_rad_s, rate_std_rad_s}",
             )
@@ -201,17 +201,17 @@ class TargetSchema(Schema):
 
     @property
     def is_unnamed(self) -> bool:
-        """Whether it gives a frequency and does not say of which mode."""
+        """Whether it gives a frequency without naming a mode."""
         return self.mode is None and self.frequency_hz is not None and self.rate_rad_s is None
 
     @property
     def number(self) -> int | None:
-        """The mode's number; None of a relaxation, or of a mode that is only named yet."""
+        """The mode's number; None for a relaxation, or a mode with a name that has no number yet."""
         return self.mode if isinstance(self.mode, int) else None
 
     @property
     def shape(self) -> dict[str, complex]:
-        """The shape at the sensors, empty if it is not given."""
+        """The shape at the sensors; empty if it is not given."""
         return {n: complex(*v) if isinstance(v, tuple) else complex(v) for n, v in self.mode_shape.items()}
 
 

@@ -1,7 +1,8 @@
-r"""Sensors that point the other way than the twin says: told by the shapes of its model.
+r"""Detection of sensors of reversed polarity from the shapes of the twin's model.
 
-A sensor whose sign is wrong turns its row in every measured shape. Where it holds the share p of a shape, the
-subspace MAC with the model falls from 1 to :math:`(1-2p)^2`, in every mode; turned back, none may suffer.
+A reversed sensor changes the sign of its row in every measured shape. If its share of the squared shape is p,
+the subspace MAC with the model falls from 1 to :math:`(1-2p)^2`. Restoring the sign must not lower any mode's
+MAC.
 """
 
 from __future__ import annotations
@@ -15,27 +16,27 @@ from jackettwin.identification import ModalEstimate
 from jackettwin.updating import subspace_mac_nearby
 
 LEAST_GAIN = 0.15
-"""Rise of the subspace MAC, summed over the modes, below which nothing is said."""
+"""Least rise of the subspace MAC, summed over the modes, that is reported."""
 LIKE = 0.9
-"""Likeness that the modes which gain reach at least, turned back."""
+"""Least MAC that the improved modes must reach after the change of sign."""
 SUFFERS = 0.02
-"""Fall of a mode's subspace MAC that a turned sensor cannot cause."""
+"""Fall of a mode's subspace MAC that excludes a reversed sensor as the cause."""
 ALIKE = 0.05
-"""Sensors whose turn gains the same within this cannot be told from each other."""
+"""Difference of gain below which two sensors cannot be distinguished."""
 LARGEST_SHARE = 3
-"""At most one sensor in so many is said to be turned."""
+"""At most one sensor out of this number is reported as reversed."""
 
 
 @dataclass(frozen=True)
 class Turned:
-    """A sensor that moves against the model, or several of which one does.
+    """A sensor of reversed polarity, or several of which one is reversed.
 
     Attributes
     ----------
     rows : tuple of int
-        Of the shapes.
+        Rows of the shapes.
     before, after : float
-        Mean subspace MAC of the modes that gain.
+        Mean subspace MAC of the improved modes, before and after the change of sign.
     """
 
     rows: tuple[int, ...]
@@ -54,7 +55,7 @@ class Turned:
 def sensor_polarity(
     modes: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: FloatArray | ComplexArray
 ) -> tuple[Turned, ...]:
-    """Return the sensors whose turned sign would make the measured shapes those of the model.
+    """Return the sensors whose change of sign makes the measured shapes agree with the model.
 
     Parameters
     ----------
@@ -92,7 +93,7 @@ def _flip(signs: FloatArray, i: int) -> FloatArray:
 
 
 def _gain(old: FloatArray, new: FloatArray) -> float:
-    """Return by how much a turn brings the modes nearer to the model; 0 if any suffers."""
+    """Return the total rise of the MAC by a change of sign; 0 if the MAC of any mode falls."""
     counts = np.maximum(old, new) >= LIKE
     rise = np.where(counts, new - old, 0.0)
     return 0.0 if np.any(rise < -SUFFERS) else float(rise.sum())

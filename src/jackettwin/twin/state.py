@@ -1,8 +1,8 @@
-"""What a twin knows of all its records: exact sums by UTC day and state of operation, small and bounded.
+"""State of a twin: exact sums over its records by UTC day and state of operation.
 
-A state is a set of whole numbers, of identities, of earliest and latest times and of clearest shapes. Adding,
-joining sets, taking the earliest and taking the best do not depend on order, so the same records give the
-same state, bit for bit, in whatever order they arrived and however the work was split.
+A state consists of whole numbers, identities, earliest and latest times, and best shapes. Addition, union of
+sets, minimum and maximum do not depend on order, so that the same records give the same state, bit for bit,
+whatever their order and the division of the work.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ UNDATED = ""
 
 
 class ConditionSums(NamedTuple):
-    """Sums over records of what they say of themselves, as whole numbers (:data:`~.sums.UNIT` a unit).
+    """Sums over records of their conditions, as whole numbers (:data:`~.sums.UNIT` per unit).
 
     Attributes
     ----------
@@ -34,9 +34,9 @@ class ConditionSums(NamedTuple):
     duration : int
         Σ T [s].
     windy, wind : int
-        Σ T and Σ T·v of those that say their wind [s, m].
+        Σ T and Σ T·v of those that state their wind speed [s, m].
     waved, wave_height, wave_period : int
-        How many say their sea, and sums of height [m] and period [s].
+        Number of those that state their sea, and sums of height [m] and period [s].
     """
 
     records: int = 0
@@ -49,26 +49,26 @@ class ConditionSums(NamedTuple):
 
     @property
     def wind_m_s(self) -> float | None:
-        """Mean wind speed, if every record says it."""
+        """Mean wind speed [m/s], if every record states it."""
         return self.wind / self.windy if self.windy and self.windy == self.duration else None
 
     @property
     def waves(self) -> tuple[float, float] | None:
-        """Mean wave height [m] and period [s], if every record says them."""
+        """Mean wave height [m] and period [s], if every record states them."""
         if not self.waved or self.waved < self.records:
             return None
         return self.wave_height / UNIT / self.waved, self.wave_period / UNIT / self.waved
 
 
 class NumberSum(NamedTuple):
-    """How many records say a number, and its sum as a whole number."""
+    """Number of records that state a condition, and its sum as a whole number."""
 
     n: int = 0
     total: int = 0
 
 
 class RateSums(NamedTuple):
-    """Sums over real poles of about one rate: n, Σw, Σw ln a and Σw (ln a)² with w = 1/var(ln a)."""
+    """Sums over real poles of similar rates: n, Σw, Σw ln a and Σw (ln a)² with w = 1/var(ln a)."""
 
     n: int = 0
     w: int = 0
@@ -79,7 +79,7 @@ class RateSums(NamedTuple):
 class AngleSums(NamedTuple):
     """Sums over records of the direction α in which a pair's lower mode moves: Σw cos 2α and Σw sin 2α.
 
-    The weights are w = 1/var(α); twice the angle, since a direction is as good as its opposite.
+    The weights are w = 1/var(α). The angle is doubled because opposite directions are equivalent.
     """
 
     w: int = 0
@@ -88,7 +88,7 @@ class AngleSums(NamedTuple):
 
     @classmethod
     def of(cls, angle: float, std: float) -> AngleSums:
-        """Return what one record says of a direction [rad]."""
+        """Return the sums of one record's direction [rad]."""
         w = std**-2
         return cls(whole(w), whole(w * cos(2.0 * angle)), whole(w * sin(2.0 * angle)))
 
@@ -100,16 +100,16 @@ class AngleSums(NamedTuple):
 
 @dataclass(frozen=True)
 class ClearShape:
-    """The clearest shape of a mode or real pole.
+    """The most certain shape of a mode or real pole.
 
     Attributes
     ----------
     clarity : float
-        What it is the best of: MAC with the model, or the negative standard deviation of a logarithmic rate.
+        Criterion of the best shape: MAC with the model, or the negative standard deviation of ln rate.
     record_id : str
-        Of the record that shows it.
+        Of the record with the shape.
     frequency_hz : float
-        Of the mode there; the rate [rad/s] of a real pole.
+        Of the mode in that record; the rate [rad/s] of a real pole.
     sensors : tuple of Sensor
     shape : (n_sensors,) complex
     """
@@ -123,12 +123,12 @@ class ClearShape:
 
 @dataclass(frozen=True)
 class Operation:
-    """What the records of one day in one state of operation say.
+    """Sums over the records of one day in one state of operation.
 
     Attributes
     ----------
     beside : {condition: NumberSum}
-        Levels and temperatures, as whole numbers: what moves frequencies besides wind and waves.
+        Levels and temperatures, as whole numbers, which affect frequencies besides wind and waves.
     angles : {mode: AngleSums}
         Of the lower modes of bending pairs.
     """
@@ -153,7 +153,7 @@ class Day:
     operations : {state of operation: Operation}
         Sorted; every record is in one of them.
     clearest : {mode or rate: ClearShape}
-        If the model fits shapes.
+        Empty unless the model fits shapes.
     """
 
     records: Mapping[str, tuple[int, int]] = field(default_factory=dict)
@@ -164,26 +164,26 @@ class Day:
 
     @property
     def time_utc(self) -> datetime | None:
-        """The middle of its records."""
+        """The middle of its records' period."""
         return (
             None if self.first is None or self.last is None else self.first + 0.5 * (self.last - self.first)
         )
 
     def of_operations(self, chosen: Callable[[str], bool]) -> Day:
-        """Return the day with the records of some states of operation alone."""
+        """Return the day with the records of some states of operation only."""
         return replace(self, operations={name: o for name, o in self.operations.items() if chosen(name)})
 
 
 @dataclass(frozen=True)
 class OperationTotal:
-    """What all records in one state of operation say."""
+    """Sums over all records in one state of operation."""
 
     conditions: ConditionSums = ConditionSums()
     modes: Mapping[int, ModeTotal] = field(default_factory=dict)
     rates: Mapping[str, RateSums] = field(default_factory=dict)
 
     def plus(self, other: OperationTotal) -> OperationTotal:
-        """Return the total of both; what became nothing is left out."""
+        """Return the total of both, without sums that became zero."""
         modes = _joined(self.modes, other.modes, ModeTotal())
         return OperationTotal(
             plus(self.conditions, other.conditions),
@@ -192,7 +192,7 @@ class OperationTotal:
         )
 
     def negated(self) -> OperationTotal:
-        """Return what takes the total out again when it is added."""
+        """Return the negative of the total."""
         return OperationTotal(
             negated(self.conditions),
             {m: negated(total) for m, total in self.modes.items()},
@@ -206,18 +206,18 @@ Totals = Mapping[str, OperationTotal]
 
 @dataclass(frozen=True)
 class TwinState:
-    """What a twin knows.
+    """State of a twin.
 
     Attributes
     ----------
     model_hash : str
         Of the model that its observations were made with.
     by_wind, with_shapes : bool
-        Whether winds are kept apart, and the clearest shapes are kept; of the model.
+        Whether the model separates wind speeds and stores the best shapes.
     days : {date: Day}
-        ISO dates, sorted; a service may keep each in a row of its own.
+        ISO dates, sorted; a service may store each day in its own row.
     totals : {state of operation: OperationTotal}
-        Of all days: what the parameters are estimated from, at the same cost however many days there are.
+        Of all days; parameters are estimated from these at a cost that does not depend on the number of days.
     clearest : {mode or rate: ClearShape}
         Of all days.
     """
@@ -241,11 +241,11 @@ class TwinState:
 
     @property
     def last_date(self) -> str:
-        """The last day there is; empty without one."""
+        """The last day; empty without days."""
         return next(reversed(dict(self.days)), "")
 
     def until(self, date: str) -> TwinState:
-        """Return the state as it was after a day: of the records of this day and those before."""
+        """Return the state of the records up to the end of a day."""
         days = {own: day for own, day in self.days.items() if own <= date}
         totals: dict[str, OperationTotal] = {}
         clearest: dict[str, ClearShape] = {}
@@ -255,7 +255,7 @@ class TwinState:
         return replace(self, days=days, totals=totals, clearest=clearest)
 
     def with_day(self, date: str, day: Day) -> TwinState:
-        """Return the state with another content of one day; its shapes must hold those it had."""
+        """Return the state with one day replaced; the new day must contain the shapes of the old one."""
         days, old = dict(self.days), day_totals(self.days.get(date, Day()))
         in_order = date in days or date > self.last_date
         days[date] = day
@@ -269,7 +269,7 @@ class TwinState:
         )
 
     def of_operations(self, chosen: Callable[[str], bool]) -> TwinState:
-        """Return what is known from the records of some states of operation alone."""
+        """Return the state of the records in some states of operation only."""
         days = {date: day.of_operations(chosen) for date, day in self.days.items()}
         kept = {date: day for date, day in days.items() if day.operations}
         return replace(self, days=kept).until(max(kept, default=UNDATED))
@@ -277,20 +277,20 @@ class TwinState:
     def without_day(self, date: str) -> TwinState:
         """Return the state without the records of one day.
 
-        This is what a record that was observed anew asks for: take its day out, then advance with all
-        observations of the day.
+        To replace a record by a new observation, remove its day and advance with all observations of that
+        day.
         """
         others = replace(self, days={own: day for own, day in self.days.items() if own != date})
         return others.until(max(others.days, default=UNDATED))
 
 
 def empty_state(model: TwinModel) -> TwinState:
-    """Return the state of a twin that has seen no record."""
+    """Return the state of a twin without records."""
     return TwinState(model.model_hash, model.by_wind, model.with_shapes)
 
 
 def day_totals(day: Day) -> dict[str, OperationTotal]:
-    """Return what one day adds to the totals."""
+    """Return the contribution of one day to the totals."""
     whole = Operation()
     for operation in day.operations.values():
         whole = join(whole, operation)
@@ -302,7 +302,7 @@ def day_totals(day: Day) -> dict[str, OperationTotal]:
 
 
 def join(a: Operation, b: Operation) -> Operation:
-    """Return what two sets of records of one day say together."""
+    """Return the sums over two sets of records of one day."""
     return Operation(
         plus(a.conditions, b.conditions),
         _joined(a.modes, b.modes, ModeSums()),
@@ -313,14 +313,14 @@ def join(a: Operation, b: Operation) -> Operation:
 
 
 def add_totals(a: Totals, b: Totals) -> dict[str, OperationTotal]:
-    """Return two totals as one, without states of operation that no record is in."""
+    """Return the sum of two totals, without states of operation that have no record."""
     both = {**a, **{name: a[name].plus(total) if name in a else total for name, total in b.items()}}
     kept = {name: total for name, total in both.items() if total.conditions.records}
     return kept if len(kept) == len(a) else dict(sorted(kept.items()))
 
 
 def clearer(a: Mapping[str, ClearShape], b: Mapping[str, ClearShape]) -> dict[str, ClearShape]:
-    """Return the clearer of two shapes of each mode; the record's identity decides between equals."""
+    """Return the more certain of two shapes of each mode; of equal ones by the record's identity."""
     return {
         name: max(
             (shapes[name] for shapes in (a, b) if name in shapes), key=lambda s: (s.clarity, s.record_id)
@@ -334,4 +334,4 @@ def _joined(a: Mapping[Any, Sums], b: Mapping[Any, Sums], none: Sums) -> dict[An
 
 
 STATE = StoredSchema("twin_state", TwinState)
-"""How states are kept."""
+"""Format of stored states."""

@@ -1,4 +1,4 @@
-"""What records of a known model say of it: keys that a twin file leaves out are taken from there."""
+"""Modelling keys stated by simulated records, used where a twin file omits them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from jackettwin.errors import InputError
 from jackettwin.records.readers import described_by
 
 MODEL_KEYS = ("gravity", "beam", "rotary_inertia", "subdivide")
-"""Keys of scenarios and twins that say how a structure is modelled."""
+"""Keys of scenarios and twins for the modelling of a structure."""
 
 
 def stated_model(metadata: Mapping[str, Any]) -> dict[str, Any]:
@@ -24,10 +24,10 @@ def stated_model(metadata: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def model_of_records(records: Iterable[Path]) -> dict[str, Any]:
-    """Return what the JSON beside the first record that is there says of its model."""
+    """Return the modelling keys in the JSON description of the first existing record."""
     first = next((path for path in records if path.is_file()), None)
     try:
         known = None if first is None else described_by(first)
-    except InputError:  # said when the record is read, with all that is wrong of it
+    except InputError:  # reported when the record is read
         known = None
     return {} if known is None else stated_model(known.metadata)

@@ -1,7 +1,7 @@
-"""A table of measured modes as a consultant delivers it, to the ``targets`` of a twin.
+"""Conversion of a table of measured modes, as a consultant delivers it, to the ``targets`` of a twin.
 
-One row a mode: its name or number, frequency, damping, and either with a standard deviation in a column of
-its own or behind ``±``. Separator and decimal sign are found; units stand in the names of the columns.
+Each row is a mode: its name or number, frequency and damping, whose standard deviations are in their own
+columns or follow ``±``. Separator and decimal sign are detected; units are in the names of the columns.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ OF_FREQUENCY = re.compile(r"\bf|fre[qk]|hz", re.IGNORECASE)
 OF_DAMPING = re.compile(r"ζ|zeta|xi|ξ|d[aä]e?mp", re.IGNORECASE)
 DECREMENT = re.compile(r"\blog|decrement|δ", re.IGNORECASE)
 HERTZ = ((re.compile(r"\bmHz", re.IGNORECASE), 1e-3), (re.compile(r"\brad\s*/\s*s", re.IGNORECASE), 0.5 / pi))
-"""What a frequency's column may be in beside hertz, and how many hertz that is."""
+"""Other units of a frequency's column, and their values in hertz."""
 INTERVAL_95 = re.compile(r"95", re.IGNORECASE)
 _CELL = re.compile(
     r"^\s*(?P<value>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>%|Hz)?"
     r"\s*(?:(?:±|\+/?-|\()\s*(?P<std>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*\)?\s*(?P<unit2>%|Hz)?)?\s*$"
 )
 MOST_RATIO = 0.2
-"""A damping ratio beyond this is a percentage whose unit was forgotten."""
+"""Damping ratio above which the value must be a percentage without its unit."""
 
 
 def read_targets_table(path: Path) -> list[dict[str, Any]]:
@@ -48,7 +48,7 @@ def read_targets_table(path: Path) -> list[dict[str, Any]]:
     Raises
     ------
     InputError
-        Names file, line and cell that is not understood.
+        If a cell is not understood; the error names file, line and cell.
     """
     try:
         raw = path.read_bytes()
@@ -64,10 +64,12 @@ def _targets(raw: bytes) -> list[dict[str, Any]]:
     table = text_table(raw)
     rows, delimiter = table.rows, table.delimiter
     if len(rows) < 2:
-        raise InputError("holds no modes", field="targets", allowed="names of columns, then a row a mode")
+        raise InputError(
+            "contains no modes", field="targets", allowed="names of columns, then a row for each mode"
+        )
     names = _with_owners(rows[0])
     columns = {i: key for i, name in enumerate(names) if (key := _key(name)) is not None}
-    strangers = len(columns) < len(rows[0])  # one of them may name the modes; without any, none is named
+    strangers = len(columns) < len(rows[0])  # one of them may contain the modes' names
     for needed, what in (("mode", "name of the mode"), ("frequency_hz", "frequency")):
         if needed not in columns.values() and (needed != "mode" or strangers):
             raise InputError(
@@ -84,13 +86,13 @@ def _targets(raw: bytes) -> list[dict[str, Any]]:
     for number, row in enumerate(rows[1:], start=2):
         with located(field=f"row {number}"):
             target = _target(row, names, columns, delimiter)
-            if target.keys() - {"mode"}:  # a row without numbers is a mode that was not found
+            if target.keys() - {"mode"}:  # a row without numbers is a mode that was not identified
                 targets.append(target)
     return targets
 
 
 def _with_owners(names: list[str]) -> list[str]:
-    """Return the names of columns; one that says ± and not of what speaks of the quantity before it."""
+    """Return the names of columns; a column named only ± refers to the quantity before it."""
     owned, owner = [], ""
     for name in names:
         bare = SPREAD.search(name) and not OF_FREQUENCY.search(name) and not OF_DAMPING.search(name)
@@ -101,7 +103,7 @@ def _with_owners(names: list[str]) -> list[str]:
 
 
 def _key(column: str) -> str | None:
-    """Return the key of ``targets`` that a column fills, None for one that fills none."""
+    """Return the key of ``targets`` of a column, or None."""
     name = column.strip()
     if SPREAD.search(name):
         return "damping_ratio_std" if OF_DAMPING.search(name) else "frequency_std_hz"
@@ -115,7 +117,7 @@ def _target(row: list[str], names: list[str], columns: dict[int, str], delimiter
     target: dict[str, Any] = {}
     if any(row[len(names) :]):
         raise InputError(
-            "has more cells than there are names of columns",
+            "has more cells than named columns",
             value=delimiter.join(row),
             allowed=f"{len(names)} cells",
             remedy="with decimal commas, separate the columns by semicolons",
@@ -125,7 +127,7 @@ def _target(row: list[str], names: list[str], columns: dict[int, str], delimiter
         if cell.lower() in MISSING:
             continue
         if key == "mode":
-            # a number of its own beside a name says less than the name
+            # a name takes precedence over the table's own numbering
             if "mode" not in target or not cell.isdigit():
                 target["mode"] = int(cell) if cell.isdigit() else cell
             continue
@@ -134,7 +136,7 @@ def _target(row: list[str], names: list[str], columns: dict[int, str], delimiter
 
 
 def _values(key: str, cell: str, column: str) -> dict[str, float]:
-    """Return a cell's value under its key, and what stands behind ± under that of its standard deviation."""
+    """Return a cell's value under its key, and a number after ± under that of its standard deviation."""
     match = _CELL.match(cell)
     if match is None:
         raise InputError(
@@ -147,7 +149,7 @@ def _values(key: str, cell: str, column: str) -> dict[str, float]:
     damps = key.startswith("damping")
     if key == "frequency_std_hz" and IN_PERCENT.search(column) and not INTERVAL_95.search(column):
         raise InputError(
-            "is a share of the frequency", field=column, value=cell, allowed="Hz", remedy="give it in Hz"
+            "is in per cent of the frequency", field=column, value=cell, allowed="Hz", remedy="give it in Hz"
         )
     percent = damps and bool(PERCENT.search(column) or match["unit"] == "%" or match["unit2"] == "%")
     scale = 0.01 if percent else 1.0
@@ -157,10 +159,10 @@ def _values(key: str, cell: str, column: str) -> dict[str, float]:
         scale /= 2.0 * pi
     if damps and not percent and scale * float(match["value"]) > MOST_RATIO:
         raise InputError(
-            "looks like a percentage, and nothing says so",
+            "seems to be a percentage without its unit",
             field=column,
             value=cell,
-            allowed=f"a ratio up to {MOST_RATIO}, or a column called damping [%]",
+            allowed=f"a ratio up to {MOST_RATIO}, or a column named damping [%]",
             remedy="write the unit into the name of the column",
         )
     width = NORMAL_95 if INTERVAL_95.search(column) else 1.0
@@ -173,27 +175,28 @@ def _values(key: str, cell: str, column: str) -> dict[str, float]:
 
 
 LEAST_SHARE, MOST_SHARE = 0.5, 1.15
-"""Of a mode's frequency on rigid feet: what soft soil leaves of it, and what errors of a model add to it."""
+"""Range of a frequency relative to that on rigid feet: soft soil lowers it, errors of the model may raise
+it."""
 _ABOVE = 2.0
-"""A frequency above a mode's on rigid feet is this many times as far from it: no support stiffens."""
+"""Factor on the distance of a frequency above its mode's on rigid feet, as no support can raise it."""
 _NEVER = 1e6
-"""The distance from a mode that is taken; a finite one, as the assignment needs."""
+"""The distance from an excluded mode, finite as the assignment requires."""
 
 
 def assigned_modes(frequency_hz: FloatArray, pinned_hz: FloatArray, taken: Collection[int]) -> list[int]:
-    """Return the numbers of the modes that some frequencies are, each mode once, nearest on the whole.
+    """Return the mode numbers assigned to frequencies, each mode once, at the least total distance.
 
     Parameters
     ----------
     frequency_hz : (n_frequencies,)
     pinned_hz : (n_modes,)
         Of the modes on rigid feet, numbered from 1.
-    taken : numbers of the modes that have their target already
+    taken : numbers of the modes that already have a target
 
     Raises
     ------
     InputError
-        If a frequency is near none that is left; it names the nearest.
+        If a frequency is near no free mode; the error names the nearest.
 
     Examples
     --------
@@ -209,7 +212,7 @@ def assigned_modes(frequency_hz: FloatArray, pinned_hz: FloatArray, taken: Colle
         if k not in modes or not LEAST_SHARE <= f / pinned_hz[modes[k]] <= MOST_SHARE:
             nearest = int(np.argmin(np.abs(apart[k])))
             raise InputError(
-                "is near no mode of the model that is left",
+                "is near no mode of the model that is still free",
                 field="frequency_hz",
                 value=float(f),
                 allowed=f"{LEAST_SHARE} to {MOST_SHARE} times a mode's frequency on rigid feet",

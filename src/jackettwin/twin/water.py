@@ -1,4 +1,4 @@
-"""The water about a twin: its mass on the members and what its drag takes, as factors that can be updated."""
+"""Water around a twin: its mass on the members and its drag damping, with factors that can be updated."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from jackettwin.loads import (
 from jackettwin.structure import Assembly
 
 _SPACING_M = 4.0
-"""Longest piece of a member."""
+"""Greatest length of a member's segments [m]."""
 
 
 @dataclass(frozen=True)
@@ -30,9 +30,9 @@ class WaterConfig:
     Attributes
     ----------
     carried : Water
-        What is flooded.
+        Contents of flooded members and growth.
     adds_mass : bool
-        Whether the structure's own mass leaves water and growth out.
+        Whether it adds mass, since the structure's own mass excludes water and growth.
     sea : SeaState or None
         In which drag is linearised.
     """
@@ -45,19 +45,19 @@ class WaterConfig:
 
 
 def moving_mass(water: WaterConfig, assembly: Assembly) -> sp.csr_array:
-    """Return the mass of growth, of water inside and of added water, (n_dof, n_dof)."""
+    """Return the mass matrix of growth, internal water and added mass, (n_dof, n_dof)."""
     return water_mass(assembly, _points(water, assembly), water.carried)
 
 
 def water_effects(
     water: WaterConfig | None, assembly: Assembly, wanted: tuple[str, ...]
 ) -> Mapping[str, sp.csr_array]:
-    """Return the patterns of the water's free factors, as the updating's ``NuisanceParameters`` takes them.
+    """Return the matrices of the water's free factors for ``NuisanceParameters``.
 
     Raises
     ------
     InputError
-        If a factor is wanted of water, or of a sea, that the twin does not state.
+        If a factor needs water or a sea that the twin does not state.
     """
     effects: dict[str, sp.csr_array] = {}
     for name in wanted:
@@ -77,7 +77,7 @@ def water_effects(
 
 
 def in_the_records_sea(water: WaterConfig | None, waves: tuple[float, float] | None) -> WaterConfig | None:
-    """Return the water in the records' mean sea, (height [m], period [s]), unless the twin states one."""
+    """Return the water in the records' mean sea (height [m], period [s]), unless the twin states a sea."""
     if water is None or water.sea is not None or waves is None:
         return water
     return replace(water, sea=SeaState(*waves))

@@ -1,4 +1,4 @@
-"""Which members are the tower's, the transition piece's and the jacket's, whatever the file calls them."""
+"""Assignment of members to tower, transition piece and jacket."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from jackettwin.structure import Material, Member, PointMass, Section, Structure
 
 TOWER, PIECE, JACKET = "tower", "transition_piece", "jacket"
 _OFF_AXIS_M = 1.0
-"""A node this far from the tower's axis is the jacket's or its transition piece's."""
+"""Distance from the tower's axis above which a node belongs to the jacket or transition piece."""
 _LEG = 0.9
-"""A member that climbs by more of its length is a leg."""
+"""Ratio of height to length above which a member is a leg."""
 
 
 def part_of(structure: Structure) -> dict[str, str]:
-    """Return the part of each member by its name: as the file says, else by where it stands.
+    """Return the part of each member by its name: as the file states, otherwise by its position.
 
-    Without parts, what stands wholly above the interface is the tower, and above the highest node beside the
-    tower's axis where no interface is said.
+    Members wholly above the interface are the tower's. Without an interface, these are the members above the
+    highest node off the tower's axis.
     """
     if any(member.part == TOWER for member in structure.members):
         return {member.name: member.part or JACKET for member in structure.members}
@@ -36,7 +36,7 @@ def part_of(structure: Structure) -> dict[str, str]:
 
 
 def legs(structure: Structure) -> tuple[str, ...]:
-    """Return the names of the jacket's members that climb."""
+    """Return the names of the jacket's leg members."""
     parts = part_of(structure)
 
     def climbs(member: Member) -> bool:
@@ -49,7 +49,7 @@ def legs(structure: Structure) -> tuple[str, ...]:
 def legs_by_foot(structure: Structure) -> tuple[tuple[str, ...], ...]:
     """Return the names of the members of each foot's leg, in the order of the reaction nodes.
 
-    A member belongs to the foot that lies most in its direction from the tower's axis.
+    A member belongs to the foot in the nearest horizontal direction from the tower's axis.
     """
     axis, climbing = np.array(structure.nodes[structure.top_node])[:2], set(legs(structure))
     feet = np.array([structure.nodes[node][:2] for node in structure.reaction_nodes]) - axis
@@ -62,7 +62,7 @@ def legs_by_foot(structure: Structure) -> tuple[tuple[str, ...], ...]:
 
 
 def with_braces(structure: Structure, change: Callable[[Member], Member]) -> Structure | None:
-    """Return the structure with every member of the jacket changed that does not climb; None without any."""
+    """Return the structure with all braces of the jacket changed; None without any."""
     parts, climbing = part_of(structure), set(legs(structure))
     chosen = {m.name for m in structure.members if parts[m.name] == JACKET} - climbing
     if not chosen:
@@ -72,7 +72,7 @@ def with_braces(structure: Structure, change: Callable[[Member], Member]) -> Str
 
 
 def with_part(structure: Structure, part: str, change: Callable[[Member], Member]) -> Structure | None:
-    """Return the structure with every member of a part changed; None if no member is of it."""
+    """Return the structure with every member of a part changed; None if the part has no member."""
     parts = part_of(structure)
     if part not in parts.values():
         return None
@@ -81,7 +81,7 @@ def with_part(structure: Structure, part: str, change: Callable[[Member], Member
 
 
 def stiffer(factor: float) -> Callable[[Member], Member]:
-    """Return what multiplies the stiffness of a member's steel."""
+    """Return the change that multiplies the stiffness of a member's steel."""
 
     def change(member: Member) -> Member:
         m = member.material
@@ -92,7 +92,7 @@ def stiffer(factor: float) -> Callable[[Member], Member]:
 
 
 def heavier(factor: float) -> Callable[[Member], Member]:
-    """Return what multiplies the density of a member's steel."""
+    """Return the change that multiplies the density of a member's steel."""
 
     def change(member: Member) -> Member:
         density = member.material.density_kg_m3 * factor
@@ -102,7 +102,7 @@ def heavier(factor: float) -> Callable[[Member], Member]:
 
 
 def thicker(factor: float) -> Callable[[Member], Member]:
-    """Return what multiplies a member's walls; its outer diameter stays."""
+    """Return the change that multiplies a member's wall thickness at constant outer diameter."""
 
     def wall(section: Section) -> Section:
         diameter = section.outer_diameter_m
@@ -115,7 +115,7 @@ def thicker(factor: float) -> Callable[[Member], Member]:
 
 
 def with_lower_feet(structure: Structure, by_m: float) -> Structure | None:
-    """Return the structure with its feet, and the ends of members there, lower; None without feet."""
+    """Return the structure with its feet, and the ends of members there, lowered; None without feet."""
     if not structure.reaction_nodes:
         return None
     nodes = dict(structure.nodes)

@@ -1,7 +1,7 @@
-"""The table of tolerances: what each is called, how large it is, why, and what it changes.
+"""Table of tolerances: name, size, source and effect of each.
 
 Another package adds one by an entry point in ``jackettwin.tolerances`` that is a :class:`KnownTolerance`;
-twin files size and close each by its name under ``tolerances:``.
+twin files change the size of a tolerance or close it by its name under ``tolerances:``.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ from jackettwin.twin.tolerances.sea import (
 from jackettwin.updating import Direction, Tolerance
 
 _BLADES_HZ, _BENDING_MASS, _BENDING_INERTIA = 0.6, 0.05, 0.45
-"""Frequency of a rotor's blades, and the shares of the mass and the inertia of a rotor–nacelle assembly that
-their first bending takes. Clamped at the hub, the IEA 15 MW turbine's flap at 0.52 and bend edgewise at
-0.75 Hz, with 5 % of the mass along the wind and 44 to 55 % of the inertias."""
+"""Frequency [Hz] of a rotor's blades, and effective shares of mass and inertia of the rotor–nacelle assembly
+in their first bending modes. Those of the IEA 15 MW turbine, clamped at the hub, are at 0.52 Hz flapwise and
+0.75 Hz edgewise, with 5 % of the mass along the wind and 44 to 55 % of the inertias."""
 
 Effect = Callable[[TwinConfig, Assembly, Tolerance], tuple[Direction, ...]]
 PLUGINS = "jackettwin.tolerances"
@@ -52,16 +52,16 @@ PLUGINS = "jackettwin.tolerances"
 
 @dataclass(frozen=True)
 class KnownTolerance:
-    """A tolerance and what one standard deviation of it does to a twin.
+    """A tolerance and the effect of one standard deviation on a twin.
 
     Attributes
     ----------
     suspected : bool
-        Whether it is no tolerance that every twin has, but a suspect when a twin cannot meet its data.
+        Whether it is used only to explain data that a twin does not fit, not as a tolerance of every twin.
     tolerance : Tolerance
-    effect : function of the twin, its assembly and the tolerance as the twin sizes it
-        Returns one direction, several where several unknowns are alike (every foot its own), or none where
-        the twin has nothing that it touches.
+    effect : function of the twin, its assembly and the tolerance with the twin's size
+        Returns one direction, several for equal unknowns (one for each foot), or none if the twin has no
+        such part.
     """
 
     tolerance: Tolerance
@@ -70,7 +70,7 @@ class KnownTolerance:
 
 
 def _drawn(change: Callable[[TwinConfig, float], TwinConfig | None]) -> Effect:
-    """Return the effect of drawings that change: the twin is assembled again with them."""
+    """Return the effect of a change of the drawings, by assembling the changed twin."""
 
     def effect(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple[Direction, ...]:
         changed = change(config, tolerance.std)
@@ -88,7 +88,7 @@ def _or_none(matrix: Matrix) -> Matrix | None:
 
 
 def _steel(change: Callable[[Structure, float], Structure | None]) -> Effect:
-    """Return the effect of another structure."""
+    """Return the effect of a change of the structure."""
 
     def changed(config: TwinConfig, size: float) -> TwinConfig | None:
         structure = change(config.structure, size)
@@ -117,7 +117,7 @@ def _turning_body(body: PointMass, factor: float) -> PointMass:
 
 
 def _wet(change: Change) -> Effect:
-    """Return the effect of other water, whether the structure's mass holds it or the twin adds it."""
+    """Return the effect of a change of the water, whether the structure's or the twin's mass includes it."""
 
     def effect(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple[Direction, ...]:
         mass = changed_mass(config.water, assembly, tolerance.std, change)
@@ -127,7 +127,7 @@ def _wet(change: Change) -> Effect:
 
 
 def _flooding(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple[Direction, ...]:
-    """Return what the water in each of the legs weighs: whether it is there is a question of each leg."""
+    """Return the effect of the water's mass in each leg, each of which may be flooded or dry."""
     found = []
     for names in legs_by_foot(config.structure):
         mass = changed_mass(config.water, assembly, 1.0, flooded(names)) if names else None
@@ -142,7 +142,7 @@ def _level(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tupl
 
 
 def _feet(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple[Direction, ...]:
-    """Return each foot's share beside the mean of all, unless each has parameters of its own."""
+    """Return the deviation of each foot from the mean, unless each has its own parameters."""
     n = len(config.structure.reaction_nodes)
     if n < 2 or config.tie.startswith("per-leg"):
         return ()
@@ -151,12 +151,12 @@ def _feet(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple
 
 
 def _loss_growth(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple[Direction, ...]:
-    """Return loss that grows with frequency by another power than the law's."""
+    """Return the effect of a loss that grows with another power of frequency than the law's."""
     return (Direction(tolerance, loss_growth=tolerance.std),)
 
 
 def _softer_sideways(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple[Direction, ...]:
-    """Return feet softer sideways alone, unless the twin tells sideways from lengthwise."""
+    """Return the effect of laterally softer feet, unless the twin separates lateral and axial stiffness."""
     if config.tie not in ("all", "per-leg"):
         return ()
     share = np.array([-tolerance.std] * 2 + [0.0] + [-tolerance.std] * 3)
@@ -164,13 +164,13 @@ def _softer_sideways(config: TwinConfig, assembly: Assembly, tolerance: Toleranc
 
 
 def _softer_foot(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple[Direction, ...]:
-    """Return one foot softer than the others, each in turn."""
+    """Return the effect of one softer foot, for each foot."""
     n = len(config.structure.reaction_nodes)
     return tuple(Direction(tolerance, feet=np.tile(row[:, None], 6)) for row in -tolerance.std * np.eye(n))
 
 
 def _bending_blades(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple[Direction, ...]:
-    """Return what of a lumped rotor sits on its blades' springs, unless the twin models its blades."""
+    """Return the effect of flexible blades of a lumped rotor, unless the twin models its blades."""
     if len(without_rotor(config.structure).elements) < len(config.structure.elements):
         return ()
 
@@ -188,7 +188,7 @@ def _bending_blades(config: TwinConfig, assembly: Assembly, tolerance: Tolerance
 
 
 def _table() -> tuple[KnownTolerance, ...]:
-    """Return our own tolerances."""
+    """Return the tolerances of this package."""
     return (
         KnownTolerance(
             Tolerance("rna_mass", "mass of the rotor–nacelle assembly", 0.015, "-",
@@ -280,19 +280,19 @@ def _table() -> tuple[KnownTolerance, ...]:
         KnownTolerance(
             Tolerance("added_mass", "added mass of the water", 0.1, "-",
                       "DNV-RP-C205 (2021) 6.9: C_A of cylinders by roughness and motion",
-                      "nothing short of a test in water"),
+                      "only a test in water determines it"),
             _wet(more_added_mass),
         ),
         KnownTolerance(
             Tolerance("flooding", "water in each leg as drawn or not", 0.22, "-",
-                      "assumed: one leg in twenty is not as drawn, √(0.05 · 0.95); nobody has counted",
+                      "assumed without statistics: one leg in twenty is not as drawn, √(0.05 · 0.95)",
                       "look for water in the legs by ultrasound"),
             _flooding,
         ),
         KnownTolerance(
             Tolerance("water_level", "mean level of the sea", 0.3, "m",
                       "assumed: surges of the North Sea of weeks, and the datum of charts, beside the tide",
-                      "take the level of the days from a gauge"),
+                      "take the daily levels from a tide gauge"),
             _level,
         ),
         KnownTolerance(
@@ -317,12 +317,12 @@ def _table() -> tuple[KnownTolerance, ...]:
         KnownTolerance(
             Tolerance("weak_leg", "one foot softer than the others", 0.3, "-",
                       "assumed: scour at one leg or a pile that was not driven home",
-                      "look at the pair's directions, put a sensor on each leg"),
+                      "compare the directions of bending pairs, put a sensor on each leg"),
             _softer_foot, suspected=True,
         ),
         KnownTolerance(
             Tolerance("joints", "softness of the brace joints", 0.1, "-",
-                      "assumed, after joint cans that give way (Buitrago et al. 1993)",
+                      "assumed, from the flexibility of joint cans (Buitrago et al. 1993)",
                       "model the joints' local flexibility"),
             _steel(lambda s, x: with_braces(s, stiffer(1.0 - x))), suspected=True,
         ),
@@ -342,11 +342,11 @@ def _table() -> tuple[KnownTolerance, ...]:
 
 
 REMAINDERS = {"remainder_frequency": 0.003, "remainder_damping": 0.07}
-"""What beams, joints and laws miss of each mode by itself, as shares: 0.2 to 0.5 % of a frequency that a
-finer mesh or a shell model moves, and what laws of other forms differ by in damping between modes."""
+"""Relative errors of each mode on its own. A finer mesh or a shell model changes a frequency by 0.2 to 0.5 %,
+and laws of other forms change the ratio of damping between modes."""
 SCALES = (1.0, 1.4)
-"""By how much all tolerances and remainders of a twin may be larger together than the table says, equally
-likely: twice the variance. Nobody has measured them on many assets."""
+"""Equally likely factors on all tolerances and remainders of a twin together, up to twice the variance, as the
+table's sizes have not been measured on many assets."""
 TOLERANCES = {known.tolerance.name: known for known in _table()}
 
 
@@ -357,12 +357,12 @@ def tolerances() -> dict[str, KnownTolerance]:
 
 
 def directions(config: TwinConfig, assembly: Assembly) -> tuple[Direction, ...]:
-    """Return what each tolerance that a twin leaves open does to its structure.
+    """Return the effect of each open tolerance of a twin on its structure.
 
     Parameters
     ----------
     assembly : Assembly
-        Of this twin, water included.
+        Of this twin, including water.
     """
     found: list[Direction] = []
     for name, known in tolerances().items():
@@ -373,7 +373,7 @@ def directions(config: TwinConfig, assembly: Assembly) -> tuple[Direction, ...]:
 
 
 def suspects(config: TwinConfig, assembly: Assembly) -> tuple[Direction, ...]:
-    """Return what else may be wrong with a twin that cannot meet its data, each at a size worth a look."""
+    """Return the effects of suspected errors of a twin that does not fit its data, each at a typical size."""
     found: list[Direction] = []
     for name, known in tolerances().items():
         if known.suspected and name not in config.tolerances.given:

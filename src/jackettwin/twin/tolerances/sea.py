@@ -1,4 +1,4 @@
-"""How the mass of the water changes with growth, flooding, added mass and the level of the sea."""
+"""Change of the water's mass by growth, flooding, added mass and the level of the sea."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jackettwin.twin.water import WaterConfig, moving_mass
 
 _LEAST_DEPTH_M = 1.0
 _SPLASH_M = 2.0
-"""Growth that nobody states reaches so far above still water (DNV-RP-C205, 6.7.4)."""
+"""Height above still water that unstated growth reaches (DNV-RP-C205, 6.7.4)."""
 
 Change = Callable[[WaterConfig, Structure, float], WaterConfig | None]
 
@@ -32,7 +32,7 @@ def water_of(water: WaterConfig | None, structure: Structure) -> WaterConfig | N
 def changed_mass(
     water: WaterConfig | None, assembly: Assembly, size: float, change: Change
 ) -> sp.csc_array | None:
-    """Return what a change of the water adds to the mass, whether the structure's own holds it or not."""
+    """Return the mass that a change of the water adds, whether or not the structure's mass includes water."""
     before = water_of(water, assembly.structure)
     after = None if before is None else change(before, assembly.structure, size)
     if before is None or after is None:
@@ -41,7 +41,7 @@ def changed_mass(
 
 
 def level_mass(water: WaterConfig | None, assembly: Assembly, size: float) -> sp.csc_array | None:
-    """Return what a sea that stands higher by ``size`` [m] adds to the mass."""
+    """Return the mass that a rise of the sea level by ``size`` [m] adds."""
     stated = water_of(water, assembly.structure)
     if stated is None:
         return None
@@ -49,7 +49,7 @@ def level_mass(water: WaterConfig | None, assembly: Assembly, size: float) -> sp
 
 
 def unstated_growth(water: WaterConfig, structure: Structure, size: float) -> WaterConfig | None:
-    """Return the water with growth of ``size`` [m] down to the bed, where the twin states none."""
+    """Return the water with growth of ``size`` [m] down to the bed; None if the twin states growth."""
     if any(_thickest(band) > 0.0 for band in water.coefficients.growth):
         return None
     return _grown(water, (GrowthBand(_SPLASH_M, -water.depth_m, size),))
@@ -86,7 +86,7 @@ def denser_growth(water: WaterConfig, structure: Structure, size: float) -> Wate
 
 
 def more_added_mass(water: WaterConfig, structure: Structure, size: float) -> WaterConfig:
-    """Return the water with C_a larger by a share everywhere."""
+    """Return the water with C_a increased by a share everywhere."""
     given, factor = water.coefficients, 1.0 + size
 
     def more(strip: object) -> object:
@@ -102,7 +102,7 @@ def more_added_mass(water: WaterConfig, structure: Structure, size: float) -> Wa
 
 
 def flooded(names: tuple[str, ...]) -> Change:
-    """Return the change that floods members if they are dry, and dries them if any is drawn as flooded."""
+    """Return the change that floods dry members, or empties them if any is drawn as flooded."""
 
     def change(water: WaterConfig, structure: Structure, size: float) -> WaterConfig:
         given = set(water.carried.flooded)

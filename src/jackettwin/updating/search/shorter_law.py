@@ -39,14 +39,14 @@ class ShorterLaws:
         self._known: dict[int, tuple[End, FloatArray | None]] = {}
 
     def __call__(self, end: End) -> FloatArray | None:
-        """Return the numbers of the law that is left, or None if the data need every branch."""
+        """Return the parameters of the shorter law, or None if the data need every branch."""
         if id(end) not in self._known:
             self._known[id(end)] = (end, shorter_law(self._problem, end))
         return self._known[id(end)][1]
 
 
 def shorter_law(problem: Problem, end: End) -> FloatArray | None:
-    """Return what is left of an end point without the branches that its cost does not need.
+    """Return the shorter law of an end point, without its redundant branches.
 
     Returns
     -------
@@ -55,7 +55,7 @@ def shorter_law(problem: Problem, end: End) -> FloatArray | None:
     """
     omissible = problem.model.family.omissible
     if not omissible or problem.model.tie_groups.one_loss:
-        return None  # one that shares its parameters between several stiffnesses
+        return None  # the law shares parameters between several stiffnesses
     path, z = Path(problem), end.z
     gone: tuple[int, ...] = ()
     ceiling = end.cost + problem.allowance(end.cost)
@@ -86,7 +86,7 @@ def _without(path: Path, z: FloatArray, j: int, gone: tuple[int, ...], ceiling: 
     start[j] = _NOTHING
     if near is None:
         return None
-    # the poles, and so the laws' stiffness there, stay: what the surrogate cannot meet, nothing will
+    # poles, and so the laws' stiffness there, hardly change: if the surrogate cannot fit, the model cannot
     there, promised = held_minimum(path.problem, near, start, held, ceiling)
     if promised > _FAR * ceiling:
         return None
