@@ -84,7 +84,7 @@ def test_a_command_says_what_it_does_before_it_is_read(monkeypatch: pytest.Monke
     assert time.monotonic() - start < 5.0  # waits 0.3 s; a machine may be busy
     assert (
         Heard.lines[0]
-        == "run: Go from records to modes to updated supports, and report it (reading the program)"
+        == "run: Go from records to modes to updated supports, and report it (loading the program)"
     )
 
 
@@ -102,7 +102,7 @@ def test_a_slow_command_says_so_at_most_twice(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(console.messages, "print", lambda line, **_: lines.append(line))
     with console._reading_said("run", "Run it."):
         time.sleep(0.3)
-    assert lines == ["run: Run it (reading the program)", "still reading the program"]
+    assert lines == ["run: Run it (loading the program)", "still loading the program"]
 
 
 def test_the_help_has_the_groups_of_the_readme_and_breaks_no_line() -> None:

@@ -90,7 +90,7 @@ def test_tables_name_the_point_and_every_parameter(tmp_path: Path) -> None:
         (("jacket15", "--support", "foo:k=1"), "no such law"),
         (("jacket15", "--support", "zener:k0=1e9,c=1e8"), "argument is missing"),
         (("jacket15", "--support", "kelvin-voigt:k=-1,c=1e8"), "out of range"),
-        (("jacket15", "--support", "kelvin-voigt:k=1e9,c=1e8", "--at", "k=1e9"), "is of a twin"),
+        (("jacket15", "--support", "kelvin-voigt:k=1e9,c=1e8", "--at", "k=1e9"), "applies to a twin"),
     ],
 )
 def test_what_cannot_be_explored_is_refused(arguments: tuple[str, ...], words: str, tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ def test_a_deck_s_superelement_is_the_structure_s(tmp_path: Path) -> None:
     assert result.exit_code == 0, result.stderr
     found = json.loads(result.stdout)
     assert len(found["files"]) == 2
-    assert "no damping in the ground" in found["warnings"][0]
+    assert "no damping of the ground" in found["warnings"][0]
     stiffness = []
     for arguments in (["jacket15", "--support", "jacket15"], [str(deck)]):
         result = run(main, ["superelement", *arguments, "--modes", "6", "--out", out, "--json"])

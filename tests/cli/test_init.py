@@ -141,7 +141,7 @@ def test_nothing_is_written_over(tmp_path: Path) -> None:
     out.write_text("mine")
     code, _, error = run(str(record), "--out", str(out))
     assert (code, out.read_text()) == (2, "mine")
-    assert "is there already" in error
+    assert "exists already" in error
     assert run(str(record), "--out", str(out), "--force")[0] == 0
 
 

@@ -41,7 +41,7 @@ def test_a_schedule_is_followed_and_modes_near_the_passing_are_said(tmp_path: Pa
     assert any("blades' passing" in text for text in found["warnings"])
     assert any("cut-out" in text for text in found["warnings"])
     shown = run(*arguments, "--schedule", str(path))
-    assert "at work" in shown.stdout
+    assert "in operation" in shown.stdout
 
 
 @pytest.mark.parametrize(

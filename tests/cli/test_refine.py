@@ -63,8 +63,8 @@ def test_a_mode_that_is_met_worse_than_before_is_named(tmp_path: Path) -> None:
     said = CliRunner().invoke(main, ["refine", str(tmp_path / "r.yaml")])
     assert said.exit_code == 0, said.stderr
     words = " ".join(said.stdout.split())
-    assert "mode 4 is met worse than before: +0.00 % became +" in words
-    assert "mode 1 is met worse" not in words
+    assert "mode 4 has a larger misfit than before: +0.00 % became +" in words
+    assert "mode 1 has a larger misfit" not in words
 
 
 @pytest.mark.parametrize(
@@ -147,4 +147,4 @@ def test_a_later_stage_that_spoils_an_earlier_one_is_named(tmp_path: Path) -> No
     text = yaml.safe_dump({"structure": "jacket15", "gravity": False, "stages": stages})
     (tmp_path / "r.yaml").write_text(text)
     said = CliRunner().invoke(main, ["refine", str(tmp_path / "r.yaml")])
-    assert "mode 1 of jacket is met worse when all stages are done:" in " ".join(said.stdout.split())
+    assert "mode 1 of jacket has a larger misfit after all stages:" in " ".join(said.stdout.split())

@@ -39,7 +39,7 @@ def test_the_terminal_shows_every_solution_and_how_complete_the_list_is(twin: Pa
     words = " ".join(result.stdout.split())
     assert "distinct solution" in words and "(95 % confidence)" in words
     assert "starts ┃ damper" in words and "locked" in words
-    assert "No intervals: they need the standard deviation of every target." in words
+    assert "There are no intervals, which need the standard deviation of every target." in words
     assert "undamped" in words
 
 
@@ -88,7 +88,7 @@ def test_points_to_start_from_are_given_on_the_command_line_or_in_the_file(twin:
     [
         ("k=abc", "--start: not NAME=VALUE"),
         ("k=-1", "--start: not positive"),
-        ("kk=1e9", "--start: a start names no parameters of the law"),
+        ("kk=1e9", "--start: a starting point has no parameter of the law"),
         ("k=1e3", "starts[0].k: a start is outside the bounds"),
     ],
 )

@@ -36,7 +36,7 @@ def test_nothing_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.chdir(tmp_path)
     result = CliRunner().invoke(main, ["verify"])
     assert result.exit_code == 0
-    assert "1 of 1 checked rows hold; 1 rows only inform" in result.stdout
+    assert "1 of 1 checked rows hold; 1 rows are not checked" in result.stdout
     assert list(tmp_path.iterdir()) == []
 
 
@@ -58,6 +58,6 @@ def test_benchmarks_of_others_show_misses_and_exit_0(monkeypatch: pytest.MonkeyP
     result = CliRunner().invoke(main, ["verify", "--published"])
     assert result.exit_code == 0
     assert "misses: f [Hz], Table 1: another rotor" in result.stdout
-    assert "1 of 2 checked rows hold, median error 5 %; 1 rows only inform" in result.stdout
+    assert "1 of 2 checked rows hold, median error 5 %; 1 rows are not checked" in result.stdout
     monkeypatch.setattr("jackettwin.verify.benchmark_rows", lambda step: (replace(rows[1], missed=""),))
     assert CliRunner().invoke(main, ["verify", "--published", "--json"]).exit_code == 1

@@ -1,4 +1,4 @@
-"""``jackettwin alerts``: who was told what, and who could not be."""
+"""``jackettwin alerts``: messages sent on findings, and failures to send them."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from jackettwin.cli.store_options import StorePlace, store_options
     "--try",
     "file",
     type=click.Path(path_type=Path, exists=True, dir_okay=False),
-    help="Alerts file: send a message by each of its channels, and say which take it.",
+    help="Alerts file: send a test message by each of its channels, and report which accept it.",
 )
 @answers
 @store_options
 def alerts_command(limit: int, file: Path | None, at: StorePlace) -> Reply:
-    """List what people were told of a store's findings, newest first."""
+    """List the messages sent on a store's findings, newest first."""
     engine = at.open()
     from jackettwin.store import alerts, reading
 

@@ -28,7 +28,7 @@ def print_answers(answers: Answers) -> None:
 
 
 def answers_document(answers: Answers) -> dict[str, Any]:
-    """Return the answers as plain JSON data, in numbers and in words."""
+    """Return the answers as plain JSON data, as numbers and sentences."""
     from jackettwin.files import encode
     from jackettwin.report import light, sentences
 

@@ -28,7 +28,7 @@ def asset_command() -> None:
 def add(name: str, twin: Path, comment: str, at: StorePlace) -> Reply:
     """Add the turbine NAME with its twin file, and copy in every file that this one names.
 
-    For a NAME that is there already, a new version is added; it counts once it is adopted.
+    If the turbine NAME exists, a new version is added, which is used once it is adopted.
     """
     engine = at.open(make=True)
     from jackettwin.service import add_twin
@@ -40,7 +40,7 @@ def add(name: str, twin: Path, comment: str, at: StorePlace) -> Reply:
 
 
 @asset_command.command("list")
-@click.option("--archived", is_flag=True, help="Those that are archived instead.")
+@click.option("--archived", is_flag=True, help="List archived turbines instead.")
 @answers
 @store_options
 def list_(archived: bool, at: StorePlace) -> Reply:
@@ -100,7 +100,7 @@ def show(name: str, at: StorePlace) -> Reply:
 @answers
 @store_options
 def adopt(name: str, version: int, at: StorePlace) -> Reply:
-    """Make a VERSION of the turbine NAME the one whose answers count."""
+    """Adopt a VERSION of the turbine NAME, whose answers are then used."""
     engine = at.open()
     from jackettwin.service import adopt_version
 
@@ -116,9 +116,9 @@ def adopt(name: str, version: int, at: StorePlace) -> Reply:
 @answers
 @store_options
 def group(group: str, assets: tuple[str, ...], at: StorePlace) -> Reply:
-    """Say which ASSETS the group GROUP has, by which users are given rights (`user add --assets @GROUP`).
+    """Define the ASSETS of the group GROUP, to which users can be given rights (`user add --assets @GROUP`).
 
-    Without any the group is gone.
+    Without ASSETS the group is deleted.
     """
     engine = at.open()
     from jackettwin.store import note_down, rights, writing
@@ -137,9 +137,9 @@ def group(group: str, assets: tuple[str, ...], at: StorePlace) -> Reply:
 @answers
 @store_options
 def archive(name: str, undo: bool, yes: bool, at: StorePlace) -> Reply:
-    """Archive the turbine NAME: it takes no records and leaves the lists.
+    """Archive the turbine NAME: it accepts no more records and is not listed.
 
-    Everything that is known of it stays.
+    All its data remain stored.
     """
     engine = at.open()
     from jackettwin.service import archive_asset
@@ -157,11 +157,13 @@ def archive(name: str, undo: bool, yes: bool, at: StorePlace) -> Reply:
 @click.argument(
     "tables", nargs=-1, required=True, type=click.Path(path_type=Path, exists=True, dir_okay=False)
 )
-@click.option("--clock", default="UTC", show_default=True, help="Zone of times that do not say theirs.")
+@click.option("--clock", default="UTC", show_default=True, help="Time zone of times without one.")
 @click.option(
-    "--column", "columns", multiple=True, metavar="THEIRS=OURS", help="Take a column under another name."
+    "--column", "columns", multiple=True, metavar="THEIRS=OURS", help="Read a column under another name."
 )
-@click.option("--end-stamped", is_flag=True, help="Rows bear the end of their ten minutes, not the start.")
+@click.option(
+    "--end-stamped", is_flag=True, help="Times are the ends of the ten-minute intervals, not the starts."
+)
 @answers
 @store_options
 def conditions(
@@ -172,9 +174,9 @@ def conditions(
     end_stamped: bool,
     at: StorePlace,
 ) -> Reply:
-    """Take conditions of the turbine NAME from TABLES, as SCADA exports them.
+    """Import conditions of the turbine NAME from TABLES, as SCADA exports them.
 
-    TABLES are CSV files of ten-minute statistics. A server observes the records that they belong to again.
+    TABLES are CSV files of ten-minute statistics. A server then observes the affected records again.
     """
     engine = at.open()
     from jackettwin.service import add_conditions

@@ -1,4 +1,4 @@
-"""``jackettwin audit``: who did what."""
+"""``jackettwin audit``: log of the users' actions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jackettwin.cli.store_options import StorePlace, store_options
 @answers
 @store_options
 def audit_command(limit: int, at: StorePlace) -> Reply:
-    """List who did what in a store, newest first."""
+    """List the actions of users in a store, newest first."""
     engine = at.open()
     from jackettwin.store import people, reading
 

@@ -18,7 +18,7 @@ from jackettwin.cli.store_options import StorePlace, database_option
 def backup_command(store: Path, file: Path, database: str | None) -> Reply:
     """Write everything of STORE into FILE, while it is served.
 
-    The file is written whole or not at all; the store may be served meanwhile or not.
+    The file is written completely or not at all, whether or not the store is being served.
     """
     engine = StorePlace(store, database).open()
     from jackettwin.store.backup import backup

@@ -1,7 +1,7 @@
-"""Where observations and fits are kept between runs: ``~/.cache/jackettwin``, or below ``XDG_CACHE_HOME``.
+"""Cache of observations and fits between runs: ``~/.cache/jackettwin``, or below ``XDG_CACHE_HOME``.
 
-A file's name is a hash of all that it was made of (samples, model, settings, code): what changes makes
-another name, and nothing has ever to be emptied by hand. The oldest files go when there are too many.
+A file's name is a hash of all inputs (samples, model, settings, code), so that a changed input gives another
+name and the cache never has to be cleared manually. The oldest files are deleted when it is full.
 """
 
 from __future__ import annotations
@@ -23,11 +23,12 @@ if TYPE_CHECKING:
     from jackettwin.files import Keep, KeptInFolder
 
 MOST_BYTES = 500_000_000
-"""Size of the cache: some thousand records."""
+"""Largest size of the cache, enough for some thousand records."""
 MOST_RECORDS = 500
-"""Records of one batch that are kept: more would push everything else out (``--out FOLDER`` keeps any)."""
+"""Largest batch of records that is cached, since more would displace all else; ``--out FOLDER`` has no
+limit."""
 _DECIDING = ("identification", "records", "response", "soil", "structure", "study", "twin", "updating")
-"""What of the package decides on an observation or a fit."""
+"""Subpackages that affect an observation or a fit."""
 
 
 def cache_folder() -> Path:
@@ -37,7 +38,7 @@ def cache_folder() -> Path:
 
 
 def keeping(*, fresh: bool = False) -> Keep:
-    """Return what keeps observations and fits; with ``fresh`` those that are there are made again."""
+    """Return the store of observations and fits; with ``fresh`` existing ones are recomputed."""
     from jackettwin.files import NOT_KEPT
 
     folder = kept_folder()
@@ -45,7 +46,7 @@ def keeping(*, fresh: bool = False) -> Keep:
 
 
 def kept_folder() -> Path | None:
-    """Return the folder of what is kept between runs, pruned; None if nothing can be kept."""
+    """Return the folder of the cache after pruning; None if it cannot be written."""
     with suppress(OSError, RuntimeError):
         folder = cache_folder() / "kept"
         folder.mkdir(parents=True, exist_ok=True)
@@ -55,7 +56,7 @@ def kept_folder() -> Path | None:
 
 
 def kept_in(folder: Path, *, fresh: bool = False) -> KeptInFolder:
-    """Return what keeps observations in a folder, as this code makes them."""
+    """Return the store of observations in a folder, for this version of the code."""
     from jackettwin.files import KeptInFolder
 
     return KeptInFolder(folder, _code(), fresh)
@@ -63,7 +64,7 @@ def kept_in(folder: Path, *, fresh: bool = False) -> KeptInFolder:
 
 @cache
 def _code() -> str:
-    """Return the identity of the code that observes and fits: size and time of its files."""
+    """Return the identity of the code for observations and fits, from size and time of its files."""
     root = Path(jackettwin.__file__).parent
     files = [*root.glob("*.py"), *(file for name in _DECIDING for file in (root / name).rglob("*.py"))]
     stamps = sorted((str(f.relative_to(root)), f.stat().st_size, f.stat().st_mtime_ns) for f in files)
@@ -71,12 +72,12 @@ def _code() -> str:
 
 
 def _installed() -> list[str]:
-    """Return what is installed, with versions: plugins and numerical libraries decide on numbers, too."""
+    """Return the installed packages with versions, as plugins and numerical libraries also affect results."""
     return sorted(info.name for folder in sys.path for info in Path(folder).glob("*.dist-info"))
 
 
 def _prune(folder: Path) -> None:
-    """Remove the files that were not used for longest, until the rest fits."""
+    """Remove the least recently used files until the rest fits."""
     files = sorted(((f.stat().st_mtime, f.stat().st_size, f) for f in folder.glob("*.json")), reverse=True)
     total = 0
     for _, size, file in files:
@@ -86,20 +87,19 @@ def _prune(folder: Path) -> None:
 
 
 def document_place(folder: Path, sources: Iterable[str | Path], asked: object) -> Path | None:
-    """Return where the document of a command about records lies, or would.
+    """Return the path in the cache of a command's document about records.
 
-    It goes by the bytes of all files that say something of the records, so that nothing numerical has to be
-    loaded to find it.
+    It depends on the bytes of all files about the records, so that no numerical library has to be imported.
 
     Parameters
     ----------
     sources : files, and folders of files
-    asked : what else decides on the document, with a ``repr`` of its own
+    asked : all other inputs of the document, with a unique ``repr``
 
     Returns
     -------
     Path or None
-        None if there are too many files to keep, or one that cannot be read: that is for others to say.
+        None if there are too many files, or one cannot be read, which is reported elsewhere.
     """
     content = hashlib.sha256(repr(asked).encode())
     with suppress(OSError, ValueError):
@@ -114,7 +114,7 @@ def document_place(folder: Path, sources: Iterable[str | Path], asked: object) -
 
 
 def _files_about(source: Path) -> list[Path]:
-    """Return the files of a folder, or a file and the descriptions beside it."""
+    """Return the files of a folder, or a file and its description files."""
     if source.is_dir():
         return sorted(file for file in source.iterdir() if file.is_file())
     beside = (source.with_suffix(".json"), source.with_name("records.json"))
@@ -122,7 +122,7 @@ def _files_about(source: Path) -> list[Path]:
 
 
 def kept_document(place: Path | None) -> Mapping[str, Any] | None:
-    """Return a document as it was written; None if there is none, or nothing that can be read."""
+    """Return a stored document; None if there is none or it cannot be read."""
     if place is not None:
         with suppress(OSError, ValueError):
             found = json.loads(place.read_text(encoding="utf-8"))
@@ -132,7 +132,7 @@ def kept_document(place: Path | None) -> Mapping[str, Any] | None:
 
 
 def keep_document(document: Mapping[str, Any], place: Path | None) -> None:
-    """Keep a document, if there is room."""
+    """Store a document, if there is space."""
     if place is not None:
         with suppress(OSError):
             place.parent.mkdir(parents=True, exist_ok=True)

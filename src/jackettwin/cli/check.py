@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 
 _SHOWN = 15
-"""Members in the terminal."""
+"""Number of members shown on the terminal."""
 _COMPONENTS = ("axial_n", "shear_y_n", "shear_z_n", "torsion_nm", "bending_y_nm", "bending_z_nm")
 _HEAD = ("x_n", "y_n", "z_n", "x_nm", "y_nm", "z_nm")
 _TRACE = 0.005
-"""A share of a joint's class that rounds to nothing."""
+"""Share of a joint's class below which it is not shown."""
 _HEADINGS = ("N", "Vy", "Vz", "T", "My", "Mz")
 
 
@@ -45,7 +45,7 @@ _HEADINGS = ("N", "Vy", "Vz", "T", "My", "Mz")
     metavar="NODE=FX,FY,FZ[,MX,MY,MZ]",
     help="A factored force [N, N·m]; may be repeated.",
 )
-@click.option("--no-weight", is_flag=True, help="Leave the self-weight out.")
+@click.option("--no-weight", is_flag=True, help="Neglect the self-weight.")
 @click.option("--yield-strength", default=355e6, show_default=True, type=FiniteFloat(min=1e6), help="[Pa]")
 @click.option(
     "--edition", default="2007", show_default=True, type=click.Choice(EDITIONS), help="Of ISO 19902."
@@ -55,13 +55,15 @@ _HEADINGS = ("N", "Vy", "Vz", "T", "My", "Mz")
     default="load-path",
     show_default=True,
     type=click.Choice(("load-path", "conservative")),
-    help="Class of tubular joints: by load path, or the weakest of K, Y and X.",
+    help="Classification of tubular joints: by load path, or the weakest of K, Y and X.",
 )
 @click.option(
-    "--still-water", is_flag=True, help="Buoyancy, and hydrostatic pressure on what is not flooded."
+    "--still-water",
+    is_flag=True,
+    help="Add buoyancy, and hydrostatic pressure on members that are not flooded.",
 )
 @click.option("--flooded", multiple=True, metavar="MEMBER|PART", help="With --still-water; may be repeated.")
-@click.option("--sheet", metavar="MEMBER", help="The calculation of a member, line by line, for a checker.")
+@click.option("--sheet", metavar="MEMBER", help="Show the calculation of a member line by line.")
 @click.option(
     "--pile-resistance",
     default=1.25,
@@ -72,11 +74,13 @@ _HEADINGS = ("N", "Vy", "Vz", "T", "My", "Mz")
 @click.option(
     "--wind",
     type=FiniteFloat(0.0, 150.0),
-    help="Mean wind [m/s]: are members in air set swinging by vortices?",
+    help="Mean wind speed [m/s] to screen members in air for vortex-induced vibrations.",
 )
-@click.option("--current", type=FiniteFloat(0.0, 10.0), help="The same of members in water [m/s].")
 @click.option(
-    "--subdivide", type=click.IntRange(1, 1000), help="Elements a member; default: the structure's own."
+    "--current", type=FiniteFloat(0.0, 10.0), help="Current speed [m/s] to screen members in water likewise."
+)
+@click.option(
+    "--subdivide", type=click.IntRange(1, 1000), help="Elements per member; default: the structure's own."
 )
 @answers
 def check_command(
@@ -99,7 +103,7 @@ def check_command(
 ) -> Reply:
     """Check members and joints of STRUCTURE, or of a scenario.
 
-    STRUCTURE is at rest under its weight and the forces given.
+    STRUCTURE is in static equilibrium under its weight and the given forces.
     """
     from jackettwin.checks import DesignBasis, frame_use, left_out, vortex_uses
     from jackettwin.decks import read_structure
@@ -156,22 +160,20 @@ def check_command(
 
 
 def _refuse_beside_scenario(**given: object) -> None:
-    """Refuse options that belong to a structure at rest."""
+    """Raise an error on options that apply only to a static check."""
     for name, value in given.items():
         if value is not None:
             option = f"--{name.replace('_', '-')}"
             remedy = (
-                "leave it out: a scenario has its own water"
-                if name == "still_water"
-                else "name the structure"
+                "omit it: a scenario has its own water" if name == "still_water" else "name the structure"
             )
-            raise InputError("belongs to a structure at rest", field=option, remedy=remedy)
+            raise InputError("applies only to the static check of a structure", field=option, remedy=remedy)
 
 
 def _sheet(
     name: str | None, assembly: Assembly, use: FrameUse, basis: DesignBasis
 ) -> tuple[SheetLine, ...] | None:
-    """Return the calculation of a member; None if none is asked for."""
+    """Return the calculation of a member; None if none is requested."""
     from jackettwin.checks import calculation_sheet
 
     if name is None:
@@ -204,14 +206,14 @@ def _piles(
 
 
 def _piles_left_out(piles: tuple[PileUse, ...]) -> tuple[Omission, ...]:
-    """Return what of the check of piles is left out, and how to have one."""
+    """Return the omitted parts of the check of piles, and how to include them."""
     if not piles:
         how = "piles: give --support FOUNDATION with layers, piles lumped at their heads"
         return (Omission(how, "ISO 19902 17"),)
     return (
         Omission(
             "piles: group effects, cyclic degradation along the axis, set-up, the weight of piles and plug, "
-            "yielding steel and driving; the structure feels the ground's initial stiffness",
+            "yielding steel and driving; the structure is supported by the ground's initial stiffness",
             "ISO 19902 17",
         ),
     )
@@ -232,11 +234,11 @@ def _in_water(
     depth = structure.sea_level_z_m - min(structure.nodes[name][2] for name in structure.reaction_nodes)
     if not depth > 0.0:
         raise InputError(
-            "the structure stands above still water",
+            "the structure is above still water",
             field="--still-water",
             value=structure.sea_level_z_m,
             allowed="sea_level_z_m above the lowest foot",
-            remedy="state sea_level_z_m in the structure's file, or leave --still-water out",
+            remedy="state sea_level_z_m in the structure's file, or omit --still-water",
         )
     coefficients = Coefficients()
     grid = morison_points(assembly, highest_z=0.0, lowest_z=-depth, coefficients=coefficients)
@@ -246,7 +248,7 @@ def _in_water(
 
 
 def _flows_left_out(wind: float | None, current: float | None) -> tuple[Omission, ...]:
-    """Return what of the screening for vortices is left out, and how to have it."""
+    """Return the omitted parts of the screening for vortices, and how to include them."""
     found = []
     if wind is None:
         found.append(Omission("vortices in air: give a structure and --wind", "EN 1991-1-4 E.1"))
@@ -290,7 +292,7 @@ def nodal_force(text: str) -> tuple[str, tuple[float, ...]]:
     Raises
     ------
     InputError
-        If the text is not that.
+        If the text has another form.
     """
     node, _, numbers = text.partition("=")
     return node, numbers_of(numbers, "--force", "NODE=FX,FY,FZ[,MX,MY,MZ]", (3, 6), given=text)
@@ -371,7 +373,7 @@ def _pile_warnings(uses: tuple[PileUse, ...]) -> list[str]:
     over = [use.foot for use in uses if use.axial > 1.0 or (use.steel and use.steel.utilisation > 1.0)]
     fallen = [use.foot for use in uses if not use.stands]
     found = [f"piles used above 1: {few(over)}"] if over else []
-    return found + ([f"the ground does not carry the piles of {few(fallen)}"] if fallen else [])
+    return found + ([f"the ground cannot carry the piles of {few(fallen)}"] if fallen else [])
 
 
 def _vortex_row(use: VortexUse) -> dict[str, Any]:
@@ -394,14 +396,14 @@ def _vortex_warnings(uses: tuple[VortexUse, ...]) -> list[str]:
     for medium, clause in CLAUSES.items():
         names = [use.member for use in uses if use.medium == medium and use.ratio >= 1.0]
         if names:
-            found.append(f"vortices may set members in {medium} swinging ({clause}): {few(names)}")
+            found.append(f"vortices may excite members in {medium} ({clause}): {few(names)}")
     return found
 
 
 def _warnings(use: FrameUse) -> list[str]:
     from jackettwin.structure import few
 
-    # what lies beyond a rule's range stands last in the tables: it is no headline
+    # rows beyond a rule's range are last in the tables and not in the headline
     thin = [one.member for one in use.members if not one.covered]
     over = [one.member for one in use.members if one.utilisation > 1.0]
     joints = [f"{one.brace} at {one.node}" for one in use.joints if one.utilisation > 1.0]
@@ -446,7 +448,7 @@ def _show(document: dict[str, Any]) -> None:
 def _show_joints(rows: list[dict[str, Any]]) -> None:
     show_table(Table("tubular joints, ISO 19902 14.3; forces in kN, kN·m", _JOINTS, rows[:_SHOWN]))
     if any(row["beyond_validity"] for row in rows[:_SHOWN]):
-        say("* beyond the ranges of 14.3.1; --json says in what")
+        say("* beyond the ranges of 14.3.1; --json gives the reason")
     if len(rows) > _SHOWN:
         say(f"and {len(rows) - _SHOWN} more braces at joints; --json has all of them")
 

@@ -1,4 +1,4 @@
-"""``jackettwin compare``: what changed between two runs."""
+"""``jackettwin compare``: differences between two runs."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 @click.argument("b", type=click.Path(path_type=Path))
 @answers
 def compare_command(a: Path, b: Path) -> Reply:
-    """Say what changed from run A to run B, against its uncertainty.
+    """Compare run B with run A, relative to their uncertainty.
 
     A and B are folders that `jackettwin run` wrote, or their result.json.
     """
@@ -58,7 +58,7 @@ def compare_command(a: Path, b: Path) -> Reply:
 
 
 def _input_lines(inputs: tuple[ChangedInput, ...]) -> list[str]:
-    """Return what differs, a line each; of what differs in many places alike, one and how many more."""
+    """Return a line for each differing input; equal differences in several places are counted in one."""
     groups: dict[tuple[str, str, object, object], list[ChangedInput]] = {}
     for i in inputs:
         parts = i.what.split(".")
@@ -74,7 +74,7 @@ def _input_lines(inputs: tuple[ChangedInput, ...]) -> list[str]:
 
 
 def _summary(changes: tuple[ChangedNumber, ...]) -> str:
-    """Return what changed in a sentence, most first."""
+    """Return a sentence on the changes, the largest first."""
     changed = sorted((c for c in changes if c.verdict == "changed"), key=lambda c: -abs(c.sigmas or 0.0))
     if not changed:
         return "Nothing changed by more than two standard deviations of the difference."
@@ -83,7 +83,7 @@ def _summary(changes: tuple[ChangedNumber, ...]) -> str:
 
 
 def _words(what: str) -> str:
-    """Return what a number is of, its mode or parameter in words."""
+    """Return the name of a quantity, its mode or parameter in words."""
     from jackettwin.soil import parameter_words
 
     kind, of, label = what.rpartition(" of ")
@@ -98,7 +98,7 @@ def _value(value: float | None, unit: str) -> str | None:
 
 
 def _percent(log_change: float) -> str:
-    """Return a change in per cent with its sign, in two figures and without powers of ten."""
+    """Return a change in per cent with its sign, with two significant digits and without exponent."""
     return f"{float(f'{100.0 * expm1(log_change):.2g}'):+g}"
 
 

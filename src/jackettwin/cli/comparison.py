@@ -1,4 +1,4 @@
-"""What ``modes`` and ``stages`` say of mode shapes beside another program's."""
+"""Comparison of mode shapes with another program's, for ``modes`` and ``stages``."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ def is_table(name: str) -> bool:
 
 
 def require_shapes(shapes: Mapping[str, ModeComparison], figure: Path) -> None:
-    """Refuse a page of shapes without shapes to compare."""
+    """Raise an error if a page of shapes is requested but none can be compared."""
     require(
         shapes,
-        "there are no shapes to lay side by side",
+        "there are no shapes to compare",
         field="--figure",
         value=str(figure),
         remedy="give --against FILE.csv, or a structure with the same nodes",
@@ -34,7 +34,7 @@ def require_shapes(shapes: Mapping[str, ModeComparison], figure: Path) -> None:
 def comparison_of(
     system: System, number: int, *, shapes: Path | None, against: Path | None, figure: Path | None
 ) -> dict[str, Any]:
-    """Return the document's part on shapes; write the undamped modes and the page that are asked for.
+    """Return the document's part on shapes; write the requested table of undamped modes and page.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def comparison_of(
 
 
 def compared_with(system: System, number: int, against: Path) -> ModeComparison:
-    """Return the lowest modes beside those of another program's table.
+    """Return the comparison of the lowest modes with another program's table.
 
     Raises
     ------
@@ -88,7 +88,7 @@ def compared_with(system: System, number: int, against: Path) -> ModeComparison:
 
 
 def _own_modes(system: System, number: int) -> UndampedModes:
-    """Return the lowest undamped modes; what floats freely is none."""
+    """Return the lowest undamped modes without rigid-body motions."""
     from jackettwin.response import UndampedModes, undamped_modes
 
     every = undamped_modes(system, number + DOFS_PER_NODE)
@@ -122,15 +122,15 @@ def comparison_document(found: ModeComparison | None) -> dict[str, Any] | None:
 
 
 def show_comparison(document: dict[str, Any] | None) -> None:
-    """Print which mode is which of the other program's, and how alike they are."""
+    """Print the pairs of modes of both programs and their agreement."""
     if document is None:
         return
     show_table(Table(f"shapes at {document['nodes']} nodes", _COLUMNS, document["pairs"]))
     lost = len(document["mac"]) - len(document["pairs"])
     if lost:
-        say(f"{lost} modes are like none of the other program's (MAC below 0.5)")
+        say(f"{lost} modes resemble none of the other program's (MAC below 0.5)")
     if document["unknown_nodes"]:
-        say(f"{len(document['unknown_nodes'])} of its nodes are none of this structure: they are left out")
+        say(f"{len(document['unknown_nodes'])} of its nodes are not in this structure and are ignored")
 
 
 _COLUMNS = (

@@ -1,4 +1,4 @@
-"""What every command shares: exit codes, progress on stderr, JSON on stdout."""
+"""Common parts of all commands: exit codes, progress on stderr, JSON on stdout."""
 
 from __future__ import annotations
 
@@ -32,21 +32,22 @@ P = ParamSpec("P")
 OUR_FAULT, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
 _PATIENCE_S = 0.3
-"""Time after which a command that is still being read says so: NumPy and SciPy take a second or two."""
+"""Time after which a command that is still being imported reports it; NumPy and SciPy take a second or
+two."""
 messages = Console(stderr=True, highlight=False)
 """Progress, warnings and errors."""
 output = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 140)
-"""Tables for people; a file or a pipe has no width of its own."""
+"""Console for tables; a file or a pipe has a fixed width."""
 
 
 @contextmanager
 def _reading_said(command: str, summary: str) -> Iterator[None]:
-    """Say what a slow command does while it is still being read, and once more that it still is."""
+    """Report that a command is being imported, if this takes long, and once more later."""
     done = Event()
-    first = f"{command}: {summary.rstrip('.')} (reading the program)"
+    first = f"{command}: {summary.rstrip('.')} (loading the program)"
 
     def say() -> None:
-        for wait_s, words in ((_PATIENCE_S, first), (EVERY_S, "still reading the program")):
+        for wait_s, words in ((_PATIENCE_S, first), (EVERY_S, "still loading the program")):
             if done.wait(wait_s):
                 return
             messages.print(words, soft_wrap=True, markup=False)
@@ -62,19 +63,19 @@ class CommandGroup(click.Group):
     """A group whose help shows the whole first sentence of every command."""
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write what every command does."""
+        """Write the help text of every command."""
         found = [(name, self.get_command(ctx, name)) for name in self.list_commands(ctx)]
         with formatter.section("Commands"):
             formatter.write_dl([(name, one.get_short_help_str(1000)) for name, one in found if one])
 
 
 class Commands(click.Group):
-    """A group whose commands end with the exit codes of the contract, each read when it is called.
+    """A group whose commands return the documented exit codes and are imported when called.
 
     Parameters
     ----------
     groups : {heading: {name: sentence}}
-        What every command does; ``a-b`` is ``a_b_command`` in ``jackettwin.cli.a_b``.
+        Help text of every command; ``a-b`` is ``a_b_command`` in ``jackettwin.cli.a_b``.
     """
 
     def __init__(self, *args: Any, groups: Mapping[str, Mapping[str, str]], **kwargs: Any) -> None:
@@ -87,7 +88,7 @@ class Commands(click.Group):
         return list(self.summaries)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Read a command; None if there is no such one."""
+        """Import a command; None if it does not exist."""
         if cmd_name not in self.summaries:
             return None
         name = cmd_name.replace("-", "_")
@@ -96,7 +97,7 @@ class Commands(click.Group):
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write what every command does, group by group."""
+        """Write the help text of every command by group."""
         longest = max(map(len, self.summaries))
         for heading, group in self.groups.items():
             with formatter.section(heading):
@@ -112,7 +113,7 @@ class Commands(click.Group):
             _failed("error", str(error))
             ctx.exit(BAD_INPUT)
         except KeyboardInterrupt:
-            messages.print("interrupted: nothing half-written is left behind")
+            messages.print("interrupted: no incomplete file was left")
             ctx.exit(INTERRUPTED)
         except OSError as error:
             what = f"{error.strerror or error}: {error.filename}" if error.filename else str(error)
@@ -129,7 +130,7 @@ class Commands(click.Group):
         except Exception as error:
             if ctx.params.get("traceback"):
                 traceback.print_exc()
-            fault = "this is a fault of jackettwin: run again with --traceback and report it"
+            fault = "this is a fault in jackettwin: run again with --traceback and report it"
             _failed("internal error", f"{type(error).__name__}: {error}; {fault}")
             ctx.exit(OUR_FAULT)
 
@@ -139,7 +140,7 @@ def _failed(kind: str, what: str) -> None:
 
 
 class PageFile(click.Path):
-    """The page that an option writes, in a folder that is there: a slip of the pen makes no folders."""
+    """Path of an HTML page in an existing folder, so that a typing error creates no folder."""
 
     name = "file.html"
 
@@ -147,26 +148,26 @@ class PageFile(click.Path):
         super().__init__(dir_okay=False, path_type=Path)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the path; refuse one that no browser takes for a page, or without a folder."""
+        """Return the path; raise an error unless it ends in .html and its folder exists."""
         path = Path(value)
         if path.suffix.lower() not in (".html", ".htm"):
-            self.fail(f"{path.name!r} is no name of a page: it ends in .html.", param, ctx)
+            self.fail(f"{path.name!r} is not the name of a page, which ends in .html.", param, ctx)
         if not path.absolute().parent.is_dir():
             self.fail(f"there is no folder {str(path.parent)!r}: make it first.", param, ctx)
         return super().convert(value, param, ctx)
 
 
 class FiniteFloat(click.FloatRange):
-    """A number of an option: click's own range lets "nan" through, and "inf" where it is open."""
+    """A finite number: click's own range accepts "nan", and "inf" where it is open."""
 
     name = "number"
 
     def _describe_range(self) -> str:
-        """Return the range for the help, which click writes as ``x<=None`` where there is none."""
+        """Return the range for the help text; click writes a missing one as ``x<=None``."""
         return "" if self.min is None and self.max is None else super()._describe_range()
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """Return the number; refuse what is not finite."""
+        """Return the number; raise an error if it is not finite."""
         found = float(super().convert(value, param, ctx))
         if not isfinite(found):
             self.fail(f"{found} is not a finite number.", param, ctx)
@@ -174,7 +175,7 @@ class FiniteFloat(click.FloatRange):
 
 
 class _Messages(logging.Handler):
-    """Prints what the package logs among the messages, the same line once."""
+    """Handler that prints log messages of the package, equal ones once."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -189,7 +190,7 @@ class _Messages(logging.Handler):
 
 
 def _hear() -> None:
-    """Print what the computing part logs; a server says for itself where its log goes."""
+    """Print log messages of the computation; a server configures its own log."""
     for package in ("decks", "response", "structure", "study", "twin"):
         log = logging.getLogger(f"jackettwin.{package}")
         log.handlers = [handler for handler in log.handlers if not isinstance(handler, _Messages)]
@@ -204,7 +205,7 @@ def plain(text: str) -> str:
 
 @contextmanager
 def progress(total: int, title: str) -> Iterator[Told]:
-    """Yield what announces the next of ``total`` steps: a bar on a terminal, else plain lines, on stderr."""
+    """Yield the function that reports the next of ``total`` steps, by a bar on a terminal, else by lines."""
     if not messages.is_terminal:
         with plain_progress(total, lambda line: messages.print(line, soft_wrap=True, markup=False)) as told:
             yield told
@@ -224,14 +225,14 @@ def progress(total: int, title: str) -> Iterator[Told]:
 
 @contextmanager
 def working(what: str) -> Iterator[None]:
-    """Say what is being done for as long as the block takes."""
+    """Show a message while the block runs."""
     with progress(1, what) as step:
         step(what)
         yield
 
 
 def print_json(document: object) -> None:
-    """Print one JSON document on stdout: null for what is not known, never NaN."""
+    """Print one JSON document on stdout: null for unknown values, never NaN."""
     from jackettwin.files import json_pieces
 
     sys.stdout.writelines(json_pieces(document))
@@ -239,7 +240,7 @@ def print_json(document: object) -> None:
 
 @dataclass(frozen=True)
 class Reply:
-    """What a command answers.
+    """Result of a command.
 
     Attributes
     ----------
@@ -260,7 +261,7 @@ json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON."
 
 
 def answers(function: Callable[P, Reply]) -> Callable[P, None]:
-    """Let a command print what it returns: for people, or with ``--json`` for programs."""
+    """Make a command print its result as text, or with ``--json`` as JSON."""
 
     @wraps(function)
     def command(*args: P.args, **kwargs: P.kwargs) -> None:
@@ -277,12 +278,12 @@ def answers(function: Callable[P, Reply]) -> Callable[P, None]:
 
 
 def say(line: str) -> None:
-    """Print a line for people, as it is."""
+    """Print a line of text unchanged."""
     output.print(line, markup=False)
 
 
 def say_all(lines: Iterable[str], kind: str = "") -> None:
-    """Print lines, those of a kind (``warning``) with its name."""
+    """Print lines, prefixed with their kind (``warning``) if given."""
     for line in lines:
         say(f"{kind}: {line}" if kind else line)
 
@@ -304,13 +305,13 @@ def show_table(table: Table) -> None:
 def numbers_of(
     text: str, option: str, form: str, counts: tuple[int, ...], *, given: str | None = None
 ) -> tuple[float, ...]:
-    """Return the numbers of an option that takes some, joined by commas.
+    """Return the comma-separated numbers of an option.
 
     Parameters
     ----------
     form : as the help text writes them, e.g. ``X,Y,Z``
-    counts : how many there may be
-    given : what the user wrote, if the numbers are only a part of it
+    counts : allowed numbers of values
+    given : the user's text, if the numbers are only a part of it
 
     Raises
     ------

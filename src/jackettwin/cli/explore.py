@@ -1,4 +1,4 @@
-"""``jackettwin explore``: what the parameters of a support law do to modes and cost."""
+"""``jackettwin explore``: effect of a support law's parameters on modes and cost."""
 
 from __future__ import annotations
 
@@ -20,44 +20,54 @@ if TYPE_CHECKING:
     from jackettwin.study import Exploration, ExploreSettings
 
 _OWN_STEPS = 3
-"""Beside those of a run: the cost, the modes, the page."""
+"""Number of steps besides those of a run: the cost, the modes and the page."""
 
 
 @click.command("explore")
 @click.argument("twin")
-@click.option("--law", help="Of the twin's supports; default: the first of its file.")
-@click.option("--modes", metavar="1,2,4", help="Numbers on rigid feet; default: 1 to 5 and those measured.")
+@click.option("--law", help="Law of the twin's supports; default: the first of its file.")
+@click.option(
+    "--modes", metavar="1,2,4", help="Mode numbers on rigid feet; default: 1 to 5 and the measured ones."
+)
 @click.option(
     "--along", multiple=True, metavar="PARAMETER", help="Root locus along it; default: all; may be repeated."
 )
 @click.option("--over", metavar="P,Q", help="The two parameters of the cost surface; default: the first two.")
 @click.option(
-    "--grid", default=49, show_default=True, type=click.IntRange(5, 301), help="Points of the surface a side."
+    "--grid",
+    default=49,
+    show_default=True,
+    type=click.IntRange(5, 301),
+    help="Points of the cost surface along each side.",
 )
 @click.option(
-    "--starts", default=8, show_default=True, type=click.IntRange(0, 1000), help="Of the search, to follow."
+    "--starts",
+    default=8,
+    show_default=True,
+    type=click.IntRange(0, 1000),
+    help="Starts of the search to show.",
 )
 @click.option(
     "--start",
     "points",
     multiple=True,
     metavar="P=VALUE,…",
-    help="A starting point of your own to follow; may be repeated.",
+    help="A further starting point to show; may be repeated.",
 )
 @click.option(
     "--method",
     default="least-squares",
     show_default=True,
     type=click.Choice(["least-squares", "nelder-mead"]),
-    help="Of the paths: ours, or the thesis's simplex.",
+    help="Method of the paths: that of the update, or the thesis's simplex.",
 )
 @click.option("--at", metavar="P=VALUE,…", help="Explore this point; default: the best solution.")
-@click.option("--support", metavar="LAW:…", help="TWIN is a structure on this law: modes, and no cost.")
-@click.option("--rayleigh", metavar="ZETA,F_HZ", help="Damping of that structure's steel.")
+@click.option("--support", metavar="LAW:…", help="Take TWIN as a structure on this law; shows modes only.")
+@click.option("--rayleigh", metavar="ZETA,F_HZ", help="Rayleigh damping of that structure's steel.")
 @click.option(
     "--out", type=PageFile(), help="The page, in a folder that exists; default out/NAME_explore.html."
 )
-@click.option("--fresh", is_flag=True, help="Identify and fit again what an earlier run kept.")
+@click.option("--fresh", is_flag=True, help="Ignore stored identifications and fits of earlier runs.")
 @answers
 def explore_command(
     twin: str,
@@ -75,10 +85,10 @@ def explore_command(
     out: Path | None,
     fresh: bool,
 ) -> Reply:
-    """Show what the parameters of TWIN's law do to modes and cost.
+    """Show the effect of TWIN's law parameters on modes and cost.
 
-    They are the cost surface, root loci, sensitivities, and the way of the search from every starting point.
-    A page shows them. TWIN is a shipped name or a YAML file; a structure if --support gives its law.
+    The page shows the cost surface, root loci, sensitivities, and the path of the search from every starting
+    point. TWIN is a shipped name or a YAML file, or a structure if --support gives its law.
     """
     from jackettwin.study import ExploreSettings, exploration_document
 
@@ -93,11 +103,11 @@ def explore_command(
         at={} if at is None else _values(at, "--at"),
     )
     if support is None:
-        require(rayleigh is None, "is of a structure", field="--rayleigh", remedy="give --support, too")
+        require(rayleigh is None, "applies to a structure", field="--rayleigh", remedy="also give --support")
         found, path = _of_twin(twin, law, settings, out, fresh)
     else:
         for option, given in (("--law", law), ("--at", at), ("--over", over), ("--start", points or None)):
-            require(given is None, "is of a twin", field=option, remedy="leave it or --support out")
+            require(given is None, "applies to a twin", field=option, remedy="omit it or --support")
         found, path = _of_structure(twin, support, rayleigh, settings, out)
     document = {**exploration_document(found), "page": str(path)}
     return Reply(document, lambda: _show(found, path))
@@ -122,7 +132,7 @@ def _of_twin(
 
 @contextmanager
 def _said_of_structures(name: str) -> Iterator[None]:
-    """Say of a structure in a twin's place how it is explored."""
+    """Add to the error for a structure in place of a twin how to explore it."""
     try:
         yield
     except InputError:
@@ -164,7 +174,7 @@ def _of_structure(
 
 def _page(found: Exploration, out: Path | None, step: Progress) -> Path:
     step("page")
-    # drawing takes a second to load: not before it is needed
+    # importing the plots takes a second, so only when needed
     from jackettwin.report.pages.explore import write_explore_page
 
     return write_explore_page(found, out or Path("out") / f"{found.name}_explore.html")

@@ -41,8 +41,7 @@ def export_command(
 ) -> Reply:
     """Write the foundation of STRUCTURE as a SubDyn input file.
 
-    The foundation is what stands below the interface. The nodes of piles that are members become reaction
-    joints.
+    The foundation is the part below the interface. Nodes of piles modelled as members become reaction joints.
     """
     from jackettwin.decks import read_structure, write_subdyn
     from jackettwin.soil import held_where_sprung, with_static_reactions
@@ -70,7 +69,7 @@ def _warnings(whole: Structure, held: Support) -> list[str]:
 
     found = []
     if any(dissipates(spring.law) for spring in held.springs):
-        found.append("a deck knows no damping in the ground: the superelement does")
+        found.append("a deck has no damping of the ground; a superelement has")
     if not whole.rotary_inertia or (whole.beam == "timoshenko" and whole.shear_in_mass):
-        found.append("SubDyn adds rotary inertia to its beams, and leaves shear out of their mass")
+        found.append("SubDyn adds rotary inertia to its beams, and neglects shear in their mass")
     return found

@@ -30,19 +30,19 @@ if TYPE_CHECKING:
 
 _UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "N/mm^2": 1e6, "ksi": 6.894757293168e6}
 _STRONGEST_PA = 2e9
-"""A range that no steel carries: a slip of units."""
+"""Stress range above which the unit must be wrong."""
 _N_EQ = 1e7
 _SHOWN = 10
 _SPLASH_M = (-5.0, 5.0)
-"""About the sea level: no cathodic protection reaches there for all of the time."""
+"""Splash zone about the sea level [m], where cathodic protection is not permanent."""
 _OF_WELDS = (
     Omission("cans, butt welds, flanges, grout and piles"),
-    Omission("joints of several planes: each plane for itself"),
+    Omission("joints in several planes: each plane is assessed separately"),
     Omission("crack growth"),
 )
 _OF_RECORDS = (
-    Omission("other seas, winds and states: life if all time were like this record"),
-    Omission("the model's own errors beyond its supports: intervals of stress are too narrow, see the docs"),
+    Omission("other seas, winds and states: all time is assumed to be like this record"),
+    Omission("errors of the model besides its supports: intervals of stress are too narrow, see the docs"),
     Omission("slow forces that neither a sensor nor the record's stated wind and sea show"),
     Omission("buoyancy and mean thrust in the shares of K, Y and X joints"),
     Omission("bending blades"),
@@ -50,10 +50,10 @@ _OF_RECORDS = (
 
 
 class _Fatigue(CommandGroup):
-    """A group that takes TWIN and RECORD for those of its command ``record``."""
+    """A group that treats arguments TWIN and RECORD as those of its command ``record``."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse what follows; where it begins with no command, it is a twin."""
+        """Parse arguments; if the first is not a command, it is a twin."""
         named = next((a for a in args if not a.startswith("-")), None)
         if named is not None and named not in self.commands:
             args = ["record", *args]
@@ -62,7 +62,7 @@ class _Fatigue(CommandGroup):
 
 @click.group("fatigue", cls=_Fatigue)
 def fatigue_command() -> None:
-    """Count cycles, and tell damage and life of welds."""
+    """Count cycles, and compute damage and life of welds."""
 
 
 def curve_options(command: Any) -> Any:
@@ -75,7 +75,7 @@ def curve_options(command: Any) -> Any:
 
 @fatigue_command.command("stress")
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("--column", required=True, metavar="NAME", help="The stress in FILE.")
+@click.option("--column", required=True, metavar="NAME", help="Column of FILE with the stress.")
 @click.option("--curve", default="T", show_default=True, help="S-N curve: B1 … W3, T.")
 @click.option(
     "--environment",
@@ -84,12 +84,12 @@ def curve_options(command: Any) -> Any:
     type=click.Choice(("air", "cathodic", "free-corrosion")),
 )
 @click.option(
-    "--unit", type=click.Choice(tuple(_UNITS)), help="Of the stress; default: the file's, else MPa."
+    "--unit", type=click.Choice(tuple(_UNITS)), help="Unit of the stress; default: the file's, else MPa."
 )
 @click.option(
     "--thickness-mm",
     type=FiniteFloat(min=1.0, max=1000.0),
-    help="Of the plate; default: no effect of thickness.",
+    help="Thickness of the plate; default: no effect of thickness.",
 )
 @curve_options
 @answers
@@ -104,7 +104,7 @@ def stress(
 ) -> Reply:
     """Count the cycles of a stress series in FILE, and sum their damage.
 
-    Rainflow counting; what does not close counts half. Damage is Miner's sum for the time of the series.
+    Cycles are counted by rainflow, unclosed ones as half cycles. Damage is Miner's sum over the series.
     """
     from jackettwin.fatigue import equivalent_range, read_curve
 
@@ -115,7 +115,7 @@ def stress(
     widest = float(cycles.ranges.max(initial=0.0))
     require(
         widest < _STRONGEST_PA,
-        f"ranges of {widest / 1e6:.3g} MPa break any steel",
+        f"no steel resists stress ranges of {widest / 1e6:.3g} MPa",
         file=file,
         field=column,
         value=f"in {taken}",
@@ -150,7 +150,7 @@ def _closed(chosen: Any, cycles: Cycles, thickness: float | None) -> float:
 
 
 def _stress_of(file: Path, column: str, unit: str | None) -> tuple[FloatArray, str]:
-    """Return a column of a file in pascals, and the unit in which it was taken."""
+    """Return a column of a file in pascals, and the unit in which it was read."""
     from jackettwin.records import read_table
 
     table = read_table(file)
@@ -160,23 +160,23 @@ def _stress_of(file: Path, column: str, unit: str | None) -> tuple[FloatArray, s
     stated = table.unit if said is None or said.unit is None else said.unit
     if unit is None and stated is not None and stated not in _UNITS:
         raise InputError(
-            "is no unit of stress", file=file, field=column, value=stated, allowed=", ".join(_UNITS),
+            "is not a unit of stress", file=file, field=column, value=stated, allowed=", ".join(_UNITS),
             remedy="state it with --unit",
         )  # fmt: skip
     taken = unit or stated or "MPa"
     if unit and stated in _UNITS and _UNITS[stated] != _UNITS[unit]:
         raise InputError(
-            f"the file says {stated}", file=file, field="--unit", value=unit, remedy="leave the option out"
+            f"the file states {stated}", file=file, field="--unit", value=unit, remedy="omit the option"
         )
     return np.asarray(values, dtype=float) * _UNITS[taken], taken
 
 
 def _counted(values: FloatArray, file: Path, column: str) -> tuple[Cycles, float, list[str]]:
-    """Return the cycles between gaps, by how much gaps raise them, and what to say of it."""
+    """Return the cycles between gaps, the factor for the missing time, and warnings."""
     from jackettwin.fatigue import Cycles, count
 
     known = np.isfinite(values)
-    require(known.any(), "holds no numbers", file=file, field=column, remedy="export the file again")
+    require(known.any(), "contains no numbers", file=file, field=column, remedy="export the file again")
     if known.all():
         return count(values), 1.0, []
     edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]])))
@@ -210,8 +210,8 @@ def _show_stress(document: dict[str, Any]) -> None:
 def scf(file: Path) -> Reply:
     """Compute the stress concentration factors of one tubular joint.
 
-    FILE (YAML or JSON) holds class (y, x or k), chord_diameter_m, chord_thickness_m, chord_length_m, fixity,
-    braces with diameter_m, thickness_m and angle_deg, and gap_m.
+    FILE (YAML or JSON) contains class (y, x or k), chord_diameter_m, chord_thickness_m, chord_length_m,
+    fixity, braces with diameter_m, thickness_m and angle_deg, and gap_m.
     """
     from jackettwin.fatigue import concentration, read_joint
 
@@ -264,9 +264,9 @@ def _factors(kind: str, f: Any) -> dict[str, dict[str, float]]:
 @curve_options
 @answers
 def scenario_(scenario: str, curve: str, design_factor: float, edition: str | None) -> Reply:
-    """Tell the life of every tubular joint, if all time were like SCENARIO.
+    """Compute the life of every tubular joint, assuming that all time is like SCENARIO.
 
-    Joints in the air, under cathodic protection below the splash zone, and free to corrode in it.
+    Joints are in air above the splash zone, corrode freely in it, and are cathodically protected below it.
     """
     from jackettwin.simulate import read_scenario, scenario_life
 
@@ -285,7 +285,10 @@ def scenario_(scenario: str, curve: str, design_factor: float, edition: str | No
         "joints": rows,
         "warnings": _warnings(rows, outside),
         "left_out": omission_documents(
-            [Omission("other seas, winds and states: life if all time were like this scenario"), *_OF_WELDS]
+            [
+                Omission("other seas, winds and states: all time is assumed to be like this scenario"),
+                *_OF_WELDS,
+            ]
         ),
     }
     return Reply(document, lambda: _show_welds(document, read.name))
@@ -301,14 +304,16 @@ def scenario_(scenario: str, curve: str, design_factor: float, edition: str | No
 )  # fmt: skip
 @click.option(
     "--draws", default=2, show_default=True, type=click.IntRange(1, 200),
-    help="Motions whose damage is averaged, on each support.",
+    help="Number of motions for each support, whose damage is averaged.",
 )  # fmt: skip
 @click.option(
     "--supports", default=3, show_default=True, type=click.IntRange(1, 100),
-    help="How many probable supports of the updated twin count.",
+    help="Number of probable supports of the updated twin.",
 )  # fmt: skip
-@click.option("--feel-gravity", is_flag=True, help="Accelerometers pass constant acceleration: lean shows.")
-@click.option("--fresh", is_flag=True, help="Identify and fit again what an earlier run kept.")
+@click.option(
+    "--feel-gravity", is_flag=True, help="Accelerometers measure constant acceleration, and so tilt."
+)
+@click.option("--fresh", is_flag=True, help="Ignore stored identifications and fits of earlier runs.")
 @curve_options
 @answers
 def record_(
@@ -322,9 +327,9 @@ def record_(
     fresh: bool,
     edition: str | None,
 ) -> Reply:
-    """Tell the life of every tubular joint from the sensors of RECORD, if all time were like it.
+    """Compute the life of every tubular joint from the sensors of RECORD, assuming that all time is like it.
 
-    TWIN updates its supports first: by its records or targets, else by RECORD.
+    The supports of TWIN are updated first, by its records or targets, otherwise by RECORD.
     """
     from jackettwin.study import count_steps, life_of_record, sensed, updated, with_record
     from jackettwin.twin import read_twin
@@ -359,7 +364,7 @@ def record_(
 
 
 def _models(curve: str, design_factor: float, edition: str | None) -> ModelsAtHeight:
-    """Return what corrodes a weld at an elevation above the sea [m], and its curve."""
+    """Return the function of a weld's elevation above the sea [m] for its environment and S-N curve."""
     from jackettwin.fatigue import LifeModel, read_curve
 
     source = () if edition is None else (edition,)
@@ -403,7 +408,9 @@ def _warnings(rows: list[dict[str, Any]], outside: list[dict[str, Any]]) -> list
     if not outside:
         return []
     named = few(list(dict.fromkeys(f"{row['brace']} at {row['joint']}" for row in outside)))
-    return [f"{len(outside)} of {len(rows)} welds are beyond the ranges of Efthymiou's factors: {named}"]
+    return [
+        f"{len(outside)} of {len(rows)} welds are beyond the validity ranges of Efthymiou's factors: {named}"
+    ]
 
 
 _TOO_NARROW = (
@@ -424,7 +431,7 @@ _COLUMNS = (
 
 
 def _show_welds(document: dict[str, Any], like: str) -> None:
-    show_table(Table(f"life if all time were like {like}", _COLUMNS, document["joints"][:_SHOWN]))
+    show_table(Table(f"life if all time is like {like}", _COLUMNS, document["joints"][:_SHOWN]))
     if len(document["joints"]) > _SHOWN:
         say(f"and {len(document['joints']) - _SHOWN} more welds; --json has all of them")
     for warning in document["warnings"]:

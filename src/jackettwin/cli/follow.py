@@ -1,4 +1,4 @@
-"""``jackettwin follow``: the supports of a twin day after day, and whether they drift."""
+"""``jackettwin follow``: the supports of a twin updated day by day, and their drift."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ if TYPE_CHECKING:
     type=click.Choice(["day", "record"]),
     default="day",
     show_default=True,
-    help="What updates the twin: the records of a UTC day together, or each record.",
+    help="Update the twin after each UTC day or after each record.",
 )
 @click.option(
     "--prior",
     "prior_file",
     type=click.Path(path_type=Path, dir_okay=False),
-    help="followed.json of an earlier run to go on from; records that are in it are left out.",
+    help="followed.json of an earlier run to continue; its records are skipped.",
 )
 @click.option(
     "--out",
     type=click.Path(path_type=Path, file_okay=False),
     help="Folder for followed.json (the next run's prior), report.html and modes_in_time.csv.",
 )
-@click.option("--fresh", is_flag=True, help="Identify again what an earlier run kept.")
+@click.option("--fresh", is_flag=True, help="Ignore stored identifications of earlier runs.")
 @answers
 def follow_command(
     twin: str,
@@ -50,8 +50,7 @@ def follow_command(
 ) -> Reply:
     """Update the supports of TWIN day after day, and find drift.
 
-    What is known after one day is where the next one starts. Tomorrow, name the new records in TWIN and go on
-    with --prior.
+    The result of one day is the start of the next. To continue, name the new records in TWIN and use --prior.
     """
     from jackettwin.files import atomic_folder, check_room, write_json
     from jackettwin.report.pages.follow import build_follow_page

@@ -33,23 +33,23 @@ if TYPE_CHECKING:
     from jackettwin.records import Unsaid
 
 _SHOWN = 5
-"""Lines of a kind printed at most; the rest is in the JSON."""
+"""Largest number of printed lines of one kind; the rest is in the JSON."""
 _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 
 
 class _Method(click.types.StringParamType):
-    """A name of the registry of methods, which is read when it is needed."""
+    """Name of a registered method; the registry is imported when needed."""
 
     name = "method"
 
     def get_metavar(self, param: click.Parameter, ctx: click.Context | None = None) -> str:
-        """Return the names that may be chosen, for the help."""
+        """Return the possible names for the help text."""
         from jackettwin.identification import method_names
 
         return f"[{'|'.join(method_names())}]"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
-        """Return the name; refuse one that no method has."""
+        """Return the name; raise an error if there is no such method."""
         from jackettwin.identification import method_names
         from jackettwin.identification.methods import is_method
 
@@ -64,42 +64,42 @@ class _Method(click.types.StringParamType):
 @click.option(
     "--method",
     type=_Method(),
-    help="How poles are found; default ssi-cov.",
+    help="Method that finds poles; default ssi-cov.",
 )
 @click.option(
     "--report",
     type=PageFile(),
-    help="HTML page: spectra, stabilisation and moving shapes of one record, or modes followed over many.",
+    help="HTML page: spectra, stabilisation and moving shapes of one record, or modes tracked over many.",
 )
-@click.option("--band", help="LOW,HIGH in Hz: where modes are sought; default from the lowest clear peak.")
-@click.option("--quick", is_flag=True, help="A quick look: no uncertainty, no refinement, no further checks.")
-@click.option("--model", help="Structure whose mode shapes are laid beside: MAC at the sensors.")
-@click.option("--compare", is_flag=True, help="One record by every method, side by side.")
-@click.option("--real-poles", is_flag=True, help="Look for relaxations as well: poles that do not oscillate.")
+@click.option("--band", help="LOW,HIGH in Hz: band of the modes; default from the lowest clear peak.")
+@click.option("--quick", is_flag=True, help="Omit uncertainty, refinement and further checks.")
+@click.option("--model", help="Structure whose mode shapes are compared by MAC at the sensors.")
+@click.option("--compare", is_flag=True, help="Identify one record by every method, for comparison.")
+@click.option("--real-poles", is_flag=True, help="Also identify relaxations: poles that do not oscillate.")
 @click.option(
     "--picks",
     "picks_file",
-    help="Poles to take instead of the automatic selection: the JSON of an earlier run, or YAML.",
+    help="Poles that replace the automatic selection: the JSON of an earlier run, or YAML.",
 )
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
     help="File to write (.json, .csv, .nc, or .uff of shapes), or a folder for the first three, which also "
-    "keeps the result of every record, so that a run that was stopped goes on where it was.",
+    "stores the result of every record, so that an interrupted run can continue.",
 )
 @click.option(
-    "--sample-rate", type=FiniteFloat(min=0.0, min_open=True), help="Hz, of files that do not say it."
+    "--sample-rate",
+    type=FiniteFloat(min=0.0, min_open=True),
+    help="Sample rate [Hz] of files that do not state it.",
 )
-@click.option("--unit", help="Of channels without one, e.g. g or mm/s; tells what they measure, too.")
+@click.option("--unit", help="Unit of channels without one, e.g. g or mm/s, which also gives their quantity.")
+@click.option("--gain", type=FiniteFloat(), help="Value of one count or volt of unscaled channels in --unit.")
+@click.option("--timezone", "zone", help="Time zone of clocks without one, e.g. Europe/Berlin or +02:00.")
+@click.option("--fresh", is_flag=True, help="Ignore stored identifications of earlier runs.")
 @click.option(
-    "--gain", type=FiniteFloat(), help="What one count or volt of unscaled channels is worth in --unit."
+    "--whole", is_flag=True, help="Do not divide records longer than an hour into ten-minute pieces."
 )
-@click.option("--timezone", "zone", help="Of clocks that do not say theirs, e.g. Europe/Berlin or +02:00.")
-@click.option("--fresh", is_flag=True, help="Identify again what an earlier run kept.")
-@click.option(
-    "--whole", is_flag=True, help="Take records longer than an hour as one, not in ten-minute pieces."
-)
-@click.option("--workers", type=click.IntRange(1), help="Processes for many records; default one a core.")
+@click.option("--workers", type=click.IntRange(1), help="Processes for many records; default one per core.")
 @json_option
 def identify_command(
     records: tuple[str, ...],
@@ -130,7 +130,7 @@ def identify_command(
     place = partial(_place, records, (settings_file, picks_file), asked, out)
     known = None if fresh or report is not None else cache.kept_document(place())
     if known is not None:
-        messages.print("identified before, and nothing has changed since; --fresh identifies again")
+        messages.print("stored result of an earlier run with the same inputs; --fresh identifies again")
         _deliver(known, out, as_json, _print_many if "groups" in known else _print_one, model)
         return
     from jackettwin.files import check_room
@@ -142,7 +142,7 @@ def identify_command(
     picks = _picks(picks_file, files)
     if compare and len(files) > 1:
         n = f"{len(files)} records"
-        raise InputError("takes one record", field="--compare", value=n, remedy="run it once a record")
+        raise InputError("takes one record", field="--compare", value=n, remedy="run it for each record")
     how: dict[str, Any] = {"picks": picks, "unsaid": _unsaid(sample_rate, unit, gain, zone)}
     for path in (out, report):
         if path is not None:
@@ -165,7 +165,7 @@ def identify_command(
 def _place(
     records: Sequence[str], choices: Sequence[str | None], asked: tuple[object, ...], out: Path | None
 ) -> Path | None:
-    """Return where the document that answers this command is kept."""
+    """Return the path in the cache of this command's document."""
     folder = cache.kept_folder()
     if folder is None:
         return None
@@ -176,7 +176,7 @@ def _place(
 
 
 def _keep(out: Path | None, n_records: int, *, fresh: bool) -> KeptInFolder | None:
-    """Return where the observations of a batch are kept: in its own folder, if it has one."""
+    """Return the store of a batch's observations, in its output folder if it has one."""
     if out is not None and _folder(out):
         return cache.kept_in(out / "records", fresh=fresh)
     folder = cache.kept_folder() if n_records <= cache.MOST_RECORDS else None
@@ -184,7 +184,7 @@ def _keep(out: Path | None, n_records: int, *, fresh: bool) -> KeptInFolder | No
 
 
 def _without_long(files: tuple[Path, ...], folder: Path, unsaid: Unsaid) -> tuple[Path, ...]:
-    """Return the files, with ten-minute pieces in the place of records longer than an hour."""
+    """Return the files, with records longer than an hour replaced by ten-minute pieces."""
     from jackettwin.study import LONG, PIECE_S
     from jackettwin.study.many_records.long_records import without_long
 
@@ -193,7 +193,7 @@ def _without_long(files: tuple[Path, ...], folder: Path, unsaid: Unsaid) -> tupl
     if len(cut) > len(files):
         messages.print(
             f"records longer than {LONG * PIECE_S / 3600:g} h are identified in pieces of {PIECE_S:g} s on "
-            "UTC boundaries and fused; --whole takes them as one"
+            "UTC boundaries and fused; --whole identifies each as one record"
         )
     return cut
 
@@ -280,7 +280,7 @@ def _one(
 
 
 def _limits(seen: Examination, settings: IdentificationSettings, step: Progress) -> dict[str, Any]:
-    """Return which relaxations would have been seen: after a release, or else in ambient vibration."""
+    """Return the detection limits of relaxations, after a release or in ambient vibration."""
     from jackettwin.identification import ambient_limits, limits_document, release_relaxations
 
     release = release_relaxations(seen.record)
@@ -297,7 +297,7 @@ def _many(
     workers: int | None,
     report: Path | None,
 ) -> dict[str, Any]:
-    """Return the document; its long lists are read from the folder's results as they are written."""
+    """Return the document; its long lists are streamed from the stored results."""
     from jackettwin.study.many_records.document import many_document
     from jackettwin.study.many_records.identify import observe_many
     from jackettwin.study.many_records.summary import fuse_batch
@@ -310,7 +310,7 @@ def _many(
         raise InputError(
             f"none of {len(batch.failed)} records could be identified; the first: {batch.failed[0].problem}",
             field="RECORD",
-            remedy="identify one alone to see what it lacks",
+            remedy="identify one alone to see the cause",
         )
     together = fuse_batch(batch)
     if report is not None:
@@ -332,11 +332,9 @@ def _settings(
         settings = validate(IdentificationSettings, read_yaml(path, what="settings file"), file=path)
     settings = settings if method is None else settings.with_method(method)
     if quick and real_poles:
-        raise InputError(
-            "needs the uncertainty that --quick leaves out", field="--real-poles", remedy="drop one"
-        )
+        raise InputError("needs the uncertainty that --quick omits", field="--real-poles", remedy="omit one")
     if quick:
-        messages.print("a quick look: no mode is checked, ok says only that its poles persist")
+        messages.print("quick identification: modes are not checked, ok means only that the poles are stable")
     update: dict[str, Any] = {"real_poles": True} if real_poles else {}
     update |= {"blocks": 0, "refine": False} if quick else {}
     update |= _band(band)
@@ -345,7 +343,7 @@ def _settings(
 
 
 def _band(text: str | None) -> dict[str, float]:
-    """Return the settings of a band written LOW,HIGH."""
+    """Return the settings for a band given as LOW,HIGH."""
     if text is None:
         return {}
     try:
@@ -391,7 +389,7 @@ def _folder(out: Path) -> bool:
 
 
 def _refuse_format(out: Path | None) -> None:
-    """Refuse an extension we do not write before the work, not after it."""
+    """Raise an error on an unsupported extension before the computation."""
     from jackettwin.study import WRITERS, export_modes
 
     if out is not None and not _folder(out) and out.suffix.lower() not in WRITERS:
@@ -419,7 +417,7 @@ def _print_one(document: Mapping[str, Any]) -> None:
 
 
 def _print_reasons(modes: Iterable[Mapping[str, Any]]) -> None:
-    """Print why modes are not ok, each reason once with all frequencies that it concerns."""
+    """Print the reasons that modes are not ok, each once with all frequencies concerned."""
     alike: dict[tuple[str, str], list[str]] = {}
     for m in modes:
         if m["status_reason"] is not None:
@@ -430,11 +428,12 @@ def _print_reasons(modes: Iterable[Mapping[str, Any]]) -> None:
 
 
 def _print_limits(limits: Mapping[str, Any], found: bool) -> None:
-    """Say which relaxations would have been seen in 95 of 100 records like this."""
+    """Print the relaxations that would be detected in 95 of 100 records like this."""
     nothing = "" if found else "no real pole; "
     if limits["kind"] == "release":
         say(
-            f"{nothing}let go at {limits['release_s']:.1f} s; with 95 % power one of this size then is found:"
+            f"{nothing}release at {limits['release_s']:.1f} s; a relaxation of this amplitude is found with "
+            "95 % power:"
         )
         names = list(limits["limits"][0]["amplitude"])
         rows = [
@@ -445,12 +444,12 @@ def _print_limits(limits: Mapping[str, Any], found: bool) -> None:
         return
     low, high = limits["band_rad_s"]
     band = f"{low:.3g} to {high:.3g} 1/s"
-    say(f"{nothing}nothing is said of rates beyond the band, {band}; inside, with 95 % power:")
+    say(f"{nothing}no statement on rates beyond the band, {band}; inside, with 95 % power:")
     name, rms = max(limits["rms"].items(), key=lambda pair: pair[1])
     for one in limits["limits"]:
         share, (least, most) = one["rms_share"], one["interval_95"]
         said = (
-            "of no strength up to 8 times the record's rms"
+            "at no amplitude up to 8 times the record's rms"
             if share is None
             else f"from {share:.2g} times the record's rms ({least:.2g} to {most:.2g}), "
             f"{share * rms:.2g} in {name}"
@@ -492,7 +491,7 @@ def _print_many(document: Mapping[str, Any]) -> None:
 
 
 def _print_findings(records: Iterable[Mapping[str, Any]], n: int) -> None:
-    """Print in how many records each fault of each channel was found, with the first one's words."""
+    """Print the number of records with each fault of each channel, and the first one's sentence."""
     seen: dict[tuple[str | None, str], list[str]] = {}
     for record in records:
         for finding in record["quality"]["findings"]:
@@ -519,7 +518,7 @@ def _print_fused(title: str, modes: Sequence[Mapping[str, Any]], n_records: int)
 
 
 def _interval(m: Mapping[str, Any]) -> str:
-    """Return the 95 % interval of ζ, or what it is at most."""
+    """Return the 95 % interval of ζ, or its upper limit."""
     interval, most = m["damping_ratio_interval_95"], m.get("damping_ratio_at_most")
     if interval is None:
         return "–" if most is None else f"at most {100 * most:.2f}"
@@ -535,7 +534,7 @@ _NUMBERS = (
 
 
 def _print_rejected(rejected: Iterable[Mapping[str, Any]]) -> None:
-    """Print how many candidates were rejected for each reason; the JSON names them all."""
+    """Print the number of rejected candidates for each reason; the JSON lists all."""
     alike: dict[str, list[tuple[str, float]]] = {}
     for r in rejected:
         alike.setdefault(_NUMBER.sub("", r["reason"]), []).append((r["reason"], r["frequency_hz"]))
@@ -546,7 +545,7 @@ def _print_rejected(rejected: Iterable[Mapping[str, Any]]) -> None:
 
 
 def _spanned(texts: Sequence[str]) -> str:
-    """Return a text that stands for others like it: each number as the span of theirs."""
+    """Return one text for several that differ only in numbers, with the range of each number."""
     spans = iter(zip(*(_NUMBER.findall(text) for text in texts), strict=True))
 
     def span(_: re.Match[str]) -> str:

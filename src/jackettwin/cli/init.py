@@ -1,4 +1,4 @@
-"""``jackettwin init``: a twin file from a structure and records, without typing."""
+"""``jackettwin init``: draft of a twin file from a structure and records."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 
 _MOST_READ = 20
-"""Records that are read to be described; of more the rest is only listed."""
+"""Largest number of records that are read; further ones are only listed."""
 _QUESTIONS = {
     "unit": ("unit", "Unit of the channels without one (g, mg, m/s^2, mm/s)", str),
     "sample_rate_hz": ("sample_rate_hz", "Sample rate of the files [Hz]", float),
-    "gain": ("gain", "What one count is worth, in the unit", float),
+    "gain": ("gain", "Value of one count in the unit", float),
 }
-"""What a reader misses → what it is in ``Unsaid``, what to ask, and its type."""
+"""Missing property → its name in ``Unsaid``, the prompt, and its type."""
 
 
 @click.command("init")
@@ -39,15 +39,15 @@ _QUESTIONS = {
     show_default=True,
     help="Twin file to write.",
 )
-@click.option("--unit", help="Of channels without one, e.g. g or mm/s.")
+@click.option("--unit", help="Unit of channels without one, e.g. g or mm/s.")
+@click.option("--gain", type=FiniteFloat(), help="Value of one count or volt of unscaled channels in --unit.")
 @click.option(
-    "--gain", type=FiniteFloat(), help="What one count or volt of unscaled channels is worth in --unit."
+    "--sample-rate",
+    type=FiniteFloat(min=0.0, min_open=True),
+    help="Sample rate [Hz] of files that do not state it.",
 )
-@click.option(
-    "--sample-rate", type=FiniteFloat(min=0.0, min_open=True), help="Hz, of files that do not say it."
-)
-@click.option("--timezone", "zone", help="Of clocks that do not say theirs, e.g. Europe/Berlin or +02:00.")
-@click.option("--force", is_flag=True, help="Write over an existing file.")
+@click.option("--timezone", "zone", help="Time zone of clocks without one, e.g. Europe/Berlin or +02:00.")
+@click.option("--force", is_flag=True, help="Overwrite an existing file.")
 @answers
 def init_command(
     structure: str,
@@ -61,8 +61,8 @@ def init_command(
 ) -> Reply:
     """Write a commented twin file for STRUCTURE and RECORDS.
 
-    It is checked, and what is missing is said.     Sensors are placed by the names of the channels. What
-    the files do not say of unit, clock and rate is taken from the options, else asked once.
+    The file is checked, and missing data are listed.     Sensors are placed by the names of the channels.
+    What the files do not say of unit, clock and rate is taken from the options, else asked once.
     """
     from jackettwin.decks import read_structure
     from jackettwin.files import atomic_path, check_room
@@ -72,7 +72,7 @@ def init_command(
     from jackettwin.twin import model_of_records, read_twin
 
     if out.exists() and not force:
-        raise InputError("is there already", file=out, remedy="choose another --out, or --force")
+        raise InputError("exists already", file=out, remedy="choose another --out, or --force")
     check_room(out, least_bytes=10_000)
     if zone is not None:
         read_zone(zone, field="--timezone")
@@ -96,7 +96,7 @@ def init_command(
             except InputError as error:
                 if str(file) in records:
                     raise
-                left_out.append(error)  # whatever else lies in a folder of records
+                left_out.append(error)  # other files in a folder of records
                 messages.print(f"left out: {error}", soft_wrap=True, markup=False)
                 continue
             read.append((_beside(file, out), record))
@@ -110,7 +110,7 @@ def init_command(
         if draft.complete:
             read_twin(out)
     said = ", ".join(f"{key} {str(value).lower()}" for key, value in stated.items())
-    notes = [f"the records state their model, which the twin takes over: {said}"] if said else []
+    notes = [f"the records state their model, which the twin adopts: {said}"] if said else []
 
     def show() -> None:
         _print(draft, out)
@@ -120,7 +120,7 @@ def init_command(
 
 
 def _read(file: Path, unsaid: Unsaid) -> tuple[Record, Unsaid]:
-    """Return a record, and what had to be asked for to read it."""
+    """Return a record, and the properties the user was asked for to read it."""
     from jackettwin.identification import moving_channels
     from jackettwin.records import read_record, read_zone
     from jackettwin.records.readers.stamps import UNSAID
@@ -151,7 +151,7 @@ def _structure_name(source: str, out: Path) -> str:
 
 
 def _beside(file: Path, out: Path) -> str:
-    """Return a path as the twin file names it: relative to its folder."""
+    """Return a path relative to the folder of the twin file."""
     return Path(os.path.relpath(file.resolve(), out.resolve().parent)).as_posix()
 
 
@@ -160,7 +160,7 @@ def _print(draft: Draft, out: Path) -> None:
         s = place.sensor
         where = s.node if s.node is not None else "?" if s.height_m is None else f"{s.height_m:g} m"
         direction = ", ".join(f"{v:g}" for v in s.direction)
-        note = f"lacks {place.lacks}" if place.lacks else place.why or "as the record says"
+        note = f"lacks {place.lacks}" if place.lacks else place.why or "as the record states"
         say(f"{s.channel}: {where}, [{direction}]: {note}")
     without = sum(bool(place.lacks) for place in draft.places)
     say_all(draft.missing[without:], "missing")

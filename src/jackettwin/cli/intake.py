@@ -1,4 +1,4 @@
-"""``jackettwin intake``: files and folders into a store."""
+"""``jackettwin intake``: import of files and folders into a store."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from jackettwin.cli.store_options import StorePlace, store_options
 
 @click.command("intake")
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path, exists=True))
-@click.option("--asset", required=True, help="Whose records these are.")
-@click.option("--watch", is_flag=True, help="Go on taking what appears, until Ctrl-C.")
+@click.option("--asset", required=True, help="Turbine of the records.")
+@click.option("--watch", is_flag=True, help="Continue with new files until Ctrl-C.")
 @json_option
 @store_options
 def intake_command(paths: tuple[Path, ...], asset: str, watch: bool, as_json: bool, at: StorePlace) -> None:
@@ -42,7 +42,7 @@ def intake_command(paths: tuple[Path, ...], asset: str, watch: bool, as_json: bo
     if as_json:
         print_json({"asset": asset, "files": [{"file": file.name, **vars(one)} for file, one in took]})
     if not took:
-        messages.print("there is no file to take")
+        messages.print("there is no file to import")
     refused = sum(one.problem is not None for _, one in took)
     if refused:
         messages.print(f"{refused} of {len(took)} files were refused")

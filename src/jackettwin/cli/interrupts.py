@@ -1,4 +1,4 @@
-"""Ctrl-C that is heard: what runs when it comes may swallow it, as a compiler's callbacks do."""
+"""Reliable Ctrl-C, also in code that discards the exception, such as a compiler's callbacks."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from threading import Event, Thread, current_thread, main_thread
 from types import FrameType
 
 _AGAIN_S = 1.0
-"""Time after which an interrupt that was not heard is raised again: cleaning up takes less."""
+"""Time after which a discarded interrupt is raised again; cleaning up takes less."""
 
 
 @contextmanager
 def insisting() -> Iterator[None]:
     """Raise ``KeyboardInterrupt`` in the block again each second after a Ctrl-C, until the block is left.
 
-    Where SIGINT has another handler than Python's own, that one stays.
+    A handler of SIGINT other than Python's own is not replaced.
     """
     ours = signal.getsignal(signal.SIGINT) is signal.default_int_handler
     if not ours or current_thread() is not main_thread():

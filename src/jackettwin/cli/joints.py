@@ -1,4 +1,4 @@
-"""Options that name the joints where a foundation ends, for decks that do not say it."""
+"""Options for the interface and reaction joints of a foundation, for decks that do not state them."""
 
 from __future__ import annotations
 
@@ -18,9 +18,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 def joint_options(command: Command) -> Command:
     """Add ``--interface`` and ``--feet`` to a command."""
-    feet = click.option(
-        "--feet", metavar="NODE,…", help="Nodes that stand on the ground; default: the structure's own."
-    )
+    feet = click.option("--feet", metavar="NODE,…", help="Nodes at the ground; default: the structure's own.")
     interface = click.option(
         "--interface", metavar="NODE,…", help="Nodes that carry the tower; default: the structure's own."
     )

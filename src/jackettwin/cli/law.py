@@ -1,4 +1,4 @@
-"""``jackettwin law``: what support laws store, lose and do in time."""
+"""``jackettwin law``: storage, loss and time response of support laws."""
 
 from __future__ import annotations
 
@@ -28,10 +28,13 @@ if TYPE_CHECKING:
 @click.option(
     "--frequency-hz",
     type=FiniteFloat(min=0.0, min_open=True),
-    help="Of the table and of the cycle of loading; default: the middle of the band.",
+    help="Frequency of the table and of the load cycle; default: the middle of the band.",
 )
 @click.option(
-    "--mass", "mass_kg", type=FiniteFloat(min=0.0, min_open=True), help="Let a mass [kg] on each law go."
+    "--mass",
+    "mass_kg",
+    type=FiniteFloat(min=0.0, min_open=True),
+    help="Also compute the free vibration of a mass [kg] on each law.",
 )
 @click.option(
     "--csv", "table", type=click.Path(dir_okay=False, path_type=Path), help="The curves as a table."
@@ -48,7 +51,7 @@ def law_command(
 ) -> Reply:
     """Draw creep, relaxation, storage and loss of support laws.
 
-    Each NAME:k=… is written as for --support, springpot:k=3e9,alpha=0.1,f0=0.18; a page shows them together.
+    Each NAME:k=… has the form of --support, e.g. springpot:k=3e9,alpha=0.1,f0=0.18; a page shows all laws.
     """
     from jackettwin.soil import law_curves, read_law
 
@@ -57,13 +60,13 @@ def law_command(
     require(0.0 < low < high, "is no band", field="--band-hz", value=band_hz, allowed=allowed)
     if table is not None:
         there = table.absolute().parent.is_dir()
-        require(there, "there is no such folder", field="--csv", value=str(table), remedy="make it first")
+        require(there, "there is no such folder", field="--csv", value=str(table), remedy="create it first")
     at = sqrt(low * high) if frequency_hz is None else frequency_hz
     read = {text: read_law(text) for text in laws}
     with working("curves of the laws"):
         curves = {text: law_curves(law, low, high) for text, law in read.items()}
         motions = {} if mass_kg is None else _let_go(mass_kg, read)
-        # drawing takes a second to load: not before it is needed
+        # importing the plots takes a second, so only when needed
         from jackettwin.report.pages.law import law_table, motion_table, write_law_page
 
         path = write_law_page(read, curves, motions, at, out or Path("out") / "law.html")
@@ -85,7 +88,7 @@ def law_command(
 
 
 def _let_go(mass_kg: float, laws: Mapping[str, Law]) -> dict[str, FreeVibration]:
-    """Return the free vibration on each law, all for as long as the slowest takes for its five cycles."""
+    """Return the free vibration on each law, for five cycles of the slowest."""
     from jackettwin.response import free_vibration
 
     own = [free_vibration(mass_kg, law).time_s[-1] for law in laws.values()]
@@ -122,7 +125,7 @@ def _motion(motion: FreeVibration | None) -> dict[str, Any]:
 
 
 def _write_csv(curves: Mapping[str, LawCurves], path: Path) -> None:
-    """Write every curve of every law, a row a frequency and the time 1/2πf that belongs to it."""
+    """Write every curve of every law, a row for each frequency and its time 1/2πf."""
     from jackettwin.files import atomic_path
 
     with atomic_path(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:

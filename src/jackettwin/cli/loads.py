@@ -1,4 +1,4 @@
-"""``jackettwin loads``: wave and wind loads alone."""
+"""``jackettwin loads``: wave and wind loads without response."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from jackettwin.cli.console import Reply, answers, say, say_all, show_table, wor
 from jackettwin.report import Table, TableColumn
 
 _SLAMMED = 5
-"""Members hit by the rising surface in the terminal."""
+"""Number of members under slamming shown on the terminal."""
 
 
 @click.command("loads")
@@ -20,7 +20,7 @@ _SLAMMED = 5
 def loads_command(scenario: str) -> Reply:
     """Compute wave and wind loads of SCENARIO on a still asset.
 
-    They are given about still water and about the bed.
+    Moments are given about still water level and about the bed.
     """
     from jackettwin.simulate import loads_document, read_scenario
 
@@ -81,7 +81,7 @@ def _show_loads(title: str, loads: dict[str, Any]) -> None:
 def _show_still_water(still: dict[str, Any]) -> None:
     centre = still["center_of_buoyancy_m"]
     inside = still["water_inside_n"]
-    filled = "not known what is filled" if inside is None else f"water inside weighs {1e-6 * inside:.3f} MN"
+    filled = "flooding is not known" if inside is None else f"water inside weighs {1e-6 * inside:.3f} MN"
     at = "" if centre is None else f" at z = {centre[2]:.2f} m"
     say(
         f"still water, not in the loads above: buoyancy {1e-6 * still['buoyancy_n']:.3f} MN{at}, {filled}, "

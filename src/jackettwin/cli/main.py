@@ -1,4 +1,4 @@
-"""Entry point; each command lives in a file of its own, which is read when the command is called."""
+"""Entry point; each command has its own file, which is imported when the command is called."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ GROUPS = {
     "Start": {
         "run": "Go from records to modes to updated supports, and report it.",
         "init": "Write a commented twin file for STRUCTURE and RECORDS.",
-        "compare": "Say what changed from run A to run B, against its uncertainty.",
+        "compare": "Compare run B with run A, relative to their uncertainty.",
         "verify": "Recompute every published number of the thesis.",
     },
     "Measured": {
         "identify": "Identify the modes of RECORDS: files, or folders of files.",
         "update": "Update TWIN's supports under one law or all; writes nothing.",
-        "explore": "Show what the parameters of TWIN's law do to modes and cost.",
+        "explore": "Show the effect of TWIN's law parameters on modes and cost.",
         "follow": "Update the supports of TWIN day after day, and find drift.",
-        "watch": "Say whether the modes in TABLE have changed, and why.",
+        "watch": "Report whether the modes in TABLE have changed, and why.",
     },
     "Modelled": {
         "modes": "Compute undamped and damped modes of STRUCTURE.",
@@ -29,8 +29,8 @@ GROUPS = {
         "soil": "Compute curves, stiffness, capacity of a pile of FOUNDATION.",
         "law": "Draw creep, relaxation, storage and loss of support laws.",
         "check": "Check members and joints of STRUCTURE, or of a scenario.",
-        "operation": "Compute what the rotor at work damps and shakes, by wind.",
-        "fatigue": "Count cycles, and tell damage and life of welds.",
+        "operation": "Compute damping and excitation by a rotor in operation.",
+        "fatigue": "Count cycles, and compute damage and life of welds.",
     },
     "Simulated": {
         "loads": "Compute wave and wind loads of SCENARIO on a still asset.",
@@ -41,21 +41,22 @@ GROUPS = {
         "serve": "Serve the living twin in STORE: records in, answers out.",
         "asset": "Manage the turbines of a living twin and their versions.",
         "intake": "Take records from PATHS, files or folders, into a store.",
-        "rebuild": "Make the states again from observations or raw records.",
+        "rebuild": "Recompute the states from observations or raw records.",
         "backup": "Write everything of STORE into FILE, while it is served.",
         "restore": "Fill the empty STORE from a backup FILE.",
         "user": "Manage the users of a server.",
         "token": "Manage the tokens with which machines log in.",
-        "alerts": "List what people were told of a store's findings, newest first.",
-        "audit": "List who did what in a store, newest first.",
+        "alerts": "List the messages sent on a store's findings, newest first.",
+        "audit": "List the actions of users in a store, newest first.",
     },
     "To other programs": {
         "superelement": "Reduce the foundation of STRUCTURE to 6 + N coordinates.",
         "export": "Write the foundation of STRUCTURE as a SubDyn input file.",
     },
 }
-"""What ``--help`` says of every command in the README's groups: the first sentence of its docstring, without
-reading the command. ``simulate-set`` is ``simulate_set_command`` in ``jackettwin/cli/simulate_set.py``.
+"""Help text of every command by the README's groups: the first sentence of its docstring, given here so that
+``--help`` need not import the command. ``simulate-set`` is ``simulate_set_command`` in
+``jackettwin/cli/simulate_set.py``.
 """
 
 

@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 pile_model_option = click.option(
     "--pile-model",
     type=click.Choice(["head", "members"]),
-    help="Piles of a foundation lumped at the feet, or members on springs; default: as its file says.",
+    help="Piles of a foundation lumped at the feet, or members on springs; default: as its file states.",
 )
 _OVERDAMPED = 0.3
-"""A pole this damped that resembles no mode of the pinned structure is a motion of the supports."""
+"""Damping ratio above which a pole unlike all modes of the pinned structure is a motion of the supports."""
 
 
 @click.command("modes")
@@ -39,19 +39,19 @@ _OVERDAMPED = 0.3
     "--support", help="pinned, clamped, LAW:arguments, or a YAML file; default: the structure's own."
 )
 @pile_model_option
-@click.option("--number", default=10, show_default=True, type=click.IntRange(1, 200), help="How many modes.")
+@click.option("--number", default=10, show_default=True, type=click.IntRange(1, 200), help="Number of modes.")
 @click.option("--gravity", is_flag=True, help="Add the geometric (P-Δ) stiffness of the self-weight.")
 @click.option(
     "--beam", type=click.Choice(["euler-bernoulli", "timoshenko"]), help="Default: the structure's own."
 )
 @click.option("--rotary-inertia", is_flag=True, default=None, help="Add rotary inertia.")
 @click.option(
-    "--subdivide", type=click.IntRange(1, 1000), help="Elements a member; default: the structure's own."
+    "--subdivide", type=click.IntRange(1, 1000), help="Elements per member; default: the structure's own."
 )
 @click.option(
     "--rayleigh",
     metavar="ZETA,F_HZ",
-    help="Rayleigh damping of the steel: least ratio and its frequency, or ZETA,F_HZ,ZETA,F_HZ.",
+    help="Rayleigh damping of the steel: minimum ratio and its frequency, or ZETA,F_HZ,ZETA,F_HZ.",
 )
 @click.option(
     "--mode-damping", metavar="MODE=ZETA,…", help="Damping ratios of the structure's own modes, e.g. 1=0.005."
@@ -59,7 +59,7 @@ _OVERDAMPED = 0.3
 @click.option(
     "--blades",
     metavar="ROTOR[,PITCH]",
-    help="Let the blades bend: iea15, a windIO or an ElastoDyn file; pitch in degrees, default 90.",
+    help="Model flexible blades: iea15, a windIO or an ElastoDyn file; pitch in degrees, default 90.",
 )
 @click.option(
     "--shapes",
@@ -69,9 +69,9 @@ _OVERDAMPED = 0.3
 @click.option(
     "--against",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="FILE.csv: modes of another program; MAC of each with each.",
+    help="FILE.csv: modes of another program, compared by MAC.",
 )
-@click.option("--figure", type=PageFile(), help="With --against: a page that lays shapes side by side.")
+@click.option("--figure", type=PageFile(), help="With --against: a page that compares the shapes.")
 @click.option(
     "--state",
     type=click.Path(dir_okay=False, path_type=Path),
@@ -132,7 +132,7 @@ def modes_command(
 
 
 def _write_state(system: System, path: Path) -> dict[str, Any]:
-    """Write the state space of a system; return the file and how many states and inputs it has."""
+    """Write the state space of a system; return the file and its number of states and inputs."""
     from jackettwin.response import state_model, write_state_model
 
     require(path.suffix == ".npz", "is no .npz", field="--state", value=str(path), remedy="name it model.npz")
@@ -147,7 +147,7 @@ def blades_option(text: str | None, structure: Structure) -> Structure:
     Raises
     ------
     InputError
-        If there is no such rotor, or its blades are not within the mass on the top.
+        If there is no such rotor, or its blades are heavier than the mass on the top.
     """
     from jackettwin.decks import read_flexible_rotor
     from jackettwin.structure import with_rotor, without_rotor
@@ -162,12 +162,12 @@ def blades_option(text: str | None, structure: Structure) -> Structure:
 
 
 def support_option(text: str | None, assembly: Assembly) -> Support:
-    """Return what ``--support`` names; laws stated at the first frequency take that of pinned feet.
+    """Return the support of ``--support``; laws that need the first frequency use that on pinned feet.
 
     Raises
     ------
     InputError
-        If the text names no support of this structure.
+        If this structure has no such support.
     """
     from jackettwin.soil import read_support
 
@@ -177,12 +177,12 @@ def support_option(text: str | None, assembly: Assembly) -> Support:
 def supported_option(
     text: str | None, assembly: Assembly, pile_model: PileModel | None
 ) -> tuple[Structure, Support]:
-    """Return the structure and what ``--support`` names, with piles as ``--pile-model`` has them.
+    """Return the structure and the support of ``--support``, with piles according to ``--pile-model``.
 
     Raises
     ------
     InputError
-        If the text names no support of this structure, or no piles where they are to be members.
+        If this structure has no such support, or piles as members are requested but there are none.
     """
     from jackettwin.soil import read_supported
 
@@ -229,7 +229,7 @@ def _by_mode(text: str) -> dict[int, float]:
 
 
 def _document(system: System, number: int, bare: Assembly) -> dict[str, Any]:
-    """Return what is known of a system; ``bare`` is its structure without piles, whose modes number them."""
+    """Return the document of a system; modes are numbered as those of ``bare``, without its piles."""
     from jackettwin.response import damped_modes, mode_kinds, mode_labels, track_modes, undamped_modes
     from jackettwin.structure import check
 
@@ -267,7 +267,7 @@ def _document(system: System, number: int, bare: Assembly) -> dict[str, Any]:
         "modes": rows[:number],
         "overdamped_poles": others,
         "free_motions": free,
-        # each free motion has a double pole at zero
+        # each rigid-body motion has a double pole at zero
         "real_poles_rad_s": damped.real_poles[2 * free :],
     }
 
@@ -299,7 +299,7 @@ def _numbers(assembly: Assembly, bare: Assembly, damped: DampedModes, number: in
 
 
 def _same_dofs(bare: Assembly, assembly: Assembly) -> IntArray:
-    """Return where the DOFs of one assembly are on the mesh of another that has all its nodes."""
+    """Return the indices of one assembly's DOFs on the mesh of another that has all its nodes."""
     place = {name: k for k, name in enumerate(assembly.mesh.node_names)}
     node, component = np.divmod(bare.independent, DOFS_PER_NODE)
     at = np.array([place[bare.mesh.node_names[k]] for k in node], dtype=np.intp)
@@ -314,7 +314,7 @@ def _show(document: dict[str, Any]) -> None:
         f"{document['n_dof']} degrees of freedom"
     )
     carried = document["support_mass_kg"]
-    beside = f", which brings {carried / 1e3:,.1f} t along" if carried else ""
+    beside = f", which adds {carried / 1e3:,.1f} t" if carried else ""
     say(f"support: {document['support']}{beside}")
     say_all(document["warnings"], "warning")
     show_table(Table("", _COLUMNS, document["modes"]))
@@ -322,12 +322,12 @@ def _show(document: dict[str, Any]) -> None:
     for page in filter(None, (document["shapes_file"], document["page"])):
         say(f"wrote {page}")
     if not document["gravity"]:
-        say("without P-Δ (--gravity), which scenarios and twins have unless they say gravity: false")
+        say("without P-Δ (--gravity), which scenarios and twins include unless they state gravity: false")
     if document["state"]:
         s = document["state"]
         say(f"{s['file']}: A and B of {s['states']} states and {s['inputs']} inputs, with their names")
     if document["free_motions"]:
-        say(f"{document['free_motions']} free motions: the structure floats, or part of it swings")
+        say(f"{document['free_motions']} free motions: the structure or a part of it is a mechanism")
     if document["overdamped_poles"]:
         say(
             f"{len(document['overdamped_poles'])} overdamped motions of the supports, e.g. "
@@ -342,7 +342,7 @@ def _show(document: dict[str, Any]) -> None:
 
 
 def _difference(row: dict[str, Any]) -> float | None:
-    """Return by how many per cent a mode without damping is faster."""
+    """Return the per cent by which the undamped frequency is higher."""
     undamped = row["undamped_frequency_hz"]
     return None if undamped is None else float(100.0 * (undamped / row["frequency_hz"] - 1.0))
 

@@ -1,4 +1,4 @@
-"""``jackettwin operation``: damping, thrust and excitation of a rotor at work, by wind speed."""
+"""``jackettwin operation``: damping, thrust and excitation by a rotor in operation."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _SPEEDS = "4,6,8,10,12,14,16,18,20,22,24"
 _NEAR = 0.1
-"""A natural frequency this near the blades' passing, as a share of it, is shaken by it."""
+"""Relative distance to the blade-passing frequency within which a natural frequency is excited."""
 
 
 @click.command("operation")
@@ -30,22 +30,35 @@ _NEAR = 0.1
     type=click.Path(dir_okay=False, path_type=Path),
     help="CSV of wind_speed_m_s, rotor_speed_rpm, pitch_deg; default: the windIO file's controller.",
 )
-@click.option("--wind", default=_SPEEDS, show_default=True, metavar="V,V,…", help="Mean at the hub [m/s].")
 @click.option(
-    "--turbulence", default="B", show_default=True, help="Class A+, A, B, C, an intensity, or none."
+    "--wind", default=_SPEEDS, show_default=True, metavar="V,V,…", help="Mean wind speeds at the hub [m/s]."
 )
 @click.option(
-    "--shear", default=0.14, show_default=True, type=FiniteFloat(0.0, 1.0), help="Power law's exponent."
+    "--turbulence",
+    default="B",
+    show_default=True,
+    help="Turbulence class A+, A, B or C, an intensity, or none.",
 )
 @click.option(
-    "--seed", default=0, show_default=True, type=click.IntRange(0), help="Of ten minutes' turbulence."
+    "--shear",
+    default=0.14,
+    show_default=True,
+    type=FiniteFloat(0.0, 1.0),
+    help="Exponent of the power law of wind shear.",
+)
+@click.option(
+    "--seed",
+    default=0,
+    show_default=True,
+    type=click.IntRange(0),
+    help="Seed of the ten minutes of turbulence.",
 )
 @click.option(
     "--shaft",
     default="free",
     show_default=True,
     type=click.Choice(("free", "locked")),
-    help="The generator holds its torque (free), or the speed against the nacelle (locked).",
+    help="Generator with constant torque (free), or constant speed relative to the nacelle (locked).",
 )
 @click.option("--rayleigh", metavar="ZETA,F_HZ", help="Steel damping, as for `jackettwin modes`.")
 @answers
@@ -61,9 +74,9 @@ def operation_command(
     shaft: str,
     rayleigh: str | None,
 ) -> Reply:
-    """Compute what the rotor at work damps and shakes, by wind.
+    """Compute damping and excitation by a rotor in operation.
 
-    Pitch and speed are held as the schedule says.
+    Pitch and speed are constant at the schedule's values.
     """
     from jackettwin.decks import read_structure
     from jackettwin.loads import Wind, read_rotor, read_schedule
@@ -82,7 +95,7 @@ def operation_command(
     hub = stands.nodes[stands.top_node][2] - stands.sea_level_z_m + machine.hub_height
     rows = []
     for speed in speeds:
-        with working(f"the rotor at work in {speed:g} m/s"), located(field="--wind"):
+        with working(f"the rotor in operation at {speed:g} m/s"), located(field="--wind"):
             found = at_work(
                 asset,
                 machine,
@@ -160,7 +173,7 @@ def _show(document: dict[str, Any]) -> None:
         shown["passing"] = row["passing"][0]["x_n"]
         shown["gusts"] = None if row["turbulent"] is None else row["turbulent"]["whole"]["x_n"]
         rows.append(shown)
-    title = f"{document['structure']}, {document['rotor']} at work, shaft {document['shaft']}"
+    title = f"{document['structure']}, {document['rotor']} in operation, shaft {document['shaft']}"
     columns = (
         TableColumn("wind [m/s]", "wind_speed_m_s", "g"),
         TableColumn("rotor [rpm]", "rotor_speed_rpm", ".2f"),

@@ -1,4 +1,4 @@
-"""Progress in plain lines, where there is no terminal for a bar of Rich, which prints nothing there."""
+"""Progress as plain lines where there is no terminal, for which Rich prints no progress bar."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from contextlib import contextmanager
 from jackettwin.progress import Told
 
 EVERY_S = 1.4
-"""Time between two lines: a thousand records are not a thousand lines, and a line that a busy machine delays
-still ends a silence within two seconds."""
+"""Least time between two lines, so that a thousand records do not print a thousand lines; with delays on a
+busy machine there is still a line every two seconds."""
 
 
 class PlainProgress:
-    """Says which step is running, at most every ``EVERY_S``, and that it still does.
+    """Reports the running step, at most every ``EVERY_S``, and repeats it while it lasts.
 
     Parameters
     ----------
     total : int
-        Steps.
+        Number of steps.
     say : callable
-        Takes a line.
+        Function that prints a line.
     """
 
     def __init__(self, total: int, say: Callable[[str], None]) -> None:
@@ -38,12 +38,12 @@ class PlainProgress:
         self.within(what)
 
     def within(self, what: str) -> None:
-        """Say how far the present step is."""
+        """Report the progress within the present step."""
         self._what = what
         self.remind()
 
     def remind(self) -> None:
-        """Say that the present step goes on, if nothing was said for a while."""
+        """Report that the present step continues, if there was no line for a while."""
         with self._lock:
             now = time.monotonic()
             if not self._what or now - self._said < EVERY_S:
@@ -55,7 +55,7 @@ class PlainProgress:
 
 @contextmanager
 def plain_progress(total: int, say: Callable[[str], None]) -> Iterator[Told]:
-    """Yield what tells progress in lines, with a thread that breaks long silences."""
+    """Yield a progress reporter that prints lines, with a thread that repeats them in long steps."""
     progress, done = PlainProgress(total, say), threading.Event()
 
     def remind() -> None:

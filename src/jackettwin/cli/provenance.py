@@ -1,4 +1,4 @@
-"""Where a run's numbers come from: when, by which command, from which files, by which versions."""
+"""Provenance of a run: time, command, files and versions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _BLOCK = 1 << 20
 
 
 def provenance(config: TwinConfig) -> tuple[tuple[str, str], ...]:
-    """Return what made a run, as (what, value); files by the first 16 digits of their SHA-256."""
+    """Return the provenance of a run as (name, value); files by the first 16 digits of their SHA-256."""
     command = " ".join(["jackettwin", *map(shlex.quote, sys.argv[1:])])
     libraries = ", ".join(f"{name} {version(name)}" for name in _LIBRARIES)
     return (
@@ -34,7 +34,7 @@ def provenance(config: TwinConfig) -> tuple[tuple[str, str], ...]:
 
 
 def _files(config: TwinConfig) -> Iterable[Path]:
-    """Return the files a run was made of, the twin first."""
+    """Return the input files of a run, the twin first."""
     return (path for path in (config.path, *config.records) if path.is_file())
 
 

@@ -1,4 +1,4 @@
-"""``jackettwin refine``: the steel, stage by stage."""
+"""``jackettwin refine``: update of the structure in stages."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 def refine_command(file: Path) -> Reply:
     """Fit steel, masses and springs to known frequencies.
 
-    Nothing is written. FILE lists stages: parts on pinned feet, their frequencies, and what may change of
-    steel, walls, masses, springs, each within bounds and a tolerance. The result is printed as the
+    FILE lists stages: parts on pinned feet, their frequencies, and the free properties of steel, walls,
+    masses and springs, each with bounds and a tolerance. No file is written; the result is printed as the
     structure: block of a twin file.
     """
     from jackettwin.study.refinement import read_refinement, refinement_document
@@ -38,19 +38,19 @@ def _show(stages: Sequence[RefinementStage], document: Mapping[str, Any]) -> Non
     for stage, entry in zip(stages, document["stages"], strict=True):
         what = " + ".join(stage.parts) or "the whole structure"
         changes = ", ".join(_change(f, entry["factors"][f.name], entry["std"][f.name]) for f in stage.factors)
-        show_table(Table(f"{what}: {changes or 'compared, nothing changed'}", _COLUMNS, entry["modes"]))
+        show_table(Table(f"{what}: {changes or 'compared only'}", _COLUMNS, entry["modes"]))
         for name in entry["at_bound"]:
-            say(f"warning: {name} ended on a bound: widen it if that is possible, or free something else")
+            say(f"warning: {name} lies on a bound: widen it if that is possible, or free another property")
         for m in entry["modes"]:
             if m["worse"]:
                 errors = _from_to(m, "before_hz", "after_hz")
                 say(
-                    f"warning: mode {m['mode']} is met worse than before: {errors}; leave it out of "
-                    "frequency_hz, or free something else"
+                    f"warning: mode {m['mode']} has a larger misfit than before: {errors}; omit it from "
+                    "frequency_hz, or free another property"
                 )
             if m["worse_at_the_end"]:
                 say(
-                    f"warning: mode {m['mode']} of {what} is met worse when all stages are done: "
+                    f"warning: mode {m['mode']} of {what} has a larger misfit after all stages: "
                     f"{_from_to(m, 'after_hz', 'final_hz')}; a later stage changes these parts"
                 )
     block = {"source": "…", **{key: document[key] for key in ("steel", "adjusted") if document[key]}}
@@ -58,7 +58,7 @@ def _show(stages: Sequence[RefinementStage], document: Mapping[str, Any]) -> Non
 
 
 def _change(factor: Factor, value: float, std: float | None) -> str:
-    """Return what was done to a quantity, and how well it is known if that was asked by a tolerance."""
+    """Return the change of a property, with its standard deviation if it has a tolerance."""
     about = f" ± {std:.2g}" if std is not None and factor.tolerance is not None else ""
     done = f"× {value:.4f}" if factor.is_factor else f"{value:+.6g}"
     return f"{factor.name} {done}{about}"
@@ -69,7 +69,7 @@ def _from_to(mode: Mapping[str, Any], before: str, after: str) -> str:
 
 
 def _error(mode: Mapping[str, Any], key: str) -> float:
-    """Return by how many per cent a frequency is off."""
+    """Return the error of a frequency in per cent."""
     return float(100 * (mode[key] / mode["target_hz"] - 1.0))
 
 

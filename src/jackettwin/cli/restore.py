@@ -1,4 +1,4 @@
-"""``jackettwin restore``: a store from its backup."""
+"""``jackettwin restore``: recovery of a store from its backup."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from jackettwin.cli.store_options import StorePlace, database_option
 def restore_command(file: Path, store: Path, database: str | None) -> Reply:
     """Fill the empty STORE from a backup FILE.
 
-    It is filled whole or not at all.
+    It is filled completely or not at all.
     """
     made = not store.exists()
     engine = StorePlace(store, database).open(make=True)

@@ -1,4 +1,4 @@
-"""``jackettwin run``: the main job."""
+"""``jackettwin run``: from records to updated supports and a report."""
 
 from __future__ import annotations
 
@@ -22,13 +22,15 @@ SIMULATED_TWIN = "simulated"
 @click.option(
     "--out", type=click.Path(file_okay=False, path_type=Path), help="Folder to write; default out/NAME."
 )
-@click.option("--simulate", is_flag=True, help="Simulate the records first: an asset whose truth is known.")
-@click.option("--set", "set_file", default="demo", show_default=True, help="What to simulate.")
+@click.option(
+    "--simulate", is_flag=True, help="Simulate the records first, of an asset with known parameters."
+)
+@click.option("--set", "set_file", default="demo", show_default=True, help="Set of scenarios to simulate.")
 @click.option(
     "--all-laws", is_flag=True, help="Sample the posterior of every law and compare them by evidence; slower."
 )
-@click.option("--compare", is_flag=True, help="Identify the first record by every method, side by side.")
-@click.option("--fresh", is_flag=True, help="Identify and fit again what an earlier run kept.")
+@click.option("--compare", is_flag=True, help="Identify the first record by every method, for comparison.")
+@click.option("--fresh", is_flag=True, help="Ignore stored identifications and fits of earlier runs.")
 @answers
 def run_command(
     twin: str | None,
@@ -41,11 +43,11 @@ def run_command(
 ) -> Reply:
     """Go from records to modes to updated supports, and report it.
 
-    The folder gets report.html, result.json and figures.     TWIN is a twin file or the name of a shipped
+    The folder receives report.html, result.json and figures.     TWIN is a twin file or the name of a shipped
     twin: openfast_pile (the default: the reference jacket with records that OpenFAST produced) or
     thesis_table_6_1. With --simulate the records come from `jackettwin simulate-set`, by default those of
-    a known asset; the report compares with its truth. The law to recommend gets a posterior (the twin's
-    first, unless another is ten times as probable), the others are fitted; --all-laws gives each one.
+    a known asset, with whose true values the report compares. Only the recommended law gets a posterior (the
+    twin's first, unless another is ten times as probable); --all-laws samples that of every law.
     """
     from jackettwin.answers import Span, answer as answer_run
     from jackettwin.files import atomic_folder, check_room, write_json
@@ -101,7 +103,7 @@ _COVERED = {None: "no interval", True: "inside its 90 % interval", False: "outsi
 
 
 def _simulated(set_file: str, folder: Path) -> tuple[Path, ...]:
-    """Simulate what is pending of a set; return its records."""
+    """Simulate the pending cases of a set and return its records."""
     from jackettwin.simulate import pending_cases, read_set, record_path, run_set
 
     chosen = read_set(set_file)

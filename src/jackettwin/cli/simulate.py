@@ -1,4 +1,4 @@
-"""``jackettwin simulate``: the record of a known asset under wind and waves."""
+"""``jackettwin simulate``: record of a known asset under wind and waves."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 DEFAULT_SCENARIO = "parked"
 
 _NOTHING = 1e-9
-"""A damping ratio that is rounding: there is no such source."""
+"""Damping ratio below which a source is rounding error and not listed."""
 _SHOWN = 12
-"""True modes in the terminal."""
+"""Number of true modes shown on the terminal."""
 
 
 @click.command("simulate")
@@ -80,9 +80,9 @@ def simulate_command(
 
 
 def _unusual_shares(done: Simulation, *, loops: bool) -> list[str]:
-    """Return which of the sources there are damp the first bending modes beyond the literature's range.
+    """Return the sources whose damping of the first bending modes is outside the literature's range.
 
-    The damping of a ground with ``loops`` grows with the motion: the linear modes know nothing of it.
+    The damping of a ground with ``loops`` grows with the motion and is not in the linear modes.
     """
     from jackettwin.updating import beyond_literature
 
@@ -126,24 +126,24 @@ def _show(done: Simulation, path: Path) -> None:
     if levels:
         show_table(Table("acceleration at the tower top, in wind of the same class", _LEVELS, levels))
     if beyond:
-        say(f"levels were not compared with OpenFAST's in such a case: {'; '.join(beyond)}")
+        say(f"levels have not been compared with OpenFAST's for this case: {'; '.join(beyond)}")
     elif levels:
         say("times OpenFAST's: the mean of seven records in this state (docs/verification/response_level.md)")
 
 
 def _decay(decay: dict[str, Any]) -> str:
-    """Return the logarithmic decrement beside the pole that carries most of the decay."""
+    """Return the logarithmic decrement with the pole that contributes most to the decay."""
     measured = f"ζ {100 * decay['damping_ratio']:.3f} % (peaks scatter by {100 * decay['scatter']:.2g} %)"
     pole = f"{100 * decay['pole_damping_ratio']:.3f} % at {decay['pole_frequency_hz']:.4f} Hz"
     return (
-        f"{decay['node']} let go: logarithmic decrement {decay['logarithmic_decrement']:.4g} over "
-        f"{decay['cycles']} cycles at {decay['frequency_hz']:.4f} Hz, {measured}; the pole that carries "
+        f"release of {decay['node']}: logarithmic decrement {decay['logarithmic_decrement']:.4g} over "
+        f"{decay['cycles']} cycles at {decay['frequency_hz']:.4f} Hz, {measured}; the pole with "
         f"{100 * decay['pole_share']:.0f} % of the displacement has {pole}"
     )
 
 
 def _sizes(y: FloatArray) -> tuple[float, float]:
-    """Return root mean square and largest magnitude of what is known of a channel."""
+    """Return root mean square and largest magnitude of a channel's finite samples."""
     known = y[y == y]
     return float((known**2).mean() ** 0.5), float(abs(known).max())
 

@@ -1,4 +1,4 @@
-"""``jackettwin simulate-set``: many records of one asset, on all cores."""
+"""``jackettwin simulate-set``: many records of one asset, in parallel."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from jackettwin.cli.console import Reply, answers, progress, say
 @click.option(
     "--out", required=True, type=click.Path(file_okay=False, path_type=Path), help="Folder to write."
 )
-@click.option("--workers", type=click.IntRange(1, 1024), help="Processes; default one a core.")
+@click.option("--workers", type=click.IntRange(1, 1024), help="Processes; default one per core.")
 @answers
 def simulate_set_command(set_file: str, out: Path, workers: int | None) -> Reply:
     """Simulate every case of SET on all cores.
 
-    SET is a shipped name (dlc64) or a YAML file; cases that are finished already are kept. Writes a
-    record a case, and manifest.json with conditions and true modes.
+    SET is a shipped name (dlc64) or a YAML file; existing records are not simulated again. The
+    command writes a record for each case, and manifest.json with conditions and true modes.
     """
     from jackettwin.simulate import pending_cases, read_set, run_set
 

@@ -1,4 +1,4 @@
-"""``jackettwin soil``: what the ground of a foundation does to one of its piles."""
+"""``jackettwin soil``: reaction of the ground on a pile of a foundation."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 _POINTS = 31
-"""Of a curve in the tables."""
+"""Number of points of a curve in the tables."""
 _REACH = {"py": 0.1, "tz": 0.02, "qz": 0.1}
 """Largest displacement of a curve in the tables, in pile diameters."""
 _LEFT_OUT = (
@@ -40,7 +40,7 @@ _LEFT_OUT = (
     Omission("cyclic degradation along the axis, set-up, weight of pile and plug", "ISO 19902 17"),
     Omission("base and side shear of stocky piles"),
 )
-_LINEAR = "linear ground has no curves and no capacity: describe it by layers"
+_LINEAR = "linear ground has no curves and no capacity; describe the ground by layers"
 
 
 @click.command("soil")
@@ -50,7 +50,7 @@ _LINEAR = "linear ground has no curves and no capacity: describe it by layers"
     default=0.18,
     show_default=True,
     type=FiniteFloat(min=0.0, max=100.0),
-    help="Of the head's stiffness and loss.",
+    help="Frequency of the head's stiffness and loss.",
 )
 @click.option(
     "--arm",
@@ -61,7 +61,9 @@ _LINEAR = "linear ground has no curves and no capacity: describe it by layers"
     help="Height of the lateral load [m].",
 )
 @click.option("--yield-strength", default=355e6, show_default=True, type=FiniteFloat(min=1e6), help="[Pa]")
-@click.option("--steps", default=20, show_default=True, type=click.IntRange(2, 500), help="Of the pushover.")
+@click.option(
+    "--steps", default=20, show_default=True, type=click.IntRange(2, 500), help="Steps of the pushover."
+)
 @click.option("--out", type=PageFile(), help="The page, in a folder that exists; default out/NAME_soil.html.")
 @answers
 def soil_command(
@@ -69,7 +71,7 @@ def soil_command(
 ) -> Reply:
     """Compute curves, stiffness, capacity of a pile of FOUNDATION.
 
-    They are the reaction curves, the head's stiffness, capacity and a pushover; a page shows them.
+    The page shows the reaction curves, the head's stiffness, the capacity and a pushover.
     """
     from jackettwin.soil import read_foundation
     from jackettwin.soil.piles.capacity import pushover
@@ -82,7 +84,7 @@ def soil_command(
         document = _document(Path(foundation).stem, ground, pushed, frequency_hz, arm_m)
         if pushed is not None:
             _add_yield(document, ground, pushed, yield_strength)
-        # drawing takes a second to load: not before it is needed
+        # importing the plots takes a second, so only when needed
         from jackettwin.report.pages.soil import write_soil_page
 
         path = write_soil_page(document, out or Path("out") / f"{document['foundation']}_soil.html")
@@ -119,18 +121,18 @@ def _document(
 
 
 def _add_yield(document: dict[str, Any], ground: Foundation, pushed: Pushover, f_y: float) -> None:
-    """Add the load from which on the pile's steel yields, which the pushover does not follow."""
+    """Add the load at which the pile's steel first yields, which the pushover neglects."""
     first = pushed.first_load_n(f_y * ground.pile.elastic_modulus_m3)
     document["capacity"]["steel_yields_at_n"] = first
     if first is not None:
         document["warnings"].append(
             f"the pile's steel yields from {1e-6 * first:.2f} MN on (f_y = {1e-6 * f_y:g} MPa, bending "
-            "alone); the pushover goes on with elastic steel, and shows more than the pile bears"
+            "alone); the pushover assumes elastic steel and so exceeds the pile's capacity"
         )
 
 
 def _kinds(ground: Foundation) -> list[dict[str, str]]:
-    """Return which kind of curve stands for each reaction of the soils that there are."""
+    """Return the kind of curve of each reaction in the soils of the profile."""
     layers = () if ground.profile is None else ground.profile.layers
     kinds = ground.options.kinds([layer.soil for layer in layers])
     return [{"reaction": kind.reaction, "name": kind.name, "words": kind.words} for kind in kinds]

@@ -1,4 +1,4 @@
-"""``jackettwin stages``: a structure part by part, beside another one or the thesis."""
+"""``jackettwin stages``: frequencies of a structure by parts, compared with another one or the thesis."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ _PUBLISHED = {
     "--against",
     help="thesis, rosap (tables 5.2 and 5.4), another structure, or FILE.csv: modes of another program.",
 )
-@click.option("--figure", type=PageFile(), help="With shapes to compare: a page that lays them side by side.")
-@click.option("--number", default=5, show_default=True, type=click.IntRange(1, 100), help="How many modes.")
+@click.option("--figure", type=PageFile(), help="Page that compares the shapes, if there are any.")
+@click.option("--number", default=5, show_default=True, type=click.IntRange(1, 100), help="Number of modes.")
 @click.option("--gravity", is_flag=True, help="Add the geometric (P-Δ) stiffness of the self-weight.")
 @answers
 def stages_command(
@@ -43,7 +43,7 @@ def stages_command(
 ) -> Reply:
     """Compute frequencies of STRUCTURE as its parts are added.
 
-    It stands on pinned feet; the jacket comes first, then the transition piece, then the tower.
+    STRUCTURE has pinned feet; the parts are the jacket, then the transition piece, then the tower.
     """
     from jackettwin.decks import read_modes, read_structure
     from jackettwin.report.pages.comparison import write_comparison
@@ -80,7 +80,7 @@ def stages_command(
 
 
 def _against_table(own: tuple[Stage, ...], tables: dict[str, NodalModes]) -> dict[str, ModeComparison]:
-    """Return what a table's stages say by our part added last; without stages it is of the whole."""
+    """Return the comparison with a table's stages by the part added last; without stages, of the whole."""
     from jackettwin.response import compare_modes
 
     known = {name: s for s in own for name in (s.name, s.parts[-1])} | {"": own[-1]}
@@ -92,29 +92,29 @@ def _against_table(own: tuple[Stage, ...], tables: dict[str, NodalModes]) -> dic
 
 
 def _frequencies_of_pairs(found: ModeComparison) -> tuple[float | None, ...]:
-    """Return the other program's frequency of each own mode; None where none of its modes is like it."""
+    """Return the other program's frequency of each own mode; None without a similar mode."""
     other = {pair.own: float(found.other.frequency_hz[pair.other]) for pair in found.pairs}
     return tuple(other.get(k) for k in range(found.own.omega.size))
 
 
 def _against_structure(own: tuple[Stage, ...], others: dict[str, Stage]) -> dict[str, ModeComparison]:
-    """Return the shapes of stages of another structure, where enough of its nodes are ours, by our part."""
+    """Return the comparison of shapes with another structure's stages with enough common nodes, by part."""
     from jackettwin.response import compare_modes, nodal_modes
 
     found = {}
     for stage in own:
         other = others.get(stage.parts[-1])
         if other is not None:
-            with suppress(InputError):  # nodes of another name elsewhere: frequencies alone are compared
+            with suppress(InputError):  # too few common nodes: only frequencies are compared
                 theirs = nodal_modes(other.assembly, other.modes)
                 found[stage.parts[-1]] = compare_modes(stage.assembly, stage.modes, theirs)
     return found
 
 
 def _paired(own: tuple[Stage, ...], other: tuple[Stage, ...]) -> dict[str, Stage]:
-    """Return the other structure's stages by our part added last: the whole is always comparable.
+    """Return the other structure's stages by the part added last.
 
-    Other stages are, where the same parts stand in both.
+    The whole is always comparable, other stages only if both have the same parts.
     """
     theirs = {frozenset(stage.parts): stage for stage in other[:-1]}
     pairs = [(stage, theirs.get(frozenset(stage.parts))) for stage in own[:-1]] + [(own[-1], other[-1])]
@@ -153,5 +153,5 @@ def _show(document: dict[str, Any]) -> None:
     if document["not_compared"]:
         say(
             f"not compared with {document['against']}: {', '.join(document['not_compared'])}; "
-            "it has no stage of the same parts (SubDyn decks name none: only the whole can be compared)"
+            "it has no stage of the same parts (SubDyn decks have no parts: only the whole can be compared)"
         )

@@ -1,4 +1,4 @@
-"""Options that every command on a store shares."""
+"""Options of all commands on a store."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ R = TypeVar("R")
 database_option = click.option(
     "--database", envvar="JACKETTWIN_DATABASE", help="URL of PostgreSQL; default: SQLite in the store."
 )
-"""Where the database of a store is, if not in it."""
+"""Option for a database outside the store."""
 
 
 @dataclass(frozen=True)
 class StorePlace:
-    """The folder of a living twin, and the URL of its database if that is elsewhere."""
+    """Folder of a store, and the URL of its database if that is elsewhere."""
 
     folder: Path
     database: str | None
@@ -37,7 +37,7 @@ class StorePlace:
         Raises
         ------
         InputError
-            If there is no store, and none is to be made.
+            If there is no store, and ``make`` is false.
         """
         needs_service()
         require(
@@ -45,7 +45,7 @@ class StorePlace:
             "there is no store",
             field="store",
             value=str(self.folder),
-            remedy="begin with `jackettwin asset add NAME TWIN --store STORE` or `jackettwin serve STORE`",
+            remedy="create it by `jackettwin asset add NAME TWIN --store STORE` or `jackettwin serve STORE`",
         )
         from jackettwin.store import open_database, private_folder, sqlite_url
 
@@ -54,7 +54,7 @@ class StorePlace:
 
 
 def store_options(function: Callable[..., R]) -> Callable[..., R]:
-    """Add ``--store`` and ``--database``, and hand them over as the argument ``at``."""
+    """Add ``--store`` and ``--database``, and pass them as the argument ``at``."""
 
     @wraps(function)
     def command(*args: Any, store: Path, database: str | None, **kwargs: Any) -> R:
@@ -65,12 +65,12 @@ def store_options(function: Callable[..., R]) -> Callable[..., R]:
         required=True,
         envvar="JACKETTWIN_STORE",
         type=click.Path(path_type=Path, file_okay=False),
-        help="Folder of the living twin.",
+        help="Folder of the store.",
     )(database_option(command))
 
 
 def needs_service() -> None:
-    """Refuse to go on without the extra ``service``."""
-    for library in ("distributed", "fastapi", "sqlalchemy"):  # none is read: that takes a second
+    """Raise an error if the extra ``service`` is not installed."""
+    for library in ("distributed", "fastapi", "sqlalchemy"):  # none is imported, which would take a second
         if find_spec(library) is None:
             raise MissingExtra(f"the living twin needs {library}", remedy="pip install 'jackettwin[service]'")

@@ -1,4 +1,4 @@
-"""``jackettwin superelement``: a foundation as 6 + N coordinates."""
+"""``jackettwin superelement``: reduction of a foundation to 6 + N coordinates."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     default=24,
     show_default=True,
     type=click.IntRange(0, 500),
-    help="Internal coordinates N.",
+    help="Number N of internal coordinates.",
 )
 @click.option(
     "--reference",
@@ -42,29 +42,31 @@ if TYPE_CHECKING:
     help="Reference point [m] in the structure's frame; default: the interface's centroid.",
 )
 @click.option(
-    "--rayleigh", metavar="ZETA,F_HZ", help="Rayleigh damping of the steel: least ratio and its frequency."
+    "--rayleigh", metavar="ZETA,F_HZ", help="Rayleigh damping of the steel: minimum ratio and its frequency."
 )
 @click.option(
     "--band-hz",
     type=FiniteFloat(min=0.0, min_open=True),
-    help="Damping is met up to here; default: five modes of the structure.",
+    help="Highest frequency [Hz] with accurate damping; default: five modes of the structure.",
 )
 @click.option(
     "--time-step",
     "step_s",
     metavar="S",
     type=FiniteFloat(min=0.0, min_open=True),
-    help="Slow the fastest poles until explicit steps this long are stable.",
+    help="Time step [s] for which fast poles are slowed, so that explicit integration is stable.",
 )
 @click.option(
-    "--gravity", is_flag=True, help="Add the geometric (P-Δ) stiffness of all that stands on the foundation."
+    "--gravity",
+    is_flag=True,
+    help="Add the geometric (P-Δ) stiffness of the weight of everything above the bed.",
 )
 @click.option("--deck-damping", is_flag=True, help="Add a SubDyn deck's JDampings and GuyanDampMod.")
 @click.option(
     "--beam", type=click.Choice(["euler-bernoulli", "timoshenko"]), help="Default: the structure's own."
 )
 @click.option(
-    "--subdivide", type=click.IntRange(1, 1000), help="Elements a member; default: the structure's own."
+    "--subdivide", type=click.IntRange(1, 1000), help="Elements per member; default: the structure's own."
 )
 @click.option(
     "--out",
@@ -76,7 +78,7 @@ if TYPE_CHECKING:
     type=click.Choice(LAYOUTS),
     default=DEFAULT,
     show_default=True,
-    help="Version of OpenFAST that is to read FILE.dat.",
+    help="Version of OpenFAST that will read FILE.dat.",
 )
 @answers
 def superelement_command(
@@ -98,8 +100,8 @@ def superelement_command(
 ) -> Reply:
     """Reduce the foundation of STRUCTURE to 6 + N coordinates.
 
-    The foundation is what stands below the interface; the error of the reduction is printed. STRUCTURE
-    may be a superelement already (.npz, ExtPtfm's .dat): it is read, shown and written again.
+    The foundation is the part below the interface; the error of the reduction is printed. STRUCTURE may also
+    be a superelement (.npz, ExtPtfm's .dat), which is read, shown and written again.
     """
     from jackettwin.decks import read_structure
     from jackettwin.response import (
@@ -127,7 +129,7 @@ def superelement_command(
     complete = assemble(whole, beam_theory=beam, subdivide=subdivide, gravity=gravity)
 
     def built(part: Structure) -> Assembly:
-        # a part feels the weight of the whole
+        # a part carries the weight of the whole
         return assemble(part, beam_theory=beam, subdivide=subdivide, gravity=gravity, weight=complete.weight)
 
     held = support_option(support, complete)
@@ -158,7 +160,7 @@ def _deck_damping(structure: str) -> DeckDamping:
 
     if Path(structure).suffix.lower() != ".dat":
         raise InputError(
-            "only a SubDyn deck states its own damping",
+            "only a SubDyn deck states its damping",
             field="--deck-damping",
             value=structure,
             remedy="name a .dat file, or use --rayleigh",
@@ -243,25 +245,26 @@ def _document(
 
 
 def _warnings(error: ReducedModes, step_s: float | None) -> list[str]:
-    """Return what the user should know.
+    """Return the warnings to the user.
 
     Parameters
     ----------
     step_s : float or None
-        The longest step of an explicit integrator, if one reads this file.
+        Longest stable step of an explicit integrator, if one reads the file.
     """
     from jackettwin.response import damping_ratio
 
     found = []
     if error.missing:
-        found.append(f"{error.missing} modes of the band have no coordinates: keep more of them")
+        found.append(f"{error.missing} modes of the band are missing: increase the number of coordinates")
     apart = float(np.abs(error.frequency_error).max(initial=0.0))
     if apart > 0.01:
-        found.append(f"a frequency is {100 * apart:.0f} % off: keep more coordinates")
+        found.append(f"a frequency is {100 * apart:.0f} % off: increase the number of coordinates")
     worst = float(np.abs(error.damping_error / np.maximum(damping_ratio(error.full), 1e-3)).max(initial=0.0))
     if worst > 0.05:
         found.append(
-            f"a damping ratio is {100 * worst:.0f} % off: keep more coordinates, or a shorter --time-step"
+            f"a damping ratio is {100 * worst:.0f} % off: increase the number of coordinates, or reduce "
+            "--time-step"
         )
     if step_s is not None and step_s < 1e-3:
         found.append(

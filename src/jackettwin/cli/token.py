@@ -1,4 +1,4 @@
-"""``jackettwin token``: how machines log in."""
+"""``jackettwin token``: tokens with which machines log in."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ def token_command() -> None:
 
 @token_command.command("add")
 @click.argument("user")
-@click.option("--label", default="", help="What it is for.")
+@click.option("--label", default="", help="Purpose of the token.")
 @click.option("--days", default=365, show_default=True, type=click.IntRange(1, 3650))
 @answers
 @store_options
 def add_token(user: str, label: str, days: int, at: StorePlace) -> Reply:
-    """Make a token with the role of USER; it is shown this once."""
+    """Create a token with the role of USER; it is shown only once."""
     engine = at.open()
     from jackettwin.service.web.auth import new_grant
     from jackettwin.store import note_down, writing
@@ -46,7 +46,7 @@ def add_token(user: str, label: str, days: int, at: StorePlace) -> Reply:
 @answers
 @store_options
 def list_tokens(at: StorePlace) -> Reply:
-    """List whose the tokens are, what they are for, and when they end.
+    """List the tokens with user, label and expiry.
 
     Their secrets are not stored.
     """
@@ -63,13 +63,13 @@ def list_tokens(at: StorePlace) -> Reply:
 
 @token_command.command("revoke")
 @click.argument("user")
-@click.option("--label", help="Only the tokens of this label; default: all of them, and open sessions.")
+@click.option("--label", help="Only tokens with this label; default: all, and open sessions.")
 @answers
 @store_options
 def revoke_tokens(user: str, label: str | None, at: StorePlace) -> Reply:
-    """End the tokens of USER at once.
+    """Revoke the tokens of USER at once.
 
-    To replace a token, make the new one first, then end the old one by its label.
+    To replace a token, create the new one first, then revoke the old one by its label.
     """
     engine = at.open()
     from jackettwin.store import people, writing

@@ -26,17 +26,18 @@ DEFAULT_TWIN = "openfast_pile"
 @click.argument("twin", default=DEFAULT_TWIN)
 @click.option(
     "--law",
-    help="Only this law, or prony: as many branches as the data tell; default: the first of the twin file.",
+    help="Only this law; prony: with as many branches as the data support; default: the first of the twin "
+    "file.",
 )
-@click.option("--all-laws", is_flag=True, help="Every law of the twin file, ranked.")
+@click.option("--all-laws", is_flag=True, help="Fit every law of the twin file and rank them.")
 @click.option(
     "--start",
     "points",
     multiple=True,
     metavar="NAME=VALUE,…",
-    help="A point to start the search from, e.g. k=2.5e9,c=7.6e8; may be repeated.",
+    help="A starting point of the search, e.g. k=2.5e9,c=7.6e8; may be repeated.",
 )
-@click.option("--fresh", is_flag=True, help="Identify and fit again what an earlier run kept.")
+@click.option("--fresh", is_flag=True, help="Ignore stored identifications and fits of earlier runs.")
 @answers
 def update_command(twin: str, law: str | None, all_laws: bool, points: tuple[str, ...], fresh: bool) -> Reply:
     """Update TWIN's supports under one law or all; writes nothing."""
@@ -58,7 +59,7 @@ def update_command(twin: str, law: str | None, all_laws: bool, points: tuple[str
         result = run_twin(config, laws=laws, progress=step, keep=keeping(fresh=fresh))
     if points and not any(u.search.begun for u in result.updates):
         raise InputError(
-            "a start names no parameters of the law",
+            "a starting point has no parameter of the law",
             field="--start",
             value=points[0],
             allowed=", ".join(p.name for p in result.updates[0].problem.parameters),
@@ -84,7 +85,7 @@ def _point(text: str) -> dict[str, float]:
 
 
 def print_updates(result: TwinResult, *, only: str = "") -> None:
-    """Print parameters and modes of each law, or of one, what no support explains, and what to beware of."""
+    """Print parameters and modes of all laws or one, unexplained damping, and warnings."""
     from jackettwin.study import series_sentence
 
     fitted = {m.label for m in result.measured if m.fits_frequency}
@@ -112,7 +113,7 @@ def print_updates(result: TwinResult, *, only: str = "") -> None:
 
 
 def _ranking(updates: Sequence[Update]) -> Table:
-    """Return every law that was fitted by cost, with what it says of the shown modes' damping."""
+    """Return all fitted laws by cost, with the damping of the shown modes."""
     from jackettwin.updating import ranked
 
     of = {u.law: u for u in updates}
@@ -129,7 +130,7 @@ def _ranking(updates: Sequence[Update]) -> Table:
 
 
 def _begun(u: Update) -> Table:
-    """Return where the searches from given points ended."""
+    """Return the results of the searches from given points."""
     rows = [
         (
             ", ".join(f"{x:.3g}" for x in b.start),
@@ -165,25 +166,28 @@ def _solutions(u: Update) -> Table:
     """Return every solution, best first."""
     rows = []
     for i, s in enumerate(u.solutions, start=1):
-        locked = "locked" if s.locked_damper else "locks within its extent" if s.locks_within else ""
+        locked = "locked" if s.locked_damper else "may lock" if s.locks_within else ""
         rows.append((i, *(f"{x:.3g}" for x in s.theta), f"{s.cost:.3g}", s.found, locked))
     names = (p.name for p in u.problem.parameters)
     return Table("", ("solution", *names, "cost", "starts", "damper"), rows)
 
 
 def _status(u: Update) -> list[str]:
-    """Return why there is no posterior, if there is none."""
+    """Return the reason for a missing posterior."""
     if u.uncertainty is None and u.problem.weighted:
-        return ["Fitted without intervals: `jackettwin run --all-laws` samples every law."]
+        return [
+            "The law was fitted without intervals: `jackettwin run --all-laws` samples the posterior of "
+            "every law."
+        ]
     if u.uncertainty is None:
-        return ["No intervals: they need the standard deviation of every target."]
+        return ["There are no intervals, which need the standard deviation of every target."]
     if u.uncertainty.status == "ok":
         return []
-    return [f"No posterior: {u.uncertainty.status}. The intervals are Laplace's."]
+    return [f"No posterior: {u.uncertainty.status}. The intervals are by Laplace's method."]
 
 
 def _relaxations(result: TwinResult, u: Update) -> list[str]:
-    """Return measured real poles beside the model's, a line each."""
+    """Return a line for each measured real pole with the model's nearest."""
     lines = []
     for r, rate in zip(result.relaxations, u.best.rates, strict=True):
         spread = "" if r.rate_std_rad_s is None else f" ± {r.rate_std_rad_s:.2g}"
@@ -194,7 +198,7 @@ def _relaxations(result: TwinResult, u: Update) -> list[str]:
 
 
 def _leg_scatter(u: Update) -> list[str]:
-    """Return by how much legs scatter about their mean, a line a parameter."""
+    """Return a line for each parameter with the scatter between legs."""
     from jackettwin.updating import leg_scatter
 
     found = () if u.uncertainty is None else leg_scatter(u.problem.prior, u.uncertainty.log_theta)
@@ -202,8 +206,8 @@ def _leg_scatter(u: Update) -> list[str]:
     for s in found:
         low, middle, high = np.quantile(s.draws, [0.05, 0.5, 0.95])
         lines.append(
-            f"{s.name} scatters by {middle:.2g} in its logarithm between the legs ({low:.2g} … {high:.2g}; "
-            f"before the data {s.before[0]:.2g} … {s.before[1]:.2g})"
+            f"{s.name} has a standard deviation of {middle:.2g} of its logarithm between the legs ({low:.2g} "
+            f"… {high:.2g}; prior {s.before[0]:.2g} … {s.before[1]:.2g})"
         )
     return lines
 
@@ -228,7 +232,7 @@ def _modes(measured: tuple[MeasuredMode, ...], u: Update) -> Table:
 
 
 def _measured(value: float | None, std: float | None, scale: float, decimals: int, fitted: bool) -> str:
-    """Return value ± standard deviation, in brackets if it took no part in the fit."""
+    """Return value ± standard deviation, in brackets if it was not fitted."""
     if value is None:
         return "–"
     text = " ± ".join(f"{scale * v:.{decimals}f}" for v in (value, std) if v is not None)
@@ -238,8 +242,10 @@ def _measured(value: float | None, std: float | None, scale: float, decimals: in
 def _unexplained(e: DampingExcess) -> str:
     points = f"{100 * abs(e.excess):.2f} % of critical"
     if e.excess < 0.0:
-        return f"{points} less than steel and soil have in the model"
+        return f"{points} less than that of steel and soil in the model"
     if e.carried:
-        return f"{points} that no support can explain: the rotor's dashpot carries it ({100 * e.rotor:.2f} %)"
-    part = f", {100 * e.rotor:.2f} % of it the rotor's" if e.rotor > 0.1 * e.excess else ""
+        return (
+            f"{points} that no support can explain: the rotor's dashpot explains it ({100 * e.rotor:.2f} %)"
+        )
+    part = f", {100 * e.rotor:.2f} % of it by the rotor" if e.rotor > 0.1 * e.excess else ""
     return f"{points} that no support can explain{part}"

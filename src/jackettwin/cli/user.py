@@ -1,4 +1,4 @@
-"""``jackettwin user``: who may use a server."""
+"""``jackettwin user``: users of a server and their rights."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from jackettwin.errors import require
 def user_command() -> None:
     """Manage the users of a server.
 
-    With the first one, everybody must log in.
+    Once there is a user, everybody must log in.
     """
 
 
@@ -24,11 +24,13 @@ def user_command() -> None:
 @click.argument("name")
 @click.option("--role", required=True, type=click.Choice(["viewer", "engineer", "admin"]))
 @click.option("--password-stdin", is_flag=True, help="Read the password from standard input.")
-@click.option("--no-password", is_flag=True, help="Logs in by OIDC or a proxy alone.")
+@click.option("--no-password", is_flag=True, help="The user logs in by OIDC or a proxy only.")
 @click.option(
-    "--assets", help="Those that the user may see, by comma, a group as @NAME; default: all, now and later."
+    "--assets",
+    help="Turbines that the user may see, separated by commas, groups as @NAME; default: all, also later "
+    "ones.",
 )
-@click.option("--until", type=click.DateTime(["%Y-%m-%d"]), help="UTC day from which the user is nobody.")
+@click.option("--until", type=click.DateTime(["%Y-%m-%d"]), help="UTC day on which the user's rights end.")
 @answers
 @store_options
 def add_user(
@@ -40,10 +42,10 @@ def add_user(
     until: datetime | None,
     at: StorePlace,
 ) -> Reply:
-    """Add the user NAME, or give one another role, password and rights."""
+    """Add the user NAME, or change role, password and rights of an existing one."""
     require(
         password_stdin or no_password or sys.stdin.isatty(),
-        "there is no terminal to ask for it on",
+        "there is no terminal to enter it",
         field="password",
         remedy="give it on standard input, with --password-stdin",
     )
@@ -60,7 +62,7 @@ def add_user(
         keep(connection, user)
         note_down(connection, "command line", "user add", name, in_words(user), now)
     said = {"user": name, "role": role, "assets": scope, "expires_utc": ends and ends.isoformat()}
-    return Reply(said, lambda: say(f"{name} is {in_words(user)}; from now on everybody logs in"))
+    return Reply(said, lambda: say(f"{name} is {in_words(user)}; from now on everybody must log in"))
 
 
 def _asked_hash(password_stdin: bool) -> str:
@@ -79,7 +81,7 @@ def _listed(names: str) -> list[str]:
 @answers
 @store_options
 def list_users(at: StorePlace) -> Reply:
-    """List the users, what they may, and until when."""
+    """List the users with their rights and expiry."""
     engine = at.open()
     from jackettwin.service.web.auth import in_words
     from jackettwin.store import people, reading
@@ -103,7 +105,7 @@ def list_users(at: StorePlace) -> Reply:
 @answers
 @store_options
 def remove_user(name: str, at: StorePlace) -> Reply:
-    """Remove the user NAME; sessions and tokens end at once."""
+    """Remove the user NAME; all sessions and tokens end at once."""
     engine = at.open()
     from jackettwin.store import people, writing
 

@@ -1,4 +1,4 @@
-"""``jackettwin verify``: every published number beside ours."""
+"""``jackettwin verify``: comparison with published numbers."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ _COLUMNS = (
 
 
 @click.command("verify")
-@click.option("--published", is_flag=True, help="Benchmarks that others published, in place of the thesis's.")
+@click.option("--published", is_flag=True, help="Benchmarks by other authors, instead of the thesis's.")
 @answers
 def verify_command(published: bool) -> Reply:
     """Recompute every published number of the thesis.
 
-    With --published: what others published of beams, frames, piles, rotors, waves and welds. The exit code
-    is 1 if a row fails; a row that misses for a known reason says so and stays in sight.
+    With --published: published benchmarks of beams, frames, piles, rotors, waves and welds. The exit code is
+    1 if a row fails; a row that fails for a known reason is listed with that reason.
     """
     from jackettwin.verify import STEPS, STEPS_OF_OTHERS, benchmark_rows, published_rows
 
@@ -57,8 +57,8 @@ def verify_command(published: bool) -> Reply:
 def _summary(rows: tuple[Row, ...]) -> str:
     checked = [row.ok for row in rows if row.ok is not None]
     return (
-        f"{sum(checked)} of {len(checked)} checked rows hold; {len(rows) - len(checked)} rows only inform: "
-        "most need drawings or data that were not published, and --json says why of each"
+        f"{sum(checked)} of {len(checked)} checked rows hold; {len(rows) - len(checked)} rows are "
+        "not checked: most need unpublished drawings or data, and --json gives the reason of each"
     )
 
 
@@ -69,7 +69,7 @@ def _verdict(row: Row) -> str:
 
 
 def _say_notes(rows: tuple[Row, ...]) -> None:
-    """Say why tolerances are what they are, and why rows miss."""
+    """Print the reasons for tolerances and for failed rows."""
     tolerances = dict.fromkeys((row.source, row.note) for row in rows if row.note and row.ok is not None)
     for source, note in tolerances:
         say(f"tolerance of {source}: {note}")
@@ -86,5 +86,5 @@ def _summary_of_others(rows: tuple[Row, ...]) -> str:
     checked, median = [row.ok for row in rows if row.ok is not None], 100.0 * median_error(rows)
     return (
         f"{sum(checked)} of {len(checked)} checked rows hold, median error {median:.2g} %; "
-        f"{len(rows) - len(checked)} rows only inform"
+        f"{len(rows) - len(checked)} rows are not checked"
     )

@@ -1,4 +1,4 @@
-"""``jackettwin view``: a page on which to turn a structure, colour it and set it in motion."""
+"""``jackettwin view``: interactive 3D page of a structure and its motions."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ if TYPE_CHECKING:
 
 
 _OVERDAMPED = 0.3
-"""More damped poles are motions of the supports: nothing to look at."""
+"""Damping ratio above which poles are motions of the supports and not shown."""
 _MOST_USED = 1.5
-"""Members used more than this are drawn alike: they have failed, and others should still be told apart."""
+"""Utilisation at which the colour scale ends, so that failed members do not hide differences of others."""
 
 
 _MOST_PARTS = 8
-"""Parts whose dimensions are told one by one; the groups of a SACS deck are dozens."""
+"""Largest number of parts with listed dimensions; a SACS deck has dozens of groups."""
 
 
 @click.command("view")
@@ -51,7 +51,7 @@ _MOST_PARTS = 8
     default=3,
     show_default=True,
     type=click.IntRange(1, 20),
-    help="Pieces a member is drawn in.",
+    help="Segments per member in the drawing.",
 )
 @click.option(
     "--growth",
@@ -60,19 +60,19 @@ _MOST_PARTS = 8
     help="Marine growth [m], z from sea level; may be repeated.",
 )
 @click.option("--flooded", multiple=True, metavar="PART", help="A flooded part or member; may be repeated.")
-@click.option("--wave", metavar="HEIGHT,PERIOD[,DIRECTION_DEG]", help="A regular wave passing.")
+@click.option("--wave", metavar="HEIGHT,PERIOD[,DIRECTION_DEG]", help="Also draw a passing regular wave.")
 @click.option(
     "--against",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="FILE.csv: modes of another program, to watch beside one's own; MAC of each.",
+    help="FILE.csv: modes of another program, shown and compared by MAC.",
 )
-@click.option("--record", type=click.Path(dir_okay=False, path_type=Path), help="A record to play back.")
+@click.option("--record", type=click.Path(dir_okay=False, path_type=Path), help="Record to play back.")
 @click.option(
     "--force",
     "forces",
     multiple=True,
     metavar="NODE=FX,FY,FZ",
-    help="Beside the self-weight, for utilisation.",
+    help="Further forces for utilisation, besides the self-weight.",
 )
 @answers
 def view_command(
@@ -92,7 +92,7 @@ def view_command(
 ) -> Reply:
     """Draw STRUCTURE on a page to turn, colour and animate.
 
-    The page is one self-contained file that shows members, modes, waves and a record.
+    The page is a single file that shows members, modes, waves and a record.
     """
     from jackettwin.decks import read_structure
     from jackettwin.loads import Coefficients
@@ -170,7 +170,7 @@ def view_command(
 def _others(
     system: System, number: int, against: Path | None
 ) -> tuple[list[DrawnMotion], dict[str, Any] | None]:
-    """Return the modes of another program's table as motions, and how they compare with our own."""
+    """Return the modes of another program's table as motions, and their comparison with the structure's."""
     from jackettwin.report.view.motions import undamped_motion
     from jackettwin.response import expanded
 
@@ -187,7 +187,7 @@ def _others(
 
 
 def _remarks(structure: str) -> tuple[str, ...]:
-    """Return what of a deck was not understood."""
+    """Return the entries of a deck that were not understood."""
     from jackettwin.decks import is_sacs, sacs_remarks
 
     path = Path(structure)
@@ -195,7 +195,7 @@ def _remarks(structure: str) -> tuple[str, ...]:
 
 
 def _dimensions(assembly: Assembly) -> tuple[str, ...]:
-    """Return levels and widths [m] in words: a preview against which a drawing can be held."""
+    """Return sentences on levels and widths [m], to compare with a drawing."""
     structure = assembly.structure
     points = assembly.mesh.coordinates - [0.0, 0.0, structure.sea_level_z_m]
     z, lines = points[:, 2], []
@@ -243,9 +243,9 @@ def _require_parts(assembly: Assembly, names: tuple[str, ...]) -> None:
 def _modes(
     assembly: Assembly, system: System, number: int
 ) -> tuple[list[DrawnMotion], tuple[ColouredQuantity, ...]]:
-    """Return undamped modes, and damped ones if anything dissipates; and where the first of these does.
+    """Return undamped modes, damped ones if anything dissipates, and the dissipation of the first of these.
 
-    What floats freely is no mode.
+    Rigid-body motions are omitted.
     """
     from jackettwin.report.view.motions import damped_motion, undamped_motion
     from jackettwin.report.view.quantities import damping_quantity
@@ -279,7 +279,7 @@ def _modes(
 def _uses(
     assembly: Assembly, system: System, forces: dict[str, tuple[float, ...]]
 ) -> tuple[ColouredQuantity, ...]:
-    """Return utilisation and stress at rest under the weight and the forces given."""
+    """Return static utilisation and stress under the weight and the given forces."""
     from jackettwin.checks import frame_use
     from jackettwin.report import ColouredQuantity
     from jackettwin.response import nodal_load, self_weight, static_displacement

@@ -1,4 +1,4 @@
-"""``jackettwin watch``: a table of modes through time, judged."""
+"""``jackettwin watch``: detection of changes in a table of modes over time."""
 
 from __future__ import annotations
 
@@ -17,30 +17,30 @@ if TYPE_CHECKING:
 
 
 _SHOWN = 4
-"""Causes printed at most."""
+"""Largest number of printed causes."""
 
 
 @click.command("watch")
 @click.argument("table", type=click.Path(path_type=Path, dir_okay=False))
 @click.option("--columns", help="Frequency columns of a table with one column a mode: f1,f2,…")
-@click.option("--conditions", help="Columns that are conditions, or none; default: all other numbers.")
+@click.option("--conditions", help="Columns with conditions, or none; default: all other numeric columns.")
 @click.option(
     "--baseline-days",
     default=365.0,
     show_default=True,
     type=FiniteFloat(min=1.0),
-    help="The healthy time.",
+    help="Length of the baseline period.",
 )
 @click.option(
     "--arl-years", default=10.0, show_default=True, type=FiniteFloat(min=0.1, max=1e4),
-    help="Mean time between false alarms, at least.",
+    help="Least mean time between false alarms.",
 )  # fmt: skip
 @click.option(
     "--structure",
     "structure_name",
-    help="STRUCTURE that stands there: its causes are told apart by their patterns.",
+    help="STRUCTURE that was measured, whose patterns distinguish causes.",
 )
-@click.option("--relearn", help="Learn anew from this time on: after a repair or a confirmed change.")
+@click.option("--relearn", help="Start of a new baseline, after a repair or a confirmed change.")
 @click.option(
     "--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for watched.json and report.html."
 )
@@ -55,12 +55,12 @@ def watch_command(
     relearn: str | None,
     out: Path | None,
 ) -> Reply:
-    """Say whether the modes in TABLE have changed, and why.
+    """Report whether the modes in TABLE have changed, and why.
 
-    It says since when and by how much as well. TABLE is CSV or Parquet, sorted by time: one row a mode
-    and time (time_utc, label, frequency_hz, and, if they are known, frequency_std_hz, damping_ratio,
-    damping_ratio_std), or one column a mode with --columns. Further columns are conditions. The first
-    days are taken as healthy.
+    The report includes time and size of changes. TABLE is CSV or Parquet, sorted by time, with one row for
+    each mode and time (time_utc, label, frequency_hz and, if known, frequency_std_hz, damping_ratio,
+    damping_ratio_std), or with --columns one column for each mode. Further columns are conditions. The first
+    days are assumed healthy.
     """
     from jackettwin.change import (
         alike_sentence,
@@ -100,7 +100,7 @@ def watch_command(
             if alike := alike_sentence(alarm):
                 say(alike)
             for group in alarm["inseparable"]:
-                say(f"not told apart by these data: {', '.join(group)}")
+                say(f"not distinguished by these data: {', '.join(group)}")
             if alarm["next_measurements"]:
                 say(next_sentence(alarm))
         if could := smallest_sentence(document["smallest_found"]):

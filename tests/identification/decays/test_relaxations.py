@@ -177,4 +177,4 @@ def test_python_finds_the_same_and_text_says_it(pulled: Path) -> None:
     assert found is not None and found.pole is not None
     assert found.pole.rate_rad_s == pole.rate_rad_s
     reply = CliRunner().invoke(main, ["identify", str(pulled), "--real-poles"])
-    assert reply.exit_code == 0 and "let go at" in reply.stdout and "95 % power" in reply.stdout
+    assert reply.exit_code == 0 and "release at" in reply.stdout and "95 % power" in reply.stdout
