@@ -66,7 +66,7 @@ def test_a_try_says_what_came_of_it(client: TestClient, receiver: Receiver) -> N
     assert client.post(f"{PATH}/ops/test").json() == {"delivered": True, "problem": None}
     receiver.answer = 410
     told = client.post(f"{PATH}/ops/test").json()
-    assert told == {"delivered": False, "problem": "the other side answers 410"}
+    assert told == {"delivered": False, "problem": "the other side returns status 410"}
     assert [body["findings"][0]["code"] for body in receiver.bodies] == ["try", "try"]
     assert client.post(f"{PATH}/none/test").status_code == 404
 
@@ -97,12 +97,12 @@ MAIL = {"kind": "mail", "host": "h", "sender": "a@b", "to": ["c@d"]}
         ({**MAIL, "user": "u", "password": "p", "security": "none"}, [{}], "unencrypted"),
         ({**MAIL, "ca": "no certificate"}, [{}], "not a certificate in PEM"),
         ({**MAIL, "password_file": "/etc/passwd"}, [{}], "Extra inputs"),
-        ({"kind": "webhook", "url": "file:///etc/passwd"}, [{}], "not an address of the web"),
+        ({"kind": "webhook", "url": "file:///etc/passwd"}, [{}], "not an HTTP address"),
         ({"kind": "webhook", "url": "https://h/\nX: y"}, [{}], "pattern"),
         (
             {"kind": "mqtt", "host": "h", "topic": "jackettwin/wtg"},
             [{}],
-            "where packets of samples come from",
+            "used for packets of samples",
         ),
         (MAIL, [{"codes": ["no_such"]}], "code of a finding"),
         (MAIL, [{"escalate": {"channel": "nobody", "after_minutes": 5}}], "channel"),

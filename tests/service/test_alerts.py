@@ -180,7 +180,11 @@ def test_a_receiver_that_fails_is_tried_later_and_given_up_in_the_end(
     assert len(receiver.got) == 3 + MOST_TRIES
     with reading(service.database) as connection:
         last = alerts.newest(connection, 1)[0]
-    assert (last.state, last.tries, last.problem) == ("given_up", MOST_TRIES, "the other side answers 404")
+    assert (last.state, last.tries, last.problem) == (
+        "given_up",
+        MOST_TRIES,
+        "the other side returns status 404",
+    )
 
 
 def test_one_dead_channel_holds_up_no_other(service: Service, clock: list, receiver: Receiver) -> None:
@@ -372,7 +376,7 @@ NIGHT = {"begin": "22:00", "end": "06:00"}
         ({"chanels": {}}, "chanels", "did you mean"),
         (by("fax"), "channels.ops", "email"),
         (by("webhook", url="file:///etc/passwd"), "channels.ops.url", "https://"),
-        (by("webhook"), "channels.ops.url", "one of url"),
+        (by("webhook"), "channels.ops.url", "either url"),
         (by("webhook", url="http://a/", secret_file="none"), "secret_file", "no such"),
         (by("mqtt", host="a", topic="a/#"), "channels.ops.topic", "no + and #"),
         (by("mqtt", host="a", topic="jackettwin/x"), "topic", "samples"),

@@ -1,4 +1,4 @@
-"""Answers that were given, kept with the version of the store they were made of: none is made twice."""
+"""Cache of responses with the version of the store that they were made from."""
 
 from __future__ import annotations
 
@@ -9,41 +9,41 @@ from dataclasses import dataclass, field
 from threading import Lock
 
 _MOST_BYTES = 32 * 2**20
-"""Memory for answers: those of some hundred turbines' pages, compressed."""
+"""Memory of the cache, for the compressed pages of some hundred turbines."""
 _ENTRY_BYTES = 1024
-"""What an answer takes beside its bytes: many small ones must not fill the memory either."""
+"""Memory assumed for an entry besides its body, which also bounds many small ones."""
 
 
 @dataclass(frozen=True)
 class Answer:
-    """The body of an answer, compressed, and the version of the store that it was made of."""
+    """Compressed body of a response, and the version of the store that it was made from."""
 
     version: int
     compressed: bytes
 
     @classmethod
     def of(cls, version: int, body: bytes) -> Answer:
-        """Return an answer to keep; its bytes depend on the body alone."""
+        """Return an entry, whose bytes depend on the body only."""
         return cls(version, gzip.compress(body, compresslevel=1, mtime=0))
 
     @property
     def body(self) -> bytes:
-        """What was compressed."""
+        """The body, uncompressed."""
         return gzip.decompress(self.compressed)
 
     @property
     def size(self) -> int:
-        """Bytes that keeping it takes."""
+        """Memory of the entry in bytes."""
         return len(self.compressed) + _ENTRY_BYTES
 
 
 def content_tag(body: bytes) -> str:
-    """Return the entity tag of a body that has no version."""
+    """Return the entity tag of a body without a version."""
     return f'W/"{hashlib.sha256(body).hexdigest()[:32]}"'
 
 
 def has_tag(header: str | None, tag: str) -> bool:
-    """Tell whether ``If-None-Match`` names a tag; strong and weak ones are compared (RFC 9110, 13.1.2)."""
+    """Return whether ``If-None-Match`` contains a tag, by weak comparison (RFC 9110, 13.1.2)."""
     return header is not None and tag.removeprefix("W/") in (
         t.strip().removeprefix("W/") for t in header.split(",")
     )
@@ -51,14 +51,14 @@ def has_tag(header: str | None, tag: str) -> bool:
 
 @dataclass
 class AnswerCache:
-    """The answers to the questions asked last, as many as there is memory for."""
+    """Cache of the most recently used responses, as many as the memory allows."""
 
     _answers: OrderedDict[str, Answer] = field(default_factory=OrderedDict)
     _bytes: int = 0
     _lock: Lock = field(default_factory=Lock)
 
     def find(self, asked: str, version: int) -> Answer | None:
-        """Return the answer to a question if nothing has changed since it was given."""
+        """Return the stored response to a request if the store has not changed since."""
         with self._lock:
             found = self._answers.get(asked)
             if found is None or found.version != version:
@@ -67,7 +67,7 @@ class AnswerCache:
             return found
 
     def keep(self, asked: str, answer: Answer) -> None:
-        """Keep an answer in place of an earlier one to the same question."""
+        """Store a response, replacing an earlier one to the same request."""
         with self._lock:
             self._forget(asked)
             self._answers[asked] = answer

@@ -1,4 +1,4 @@
-"""A server's parts, handed to whoever needs them."""
+"""Components of a running server."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def _now() -> datetime:
 
 @dataclass(frozen=True)
 class OpenStore:
-    """A store without workers: what the command line has, beside a server or without one."""
+    """A store without workers, as the command line uses it, with or without a running server."""
 
     settings: ServiceSettings
     database: Engine
@@ -38,7 +38,7 @@ class OpenStore:
 
 @dataclass
 class Service:
-    """Everything a running server consists of."""
+    """All components of a running server."""
 
     settings: ServiceSettings
     database: Engine
@@ -53,25 +53,25 @@ class Service:
     wake: Callable[[], None] = lambda: None
     turning: Callable[[], bool] = lambda: True
     has_intake: bool = False
-    """Whether this one of several servers takes what lies in the inbox and comes from the broker."""
+    """Whether this server, of several on a store, handles the inbox and the broker."""
     on_lost: list[Callable[[], None]] = field(default_factory=list)
-    """What is done when the database goes away: another server may stand in for this one then."""
+    """Functions called when the database is lost, after which another server may take over."""
     broker_connected: Callable[[], bool | None] = lambda: None
     packets_refused: Callable[[], int] = lambda: 0
 
     @cached_property
     def feed(self) -> Feed:
-        """The events, for readers of this server."""
+        """The feed of events for clients of this server."""
         return Feed(self.database)
 
     def free_bytes(self) -> int:
-        """Room left where the store is: none on a disk that is read-only, as one becomes after faults."""
+        """Free disk space of the store [bytes]; 0 on a read-only disk, as disks become after faults."""
         store = self.settings.store
         return shutil.disk_usage(store).free if os.access(store, os.W_OK) else 0
 
 
 Place = OpenStore | Service
-"""What keeping results needs: where the store is, its database, and the time."""
+"""Context for storing results: location of the store, its database, and the time."""
 
 
 def open_service(settings: ServiceSettings) -> Service:
@@ -83,7 +83,9 @@ def open_service(settings: ServiceSettings) -> Service:
         If the database cannot be opened.
     """
     private_folder(settings.store)
-    if not os.access(Path(__file__).parent, os.W_OK):  # where it is kept otherwise; homes may be closed
+    if not os.access(
+        Path(__file__).parent, os.W_OK
+    ):  # the default cache is next to the code; home folders may not be writable
         os.environ.setdefault("NUMBA_CACHE_DIR", str(settings.store / "cache"))
     for folder in (settings.spool, settings.models):
         folder.mkdir(parents=True, exist_ok=True)

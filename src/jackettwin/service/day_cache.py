@@ -1,4 +1,4 @@
-"""Sums over the days of turbines, kept between questions: past days are summed once."""
+"""Cache of sums over the past days of turbines."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     pass
 
 _MOST = 256
-"""Turbines whose sums are kept: some kilobytes each."""
+"""Number of turbines in the cache, of some kilobytes each."""
 
 Hashes = tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True)
 class DaysTold:
-    """What the days of a turbine say together, how many they are, and the identity of their states."""
+    """Summary of a turbine's days, their number, and the identity of their states."""
 
     sums: workers.engine.Sums
     days: int
@@ -31,7 +31,7 @@ class DaysTold:
 
 
 class DayCache:
-    """Sums of all days but the last one, which is still growing, of turbines that were asked for of late."""
+    """Cache of the sums of all days but the last, which still grows, for recently requested turbines."""
 
     def __init__(self) -> None:
         self._past: OrderedDict[tuple[str, str], tuple[Hashes, workers.engine.Sums]] = OrderedDict()
@@ -44,7 +44,7 @@ class DayCache:
         model: workers.engine.TwinProfile,
         day: str | None = None,
     ) -> DaysTold:
-        """Return what all days, or those up to one, say; only days that are new or changed are read."""
+        """Return the summary of all days, or those up to one; only new or changed days are read."""
         key = (version.asset, version.model_hash)
         by_day = results.state_hashes(connection, *key, day)
         hashes = tuple(by_day.items())

@@ -1,6 +1,6 @@
-"""A demonstration asset whose records arrive in fast motion.
+"""A demonstration asset whose records arrive every few seconds.
 
-So that a newcomer sees a twin live within a minute.
+It shows a running twin within a minute.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ _EVERY_S = 4.0
 def demonstrate(service: Service) -> Thread:
     """Add the demonstration asset and start a thread in which its records arrive, one every few seconds.
 
-    The shipped records are ten minutes each; they arrive as if measured an hour apart, ending now, so that
-    the same demonstration started tomorrow goes on.
+    The shipped records are ten minutes each; they are dated an hour apart, the last one now, so that a
+    demonstration started again later continues.
     """
     thread = Thread(target=_arrive, args=(service,), name="demonstration", daemon=True)
     thread.start()
@@ -59,4 +59,4 @@ def _arrive(service: Service) -> None:
             service.wake()
             time.sleep(_EVERY_S)
     except Exception:
-        log.exception("the demonstration stops")
+        log.exception("the demonstration stopped")

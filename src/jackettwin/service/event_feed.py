@@ -1,4 +1,4 @@
-"""Events to many readers: one look at the database for all of them."""
+"""Distribution of events to many clients with one query of the database."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from jackettwin.store.journal import Event
 
 _TURN_S = 0.3
 _RECENT = 2000
-"""Events kept in memory; a reader further behind reads the database itself."""
+"""Number of events in memory; for older ones the database is read."""
 
 
 class Feed:
-    """The newest events, looked for in turn, and whoever waits for them."""
+    """The newest events, polled from the database, and the clients waiting for them."""
 
     def __init__(self, database: Engine) -> None:
         self._database = database
@@ -28,7 +28,7 @@ class Feed:
         self._last = 0
 
     async def run(self) -> None:
-        """Look for events until cancelled."""
+        """Poll for events until cancelled."""
         self._last = await asyncio.to_thread(self._newest)
         while True:
             try:
@@ -49,7 +49,7 @@ class Feed:
         return self._last
 
     async def follow(self, last: int, seconds: float) -> AsyncIterator[Event]:
-        """Yield the events after a number, for so long."""
+        """Yield the events after number ``last`` for a number of seconds."""
         at, end = last, time.monotonic() + seconds
         while True:
             if at < self._last:

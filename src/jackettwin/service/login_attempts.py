@@ -1,4 +1,4 @@
-"""Logins that have not succeeded lately, so that passwords cannot be guessed by trying."""
+"""Recent failed logins, which are limited to prevent guessing of passwords."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from dataclasses import dataclass, field
 from threading import Lock
 
 _MOST_KEYS = 10_000
-"""Names and addresses that are counted: a flood of them must not fill the memory."""
+"""Largest number of counted names and addresses, which bounds the memory."""
 
 
 @dataclass
 class LoginAttempts:
-    """The times of recent attempts to log in, by who was tried and from where."""
+    """Times of recent login attempts, by user name and address."""
 
     within_s: float = 60.0
     _tried: dict[str, list[float]] = field(default_factory=dict)
     _lock: Lock = field(default_factory=Lock)
 
     def wait_s(self, limits: Mapping[str, int]) -> float:
-        """Count an attempt, unless it must wait; return how long, 0 if it need not.
+        """Count an attempt and return 0, or return the waiting time without counting it.
 
-        ``limits`` are how many of each key are allowed in ``within_s``. It is counted before it is made, so
-        that many at once are not more; one that must wait is not counted, and takes no room.
+        ``limits`` are the allowed numbers of attempts for each key in ``within_s``. An attempt is counted
+        before it is made, so that simultaneous attempts cannot exceed the limits.
         """
         with self._lock:
             now = time.monotonic()
@@ -40,7 +40,7 @@ class LoginAttempts:
             return 0.0
 
     def succeeded(self, keys: Iterable[str]) -> None:
-        """Take an attempt back."""
+        """Remove an attempt that succeeded."""
         with self._lock:
             for key in keys:
                 if self._tried.get(key):
@@ -48,7 +48,7 @@ class LoginAttempts:
 
     @staticmethod
     def place(host: str) -> str:
-        """Return what is counted as one place: an address, of IPv6 the network that one subscriber has."""
+        """Return the address counted as one place: for IPv6 the network of one subscriber."""
         try:
             address = ipaddress.ip_address(host)
         except ValueError:

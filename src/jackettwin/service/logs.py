@@ -1,4 +1,4 @@
-"""Lines of log for people, or one JSON object each for programs that collect them."""
+"""Log lines as text, or as JSON for log collectors."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from datetime import UTC, datetime
 
 
 class JsonLines(logging.Formatter):
-    """One object a line: ``time_utc``, ``level``, ``logger``, ``message`` and, of a fault, ``trace``."""
+    """Formatter of JSON lines with ``time_utc``, ``level``, ``logger``, ``message`` and any ``trace``."""
 
     def format(self, record: logging.LogRecord) -> str:
-        """Return a line."""
+        """Return the line of a log record."""
         said = {
             "time_utc": datetime.fromtimestamp(record.created, UTC).isoformat(timespec="milliseconds"),
             "level": record.levelname.lower(),
@@ -24,9 +24,9 @@ class JsonLines(logging.Formatter):
 
 
 def start_logging(level: str, *, as_json: bool) -> None:
-    """Write what happens, from a level of :mod:`logging` on, to the standard error stream.
+    """Write log messages from a level of :mod:`logging` to the standard error stream.
 
-    Of the libraries that serve and compute it takes their warnings, or with ``debug`` everything.
+    From other libraries only warnings are written, or with ``debug`` everything.
     """
     handler = logging.StreamHandler()
     plain = logging.Formatter("%(asctime)s %(levelname)s %(message)s")

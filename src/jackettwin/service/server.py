@@ -1,4 +1,4 @@
-"""Start a server and stop it well."""
+"""Start and orderly stop of a server."""
 
 from __future__ import annotations
 
@@ -40,18 +40,18 @@ from jackettwin.store import assets, people, reading
 log = logging.getLogger(__name__)
 
 REFUSED = ".refused.json"
-"""What is added to the name of a file that could not be read, for the file that says why."""
+"""Suffix of the file with the reason why a file could not be read."""
 
 
 @contextmanager
 def running(settings: ServiceSettings) -> Iterator[Service]:
-    """Run everything of a server but its web application: workers, dispatcher, intake.
+    """Run a server's workers, dispatcher and intake, without its web application.
 
     Raises
     ------
     InputError
-        If the database cannot be opened, the alerts file cannot be read, or others could reach a server
-        without users or TLS.
+        If the database cannot be opened, the alerts file cannot be read, or the server would be
+        reachable by others without users or TLS.
     """
     one_heap()
     told = of_file(settings.alerts)
@@ -84,24 +84,24 @@ def running(settings: ServiceSettings) -> Iterator[Service]:
 
 
 def serve(settings: ServiceSettings, ready: Callable[[Service], None] = lambda _: None) -> None:
-    """Serve until told to stop; requests under way are answered, work under way is leased again later.
+    """Run a server until it is stopped; unfinished jobs are leased again later.
 
-    SIGTERM, which managers of services send, ends it as Ctrl-C does.
+    SIGTERM, which service managers send, stops it like Ctrl-C.
 
     Raises
     ------
     InputError
-        If nothing can be opened, or listened at, where the settings say; or it would be reached unprotected.
+        If the store or the address cannot be opened, or the server would be reachable without protection.
     """
     signal.signal(signal.SIGTERM, _interrupt)
     _check_tls(settings)
-    os.umask(0o077)  # of our workers, too: what is kept is nobody else's to read
+    os.umask(0o077)  # also for workers: stored files are not readable by other users
     with _listening(settings) as door, running(settings) as service:
         config = uvicorn.Config(
             create_app(service),
             log_level="warning",
             access_log=False,
-            proxy_headers=False,  # the application believes the proxies that are named, and nobody else
+            proxy_headers=False,  # the application itself checks for trusted proxies
             ssl_certfile=settings.tls_certificate,
             ssl_keyfile=settings.tls_key,
             timeout_graceful_shutdown=3,
@@ -127,7 +127,7 @@ def _interrupt(*_: object) -> None:
 
 
 def _listening(settings: ServiceSettings) -> socket.socket:
-    """Return a socket at the address of a server, which connections wait at until it is ready."""
+    """Return a listening socket, at which connections wait until the server is ready."""
     try:
         family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
         return socket.create_server((settings.host, settings.port), family=family, backlog=2048)
@@ -135,7 +135,7 @@ def _listening(settings: ServiceSettings) -> socket.socket:
         if error.errno == errno.EADDRINUSE:
             remedy = "end the other server, or choose another --port"
             raise InputError("is taken", field="port", value=settings.port, remedy=remedy) from None
-        problem = f"nobody can listen there ({(error.strerror or '').partition(' (')[0]})"
+        problem = f"cannot listen at this address ({(error.strerror or '').partition(' (')[0]})"
         remedy = "give an address of this machine"
         raise InputError(problem, field="host", value=settings.host, remedy=remedy) from None
 
@@ -159,11 +159,11 @@ def _watch_inbox(service: Service, stop: Callable[[], bool]) -> None:
     folder = service.settings.inbox
     with reading(service.database) as connection:
         known = assets.asset_names(connection, archived=False)
-    for name in (".", *known):  # those of a store that was restored are not there yet
+    for name in (".", *known):  # folders of a restored store may be missing
         (folder / name).mkdir(parents=True, exist_ok=True)
 
     def take(path: Path) -> Accepted | None:
-        if not service.has_intake:  # another server of this store takes it
+        if not service.has_intake:  # another server of this store imports it
             return None
         try:
             return take_from_inbox(service, folder, path)
@@ -175,9 +175,9 @@ def _watch_inbox(service: Service, stop: Callable[[], bool]) -> None:
 
 
 def take_from_inbox(service: Service, inbox: Path, path: Path) -> Accepted | None:
-    """Take a file that lies in an asset's folder; what could not be read stays, with the reason beside it.
+    """Import a file from an asset's folder; if it cannot be read, leave it and write the reason next to it.
 
-    Return None for a file of no asset, which is looked at again: there may be one by then.
+    Return None for a file outside any asset's folder, which is tried again later.
     """
     asset, reason = path.relative_to(inbox).parts[0], path.with_name(path.name + REFUSED)
     with reading(service.database) as connection:
@@ -189,7 +189,7 @@ def take_from_inbox(service: Service, inbox: Path, path: Path) -> Accepted | Non
     before = _lying(path)
     taken = take_file(service, parse_here(service), asset, path, path.name)
     if taken.problem is not None and _lying(path) != before:
-        return None  # another server took it away while it was read, or it is written again
+        return None  # another server imported it meanwhile, or it is being written again
     if taken.problem is None:
         for file in (path, path.with_suffix(".json"), reason):
             file.unlink(missing_ok=True)
@@ -200,7 +200,7 @@ def take_from_inbox(service: Service, inbox: Path, path: Path) -> Accepted | Non
 
 
 def _lying(path: Path) -> list[tuple[int, int] | None]:
-    """Return what tells a record and its description from others of the same names."""
+    """Return identity marks of a record file and its description, to detect changes."""
     return [_mark(file) for file in (path, path.with_suffix(".json"))]
 
 
@@ -218,7 +218,7 @@ def _leave(path: Path, reason: Path, problem: dict[str, Any]) -> None:
 
 
 _OF_NO_ASSET = {
-    "detail": "lies in the folder of no asset, or of one that is archived",
+    "detail": "the file is not in the folder of an asset, or the asset is archived",
     "field": "folder",
-    "remedy": "put it into inbox/ASSET/; it is taken once there is that asset",
+    "remedy": "move it to inbox/ASSET/; it is imported once that asset exists",
 }

@@ -1,4 +1,4 @@
-"""How a server runs: what ``jackettwin serve`` is told, and the limits that an environment may set."""
+"""Settings of a server: options of ``jackettwin serve``, and limits from the environment."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ def _network(text: str) -> str:
 
 
 class ServiceSettings(BaseSettings):
-    """Where a server listens, works and keeps things.
+    """Settings of a server.
 
-    What is not given is read from the environment: ``JACKETTWIN_SERVE_PARSE_LIMIT_S`` and the like. A shorter
-    prefix would meet what Kubernetes sets for a service of our name (``JACKETTWIN_PORT``).
+    Missing ones are read from the environment, as ``JACKETTWIN_SERVE_PARSE_LIMIT_S``. A shorter prefix would
+    clash with variables that Kubernetes sets for a service of this name (``JACKETTWIN_PORT``).
     """
 
     model_config = SettingsConfigDict(
@@ -32,59 +32,61 @@ class ServiceSettings(BaseSettings):
     )
 
     store: Path
-    """Folder of waveforms, spool and, without ``database``, of the database."""
+    """Folder of waveforms, spool and, without ``database``, the database."""
     host: str = "127.0.0.1"
     """Address to listen at."""
     port: int = Field(default=8470, ge=1, le=65535)
     database: str | None = None
     """URL of PostgreSQL; None for SQLite in the store."""
     scheduler: str | None = None
-    """``tls://`` address of a Dask scheduler whose workers see the store at this path; None for own ones."""
+    """``tls://`` address of a Dask scheduler whose workers have the store at this path; None for local
+    workers."""
     scheduler_ca: Path | None = None
-    """Certificates by which that scheduler is known."""
+    """CA certificates that verify the scheduler."""
     scheduler_certificate: Path | None = None
-    """By which it knows us, with ``scheduler_key``."""
+    """Certificate of this server for the scheduler, with ``scheduler_key``."""
     scheduler_key: Path | None = None
     workers: int = Field(default=2, ge=1)
-    """Number of own workers, one thread each."""
+    """Number of local workers, of one thread each."""
     mqtt: str | None = None
-    """``mqtt[s]://[user@]host[:port]`` of a broker to listen to; its ports are 1883 and 8883."""
+    """``mqtt[s]://[user@]host[:port]`` of a broker to subscribe to; default ports are 1883 and 8883."""
     mqtt_password: SecretStr | None = None
-    """Of the broker's user; from the environment alone, since every user of a machine reads its commands."""
+    """Password of the broker's user; only from the environment, since command lines are visible to all
+    users."""
     mqtt_password_file: Path | None = None
-    """File whose first line is that password."""
+    """File whose first line is the password."""
     mqtt_ca: Path | None = None
-    """Certificates by which the broker is known; None for those the system trusts."""
+    """CA certificates that verify the broker; None for those of the system."""
     mqtt_certificate: Path | None = None
-    """By which the broker knows us, with ``mqtt_key``."""
+    """Certificate of this server for the broker, with ``mqtt_key``."""
     mqtt_key: Path | None = None
     alerts: Path | None = None
-    """File that says who is told what, and how; without it nobody is."""
+    """Alerts file; without it no alerts are sent."""
     tls_certificate: Path | None = None
-    """For HTTPS without a proxy, with ``tls_key``."""
+    """Certificate for HTTPS without a proxy, with ``tls_key``."""
     tls_key: Path | None = None
     behind_proxy: bool = False
-    """Whether a proxy in front ends TLS and passes on who asked."""
+    """Whether a reverse proxy terminates TLS and forwards the client's address."""
     trusted_proxies: tuple[Annotated[str, AfterValidator(_network)], ...] = LOOPBACK
-    """Addresses and networks of the proxies whose word on who asks is taken; nobody else's is."""
+    """Addresses and networks of proxies whose forwarded headers are trusted."""
     trusted_header: str | None = None
-    """Header in which the proxy names the user it has authenticated, as OIDC proxies do."""
+    """Header with the user that the proxy has authenticated, as OIDC proxies send."""
     oidc_issuer: str | None = None
-    """Address of the OpenID provider at which people may log in, as it names itself."""
+    """URL of the OpenID provider (issuer) for logging in."""
     oidc_client: str | None = None
-    """Name by which it knows this server."""
+    """Client identifier of this server at the provider."""
     oidc_secret: SecretStr | None = None
-    """By which it knows that it is us, from the environment alone; None if it asks for PKCE only."""
+    """Client secret, only from the environment; None if the provider requires PKCE only."""
     oidc_secret_file: Path | None = None
-    """File whose first line is that secret."""
+    """File whose first line is the client secret."""
     oidc_claim: str = "sub"
-    """What the provider says of somebody that is the user's name here; nobody may change it there himself."""
+    """Claim of the provider used as the user name here; users must not be able to change it."""
     public_url: str | None = None
     """Address at which browsers find this server, such as ``https://twin.example.org``."""
     password_days: float | None = Field(default=None, gt=0.0)
     """Days after which a password must be replaced by another one; None for never."""
     raw_days: float | None = None
-    """Days for which the samples of observed records are kept, 0 for ever; None leaves the store's policy."""
+    """Days for which samples of observed records are stored, 0 without limit; None keeps the store's policy."""
     observation_days: float | None = Field(default=None, ge=0.0)
     """The same for what each record said; its day stays, and is not summed anew after that."""
     job_days: float | None = Field(default=None, ge=0.0)
@@ -94,35 +96,36 @@ class ServiceSettings(BaseSettings):
     slow_query_s: float = Field(default=1.0, gt=0.0)
     """Time from which on a query of the database is counted, and told to the log."""
     upload_limit_bytes: int = 512 * 2**20
-    """Largest file that is taken."""
+    """Largest size of an uploaded file."""
     samples_limit: int = 200_000_000
-    """Most samples, over all channels, that a file may expand to."""
+    """Largest number of samples of a file, over all channels."""
     parse_limit_s: float = 120.0
-    """Time after which reading a file, or evaluating a twin, is given up."""
+    """Time limit for reading a file or evaluating a twin."""
     freedoms_limit: int = 10_000
-    """Most freedoms of a twin's structure: at 6,200 every worker takes three CPU seconds to load it."""
+    """Largest number of degrees of freedom of a twin; with 6,200 each worker needs 3 s of CPU time to load
+    it."""
     observe_limit_s: float = 600.0
-    """Time after which observing a record is given up."""
+    """Time limit for observing a record."""
     worker_memory_bytes: int = 3 * 2**30
-    """Memory of one worker: no file may expand beyond it; a worker that observes beyond it is ended."""
+    """Memory limit of one worker, for reading a file and for observing; a worker above it is ended."""
 
     @property
     def database_url(self) -> str:
-        """URL of the database, stated or of the store's own."""
+        """URL of the given database or of the store's own."""
         return self.database or sqlite_url(self.store)
 
     @property
     def loopback(self) -> bool:
-        """Whether nobody but this machine can reach the server."""
+        """Whether only this machine can reach the server."""
         return is_loopback(self.host)
 
     @property
     def secure(self) -> bool:
-        """Whether what browsers send is encrypted on its way."""
+        """Whether requests of browsers are encrypted."""
         return self.tls_certificate is not None or self.behind_proxy
 
     def trusts(self, host: str) -> bool:
-        """Whether a proxy is at the other end of a connection, and its word is taken."""
+        """Whether the other end of a connection is a trusted proxy."""
         try:
             peer = ipaddress.ip_address(host)
         except ValueError:
@@ -131,12 +134,12 @@ class ServiceSettings(BaseSettings):
 
     @property
     def spool(self) -> Path:
-        """Folder of files on their way in."""
+        """Folder of files being imported."""
         return self.store / "spool"
 
     @property
     def inbox(self) -> Path:
-        """Folder with a folder of every asset, into which its files may be dropped."""
+        """Folder with a subfolder for the files of each asset."""
         return self.store / "inbox"
 
     @property
@@ -146,17 +149,17 @@ class ServiceSettings(BaseSettings):
 
     @property
     def models(self) -> Path:
-        """Folder in which the twins' files are laid out for workers."""
+        """Folder with the extracted files of twins for workers."""
         return self.store / "models"
 
 
 def read_settings(**given: Any) -> ServiceSettings:
-    """Return the settings that are given, completed by the environment.
+    """Return the given settings, completed from the environment.
 
     Raises
     ------
     InputError
-        If one is not what it must be.
+        If one is not valid.
     """
     try:
         return ServiceSettings(**given)
@@ -169,18 +172,18 @@ def read_settings(**given: Any) -> ServiceSettings:
 
 
 def checked_url(url: str, field: str) -> str:
-    """Return an address, if what is sent there can be read by nobody else.
+    """Return an address after checking that requests to it are protected.
 
     Raises
     ------
     InputError
-        If it is neither of https nor of this machine.
+        If it is neither https nor of this machine.
     """
     parts = urlsplit(url)
     safe = parts.scheme == "https" or (parts.scheme == "http" and is_loopback(parts.hostname or ""))
     require(
         safe and bool(parts.hostname) and not parts.query and not parts.fragment and "@" not in parts.netloc,
-        "what is sent there could be read on its way",
+        "requests to this address would not be encrypted",
         field=field,
         value=url,
         allowed="https://HOST…, or http:// of this machine",
@@ -189,7 +192,7 @@ def checked_url(url: str, field: str) -> str:
 
 
 def is_loopback(host: str) -> bool:
-    """Tell whether a host name or address is this machine's own."""
+    """Return whether a host name or address is a loopback one."""
     if host == "localhost":
         return True
     try:
@@ -199,13 +202,13 @@ def is_loopback(host: str) -> bool:
 
 
 def refuse_exposed(settings: ServiceSettings, users: bool) -> None:
-    """Refuse to listen where others can reach, unless users are defined and TLS protects their passwords.
+    """Raise an error if others could reach the server without users or TLS.
 
     Raises
     ------
     InputError
-        If the host is not loopback, or a proxy passes others on, and there are no users; or if there is no
-        TLS of our own or of a proxy.
+        If the host is not loopback, or there is a proxy, and no user is defined or there is no TLS by the
+        server or the proxy.
     """
     require(
         (settings.loopback and not settings.behind_proxy) or users,
@@ -221,5 +224,5 @@ def refuse_exposed(settings: ServiceSettings, users: bool) -> None:
         field="host",
         value=settings.host,
         allowed="127.0.0.1, or TLS",
-        remedy="give --tls-certificate and --tls-key, or --behind-proxy if a proxy ends TLS",
+        remedy="give --tls-certificate and --tls-key, or --behind-proxy if a proxy terminates TLS",
     )

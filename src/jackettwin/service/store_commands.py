@@ -1,4 +1,4 @@
-"""What the command line does with a store, beside a server or without one."""
+"""Operations of the command line on a store, with or without a running server."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def _opened(database: Engine, store: Path) -> OpenStore:
 
 
 def add_twin(database: Engine, store: Path, name: str, twin: Path, comment: str = "") -> dict[str, Any]:
-    """Add an asset or a version of it from a twin file on this machine; return what was added.
+    """Add an asset or a version of it from a local twin file, and return its document.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def add_twin(database: Engine, store: Path, name: str, twin: Path, comment: str 
 
 
 def adopt_version(database: Engine, store: Path, name: str, version: int) -> None:
-    """Make a version of an asset the one whose answers count.
+    """Adopt a version of an asset.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def adopt_version(database: Engine, store: Path, name: str, version: int) -> Non
 
 
 def archive_asset(database: Engine, store: Path, name: str, *, undo: bool = False) -> None:
-    """Archive an asset, or bring it back.
+    """Archive an asset, or undo this.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def archive_asset(database: Engine, store: Path, name: str, *, undo: bool = Fals
 
 
 def take_here(database: Engine, store: Path, asset: str, path: Path) -> Accepted:
-    """Read a file in this process and keep its record for a server to observe.
+    """Read a file in this process and store its record, which a server then observes.
 
     Raises
     ------
@@ -93,12 +93,12 @@ def _refuse_archived(connection: Connection, asset: str) -> None:
             "the asset is archived",
             field="asset",
             value=asset,
-            remedy="bring it back with `jackettwin asset archive NAME --undo --store STORE`",
+            remedy="restore it with `jackettwin asset archive NAME --undo --store STORE`",
         )
 
 
 def add_conditions(database: Engine, store: Path, asset: str, table: Path, **how: Any) -> tuple[int, int]:
-    """Keep the conditions of a table; return how many are new, and how many records are observed again.
+    """Store the conditions of a table; return the numbers of new ones and of records to observe again.
 
     Raises
     ------
@@ -122,7 +122,7 @@ def rebuild(
     observe: bool = False,
     progress: Callable[[str], None] = lambda _: None,
 ) -> dict[str, Any]:
-    """Make states again from stored observations, and queue raw records to be observed again if asked to."""
+    """Make states again from stored observations, and with ``observe`` queue raw records for observation."""
     opened = _opened(database, store)
     start = datetime(1900, 1, 1, tzinfo=UTC) if since is None else since.replace(tzinfo=UTC)
     with reading(database) as connection:
@@ -145,7 +145,7 @@ def rebuild(
 
 
 def _first_of_days(connection: Any, asset: str, model_hash: str, start: datetime) -> list[StoredObservation]:
-    """Return one observation of each UTC day that has any."""
+    """Return one observation of each UTC day with observations."""
     where = (observations.c.asset == asset, observations.c.model_hash == model_hash)
     query = select(observations).where(*where, observations.c.start_utc >= start)
     first: dict[str, StoredObservation] = {}

@@ -1,4 +1,4 @@
-"""What systemd is told of a service that it watches (``Type=notify``, ``WatchdogSec=``)."""
+"""Notifications to systemd (``Type=notify``, ``WatchdogSec=``)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from contextlib import suppress
 
 
 def tell_systemd(state: str) -> None:
-    """Send ``READY=1``, ``WATCHDOG=1`` or ``STOPPING=1`` to whoever started us, if that one listens."""
+    """Send ``READY=1``, ``WATCHDOG=1`` or ``STOPPING=1`` to the service manager, if there is one."""
     address = os.environ.get("NOTIFY_SOCKET", "")
     if address[:1] not in ("/", "@"):
         return

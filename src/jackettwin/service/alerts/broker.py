@@ -1,4 +1,4 @@
-"""Alerts to an MQTT broker."""
+"""Alerts through an MQTT broker."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ _TIMEOUT_S = 15.0
 
 
 class Topic(Schema):
-    """A broker and the topic below which each finding is published, retained by nobody, QoS 1."""
+    """A broker and the topic below which each finding is published with QoS 1, not retained."""
 
     host: str = Field(min_length=1)
     port: int | None = Field(default=None, ge=1, le=65535)
-    """Without it 8883 with TLS, 1883 without."""
+    """Default: 8883 with TLS, 1883 without."""
     tls: bool = True
     user: str | None = None
     topic: str = "jackettwin-alerts"
-    """``/ASSET/SEVERITY`` is put behind it."""
+    """``/ASSET/SEVERITY`` is appended to it."""
 
 
 class Broker(Topic):
@@ -44,21 +44,21 @@ class Broker(Topic):
         return f"{self.topic} at {self.host}"
 
     def check(self, folder: Path) -> None:
-        """Refuse what could not be sent.
+        """Raise an error on settings with which no message could be sent.
 
         Raises
         ------
         InputError
-            If the topic is none, a password would travel unencrypted, or a file cannot be read.
+            If the topic is not valid, a password would travel unencrypted, or a file cannot be read.
         """
         good = self.topic and not set(self.topic) & set("+#\0") and self.topic.isprintable()
-        require(good, "cannot be published to", field="topic", value=self.topic, allowed="no + and #")
+        require(good, "is not a topic for publishing", field="topic", value=self.topic, allowed="no + and #")
         require(
             not self.topic.startswith("jackettwin/") and self.topic != "jackettwin",
-            "this is where packets of samples come from",
+            "this topic is used for packets of samples",
             field="topic",
             value=self.topic,
-            remedy="take another one",
+            remedy="choose another one",
         )
         require(
             self.tls or self.user is None, "a password would travel unencrypted", field="tls", value=self.tls
@@ -73,7 +73,7 @@ class Broker(Topic):
         Raises
         ------
         OSError, NotDelivered
-            If the broker did not take all of them.
+            If the broker did not accept all of them.
         """
         client = mqtt.Client(CallbackAPIVersion.VERSION2)
         client.connect_timeout = _TIMEOUT_S
@@ -89,9 +89,9 @@ class Broker(Topic):
             for one in told:
                 one.wait_for_publish(_TIMEOUT_S)
                 if not one.is_published():
-                    raise NotDelivered("the broker does not acknowledge it")
+                    raise NotDelivered("the broker does not acknowledge the message")
         except (RuntimeError, ValueError) as error:
-            raise NotDelivered(f"the broker does not take it: {error}") from None
+            raise NotDelivered(f"the broker refuses the message: {error}") from None
         finally:
             client.disconnect()
             client.loop_stop()

@@ -1,4 +1,4 @@
-"""The ways by which people are told: a way is one file with a kind of its own, and a name in this line."""
+"""Channels of alerts: each has its own module and kind, and a name in this line."""
 
 from __future__ import annotations
 

@@ -21,11 +21,11 @@ _PORTS = {"starttls": 587, "tls": 465, "none": 25}
 
 
 class MailServer(Schema):
-    """A server that takes mail by SMTP, and who is written to."""
+    """An SMTP server, and the recipients."""
 
     host: str = Field(min_length=1)
     port: int | None = Field(default=None, ge=1, le=65535)
-    """Without it 587 with STARTTLS, 465 with TLS, 25 without."""
+    """Default: 587 with STARTTLS, 465 with TLS, 25 without."""
     security: Literal["starttls", "tls", "none"] = "starttls"
     user: str | None = None
     sender: str
@@ -37,9 +37,9 @@ class Mail(MailServer):
 
     kind: Literal["mail", "email"]
     ca: Path | None = None
-    """Certificates by which the server is known; without it those that the system trusts."""
+    """CA certificates that verify the server; default: those of the system."""
     password_file: Path | None = None
-    """Its first line is the user's password; beside the alerts file if the path is not absolute."""
+    """File whose first line is the user's password; a relative path starts at the alerts file."""
 
     @property
     def about(self) -> str:
@@ -47,18 +47,18 @@ class Mail(MailServer):
         return f"{', '.join(self.to)} by {self.host}"
 
     def check(self, folder: Path) -> None:
-        """Refuse what could not be sent.
+        """Raise an error on settings with which no message could be sent.
 
         Raises
         ------
         InputError
-            If an address is none, a password would travel unencrypted, or a file cannot be read.
+            If an address is not valid, a password would travel unencrypted, or a file cannot be read.
         """
         for field, address in [("sender", self.sender), *((f"to.{k}", one) for k, one in enumerate(self.to))]:
             plain = parseaddr(address)[1]
             require(
                 plain.count("@") == 1 and all(plain.split("@")) and address.isprintable(),
-                "not an address of e-mail",
+                "not an e-mail address",
                 field=field,
                 value=address,
                 allowed="NAME@HOST",
@@ -72,7 +72,7 @@ class Mail(MailServer):
         )
         require(
             (self.user is None) == (self.password_file is None),
-            "user and password_file belong together",
+            "user and password_file must be given together",
             field="password_file" if self.password_file is None else "user",
             remedy="give both or neither",
         )
@@ -86,7 +86,7 @@ class Mail(MailServer):
         Raises
         ------
         OSError, NotDelivered
-            If it was not taken.
+            If it was not accepted.
         """
         message = self._written(notice)
         port = self.port or _PORTS[self.security]
@@ -101,7 +101,7 @@ class Mail(MailServer):
         except smtplib.SMTPException as error:
             raise NotDelivered(f"the mail server refuses it: {error}") from None
         if refused:
-            raise NotDelivered(f"the mail server does not know {', '.join(refused)}")
+            raise NotDelivered(f"the mail server refuses {', '.join(refused)}")
 
     def _connected(self, port: int, context: ssl.SSLContext | None) -> smtplib.SMTP:
         if self.security == "tls":

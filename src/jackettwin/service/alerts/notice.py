@@ -1,4 +1,4 @@
-"""One message to people: findings in plain words."""
+"""A message to people with findings as sentences."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from dataclasses import dataclass
 from typing import Any
 
 MOST_LINES = 50
-"""Findings that a message says one by one; of more it says how many."""
+"""Largest number of findings that a message lists; of further ones it gives the number."""
 
 
 class NotDelivered(Exception):
-    """The other side was reached, and did not take the message."""
+    """The other side was reached but did not accept the message."""
 
 
 @dataclass(frozen=True)
 class Notice:
-    """What is told at once through a channel.
+    """A message through a channel.
 
     Attributes
     ----------
-    findings : in plain values, oldest first: asset, code, severity, subject, text, day, time_utc, key, and
-        ``unanswered_minutes`` of one that nobody took note of for so long
-    address : of the server as people reach it, or None
+    findings : as plain values, oldest first: asset, code, severity, subject, text, day, time_utc, key, and
+        ``unanswered_minutes`` if nobody acknowledged it for so long
+    address : of the server for users, or None
     """
 
     findings: Sequence[Mapping[str, Any]]
@@ -32,19 +32,19 @@ class Notice:
 
     @property
     def id(self) -> str:
-        """What the message is known by: the same findings, sent again after a death, are the same message."""
+        """Identity of the message, the same if the same findings are sent again after a restart."""
         keys = sorted(f"{f['key']} {f.get('unanswered_minutes', '')}" for f in self.findings)
         return hashlib.sha256("\n".join(keys).encode()).hexdigest()[:32]
 
     @property
     def severity(self) -> str:
-        """The worst of its findings."""
+        """The highest severity of its findings."""
         found = {finding["severity"] for finding in self.findings}
         return next(name for name in ("alarm", "warning", "info") if name in found)
 
     @property
     def title(self) -> str:
-        """What it is about, in a line."""
+        """One line on its subject."""
         assets = sorted({finding["asset"] for finding in self.findings})
         of = ", ".join(assets[:3]) + (f" and {len(assets) - 3} more" if len(assets) > 3 else "")
         if len(self.findings) == 1:
@@ -58,7 +58,7 @@ class Notice:
 
     @property
     def lines(self) -> list[str]:
-        """Its findings, a line each, and where to look."""
+        """A line for each finding, and a link."""
         told = [self._told(finding) for finding in self.findings[:MOST_LINES]]
         left = len(self.findings) - MOST_LINES
         return [*told, f"… and {left} more"] if left > 0 else told
@@ -72,7 +72,7 @@ class Notice:
         waited = finding.get("unanswered_minutes")
         parts = [
             f"{finding['severity'].upper()} {finding['asset']} {finding['day']}: {said(finding)}",
-            "" if waited is None else f" (nobody took note of it for {waited:g} minutes)",
+            "" if waited is None else f" (nobody acknowledged it for {waited:g} minutes)",
             "" if page is None else f" {page}",
         ]
         return _line("".join(parts), 1000)
@@ -88,6 +88,6 @@ def said(finding: Mapping[str, Any]) -> str:
 
 
 def _line(text: str, most: int) -> str:
-    """Return a text as one line: what strangers name things must not begin another one."""
+    """Return a text as one line, since names from outside must not contain a line break."""
     one = " ".join("".join(c if c.isprintable() else " " for c in text).split())
     return one if len(one) <= most else one[: most - 1] + "…"

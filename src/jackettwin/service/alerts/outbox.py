@@ -1,4 +1,4 @@
-"""What is on its way to people: found, sent, tried again, withdrawn."""
+"""Outbox of alerts: collects, sends, repeats and withdraws them."""
 
 from __future__ import annotations
 
@@ -41,15 +41,15 @@ log = logging.getLogger(__name__)
 _TURN_S = 2.0
 _FIRST_WAIT, _LONGEST_WAIT = timedelta(seconds=30), timedelta(hours=1)
 MOST_TRIES = 30
-"""A channel that fails is tried for a day, then what waits for it is given up."""
+"""Tries of a failing channel, about a day, before its pending alerts are dropped."""
 _AT_ONCE = 500
-"""Findings of one message; the rest is another."""
+"""Largest number of findings in one message."""
 _SILENCE = "silence"
-"""The origin of what is said of an asset that nothing comes from."""
+"""Origin of findings on assets that send no records."""
 
 
 class Outbox(Thread):
-    """A thread that tells people what was found, of several servers on one store one's."""
+    """Thread that sends alerts; of several servers on one store only one does."""
 
     def __init__(self, service: Service, file: Alerts | None, folder: Path) -> None:
         super().__init__(name="alerts", daemon=True)
@@ -59,21 +59,21 @@ class Outbox(Thread):
         self._looked_at: set[int] = set()
 
     def run(self) -> None:
-        """Turn until told to stop; a database that is away for a while is waited for."""
+        """Run until stopped, waiting while the database is not available."""
         while not self._stop_asked.wait(_TURN_S):
             try:
                 self.turn()
             except (SQLAlchemyError, OSError, InputError) as error:
                 log.warning("alerts wait: %s", str(error).partition("\n")[0])
             except Exception:
-                log.exception("alerts go on after a fault of ours")
+                log.exception("alerts continue after an internal error")
 
     def stop(self) -> None:
-        """Stop after the message that is being sent; what is not sent is sent by the next server."""
+        """Stop after the current message; the next server sends the remaining ones."""
         self._stop_asked.set()
 
     def turn(self) -> None:
-        """Look for what is new, and send what is due."""
+        """Collect new findings and send due alerts."""
         with reading(self._service.database) as connection:
             told = merged(connection, self._service.settings.store, self._file)
         if told is None:
@@ -88,7 +88,7 @@ class Outbox(Thread):
             self._send(name, list(group)[:_AT_ONCE])
 
     def _note_silence(self, connection: Connection) -> None:
-        """Say which assets nothing came from for too long, and take it back of those that sent again."""
+        """Add findings on assets without recent records, and withdraw those on assets that send again."""
         hours, now = self._told.silent_hours, self._service.now()
         if hours is None:
             return
@@ -113,7 +113,7 @@ class Outbox(Thread):
         journal.tell(connection, "finding", asset.name, row, now)
 
     def _note_new(self, connection: Connection) -> None:
-        """Have what was found since the last time told by the rules; before the first time, nothing."""
+        """Apply the rules to findings since the last call; the first call only marks the start."""
         seen = settings.get(connection, settings.ALERTED)
         if seen is None:
             newest = alerts.newest_finding(connection)
@@ -167,7 +167,7 @@ class Outbox(Thread):
 
     def _send(self, name: str, group: Sequence[alerts.Alert]) -> None:
         channel = self._told.channels.get(name)
-        problem = None if channel is not None else "there is no such channel any more"
+        problem = None if channel is not None else "the channel no longer exists"
         ids, now = [alert.id for alert in group], self._service.now()
         if channel is not None:
             notice = Notice([alert.message for alert in group], self._told.address)
@@ -176,7 +176,7 @@ class Outbox(Thread):
             if problem is None:
                 alerts.end(connection, ids, alerts.SENT, now)
                 return
-            log.warning("%d alerts are not delivered by %s: %s", len(ids), name, problem)
+            log.warning("%d alerts were not delivered by %s: %s", len(ids), name, problem)
             for alert in group:
                 wait = min(_FIRST_WAIT * 2 ** min(alert.tries, 20), _LONGEST_WAIT)
                 alerts.try_again(connection, [alert.id], now + wait, problem)
@@ -186,12 +186,12 @@ class Outbox(Thread):
 
 
 def tried_channels(file: Path) -> dict[str, str | None]:
-    """Send a message by each channel of an alerts file; return what went wrong, or None, by channel.
+    """Send a test message by each channel of an alerts file; return the error of each channel, or None.
 
     Raises
     ------
     InputError
-        If the file is not what it must be.
+        If the file is not valid.
     """
     told = read_alerts(file)
     return {name: tried(channel, told.address, file.parent) for name, channel in told.channels.items()}
@@ -211,7 +211,7 @@ def tried(channel: AnyChannel, address: str | None, folder: Path) -> str | None:
         "code": "try",
         "severity": "info",
         "subject": None,
-        "text": "this is a try: whoever reads it will be told what is found",
+        "text": "this is a test message: its recipients will receive alerts",
         "day": f"{now:%Y-%m-%d}",
         "time_utc": now.isoformat(),
         "params": {},
@@ -221,7 +221,7 @@ def tried(channel: AnyChannel, address: str | None, folder: Path) -> str | None:
 
 
 def _sent(channel: AnyChannel, notice: Notice, folder: Path) -> str | None:
-    """Send a message; return why it was not taken, or None."""
+    """Send a message; return the reason if it was not accepted, otherwise None."""
     try:
         channel.send(notice, folder)
     except (OSError, httpx.HTTPError, NotDelivered, InputError) as error:

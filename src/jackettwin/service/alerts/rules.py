@@ -1,4 +1,4 @@
-"""Who is told what, and when: the alerts file of a server."""
+"""Rules of a server's alerts: channels, recipients and times."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ from jackettwin.service.alerts.channels import AnyChannel
 
 SEVERITIES = ("info", "warning", "alarm")
 _FRESH = timedelta(days=7)
-"""A finding that is no alarm is not told of a day longer ago: records of years may be sent at once."""
+"""Largest age of findings other than alarms, as years of old records may be imported at once."""
 
 
 Clock = Annotated[str, Field(pattern=r"^([01]\d|2[0-3]):[0-5]\d$")]
 
 
 class QuietHours(Schema):
-    """When nobody is to be woken: what is due then is told afterwards, but for alarms."""
+    """Quiet hours, at whose end the messages due within them are sent; alarms are sent at once."""
 
     begin: Clock
-    """By the clock of ``zone``, as ``"22:00"``; ``end`` may be on the next day."""
+    """Time in ``zone``, as ``"22:00"``; ``end`` may be on the next day."""
     end: Clock
     zone: str = "UTC"
     also_alarms: bool = False
-    """Whether alarms wait, too."""
+    """Whether alarms are also delayed."""
 
     @model_validator(mode="after")
     def _check(self) -> QuietHours:
@@ -42,11 +42,11 @@ class QuietHours(Schema):
                 "no such time zone", field="zone", value=self.zone, allowed="e.g. UTC, Europe/Copenhagen"
             ) from None
         if self.begin == self.end:
-            raise InputError("quiet hours that end when they begin are none", field="end", value=self.end)
+            raise InputError("the quiet hours end when they begin", field="end", value=self.end)
         return self
 
     def after(self, moment: datetime) -> datetime:
-        """Return the moment itself, or when the quiet hours end that it lies in."""
+        """Return the time itself, or the end of the quiet hours if it is within them."""
         here = moment.astimezone(ZoneInfo(self.zone))
         begin, end = time.fromisoformat(self.begin), time.fromisoformat(self.end)
         clock, over_night = here.time(), begin > end
@@ -58,28 +58,28 @@ class QuietHours(Schema):
 
 
 class Escalation(Schema):
-    """Whom to tell what nobody took note of."""
+    """Channel for findings that nobody acknowledged."""
 
     channel: str
     after_minutes: float = Field(gt=0.0, le=100_000.0)
 
 
 class ChannelRule(Schema):
-    """Which findings are told through a channel, and when."""
+    """Rule that sends selected findings through a channel."""
 
     severity: Literal["info", "warning", "alarm"] = "alarm"
-    """The least that is told."""
+    """Least severity that is sent."""
     assets: list[str] | None = None
-    """Assets, and groups of them as ``@NAME``; without it all."""
+    """Assets, and groups of them as ``@NAME``; default: all."""
     codes: list[str] | None = None
-    """Codes of findings; without it all."""
+    """Codes of findings; default: all."""
     digest_minutes: int = Field(default=0, ge=0, le=10_080)
-    """All of so many minutes, counted from midnight UTC, is one message; 0 for at once."""
+    """Length in minutes of intervals from midnight UTC whose findings form one message; 0: send at once."""
     quiet: QuietHours | None = None
     escalate: Escalation | None = None
 
     def tells(self, finding: Mapping[str, Any], assets: frozenset[str] | None) -> bool:
-        """Tell whether a finding is one of this rule's, which names these assets; None for all."""
+        """Return whether this rule, applied to these assets (None: all), selects a finding."""
         return (
             SEVERITIES.index(finding["severity"]) >= SEVERITIES.index(self.severity)
             and (assets is None or finding["asset"] in assets)
@@ -87,7 +87,7 @@ class ChannelRule(Schema):
         )
 
     def due(self, finding: Mapping[str, Any], now: datetime) -> datetime:
-        """Return when a finding of now is to be told."""
+        """Return the time at which a present finding is due."""
         period = 60.0 * self.digest_minutes
         at = (
             now
@@ -105,23 +105,23 @@ class Rule(ChannelRule):
 
 
 _EPOCH = datetime(2020, 1, 6, tzinfo=UTC)
-"""A Monday's midnight, from which the periods of digests are counted."""
+"""Midnight of a Monday, from which the intervals of digests are counted."""
 
 
 def is_fresh(finding: Mapping[str, Any], now: datetime) -> bool:
-    """Tell whether a finding is worth telling now."""
+    """Return whether a finding is recent enough to send."""
     return finding["severity"] == "alarm" or bool(finding["time_utc"] > now - _FRESH)
 
 
 class Alerts(Schema):
-    """The alerts file: channels by name, rules on what goes where."""
+    """Alerts file: channels by name, and rules."""
 
     channels: dict[str, Annotated[AnyChannel, Field(discriminator="kind")]]
     rules: list[Rule]
     silent_hours: float | None = Field(default=6.0, gt=0.0, le=10_000.0)
-    """Hours without a new record after which an asset that sends none is an alarm; null for never."""
+    """Hours without a new record after which an asset raises an alarm; null for never."""
     address: str | None = None
-    """Of the server as people reach it, ``https://twin.example.org``: messages then link to its pages."""
+    """Address of the server for users, as ``https://twin.example.org``, used for links in messages."""
 
     @model_validator(mode="after")
     def _check(self) -> Alerts:
@@ -135,18 +135,18 @@ class Alerts(Schema):
         for name in self.channels:
             if len(name) > 64:
                 raise InputError(
-                    "a name of a channel is too long", field="channels", value=name, allowed="64 characters"
+                    "the name of a channel is too long", field="channels", value=name, allowed="64 characters"
                 )
         return self
 
 
 def read_alerts(path: Path) -> Alerts:
-    """Return an alerts file, whose channels have read their secrets.
+    """Read an alerts file, and check the settings and secrets of its channels.
 
     Raises
     ------
     InputError
-        If it, or a file that it names, is not what it must be: names file, field, value and what is allowed.
+        If it, or a file that it names, is not valid; the error names file, field, value and allowed values.
     """
     found = validate(Alerts, read_mapping(path, what="alerts file"), file=path)
     for name, channel in found.channels.items():

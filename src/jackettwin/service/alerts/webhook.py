@@ -1,4 +1,4 @@
-"""Alerts to an address of the web, in the shapes that chats and alert managers read, signed."""
+"""Alerts by signed HTTP requests in the formats of chats and alert managers."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ _TIMEOUT_S = 15.0
 
 
 def _plain(notice: Notice) -> dict[str, Any]:
-    """Return the findings as they are."""
+    """Return the findings unchanged."""
     return {"id": notice.id, "title": notice.title, "findings": [dict(f) for f in notice.findings]}
 
 
 def _slack(notice: Notice) -> dict[str, Any]:
-    """Return a message of an incoming webhook of Slack, whose text has three characters of its own."""
+    """Return a message of an incoming webhook of Slack, with its three special characters escaped."""
     escaped = ("\n".join(notice.lines)).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     return {"text": escaped}
 
 
 def _teams(notice: Notice) -> dict[str, Any]:
-    """Return a message with an adaptive card, as the workflows of Teams take it."""
+    """Return a message with an adaptive card, for a workflow of Teams."""
     colour = {"alarm": "Attention", "warning": "Warning", "info": "Default"}[notice.severity]
     title = {"type": "TextBlock", "text": notice.title, "wrap": True, "weight": "Bolder", "color": colour}
     body = [title, *({"type": "TextBlock", "text": line, "wrap": True} for line in notice.lines)]
@@ -49,7 +49,7 @@ def _teams(notice: Notice) -> dict[str, Any]:
 
 
 def _alertmanager(notice: Notice) -> dict[str, Any]:
-    """Return what Alertmanager sends to its own receivers, version 4 of it."""
+    """Return a body as Alertmanager sends to its receivers, version 4."""
     alerts = [_alert(notice, finding) for finding in notice.findings]
     common = {
         name: value
@@ -90,7 +90,7 @@ SHAPES: dict[str, Callable[[Notice], dict[str, Any]]] = {
     "teams": _teams,
     "alertmanager": _alertmanager,
 }
-"""What a body looks like, by the name of the shape."""
+"""Functions that make the body, by format."""
 
 
 class Hook(Schema):
@@ -105,11 +105,11 @@ class Webhook(Hook):
 
     kind: Literal["webhook"]
     url_file: Path | None = None
-    """Whose first line is the address: those of Slack and Teams are secrets themselves."""
+    """File whose first line is the address, since addresses of Slack and Teams are secret."""
     secret_file: Path | None = None
-    """Whose first line is the secret that bodies are signed with; ``whsec_`` before one in base64."""
+    """File whose first line is the signing secret; a secret in base64 has the prefix ``whsec_``."""
     ca: Path | None = None
-    """Certificates by which the other side is known; without it those that the system trusts."""
+    """CA certificates that verify the other side; default: those of the system."""
 
     @property
     def about(self) -> str:
@@ -118,23 +118,23 @@ class Webhook(Hook):
         return f"{known} as {self.shape}"
 
     def check(self, folder: Path) -> None:
-        """Refuse what could not be sent.
+        """Raise an error on settings with which no message could be sent.
 
         Raises
         ------
         InputError
-            If the address is none, or a file cannot be read.
+            If the address is not valid, or a file cannot be read.
         """
         require(
             (self.url is None) != (self.url_file is None),
-            "one of url and url_file is needed",
+            "either url or url_file is needed",
             field="url",
             remedy="give either",
         )
         place = urlsplit(self._url(folder))
         require(
             place.scheme in ("http", "https") and place.hostname,
-            "not an address of the web",
+            "not an HTTP address",
             field="url" if self.url_file is None else "url_file",
             value=self.url,
             allowed="https://HOST/PATH",
@@ -151,7 +151,7 @@ class Webhook(Hook):
         Raises
         ------
         httpx.HTTPError, NotDelivered
-            If it was not taken.
+            If it was not accepted.
         """
         body = json.dumps(SHAPES[self.shape](notice), ensure_ascii=False).encode()
         headers = {"Content-Type": "application/json", "webhook-id": notice.id}
@@ -165,7 +165,7 @@ class Webhook(Hook):
         ) as client:
             answer = client.post(self._url(folder), content=body, headers=headers)
         if not answer.is_success:
-            raise NotDelivered(f"the other side answers {answer.status_code}")
+            raise NotDelivered(f"the other side returns status {answer.status_code}")
 
     def _url(self, folder: Path) -> str:
         return self.url or secret_in(folder, self.url_file, "url_file") or ""
@@ -186,7 +186,7 @@ def signed(key: bytes, message_id: str, stamp: int, body: bytes) -> str:
 
 
 def signing_key(secret: str) -> bytes:
-    """Return the bytes of a secret: after ``whsec_`` it is base64, else it is taken as it is.
+    """Return the bytes of a secret, decoded from base64 after ``whsec_``, otherwise unchanged.
 
     Raises
     ------
@@ -199,5 +199,5 @@ def signing_key(secret: str) -> bytes:
     try:
         return base64.b64decode(coded, validate=True)
     except ValueError:
-        require(False, "not base64 after whsec_", field="secret_file", remedy="copy the secret anew")
+        require(False, "not base64 after whsec_", field="secret_file", remedy="copy the secret again")
         raise

@@ -1,4 +1,4 @@
-"""A twin file and every file it names, gathered into one bundle, and laid out again."""
+"""Bundles of a twin file with every file it names, and their extraction."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ if TYPE_CHECKING:
     from jackettwin.service.context import Place
 
 _LARGEST = 50 * 2**20
-"""Bytes of one file; structures, soil profiles and rotors are text of kilobytes."""
+"""Largest size of one file; structures, soil profiles and rotors are text files of kilobytes."""
 _WORD = re.compile(r"""["']([^"'\n]{1,200})["']|([A-Za-z0-9_./\\-]{1,200}\.[A-Za-z0-9]{1,8})""")
-"""What may be a file's name inside another text file: quoted, or with an ending."""
+"""Pattern of a file name inside another text file: quoted, or with an extension."""
 
 
 def bundle(twin: Path) -> dict[str, bytes]:
     """Return the files of a twin by their relative path, the twin file itself as ``twin.yaml``.
 
-    Records that the twin file lists are left out: they come in through an intake. Files that lie outside the
-    twin's folder are taken in under ``attached/``, and the twin file names them there.
+    Records are omitted, since they are imported separately. Files outside the twin's folder are stored under
+    ``attached/``, and the twin file's paths are changed accordingly.
 
     Raises
     ------
@@ -60,7 +60,7 @@ def bundle(twin: Path) -> dict[str, bytes]:
 
 
 def twin_folder(connection: Connection, service: Place, asset: str, version: int | None = None) -> Path:
-    """Return the folder in which the files of a version stand, by default of the adopted one."""
+    """Return the folder with the files of a version, by default of the adopted one."""
     found = assets.found_version(connection, asset, version)
     place = service.settings.models / found.bundle_hash
     if not place.is_dir():
@@ -77,7 +77,7 @@ def _walked(data: Any, take: Any) -> Any:
 
 
 def _existing(folder: Path, name: str) -> Path | None:
-    """Return the file that a word names, if it names one."""
+    """Return the file of this name, if it exists."""
     try:
         path = (folder / name).resolve()
         return path if path.is_file() else None
@@ -86,7 +86,7 @@ def _existing(folder: Path, name: str) -> Path | None:
 
 
 def _add(files: dict[str, bytes], path: Path, place: str) -> None:
-    """Take a file in, and those that it names in turn."""
+    """Add a file, and recursively those that it names."""
     if place in files:
         return
     content = path.read_bytes()
@@ -96,7 +96,7 @@ def _add(files: dict[str, bytes], path: Path, place: str) -> None:
             file=path,
             value=len(content),
             allowed=f"up to {_LARGEST} bytes",
-            remedy="records are not part of a twin: bring them in with `jackettwin intake`",
+            remedy="records are not part of a twin: import them with `jackettwin intake`",
         )
     files[place] = content
     here = Path(place).parent

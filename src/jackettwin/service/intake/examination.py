@@ -1,4 +1,4 @@
-"""A twin file is evaluated in a worker, within limits, before anything is written."""
+"""Evaluation of a twin file in a worker, within limits, before it is stored."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 
 
 def examined(place: Place, contents: Mapping[str, bytes]) -> workers.engine.TwinProfile:
-    """Return what a server must know of a twin, given as the files of its bundle.
+    """Return the profile of a twin, given as the files of its bundle.
 
     Raises
     ------
     InputError
-        If it cannot be read, names files that were not sent with it, or takes more freedoms, time or memory
-        than it may.
+        If it cannot be read, names files that were not sent with it, or exceeds the limits of degrees of
+        freedom, time or memory.
     NoWorker
         If every worker is busy.
     """
@@ -45,10 +45,10 @@ def examined(place: Place, contents: Mapping[str, bytes]) -> workers.engine.Twin
 def profile(
     connection: Connection, place: Place, asset: str, version: int | None = None
 ) -> workers.engine.TwinProfile:
-    """Return what is known of a version, by default of the adopted one.
+    """Return the profile of a version, by default of the adopted one.
 
-    It stands beside the version's files; a worker is asked for it where it does not, as in a store that was
-    just restored or upgraded.
+    It is stored with the version's files. If it is missing, as after a restore or an upgrade, a worker
+    computes it.
     """
     folder = twin_folder(connection, place, asset, version)
     if not workers.engine.profile_path(folder).exists():
@@ -58,7 +58,7 @@ def profile(
 
 @lru_cache(maxsize=256)
 def _read(path: Path) -> workers.engine.TwinProfile:
-    """Return a profile, kept: that of a version never changes."""
+    """Return a profile, cached since that of a version never changes."""
     return workers.engine.read_profile(path)
 
 
@@ -66,7 +66,7 @@ def _asked(place: Place, folder: Path) -> workers.engine.TwinProfile:
     settings = place.settings
     limits = (settings.freedoms_limit, settings.worker_memory_bytes)
     cluster = getattr(place, "cluster", None)
-    if cluster is None:  # the command line, whose user waits for nobody but himself
+    if cluster is None:  # the command line computes it in this process
         found = examine_twin(str(folder), *limits)
     else:
         try:

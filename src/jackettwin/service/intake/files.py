@@ -1,4 +1,4 @@
-"""Files to records of the store: read by a worker, kept by content, queued for every version that lives."""
+"""Import of files: read by a worker, stored by content, queued for every living version."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ if TYPE_CHECKING:
     from jackettwin.service.context import Place, Service
 
 Reader = Callable[[File], tuple[Parsed, ...]]
-"""What reads a file: a worker, or this process."""
+"""Function that reads a file, in a worker or in this process."""
 AHEAD = timedelta(days=7)
-"""How far ahead of our clock a record may begin: ours may be wrong, too, but not by years."""
+"""Largest time by which a record may begin after the present by this server's clock, which may be wrong."""
 LIVE = 10
-"""Priority of records as they arrive; what is observed anew waits behind them."""
+"""Priority of new records over those that are observed again."""
 _SUFFIXES = 60
-"""Longest file name that is kept of a client's: enough for its ending, which names the format."""
+"""Longest part of a client's file name that is kept, including its extension, which gives the format."""
 
 
 @dataclass(frozen=True)
 class Accepted:
-    """What became of a file: its record, or the last of several, the work on it, and whether any was new."""
+    """Result of an import: the record, or the last of several, its job, and whether any was new."""
 
     record_id: str
     job_id: int | None
@@ -44,7 +44,7 @@ class Accepted:
 
 
 def spooled(spool: Path, name: str, pieces: Iterator[bytes], description: bytes | None) -> Path:
-    """Write an upload into a folder of its own and return its path; only the name's last part is used."""
+    """Write an upload to its own folder and return its path; only the last part of the name is used."""
     folder = spool / secrets.token_hex(8)
     folder.mkdir(parents=True)
     path = folder / safe_name(name)
@@ -61,7 +61,7 @@ def spooled(spool: Path, name: str, pieces: Iterator[bytes], description: bytes 
 
 
 def safe_name(name: str) -> str:
-    """Return a file name without anything that a file system could take for a path."""
+    """Return a file name without characters of paths."""
     last = name.replace("\\", "/").rsplit("/", 1)[-1]
     kept = "".join(c if c.isalnum() or c in "._-" else "_" for c in last).lstrip(".")
     return kept[-_SUFFIXES:] or "record"
@@ -75,9 +75,9 @@ def discard(path: Path) -> None:
 def parse_here(service: Service) -> Reader:
     """Return the reader that uses the server's workers.
 
-    One that takes too long is ended. A worker that dies may have been killed: the file is read again, as
-    often as a record is tried. That there is no worker, or no room on the disk, is not the file's fault: that
-    is raised (``NoWorker``, ``OSError``), and the file can be sent again.
+    Reading that takes too long is stopped. After the death of a worker the file is read again, as often as a
+    record is tried. If there is no worker or no disk space, ``NoWorker`` or ``OSError`` is raised, and the
+    file can be sent again.
     """
 
     def parse(file: File) -> tuple[Parsed, ...]:
@@ -91,14 +91,14 @@ def parse_here(service: Service) -> Reader:
             except TimeoutError:
                 problem = {"detail": "the file could not be read in time", "field": "file"}
                 return (Parsed("", problem=problem),)
-            except Exception as error:  # whatever a reader dies of is the file's fault, not the server's
+            except Exception as error:  # any error of a reader is due to the file, not the server
                 if isinstance(error, OSError) and error.errno in DISK_FULL:
                     raise
                 name = type(error).__name__
                 if name not in LOST_WORKER:
                     break
         detail = f"the file could not be read ({name})"
-        problem = {"detail": detail, "field": "file", "remedy": "see which program wrote it"}
+        problem = {"detail": detail, "field": "file", "remedy": "check which program wrote it"}
         return (Parsed("", problem=problem),)
 
     return parse
@@ -107,7 +107,7 @@ def parse_here(service: Service) -> Reader:
 def accept(
     service_now: datetime, connection: Connection, asset: str, parsed: Parsed, source_name: str
 ) -> Accepted:
-    """Keep a record that was read, and queue it; the same content again changes nothing."""
+    """Store a record and queue it for observation; content that is stored already changes nothing."""
     adopted = assets.found_version(connection, asset)
     about = parsed.about
     record = records.StoredRecord(
@@ -140,7 +140,7 @@ def accept(
 def living(connection: Connection, asset: str, adopted: assets.Version) -> list[assets.Version]:
     """Return the versions that observe new records.
 
-    The adopted one and those after it, which wait for a person.
+    These are the adopted one and later ones, which may be adopted.
     """
     return [v for v in assets.all_versions(connection, asset) if v.version >= adopted.version]
 
@@ -148,9 +148,9 @@ def living(connection: Connection, asset: str, adopted: assets.Version) -> list[
 def take_file(
     place: Place, parse: Reader, asset: str, path: Path, source_name: str, by: str = ""
 ) -> Accepted:
-    """Read a file and keep its record, or those that a long one is cut into: all or none.
+    """Read a file and store its record, or all records into which a long one is divided, or none.
 
-    The audit log says ``by`` whom, if that is known.
+    ``by`` is the user in the audit log, if known.
     """
     settings = place.settings
     with reading(place.database) as connection:

@@ -1,4 +1,4 @@
-"""Files that appear in folders: taken once they stand still, whatever else is written beside them."""
+"""Import of files from watched folders, each once its size no longer changes."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from jackettwin.service.intake.files import Accepted
 log = logging.getLogger(__name__)
 
 STILL_S = 2.0
-"""A file whose size did not change for so long is written."""
+"""Time without a change of size after which a file is complete."""
 _LATER_S = 10.0
-"""After which a file is tried again that could not be taken now: it may be one of thousands."""
+"""Time after which an import that failed temporarily is tried again."""
 _IGNORED = (".json", ".tmp", ".part", ".swp", ".crdownload")
-"""Descriptions come with their record; the others are not finished."""
+"""Extensions of descriptions, which belong to a record, and of unfinished files."""
 
 
 def record_files(paths: Iterable[Path]) -> list[Path]:
-    """Return the files to take of some paths, folders opened, in a fixed order."""
+    """Return the files to import from paths of files and folders, in a fixed order."""
     found: list[Path] = []
     for path in paths:
         inside = sorted(path.rglob("*")) if path.is_dir() else [path]
@@ -33,10 +33,10 @@ def record_files(paths: Iterable[Path]) -> list[Path]:
 def watch_folders(
     paths: Iterable[Path], take: Callable[[Path], Accepted | None], stop: Callable[[], bool] = lambda: False
 ) -> None:
-    """Take what stands in folders and what appears, until told to stop; what ``take`` returns None of, later.
+    """Import existing and new files of folders until stopped; if ``take`` returns None, try again later.
 
-    ``watchfiles`` says that something happened; what is there is looked at each time, so that no event is
-    needed twice and none can be lost.
+    ``watchfiles`` only reports that there was a change; the folders are then listed, so that no event can be
+    lost.
     """
     folders = list(paths)
     seen: dict[Path, tuple[int, int]] = {}

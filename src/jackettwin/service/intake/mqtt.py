@@ -1,4 +1,4 @@
-"""Streams by MQTT: packets are acknowledged to the broker once they are committed."""
+"""Import of streams by MQTT; packets are acknowledged to the broker after their commit."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 SILENT_S = 120.0
-"""A stream of which nothing came for so long, by our stopwatch, is silent."""
+"""Time without packets, by the server's monotonic clock, after which a stream is silent."""
 _PORTS = {"mqtt": 1883, "mqtts": 8883}
 _BATCH = 500
 _REMEMBERED = 1000
 
 
 class MqttIntake:
-    """A subscription that survives reconnects.
+    """A persistent subscription.
 
-    The client keeps its session at the broker, and acknowledges by hand after the commit: what was on its way
-    when we died is sent again, and a packet that comes twice is one packet.
+    The client has a persistent session at the broker and acknowledges each message after its commit. Messages
+    that were not committed before a crash are sent again, and a repeated packet is stored once.
     """
 
     def __init__(self, service: Service, url: str) -> None:
@@ -48,14 +48,14 @@ class MqttIntake:
         place = urlsplit(url if "//" in url else f"mqtt://{url}")
         if place.scheme not in ("mqtt", "mqtts"):
             raise InputError(
-                "not a broker's address",
+                "not the address of a broker",
                 field="mqtt",
                 value=place.scheme,
                 allowed="mqtt[s]://[USER@]HOST[:PORT]",
             )
         if place.password is not None:
             raise InputError(
-                "a password in an address can be read by every user of this machine",
+                "every user of this machine can read a password in the address",
                 field="mqtt",
                 allowed="mqtt[s]://[USER@]HOST[:PORT]",
                 remedy="give --mqtt-password-file, or JACKETTWIN_SERVE_MQTT_PASSWORD in the environment",
@@ -76,7 +76,7 @@ class MqttIntake:
             self._client.tls_set_context(tls_context(*own, option="mqtt-"))
         self._client.reconnect_delay_set(1, 30)
         self._client.on_connect = self._subscribe
-        self._client.on_connect_fail = lambda *_: log.warning("the broker does not answer; it is asked again")
+        self._client.on_connect_fail = lambda *_: log.warning("the broker does not answer; trying again")
         self._client.on_message = lambda _client, _data, message: self._inbox.put(message)
         self._place = (place.hostname or "127.0.0.1", place.port or _PORTS[place.scheme])
         self._client.connect_async(*self._place, keepalive=30)
@@ -88,13 +88,13 @@ class MqttIntake:
         return bool(self._client.is_connected())
 
     def stop(self) -> None:
-        """Disconnect; the broker keeps what comes meanwhile."""
+        """Disconnect; the broker stores messages meanwhile."""
         self._client.disconnect()
         self._client.loop_stop()
         self._listening = False
 
     def leave(self) -> None:
-        """Leave the broker to another server, which finds all that was not acknowledged."""
+        """Disconnect so that another server can take over, which receives all messages not acknowledged."""
         if self._listening:
             self.stop()
             self._held.clear()
@@ -103,16 +103,16 @@ class MqttIntake:
                     self._inbox.get_nowait()
 
     def turn(self) -> None:
-        """Commit what came and acknowledge it; a message that cannot be committed now is tried again.
+        """Commit received messages and acknowledge them; failed ones are tried again.
 
-        Of several servers on one store one listens, with the session that the broker keeps for the store.
+        Of several servers on one store only one subscribes, with the store's session at the broker.
         """
         if not self.service.has_intake:
             return self.leave()
         if not self._listening:
             self._listening = True
             self._client.connect_async(*self._place, keepalive=30)
-            self._client.loop_start()  # it connects, and reconnects for ever, in a thread of its own
+            self._client.loop_start()  # it connects and reconnects in its own thread
         while self._held or not self._inbox.empty():
             self._held += list(_waiting(self._inbox, _BATCH - len(self._held)))
             packets = [packet for message in self._held for packet in self._packets(message)]
@@ -120,8 +120,12 @@ class MqttIntake:
                 known = set(assets.asset_names(connection, archived=False))
                 ours = [p for p in packets if p.asset in known]
                 misdated = streams.add_packets(connection, ours, self.service.now())
-            self._leave_out(misdated, "their clock is days behind their stream, or ahead of it and of ours")
-            self._leave_out([p for p in packets if p.asset not in known], "there is no such living asset")
+            self._leave_out(
+                misdated, "their clock is days behind their stream, or ahead of it and of the server's"
+            )
+            self._leave_out(
+                [p for p in packets if p.asset not in known], "there is no such asset, or it is archived"
+            )
             for packet in packets:
                 self._heard[packet.asset] = time.monotonic()
             for message in self._held:
@@ -130,12 +134,12 @@ class MqttIntake:
 
     def _subscribe(self, client: mqtt.Client, _data: Any, _flags: Any, reason: Any, *_: Any) -> None:
         if reason.is_failure:
-            log.warning("the broker refuses us: %s", reason)
+            log.warning("the broker refuses the connection: %s", reason)
         else:
             client.subscribe(f"{TOPIC}/#", qos=1)
 
     def _packets(self, message: mqtt.MQTTMessage) -> list[Packet]:
-        """Return the packets of a message, none of one that is no message of ours."""
+        """Return the packets of a message; none if it is not valid."""
         try:
             return read_packets(message.topic, message.payload)
         except InputError as error:
@@ -144,20 +148,20 @@ class MqttIntake:
             return []
 
     def _leave_out(self, packets: list[Packet], why: str) -> None:
-        """Count packets that are not kept; why is said once of each asset."""
+        """Count rejected packets, and log the reason once for each asset."""
         self.refused += len(packets)
         for said in {(packet.asset, why) for packet in packets} - self._said:
-            log.warning("packets of %s are left out: %s", *said)
-            if len(self._said) < _REMEMBERED:  # names are strangers' to choose
+            log.warning("packets of %s are rejected: %s", *said)
+            if len(self._said) < _REMEMBERED:  # names come from outside, so their number is bounded
                 self._said.add(said)
 
     def silent(self, asset: str) -> bool:
-        """Tell whether nothing came of an asset for so long that its stream has ended."""
+        """Return whether an asset has been silent so long that its stream has ended."""
         return time.monotonic() - self._heard.setdefault(asset, time.monotonic()) > SILENT_S
 
 
 def _client_id(service: Service) -> str:
-    """Return by which name the broker keeps the session of a store, whichever of its servers listens."""
+    """Return the client identifier of a store's session at the broker, common to all its servers."""
     with writing(service.database) as connection:
         found = settings.get(connection, settings.MQTT_CLIENT)
         if found is None:

@@ -1,4 +1,4 @@
-"""Messages of loggers to packets: samples of one channel from a time on."""
+"""Parsing of loggers' messages into packets of one channel's samples."""
 
 from __future__ import annotations
 
@@ -23,17 +23,18 @@ def read_packets(topic: str, payload: bytes | bytearray) -> list[Packet]:
     Parameters
     ----------
     topic : ``jackettwin/{asset}/{channel}`` or ``jackettwin/{asset}``
-    payload : JSON or CBOR ``{t0_utc, rate_hz, channels: {name: [...]}}``; of one channel, ``samples`` will do
+    payload : JSON or CBOR ``{t0_utc, rate_hz, channels: {name: [...]}}``; for one channel, ``samples``
+        instead of ``channels``
 
     Raises
     ------
     InputError
-        If the topic or the payload is of another form.
+        If the topic or the payload has another form.
     """
     parts = topic.split("/")
     if len(parts) not in (2, 3) or parts[0] != TOPIC:
         raise InputError(
-            "not a topic of ours", field="topic", value=topic, allowed="jackettwin/ASSET[/CHANNEL]"
+            "not a topic of this server", field="topic", value=topic, allowed="jackettwin/ASSET[/CHANNEL]"
         )
     asset = assets.check_name(parts[1])
     try:
@@ -45,7 +46,7 @@ def read_packets(topic: str, payload: bytes | bytearray) -> list[Packet]:
             Packet(asset, str(channel)[:128], start, rate, np.asarray(samples, dtype=float).ravel())
             for channel, samples in named.items()
         ]
-    except Exception as error:  # whatever a stranger sends: one message must not hold up those behind it
+    except Exception as error:  # any invalid message must not block later ones
         raise InputError(
             "not a packet",
             field="payload",
@@ -54,7 +55,7 @@ def read_packets(topic: str, payload: bytes | bytearray) -> list[Packet]:
         ) from None
     if start.tzinfo is None:
         raise InputError(
-            "a packet's clock has no zone", field="t0_utc", value=body["t0_utc"], remedy="write ...Z"
+            "the packet's time has no zone", field="t0_utc", value=body["t0_utc"], remedy="write ...Z"
         )
     if (
         not all(packet.channel and packet.channel.isprintable() for packet in found)

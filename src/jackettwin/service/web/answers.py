@@ -1,4 +1,4 @@
-"""What the store knows, in the words of the API."""
+"""Responses of the API from the store."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 F = TypeVar("F", bound=FindingOut)
 RowNumber = Path(ge=1, le=2**53)
-"""A row's number, as JavaScript can hold it."""
+"""Number of a row within the exact integers of JavaScript."""
 
 
 def _row(cursor: str | None) -> int | None:
@@ -67,7 +67,7 @@ def modes(
 
 
 def _page(rows: list[Mapping[str, Any]], limit: int, made: Callable[[Mapping[str, Any]], T]) -> Page[T]:
-    """Return a page of rows, one of which, if there are more, is of the next page."""
+    """Return a page of rows; an extra row shows that there is a next page."""
     more = write_cursor(rows[limit - 1]["id"]) if len(rows) > limit else None
     return Page(items=[made(row) for row in rows[:limit]], next_cursor=more)
 
@@ -116,7 +116,7 @@ def finding_out(row: Mapping[str, Any], handled: handling.Handled, kind: type[F]
 def twin(
     connection: Connection, service: Service, version: assets.Version, at: datetime | None = None
 ) -> TwinOut:
-    """Return what the twin knows at a time, from the states of its days."""
+    """Return the state of a twin at a time, from the states of its days."""
     last = None if at is None else f"{at.astimezone(UTC):%Y-%m-%d}"
     model = profile(connection, service, version.asset, version.version)
     told = service.days.told(connection, version, model, last)
@@ -144,7 +144,7 @@ def supports(connection: Connection, version: assets.Version) -> SupportsOut:
 def compared(
     connection: Connection, service: Service, adopted: assets.Version, other: assets.Version
 ) -> ComparisonOut:
-    """Return what the adopted version knows beside another one, of the same records, and what differs."""
+    """Return the comparison of the adopted version with another one on the same records."""
     mine, theirs = twin(connection, service, adopted), twin(connection, service, other)
     changes = []
     for name, std, unit in (
@@ -166,7 +166,7 @@ def compared(
 
 
 def _logarithms(parameters: Mapping[str, Any]) -> dict[str, tuple[float, float | None]]:
-    """Return the logarithm of every parameter's median with its standard deviation, of its 90 % interval."""
+    """Return the logarithm of every parameter's median with the standard deviation from its 90 % interval."""
     from jackettwin.intervals import NORMAL_90
 
     found = {}
@@ -183,7 +183,7 @@ def _change(
     before: tuple[float, float | None] | None,
     after: tuple[float, float | None] | None,
 ) -> ChangeOut:
-    """Return a quantity of two versions, and how far they are apart in what the adopted one is sure of."""
+    """Return a quantity of two versions, and their difference in standard deviations of the adopted one."""
     if before is None or after is None:
         return ChangeOut(quantity=quantity, unit=unit, adopted=before and before[0], other=after and after[0])
     difference = after[0] - before[0]

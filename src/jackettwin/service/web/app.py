@@ -1,4 +1,4 @@
-"""The web application: routes under /api/v1, pages under /, and what every request passes through."""
+"""Web application: routes under /api/v1, pages under /, and the middleware of all requests."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from jackettwin.version import __version__
 
 API = "/api/v1"
 EXAMPLES: dict[str, Any] = json.loads(files("jackettwin.service").joinpath("examples.json").read_bytes())
-"""Of every schema one, by its name."""
+"""One example of every schema, by its name."""
 ROUTERS = (
     people.router,
     oidc.router,
@@ -57,13 +57,13 @@ _HEADERS = {
         "form-action 'self'; frame-ancestors 'none'"
     ),
 }
-"""Scripts and styles come from files of ours alone."""
+"""Headers of all responses; scripts and styles may only come from this server's files."""
 _FIELDS_BYTES = 2**20
-"""Room for what comes beside a file in a form."""
+"""Allowance for form fields other than the file."""
 _TEXT_BYTES = 32 * 2**20
-"""Of a request that is no form: twins with their files, years of conditions."""
+"""Largest request that is not a form, for twins with their files and years of conditions."""
 _FEW_BYTES = 2**16
-"""Of a request of somebody who sends no files: a name and a password."""
+"""Largest request of clients who may not send files, for a name and a password."""
 
 
 def create_app(service: Service) -> FastAPI:
@@ -80,7 +80,7 @@ def create_app(service: Service) -> FastAPI:
 
     app = FastAPI(
         title="jackettwin",
-        summary="A digital twin of jacket foundations that lives: records in, answers out.",
+        summary="Living digital twins of jacket foundations.",
         version=__version__,
         openapi_url=f"{API}/openapi.json",
         docs_url=None,
@@ -108,7 +108,7 @@ async def known_answer(request: Request, known: Exception) -> Response:
 
 
 def described(app: FastAPI) -> dict[str, Any]:
-    """Return the OpenAPI document, with an example of everything that is sent or answered."""
+    """Return the OpenAPI document, with an example of every request and response."""
     document = FastAPI.openapi(app)
     for name, schema in document["components"]["schemas"].items():
         of = name.removeprefix("Page_").removesuffix("_")
@@ -119,7 +119,7 @@ def described(app: FastAPI) -> dict[str, Any]:
 
 
 class BelievedProxies:
-    """Note who is at the other end of the connection, then take a trusted proxy's word on who asks."""
+    """Middleware that stores the peer's address and applies the headers of a trusted proxy."""
 
     def __init__(self, app: ASGIApp, service: Service) -> None:
         self._app, trusted = app, service.settings.trusted_proxies
@@ -134,7 +134,7 @@ class BelievedProxies:
 
 
 class Guard:
-    """Know who asks; refuse what is forged or too large; say to browsers what they may do with answers."""
+    """Middleware that authenticates, rejects forged or too large requests, and sets security headers."""
 
     def __init__(self, app: ASGIApp, service: Service) -> None:
         self._app, self._service = app, service
@@ -168,12 +168,13 @@ class Guard:
         await self._app(scope, bounded, with_headers)
 
     def _bounded(self, request: Request, receive: Receive) -> Receive:
-        """Return the request's body as far as who asks may send it: it is read before a route is asked.
+        """Return the receiver of the request's body with the limit of its sender, applied before the route.
 
         Raises
         ------
         ApiError
-            If it says itself that it is larger, or who asks may send no files, or nothing without login.
+            If the stated size exceeds the limit, which is small without login or without the right to send
+            files.
         """
         who = request.state.who
         if who is None and request.method not in auth.SAFE_METHODS and request.url.path != f"{API}/login":
@@ -201,7 +202,7 @@ class Guard:
 
 
 async def _who(service: Service, request: Request) -> auth.Who | None:
-    """Return who asks; without a database only the questions about the server's health are answered."""
+    """Return the sender of a request; without a database only health requests are answered."""
     try:
         return await asyncio.to_thread(
             auth.who_asks, request, service.database, service.settings, service.now()

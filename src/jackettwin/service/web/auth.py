@@ -1,4 +1,4 @@
-"""Who may do what: passwords, sessions, tokens, roles, forged requests, guessing."""
+"""Authentication and authorisation: passwords, sessions, tokens, roles, CSRF, limits on guessing."""
 
 from __future__ import annotations
 
@@ -30,29 +30,29 @@ SESSION = timedelta(hours=12)
 TOKEN = timedelta(days=365)
 SAFE_METHODS = ("GET", "HEAD", "OPTIONS")
 ATTEMPTS, ATTEMPTS_FROM, ATTEMPTS_OF = 5, 30, 20
-"""Failed logins a minute: of one name from one address, of any from it, and of one name from anywhere."""
+"""Failed logins per minute: of one name from one address, all from one address, and all of one name."""
 PROXY_HEADERS = (
     "forwarded",
     "via",
     "x-real-ip",
     *(f"x-forwarded-{x}" for x in ("for", "host", "proto", "server")),
 )
-"""One of these comes with whatever a proxy passes on, if it is told to say so."""
+"""Headers of which a proxy sends at least one, if it is so configured."""
 SHORTEST_PASSWORD = 12
-"""Characters; NIST SP 800-63B asks for 8 and advises more."""
+"""Least number of characters; NIST SP 800-63B requires 8 and recommends more."""
 
 _hasher = PasswordHasher()  # argon2id with the parameters of RFC 9106, second recommended choice
 
 
 @cache
 def nobodys_hash() -> str:
-    """Return a hash to verify where there is no such user, so that the time to answer tells nothing."""
+    """Return a hash to verify for unknown users, so that the response time does not reveal them."""
     return _hasher.hash(secrets.token_hex())
 
 
 @dataclass(frozen=True)
 class Who:
-    """Somebody who may do what a role may; ``kind`` is how we know."""
+    """Authenticated sender of a request, with a role; ``kind`` is the way of authentication."""
 
     name: str
     role: str
@@ -61,16 +61,16 @@ class Who:
     assets: rights.Assets = None
 
     def may(self, role: str) -> bool:
-        """Tell whether this role includes another one."""
+        """Return whether this role includes another one."""
         return people.ROLES.index(self.role) >= people.ROLES.index(role)
 
     def sees(self, asset: str) -> bool:
-        """Tell whether an asset is one of those that this one may see."""
+        """Return whether the sender may see an asset."""
         return self.assets is None or asset in self.assets
 
     @property
     def view(self) -> str:
-        """What tells this one's answers from those of somebody who sees other assets; empty who sees all."""
+        """Key of the visible assets, by which responses are cached; empty if all are visible."""
         return "" if self.assets is None else people.secret_hash(repr(sorted(self.assets)))[:16]
 
 
@@ -87,13 +87,13 @@ def hashed(password: str) -> str:
             "the password is too short",
             field="password",
             allowed=f"{SHORTEST_PASSWORD} characters or more",
-            remedy="take a few words that do not belong together",
+            remedy="use a few unrelated words",
         )
     return _hasher.hash(password)
 
 
 def checked_login(connection: Connection, name: str, password: str, now: datetime) -> people.User | None:
-    """Return the user whose password this is, or None; it takes as long for unknown names."""
+    """Return the user of this name and password, or None, in the same time for unknown names."""
     user = people.find_user(connection, name)
     try:
         _hasher.verify((user and user.password_hash) or nobodys_hash(), password)
@@ -105,17 +105,18 @@ def checked_login(connection: Connection, name: str, password: str, now: datetim
 def opened_session(
     service: Service, name: str, password: str, new: str | None, place: str
 ) -> tuple[people.User, str, str]:
-    """Return the user whose password this is, a session's secret and CSRF token; who tried is noted down.
+    """Return the user of this name and password, a session's secret and CSRF token; the attempt is logged.
 
-    A password that is older than the settings allow opens nothing but the way to another one.
+    An expired password only allows setting a new one.
 
     Raises
     ------
     ApiError
-        401 if it is nobody's, 403 if it is too old and none comes in its place, 429 after too many tries.
+        401 if name or password is wrong, 403 if the password has expired without a new one given, 429 after
+        too many tries.
     """
     limits, now, database = counted(service.login_attempts, name, place), service.now(), service.database
-    with reading(database) as connection:  # it takes its time, and guesses must not hold up those who write
+    with reading(database) as connection:  # hashing is slow, and must not block writers
         user = checked_login(connection, name, password, now)
     old = user is not None and _is_old(user, service.settings.password_days, now)
     replacement = hashed(_another(password, new)) if user is not None and new is not None else None
@@ -131,20 +132,20 @@ def opened_session(
         raise ApiError(401, "name or password is wrong")
     service.login_attempts.succeeded(limits)
     if not entered:
-        remedy = "log in with `new`, the password to have instead"
+        remedy = "log in with a new password in `new`"
         raise ApiError(403, "the password has expired", field="new", remedy=remedy)
     return user, *grant
 
 
 def _is_old(user: people.User, days: float | None, now: datetime) -> bool:
-    """Tell whether a password was set longer ago than it may be used; of an unknown time it counts as old."""
+    """Return whether a password has expired; one of unknown age has."""
     if days is None:
         return False
     return user.password_utc is None or user.password_utc < now - timedelta(days=days)
 
 
 def in_words(user: people.User) -> str:
-    """Return what a user may, as the audit log says it."""
+    """Return the rights of a user in words, for the audit log."""
     scope = "" if user.scope is None else f" of {', '.join(user.scope)}"
     until = "" if user.expires_utc is None else f" until {user.expires_utc:%Y-%m-%d}"
     return f"{user.role}{scope}{until}"
@@ -152,17 +153,17 @@ def in_words(user: people.User) -> str:
 
 def _another(old: str, new: str) -> str:
     if new == old:
-        raise ApiError(422, "this is the old password again", field="new", allowed="another one")
+        raise ApiError(422, "the new password equals the old one", field="new", allowed="another one")
     return new
 
 
 def counted(attempts: LoginAttempts, name: str, place: str) -> dict[str, int]:
-    """Count an attempt, and return as what; without a name it is counted by its place alone.
+    """Count a login attempt and return its keys; without a name only by address.
 
     Raises
     ------
     ApiError
-        429 after too many.
+        429 after too many attempts.
     """
     peer = attempts.place(place)
     limits = {f"from {peer}": ATTEMPTS_FROM}
@@ -175,7 +176,7 @@ def counted(attempts: LoginAttempts, name: str, place: str) -> dict[str, int]:
 
 
 def change_password(service: Service, name: str, old: str, new: str, place: str, secret: str) -> None:
-    """Change a user's password on the word of the old one; who holds a session alone does not know it.
+    """Change a user's password after verifying the old one, since a stolen session does not suffice.
 
     Raises
     ------
@@ -196,7 +197,7 @@ def change_password(service: Service, name: str, old: str, new: str, place: str,
 
 
 def secret_of(request: Request) -> str:
-    """Return the secret of the session or token that a request came with."""
+    """Return the secret of a request's session or token."""
     scheme, _, token = request.headers.get("authorization", "").partition(" ")
     return token.strip() if scheme.lower() == "bearer" else request.cookies.get(COOKIE, "")
 
@@ -213,7 +214,7 @@ def new_grant(
 
 
 def set_session(response: Response, secret: str, *, secure: bool) -> None:
-    """Give a browser the secret of its session, which no script and no other page may use."""
+    """Set the cookie of a session, not readable by scripts and not sent from other sites."""
     lasts = int(SESSION.total_seconds())
     response.set_cookie(COOKIE, secret, max_age=lasts, httponly=True, samesite="strict", secure=secure)
 
@@ -221,7 +222,8 @@ def set_session(response: Response, secret: str, *, secure: bool) -> None:
 def who_asks(request: Request, database: Engine, settings: ServiceSettings, now: datetime) -> Who | None:
     """Return who sent a request.
 
-    By bearer token, session, trusted proxy, or on an open loopback server anyone.
+    The sender is known by a bearer token, a session or a trusted proxy, or is anyone on an open loopback
+    server.
     """
     with reading(database) as connection:
         if not people.any_user(connection):
@@ -245,25 +247,25 @@ def who_asks(request: Request, database: Engine, settings: ServiceSettings, now:
 
 
 def unknown() -> ApiError:
-    """Return the answer to somebody of whom it is not known who it is."""
+    """Return the error for an unauthenticated sender."""
     return ApiError(
         401,
-        "log in, or send a token",
+        "log in or send a token",
         headers={"WWW-Authenticate": "Bearer"},
         remedy="POST /api/v1/login, or Authorization: Bearer; a server without users is asked as localhost",
     )
 
 
 def too_little(who: Who, role: str) -> ApiError:
-    """Return the answer to somebody whose role does not do."""
+    """Return the error for a sender whose role does not suffice."""
     return ApiError(403, f"this needs the role {role}; {who.name} is {who.role}")
 
 
 def allowed(role: str) -> Callable[..., Awaitable[Who]]:
-    """Return the dependency of a route that asks for a role.
+    """Return the dependency of a route that requires a role.
 
-    If its path names an asset, it asks for the right to see that one, too: one that may not be seen is not
-    told from one that there is not.
+    If the path names an asset, the right to see it is also required; an invisible asset gives the same error
+    as a missing one.
     """
 
     async def check(request: Request) -> Who:
@@ -282,7 +284,7 @@ def allowed(role: str) -> Callable[..., Awaitable[Who]]:
 
 
 def refuse_forged(request: Request, who: Who | None) -> None:
-    """Refuse what another page had a browser send: no CSRF token, or another origin.
+    """Raise an error on a request forged by another site: without CSRF token, or from another origin.
 
     Raises
     ------
@@ -293,17 +295,17 @@ def refuse_forged(request: Request, who: Who | None) -> None:
         return
     origin = request.headers.get("origin")
     if origin and urlsplit(origin).netloc != request.headers.get("host"):
-        raise ApiError(403, "sent from another page")
+        raise ApiError(403, "the request was sent from another site")
     if who is not None and who.kind == "session":
         given = request.headers.get("x-csrf-token", "")
         if not secrets.compare_digest(given.encode(), who.csrf.encode()):
-            raise ApiError(403, "the header X-CSRF-Token is missing or wrong; GET /api/v1/me tells it")
+            raise ApiError(403, "the header X-CSRF-Token is missing or wrong; GET /api/v1/me returns it")
 
 
 def _from_here(request: Request, settings: ServiceSettings) -> bool:
-    """Tell whether an open server was asked from its own machine, by its own name, and by no proxy.
+    """Return whether a request to an open server is from this machine, by its own name and without a proxy.
 
-    A page elsewhere may point its name at 127.0.0.1, and a proxy names its server so.
+    Another site's name may resolve to 127.0.0.1, which a proxy also uses.
     """
     passed_on = settings.behind_proxy or any(name in request.headers for name in PROXY_HEADERS)
     return not passed_on and is_loopback(request.state.peer) and is_loopback(request.url.hostname or "")

@@ -1,4 +1,4 @@
-"""Assets as the API and the command line speak of them."""
+"""Assets and versions for the API and the command line."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from jackettwin.service.context import Place
 
 _PART = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,99}")
-"""What a part of a file's name may be: no client reaches our file system by it."""
+"""Pattern of a part of a file's path, which keeps paths within their folder."""
 
 
 def add_text_version(
@@ -46,10 +46,10 @@ def add_version(
     *,
     if_fit: Callable[[Connection], None] = lambda connection: None,
 ) -> assets.Version:
-    """Check a twin and add it as a version; records that are there are observed by it when there is time.
+    """Check a twin and add it as a version; existing records are observed with it at low priority.
 
-    It is evaluated before the transaction begins in which it is added: nobody waits for it who writes.
-    ``if_fit`` raises if the asset takes no version; it is asked before and in that transaction.
+    The twin is evaluated before the transaction in which it is added, so that no writer waits. ``if_fit``
+    raises an error if the asset accepts no version; it is called before and in that transaction.
 
     Raises
     ------
@@ -69,11 +69,11 @@ def _check_names(contents: Mapping[str, bytes]) -> None:
     for path in contents:
         if not all(_PART.fullmatch(part) for part in path.split("/")):
             raise InputError(
-                "a file cannot be called so",
+                "the name of the file is not allowed",
                 field="files",
                 value=path[:100],
                 allowed="relative paths of letters, digits, ., _ and -",
-                remedy="rename it, here and in the twin file",
+                remedy="rename the file, also in the twin file",
             )
 
 
@@ -102,14 +102,14 @@ def _add(
     for record in records.all_with_samples(connection, name):
         work.enqueue(connection, version, record.record_id, service.now())
     if results.state_hashes(connection, name, model_hash):
-        ask_known(connection, service, version)  # the same model, asked under another law
+        ask_known(connection, service, version)  # the same model under another law
     people.note_down(connection, by, "asset version", f"{name}/{version.version}", "ok", service.now())
     journal.tell(connection, "asset", name, {"version": version.version}, service.now())
     return version
 
 
 def adopt(connection: Connection, service: Place, name: str, version: int, by: str) -> None:
-    """Make a version the one whose answers count, and ask what its days say of the supports.
+    """Adopt a version, and queue the estimation of its supports.
 
     Raises
     ------
@@ -123,9 +123,9 @@ def adopt(connection: Connection, service: Place, name: str, version: int, by: s
 
 
 def archive(connection: Connection, service: Place, name: str, by: str, *, undo: bool = False) -> None:
-    """Archive an asset, or bring it back: it takes nothing more; what it knew stays, and can be asked for.
+    """Archive an asset, or undo this. It accepts no more records; its results remain available.
 
-    What was taken of it before is still observed, when no other asset's record waits.
+    Its stored records are still observed, after those of other assets.
 
     Raises
     ------
@@ -145,9 +145,9 @@ def overview(
     archived: bool = False,
     seen: rights.Assets = None,
 ) -> list[AssetOut]:
-    """Return the assets that somebody may see, the archived ones, or one, with status.
+    """Return the visible assets, the archived ones, or one, with status.
 
-    It takes the same few queries however many there are.
+    The number of queries does not depend on the number of assets.
     """
     counts, said = records.count_by_status(connection, name), results.count_findings(connection, name)
     unseen = results.open_alarms(connection, name)
@@ -164,7 +164,7 @@ def one(connection: Connection, name: str) -> AssetOut:
 
 
 def versions_out(connection: Connection, asset: str) -> list[VersionOut]:
-    """Return every version of an asset as the API speaks of it, oldest first."""
+    """Return every version of an asset in the form of the API, oldest first."""
     seen, adopted = results.count_observations(connection, asset), assets.found_version(connection, asset)
     return [
         VersionOut(
@@ -177,7 +177,7 @@ def versions_out(connection: Connection, asset: str) -> list[VersionOut]:
 
 
 def version_out(connection: Connection, version: assets.Version) -> VersionOut:
-    """Return a version as the API speaks of it."""
+    """Return a version in the form of the API."""
     return next(v for v in versions_out(connection, version.asset) if v.version == version.version)
 
 

@@ -1,7 +1,7 @@
-"""What routes depend on: the service, a connection, who asks, and what a path names.
+"""Dependencies of routes: the service, a connection, the sender, and the objects of a path.
 
-A connection is opened before its route and closed after it, before the answer is sent (``scope="function"``):
-whoever reads an answer can rely on what it says being committed.
+A connection is opened before its route and closed before the response is sent (``scope="function"``), so that
+the contents of a response are committed.
 """
 
 from __future__ import annotations
@@ -26,23 +26,23 @@ _JSON = "application/json"
 
 
 async def get_service(request: Request) -> Service:
-    """Return the server's parts."""
+    """Return the server's components."""
     service: Service = request.app.state.service
     return service
 
 
 async def asker(request: Request) -> Who:
-    """Return who sent the request; routes ask for a role before."""
+    """Return the sender of the request, after the route has checked the role."""
     who: Who = request.state.who
     return who
 
 
 def at_most(requests: int) -> Any:
-    """Return a dependency that lets only so many requests proceed at once.
+    """Return a dependency that limits the number of simultaneous requests.
 
-    FastAPI runs dependencies and routes in 40 threads, each call in any of them. A request that holds a
-    connection needs another thread to go on; if all threads waited for connections, or for SQLite's only
-    writer, it would find none. The limits below leave some free.
+    FastAPI runs dependencies and routes in 40 threads. A request with a connection needs another thread to
+    continue; if all threads waited for connections, or for SQLite's only writer, there would be a deadlock.
+    The limits below leave some threads free.
     """
     limiter = CapacityLimiter(requests)
 
@@ -54,7 +54,7 @@ def at_most(requests: int) -> Any:
 
 
 CONNECTED, WAITING = at_most(12), at_most(16)
-"""Of requests that hold a connection, and of those that wait for a worker and hold none."""
+"""Limits of requests with a connection, and of those that wait for a worker without one."""
 
 Parts = Annotated[Service, Depends(get_service)]
 Asker = Annotated[Who, Depends(asker)]
@@ -64,13 +64,13 @@ RecordId = Annotated[str, Path(pattern=r"^[0-9a-f]{8,64}$", examples=["012345678
 
 
 def read(service: Parts, _: Annotated[None, CONNECTED]) -> Iterator[Connection]:
-    """Give a connection that sees the database as it was at one moment."""
+    """Yield a connection with a snapshot of the database."""
     with reading(service.database) as connection:
         yield connection
 
 
 def write(service: Parts, _: Annotated[None, CONNECTED]) -> Iterator[Connection]:
-    """Give a connection in a transaction, which is committed if the route succeeds."""
+    """Yield a connection in a transaction, which is committed if the route succeeds."""
     with writing(service.database) as connection:
         yield connection
 
@@ -80,7 +80,7 @@ Writes = Annotated[Connection, Depends(write, scope="function")]
 
 
 class KnownAnswer(Exception):
-    """Raised before a route is called whose answer is still in the cache."""
+    """Raised instead of calling a route whose response is in the cache."""
 
     def __init__(self, answer: Answer, headers: dict[str, str]) -> None:
         super().__init__()
@@ -88,10 +88,10 @@ class KnownAnswer(Exception):
 
 
 def read_version(request: Request, service: Parts, connection: Reads) -> Connection:
-    """Give a connection to read what changes with an event only: the newest event is the answer's version.
+    """Yield a connection for data that change only with an event; the newest event is the response's version.
 
-    The route is not called if the reader has this version or the cache has its answer. The version is read
-    before the answer: an event between the two makes a new version, and the next answer is made anew.
+    The route is not called if the client has this version or the cache has its response. The version is read
+    before the data: an event in between gives a new version, and the next response is made again.
     """
     version = journal.last_event(connection, request.path_params.get("asset"))
     who: Who = request.state.who
@@ -109,10 +109,10 @@ Told = Annotated[Connection, Depends(read_version, scope="function")]
 
 
 class Route(APIRoute):
-    """A route that refuses unknown query parameters and answers each reader only what that one lacks."""
+    """A route that rejects unknown query parameters and sends a response only if the client lacks it."""
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        """Return what answers a request."""
+        """Return the handler of a request."""
         answer = super().get_route_handler()
         known = {parameter.alias for parameter in self.dependant.query_params}
 
@@ -130,7 +130,7 @@ class Route(APIRoute):
 
 
 def _versioned(request: Request, response: Response) -> Response:
-    """Return an answer with its version, and keep it in the cache if it is one in JSON."""
+    """Return a response with its version, and cache it if it is JSON."""
     if response.media_type != _JSON:
         response.headers.update(request.state.tag)
         return response
@@ -140,7 +140,7 @@ def _versioned(request: Request, response: Response) -> Response:
 
 
 def sent(request: Request, answer: Answer, headers: dict[str, str]) -> Response:
-    """Return a response with an answer of the cache, compressed if the reader can unpack it."""
+    """Return a cached response, compressed if the client accepts this."""
     if "gzip" not in request.headers.get("accept-encoding", ""):
         return Response(answer.body, headers=headers, media_type=_JSON)
     packed = {**headers, "Content-Encoding": "gzip"}
@@ -148,7 +148,7 @@ def sent(request: Request, answer: Answer, headers: dict[str, str]) -> Response:
 
 
 def _by_content(request: Request, response: Response) -> Response:
-    """Return an answer in JSON with a tag of its content; one that the reader has is not sent again."""
+    """Return a JSON response with a tag of its content; status 304 if the client has it."""
     if response.media_type != _JSON or response.status_code != 200:
         return response
     headers = _tagged(content_tag(bytes(response.body)))
@@ -189,7 +189,7 @@ def known_version(connection: Connection, name: str, version: int | None) -> ass
 
 
 def known_record(connection: Connection, record_id: str, who: Who) -> records.StoredRecord:
-    """Return a record by its number, of an asset that may be seen; answers 404 if there is none."""
+    """Return a record of a visible asset by its number; answers 404 if there is none."""
     found = [record for record in records.records_with_id(connection, record_id) if who.sees(record.asset)]
     if not found:
         raise ApiError(404, "no such record", field="record_id", value=record_id)

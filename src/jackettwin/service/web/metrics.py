@@ -1,4 +1,4 @@
-"""What an operator can alarm on, in Prometheus' text form, read from the store at the moment of asking."""
+"""Metrics for operators in the text format of Prometheus, read from the store at each request."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 LATE_S = 3600.0
-"""A record that waits for so long is not observed: an hour of six records of every turbine is behind it."""
+"""Waiting time after which records are late; meanwhile each turbine sends six more."""
 
 
 def readiness(service: Service) -> Ready:
@@ -53,10 +53,10 @@ def readiness(service: Service) -> Ready:
 
 
 def problems(service: Service, found: Ready) -> list[str]:
-    """Return in words what keeps a server from doing all that it should."""
+    """Return sentences on the faults of a server."""
     late = found.queue_age_s is not None and found.queue_age_s > LATE_S
     said = {
-        "the dispatcher hangs: start the server anew": not service.turning(),
+        "the dispatcher hangs: restart the server": not service.turning(),
         "the database does not answer": not found.database,
         "the scheduler does not answer": not found.scheduler,
         "there is no worker": found.scheduler and found.workers == 0,
@@ -68,25 +68,25 @@ def problems(service: Service, found: Ready) -> list[str]:
 
 
 class _Measures:
-    """Measures of one answer."""
+    """Metrics of one response."""
 
     def __init__(self) -> None:
         self.registry = CollectorRegistry()
 
     def gauge(self, name: str, text: str, value: float, **labels: str) -> None:
-        """Say what something is now, once or for each of its labels."""
+        """Add a present value, possibly with labels."""
         known = self.registry._names_to_collectors.get(f"jackettwin_{name}")
         made = known or Gauge(f"jackettwin_{name}", text, list(labels), registry=self.registry)
         assert isinstance(made, Gauge)
         (made.labels(**labels) if labels else made).set(value)
 
     def counter(self, name: str, text: str, value: float) -> None:
-        """Say how often something happened since the server started; ``_total`` is added to its name."""
+        """Add a count of events since the start of the server; ``_total`` is appended to its name."""
         Counter(f"jackettwin_{name}", text, registry=self.registry).inc(value)
 
 
 def exposition(service: Service, seen: rights.Assets = None) -> bytes:
-    """Return all measures of the server, and of the assets that somebody may see, as text."""
+    """Return all metrics of the server and of the visible assets as text."""
     disable_created_metrics()  # type: ignore[no-untyped-call]  # made anew, counters began at no time
     measures, now = _Measures(), service.now()
     gauge, counter = measures.gauge, measures.counter
@@ -95,24 +95,24 @@ def exposition(service: Service, seen: rights.Assets = None) -> bytes:
         oldest = work.oldest_queued(connection)
         alerted = {} if seen is not None else alerts.count(connection)
     waited = 0.0 if oldest is None else max((now - oldest).total_seconds(), 0.0)
-    gauge("queue_age_seconds", "Time since the oldest record that is not observed yet was asked for", waited)
+    gauge("queue_age_seconds", "Time since the oldest unobserved record was queued", waited)
     for state, n in alerted.items():
-        gauge("alerts", "What is to be told to people, by state", n, state=state)
-    gauge("workers", "Workers there are", service.cluster.workers)
+        gauge("alerts", "Alerts by state", n, state=state)
+    gauge("workers", "Number of workers", service.cluster.workers)
     gauge("scheduler_reachable", "Whether the scheduler of the workers answers", service.cluster.reachable)
-    counter("worker_restarts", "Workers that were replaced, whatever they ended of", service.cluster.restarts)
-    gauge("disk_free_bytes", "Room left where the store is", service.free_bytes())
+    counter("worker_restarts", "Workers that were replaced, for any reason", service.cluster.restarts)
+    gauge("disk_free_bytes", "Free disk space of the store", service.free_bytes())
     broker = service.broker_connected()
     if broker is not None:
         gauge("broker_connected", "Whether the MQTT broker answers", float(broker))
-        counter("packets_refused", "Packets that could not be kept", service.packets_refused())
+        counter("packets_refused", "Packets that were rejected", service.packets_refused())
     return generate_latest(measures.registry) + generate_latest(service.latency.registry)
 
 
 def _measure_assets(measures: _Measures, connection: Connection, seen: rights.Assets, now: datetime) -> None:
     gauge = measures.gauge
     for state, n in work.queue_sizes(connection, seen).items():
-        gauge("work", "Pieces of work by state", n, state=state)
+        gauge("work", "Jobs by state", n, state=state)
     for name, counts in _seen(records.count_by_status(connection), seen):
         for status, n in counts.items():
             gauge("records", "Records by asset and status", n, asset=name, status=status)
@@ -120,7 +120,7 @@ def _measure_assets(measures: _Measures, connection: Connection, seen: rights.As
         for severity, n in said.items():
             gauge("findings", "Findings by asset and severity", n, asset=name, severity=severity)
     for name, n in _seen(results.open_alarms(connection), seen):
-        gauge("alarms_open", "Alarms that nobody took note of", n, asset=name)
+        gauge("alarms_open", "Alarms that nobody acknowledged", n, asset=name)
     for name, last in _seen({a.name: a.last_record_utc for a in assets.summaries(connection)}, seen):
         if last is not None:
             age = (now - last).total_seconds()
@@ -128,5 +128,5 @@ def _measure_assets(measures: _Measures, connection: Connection, seen: rights.As
 
 
 def _seen(of: Mapping[str, T], seen: rights.Assets) -> list[tuple[str, T]]:
-    """Return what there is of each asset that somebody may see."""
+    """Return the entries of the visible assets."""
     return [(name, value) for name, value in of.items() if seen is None or name in seen]

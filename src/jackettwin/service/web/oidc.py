@@ -1,4 +1,4 @@
-"""Log in at somebody else's: OpenID Connect, by a code and PKCE; who may do what is still ours to say."""
+"""Login by OpenID Connect with authorisation code and PKCE; rights are those of the local user."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ if TYPE_CHECKING:
 
 COOKIE = "jackettwin_oidc"
 COOKIE_S = 600
-"""How long somebody may take to log in at the provider."""
+"""Time limit for the login at the provider."""
 CALLBACK = "/api/v1/oidc/callback"
 _SIGNED_BY = ["RS256", "RS384", "RS512", "PS256", "PS384", "PS512", "ES256", "ES384", "ES512", "EdDSA"]
-"""Signatures of a key that the provider alone has: none of a secret that both know, and not none."""
+"""Allowed signature algorithms: only those with a private key of the provider."""
 _WAIT_S = 10.0
 _LEEWAY_S = 60
-"""By how much the provider's clock may differ from ours."""
+"""Allowed difference between the provider's clock and this server's."""
 
 
 @dataclass(frozen=True)
 class LoginUnderWay:
-    """A login that is under way: what the browser keeps, and must bring back."""
+    """A pending login, which the browser stores and must return."""
 
     state: str
     nonce: str
@@ -41,28 +41,28 @@ class LoginUnderWay:
 
     @classmethod
     def new(cls) -> LoginUnderWay:
-        """Return one that nobody can guess."""
+        """Return one with random secrets."""
         return cls(secrets.token_urlsafe(32), secrets.token_urlsafe(32), secrets.token_urlsafe(48))
 
     @classmethod
     def read(cls, cookie: str) -> LoginUnderWay | None:
-        """Return what a cookie says, or None."""
+        """Return the pending login in a cookie, or None."""
         parts = cookie.split(".")
         return cls(*parts) if len(parts) == 3 and all(parts) else None
 
     @property
     def cookie(self) -> str:
-        """What the browser keeps."""
+        """The cookie for the browser."""
         return ".".join((self.state, self.nonce, self.verifier))
 
 
 def begin(settings: ServiceSettings) -> tuple[str, LoginUnderWay]:
-    """Return where to send a browser, and what it is to bring back.
+    """Return the address of the provider for the browser, and the pending login.
 
     Raises
     ------
     ApiError
-        404 if nobody logs in elsewhere, 503 if the provider does not answer.
+        404 without an OpenID provider, 503 if it does not answer.
     """
     begun = LoginUnderWay.new()
     hashed = hashlib.sha256(begun.verifier.encode()).digest()
@@ -80,18 +80,18 @@ def begin(settings: ServiceSettings) -> tuple[str, LoginUnderWay]:
 
 
 def finish(service: Service, answer: Mapping[str, str], cookie: str, place: str) -> str:
-    """Return the secret of a session for whom the provider names; who tried is noted down.
+    """Return the secret of a session for the user named by the provider; the attempt is logged.
 
     Parameters
     ----------
-    answer : what the provider had the browser bring: ``code`` and ``state``, or ``error``
-    cookie : what the browser kept since :func:`begin`
+    answer : query parameters of the provider's redirect: ``code`` and ``state``, or ``error``
+    cookie : of the pending login, from :func:`begin`
     place : address of the browser
 
     Raises
     ------
     ApiError
-        403 if the answer is not the provider's, to this browser and for us, or names no user of ours; 429
+        403 if the answer is not from the provider for this browser and server, or names no local user; 429
         after too many tries; 503 if the provider does not answer.
     """
     limits = auth.counted(service.login_attempts, "", place)
@@ -102,12 +102,12 @@ def finish(service: Service, answer: Mapping[str, str], cookie: str, place: str)
         ):
             raise _refused("this browser did not begin this login, or it took too long")
         if "error" in answer:
-            raise _refused(f"the provider says {answer['error'][:64]!r}")
+            raise _refused(f"the provider reports {answer['error'][:64]!r}")
         name = _named(service.settings, answer, begun)
         with writing(service.database) as connection:
             user = people.find_user(connection, name)
             if user is None or not user.may_enter(now):
-                raise _refused("nobody of this name may log in here")
+                raise _refused("no user of this name may log in here")
             secret, _ = auth.new_grant(connection, name, "session", "browser", now, auth.SESSION)
         outcome = "ok"
     finally:
@@ -118,7 +118,7 @@ def finish(service: Service, answer: Mapping[str, str], cookie: str, place: str)
 
 
 def _named(settings: ServiceSettings, answer: Mapping[str, str], begun: LoginUnderWay) -> str:
-    """Return the name by which the provider knows who logged in, of a token that it signed for this login."""
+    """Return the user's name in the provider's signed token for this login."""
     places = _places(settings)
     if answer.get("iss", settings.oidc_issuer) != settings.oidc_issuer:  # RFC 9207
         raise _refused("this is another provider's answer")
@@ -138,20 +138,20 @@ def _named(settings: ServiceSettings, answer: Mapping[str, str], begun: LoginUnd
         data=form | ({} if secret else {"client_id": client}),
     )
     if status != 200:
-        raise _refused(f"the provider says {str(given.get('error'))[:64]!r}")
+        raise _refused(f"the provider reports {str(given.get('error'))[:64]!r}")
     _, keys = _asked(settings, "GET", places["jwks_uri"])
     claims = _claims(settings, str(given.get("id_token", "")), keys, begun.nonce)
     claim = settings.oidc_claim
     if claim == "email" and claims.get("email_verified") is not True:
-        raise _refused("the provider has not verified the address")
+        raise _refused("the provider has not verified the e-mail address")
     name = claims.get(claim)
     if not isinstance(name, str) or not name:
-        raise _refused(f"the provider does not say {claim!r}")
+        raise _refused(f"the provider's token has no claim {claim!r}")
     return name
 
 
 def _claims(settings: ServiceSettings, token: str, keys: Any, nonce: str) -> dict[str, Any]:
-    """Return what a token claims, if the provider signed it, lately, for us and for this login."""
+    """Return the claims of a token after checking signature, time, audience and nonce."""
     from joserfc import jwk, jwt
     from joserfc.errors import JoseError
 
@@ -168,10 +168,10 @@ def _claims(settings: ServiceSettings, token: str, keys: Any, nonce: str) -> dic
         read = jwt.decode(token, jwk.KeySet.import_key_set(keys), algorithms=_SIGNED_BY)
         said.validate(read.claims)
     except (JoseError, ValueError, TypeError, KeyError) as error:
-        raise _refused(f"the provider's token does not hold ({type(error).__name__})") from None
+        raise _refused(f"the provider's token is not valid ({type(error).__name__})") from None
     several = isinstance(read.claims["aud"], list) and len(read.claims["aud"]) > 1
     if read.claims.get("azp", None if several else settings.oidc_client) != settings.oidc_client:
-        raise _refused("the provider's token is for somebody else")
+        raise _refused("the provider's token is for another client")
     return dict(read.claims)
 
 
@@ -180,9 +180,9 @@ def _callback(settings: ServiceSettings) -> str:
 
 
 def _places(settings: ServiceSettings) -> dict[str, str]:
-    """Return where the provider says that it is asked what."""
+    """Return the provider's endpoints."""
     if settings.oidc_issuer is None:
-        raise ApiError(404, "nobody logs in elsewhere here", remedy="serve with --oidc-issuer")
+        raise ApiError(404, "no OpenID provider is configured", remedy="serve with --oidc-issuer")
     url = f"{settings.oidc_issuer.rstrip('/')}/.well-known/openid-configuration"
     _, found = _asked(settings, "GET", url)
     places = {name: str(found.get(name)) for name in ("authorization_endpoint", "token_endpoint", "jwks_uri")}
@@ -192,12 +192,12 @@ def _places(settings: ServiceSettings) -> dict[str, str]:
     except InputError as error:
         raise _unanswered(settings, error) from None
     if found.get("issuer") != settings.oidc_issuer:
-        raise _unanswered(settings, ValueError("it names itself otherwise"))
+        raise _unanswered(settings, ValueError("its issuer differs"))
     return places
 
 
 def _asked(settings: ServiceSettings, method: str, url: str, **more: Any) -> tuple[int, dict[str, Any]]:
-    """Return the status of an answer of the provider, and the JSON object that it is."""
+    """Return status and JSON object of a response of the provider."""
     import httpx
 
     try:
@@ -211,7 +211,7 @@ def _asked(settings: ServiceSettings, method: str, url: str, **more: Any) -> tup
 
 
 def check_settings(settings: ServiceSettings) -> None:
-    """Refuse settings by which nobody could log in elsewhere, or not safely.
+    """Raise an error on incomplete or unsafe settings of the OpenID provider.
 
     Raises
     ------
@@ -228,14 +228,16 @@ def check_settings(settings: ServiceSettings) -> None:
 
 
 def _secret(settings: ServiceSettings) -> str:
-    """Return the secret by which the provider knows us."""
+    """Return the client secret."""
     return secret_of(settings.oidc_secret_file, settings.oidc_secret, what="secret file")
 
 
 def _refused(why: str) -> ApiError:
-    return ApiError(403, f"not logged in: {why}", remedy="begin again at /login")
+    return ApiError(403, f"not logged in: {why}", remedy="start again at /login")
 
 
 def _unanswered(settings: ServiceSettings, error: Exception) -> ApiError:
-    said = f"the provider {settings.oidc_issuer} does not answer as one ({type(error).__name__})"
+    said = (
+        f"the provider {settings.oidc_issuer} does not answer as an OpenID provider ({type(error).__name__})"
+    )
     return ApiError(503, said, headers={"Retry-After": "30"})

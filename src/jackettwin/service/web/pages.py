@@ -1,4 +1,4 @@
-"""What a browser gets: the window, as ``make app`` builds it, and each turbine's newest report."""
+"""Pages for browsers: the window built by ``make app``, and each turbine's newest report."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _KINDS = {"html": "text/html", "js": "text/javascript", "css": "text/css"}
 _FOR_EVER = {"Cache-Control": "public, max-age=31536000, immutable"}
 _UNBUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>jackettwin</title>
 <h1>The window is not built</h1>
-<p>This installation was made from the sources, which do not hold the pages. With Node 20 or newer, run
+<p>This installation was made from the sources, which do not contain the pages. With Node 20 or newer, run
 <code>make app</code> in the repository and load this page again.</p>
 <p>The server itself works: its API is described by <a href="/api/v1/openapi.json">a document</a>.</p>
 </html>"""
@@ -37,7 +37,7 @@ _UNBUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>jacket
 
 @cache
 def _built() -> dict[str, bytes]:
-    """Return the files of the window by name; empty if it is not built. No name asked for becomes a path."""
+    """Return the files of the window by name, so that no request becomes a path; empty if not built."""
     folder = files("jackettwin.service") / "window"
     if not (folder / "index.html").is_file():
         return {}
@@ -51,12 +51,14 @@ def report(
 ) -> Response:
     """The newest report on a turbine, as ``jackettwin run`` writes it, of all records in the store.
 
-    It brings its own scripts; in a sandbox they can reach nothing of ours, whatever a twin file is called.
+    It contains its own scripts; a sandbox keeps them from this server's data.
     """
     known = known_version(connection, asset, version)
     page = results.find_report(connection, asset, known.version)
     if page is None:
-        raise ApiError(404, "no report yet: it is written when no record waits", field="asset", value=asset)
+        raise ApiError(
+            404, "there is no report yet; it is written when no record is waiting", field="asset", value=asset
+        )
     with writing(parts.database) as noting:
         people.note_down(
             noting, who.name, "download", f"report of {asset}/{known.version}", "ok", parts.now()
@@ -66,7 +68,7 @@ def report(
 
 @router.get("/window/assets/{name}", responses=answers(404))
 def part_of_the_window(name: Annotated[str, Path(max_length=100)]) -> Response:
-    """A script or style of the window; its name changes with what it holds."""
+    """A script or style of the window; its name changes with its content."""
     content = _built().get(name)
     if content is None:
         raise ApiError(404, "no such file", field="name", value=name)
@@ -82,7 +84,7 @@ def part_of_the_window(name: Annotated[str, Path(max_length=100)]) -> Response:
 @router.get("/users")
 @router.get("/assets/{path:path}")
 def window() -> HTMLResponse:
-    """The window: one page that reads its own address, and asks the API as whoever is logged in."""
+    """The window: one page that reads its own address, and calls the API with the session of the user."""
     page = _built().get("index.html")
     if page is None:
         return HTMLResponse(_UNBUILT, status_code=503)

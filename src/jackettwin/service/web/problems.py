@@ -20,7 +20,7 @@ MEDIA_TYPE = "application/problem+json"
 
 
 class ProblemDocument(BaseModel):
-    """What was wrong, where, and what to do."""
+    """Error with its place and remedy."""
 
     model_config = ConfigDict(
         json_schema_extra={
@@ -65,7 +65,7 @@ TITLES = {
 
 
 class ApiError(Exception):
-    """Answer a request with a problem document."""
+    """Error that is sent as a problem document."""
 
     def __init__(
         self, status: int, detail: str, *, headers: dict[str, str] | None = None, **members: Any
@@ -76,21 +76,21 @@ class ApiError(Exception):
 
 
 def no_database() -> ApiError:
-    """Return the answer while the database is away: what was asked can be asked again."""
+    """Return the error while the database is not available; the request can be repeated."""
     return ApiError(503, "the database does not answer; try again soon", headers={"Retry-After": "5"})
 
 
 def disk_full() -> ApiError:
-    """Return the answer where nothing more can be written."""
+    """Return the error if the disk is full."""
     return ApiError(
         507,
         "nothing can be written: the disk of the store is full, or read-only",
-        remedy="make room, or keep samples for fewer days (`serve --raw-days`); see the system's log",
+        remedy="free disk space, or store samples for fewer days (`serve --raw-days`); see the system's log",
     )
 
 
 def answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """Return the declaration of the problems a route may answer with."""
+    """Return the declaration of the errors of a route."""
     return {
         status: {
             "description": TITLES[status],
@@ -101,9 +101,9 @@ def answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
 
 
 def register(app: FastAPI) -> None:
-    """Have every error of an application answered by a problem document."""
-    not_kept = "a text holds characters that cannot be kept"  # half a character; in PostgreSQL, a NUL
-    busy = "every worker is busy; nothing was kept, send it again"
+    """Make an application answer every error by a problem document."""
+    not_kept = "a text contains characters that cannot be stored"  # half a character; in PostgreSQL, a NUL
+    busy = "every worker is busy and nothing was stored; send the request again"
     made: dict[type[Exception], Callable[[Any], Response]] = {
         ApiError: answered,
         InputError: lambda error: answered(ApiError(422, **problem_of(error))),
@@ -114,8 +114,8 @@ def register(app: FastAPI) -> None:
         UnicodeEncodeError: lambda _: answered(ApiError(422, not_kept)),
         NoWorker: lambda _: answered(ApiError(503, busy, headers={"Retry-After": "30"})),
         OSError: _disk_full,
-        # no more than that is said; the log has the rest
-        Exception: lambda _: answered(ApiError(500, "a fault of ours")),
+        # details are only in the log
+        Exception: lambda _: answered(ApiError(500, "internal error of the server")),
     }
     for kind, answer in made.items():
         app.add_exception_handler(kind, _handler(answer))
@@ -134,7 +134,7 @@ def _answer(problem: ProblemDocument, headers: dict[str, str] | None = None) -> 
 
 
 def answered(error: ApiError) -> Response:
-    """Return the answer that an error is."""
+    """Return the response of an error."""
     return _answer(error.problem, error.headers)
 
 
@@ -147,7 +147,7 @@ def _disk_full(error: OSError) -> Response:
 def _http_error(error: StarletteHTTPException) -> Response:
     title = TITLES.get(error.status_code, "Error")
     headers = dict(error.headers) if error.headers else None
-    if error.status_code == 304:  # the reader has the answer
+    if error.status_code == 304:  # the client has the response
         return Response(status_code=304, headers=headers)
     return _answer(ProblemDocument(title=title, status=error.status_code, detail=str(error.detail)), headers)
 

@@ -1,4 +1,4 @@
-"""What the API answers with."""
+"""Schemas of requests and responses of the API."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from pydantic import AwareDatetime, BaseModel, Field, FiniteFloat
 
 T = TypeVar("T")
 _FIRST, _LAST = datetime(1900, 1, 1, tzinfo=UTC), datetime(9000, 1, 1, tzinfo=UTC)
-"""Times that a database can keep and a zone can shift."""
+"""Range of times that a database can store and a time zone can shift."""
 
 
 class Page(BaseModel, Generic[T]):
-    """Part of a list, and where the next part begins."""
+    """Part of a list, and the cursor of the next part."""
 
     items: list[T]
     next_cursor: str | None = None
@@ -28,12 +28,12 @@ class Login(BaseModel):
         default=None,
         min_length=12,
         max_length=1024,
-        description="The password to have instead, asked for once this one has expired.",
+        description="The new password, required once this one has expired.",
     )
 
 
 class Me(BaseModel):
-    """Who you are, and the token that a browser sends back with what it changes."""
+    """User of the request, and the CSRF token that a browser sends with changes."""
 
     name: str
     role: Literal["viewer", "engineer", "admin"]
@@ -46,10 +46,13 @@ class NewUser(BaseModel):
     name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._@-]{0,63}$")
     role: Literal["viewer", "engineer", "admin"]
     password: str | None = Field(
-        default=None, min_length=12, max_length=1024, description="Without one the user logs in by OIDC."
+        default=None,
+        min_length=12,
+        max_length=1024,
+        description="Without a password the user logs in by OIDC.",
     )
     assets: list[str] | None = Field(
-        default=None, max_length=10_000, description="Those it may see, groups as @NAME; null for all."
+        default=None, max_length=10_000, description="Visible assets, groups as @NAME; null for all."
     )
     expires_utc: AwareDatetime | None = Field(default=None, ge=_FIRST, le=_LAST)
 
@@ -79,14 +82,14 @@ class UserOut(BaseModel):
 
 
 class NewPassword(BaseModel):
-    """One's own password, and the one to have instead."""
+    """The user's present and new password."""
 
     old: str = Field(max_length=1024)
     new: str = Field(min_length=12, max_length=1024)
 
 
 class AuditOut(BaseModel):
-    """Who did what, when, and what came of it."""
+    """Action of a user, with time and result."""
 
     id: int
     time_utc: datetime
@@ -97,30 +100,32 @@ class AuditOut(BaseModel):
 
 
 class NewToken(BaseModel):
-    """A token to make for a machine."""
+    """A token to create for a machine."""
 
     label: str = Field(default="", max_length=128)
     days: int = Field(default=365, ge=1, le=3650)
 
 
 class Token(BaseModel):
-    """A token; it is shown this once."""
+    """A new token, which is shown only once."""
 
     token: str
     expires_utc: datetime
 
 
 class AssetOut(BaseModel):
-    """A turbine and how it is."""
+    """A turbine with its status."""
 
     name: str
     version: int
     model_hash: str
     created_utc: datetime
     last_record_utc: datetime | None
-    archived_utc: datetime | None = Field(default=None, description="Since when it takes nothing more.")
-    records: dict[str, int] = Field(description="How many records have each status.")
-    findings: dict[str, int] = Field(description="How many findings there are of each severity.")
+    archived_utc: datetime | None = Field(
+        default=None, description="Time from which it accepts no more records."
+    )
+    records: dict[str, int] = Field(description="Number of records by status.")
+    findings: dict[str, int] = Field(description="Number of findings by severity.")
     status: Literal["ok", "warning", "alarm", "no data"]
 
 
@@ -152,9 +157,9 @@ class VersionOut(BaseModel):
 
 
 class RecordAccepted(BaseModel):
-    """A record that was taken, and the work on it.
+    """A stored record and its job.
 
-    A file of more than an hour is several records of ten minutes; the last one is told.
+    A file longer than an hour is divided into records of ten minutes, of which the last is returned.
     """
 
     record_id: str
@@ -163,7 +168,7 @@ class RecordAccepted(BaseModel):
 
 
 class RecordOut(BaseModel):
-    """A record and how far it got."""
+    """A record with its status."""
 
     record_id: str
     asset: str
@@ -199,7 +204,7 @@ class Spectra(BaseModel):
 
 
 class StabilisationOut(BaseModel):
-    """Poles of every model order; ``mode`` numbers the modes that poles were gathered to, -1 where none."""
+    """Poles of every model order; ``mode`` is the number of the pole's mode, -1 without one."""
 
     order: list[int]
     frequency_hz: list[float]
@@ -209,14 +214,14 @@ class StabilisationOut(BaseModel):
 
 
 class PickIn(BaseModel):
-    """A pole chosen by hand: the nearest one to this frequency, of this order or any."""
+    """A manually selected pole: the nearest one to this frequency, of this order or any."""
 
     frequency_hz: float = Field(gt=0.0, le=1e6)
     order: int | None = Field(default=None, ge=1, le=1000)
 
 
 class PicksIn(BaseModel):
-    """The poles to take instead of the automatic choice; none returns to it."""
+    """The poles that replace the automatic selection; an empty list restores it."""
 
     picks: list[PickIn] = Field(max_length=200)
 
@@ -319,7 +324,7 @@ class ReopenIn(BaseModel):
 
 
 class JobOut(BaseModel):
-    """A piece of work."""
+    """A job."""
 
     id: int
     kind: str
@@ -335,11 +340,11 @@ class JobOut(BaseModel):
 
 
 Named = Annotated[str, Field(pattern=r"^[^\x00-\x1f\x7f]{1,64}$")]
-"""What a condition may be called: anything that can be read."""
+"""Name of a condition: printable characters."""
 
 
 class ConditionsIn(BaseModel):
-    """Conditions of the site through time: names with units, as in records."""
+    """Conditions of the site over time; names with units as in records."""
 
     time_utc: list[Annotated[AwareDatetime, Field(ge=_FIRST, le=_LAST)]] = Field(max_length=100_000)
     values: dict[Named, list[FiniteFloat | Annotated[str, Field(max_length=64)] | None]] = Field(
@@ -348,14 +353,14 @@ class ConditionsIn(BaseModel):
 
 
 class Taken(BaseModel):
-    """How many conditions are new or changed, and how many records are observed again with them."""
+    """Number of new or changed conditions, and of records that are observed again."""
 
     count: int
     observed_again: int
 
 
 class TwinOut(BaseModel):
-    """What the twin knows at a time: per mode and parameter, with intervals, and of which records."""
+    """State of the twin at a time: modes and parameters with intervals, and their records."""
 
     asset: str
     version: int
@@ -372,7 +377,7 @@ class TwinOut(BaseModel):
 
 
 class Value(BaseModel):
-    """A number with its 90 % interval, null where it is not known."""
+    """A number with its 90 % interval; null if unknown."""
 
     value: float
     low: float | None
@@ -387,7 +392,7 @@ class MedianOut(BaseModel):
 
 
 class SupportsDay(BaseModel):
-    """The supports' stiffness as it was known on a day: over that of the first day, and of each parameter."""
+    """Stiffness of the supports as estimated on a day: ratio to the first day's, and each parameter."""
 
     time_utc: datetime
     records: int
@@ -397,7 +402,7 @@ class SupportsDay(BaseModel):
 
 
 class SuddenChangeOut(BaseModel):
-    """A jump of the stiffness: when, and the stiffness after it over that before."""
+    """A jump of the stiffness: its time, and the ratio of the stiffness after it to that before."""
 
     time_utc: datetime
     time_utc_interval_90: tuple[datetime, datetime]
@@ -406,13 +411,13 @@ class SuddenChangeOut(BaseModel):
 
 
 class ForecastOut(MedianOut):
-    """The stiffness to be expected so many days after the last one, over that of the first day."""
+    """Forecast of the stiffness so many days after the last one, as ratio to the first day's."""
 
     days: int
 
 
 class StiffnessInTime(BaseModel):
-    """The stiffness over that of the first day: of each day by all days, jumps, and what to expect."""
+    """Ratio of the stiffness to the first day's: smoothed for each day, jumps, and forecast."""
 
     smoothed: dict[str, MedianOut]
     changes: list[SuddenChangeOut]
@@ -420,7 +425,7 @@ class StiffnessInTime(BaseModel):
 
 
 class SupportsOut(BaseModel):
-    """The stiffness of the supports on each day, as ``jackettwin follow --json`` has it; the last day first.
+    """The stiffness of the supports on each day, as in ``jackettwin follow --json``; the last day first.
 
     Empty before the third day.
     """
@@ -435,9 +440,9 @@ class SupportsOut(BaseModel):
 
 
 class BudgetOut(BaseModel):
-    """Whose damping a mode's is: damping ratios by source (structure, soil, rotor, water).
+    """Damping ratio of a mode by source (structure, soil, rotor, water).
 
-    What is measured beyond all of them is unexplained; null if nothing is.
+    ``unexplained`` is the measured ratio in excess of their sum; null without a measured one.
     """
 
     label: str
@@ -447,9 +452,9 @@ class BudgetOut(BaseModel):
 
 
 class SensitivityOut(BaseModel):
-    """A mode at the medians of the updated parameters, and by how much each of them moves it.
+    """A mode at the medians of the updated parameters, and its sensitivity to each.
 
-    Frequencies as ∂ ln f/∂ ln θ, damping ratios as ∂ζ/∂ ln θ.
+    The sensitivities are ∂ ln f/∂ ln θ and ∂ζ/∂ ln θ.
     """
 
     mode: int
@@ -461,11 +466,11 @@ class SensitivityOut(BaseModel):
 
 
 Drawn = list[float | None]
-"""Values of a curve; null where there is none."""
+"""Values of a curve; null for missing ones."""
 
 
 class BranchOut(BaseModel):
-    """The way of one mode along a parameter; null from where it no longer oscillates."""
+    """Locus of one mode along a parameter; null where it does not oscillate."""
 
     mode: int
     label: str
@@ -478,7 +483,7 @@ class BranchOut(BaseModel):
 
 
 class LocusOut(BaseModel):
-    """The root locus along a parameter; ``origin`` is the place of the point explored among its values."""
+    """The root locus along a parameter; ``origin`` is the index of the explored point among its values."""
 
     parameter: str
     unit: str
@@ -495,7 +500,7 @@ class AxisOut(BaseModel):
 
 
 class SurfaceOut(BaseModel):
-    """The cost over two parameters, a row a value of y."""
+    """The cost over two parameters, a row for each value of y."""
 
     x: AxisOut
     y: AxisOut
@@ -512,7 +517,7 @@ class CurveOut(BaseModel):
 
 
 class ExploredValue(BaseModel):
-    """A parameter at the point explored, and its bounds."""
+    """A parameter at the explored point, and its bounds."""
 
     name: str
     unit: str
@@ -522,7 +527,7 @@ class ExploredValue(BaseModel):
 
 
 class ExploredOut(BaseModel):
-    """What the parameters of the law do to cost and modes around their medians; empty if nothing yet."""
+    """Effect of the law's parameters on cost and modes around their medians; empty before an update."""
 
     law: str | None = None
     parameters: list[ExploredValue] = []
@@ -607,10 +612,10 @@ class AssumptionOut(BaseModel):
 
 
 class ChangeOut(BaseModel):
-    """A quantity under two versions; null where one does not know it.
+    """A quantity under two versions; null where one does not have it.
 
-    The records are the same: the difference is the model's. It is told in standard deviations, too, of what
-    the adopted version is sure of.
+    The records are the same, so that the difference is due to the model. It is also given in standard
+    deviations of the adopted version.
     """
 
     quantity: str
@@ -622,7 +627,7 @@ class ChangeOut(BaseModel):
 
 
 class ComparisonOut(BaseModel):
-    """What two versions of a twin know of the same records."""
+    """Comparison of two versions of a twin on the same records."""
 
     adopted: TwinOut
     other: TwinOut
@@ -630,7 +635,7 @@ class ComparisonOut(BaseModel):
 
 
 class Health(BaseModel):
-    """Whether the server turns, and what keeps it from doing all that it should."""
+    """Whether the server runs, and its faults."""
 
     status: Literal["ok", "degraded"]
     version: str
@@ -639,7 +644,7 @@ class Health(BaseModel):
 
 
 class Ready(BaseModel):
-    """Whether records can be taken and observed now."""
+    """Whether records can now be stored and observed."""
 
     ready: bool
     database: bool

@@ -1,4 +1,4 @@
-"""Samples for the eye: extremes of bins, spectra."""
+"""Data for plots of records: extremes of bins, and spectra."""
 
 from __future__ import annotations
 
@@ -21,41 +21,43 @@ if TYPE_CHECKING:
     from jackettwin.service.web.auth import Who
 
 _SEGMENT_S = 60.0
-"""Length of a segment of the spectra: 1/60 Hz shows a mode of 0.2 Hz."""
+"""Length of a segment of the spectra: a resolution of 1/60 Hz suffices for a mode at 0.2 Hz."""
 
 
 def with_zone(time: datetime | None, field: str) -> datetime | None:
-    """Return a time that has a zone; UTC must be said, it is not assumed.
+    """Return a time after checking that it has a zone; UTC is not assumed.
 
     Raises
     ------
     InputError
-        If it has none.
+        If it has no zone, or is out of range.
     """
     if time is not None and time.tzinfo is None:
         raise InputError(
-            "a time without a zone", field=field, value=time.isoformat(), remedy="write 2025-01-31T12:00:00Z"
+            "the time has no zone", field=field, value=time.isoformat(), remedy="write 2025-01-31T12:00:00Z"
         )
     if time is not None and not 1900 <= time.year <= 9000:
-        raise InputError("a time out of range", field=field, value=time.isoformat(), allowed="1900 to 9000")
+        raise InputError(
+            "the time is out of range", field=field, value=time.isoformat(), allowed="1900 to 9000"
+        )
     return None if time is None else time.astimezone(UTC)
 
 
 def record_out(record: StoredRecord) -> RecordOut:
-    """Return a record as the API speaks of it."""
+    """Return a record in the form of the API."""
     known = {name: getattr(record, name) for name in RecordOut.model_fields if hasattr(record, name)}
     return RecordOut(**known, raw_kept=record.waveform is not None)
 
 
 def samples(service: Service, record_id: str, who: Who) -> Record:
-    """Return the samples of a record; answers 404 if they are not kept any more."""
+    """Return the samples of a record; answers 404 if they were deleted."""
     from jackettwin.store import read_waveform
 
     with reading(service.database) as connection:
         record = known_record(connection, record_id, who)
     path = None if record.waveform is None else service.settings.store / record.waveform
     if path is None or not path.exists():
-        raise ApiError(404, "the samples of this record are not kept any more", field="record_id")
+        raise ApiError(404, "the samples of this record were deleted", field="record_id")
     return read_waveform(path)
 
 

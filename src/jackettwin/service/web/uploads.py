@@ -1,4 +1,4 @@
-"""Records that arrive over HTTP, and work that is asked for over it."""
+"""Upload of records over HTTP, and jobs requested over it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 _PIECE = 1 << 20
 _DESCRIPTION_BYTES = 2**20
-"""As much as a form takes in a field."""
+"""Largest size of a form field."""
 
 
 def refuse_unfit(service: Service, asset: str) -> None:
@@ -40,7 +40,7 @@ def refuse_unfit(service: Service, asset: str) -> None:
 def take(
     service: Service, asset: str, name: str, stream: BinaryIO, description: str | None, by: str
 ) -> Accepted:
-    """Read an upload and keep its record; nothing of it is left behind if that fails."""
+    """Read an upload and store its record; if that fails, nothing is left behind."""
     if description is not None:
         _check(description)
     if service.free_bytes() < ROOM_BYTES:
@@ -66,7 +66,7 @@ def text_of(description: UploadFile | str | None) -> str | None:
     Raises
     ------
     ApiError
-        422 if it is no text, 413 if it is larger than what comes beside a file may be.
+        422 if it is not text, 413 if it is too large.
     """
     if description is None or isinstance(description, str):
         return description
@@ -79,7 +79,7 @@ def text_of(description: UploadFile | str | None) -> str | None:
 def pick(
     connection: Connection, service: Service, record: records.StoredRecord, body: PicksIn, who: str
 ) -> int:
-    """Keep poles that were chosen by hand, and queue the record to be identified with them."""
+    """Store manually selected poles, and queue the record for identification with them."""
     chosen = {"poles": [p.model_dump() for p in body.picks], "by": who, "time_utc": service.now().isoformat()}
     records.set_picks(connection, record.asset, record.record_id, chosen if body.picks else None)
     people.note_down(connection, who, "picks", f"{record.asset}/{record.record_id}", "ok", service.now())
@@ -95,7 +95,7 @@ def pick(
 def take_conditions(
     service: Service, asset: str, stream: BinaryIO, zone: str, end_stamped: bool, by: str
 ) -> Taken:
-    """Read a table of conditions in a worker and keep it."""
+    """Read a table of conditions in a worker and store it."""
     path = spooled(
         service.settings.spool, "table.csv", _limited(stream, service.settings.upload_limit_bytes), None
     )
@@ -120,7 +120,7 @@ def stabilisation(service: Service, record_id: str, who: Who) -> StabilisationOu
     with reading(service.database) as connection:
         record = known_record(connection, record_id, who)
         if record.waveform is None:
-            raise ApiError(404, "the samples of this record are not kept any more", field="record_id")
+            raise ApiError(404, "the samples of this record were deleted", field="record_id")
         folder = twin_folder(connection, service, record.asset)
     waveform = str(service.settings.store / record.waveform)
     future = service.cluster.submit(workers.engine.stabilisation, str(folder), waveform, priority=50)

@@ -1,4 +1,4 @@
-"""Conditions of the site: kept, and the records that they belong to observed again."""
+"""Storing conditions of the site, and queueing affected records for observation."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ def add_conditions(
     values: Mapping[str, Values],
     by: str,
 ) -> tuple[int, int]:
-    """Keep conditions; return how many are new or changed, and how many records are observed again with them.
+    """Store conditions; return the numbers of new or changed ones and of records to observe again.
 
-    Only what changed matters: the same table again observes nothing again.
+    Unchanged conditions have no effect.
     """
     people.note_down(connection, by, "conditions", f"{asset}: {', '.join(values)}", "ok", place.now())
     changed: set[datetime] = set()

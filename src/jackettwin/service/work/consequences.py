@@ -1,6 +1,6 @@
-"""What follows from a result, in the same transaction.
+"""Consequences of a result, stored in the same transaction.
 
-Modes, findings, the state of the day and of those after.
+These are modes, findings, and the states of the day and of later ones.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ if TYPE_CHECKING:
 
 
 NEWEST = 24
-"""Observations that the page on a turbine shows one by one; what it says is of all."""
+"""Number of newest observations that a turbine's page lists; its results are of all."""
 
 
 def task_of(connection: Connection, service: Place, job: work.Job) -> Task:
-    """Return what a worker must know to do a piece of work; the twin's files are laid out for it."""
+    """Return the task of a job for a worker, after extracting the twin's files."""
     record = records.find_record(connection, job.asset, job.record_id)
     if record is None or record.waveform is None:
         raise LookupError(f"record {job.record_id} of {job.asset} has no samples")
@@ -61,7 +61,7 @@ def task_of(connection: Connection, service: Place, job: work.Job) -> Task:
 
 
 def observing(connection: Connection, service: Service, job: work.Job) -> None:
-    """Say that a record is being observed, unless it has been by the adopted version."""
+    """Set a record's status to being observed, unless the adopted version has observed it."""
     record = records.find_record(connection, job.asset, job.record_id)
     if record is not None and record.status == "received":
         records.set_status(connection, job.asset, job.record_id, "observing")
@@ -69,10 +69,10 @@ def observing(connection: Connection, service: Service, job: work.Job) -> None:
 
 
 def question_of(connection: Connection, service: Place, job: work.Job, *, every_day: bool) -> Question:
-    """Return what a worker must know to say what a turbine's state says of its supports.
+    """Return the task of estimating a turbine's supports from its state.
 
-    It is sent the days after those that it has the sums of and those that the stiffness is taken again in, or
-    every day if it asked for them.
+    It contains the days that are not in the stored sums and those of the stiffness track's window, or every
+    day if the worker requested them.
     """
     key = (job.asset, job.model_hash)
     identities = results.state_hashes(connection, *key)
@@ -94,7 +94,7 @@ def question_of(connection: Connection, service: Place, job: work.Job, *, every_
 
 
 def _days_known(kept: Mapping[str, Any], identities: Mapping[str, str]) -> str | None:
-    """Return the day after which days are to be sent; None for all."""
+    """Return the day after which days must be sent; None for all."""
     unsummed = workers.engine.days_unsummed(kept.get("past"), identities)
     needed = workers.stiffness.days_needed(kept.get("followed"), identities)
     if unsummed is None or (needed is None and kept.get("followed") is not None):
@@ -103,7 +103,7 @@ def _days_known(kept: Mapping[str, Any], identities: Mapping[str, str]) -> str |
 
 
 def keep_known(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
-    """Keep what a turbine's days say of the supports, and of a change."""
+    """Store the estimates of a turbine's supports and the findings on changes."""
     now = service.now()
     if not work.finish(connection, job, service.server_id, "done", now):
         return
@@ -118,7 +118,7 @@ def keep_known(connection: Connection, service: Service, job: work.Job, outcome:
         ask_known(connection, service, assets.found_version(connection, job.asset, job.version))
     adopted = assets.found_version(connection, job.asset)
     if job.version != adopted.version and job.model_hash == adopted.model_hash:
-        return  # what watching says of these days is the adopted version's to say
+        return  # only the adopted version reports changes
     key = {"asset": job.asset, "model_hash": job.model_hash, "record_id": ""}
     rows = [
         _finding_row(f, key, datetime.fromisoformat(f["time_utc"]), f["day"], "watch")
@@ -131,20 +131,19 @@ def keep_known(connection: Connection, service: Service, job: work.Job, outcome:
 
 
 def ask_known(connection: Connection, service: Place, version: assets.Version) -> None:
-    """Queue the question what the state says now, behind everything that is observed.
+    """Queue the estimation from the present state, after all observations.
 
-    It is asked again after an answer that is on its way, if that one knows less.
+    It is repeated after a running estimation with fewer records.
     """
-    named = replace(version, settings_hash=f"version {version.version}")  # laws and priors are its settings
+    named = replace(
+        version, settings_hash=f"version {version.version}"
+    )  # laws and priors belong to its settings
     number = work.enqueue(connection, named, "", service.now(), kind=work.KNOW, priority=-10)
     work.try_again(connection, number, service.now())
 
 
 def keep(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
-    """Keep the outcome of a piece of work and everything that follows from it.
-
-    Nothing, if it is not ours any more.
-    """
+    """Store the outcome of a job and all its consequences, unless another server has taken the job."""
     now, me = service.now(), service.server_id
     adopted = assets.found_version(connection, job.asset)
     if outcome.document is None:
@@ -163,7 +162,9 @@ def keep(connection: Connection, service: Service, job: work.Job, outcome: Outco
         settings_hash=job.settings_hash,
         start_utc=record.start_utc,
         code_version=job.code_version,
-        document=rounded(outcome.document),  # as it is read again: a day summed anew is the same day
+        document=rounded(
+            outcome.document
+        ),  # rounded as stored, so that summing the day again gives the same state
         **key,
     )
     day = f"{record.start_utc:%Y-%m-%d}"
@@ -201,7 +202,7 @@ def keep(connection: Connection, service: Service, job: work.Job, outcome: Outco
 
 
 def failed(connection: Connection, service: Service, job: work.Job, reason: str) -> None:
-    """Put work back that its worker did not survive, or set its record aside after the last try."""
+    """Return a job to the queue after its worker ended, or set its record aside after the last try."""
     problem = {"detail": reason, **_TRY_AGAIN}
     state = work.put_back(connection, job, service.server_id, problem)
     if state == "set_aside" and job.kind != work.KNOW:
@@ -211,7 +212,7 @@ def failed(connection: Connection, service: Service, job: work.Job, reason: str)
 
 
 def _alarm_unknown(connection: Connection, job: work.Job, reason: str, now: datetime) -> None:
-    """Ask for a person: nobody is told what the days of a turbine say, and no change would be seen."""
+    """Raise an alarm that a turbine's days cannot be evaluated, so that no change would be detected."""
     said = Finding("study_set_aside", None, {"job": job.id, "tries": work.MOST_TRIES, "reason": reason})
     row = {name: getattr(said, name) for name in ("code", "severity", "subject", "params", "text")}
     key = {"asset": job.asset, "model_hash": job.model_hash, "record_id": ""}
@@ -223,7 +224,7 @@ _TRY_AGAIN = {"field": "record", "remedy": "try again with POST /jobs/{id}/retry
 
 
 def cancel(connection: Connection, service: Place, job: work.Job, by: str) -> bool:
-    """Cancel work that is not done, and set its record aside if the adopted version has not observed it."""
+    """Cancel an unfinished job, and set its record aside if the adopted version has not observed it."""
     if not work.cancel(connection, job.id, service.now()):
         return False
     people.note_down(connection, by, "cancel", str(job.id), "ok", service.now())
@@ -235,7 +236,7 @@ def cancel(connection: Connection, service: Place, job: work.Job, by: str) -> bo
 
 
 def set_aside(connection: Connection, service: Place, asset: str, record_id: str, why: str) -> None:
-    """Take back what a record gave rise to: another one holds its samples and more, or a person says so."""
+    """Withdraw all results of a record that another one includes, or on request."""
     lock(connection, asset)
     for job in work.jobs_of(connection, asset, record_id):
         work.cancel(connection, job.id, service.now())
@@ -259,9 +260,9 @@ def fold(
 ) -> None:
     """Bring the state of a day up to date.
 
-    A day is a sum over its records that does not depend on their order. A record that is new to it is added;
-    one that was observed again, or taken out, makes the day be summed anew, unless what its records said one
-    by one is forgotten: then it stays what it is.
+    A day is a sum over its records that does not depend on their order. New records are added; after
+    a repeated observation or a removal the day is summed again, unless its observations were deleted, in which
+    case it is not changed.
     """
     day, model_hash = f"{changed.start_utc:%Y-%m-%d}", changed.model_hash
     stored = None if anew else results.find_state(connection, asset, model_hash, day)
@@ -294,14 +295,14 @@ def fold(
 
 
 def lock(connection: Connection, asset: str) -> None:
-    """Hold an asset until the transaction ends: two servers fold one after the other."""
+    """Lock an asset until the transaction ends, so that servers update its days one after the other."""
     connection.execute(select(tables.assets.c.name).where(tables.assets.c.name == asset).with_for_update())
 
 
 def _end_open(
     connection: Connection, job: work.Job, status: str, problem: Mapping[str, Any], now: datetime
 ) -> None:
-    """Say why a record that is not observed yet will not be."""
+    """Store the reason why an unobserved record will not be observed."""
     record = records.find_record(connection, job.asset, job.record_id)
     if record is not None and record.status in ("received", "observing"):
         _end(connection, job.asset, job.record_id, status, problem, now)

@@ -1,6 +1,6 @@
-"""The heart of a server.
+"""Dispatcher of a server.
 
-Leases work, has it done, keeps results with their consequences, takes over from the dead.
+It leases jobs, submits them to workers, stores results, and takes over jobs of dead servers.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ log = logging.getLogger(__name__)
 
 _BEAT_S = 2.0
 DEAD_AFTER_S = 15.0
-"""A server whose beat stood still for so long, by the stopwatch of another, is dead."""
+"""Time without heartbeat, by another server's monotonic clock, after which a server is dead."""
 HANGS_AFTER_S = 60.0
-"""A dispatcher that did not turn for so long hangs: the watchdog of systemd then starts the server anew."""
+"""Time without a cycle after which the dispatcher hangs; systemd's watchdog then restarts the server."""
 _TURN_S = 0.25
 _RESTS = 3.0
-"""What a state says of the supports may take a quarter of one worker, however many turbines there are."""
+"""Ratio of idle to busy time of estimations, which so use at most a quarter of one worker."""
 _AHEAD = 2
-"""Tasks a worker has before it, so that none waits for the next lease."""
+"""Number of queued tasks for each worker, so that none waits for the next lease."""
 
 
 @dataclass
@@ -53,9 +53,9 @@ class _Running:
 
 
 class Dispatcher(Thread):
-    """A thread that turns until it is told to stop.
+    """Thread that runs the dispatcher until it is stopped.
 
-    Whatever it was doing then is leased again by the next.
+    Jobs that are unfinished then are leased again by the next dispatcher.
     """
 
     def __init__(self, service: Service) -> None:
@@ -71,7 +71,7 @@ class Dispatcher(Thread):
         self._rest_until = 0.0
 
     def run(self) -> None:
-        """Turn; a database that is away for a while is waited for."""
+        """Run cycles until stopped, waiting while the database is not available."""
         waited = 0.0
         while not self._stop_asked.is_set():
             self._turned = time.monotonic()
@@ -80,24 +80,24 @@ class Dispatcher(Thread):
                 waited = 0.0
             except (SQLAlchemyError, OSError) as error:
                 waited = min(waited + 1.0, 10.0)
-                self.service.has_intake = False  # another server may have taken it
+                self.service.has_intake = False  # another server may have taken over the intake
                 for leave in self.service.on_lost:
                     leave()
                 log.warning("dispatcher waits %g s: %s", waited, str(error).splitlines()[0])
                 self._stop_asked.wait(waited)
             except Exception:
-                log.exception("dispatcher goes on after a fault of ours")
+                log.exception("dispatcher continues after an internal error")
                 self._stop_asked.wait(1.0)
             self.wake.wait(_TURN_S)
             self.wake.clear()
 
     @property
     def turning(self) -> bool:
-        """Whether it lives and turns: one that hangs does neither observe nor beat."""
+        """Whether the dispatcher runs its cycles."""
         return self.is_alive() and time.monotonic() - self._turned < HANGS_AFTER_S
 
     def stop(self) -> None:
-        """Stop, and leave the list of servers so that others take over at once."""
+        """Stop, and remove this server from the list so that others take over at once."""
         self._stop_asked.set()
         self.wake.set()
         if self.is_alive():
@@ -106,7 +106,7 @@ class Dispatcher(Thread):
             with writing(self.service.database) as connection:
                 work.bury(connection, self.service.server_id)
         except SQLAlchemyError:
-            log.warning("could not leave the list of servers; others notice by the beat")
+            log.warning("could not leave the list of servers; others will notice the missing heartbeat")
 
     def _turn(self) -> None:
         self._beat()
@@ -117,7 +117,7 @@ class Dispatcher(Thread):
             chore()
 
     def _beat(self) -> None:
-        """Count our beat up, bury who is dead, come back if we were buried ourselves."""
+        """Send a heartbeat, remove dead servers, and register again if this one was removed."""
         if time.monotonic() - self._last_beat < _BEAT_S:
             return
         self._last_beat = time.monotonic()
@@ -136,7 +136,7 @@ class Dispatcher(Thread):
         tell_systemd("WATCHDOG=1")
 
     def _dead(self, server: str, count: int, about: Mapping[str, Any]) -> bool:
-        """Tell whether a server's process is gone from this machine, or its beat stands still."""
+        """Return whether a server's process on this machine has ended, or its heartbeat has stopped."""
         if _MACHINE and about.get("machine") == _MACHINE and not _runs(about["pid"]):
             return True
         known, since = self._seen.get(server, (None, 0.0))
@@ -164,9 +164,11 @@ class Dispatcher(Thread):
             self._start(job)
 
     def _start(self, job: work.Job, *, every_day: bool = False) -> None:
-        """Have a worker do a piece of work, unless what it needs is not there any more."""
+        """Submit a job to a worker, unless its inputs no longer exist."""
         try:
-            with reading(self.service.database) as connection:  # years of days: no writer waits
+            with reading(
+                self.service.database
+            ) as connection:  # a read connection, since reading years of days would block writers
                 function, argument = self._task(connection, job, every_day)
         except LookupError as gone:
             with writing(self.service.database) as connection:
@@ -175,7 +177,7 @@ class Dispatcher(Thread):
         study = job.kind == work.KNOW
         try:
             future = self.service.cluster.submit(function, argument, priority=job.priority, study=study)
-        except NoWorker:  # the scheduler went away meanwhile
+        except NoWorker:  # the scheduler was lost meanwhile
             with writing(self.service.database) as connection:
                 work.release(connection, job, self.service.server_id)
             return
@@ -183,9 +185,9 @@ class Dispatcher(Thread):
         self._running[job.id] = _Running(job, future, time.monotonic())
 
     def _next_kind(self) -> str | None:
-        """Return what to lease: records first, those of archived assets last of all.
+        """Return the kind of job to lease: records first, those of archived assets last.
 
-        What a state says is asked only when it was rested for long enough.
+        Estimations are leased only after their idle time.
         """
         with reading(self.service.database) as connection:
             if work.any_queued(connection, work.OBSERVE):
@@ -215,8 +217,8 @@ class Dispatcher(Thread):
                     self._rest_until = time.monotonic() + _RESTS * took
 
     def _keep(self, running: _Running) -> bool:
-        """Keep what came of a piece of work; False if its worker must have every day to do it."""
-        if self.service.cluster.forsaken(running.future):  # that says nothing against the record
+        """Store the result of a job; return False if the worker needs all days for it."""
+        if self.service.cluster.forsaken(running.future):  # not the record's fault
             with writing(self.service.database) as connection:
                 work.release(connection, running.job, self.service.server_id)
             return True
@@ -233,7 +235,7 @@ class Dispatcher(Thread):
         with writing(self.service.database) as connection:
             if tried:
                 consequences.failed(connection, self.service, running.job, reason)
-            else:  # it waited at a worker that died of another task
+            else:  # it was queued at a worker that died of another task
                 work.release(connection, running.job, self.service.server_id)
         return True
 
@@ -254,12 +256,12 @@ def _runs(pid: int) -> bool:
     except ProcessLookupError:
         return False
     except PermissionError:
-        pass  # of another user
+        pass  # the process of another user
     return True
 
 
 def _machine() -> str:
-    """Return what two servers share if the number of a process means the same to both; empty if unknown."""
+    """Return the identity of the process namespace, common to servers on one machine; empty if unknown."""
     try:
         boot = Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii").strip()
         return f"{boot} {os.readlink('/proc/self/ns/pid')}"
@@ -271,7 +273,7 @@ _MACHINE = _machine()
 
 
 def _reason(future: Future) -> str:
-    """Return in a sentence why a task has no result."""
+    """Return a sentence with the reason that a task has no result."""
     try:
         error = future.exception(timeout=1)
     except Exception as lost:

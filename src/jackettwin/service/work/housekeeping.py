@@ -18,11 +18,11 @@ _EVERY_S = 600.0
 _MUTES_S = 5.0
 """How late a mute ends at most."""
 _STALE_S = 3600.0
-"""Age of an upload that was left behind by a server that died over it."""
+"""Age after which an upload is a remainder of a crashed server."""
 
 
 class Housekeeping:
-    """Keeps the store within its policy."""
+    """Applies the store's policy on old data."""
 
     def __init__(self, service: Service) -> None:
         self._service = service
@@ -35,7 +35,7 @@ class Housekeeping:
         self._next = self._next_mutes = 0.0
 
     def turn(self) -> None:
-        """Tidy up if it is time to."""
+        """Run the housekeeping if it is due."""
         if time.monotonic() >= self._next_mutes:
             self._next_mutes = time.monotonic() + _MUTES_S
             end_mutes(self._service)
@@ -80,7 +80,7 @@ def forget(service: Service) -> None:
 
 
 def prune(service: Service) -> int:
-    """Delete the samples of observed records older than the policy says; return how many."""
+    """Delete samples of observed records that are older than the policy's limit; return their number."""
     now = service.now()
     with writing(service.database) as connection:
         journal.forget_events(connection, now)

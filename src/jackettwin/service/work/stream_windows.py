@@ -1,6 +1,6 @@
 """Records of ten minutes from the packets of a stream.
 
-Packets are put in order and counted once, gaps stay gaps, and all channels share one clock.
+Packets are sorted and used once, gaps remain, and all channels have a common time grid.
 """
 
 from __future__ import annotations
@@ -26,31 +26,32 @@ if TYPE_CHECKING:
     from jackettwin.service.context import Service
 
 GRACE = timedelta(seconds=30)
-"""A window is closed when the stream's own clock is so far past its end, or the stream is silent."""
+"""Time by the stream's clock after a window's end at which it is closed; it is also closed if the stream is
+silent."""
 _EVERY_S = 2.0
 _ON_GRID = 0.02
-"""Samples nearer to the common grid than this share of a step stand on it: at the fifth of the sampling rate,
-where identification ends, they are 0.7 degrees off."""
+"""Share of a step within which samples count as on the common grid. At a fifth of the sampling rate, the
+highest identified frequency, the phase error is then 0.7 degrees."""
 _LEAST = 8
-"""Fewer samples in a row are not worth an interpolation."""
+"""Least number of consecutive samples that are interpolated."""
 
 
 class StreamWindows:
-    """Makes records of windows that are over, every few seconds."""
+    """Makes records of finished windows, every few seconds."""
 
     def __init__(self, service: Service, silent: Callable[[str], bool]) -> None:
         self._service, self._silent = service, silent
         self._last = 0.0
 
     def turn(self) -> None:
-        """Close the windows that are over, if it is time to look."""
+        """Close the finished windows if it is due."""
         if time.monotonic() - self._last >= _EVERY_S:
             self._last = time.monotonic()
             close_windows(self._service, self._silent)
 
 
 def close_windows(service: Service, silent: Callable[[str], bool]) -> None:
-    """Make records of the windows that are over; one whose packets have become more is made anew."""
+    """Make records of finished windows, also again for a window that has received late packets."""
     with reading(service.database) as connection:
         open_now = streams.open_windows(connection)
         newest = {w.asset: streams.newest_packet(connection, w.asset) for w in open_now}
@@ -66,10 +67,7 @@ def close_windows(service: Service, silent: Callable[[str], bool]) -> None:
 
 
 def close_window(service: Service, window: streams.OpenWindow) -> None:
-    """Make the record of a window.
-
-    In place of an earlier one of fewer packets, with all consequences at once.
-    """
+    """Make the record of a window, replacing an earlier one with fewer packets in the same transaction."""
     with reading(service.database) as connection:
         packets = streams.packets_of(connection, window.asset, window.window_utc)
         channels = profile(connection, service, window.asset).channels
@@ -84,7 +82,7 @@ def close_window(service: Service, window: streams.OpenWindow) -> None:
     number = parsed.record_id
     with writing(service.database) as connection:
         if window.record_id is not None and window.record_id != number:
-            why = f"superseded by {number}, which has packets that came late"
+            why = f"superseded by {number}, which includes late packets"
             consequences.set_aside(connection, service, window.asset, window.record_id, why)
         accept(now, connection, window.asset, parsed, "stream")
         streams.close_window(connection, window, number)
@@ -98,7 +96,7 @@ def assembled(
     Parameters
     ----------
     packets : of one asset, by channel and time
-    channels : {channel: what the twin says of it}; channels it does not name are taken to be accelerations
+    channels : {channel: properties from the twin}; channels without properties are taken as accelerations
     """
     rates = [packet.rate_hz for packet in packets]
     if not rates:
@@ -119,8 +117,8 @@ def assembled(
 def on_grid(packets: Sequence[Packet], start: datetime, rate: float, n: int) -> FloatArray:
     """Return the samples of one channel on the window's grid (n,), NaN where there are none.
 
-    Overlapping packets of one clock agree; of the same instant the packet that began first is kept. A clock
-    that stands off the grid or drifts is brought onto it by a cubic spline through each unbroken run.
+    Of overlapping packets the one that began first is used. Samples off the grid, as of a drifting clock, are
+    interpolated by a cubic spline in each run without gaps.
     """
     times = (
         np.concatenate([_seconds(p, start) + np.arange(p.samples.size) / p.rate_hz for p in packets]) * rate
@@ -137,7 +135,7 @@ def on_grid(packets: Sequence[Packet], start: datetime, rate: float, n: int) -> 
 
 
 def _place(row: FloatArray, times: FloatArray, values: FloatArray) -> None:
-    """Write one unbroken run, with times in steps of the grid, into the window's row."""
+    """Write one run without gaps, with times in steps of the grid, into the window's row."""
     off = times - np.round(times)
     if np.abs(off).max() <= _ON_GRID or times.size < _LEAST:
         at = np.round(times).astype(int)

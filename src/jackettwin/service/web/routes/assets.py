@@ -39,7 +39,7 @@ router = APIRouter(tags=["assets"], route_class=Route)
 
 @router.get("/assets", dependencies=[auth.VIEWER], responses=answers(401, 422))
 def list_assets(who: Asker, connection: Told, archived: bool = False) -> Page[AssetOut]:
-    """List the assets, or the archived ones, with their status, last data and findings."""
+    """List the assets, or the archived ones, with status, last data and findings."""
     return Page(items=catalogue.overview(connection, archived=archived, seen=who.assets))
 
 
@@ -52,11 +52,11 @@ def list_assets(who: Asker, connection: Told, archived: bool = False) -> Page[As
 def add_asset(body: NewAsset, who: Asker, parts: Parts) -> AssetOut:
     """Add an asset with its twin file and the files that this one names; a worker evaluates it."""
     if who.assets is not None:
-        raise ApiError(403, f"{who.name} sees some assets only, and a new one is none of them")
+        raise ApiError(403, f"{who.name} may only see some assets, which exclude a new one")
 
     def is_new(connection: Connection) -> None:
         if body.name in assets.asset_names(connection):
-            raise ApiError(409, "there is such an asset already", field="name", value=body.name)
+            raise ApiError(409, "an asset of this name exists already", field="name", value=body.name)
 
     given = (body.twin, body.files, who.name, body.comment)
     catalogue.add_text_version(parts, body.name, *given, if_fit=is_new)
@@ -79,17 +79,19 @@ def archive_asset(
     parts: Parts,
     connection: Writes,
 ) -> AssetOut:
-    """Archive an asset: it takes nothing more and leaves the lists; all that is known of it stays."""
+    """Archive an asset: it accepts no more records and is not listed; all its data remain stored."""
     known_asset(connection, asset)
     if confirm != asset:
-        raise ApiError(422, "this is another name", field="confirm", value=confirm, allowed=asset)
+        raise ApiError(
+            422, "the name differs from the asset's", field="confirm", value=confirm, allowed=asset
+        )
     catalogue.archive(connection, parts, asset, who.name)
     return catalogue.one(connection, asset)
 
 
 @router.post("/assets/{asset}/unarchive", dependencies=[auth.ADMIN], responses=answers(401, 403, 404, 422))
 def unarchive_asset(asset: AssetName, who: Asker, parts: Parts, connection: Writes) -> AssetOut:
-    """Bring an archived asset back."""
+    """Undo the archiving of an asset."""
     known_asset(connection, asset)
     catalogue.archive(connection, parts, asset, who.name, undo=True)
     return catalogue.one(connection, asset)
@@ -101,7 +103,7 @@ def unarchive_asset(asset: AssetName, who: Asker, parts: Parts, connection: Writ
     responses=answers(400, 401, 403, 404, 409, 422, 503),
 )
 def put_asset(asset: AssetName, body: NewVersion, who: Asker, parts: Parts) -> VersionOut:
-    """Add a version; records are observed by it too once a worker has seen it, and it counts once adopted."""
+    """Add a version, which also observes records and is used once it is adopted."""
     given = (body.twin, body.files, who.name, body.comment)
     version = catalogue.add_text_version(parts, asset, *given, if_fit=partial(living_asset, name=asset))
     with reading(parts.database) as connection:
@@ -127,7 +129,7 @@ def adopt(
     parts: Parts,
     connection: Writes,
 ) -> VersionOut:
-    """Make a version the one whose answers count."""
+    """Adopt a version, whose answers are then used."""
     found = known_version(connection, asset, version)
     catalogue.adopt(connection, parts, asset, version, who.name)
     return catalogue.version_out(connection, found)
@@ -141,7 +143,7 @@ def adopt(
 def add_conditions(
     asset: AssetName, body: ConditionsIn, who: Asker, parts: Parts, connection: Writes
 ) -> Taken:
-    """Add conditions of the site through time; records that they belong to are observed again with them."""
+    """Add conditions of the site over time; affected records are observed again."""
     living_asset(connection, asset)
     for name, values in body.values.items():
         if len(values) != len(body.time_utc):
@@ -163,8 +165,8 @@ def add_table(
     file: Annotated[
         UploadFile, File(description="Ten-minute statistics: a line of names, a column of times.")
     ],
-    zone: Annotated[str, Form(max_length=64, description="Of clocks that do not say theirs.")] = "UTC",
-    end_stamped: Annotated[bool, Form(description="Whether a row bears the end of its interval.")] = False,
+    zone: Annotated[str, Form(max_length=64, description="Time zone of times without one.")] = "UTC",
+    end_stamped: Annotated[bool, Form(description="Whether times are the ends of the intervals.")] = False,
 ) -> Taken:
     """Add a table of conditions as a SCADA system exports it."""
     uploads.refuse_unfit(parts, asset)

@@ -1,4 +1,4 @@
-"""Whether the server lives, is ready, and how it does; events as they happen."""
+"""Health, readiness and metrics of the server, and the stream of events."""
 
 from __future__ import annotations
 
@@ -18,16 +18,18 @@ from jackettwin.service.web.schemas import Health, Ready
 from jackettwin.version import __version__
 
 _TOLD_S = 600.0
-"""How long one stream of events lasts."""
+"""Duration of one stream of events."""
 
 router = APIRouter(tags=["operation"], route_class=Route)
 
 
-@router.get("/health", responses={503: {"model": Health, "description": "It hangs: start it anew."}})
+@router.get(
+    "/health", responses={503: {"model": Health, "description": "The server hangs and must be restarted."}}
+)
 def health(parts: Parts, response: Response) -> Health:
-    """Tell whether the server turns, and what it lacks; needs no login.
+    """Return whether the server runs, and its faults; needs no login.
 
-    503 asks for a new start, which helps against nothing else than a server that hangs.
+    503 means that the server hangs and must be restarted, which helps in no other case.
     """
     said = metrics.problems(parts, metrics.readiness(parts))
     response.status_code = 200 if parts.turning() else 503
@@ -41,7 +43,7 @@ def health(parts: Parts, response: Response) -> Health:
 
 @router.get("/ready", responses={503: {"model": Ready, "description": "Not ready."}})
 def ready(parts: Parts, response: Response) -> Ready:
-    """Tell whether records can be taken and observed now; needs no login."""
+    """Return whether records can now be stored and observed; needs no login."""
     found = metrics.readiness(parts)
     response.status_code = 200 if found.ready else 503
     return found
@@ -54,7 +56,7 @@ def ready(parts: Parts, response: Response) -> Ready:
     responses={200: {"content": {"text/plain": {}}}, **answers(401)},
 )
 def prometheus(who: Asker, parts: Parts) -> Response:
-    """Return what an operator can alarm on: queue age, records late, restarts of workers, disk."""
+    """Return metrics for operators: age of the queue, late records, restarts of workers, disk."""
     return Response(metrics.exposition(parts, who.assets), media_type=CONTENT_TYPE_LATEST)
 
 
@@ -70,10 +72,10 @@ async def events(
     parts: Parts,
     last_event_id: Annotated[str | None, Header(max_length=20)] = None,
 ) -> EventSourceResponse:
-    """Stream what happens to the assets that may be seen: record, observation, state, finding, job.
+    """Stream the events of visible assets: record, observation, state, finding, job.
 
-    A reader that comes back with the last number misses nothing. It must, now and then: the stream ends, so
-    that somebody whose session or token has ended is not told for ever.
+    The stream ends after some time, so that an expired session or token receives no more events. A client
+    that reconnects with the last number misses none.
     """
     start = int(last_event_id) if last_event_id and last_event_id.isdecimal() else parts.feed.last
 

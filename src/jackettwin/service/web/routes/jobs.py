@@ -1,4 +1,4 @@
-"""Work: what waits, what runs, what failed."""
+"""Jobs: waiting, running and failed."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def list_jobs(
     cursor: Annotated[int | None, Query(ge=1, le=2**53)] = None,
     limit: Annotated[int, Query(ge=1, le=1000)] = 100,
 ) -> Page[JobOut]:
-    """List work, newest first."""
+    """List jobs, newest first."""
     found = work.list_jobs(connection, state=state, before=cursor, limit=limit + 1, seen=who.assets)
     more = str(found[limit - 1].id) if len(found) > limit else None
     return Page(items=[_out(job) for job in found[:limit]], next_cursor=more)
@@ -37,7 +37,7 @@ def list_jobs(
 
 @router.get("/jobs/{job_id}", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def get_job(job_id: JobId, who: Asker, connection: Reads) -> JobOut:
-    """Return a piece of work."""
+    """Return a job."""
     return _out(_found(connection, job_id, who))
 
 
@@ -45,7 +45,7 @@ def get_job(job_id: JobId, who: Asker, connection: Reads) -> JobOut:
     "/jobs/{job_id}/cancel", dependencies=[auth.ENGINEER], responses=answers(401, 403, 404, 409, 422)
 )
 def cancel(job_id: JobId, who: Asker, parts: Parts, connection: Writes) -> JobOut:
-    """Cancel work that is not done; its record is set aside until it is tried again."""
+    """Cancel an unfinished job; its record is set aside until the job is tried again."""
     job = _found(connection, job_id, who)
     if not consequences.cancel(connection, parts, job, who.name):
         raise ApiError(409, f"this work is {job.state} already")
@@ -54,7 +54,7 @@ def cancel(job_id: JobId, who: Asker, parts: Parts, connection: Writes) -> JobOu
 
 @router.post("/jobs/{job_id}/retry", dependencies=[auth.ENGINEER], responses=answers(401, 403, 404, 409, 422))
 def retry(job_id: JobId, who: Asker, parts: Parts, connection: Writes) -> JobOut:
-    """Try work again that was set aside, failed or was cancelled."""
+    """Try a failed or cancelled job again, or one whose record was set aside."""
     job = _found(connection, job_id, who)
     if not work.try_again(connection, job_id, parts.now()):
         raise ApiError(409, f"this work is {job.state} already")

@@ -41,7 +41,7 @@ router = APIRouter(tags=["answers"], route_class=Route)
 Cursor = Annotated[str | None, Query(max_length=500)]
 Limit = Annotated[int, Query(ge=1, le=10_000)]
 _PARQUET, _ARROW = "application/vnd.apache.parquet", "application/vnd.apache.arrow.stream"
-When = Annotated[datetime | None, Query(description="The state as it was then; default: now.")]
+When = Annotated[datetime | None, Query(description="Time of the state; default: now.")]
 
 
 @router.get("/assets/{asset}/modes", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
@@ -64,14 +64,14 @@ def modes(
 def twin(
     asset: AssetName, parts: Parts, connection: Told, at: When = None, version: AnyVersion = None
 ) -> TwinOut:
-    """Return what the twin knows at a time: mean modes and parameters with their intervals."""
+    """Return the state of the twin at a time: mean modes and parameters with intervals."""
     asked = known_version(connection, asset, version)
     return said.twin(connection, parts, asked, signals.with_zone(at, "at"))
 
 
 @router.get("/assets/{asset}/supports", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def supports(asset: AssetName, connection: Told, version: AnyVersion = None) -> SupportsOut:
-    """Return the stiffness of the supports on each day: then, by now, jumps, and what to expect."""
+    """Return the stiffness of the supports on each day, filtered and smoothed, with jumps and forecast."""
     return said.supports(connection, known_version(connection, asset, version))
 
 
@@ -82,7 +82,7 @@ def comparison(
     parts: Parts,
     connection: Told,
 ) -> ComparisonOut:
-    """Return what another version of the twin knows of the same records beside the adopted one."""
+    """Return the comparison of another version of the twin with the adopted one on the same records."""
     adopted, other = known_asset(connection, asset), known_version(connection, asset, version)
     return said.compared(connection, parts, adopted, other)
 
@@ -91,7 +91,7 @@ def comparison(
 def damping_budget(
     asset: AssetName, parts: Parts, connection: Told, at: When = None, version: AnyVersion = None
 ) -> Page[BudgetOut]:
-    """Return whose damping it is, mode by mode; empty for a time in the past, which nobody updated to."""
+    """Return the damping of each mode by source; empty for past times, for which no update exists."""
     asked = known_version(connection, asset, version)
     found = said.twin(connection, parts, asked, signals.with_zone(at, "at"))
     return Page(items=found.parameters.get("budget", []))
@@ -101,7 +101,7 @@ def damping_budget(
 def sensitivity(
     asset: AssetName, parts: Parts, connection: Told, version: AnyVersion = None
 ) -> Page[SensitivityOut]:
-    """Return by how much every updated parameter moves each measured mode, at the medians of now."""
+    """Return the sensitivity of each measured mode to every updated parameter at the present medians."""
     asked = known_version(connection, asset, version)
     found = said.twin(connection, parts, asked)
     return Page(items=found.parameters.get("sensitivity", []))
@@ -109,7 +109,7 @@ def sensitivity(
 
 @router.get("/assets/{asset}/explore", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def explored(asset: AssetName, connection: Told, version: AnyVersion = None) -> ExploredOut:
-    """Return what the law's parameters do: cost over two of them and over each, root loci along each."""
+    """Return cost over two parameters of the law and over each, and root loci along each."""
     asked = known_version(connection, asset, version)
     return ExploredOut(**results.find_drawn(connection, asset, asked.version, "explored"))
 
@@ -135,7 +135,7 @@ def life(asset: AssetName, connection: Told) -> Page[dict[str, object]]:
     responses={200: {"content": {_PARQUET: {}}}, **answers(401, 422)},
 )
 def export(who: Asker, parts: Parts, table: Exported = "modes") -> StreamingResponse:
-    """Return a whole table, of the assets that may be seen, as Parquet."""
+    """Return a whole table of the visible assets as Parquet."""
     return _exported(who, parts, table, _PARQUET)
 
 
@@ -146,7 +146,7 @@ def export(who: Asker, parts: Parts, table: Exported = "modes") -> StreamingResp
     responses={200: {"content": {_ARROW: {}}}, **answers(401, 422)},
 )
 def export_arrow(who: Asker, parts: Parts, table: Exported = "modes") -> StreamingResponse:
-    """Return a whole table, of the assets that may be seen, as a stream of Arrow."""
+    """Return a whole table of the visible assets as an Arrow stream."""
     return _exported(who, parts, table, _ARROW)
 
 

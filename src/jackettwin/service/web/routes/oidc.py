@@ -1,4 +1,4 @@
-"""Log in at an OpenID provider: what a browser is sent to, and comes back to."""
+"""Routes of the login at an OpenID provider: the redirect to it and the callback."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from jackettwin.service.web.dependencies import Parts, Route, at_most
 router = APIRouter(tags=["people"], include_in_schema=False, route_class=Route)
 
 _ASKING = at_most(4)
-"""Requests that wait for the provider: one that hangs must not take the threads of all others."""
+"""Limit of requests that wait for the provider, so that a hanging one does not block all threads."""
 _HOME = '<!doctype html><meta http-equiv="refresh" content="0;url=/"><a href="/">jackettwin</a>'
-"""A page of ours that leads on: a strict cookie is not sent with a request that a page elsewhere led to."""
+"""Page that redirects to the window, as a strict cookie is not sent after a redirect from another site."""
 
 
 @router.get("/oidc/login", dependencies=[_ASKING])
@@ -40,7 +40,7 @@ def login(parts: Parts) -> Response:
 def callback(
     request: Request, parts: Parts, kept: Annotated[str, Cookie(alias=oidc.COOKIE, max_length=500)] = ""
 ) -> Response:
-    """Take the provider's word on who comes back, and open a session."""
+    """Verify the provider's answer and open a session."""
     place = request.client.host if request.client else "?"
     secret = oidc.finish(parts, request.query_params, kept, place)
     response = HTMLResponse(_HOME, headers={"Cache-Control": "no-store"})

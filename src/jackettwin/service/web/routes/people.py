@@ -1,4 +1,4 @@
-"""Log in and out; users and tokens."""
+"""Routes for login and logout, users and tokens."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ router = APIRouter(tags=["people"], route_class=Route)
 
 @router.post("/login", dependencies=[CONNECTED], responses=answers(401, 403, 422, 429))
 def login(body: Login, request: Request, response: Response, parts: Parts) -> Me:
-    """Open a session: its cookie is set, and the CSRF token of what it changes is answered."""
+    """Open a session: set its cookie and return the CSRF token for changes."""
     place = request.client.host if request.client else "?"
     user, secret, csrf = auth.opened_session(parts, body.name, body.password, body.new, place)
     auth.set_session(response, secret, secure=parts.settings.secure)
@@ -39,7 +39,7 @@ def login(body: Login, request: Request, response: Response, parts: Parts) -> Me
 
 @router.post("/logout", status_code=204, dependencies=[auth.VIEWER], responses=answers(401, 403))
 def logout(request: Request, response: Response, who: Asker, parts: Parts, connection: Writes) -> None:
-    """End the session or token that asks."""
+    """End the session or token of the request."""
     people.revoke(connection, auth.secret_of(request))
     people.note_down(connection, who.name, "logout", who.kind, "ok", parts.now())
     response.delete_cookie(auth.COOKIE)
@@ -47,7 +47,7 @@ def logout(request: Request, response: Response, who: Asker, parts: Parts, conne
 
 @router.get("/me", dependencies=[auth.VIEWER], responses=answers(401))
 def me(who: Asker) -> Me:
-    """Tell who asks."""
+    """Return the user of the request."""
     return Me(name=who.name, role=who.role, csrf_token=who.csrf or None)  # type: ignore[arg-type]
 
 
@@ -60,7 +60,7 @@ def me(who: Asker) -> Me:
 def change_password(body: NewPassword, request: Request, who: Asker, parts: Parts) -> None:
     """Change one's own password; other sessions end, tokens do not."""
     if who.kind in ("open", "proxy"):
-        raise ApiError(409, "nobody is logged in here by a password")
+        raise ApiError(409, "the request is not from a user with a password")
     place = request.client.host if request.client else "?"
     auth.change_password(parts, who.name, body.old, body.new, place, auth.secret_of(request))
 
@@ -71,7 +71,7 @@ def audit(
     cursor: Annotated[int | None, Query(ge=1, le=2**62)] = None,
     limit: Annotated[int, Query(ge=1, le=1000)] = 100,
 ) -> Page[AuditOut]:
-    """List who did what, newest first."""
+    """List the actions of users, newest first."""
     found = people.read_audit(connection, limit + 1, cursor)
     more = str(found[limit - 1].id) if len(found) > limit else None
     items = [AuditOut.model_validate(line, from_attributes=True) for line in found[:limit]]
@@ -86,7 +86,7 @@ def users(connection: Reads) -> Page[UserOut]:
 
 @router.post("/users", status_code=201, dependencies=[auth.ADMIN], responses=answers(400, 401, 403, 422))
 def add_user(body: NewUser, who: Asker, parts: Parts, connection: Writes) -> UserOut:
-    """Add a user, or give one another role and password."""
+    """Add a user, or change role and password of one."""
     now = parts.now()
     scope = None if body.assets is None else rights.checked_scope(connection, body.assets)
     password = "" if body.password is None else auth.hashed(body.password)
@@ -100,14 +100,14 @@ def add_user(body: NewUser, who: Asker, parts: Parts, connection: Writes) -> Use
 
 @router.get("/groups", dependencies=[auth.ADMIN], responses=answers(401, 403))
 def groups(connection: Reads) -> Page[GroupOut]:
-    """List the groups of assets by which users are given rights."""
+    """List the groups of assets for users' rights."""
     found = rights.groups(connection).items()
     return Page(items=[GroupOut(name=name, assets=members) for name, members in found])
 
 
 @router.put("/groups/{group}", dependencies=[auth.ADMIN], responses=answers(400, 401, 403, 422))
 def put_group(group: AssetName, body: GroupIn, who: Asker, parts: Parts, connection: Writes) -> GroupOut:
-    """Say which assets a group has; without any it is gone."""
+    """Define the assets of a group; without assets it is deleted."""
     members = rights.put_group(connection, group, body.assets)
     people.note_down(connection, who.name, "group", f"{group}: {', '.join(members)}", "ok", parts.now())
     return GroupOut(name=group, assets=members)
@@ -117,7 +117,7 @@ def put_group(group: AssetName, body: GroupIn, who: Asker, parts: Parts, connect
     "/tokens", status_code=201, dependencies=[auth.VIEWER], responses=answers(400, 401, 403, 409, 422)
 )
 def add_token(body: NewToken, who: Asker, parts: Parts, connection: Writes) -> Token:
-    """Make a token with one's own role, for a machine."""
+    """Create a token for a machine, with the role of the user."""
     if who.kind == "open":
         raise ApiError(409, "this server is open to its own machine; define a user first")
     lasts = timedelta(days=body.days)

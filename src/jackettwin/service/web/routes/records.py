@@ -1,4 +1,4 @@
-"""Records: in, listed, looked at."""
+"""Routes for records: upload, list, signals and spectra."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ Limit = Annotated[int, Query(ge=1, le=1000)]
     status_code=202,
     dependencies=[auth.ENGINEER, WAITING],
     responses={
-        200: {"description": "This content is known.", "model": RecordAccepted},
+        200: {"description": "This content is stored already.", "model": RecordAccepted},
         **answers(400, 401, 403, 404, 409, 413, 422, 503, 507),
     },
 )
@@ -54,12 +54,13 @@ def add_record(
     who: Asker,
     parts: Parts,
     response: Response,
-    file: Annotated[UploadFile, File(description="A record in any format that is read.")],
+    file: Annotated[UploadFile, File(description="A record in any supported format.")],
     description: Annotated[
-        UploadFile | str | None, Form(description="What would lie beside it, as JSON: a field, or a file.")
+        UploadFile | str | None,
+        Form(description="The description of the record in JSON, as a field or a file."),
     ] = None,
 ) -> RecordAccepted:
-    """Take a record: it is read now and observed soon."""
+    """Upload a record: it is read at once and then queued for observation."""
     uploads.refuse_unfit(parts, asset)
     taken = uploads.take(
         parts, asset, file.filename or "record", file.file, uploads.text_of(description), who.name
@@ -96,7 +97,7 @@ def list_records(
 
 @router.get("/records/{record_id}", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def get_record(record_id: RecordId, who: Asker, connection: Told) -> RecordOut:
-    """Return a record and how far it got."""
+    """Return a record with its status."""
     return signals.record_out(known_record(connection, record_id, who))
 
 
@@ -142,7 +143,7 @@ def spectrum(record_id: RecordId, who: Asker, parts: Parts) -> Spectra:
     responses=answers(401, 404, 422, 503),
 )
 def stabilisation(record_id: RecordId, who: Asker, parts: Parts) -> StabilisationOut:
-    """Return the poles of every model order, computed anew by a worker."""
+    """Return the poles of every model order, computed by a worker."""
     return uploads.stabilisation(parts, record_id, who)
 
 
@@ -153,10 +154,10 @@ def stabilisation(record_id: RecordId, who: Asker, parts: Parts) -> Stabilisatio
     responses=answers(400, 401, 403, 404, 422),
 )
 def picks(record_id: RecordId, body: PicksIn, who: Asker, parts: Parts, connection: Writes) -> RecordAccepted:
-    """Choose the poles of a record by hand; it is identified again, and who chose when is kept."""
+    """Select the poles of a record manually; it is identified again, and user and time are logged."""
     record = known_record(connection, record_id, who)
     if record.waveform is None:
-        raise ApiError(404, "the samples of this record are not kept any more", field="record_id")
+        raise ApiError(404, "the samples of this record were deleted", field="record_id")
     job_id = uploads.pick(connection, parts, record, body, who.name)
     return RecordAccepted(record_id=record_id, job_id=job_id)
 
@@ -169,7 +170,7 @@ def picks(record_id: RecordId, body: PicksIn, who: Asker, parts: Parts, connecti
 def set_aside(
     record_id: RecordId, body: Acknowledgement, who: Asker, parts: Parts, connection: Writes
 ) -> RecordOut:
-    """Take back what a record gave rise to, on a person's word; trying its job again brings it back."""
+    """Withdraw all results of a record on request; trying its job again restores them."""
     asset = known_record(connection, record_id, who).asset
     consequences.set_aside(connection, parts, asset, record_id, f"{body.comment} ({who.name})")
     people.note_down(connection, who.name, "set aside", f"{asset}/{record_id}", "ok", parts.now())
