@@ -1,4 +1,4 @@
-"""What a server is known by and knows others by: secrets of files, certificates."""
+"""Credentials of a server: secrets in files, and certificates."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jackettwin.files import read_text
 
 
 def secret_of(file: Path | None, given: SecretStr | None, *, what: str) -> str:
-    """Return the first line of a secret's file, else what the environment gave, else nothing.
+    """Return the first line of a secret's file, otherwise the secret from the environment, otherwise "".
 
     Raises
     ------
@@ -25,9 +25,9 @@ def secret_of(file: Path | None, given: SecretStr | None, *, what: str) -> str:
 
 
 def secret_in(folder: Path, file: Path | None, field: str) -> str | None:
-    """Return the first line of a file of a secret; None without one.
+    """Return the first line of a file with a secret; None without a file.
 
-    A path that is not absolute is one in ``folder``.
+    A relative path starts at ``folder``.
 
     Raises
     ------
@@ -37,15 +37,15 @@ def secret_in(folder: Path, file: Path | None, field: str) -> str | None:
     if file is None:
         return None
     try:
-        found = secret_of(folder / file, None, what="file of a secret").strip()
+        found = secret_of(folder / file, None, what="file with a secret").strip()
     except InputError as error:
         raise error.at(field=field) from None
     require(
         found,
-        "the file of a secret is empty",
+        "the file with the secret is empty",
         field=field,
         value=str(file),
-        remedy="put it into its first line",
+        remedy="write the secret in its first line",
     )
     return found
 
@@ -53,18 +53,18 @@ def secret_in(folder: Path, file: Path | None, field: str) -> str | None:
 def tls_context(
     ca: Path | None, certificate: Path | None = None, key: Path | None = None, *, option: str = ""
 ) -> ssl.SSLContext:
-    """Return how the other side of a connection is known, and we to it.
+    """Return the TLS context of a connection.
 
     Parameters
     ----------
-    ca : certificates by which it is known; None for those that the system trusts
-    certificate, key : by which it knows us
-    option : what the names of the fields begin with where they are options
+    ca : CA certificates that verify the other side; None for those of the system
+    certificate, key : of this server, for the other side
+    option : prefix of the names of fields that are options
 
     Raises
     ------
     InputError
-        If a file is no certificate, or its key does not fit.
+        If a file is not a certificate, or its key does not match.
     """
     file, field = ca, "ca"
     try:
@@ -72,8 +72,8 @@ def tls_context(
         if certificate is not None:
             file, field = certificate, "certificate"
             context.load_cert_chain(certificate, key)
-    except OSError as error:  # an SSLError is one
+    except OSError as error:  # includes SSLError
         reason = error.strerror or str(error)
-        problem = f"not a certificate in PEM, or its key does not fit ({reason})"
+        problem = f"not a certificate in PEM, or its key does not match ({reason})"
         raise InputError(problem, field=f"{option}{field}", value=str(file)) from None
     return context

@@ -86,15 +86,16 @@ class ServiceSettings(BaseSettings):
     password_days: float | None = Field(default=None, gt=0.0)
     """Days after which a password must be replaced by another one; None for never."""
     raw_days: float | None = None
-    """Days for which samples of observed records are stored, 0 without limit; None keeps the store's policy."""
+    """Days for which samples of observed records are stored, 0 without limit; None keeps the store's
+    policy."""
     observation_days: float | None = Field(default=None, ge=0.0)
-    """The same for what each record said; its day stays, and is not summed anew after that."""
+    """The same for observations of records; the sums of their days remain, and can no longer be repeated."""
     job_days: float | None = Field(default=None, ge=0.0)
-    """The same for work that has ended."""
+    """The same for finished jobs."""
     audit_days: float | None = Field(default=None, ge=0.0)
     """The same for the audit log."""
     slow_query_s: float = Field(default=1.0, gt=0.0)
-    """Time from which on a query of the database is counted, and told to the log."""
+    """Duration from which a query of the database is counted and logged."""
     upload_limit_bytes: int = 512 * 2**20
     """Largest size of an uploaded file."""
     samples_limit: int = 200_000_000

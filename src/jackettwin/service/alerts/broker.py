@@ -32,7 +32,7 @@ class Topic(Schema):
 
 
 class Broker(Topic):
-    """A topic of a broker, its secrets in files."""
+    """A topic of a broker with secrets in files."""
 
     kind: Literal["mqtt"]
     ca: Path | None = None
@@ -40,7 +40,7 @@ class Broker(Topic):
 
     @property
     def about(self) -> str:
-        """Where it leads, without what is secret."""
+        """Its destination, without secrets."""
         return f"{self.topic} at {self.host}"
 
     def check(self, folder: Path) -> None:

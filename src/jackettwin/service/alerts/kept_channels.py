@@ -1,7 +1,7 @@
-"""Channels that an admin adds to a running server: in the store, their secrets in files beside it.
+"""Channels that an admin adds to a running server, stored with their secrets in separate files.
 
-A client sends secrets themselves, and never names a file: each is written into one of ours, and the channel
-is from then on as one of the alerts file.
+Clients send secrets, never names of files. Each secret is written to a file of the server, and the channel is
+then like one of the alerts file.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from jackettwin.service.alerts.rules import Alerts, read_alerts
 from jackettwin.store import settings
 
 FILES = {"password": "password_file", "url": "url_file", "secret": "secret_file", "ca": "ca"}
-"""What is kept in a file, by the name of the channel's field that names the file."""
+"""Secrets by field, and the channel's field with the name of their file."""
 
 
 @cache
 def of_file(file: Path | None) -> Alerts | None:
-    """Return the alerts file that a server was given, as it was when the server began."""
+    """Return the server's alerts file as read at its start."""
     return None if file is None else read_alerts(file)
 
 
@@ -42,12 +42,12 @@ def add_channel(
     channel: Mapping[str, Any],
     rules: Sequence[Mapping[str, Any]],
 ) -> Alerts:
-    """Keep a channel and what is told through it; return all that there are.
+    """Store a channel and its rules; return all channels.
 
     Raises
     ------
     InputError
-        If there is one of this name, or it could not be used.
+        If the name is in use, or the channel is not valid.
     """
     kept = settings.get(connection, settings.ALERT_CHANNELS) or {}
     if name in kept or (told is not None and name in told.channels):
@@ -61,14 +61,16 @@ def add_channel(
         found.channels[name].check(store)
     except InputError as error:
         _forget_files(store, name)
-        value = None if str(store.resolve()) in str(error.value) else error.value  # nobody's to know
+        value = (
+            None if str(store.resolve()) in str(error.value) else error.value
+        )  # the path is not shown to clients
         raise InputError(error.problem, field=error.field, value=value, allowed=error.allowed) from None
     settings.put(connection, settings.ALERT_CHANNELS, kept)
     return found
 
 
 def remove_channel(connection: Connection, store: Path, name: str) -> bool:
-    """Forget a channel with its secrets; tell whether the store had it. What waits for it is given up."""
+    """Delete a channel, its secrets and pending alerts; return whether the store had it."""
     kept = settings.get(connection, settings.ALERT_CHANNELS) or {}
     if kept.pop(name, None) is None:
         return False

@@ -33,7 +33,7 @@ class MailServer(Schema):
 
 
 class Mail(MailServer):
-    """Mail, its secrets in files."""
+    """A mail channel with secrets in files."""
 
     kind: Literal["mail", "email"]
     ca: Path | None = None
@@ -43,7 +43,7 @@ class Mail(MailServer):
 
     @property
     def about(self) -> str:
-        """Where it leads, without what is secret."""
+        """Its destination, without secrets."""
         return f"{', '.join(self.to)} by {self.host}"
 
     def check(self, folder: Path) -> None:

@@ -144,9 +144,9 @@ class Outbox(Thread):
             alerts.add(connection, to, f"unanswered {key}", finding["asset"], later, now, due)
 
     def _due(self) -> list[alerts.Alert]:
-        """Return what is to be sent now.
+        """Return the alerts to send now.
 
-        What somebody dealt with, or what holds no more, is withdrawn; what is muted waits.
+        Acknowledged alerts and those that no longer apply are withdrawn; muted ones wait.
         """
         now = self._service.now()
         with reading(self._service.database) as connection:
@@ -198,12 +198,12 @@ def tried_channels(file: Path) -> dict[str, str | None]:
 
 
 def tried(channel: AnyChannel, address: str | None, folder: Path) -> str | None:
-    """Send a message by a channel that says nothing but that it is one; return why it was not taken, or None.
+    """Send a test message by a channel; return the reason if it was not accepted, otherwise None.
 
     Parameters
     ----------
-    address : of the server as people reach it, or None
-    folder : in which the files lie that the channel names
+    address : of the server for users, or None
+    folder : of the files that the channel names
     """
     now = datetime.now(UTC)
     said: dict[str, Any] = {

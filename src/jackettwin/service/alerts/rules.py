@@ -99,7 +99,7 @@ class ChannelRule(Schema):
 
 
 class Rule(ChannelRule):
-    """A rule of the alerts file, which says whose it is."""
+    """A rule of the alerts file, which names its channel."""
 
     channel: str
 

@@ -94,14 +94,14 @@ SHAPES: dict[str, Callable[[Notice], dict[str, Any]]] = {
 
 
 class Hook(Schema):
-    """An address that messages are posted to, and in which shape."""
+    """An HTTP address that receives messages by POST, and their format."""
 
     url: str | None = None
     shape: Literal["plain", "slack", "teams", "alertmanager"] = "plain"
 
 
 class Webhook(Hook):
-    """A webhook, its secrets in files."""
+    """A webhook with secrets in files."""
 
     kind: Literal["webhook"]
     url_file: Path | None = None
@@ -113,8 +113,8 @@ class Webhook(Hook):
 
     @property
     def about(self) -> str:
-        """Where it leads, without what is secret."""
-        known = "an address that is a secret" if self.url is None else urlsplit(self.url).hostname
+        """Its destination, without secrets."""
+        known = "a secret address" if self.url is None else urlsplit(self.url).hostname
         return f"{known} as {self.shape}"
 
     def check(self, folder: Path) -> None:

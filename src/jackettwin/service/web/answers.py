@@ -86,7 +86,7 @@ def findings(
     limit: int,
     kind: type[F],
 ) -> Page[F]:
-    """Return a page of findings, newest first, with how they stand."""
+    """Return a page of findings with their status, newest first."""
     chosen: dict[str, Any] = {"severity": severity, "before": _row(cursor), "limit": limit + 1}
     rows = results.list_findings(connection, version.asset, version.model_hash, **chosen)
     handled = handling.handled(connection, version.asset)
@@ -94,7 +94,7 @@ def findings(
 
 
 def finding_out(row: Mapping[str, Any], handled: handling.Handled, kind: type[F]) -> F:
-    """Return a finding as the API speaks of it."""
+    """Return a finding in the form of the API."""
     standing, named = handled.standing(row), kind.model_fields
     noted, closed = standing.acknowledged, standing.closed
     known = {

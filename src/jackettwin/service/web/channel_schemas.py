@@ -1,4 +1,4 @@
-"""Channels of alerts as the API speaks of them: their secrets are sent in, and never told again."""
+"""Schemas of alert channels; secrets are only in requests, never in responses."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from jackettwin.service.alerts.rules import ChannelRule
 from jackettwin.service.alerts.webhook import Hook
 
 Secret = Annotated[str, Field(min_length=1, max_length=1024, pattern=r"^[^\x00-\x1f\x7f]*$")]
-"""One line."""
+"""A secret in one line."""
 Certificates = Annotated[
-    str, Field(max_length=100_000, description="In PEM, by which the other side is known.")
+    str, Field(max_length=100_000, description="CA certificates in PEM that verify the other side.")
 ]
 
 
 class MailIn(MailServer):
-    """Mail to people."""
+    """A channel for e-mail."""
 
     kind: Literal["mail"]
     password: Secret | None = None
@@ -27,7 +27,7 @@ class MailIn(MailServer):
 
 
 class WebhookIn(Hook):
-    """Posts to an address of the web, signed with a secret if there is one."""
+    """A channel that posts to an HTTP address, signed if there is a secret."""
 
     kind: Literal["webhook"]
     url: Secret
@@ -36,7 +36,7 @@ class WebhookIn(Hook):
 
 
 class MqttIn(Topic):
-    """Messages to a broker."""
+    """A channel through an MQTT broker."""
 
     kind: Literal["mqtt"]
     password: Secret | None = None
@@ -44,7 +44,7 @@ class MqttIn(Topic):
 
 
 class NewChannel(BaseModel):
-    """A channel to add, and what is told through it; by default every alarm."""
+    """A channel to add, and its rules; by default for every alarm."""
 
     name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")
     channel: Annotated[MailIn | WebhookIn | MqttIn, Field(discriminator="kind")]
@@ -52,17 +52,19 @@ class NewChannel(BaseModel):
 
 
 class ChannelOut(BaseModel):
-    """A channel: where it leads, without what is secret, and what is told through it."""
+    """A channel: its destination without secrets, and its rules."""
 
     id: str
     kind: Literal["mail", "webhook", "mqtt"]
     about: str
-    from_file: bool = Field(description="Of the server's alerts file, which alone changes it.")
+    from_file: bool = Field(
+        description="Whether it is in the server's alerts file, where only it can be changed."
+    )
     rules: list[ChannelRule]
 
 
 class Delivery(BaseModel):
-    """Whether a message was taken, and if not, why."""
+    """Whether a message was accepted, and the reason if not."""
 
     delivered: bool
     problem: str | None = None

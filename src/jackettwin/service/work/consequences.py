@@ -260,8 +260,8 @@ def fold(
 ) -> None:
     """Bring the state of a day up to date.
 
-    A day is a sum over its records that does not depend on their order. New records are added; after
-    a repeated observation or a removal the day is summed again, unless its observations were deleted, in which
+    A day is a sum over its records that does not depend on their order. New records are added; after a
+    repeated observation or a removal the day is summed again, unless its observations were deleted, in which
     case it is not changed.
     """
     day, model_hash = f"{changed.start_utc:%Y-%m-%d}", changed.model_hash

@@ -1,4 +1,4 @@
-"""How the server, its scheduler and its workers know each other: by a certificate that nobody else has."""
+"""Mutual authentication of the server, its scheduler and its workers by a private certificate."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from jackettwin.errors import InputError, require
 from jackettwin.service.settings import ServiceSettings
 
 _VALID = datetime(2000, 1, 1, tzinfo=UTC), datetime(2100, 1, 1, tzinfo=UTC)
-"""A server runs for years, and clocks are set back: the certificate ends with the process that made it."""
+"""Validity of the certificate, which only lives as long as its process: servers run for years, and clocks may
+be set back."""
 
 
 def own_security() -> Security:
-    """Return what a cluster of this machine is secured by: a new certificate and key, in memory alone.
+    """Return the security of a local cluster: a new certificate and key, only in memory.
 
-    Dask's own ends after a year, and is not valid on a clock that is set back.
+    Dask's own expires after a year, and is not valid if the clock is set back.
     """
     from cryptography import x509
     from cryptography.hazmat.primitives import hashes
@@ -33,27 +34,27 @@ def own_security() -> Security:
 
 
 def given_security(settings: ServiceSettings) -> Security:
-    """Return what somebody's scheduler is secured by, for us as its client.
+    """Return the security of this server as a client of an external scheduler.
 
     Raises
     ------
     InputError
-        If it is not asked by TLS, or a certificate is not given: whoever reaches a scheduler of Dask runs
-        programs on its workers.
+        If the address does not use TLS, or a certificate is missing, since anyone who can connect to a Dask
+        scheduler can run programs on its workers.
     """
     require(
         str(settings.scheduler).startswith("tls://"),
-        "whoever reaches a scheduler without TLS runs programs on its workers",
+        "anyone who can connect to a scheduler without TLS can run programs on its workers",
         field="scheduler",
         value=settings.scheduler,
         allowed="tls://HOST:PORT",
-        remedy="start it with --protocol tls and certificates; docs/reference/service.md says how",
+        remedy="start it with --protocol tls and certificates; see docs/reference/service.md",
     )
     paths = {name: getattr(settings, f"scheduler_{name}") for name in ("ca", "certificate", "key")}
     for name, path in paths.items():
         require(
             path is not None,
-            "a scheduler is known by certificates, and knows us by ours",
+            "the connection to a scheduler needs certificates of both sides",
             field=f"scheduler-{name}",
             remedy="give --scheduler-ca, --scheduler-certificate and --scheduler-key",
         )

@@ -1,7 +1,7 @@
-"""Workers.
+"""Cluster of workers.
 
-A Dask cluster of this machine or somebody's scheduler; slow and dying tasks are told apart from wrong input.
-A task's time counts from when a worker begins with it: neither waiting for a worker nor its start count.
+It is a local Dask cluster or an external scheduler; slow and dying tasks are distinguished from wrong input.
+The time of a task is measured from its begin at a worker, without waiting for a worker or its start.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ from jackettwin.service.workers.memory import give_back
 log = logging.getLogger(__name__)
 
 _NICE = 5
-"""Of workers of our own: readers are answered first, records are observed with what is left of the cores.
+"""Nice value of local workers, so that requests have priority over observations.
 
-Stated absolutely, since Dask runs it twice."""
+It is set absolutely, since Dask runs the code twice."""
 _START = (
     f"import os, {__package__}.engine, {__package__}.tasks\n"
     f"os.setpriority(os.PRIO_PROCESS, 0, {os.nice(0) + _NICE})"
 )
-"""What a worker of our own does before it takes a task: a record does not wait for libraries."""
+"""Code that a local worker runs at its start, so that no record waits for imports."""
 _DASK = {
     "distributed.worker.memory.target": False,
     "distributed.worker.memory.spill": False,
@@ -57,31 +57,33 @@ _DASK = {
     "distributed.worker.http.routes": ["distributed.http.health"],
     "distributed.nanny.pre-spawn-environ.MALLOC_ARENA_MAX": 1,
 }
-"""A worker over its memory is ended, not paused.
+"""Settings of Dask.
 
-A task that ended a worker comes back to us at once, and counts a try. A free worker takes what waits at a
-busy one: an upload does not wait for a posterior. The timeout of a lost worker is when Dask ends whoever took
-its place, if that one is just starting: after its own 15 s that happened. Dask's profiler and monitor
-keep what every thread did for an hour, and its logs the last thousand messages of every connection with all
-that was sent: off, and short. What it tells without being asked who asks is that it lives.
+A worker above its memory limit is ended, not paused. A task that ended a worker returns at once and counts as
+a try. Idle workers take tasks queued at busy ones, so that an upload does not wait for a posterior. After the
+timeout of a lost worker Dask ends its successor, even one that is just starting, which happened with the
+default of 15 s. Dask's profiler and monitor store an hour of activity, and its logs the last thousand
+messages of every connection with their contents; these are switched off or shortened. Without authentication
+it only reports its health.
 """
 
 ARRIVAL, STUDY = "arrival", "study"
-"""Resources of Dask by which workers take records alone, or studies: no record waits behind one."""
+"""Dask resources that separate workers for records from those for studies, as no record may wait for one."""
 _LOOK_S = 1.0
-"""How often somebody who waits for a task looks whether the scheduler is still there."""
+"""Interval at which a waiting caller checks whether the scheduler is still available."""
 _RECONNECT = "3s"
-"""Time for a scheduler that went away to answer; it is asked again at the next beat."""
+"""Timeout of reconnecting to a lost scheduler, which is repeated at the next heartbeat."""
 _REMEMBERED = 10_000
-"""Tasks of which it is known that they began: far more than there are at once."""
+"""Number of stored begin times of tasks, far more than there are tasks at once."""
 
 
 _SENT_S = 0.01
-"""Time for a worker's message to leave even if the task ends it at once: Dask collects messages for 2 ms."""
+"""Delay so that a worker's message is sent even if the task ends it at once; Dask collects messages for 2
+ms."""
 
 
 def run(topic: str, task: Callable[..., Any], *args: Any) -> Any:
-    """Run a task in a worker: say that it begins, and give back the memory that it left free."""
+    """Run a task in a worker: report its begin, and release free memory afterwards."""
     worker = get_worker()
     worker.log_event(topic, worker.get_current_task())
     time.sleep(_SENT_S)
@@ -92,7 +94,7 @@ def run(topic: str, task: Callable[..., Any], *args: Any) -> Any:
 
 
 class WorkerCluster:
-    """Where records are read and observed: never in the server's own process."""
+    """Processes in which records are read and observed, separate from the server's process."""
 
     def __init__(self, settings: ServiceSettings) -> None:
         dask.config.set(_DASK)
@@ -103,7 +105,7 @@ class WorkerCluster:
         self._security = own_security() if settings.scheduler is None else given_security(settings)
         if settings.scheduler is None:
             self._cluster = LocalCluster(
-                n_workers=0,  # they come while the server answers already
+                n_workers=0,  # they start while the server already answers
                 threads_per_worker=1,
                 processes=True,
                 memory_limit=settings.worker_memory_bytes,
@@ -121,16 +123,17 @@ class WorkerCluster:
             self.client = self._connected("30s")
         except (OSError, ValueError):  # an SSLError is an OSError
             raise InputError(
-                "no scheduler of Dask answers there",
+                "no Dask scheduler answers at this address",
                 field="scheduler",
                 value=settings.scheduler,
                 allowed="tls://HOST:PORT",
-                remedy="see that `dask scheduler` runs there, may be reached, and trusts our certificate",
+                remedy="check that `dask scheduler` runs there, can be reached, and trusts this server's "
+                "certificate",
             ) from None
         self._ever, self._ended = set[str](), 0
 
     def _connected(self, timeout: str) -> Client:
-        """Return a connection to the scheduler, as it is now."""
+        """Return a new connection to the scheduler."""
         client = Client(self._where, security=self._security, set_as_default=False, timeout=timeout)
         client.subscribe_topic(self._topic, self._note)
         self._scheduler = client.scheduler_info(n_workers=0).get("id")
@@ -138,21 +141,21 @@ class WorkerCluster:
 
     @property
     def reachable(self) -> bool:
-        """Whether the scheduler answers: nothing can be read or observed without it."""
+        """Whether the scheduler answers, without which nothing can be read or observed."""
         return bool(self.client.status == "running")
 
     @property
     def workers(self) -> int:
-        """How many workers there are now that take records; those for studies apart."""
+        """Number of workers for records, without those for studies."""
         return len(self._offering(ARRIVAL) or self._addresses()) if self.reachable else 0
 
     @property
     def restarts(self) -> int:
-        """How many workers were replaced: our own, whatever they ended of; of others', those we ended."""
+        """Number of replaced workers: all local ones that ended, or external ones that this server ended."""
         return self._ended if self._cluster is None else max(len(self._ever) - self._wanted, 0)
 
     def _addresses(self) -> set[str]:
-        """Where workers are; one that is started anew is elsewhere."""
+        """Addresses of the workers; a restarted one has a new address."""
         return set(self.client.scheduler_info(n_workers=-1).get("workers", {}))
 
     def _offering(self, resource: str) -> set[str]:
@@ -160,11 +163,11 @@ class WorkerCluster:
         return {address for address, worker in found.items() if worker.get("resources", {}).get(resource)}
 
     def mend(self) -> None:
-        """Start workers of our own that are gone for good; find somebody's scheduler that came back.
+        """Replace lost local workers, or reconnect to an external scheduler.
 
-        Dask starts a worker that died anew, but gives one up that dies, or takes long, while it starts. A
-        client of a scheduler that went away gives up after a while, and one that finds another scheduler in
-        its place knows nothing of its tasks: a new client is made.
+        Dask restarts a dead worker, but not one that dies or takes long during its start. A client of a lost
+        scheduler gives up after a while, and is not valid for a new scheduler at the same address, so a new
+        client is made.
         """
         if self._cluster is None:
             self._find_scheduler()
@@ -179,7 +182,7 @@ class WorkerCluster:
         gone, place = self.client, urlsplit(str(self._where))
         try:
             with socket.create_connection((place.hostname or "", place.port or 8786), timeout=1.0):
-                pass  # a client that finds nobody leaves threads behind
+                pass  # a client without scheduler leaves threads behind
             self.client = self._connected(_RECONNECT)
         except (OSError, ValueError) as error:
             log.warning("the scheduler does not answer: %s", str(error).partition("\n")[0])
@@ -189,7 +192,7 @@ class WorkerCluster:
             gone.close(timeout=1)
 
     def forsaken(self, future: Future) -> bool:
-        """Tell whether a task is nobody's any more: its scheduler went away, and nothing will come of it."""
+        """Return whether a task is lost because its scheduler was lost."""
         gone = future.client is not self.client or future.status in ("lost", "cancelled")
         return gone or not self.reachable
 
@@ -200,9 +203,9 @@ class WorkerCluster:
         cluster.scale(self._wanted)
 
     def submit(self, task: Callable[..., Any], *args: Any, priority: int = 0, study: bool = False) -> Future:
-        """Start a task; urgent ones overtake. Studies have a worker of their own, started for the first one.
+        """Submit a task with a priority. Studies run on a separate worker, which the first study starts.
 
-        Its key begins with its name, by which Dask knows how long such tasks take and where to put the next.
+        The key begins with the task's name, from which Dask estimates its duration for scheduling.
 
         Raises
         ------
@@ -221,7 +224,7 @@ class WorkerCluster:
         return self.client.submit(run, self._topic, task, *args, **how)
 
     def _start_studying(self, cluster: LocalCluster) -> None:
-        """Start the worker for studies, which from then on is mended as the others are."""
+        """Start the worker for studies, which is then replaced like the others if lost."""
         if STUDY in cluster.worker_spec:
             return
         usual = cluster.new_spec
@@ -236,19 +239,19 @@ class WorkerCluster:
             del self._began[next(iter(self._began))]
 
     def has_begun(self, future: Future, ago_s: float = 0.0) -> bool:
-        """Tell whether a worker began with a task, and so long ago."""
+        """Return whether a worker began a task at least ``ago_s`` ago."""
         began = self._began.get(future.key)
         return began is not None and time.monotonic() - began >= ago_s
 
     def result(self, future: Future, limit_s: float) -> Any:
-        """Return the result of a task that may take so long once it has begun, or end it.
+        """Return the result of a task, which is ended if it takes longer than the limit from its begin.
 
         Raises
         ------
         NoWorker
-            If no worker came to it within the same time, or the scheduler went away.
+            If no worker began it within the same time, or the scheduler was lost.
         TimeoutError
-            If it takes longer.
+            If it takes longer than the limit.
         """
         asked = time.monotonic()
         while True:
@@ -258,7 +261,7 @@ class WorkerCluster:
             except Exception as error:
                 if self.forsaken(future):
                     raise NoWorker from None
-                if not isinstance(error, TimeoutError) or future.done():  # it is the task's own
+                if not isinstance(error, TimeoutError) or future.done():  # the error is the task's own
                     raise
                 left = self._began.get(future.key, asked) + limit_s - time.monotonic()
                 if left > 0.0:
@@ -270,20 +273,20 @@ class WorkerCluster:
                 raise
 
     def end(self, future: Future) -> None:
-        """Give a task up that takes too long: its worker is started anew, with whatever it holds."""
+        """End a task that takes too long by restarting its worker."""
         with self._lock, suppress(Exception):
             busy = [address for address, keys in self.client.processing().items() if future.key in keys]
             future.cancel()
             self._ended += len(busy)
             if self._cluster is None:
                 self.client.restart_workers(busy, timeout=30, raise_for_error=False)
-            else:  # a nanny starts a worker anew that died, sooner than one that it must end itself
+            else:  # a nanny restarts a dead worker faster than one that it must end itself
                 for nanny in self._cluster.workers.values():
                     if nanny.worker_address in busy:
                         os.kill(nanny.pid, signal.SIGKILL)
 
     def close(self) -> None:
-        """Stop; what runs is dropped and will be leased again."""
+        """Stop; running tasks are dropped and will be leased again."""
         with suppress(Exception):
             self.client.close(timeout=5)
         if self._cluster is not None:

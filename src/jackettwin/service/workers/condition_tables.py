@@ -1,4 +1,4 @@
-"""Conditions of the site, read from tables of ten-minute statistics as SCADA systems export them."""
+"""Reading of site conditions from tables of ten-minute statistics of SCADA systems."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from jackettwin.service.workers.event_tables import BEGINS, ENDS, KINDS, by_ten_
 
 Value = float | str | None
 _WHOSE = "asset_id"
-"""The column that says whose a row is, as OpenOA's schema calls it."""
+"""Column with the turbine of each row, named as in OpenOA's schema."""
 _TIMES = ("time_utc", "time", "timestamp", "datetime", "date_time", "date", "zeit", "pctimestamp")
-"""What the column of times may be called, once its name is written in small letters and underscores."""
+"""Possible names of the column of times, in lower case with underscores."""
 _STAMPS = ["%Y-%m-%d %H:%M:%S", "%Y-%m-%d %H:%M", "%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M", csv.ISO8601]
 _MOST_ROWS = 2_000_000
-"""Forty years of ten-minute statistics."""
+"""Largest number of rows, about forty years of ten-minute statistics."""
 
 
 def read_table(
@@ -42,18 +42,18 @@ def read_table(
     Parameters
     ----------
     zone : str
-        Of clocks that do not say theirs.
+        Time zone of times without one.
     names : {column: name}, optional
-        Of columns to take under another name; the others keep theirs in small letters and underscores.
+        Columns to read under another name; others have their own in lower case with underscores.
     end_stamped : bool
-        Whether a row bears the end of its ten minutes.
+        Whether times are the ends of the intervals.
     asset : str, optional
-        Of whom to take the rows where a column ``asset_id`` says whose each is.
+        Turbine whose rows are read if there is a column ``asset_id``.
 
     Raises
     ------
     InputError
-        If it is no table, or no column is one of times.
+        If it is not a table, or has no column of times.
     """
     table = _read(path)
     given = names or {}
@@ -65,7 +65,7 @@ def read_table(
     kind = None if times is None else table.schema.field(times).type
     if times is None or not (pa.types.is_timestamp(kind) or pa.types.is_date(kind)):
         raise InputError(
-            "no column of times",
+            "there is no column of times",
             file=path,
             field="time",
             value=", ".join(table.column_names)[:200],
@@ -82,19 +82,19 @@ def read_table(
 
 
 def _of_asset(table: Any, called: Mapping[str, str], asset: str | None, path: Path) -> Any:
-    """Return the rows of an asset; all of a table that does not say whose they are, or of one asset alone."""
+    """Return the rows of an asset; all rows of a table without ``asset_id``, or of one asset only."""
     column = next((column for column, name in called.items() if name == _WHOSE), None)
     if column is None or asset is None:
         return table
     whose = [str(value) for value in table[column].to_pylist()]
     if asset not in whose and len(set(whose)) > 1:
         raise InputError(
-            "the table is of several turbines, and none is this one",
+            "the table has several turbines, but not this one",
             file=path,
             field=_WHOSE,
             value=asset,
             allowed=", ".join(sorted(set(whose))[:20]),
-            remedy="call the asset as it is called there",
+            remedy="use the name of the turbine in the table",
         )
     return table.filter([w == asset for w in whose]) if asset in whose else table
 
@@ -137,11 +137,11 @@ IEC_61400_25 = {
     "wnac_wdspd": "nacelle_wind_speed_m_s",
     "wnac_dir": "nacelle_direction_deg",
 }
-"""Data names of IEC 61400-25-2 in the units of OpenOA (kW, m/s, deg, °C, rpm), and ours."""
+"""Names of IEC 61400-25-2 in the units of OpenOA (kW, m/s, deg, °C, rpm), and their equivalents here."""
 
 
 def plain_name(column: str) -> str:
-    """Return a column's name in small letters and underscores, or ours for a name of IEC 61400-25.
+    """Return a column's name in lower case with underscores, or the equivalent of one of IEC 61400-25.
 
     >>> plain_name("Wind Speed (m/s)"), plain_name("WMET.HorWdSpd"), plain_name("WROT_RotSpd")
     ('wind_speed_m_s', 'mean_wind_speed_m_s', 'rotor_speed_rpm')
@@ -155,7 +155,7 @@ def _plain(column: str) -> str:
 
 
 def _read(path: Path) -> Any:
-    """Return a table of a delimited file, its delimiter and decimal sign as its first lines show them."""
+    """Return the table of a delimited file; delimiter and decimal sign are detected from its first lines."""
     try:
         head = path.read_bytes()[:65536].decode("utf-8-sig", errors="replace")
         first = head.partition("\n")[0]

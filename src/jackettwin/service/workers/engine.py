@@ -1,6 +1,6 @@
-"""The seam to the engine: documents in, documents out.
+"""Interface to the engine, with documents as inputs and outputs.
 
-Nothing below it knows of a store, nothing above it of a model.
+Modules below it do not use the store, modules above it do not use models.
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ from jackettwin.version import __version__
 
 TWIN_FILE = "twin.yaml"
 DAY = StoredSchema("twin_day", Day)
-"""How the state of one day is kept."""
+"""Format of the stored state of a day."""
 
 
 @dataclass(frozen=True)
 class FoldedDay:
-    """The state of a day as a document, how many records it holds, and what each new one gave rise to."""
+    """The state of a day as a document, its number of records, and the findings on each new one."""
 
     document: str
     n_records: int
@@ -49,7 +49,7 @@ class FoldedDay:
 
 
 class Twin(NamedTuple):
-    """What a version of a twin says, and the model that it builds."""
+    """Configuration of a version of a twin, and its model."""
 
     config: TwinConfig
     model: TwinModel
@@ -57,23 +57,23 @@ class Twin(NamedTuple):
 
 @lru_cache(maxsize=256)
 def load_twin(folder: Path) -> Twin:
-    """Return a twin whose files stand in a folder, kept: a version never changes."""
+    """Return the twin in a folder, cached since a version never changes."""
     config = read_twin(folder / TWIN_FILE, records_follow=True)
     return Twin(config, twin_model(config))
 
 
 @dataclass(frozen=True)
 class TwinProfile:
-    """What a server must know of a version of a twin, so that it need not build the model.
+    """Data of a version of a twin that a server needs without building the model.
 
     Attributes
     ----------
-    identity : hash of model and settings, by which a version's observations are known
-    settings_hash : of the settings it observes with
-    model_hash, by_wind, with_shapes : of the states that its observations become
+    identity : hash of model and settings, which identifies a version's observations
+    settings_hash : of the settings of its observations
+    model_hash, by_wind, with_shapes : of the states of its observations
     labels : of its modes
-    channels : {name: channel}, as far as the twin file says
-    unsaid : what holds for a file that does not say so
+    channels : {name: channel}, as stated in the twin file
+    unsaid : properties of files that do not state them
     """
 
     identity: str
@@ -87,11 +87,11 @@ class TwinProfile:
 
 
 PROFILE = StoredSchema("twin_profile", TwinProfile)
-"""How a profile is sent by a worker, and stands beside the files of its version."""
+"""Format of profiles, as sent by workers and stored with the files of a version."""
 
 
 def profile_of(twin: Twin) -> TwinProfile:
-    """Return what a server must know of a twin."""
+    """Return the profile of a twin."""
     model = twin.model
     settings = model.settings_hash("")
     named = {
@@ -109,7 +109,7 @@ def examine(folder: Path, most_freedoms: int) -> TwinProfile:
     Raises
     ------
     InputError
-        If it cannot be read, or its structure has too many freedoms.
+        If it cannot be read, or has too many degrees of freedom.
     """
     config = read_twin(folder / TWIN_FILE, records_follow=True)
     usual = config.subdivide or config.structure.subdivide
@@ -117,28 +117,28 @@ def examine(folder: Path, most_freedoms: int) -> TwinProfile:
     freedoms = 6 * (len(config.structure.nodes) + inner)
     require(
         freedoms <= most_freedoms,
-        "the structure has too many freedoms to be observed with",
+        "the structure has too many degrees of freedom",
         field="subdivide",
         value=freedoms,
         allowed=f"up to {most_freedoms} freedoms",
-        remedy="cut members less finely, or set JACKETTWIN_SERVE_FREEDOMS_LIMIT",
+        remedy="divide members less finely, or set JACKETTWIN_SERVE_FREEDOMS_LIMIT",
     )
     return profile_of(Twin(config, twin_model(config)))
 
 
 def profile_path(folder: Path) -> Path:
-    """Return where the profile of a version stands, as this version of the program sees it."""
+    """Return the path of a version's profile, for this version of the program."""
     return folder.with_name(f"{folder.name}-{__version__}.json")
 
 
 def keep_profile(folder: Path, profile: TwinProfile) -> None:
-    """Put a profile beside the files of its version."""
+    """Store a profile with the files of its version."""
     with atomic_path(profile_path(folder)) as temporary:
         temporary.write_text(json.dumps(PROFILE.dump(profile)), encoding="utf-8")
 
 
 def read_profile(path: Path) -> TwinProfile:
-    """Return a profile that was kept."""
+    """Return a stored profile."""
     return PROFILE.load(json.loads(path.read_text(encoding="utf-8")))
 
 
@@ -151,9 +151,9 @@ def observed(
 ) -> tuple[str, tuple[dict[str, Any], ...], tuple[dict[str, Any], ...], dict[str, Any] | None]:
     """Return the observation of a stored record as a document, its modes and its findings as rows.
 
-    The last is why it does not count, if it is of another structure.
+    The last is the reason of exclusion, if the record is of another structure.
 
-    ``picks`` are poles that a person chose instead of the automatic selection.
+    ``picks`` are manually selected poles, which replace the automatic selection.
     """
     if picks:
         model = model.with_picks(tuple(Pick(float(p["frequency_hz"]), p.get("order")) for p in picks))
@@ -181,16 +181,16 @@ def observed(
 
 
 _MISMATCHED = {
-    "detail": "none of its modes is one of this twin's: it does not count",
+    "detail": "none of its modes is one of this twin's; the record is not used",
     "field": "record",
-    "remedy": "see whether it is of another turbine, and where the twin says that its sensors are",
+    "remedy": "check whether it is of another turbine, and the positions of the sensors in the twin",
 }
 
 
 def advance_day(
     model: TwinModel | TwinProfile, day: str, stored: str | None, observations: Sequence[str]
 ) -> FoldedDay:
-    """Return the state of a day that knows some more observations of it."""
+    """Return the state of a day with some more observations."""
     days = {} if stored is None else {day: DAY.load(json.loads(stored))}
     state = replace(_empty(model), days=days)
     found = []
@@ -205,13 +205,13 @@ def advance_day(
 def finding_row(finding: Finding) -> dict[str, Any]:
     """Return a finding as it is stored."""
     row = finding.document
-    del row["repaired"]  # stored findings have no place for it
+    del row["repaired"]  # stored findings do not contain it
     return row
 
 
 @dataclass(frozen=True)
 class Sums:
-    """What some days say together, without the days themselves: it does not grow with their number."""
+    """Sums over some days, of a size that does not depend on their number."""
 
     state: TwinState
     records: int = 0
@@ -220,14 +220,14 @@ class Sums:
 
 
 def no_days(model: TwinModel | TwinProfile) -> Sums:
-    """Return what no day says."""
+    """Return the sums over no days."""
     return Sums(_empty(model))
 
 
 def with_day(
     sums: Sums, day: str, document: str, chosen: Callable[[str], bool] = lambda operation: True
 ) -> Sums:
-    """Return what some days and one more say together, of its records in some states of operation."""
+    """Return the sums with one more day, of its records in some states of operation."""
     new = DAY.load(json.loads(document)).of_operations(chosen)
     state = replace(sums.state.with_day(day, new), days={})
     times = [t for t in (sums.first_utc, sums.last_utc, new.first, new.last) if t is not None]
@@ -237,9 +237,9 @@ def with_day(
 
 @dataclass(frozen=True)
 class Past:
-    """What all days but the last one, which still grows, say together: kept from question to question.
+    """Stored sums over all days but the last, which still grows.
 
-    ``through`` is the last of them, ``of`` their identity.
+    ``through`` is the last summed day, ``of`` the identity of these days.
     """
 
     sums: Sums
@@ -248,11 +248,11 @@ class Past:
 
 
 PAST = StoredSchema("twin_past", Past)
-"""How sums of past days are kept."""
+"""Format of stored sums of past days."""
 
 
 def days_unsummed(past: Mapping[str, Any] | None, identities: Mapping[str, str]) -> str | None:
-    """Return the day after which days are not in sums that are kept; None if these do not hold any more."""
+    """Return the last day of stored sums; None if these are outdated."""
     if past is None or past["through"] >= max(identities, default=""):
         return None
     return past["through"] if past["of"] == _identity(identities, past["through"]) else None
@@ -265,7 +265,7 @@ def _identity(identities: Mapping[str, str], through: str) -> str:
 def summed(
     twin: Twin, past: Mapping[str, Any] | None, identities: Mapping[str, str], documents: Mapping[str, str]
 ) -> tuple[Sums, Mapping[str, Any] | None]:
-    """Return what the records of all days say that may update the supports, and what to keep of it.
+    """Return the sums over all days of records that may update the supports, and those to store.
 
     ``documents`` are those of the days that are not in ``past``, or of all days without it.
     """
@@ -280,7 +280,7 @@ def summed(
 
 
 def knowledge(model: TwinModel | TwinProfile, sums: Sums) -> dict[str, Any]:
-    """Return what some days say: the mean of every mode with its standard deviations, from when to when."""
+    """Return the means of every mode over some days with standard deviations, and the period."""
     total = sums.state.totals.get(ALL)
     modes = []
     for number, seen in sorted(total.modes.items()) if total is not None else ():
@@ -302,7 +302,7 @@ def knowledge(model: TwinModel | TwinProfile, sums: Sums) -> dict[str, Any]:
         "last_utc": sums.last_utc,
         "modes": modes,
         "parameters": {},
-        "status": "ok" if modes else "no mode of the model has been seen",
+        "status": "ok" if modes else "no mode of the model has been measured",
     }
 
 

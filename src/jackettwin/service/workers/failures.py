@@ -1,4 +1,4 @@
-"""Why a task has no result: wrong input, a worker that ended, no worker, no space on the disk."""
+"""Reasons for a task without result: wrong input, an ended worker, no worker, a full disk."""
 
 from __future__ import annotations
 
@@ -8,21 +8,21 @@ from typing import Any
 from jackettwin.errors import InputError
 
 LOST_WORKER = ("KilledWorker", "CancelledError", "FutureCancelledError")
-"""Errors that say that a worker ended over a task, whatever of."""
+"""Names of errors after which a worker has ended during a task, for any reason."""
 DISK_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
-"""What the system says where nothing can be written."""
+"""System errors if nothing can be written."""
 
 
 ROOM_BYTES = 256 * 2**20
-"""Room that must be left on the disk: the database needs it to finish what it began."""
+"""Least free disk space, which the database needs to complete its transactions."""
 
 
 class NoWorker(Exception):
-    """No worker came to a task in time; nothing is wrong with it."""
+    """No worker began a task in time; the task itself has no fault."""
 
 
 def problem_of(error: InputError) -> dict[str, Any]:
-    """Return what is wrong with a user's input; where it lies on our disk is nobody's business."""
+    """Return the problem with a user's input, without paths on the server's disk."""
     return {
         "detail": error.problem,
         "field": error.field,

@@ -1,4 +1,4 @@
-"""Files of strangers name other files: they may read those that came with them, and none of ours."""
+"""Restriction of uploaded files to the files that were sent with them."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ _SOFTWARE = tuple(
     Path(place).resolve()
     for place in (sys.prefix, sys.base_prefix, str(Path(jackettwin.__file__).parent), *zoneinfo.TZPATH)
 )
-"""Where modules are loaded from, what is shipped with them, and time zones: nobody's secrets."""
+"""Folders of modules, package data and time zones, which are not secret."""
 _KNOWN_OF_MODULES = (".dist-info", ".egg-info")
 
 
 @contextmanager
 def only_files_in(folder: Path) -> Iterator[None]:
-    """Refuse every file outside a folder that Python is asked to open in the block, whatever reader asks.
+    """Raise an error if Python opens a file outside a folder within the block.
 
     Raises
     ------
     InputError
-        In the block, whether there is such a file or not.
+        Within the block, whether the file exists or not.
     """
     load_all()
     token = _folder.set(folder.resolve())
@@ -48,11 +48,11 @@ def _watch(event: str, arguments: tuple[Any, ...]) -> None:
     known = any(path.is_relative_to(place) for place in (folder, *_SOFTWARE))
     if not known and path.parent.suffix not in _KNOWN_OF_MODULES:
         raise InputError(
-            "a file is named that was not sent with it",
+            "it names a file that was not sent with it",
             field="files",
             value=Path(os.fsdecode(arguments[0])).name,
             allowed="the files of the twin, by their relative paths",
-            remedy="send the file along and name it relative to the twin file",
+            remedy="also send the file, and name it relative to the twin file",
         )
 
 

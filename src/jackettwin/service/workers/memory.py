@@ -1,4 +1,4 @@
-"""Memory of a process: bounded while a file is read, given back to the system afterwards."""
+"""Memory of a process: limited while a file is read, and released afterwards."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ from pathlib import Path
 
 _STATM = Path("/proc/self/statm")
 _LEAST_BYTES = 64 * 2**20
-"""Room that is always given: a process over its limit must still be able to say so."""
+"""Memory above the limit so that a process can still report the error."""
 
 
 @contextmanager
 def at_most(limit_bytes: int) -> Iterator[None]:
-    """Raise ``MemoryError`` in the block where this process would come to hold more than ``limit_bytes``.
+    """Raise ``MemoryError`` in the block if this process would use more than ``limit_bytes``.
 
-    So a file is stopped while it expands, in whatever reader. Where there is no ``/proc`` nothing is bounded
-    here, and the worker is ended by its watcher.
+    This stops the expansion of a file in any reader. Without ``/proc`` there is no limit here, and Dask's
+    nanny ends the worker.
     """
     if not _STATM.exists():
         yield
         return
-    import resource  # of systems with /proc alone
+    import resource  # only on systems with /proc
 
     import pyarrow as pa
 
     pool = pa.default_memory_pool()
-    pa.set_memory_pool(pa.system_memory_pool())  # Arrow's own is given its memory ahead, past any limit
+    pa.set_memory_pool(pa.system_memory_pool())  # Arrow's own pool reserves memory in advance, past any limit
     fields = _STATM.read_text().split()
     resident, data = (int(fields[i]) * resource.getpagesize() for i in (1, 5))
     before, hard = resource.getrlimit(resource.RLIMIT_DATA)
@@ -40,18 +40,18 @@ def at_most(limit_bytes: int) -> Iterator[None]:
 
 
 def give_back() -> None:
-    """Return free memory to the system; glibc keeps what lies below the highest block in use, and grows."""
+    """Return free memory to the system; glibc keeps all below the highest used block, and so grows."""
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
-    if trim is not None:  # other C libraries have no such function
+    if trim is not None:  # only glibc has this function
         trim(0)
 
 
 def one_heap() -> None:
-    """Have all threads of this process share one heap; glibc makes many, each with free room of its own."""
+    """Make all threads of this process share one heap; glibc's separate heaps each keep free memory."""
     tune = getattr(ctypes.CDLL(None), "mallopt", None)
     if tune is not None:
         tune(_M_ARENA_MAX, 1)
 
 
 _M_ARENA_MAX = -8
-"""Of glibc's ``mallopt``; other C libraries answer that they do not know it."""
+"""Parameter of glibc's ``mallopt``; other C libraries reject it."""

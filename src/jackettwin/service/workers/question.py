@@ -1,4 +1,4 @@
-"""What a worker is asked of all that a turbine's records showed."""
+"""Task of estimating a turbine's supports and changes from all records."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Question:
-    """What a turbine's records showed, of which it is asked what that says of the supports and of a change.
+    """Data of a turbine's records for estimating its supports and changes.
 
     Attributes
     ----------
     identities : {day: identity}
         Of all days.
     days : {day: document}
-        Of those that are not in what is kept, or of all.
-    newest : documents of the newest observations, for the page
-    in_all : how many records there are, and how long they are together [s]
-    kept : what is kept of the sums of past days and of watching them, by name
+        Days that are not in the stored sums, or all days.
+    newest : documents of the newest observations, for the report
+    in_all : number of records, and their total duration [s]
+    kept : stored sums of past days and state of their monitoring, by name
     of : identity of the state
     """
 

@@ -1,6 +1,6 @@
-"""The stiffness of a turbine's ground on each day, as ``jackettwin follow`` says it.
+"""Stiffness of a turbine's ground on each day, as in ``jackettwin follow``.
 
-It is gone on with from what is kept, which ends with the last day but one: the last one still grows.
+It continues from a stored result up to the last day but one, since the last day still grows.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ class FollowedPast:
     Attributes
     ----------
     days : {date: identity}
-        All of them.
-    window : the day before those that are taken again when more are known; empty before the first
-    followed : what is gone on from
-    code_version : that made it; another one follows all days anew
+        All past days.
+    window : the day before those that are evaluated again with later ones; empty before the first
+    followed : result to continue from
+    code_version : of the code that made it; another version evaluates all days again
     """
 
     days: dict[str, str]
@@ -40,11 +40,11 @@ class FollowedPast:
 
 
 FOLLOWED_PAST = StoredSchema("followed_past", FollowedPast)
-"""How it is kept."""
+"""Format of the stored result."""
 
 
 def days_needed(kept: Mapping[str, Any] | None, identities: Mapping[str, str]) -> str | None:
-    """Return the day after which days are needed to go on from what is kept; None if every day is."""
+    """Return the day after which days are needed to continue from a stored result; None if all are."""
     if kept is None or kept["code_version"] != __version__:
         return None
     known = len(kept["days"])
@@ -58,7 +58,7 @@ def followed(
     identities: Mapping[str, str],
     documents: Mapping[str, str],
 ) -> tuple[Followed, Mapping[str, Any] | None]:
-    """Return what is known of the supports after each day, and what to keep of it.
+    """Return the estimates of the supports after each day, and the part to store.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def followed(
     Raises
     ------
     KeyError
-        If a day is needed that has no document here: after a change, and when conditions are learnt anew.
+        If a needed day has no document, as after a change or when conditions are learnt anew.
     """
 
     @cache
@@ -101,6 +101,6 @@ def _dated(identities: Mapping[str, str]) -> dict[str, str]:
 
 
 def _same(known: Mapping[str, str], identities: Mapping[str, str]) -> int:
-    """Return how many of the first days are as they were."""
+    """Return the number of unchanged first days."""
     pairs = zip(known.items(), _dated(identities).items(), strict=False)
     return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))

@@ -1,4 +1,4 @@
-"""What workers do: read a file into the store, observe a stored record. Plain values in, plain values out."""
+"""Tasks of workers, with plain values as inputs and outputs: reading a file, observing a stored record."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ class Task:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a task: a document, or a problem (field, value, remedy) of the record itself.
+    """Result of a task: a document, or a problem (field, value, remedy) of the record itself.
 
     With both, the record was observed and is of another structure.
 
-    ``page`` is the report on a turbine's state, and ``of`` the identity of that state; ``same_page`` tells
-    that the report there is stays.
+    ``page`` is the report on a turbine's state, and ``of`` the identity of that state; with ``same_page`` the
+    present report is unchanged.
     """
 
     document: str | None
@@ -50,14 +50,14 @@ class Outcome:
 
 @dataclass(frozen=True)
 class File:
-    """A file to read, and what bounds it.
+    """A file to read, and its limits.
 
     Attributes
     ----------
-    samples_limit : most samples, over all channels, that it may expand to
-    memory_bytes : of the process that reads it, meanwhile
-    latest_utc : when a record may begin at the latest
-    unsaid : what holds for a file that does not say so, by the twin of its asset
+    samples_limit : largest number of samples over all channels
+    memory_bytes : memory limit of the process that reads it
+    latest_utc : latest time at which a record may begin
+    unsaid : properties of files that do not state them, from the twin
     """
 
     path: str
@@ -70,12 +70,12 @@ class File:
 
 
 EARLIEST = datetime(2001, 1, 1, tzinfo=UTC)
-"""Clocks that were never set begin in 1970, 1980 or 2000."""
+"""Earliest start of a record, as clocks that were never set start in 1970, 1980 or 2000."""
 
 
 @dataclass(frozen=True)
 class Parsed:
-    """A record that is now a waveform in the store, or the problem with its file."""
+    """A record whose waveform is in the store, or the problem with its file."""
 
     record_id: str
     waveform: str | None = None
@@ -85,7 +85,7 @@ class Parsed:
 
 
 def about(record: Record) -> dict[str, Any]:
-    """Return what is searched of a record."""
+    """Return the searchable properties of a record."""
     assert record.start_utc is not None
     return {
         "start_utc": record.start_utc.isoformat(),
@@ -100,10 +100,10 @@ def about(record: Record) -> dict[str, Any]:
 
 
 def read_file(file: File) -> tuple[Parsed, ...]:
-    """Read a file of any known format and keep its samples in the store.
+    """Read a file of any supported format and store its samples.
 
-    A file of more than an hour becomes records of ten minutes, as ``jackettwin identify`` reads it. What
-    another store keeps of a record is a known format too.
+    A file longer than an hour is divided into records of ten minutes, as in ``jackettwin identify``. The
+    waveform files of another store are also supported.
     """
     from jackettwin.records import read_record, read_record_pieces
     from jackettwin.service.workers.memory import at_most
@@ -125,17 +125,17 @@ def read_file(file: File) -> tuple[Parsed, ...]:
 
 
 _TOO_LARGE = {
-    "detail": "the file expands to more than the memory of a worker",
+    "detail": "reading the file needs more memory than a worker has",
     "field": "file",
     "remedy": "send it in pieces of an hour",
 }
 
 
 def _check(record: Record, file: File) -> None:
-    """Refuse a record that expands too far, or of which it is not known when it was."""
+    """Raise an error on a record that is too large, or has no valid start time."""
     if record.data.size > file.samples_limit:
         raise InputError(
-            "the file expands to too many samples",
+            "the file has too many samples",
             field="file",
             value=record.data.size,
             allowed=f"up to {file.samples_limit}",
@@ -143,9 +143,9 @@ def _check(record: Record, file: File) -> None:
         )
     if record.start_utc is None:
         raise InputError(
-            "a record without a start cannot be placed in time",
+            "the record has no start time",
             field="start_utc",
-            remedy="give start_utc in the description beside it, or a time column with a date",
+            remedy="give start_utc in its description, or a time column with a date",
         )
     if not EARLIEST <= record.start_utc <= file.latest_utc:
         raise InputError(
@@ -153,12 +153,12 @@ def _check(record: Record, file: File) -> None:
             field="start_utc",
             value=record.start_utc.isoformat(),
             allowed=f"{EARLIEST:%Y-%m-%d} to {file.latest_utc:%Y-%m-%d}",
-            remedy="set the logger's clock, and give start_utc in the description beside the record",
+            remedy="set the logger's clock, and give start_utc in the record's description",
         )
 
 
 def stored(record: Record, asset: str, store: Path) -> Parsed:
-    """Keep the samples of a record in the store, by their content."""
+    """Store the samples of a record, by their content."""
     from jackettwin.records import record_id
     from jackettwin.store import waveform_path, write_waveform
 
@@ -170,7 +170,7 @@ def stored(record: Record, asset: str, store: Path) -> Parsed:
 
 
 def examine_twin(folder: str, most_freedoms: int, memory_bytes: int) -> Any:
-    """Return the profile of a twin that a client sent, as a document; what is wrong with it comes back."""
+    """Return the profile of a twin that a client sent, as a document, or the problem with it."""
     from jackettwin.service.workers import engine
     from jackettwin.service.workers.file_access import only_files_in
     from jackettwin.service.workers.memory import at_most
@@ -188,7 +188,7 @@ def examine_twin(folder: str, most_freedoms: int, memory_bytes: int) -> Any:
 
 
 def read_conditions(path: str, *, asset: str, zone: str, end_stamped: bool) -> Any:
-    """Read a table of conditions; an error of its input comes back, without our path."""
+    """Read a table of conditions, or return the problem with it, without the server's path."""
     from jackettwin.service.workers.condition_tables import read_table
 
     try:
@@ -199,13 +199,13 @@ def read_conditions(path: str, *, asset: str, zone: str, end_stamped: bool) -> A
 
 
 def know(question: Question) -> Outcome | None:
-    """Answer a question about what a turbine's records showed, and write the page on it.
+    """Return the estimates from a turbine's records, and the report.
 
-    None if it takes days that were not sent: after a change, and once a baseline is whole.
+    None if they need days that were not sent, as after a change or when a baseline is complete.
     """
     from jackettwin.service.workers import engine, verdict
 
-    if not question.identities:  # all its records were taken back
+    if not question.identities:  # all its records were withdrawn
         nothing = {"known": {"status": verdict.NO_MODE, "parameters": {}}}
         return Outcome(json.dumps(nothing), of=question.of)
     twin = engine.load_twin(Path(question.twin_folder))
@@ -236,12 +236,12 @@ def know(question: Question) -> Outcome | None:
 
 
 def observe_stored(task: Task) -> Outcome:
-    """Observe a stored record. Input that is wrong comes back as a problem, faults of ours are raised."""
+    """Observe a stored record; wrong input is returned as a problem, other faults are raised."""
     from jackettwin.service.workers import engine
 
     try:
         twin, folder = engine.load_twin(Path(task.twin_folder)), Path(task.twin_folder)
-        if not engine.profile_path(folder).exists():  # of an older version of the program, or restored
+        if not engine.profile_path(folder).exists():  # the version is from an older program or a backup
             engine.keep_profile(folder, engine.profile_of(twin))
         poles = (task.picks or {}).get("poles", ())
         return Outcome(*engine.observed(twin.model, Path(task.waveform), task.conditions, poles))

@@ -1,6 +1,6 @@
-"""What a turbine's records together say of its supports, and of a change.
+"""Estimates of a turbine's supports and of changes from all its records.
 
-It is asked when no record waits: a posterior costs as much as ten records.
+They are computed when no record is waiting, as a posterior costs as much as ten records.
 """
 
 from __future__ import annotations
@@ -46,23 +46,23 @@ if TYPE_CHECKING:
     from jackettwin.service.workers.question import Question
 
 CANNOT_MEET = "the model cannot reproduce the measurements on any ground: no interval; see the report"
-"""What is said of parameters that come nearest to the data and do not explain them."""
+"""Status of parameters whose best fit does not explain the data."""
 _GRID = 33
-"""Points a side of the cost surface that is kept."""
+"""Number of points along each side of the stored cost surface."""
 DRAWN = ("explored", "structure", "assumptions")
 """What is kept of an answer for pages of their own, beside what is known."""
-NO_MODE = "no mode of the model has been seen"
+NO_MODE = "no mode of the model has been measured"
 FEW, GROWN, MOST_DAYS = 24, 1.3, 30
-"""Records up to which all together are asked whenever there is a new one; then their growth, and the days,
-after which they are: a posterior costs as much as a hundred days of stiffness."""
+"""Number of records up to which each new one gives a new posterior; beyond it, growth of the number and days
+after which there is a new one. A posterior costs as much as a hundred days of stiffness."""
 NOT_TO_UPDATE = "no record is in a state of operation that may update the supports (operation.updates)"
 
 
 def due(before: Mapping[str, Any] | None, asked: Question, changes: int) -> bool:
-    """Tell whether all records together are to be asked again, at the price of a posterior.
+    """Return whether the posterior of all records is to be sampled again.
 
-    They are while they are few, when they have grown by a third, once a month, after a change of the
-    stiffness, and when what was known of them holds no more; from day to day the stiffness is followed.
+    It is while records are few, when their number has grown by a third, once a month, after a change of the
+    stiffness, and when the earlier one is outdated. In between, the stiffness is tracked from day to day.
     """
     if before is None or "parameters" not in before["known"] or before["code_version"] != __version__:
         return True
@@ -73,7 +73,7 @@ def due(before: Mapping[str, Any] | None, asked: Question, changes: int) -> bool
 
 
 def asked_together(known: Mapping[str, Any], asked: Question, changes: int) -> dict[str, Any]:
-    """Return what is kept of an answer by all records together, until :func:`due`."""
+    """Return the part of an estimate from all records that is stored until :func:`due`."""
     return {
         "known": dict(known), "records": asked.in_all[0], "day": max(asked.identities), "changes": changes,
         "code_version": __version__,
@@ -81,9 +81,9 @@ def asked_together(known: Mapping[str, Any], asked: Question, changes: int) -> d
 
 
 def of_today(known: Mapping[str, Any], followed: Followed | None) -> dict[str, Any]:
-    """Return what all records together say, with the stiffness as it is on the last day.
+    """Return the estimate from all records, with the stiffness of the last day.
 
-    Of a parameter that is followed from day to day, the day stands beside it.
+    Parameters that are tracked from day to day have that day's date.
     """
     parameters = {name: dict(p) for name, p in known["parameters"].items()}
     found = {name: value for name, value in known.items() if name not in DRAWN}
@@ -101,7 +101,7 @@ def of_today(known: Mapping[str, Any], followed: Followed | None) -> dict[str, A
 
 
 def supports(followed: Followed | None) -> dict[str, Any]:
-    """Return the stiffness of every day, as ``jackettwin follow --json`` has it, nothing if there is none."""
+    """Return the stiffness of every day, as in ``jackettwin follow --json``; empty if there is none."""
     if followed is None or not followed.stiffness_statement:
         return {}
     days = days_document(followed)
@@ -117,32 +117,34 @@ def supports(followed: Followed | None) -> dict[str, Any]:
 
 
 def through_time(twin: engine.Twin, asked: Question) -> tuple[Followed | None, Mapping[str, Any] | None]:
-    """Return what is known of the supports after each day, None if they cannot be followed; what to keep.
+    """Return the estimates of the supports after each day, or None, and the part to store.
 
     Raises
     ------
     KeyError
-        If a day is needed that was not sent.
+        If a needed day was not sent.
     """
     kept = asked.kept.get("followed")
     try:
         return stiffness.followed(twin, kept, asked.identities, asked.days)
-    except JackettwinError:  # no mode yet, or none with a standard deviation: all records together say why
+    except (
+        JackettwinError
+    ):  # no mode yet, or none with a standard deviation; the estimate from all records has the reason
         return None, None
 
 
 def known(
     twin: engine.Twin, sums: engine.Sums, newest: Sequence[str], in_all: tuple[int, float]
 ) -> tuple[dict[str, Any], list[PageSection] | None]:
-    """Return what records say of the supports under the twin's first law, and the page on it in sections.
+    """Return the estimate of the supports under the twin's first law, and the sections of its report.
 
-    Of every parameter the median, its 90 % interval and unit; of every mode whose damping it is.
+    It contains median, 90 % interval and unit of every parameter, and the damping of every mode by source.
 
     Parameters
     ----------
     sums : of the records that may update the supports
     newest : documents of the newest observations
-    in_all : how many records there are, and how long they are together [s]
+    in_all : number of records, and their total duration [s]
     """
     total = sums.state.totals.get(ALL)
     if total is None or not total.modes:
@@ -151,18 +153,18 @@ def known(
     shown = tuple(one for one in every if not one.mismatched)
     measured = Measured(shown, sums.state, in_all=in_all)
     laws = twin.config.update.laws[:1]
-    config = replace(twin.config, operation=OperationRule())  # who may update was asked of each day
+    config = replace(twin.config, operation=OperationRule())  # the days contain only records that may update
     result = updated_twin(config, twin.model, measured, laws=laws, posteriors="likely")
     answers = answer(result)
     sections = report_sections(result, answers)
     if not result.updates:
-        return {"status": "no law can explain what was measured", "parameters": {}}, sections
+        return {"status": "no law can explain the measured data", "parameters": {}}, sections
     (u,) = result.updates
     sure = u.uncertainty
     median = u.best.theta if sure is None else sure.median
     meets = answers.fit is None or answers.fit.fits
     spans = sure.interval_90.tolist() if sure is not None and meets else [None] * len(median)
-    status = "without standard deviations, no interval" if sure is None else sure.status
+    status = "no interval without standard deviations" if sure is None else sure.status
     return {
         "law": u.law,
         "status": status if meets else CANNOT_MEET,
@@ -181,7 +183,7 @@ def known(
 
 
 def _sensitivity(u: Update, median: FloatArray, result: TwinResult) -> list[dict[str, Any]]:
-    """Return by how much every parameter moves each measured mode; of none that does not oscillate."""
+    """Return the sensitivity of each measured, oscillating mode to every parameter."""
     theta = u.problem.vectors(np.log(median)[None], u.problem.states[0])[0]
     found = sensitivity(u.model, theta, tuple(m.mode for m in result.measured))
     rows = sensitivity_rows(found, [m.label for m in result.measured])
@@ -189,11 +191,11 @@ def _sensitivity(u: Update, median: FloatArray, result: TwinResult) -> list[dict
 
 
 def _explored(u: Update, median: FloatArray, name: str) -> dict[str, Any]:
-    """Return the cost and every mode's way along each parameter around the medians; empty if it cannot be."""
+    """Return cost and root loci along each parameter around the medians; empty if there are none."""
     at = {p.name: float(np.clip(v, p.low, p.high)) for p, v in zip(u.problem.parameters, median, strict=True)}
     try:
         found = explore_update(name, u, ExploreSettings(grid=_GRID, starts=0, at=at))
-    except JackettwinError:  # no mode oscillates there; what else is known stands
+    except JackettwinError:  # no mode oscillates there; other results remain
         return {}
     document = exploration_document(found)
     kept = {key: document[key] for key in ("parameters", "loci", "surface", "curves")}
@@ -201,7 +203,7 @@ def _explored(u: Update, median: FloatArray, name: str) -> dict[str, Any]:
 
 
 def _rounded(value: Any) -> Any:
-    """Return plain JSON data with numbers of six digits: they are drawn, not computed with."""
+    """Return plain JSON data with numbers of six digits, which suffice for plots."""
     if isinstance(value, dict):
         return {key: _rounded(one) for key, one in value.items()}
     if isinstance(value, list):
@@ -210,7 +212,7 @@ def _rounded(value: Any) -> Any:
 
 
 def _budget(mode: ModeAnswer) -> dict[str, Any]:
-    """Return whose damping a mode's is: damping ratios by source, with 90 % intervals."""
+    """Return the damping ratios of a mode by source, with 90 % intervals."""
     measured = mode.measured_damping
     return {
         "label": mode.label,
@@ -221,7 +223,7 @@ def _budget(mode: ModeAnswer) -> dict[str, Any]:
 
 
 def report(sections: Sequence[PageSection], followed: Followed | None, *, title: str, subtitle: str) -> bytes:
-    """Return the page of some sections, compressed; the stiffness through time stands first."""
+    """Return the compressed page of some sections, beginning with the stiffness over time."""
     if followed is not None and followed.stiffness_statement:
         sections = [stiffness_section(followed), *sections]
     text = page_text(sections, title=title, subtitle=f"{subtitle} · jackettwin {__version__}")
@@ -234,21 +236,21 @@ def watched(
     documents: Mapping[str, str],
     kept: Mapping[str, Any] | None,
 ) -> tuple[dict[str, Any], tuple[dict[str, Any], ...]]:
-    """Return what is kept of watching a turbine's days, and every finding of them that holds now, as rows.
+    """Return the stored state of monitoring a turbine's days, and all present findings as rows.
 
     Parameters
     ----------
     identities : {day: identity}
-        One day at least.
+        At least one day.
     documents : {day: document}
-        Of those days that may be asked for.
+        Documents of the days that may be needed.
     kept : mapping or None
-        What an earlier call returned; it only saves time.
+        Result of an earlier call, which only saves time.
 
     Raises
     ------
     KeyError
-        If a day is needed that has no document here.
+        If a needed day has no document.
     """
     last = max(identities)
     every = Days(identities, lambda day: engine.DAY.load(json.loads(documents[day])))

@@ -345,8 +345,8 @@ REMAINDERS = {"remainder_frequency": 0.003, "remainder_damping": 0.07}
 """Relative errors of each mode on its own. A finer mesh or a shell model changes a frequency by 0.2 to 0.5 %,
 and laws of other forms change the ratio of damping between modes."""
 SCALES = (1.0, 1.4)
-"""Equally likely factors on all tolerances and remainders of a twin together, up to twice the variance, as the
-table's sizes have not been measured on many assets."""
+"""Equally likely factors on all tolerances and remainders of a twin together, up to twice the variance, as
+the table's sizes have not been measured on many assets."""
 TOLERANCES = {known.tolerance.name: known for known in _table()}
 
 

@@ -1,4 +1,4 @@
-"""The ways by which people are told what is found."""
+"""Routes for channels of alerts."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def channels(parts: Parts, connection: Reads) -> Page[ChannelOut]:
 
 @router.post("", status_code=201, dependencies=[auth.ADMIN], responses=answers(400, 401, 403, 422))
 def add(body: NewChannel, who: Asker, parts: Parts, connection: Writes) -> ChannelOut:
-    """Add a channel: what is found from now on is told through it. Its secrets are kept in files."""
+    """Add a channel for later findings; its secrets are stored in files."""
     given = body.channel.model_dump(mode="json", exclude_none=True)
     rules = [rule.model_dump(mode="json") for rule in body.rules]
     told = add_channel(
@@ -46,7 +46,7 @@ def add(body: NewChannel, who: Asker, parts: Parts, connection: Writes) -> Chann
     "/{channel_id}", status_code=204, dependencies=[auth.ADMIN], responses=answers(401, 403, 404, 422)
 )
 def remove(channel_id: ChannelId, who: Asker, parts: Parts, connection: Writes) -> None:
-    """Forget a channel that was added, with its secrets."""
+    """Delete an added channel with its secrets."""
     if not remove_channel(connection, parts.settings.store, channel_id):
         raise _unknown(channel_id)
     people.note_down(connection, who.name, "alert channel", channel_id, "removed", parts.now())
@@ -54,7 +54,7 @@ def remove(channel_id: ChannelId, who: Asker, parts: Parts, connection: Writes) 
 
 @router.post("/{channel_id}/test", dependencies=[auth.ADMIN, WAITING], responses=answers(401, 403, 404, 422))
 def test(channel_id: ChannelId, who: Asker, parts: Parts) -> Delivery:
-    """Send a message that says nothing but that it is one; tell whether it was taken."""
+    """Send a test message and return whether it was accepted."""
     with reading(parts.database) as connection:
         told = _told(connection, parts)
     if channel_id not in told.channels:

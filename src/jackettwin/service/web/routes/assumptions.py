@@ -1,4 +1,4 @@
-"""What a twin's answer takes for granted, and the tolerances that somebody has settled."""
+"""Routes for the assumptions of a twin's result, and for closing tolerances."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ router = APIRouter(tags=["assumptions"], route_class=Route)
 
 @router.get("/assets/{asset}/assumptions", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def assumptions(asset: AssetName, connection: Told, version: AnyVersion = None) -> Page[AssumptionOut]:
-    """List what the answer takes for granted: of open tolerances the one that moves it most first."""
+    """List the assumptions of the result; open tolerances are sorted by their effect."""
     asked = known_version(connection, asset, version)
     found = results.find_drawn(connection, asset, asked.version, "assumptions")
     return Page(items=[AssumptionOut(**one) for one in found])
@@ -51,7 +51,7 @@ def confirm(
     who: Asker,
     parts: Parts,
 ) -> VersionOut:
-    """Add a version whose twin file says that a tolerance was settled; it counts once adopted."""
+    """Add a version in which a tolerance is closed; it is used once it is adopted."""
     with reading(parts.database) as connection:
         known_asset(connection, asset)
         version = assets.found_version(connection, asset)

@@ -1,4 +1,4 @@
-"""Findings and alarms, and what people do with them."""
+"""Routes for findings and alarms, and their handling by people."""
 
 from __future__ import annotations
 
@@ -55,19 +55,19 @@ def findings(
     cursor: Cursor = None,
     limit: Limit = 100,
 ) -> Page[FindingOut]:
-    """List what was worth saying, newest first."""
+    """List the findings, newest first."""
     return said.findings(connection, known_asset(connection, asset), severity, cursor, limit, FindingOut)
 
 
 @router.get("/assets/{asset}/alarms", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def alarms(asset: AssetName, connection: Told, cursor: Cursor = None, limit: Limit = 100) -> Page[AlarmOut]:
-    """List the findings that ask for a person, newest first, and who took note."""
+    """List the findings that need a person, newest first, with their acknowledgements."""
     return said.findings(connection, known_asset(connection, asset), "alarm", cursor, limit, AlarmOut)
 
 
 @router.get("/findings/{finding_id}", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def finding(finding_id: FindingId, who: Asker, connection: Reads) -> HandledOut:
-    """Return a finding with all that people did with it."""
+    """Return a finding with the history of its handling."""
     return _answer(connection, _found(connection, finding_id, who))
 
 
@@ -75,7 +75,7 @@ def finding(finding_id: FindingId, who: Asker, connection: Reads) -> HandledOut:
 def acknowledge(
     alarm_id: FindingId, body: Acknowledgement, who: Asker, parts: Parts, connection: Writes
 ) -> AlarmOut:
-    """Note that somebody took note of an alarm."""
+    """Acknowledge an alarm."""
     row = results.find_finding(connection, alarm_id)
     if row is None or row["severity"] != "alarm" or not who.sees(row["asset"]):
         raise ApiError(404, "no such alarm", field="alarm_id", value=str(alarm_id))
@@ -85,7 +85,7 @@ def acknowledge(
 
 @router.post("/findings/{finding_id}/assign", **_CHANGED)
 def assign(finding_id: FindingId, body: AssignIn, who: Asker, parts: Parts, connection: Writes) -> HandledOut:
-    """Say whose a finding is to look after: a user who sees its asset, or nobody."""
+    """Assign a finding to a user who may see its asset, or to nobody."""
     row = _found(connection, finding_id, who)
     if body.to is not None and people.any_user(connection):
         _refuse_blind(connection, body.to, row["asset"])
@@ -97,7 +97,7 @@ def assign(finding_id: FindingId, body: AssignIn, who: Asker, parts: Parts, conn
 def comment(
     finding_id: FindingId, body: Acknowledgement, who: Asker, parts: Parts, connection: Writes
 ) -> HandledOut:
-    """Say something of a finding."""
+    """Add a comment to a finding."""
     row = _found(connection, finding_id, who)
     _act(connection, parts, who, row, "comment", comment=body.comment)
     return _answer(connection, row)
@@ -105,17 +105,17 @@ def comment(
 
 @router.post("/findings/{finding_id}/mute", **_CHANGED)
 def mute(finding_id: FindingId, body: MuteIn, who: Asker, parts: Parts, connection: Writes) -> HandledOut:
-    """Tell nobody of a finding, nor of the like of later days, until a time."""
+    """Mute a finding and similar ones of later days until a time."""
     row = _found(connection, finding_id, who)
     if body.until_utc <= parts.now():
-        raise ApiError(422, "is over already", field="until_utc", value=body.until_utc.isoformat())
+        raise ApiError(422, "is in the past", field="until_utc", value=body.until_utc.isoformat())
     _act(connection, parts, who, row, "mute", comment=body.comment, until=body.until_utc)
     return _answer(connection, row)
 
 
 @router.post("/findings/{finding_id}/close", **_CONFLICTING)
 def close(finding_id: FindingId, body: CloseIn, who: Asker, parts: Parts, connection: Writes) -> HandledOut:
-    """Say that a finding needs nobody any more, and why."""
+    """Close a finding with a reason."""
     row = _found(connection, finding_id, who)
     if handling.handled(connection, row["asset"]).standing(row).closed is not None:
         raise ApiError(409, "this finding is closed already", remedy="POST /findings/{id}/reopen")
@@ -125,7 +125,7 @@ def close(finding_id: FindingId, body: CloseIn, who: Asker, parts: Parts, connec
 
 @router.post("/findings/{finding_id}/reopen", **_CONFLICTING)
 def reopen(finding_id: FindingId, body: ReopenIn, who: Asker, parts: Parts, connection: Writes) -> HandledOut:
-    """Have a finding need somebody after all: it is neither closed nor acknowledged nor muted then."""
+    """Reopen a finding, which is then neither closed nor acknowledged nor muted."""
     row = _found(connection, finding_id, who)
     standing = handling.handled(connection, row["asset"]).standing(row)
     if standing.open:
@@ -146,7 +146,7 @@ def _found(connection: Connection, finding_id: int, who: Who) -> Mapping[str, An
 def _act(
     connection: Connection, parts: Service, who: Who, row: Mapping[str, Any], action: str, **more: Any
 ) -> None:
-    """Keep what somebody did with a finding, note it down, and tell whoever follows the events."""
+    """Store a step of a finding's handling, with an entry in the audit log and an event."""
     now = parts.now()
     handling.act_on(connection, row, action, who.name, now, **more)
     people.note_down(connection, who.name, action, handling.finding_key(row), "ok", now)
@@ -156,12 +156,12 @@ def _act(
 
 
 def _refuse_blind(connection: Connection, name: str, asset: str) -> None:
-    """Refuse somebody whom there is not, or who may not see the asset.
+    """Raise an error on an unknown user, or one who may not see the asset.
 
     Raises
     ------
     ApiError
-        422; to whom both is the same.
+        422 in both cases.
     """
     user = people.find_user(connection, name)
     seen = None if user is None else rights.visible(connection, user.scope)

@@ -1,4 +1,4 @@
-"""What the twin says: modes, states, tables for other programs."""
+"""Routes for results of a twin: modes, states, tables for other programs."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ def explored(asset: AssetName, connection: Told, version: AnyVersion = None) -> 
 
 @router.get("/assets/{asset}/structure", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def structure(asset: AssetName, connection: Told, version: AnyVersion = None) -> StructureOut:
-    """Return the structure to be drawn, its updated complex modes, and what was measured of each."""
+    """Return the structure for drawing, with its updated complex modes and the measured shape of each."""
     asked = known_version(connection, asset, version)
     return StructureOut(**results.find_drawn(connection, asset, asked.version, "structure"))
 
