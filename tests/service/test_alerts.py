@@ -370,7 +370,7 @@ NIGHT = {"begin": "22:00", "end": "06:00"}
         (of({"severity": "alarms"}), "rules.0.severity", "did you mean"),
         (of({"quiet": {"begin": 1320, "end": "06:00"}}), "quiet.begin", "in quotes"),
         (of({"quiet": {**NIGHT, "zone": "Sea"}}), "zone", "no such"),
-        (of({"quiet": {**NIGHT, "end": "22:00"}}), "end", "are none"),
+        (of({"quiet": {**NIGHT, "end": "22:00"}}), "end", "when they begin"),
         (of({"escalate": {"channel": "x", "after_minutes": 5}}), "escalate.channel", "no such"),
         ({"silent_hours": -1}, "silent_hours", "0"),
         ({"chanels": {}}, "chanels", "did you mean"),

@@ -68,7 +68,7 @@ def test_a_damaged_backup_restores_nothing(database: Engine, tmp_path: Path) -> 
     backup(database, tmp_path / "a", file)
     file.write_bytes(file.read_bytes()[:-200])
     other = open_database(f"sqlite:///{tmp_path / 'other.sqlite'}")
-    with pytest.raises(InputError, match="not a whole backup"):
+    with pytest.raises(InputError, match="not a complete backup"):
         restore(file, other, tmp_path / "b")
     with writing(other) as c:
         assert c.scalar(select(func.count()).select_from(tables.assets)) == 0

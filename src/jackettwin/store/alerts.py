@@ -1,4 +1,4 @@
-"""What is to be told to people, once for each channel and finding."""
+"""Alerts to send, one for each channel and finding."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from jackettwin.store.tables import alerts, assets, findings, versions
 
 WAITING, SENT, GIVEN_UP, WITHDRAWN = "waiting", "sent", "given_up", "withdrawn"
 LOOK_BACK = 1000
-"""Findings that may become visible after later ones: PostgreSQL numbers them before transactions end."""
+"""Number of findings that may become visible after later ones, as PostgreSQL numbers them before commits."""
 
 
 @dataclass(frozen=True)
 class Alert:
-    """One finding on its way through one channel.
+    """Alert on one finding through one channel.
 
     Attributes
     ----------
-    key : what is told once
-    message : the finding in plain values, with the ``key`` by which it is known whatever its number becomes
-    due_utc : before which it is not told
-    problem : why the last try failed
+    key : identity of the alert, which is sent once
+    message : the finding as plain values, with its ``key``, which does not change with its number
+    due_utc : earliest time of sending
+    problem : reason why the last try failed
     """
 
     id: int
@@ -52,7 +52,7 @@ def add(
     now: datetime,
     due: datetime,
 ) -> bool:
-    """Have a finding told through a channel; False if it was before, or is already on its way."""
+    """Add an alert on a finding through a channel; return False if there is one already."""
     row = {"channel": channel, "key": key, "asset": asset, "message": dict(message)}
     return insert_new(
         connection, alerts, {**row, "state": WAITING, "tries": 0, "created_utc": now, "due_utc": due}
@@ -60,30 +60,30 @@ def add(
 
 
 def due(connection: Connection, now: datetime) -> list[Alert]:
-    """Return what is to be told by now, oldest first."""
+    """Return the due alerts, oldest first."""
     query = select(alerts).where(alerts.c.state == WAITING, alerts.c.due_utc <= now).order_by(alerts.c.id)
     return [Alert(**row._mapping) for row in connection.execute(query)]
 
 
 def newest(connection: Connection, limit: int) -> list[Alert]:
-    """Return what was or is to be told, newest first."""
+    """Return alerts of all states, newest first."""
     query = select(alerts).order_by(alerts.c.id.desc()).limit(limit)
     return [Alert(**row._mapping) for row in connection.execute(query)]
 
 
 def end(connection: Connection, ids: Collection[int], state: str, now: datetime) -> None:
-    """Say that nothing is left to do for some."""
+    """Set the final state of some alerts."""
     connection.execute(update(alerts).where(alerts.c.id.in_(ids)).values(state=state, ended_utc=now))
 
 
 def try_again(connection: Connection, ids: Collection[int], at: datetime, problem: str) -> None:
-    """Count a try that failed, and say when the next one is."""
+    """Count a failed try, and set the time of the next one."""
     changed = {"tries": alerts.c.tries + 1, "due_utc": at, "problem": problem[:500]}
     connection.execute(update(alerts).where(alerts.c.id.in_(ids)).values(**changed))
 
 
 def count(connection: Connection) -> dict[str, int]:
-    """Return how many there are of each state."""
+    """Return the number of alerts of each state."""
     query = select(alerts.c.state, func.count()).group_by(alerts.c.state)
     found = {state: n for state, n in connection.execute(query)}
     return {state: found.get(state, 0) for state in (WAITING, SENT, GIVEN_UP, WITHDRAWN)}
@@ -95,7 +95,7 @@ def newest_finding(connection: Connection) -> int:
 
 
 def findings_after(connection: Connection, last: int) -> list[dict[str, Any]]:
-    """Return what the adopted versions of living assets found after a number, oldest first."""
+    """Return findings after a number, of adopted versions of living assets, oldest first."""
     own = (versions.c.asset == assets.c.name) & (versions.c.version == assets.c.adopted_version)
     same = (findings.c.asset == versions.c.asset) & (findings.c.model_hash == versions.c.model_hash)
     query = select(findings).select_from(assets.join(versions, own).join(findings, same))
@@ -104,12 +104,12 @@ def findings_after(connection: Connection, last: int) -> list[dict[str, Any]]:
 
 
 def finding_of(alert: Alert) -> dict[str, Any]:
-    """Return what the finding that an alert tells is known by."""
+    """Return the identity of an alert's finding."""
     return {"asset": alert.asset, **{name: alert.message[name] for name in ("day", "code", "subject")}}
 
 
 def still_found(connection: Connection, alert: Alert) -> bool:
-    """Tell whether what an alert says is still found: a late record may have undone it."""
+    """Return whether an alert's finding still exists; a late record may have removed it."""
     query = select(findings).filter_by(asset=alert.asset, code=alert.message["code"])
     query = query.where(findings.c.day == alert.message["day"])
     key = alert.message["key"]

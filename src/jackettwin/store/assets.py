@@ -19,7 +19,7 @@ from jackettwin.files import atomic_folder
 from jackettwin.store.tables import assets, records, versions
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
-"""What an asset may be called: its name becomes part of paths and topics."""
+"""Pattern of an asset's name, which becomes part of paths and topics."""
 _FIXED_TIME = (1980, 1, 1, 0, 0, 0)
 
 
@@ -38,7 +38,7 @@ class Version:
 
 
 def check_name(name: str) -> str:
-    """Return a name that an asset may have.
+    """Return the name of an asset after checking it.
 
     Raises
     ------
@@ -47,7 +47,7 @@ def check_name(name: str) -> str:
     """
     if NAME.fullmatch(name) is None:
         raise InputError(
-            "an asset cannot be called so",
+            "the name is not allowed for an asset",
             field="name",
             value=name[:80],
             allowed="1 to 64 letters, digits, _ and -, a letter or digit first",
@@ -57,7 +57,7 @@ def check_name(name: str) -> str:
 
 
 def pack(files: Mapping[str, bytes]) -> bytes:
-    """Return files as one archive whose bytes depend on nothing but the files."""
+    """Return files as one archive, whose bytes depend only on the files."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
         for name in sorted(files):
@@ -72,7 +72,7 @@ def unpack(bundle: bytes) -> dict[str, bytes]:
 
 
 def lay_out(bundle: bytes, place: Path) -> None:
-    """Write the files of a bundle into a folder, whole or not at all."""
+    """Write the files of a bundle into a folder, completely or not at all."""
     with atomic_folder(place) as temporary:
         for name, content in unpack(bundle).items():
             (temporary / name).parent.mkdir(parents=True, exist_ok=True)
@@ -92,7 +92,7 @@ def add_version(
     now: datetime,
     comment: str = "",
 ) -> Version:
-    """Add an asset, or a version to it; the first version is adopted, later ones wait for a person."""
+    """Add an asset or a version of it; the first version is adopted, later ones must be by a person."""
     check_name(name)
     bundle = pack(files)
     last = connection.scalar(select(func.max(versions.c.version)).where(versions.c.asset == name))
@@ -114,13 +114,13 @@ def add_version(
 
 
 def adopt(connection: Connection, name: str, version: int) -> None:
-    """Make a version the one whose answers count."""
+    """Adopt a version."""
     found_version(connection, name, version)
     connection.execute(update(assets).where(assets.c.name == name).values(adopted_version=version))
 
 
 def archive(connection: Connection, name: str, at: datetime | None) -> None:
-    """Have an asset take nothing more and stand in no list from now on; None brings it back."""
+    """Archive an asset from a time on; None restores it."""
     found_version(connection, name)
     connection.execute(update(assets).where(assets.c.name == name).values(archived_utc=at))
 
@@ -131,14 +131,14 @@ def is_archived(connection: Connection, name: str) -> bool:
 
 
 def asset_names(connection: Connection, *, archived: bool = True) -> list[str]:
-    """Return the names of all assets, sorted, with those that are archived or without."""
+    """Return the sorted names of all assets, with or without archived ones."""
     query = select(assets.c.name).order_by(assets.c.name)
     return list(connection.scalars(query if archived else query.where(assets.c.archived_utc.is_(None))))
 
 
 @dataclass(frozen=True)
 class Summary:
-    """An asset, its adopted version, when its latest record began, and since when it is archived."""
+    """An asset, its adopted version, the start of its latest record, and the time of archiving."""
 
     name: str
     version: int
@@ -149,7 +149,7 @@ class Summary:
 
 
 def summaries(connection: Connection, name: str | None = None, *, archived: bool = False) -> list[Summary]:
-    """Return every asset by name that is archived, or is not; or one, whichever it is."""
+    """Return all living or all archived assets by name, or one of either kind."""
     start = records.c.start_utc
     last = select(func.max(start, type_=start.type)).where(records.c.asset == assets.c.name)
     last = last.where(records.c.status != "mismatched")

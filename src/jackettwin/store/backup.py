@@ -1,6 +1,6 @@
-"""A whole store in one file, and back: every table as lines of JSON, every waveform, one manifest.
+"""Backup of a whole store in one file: every table as lines of JSON, every waveform, one manifest.
 
-The form is the same for SQLite and PostgreSQL, so that a backup of one restores into the other.
+The format is the same for SQLite and PostgreSQL, so that a backup of one can be restored into the other.
 """
 
 from __future__ import annotations
@@ -37,20 +37,20 @@ from jackettwin.store.database import bring_to, check_schema, writing
 from jackettwin.store.tables import SCHEMA_VERSION, Packed
 
 _LEFT_OUT = ("servers", "alembic_version")
-"""Neither who serves is kept, nor which schema: a restored store gives leases back when it is opened."""
+"""Tables without a backup: the list of servers, since leases are released after a restore, and the schema."""
 _ROWS = 500
-"""Rows that are inserted at once."""
+"""Number of rows that are inserted at once."""
 
 
 def backup(database: Engine, store: Path, target: Path) -> dict[str, int]:
-    """Write a store to a file, whole or not at all; return how many rows each table has.
+    """Write a store to a file, completely or not at all; return the number of rows of each table.
 
-    Tables are read in one transaction, while the store may be served. A waveform is never changed once it is
-    written, so those that the tables name are as they were.
+    Tables are read in one transaction, while the store may be served. Waveforms never change after writing,
+    so that those in the tables are consistent.
     """
     counts: dict[str, int] = {}
     with (
-        atomic_path(target, mode=0o600) as temporary,  # hashes of passwords are in it
+        atomic_path(target, mode=0o600) as temporary,  # it contains hashes of passwords
         database.connect() as connection,
         tarfile.open(temporary, "w:gz") as out,
     ):
@@ -67,12 +67,12 @@ def backup(database: Engine, store: Path, target: Path) -> dict[str, int]:
 
 
 def restore(source: Path, database: Engine, store: Path) -> dict[str, int]:
-    """Fill an empty store from a backup, whole or not at all; return how many rows each table got.
+    """Fill an empty store from a backup, completely or not at all; return the number of rows of each table.
 
     Raises
     ------
     InputError
-        If the file is no backup, of another schema, damaged, or the store holds something already.
+        If the file is not a backup, has another schema or is damaged, or the store is not empty.
     """
     counts: dict[str, int] = {}
     with writing(database) as connection:
@@ -92,7 +92,7 @@ def restore(source: Path, database: Engine, store: Path) -> dict[str, int]:
                         _extract(archive, member, store)
         except (tarfile.TarError, EOFError, OSError, KeyError, ValueError) as error:
             raise InputError(
-                "not a whole backup", file=source, value=str(error)[:200], remedy="take another backup"
+                "not a complete backup", file=source, value=str(error)[:200], remedy="take another backup"
             ) from None
         _count_on(connection)
     return counts
@@ -103,7 +103,7 @@ def _tables() -> list[Table]:
 
 
 def _add_table(archive: tarfile.TarFile, connection: Connection, table: Table) -> int:
-    """Write the rows of a table by way of a file of their own: no table is in memory as a whole."""
+    """Write the rows of a table through a temporary file, since a table may not fit into memory."""
     count = 0
     with tempfile.TemporaryFile() as lines:
         for line in _lines(connection, table):
@@ -153,7 +153,7 @@ def _schema(archive: tarfile.TarFile, source: Path) -> str:
 
 
 def _tables_of(connection: Connection) -> list[Table]:
-    """Return the tables as they are in the database, which may be of an older schema."""
+    """Return the tables of the database, which may have an older schema."""
     there = MetaData()
     there.reflect(connection, only=lambda name, _: name not in _LEFT_OUT)
     return there.sorted_tables
@@ -169,10 +169,10 @@ def _insert(connection: Connection, table: Table, archive: tarfile.TarFile) -> i
 
 
 def _extract(archive: tarfile.TarFile, member: tarfile.TarInfo, store: Path) -> None:
-    """Write one waveform; a name that leads elsewhere is refused."""
+    """Write one waveform; raise an error on a name that leads outside the folder."""
     place = PurePosixPath(member.name)
     if not member.isfile() or place.is_absolute() or ".." in place.parts:
-        raise ValueError(f"{member.name} does not belong into a backup")
+        raise ValueError(f"{member.name} does not belong in a backup")
     stream = archive.extractfile(member)
     assert stream is not None
     with atomic_path(store / place) as temporary:
@@ -180,7 +180,7 @@ def _extract(archive: tarfile.TarFile, member: tarfile.TarInfo, store: Path) -> 
 
 
 def _count_on(connection: Connection) -> None:
-    """Have row numbers go on after the restored ones, where the database keeps a counter of its own."""
+    """Set the database's counters of row numbers after the restored ones."""
     if connection.dialect.name != "postgresql":
         return
     for table in _tables():

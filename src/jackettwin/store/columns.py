@@ -1,8 +1,8 @@
-"""Documents in few bytes: their numbers as a column of 32 bits each, their words against a dictionary.
+"""Compression of documents: numbers as a column of 32 bits each, words by a dictionary.
 
-An observation is some hundred numbers, none of them known to seven digits, among words that are the same in
-every other observation. Nine decimal digits at most are kept of a number (:func:`rounded`); packing what is
-rounded loses nothing.
+An observation has some hundred numbers, of fewer than seven significant digits, and words that are common to
+all observations. Numbers are rounded to 32-bit floats (:func:`rounded`, at most nine digits); packing of
+rounded documents is lossless.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
 _PLAIN, _COLUMNS = b"{", b"\x01"
 """First bytes of a document as text, and of one in columns whose words are those of ``words_1.txt``."""
 FORGOTTEN = ""
-"""Stands for a document that was kept for as long as the store's policy says."""
+"""Content of a document that was deleted by the store's policy."""
 _PLACE = "\x02"
-"""Stands in the text for a number of the column."""
+"""Placeholder in the text for a number of the column."""
 _SMALL, _LARGE = 1e-30, 1e30
-"""Numbers beyond these are left in the text: 32 bits would not hold their digits."""
+"""Range of magnitudes in the column; other numbers remain in the text, as 32 bits would lose digits."""
 
 
 def rounded(document: str) -> str:
-    """Return a document whose numbers have the digits that 32 bits hold: twice is as once."""
+    """Return a document with numbers rounded to 32 bits; rounding twice changes nothing."""
     return json.dumps(json.loads(document, parse_float=_rounded), ensure_ascii=False, separators=(",", ":"))
 
 
@@ -39,7 +39,7 @@ def _rounded(text: str) -> float:
 
 
 def pack(document: str) -> bytes:
-    """Return the bytes that are kept of a document: as text, if columns would lose a digit of it."""
+    """Return the stored bytes of a document: as text if columns would lose a digit."""
     if document == FORGOTTEN:
         return b""
     import numpy as np
@@ -66,7 +66,7 @@ def pack(document: str) -> bytes:
 
 
 def unpack(packed: bytes) -> str:
-    """Return the document that :func:`pack` was given, or that an older version kept as text."""
+    """Return the document of :func:`pack`, or of an older version's text."""
     if packed[:1] == _PLAIN or not packed:
         return packed.decode()
     if packed[:1] != _COLUMNS:
@@ -81,18 +81,18 @@ def unpack(packed: bytes) -> str:
 
 
 def _planes(column: FloatArray) -> bytes:
-    """Return first bytes, then second bytes, ... of numbers: their exponents are alike."""
+    """Return all first bytes of numbers, then all second bytes and so on, which compress better."""
     import numpy as np
 
     return column.view(np.uint8).reshape(-1, 4).T.tobytes()
 
 
 def _decimals(column: FloatArray) -> list[str]:
-    """Return the shortest decimals that are these numbers in 32 bits, as Python writes them."""
+    """Return the shortest decimals that give these 32-bit numbers, as Python writes them."""
     return [repr(float(str(x))) for x in column]
 
 
 @cache
 def _words() -> bytes:
-    """Return the words of observations, most frequent last; never edited, since what is stored needs them."""
+    """Return the words of observations by frequency; never edited, as stored documents depend on them."""
     return (files("jackettwin.store") / "words_1.txt").read_bytes()

@@ -1,4 +1,4 @@
-"""Open the database of a store: SQLite in its folder, or PostgreSQL; migrate it if it is older."""
+"""Opening of a store's database, SQLite in its folder or PostgreSQL, with migration if it is older."""
 
 from __future__ import annotations
 
@@ -16,30 +16,30 @@ from jackettwin.errors import InputError, require
 from jackettwin.store.tables import FIRST_SCHEMA, SCHEMA_VERSION
 
 _BUSY_S = 30.0
-"""How long a writer of SQLite waits for another one."""
+"""Time that a writer of SQLite waits for another one [s]."""
 _POOL = {"pool_size": 16, "max_overflow": 32}
-"""Connections: as many as there are threads that answer, wait or work."""
+"""Numbers of connections, enough for all threads."""
 _MIGRATIONS = Path(__file__).with_name("migrations")
 
 
 def sqlite_url(store: Path) -> str:
-    """Return the URL of the database that lives in a store's folder."""
+    """Return the URL of the database in a store's folder."""
     return f"sqlite:///{store / 'jackettwin.sqlite'}"
 
 
 def private_folder(folder: Path) -> None:
-    """Make the folder of a store, which only its owner enters; a store that others could enter is closed."""
+    """Create the folder of a store with access for its owner only, or restrict an existing one."""
     with suppress(FileExistsError):
         folder.mkdir(mode=0o700, parents=True)
         return
     is_store = any((folder / known).exists() for known in ("jackettwin.sqlite", "models"))
     if is_store and folder.stat().st_mode & 0o077:
-        with suppress(PermissionError):  # it is somebody else's, who let us in
+        with suppress(PermissionError):  # the folder has another owner, who gave access
             folder.chmod(0o700)
 
 
 def private_file(path: Path) -> None:
-    """Make a file that only its owner reads, or close one that others could read: it will hold secrets."""
+    """Create a file with access for its owner only, or restrict an existing one, for secrets."""
     path.touch(mode=0o600)
     if path.stat().st_mode & 0o077:
         with suppress(PermissionError):
@@ -47,13 +47,13 @@ def private_file(path: Path) -> None:
 
 
 def open_database(url: str, *, migrate: bool = True) -> Engine:
-    """Return an engine on the database, brought to the newest schema.
+    """Return an engine on the database, migrated to the newest schema.
 
     Raises
     ------
     InputError
-        If the URL is not of SQLite or PostgreSQL, the server does not answer, or its schema is of a newer
-        version or of one before 0.1.0.
+        If the URL is not of SQLite or PostgreSQL, the server does not answer, or its schema is newer or older
+        than 0.1.0.
     """
     try:
         parsed = make_url(url)
@@ -69,7 +69,7 @@ def open_database(url: str, *, migrate: bool = True) -> Engine:
             field="database",
             value=_without_password(url),
             allowed="sqlite:///FILE or postgresql+psycopg://USER@HOST/NAME",
-            remedy=f"see that it runs and may be reached ({str(error).splitlines()[0][:200]})",
+            remedy=f"check that it runs and can be reached ({str(error).splitlines()[0][:200]})",
         ) from None
     try:
         if migrate:
@@ -82,9 +82,9 @@ def open_database(url: str, *, migrate: bool = True) -> Engine:
 
 @contextmanager
 def writing(engine: Engine) -> Iterator[Connection]:
-    """Give a connection in a transaction that writes: all of it is kept, or nothing.
+    """Yield a connection in a writing transaction, which is committed as a whole or not at all.
 
-    SQLite takes its lock at once, since a reader that turns writer half-way may be refused.
+    SQLite locks at once, since a reader that starts to write later may be refused.
     """
     with engine.execution_options(writes=True).begin() as connection:
         yield connection
@@ -92,29 +92,29 @@ def writing(engine: Engine) -> Iterator[Connection]:
 
 @contextmanager
 def reading(engine: Engine) -> Iterator[Connection]:
-    """Give a connection that sees the database as it was at one moment."""
+    """Yield a connection with a snapshot of the database."""
     with engine.connect() as connection:
         yield connection
 
 
 def insert_new(connection: Connection, table: Table, row: Mapping[str, Any]) -> bool:
-    """Insert a row unless one with its key is there; tell whether it is new, whoever else puts it in too."""
+    """Insert a row unless its key exists; return whether it is new, also with concurrent writers."""
     dialect = postgresql if connection.dialect.name == "postgresql" else sqlite
     new = dialect.insert(table).values(**row).on_conflict_do_nothing()
-    # a driver's count of rows is not to be had where the database draws the row's number
+    # drivers give no count of rows if the database assigns the row's number
     return connection.execute(new.returning(*table.primary_key.columns)).first() is not None
 
 
 def _sqlite(url: str) -> Engine:
     name = make_url(url).database
     if name and name != ":memory:":
-        with suppress(OSError):  # the database says itself what is wrong with its place
-            private_file(Path(name))  # the files that SQLite puts beside it are as private
+        with suppress(OSError):  # the database reports errors of its path
+            private_file(Path(name))  # SQLite's further files have the same access
     engine = create_engine(url, connect_args={"timeout": _BUSY_S}, **_POOL)
 
     @event.listens_for(engine, "connect")
     def _prepare(connection: sqlite3.Connection, _: Any) -> None:
-        connection.isolation_level = None  # transactions begin where we say so
+        connection.isolation_level = None  # transactions are begun explicitly
         for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
             connection.execute(f"PRAGMA {pragma}")
 
@@ -127,7 +127,7 @@ def _sqlite(url: str) -> Engine:
 
 
 def _migrate(engine: Engine, url: str) -> None:
-    """Bring the schema up to date, once however many servers start; what was there is copied before."""
+    """Migrate the schema after a copy, only once if several servers start."""
     with engine.connect() as connection:
         current = _schema(connection)
     if current == SCHEMA_VERSION:
@@ -138,7 +138,7 @@ def _migrate(engine: Engine, url: str) -> None:
         if engine.dialect.name == "postgresql":
             connection.execute(text("select pg_advisory_xact_lock(740113)"))
         current = _schema(connection)
-        if current == SCHEMA_VERSION:  # another server was quicker
+        if current == SCHEMA_VERSION:  # another server has migrated it
             return
         if current is not None:
             _copy(connection, url, current)
@@ -146,7 +146,7 @@ def _migrate(engine: Engine, url: str) -> None:
 
 
 def _schema(connection: Connection) -> str | None:
-    """Return the newest migration that a database has seen: Alembic need not be loaded to look."""
+    """Return the newest migration of a database, without importing Alembic."""
     if not inspect(connection).has_table("alembic_version"):
         return None
     found: str | None = connection.scalar(text("select version_num from alembic_version"))
@@ -154,7 +154,7 @@ def _schema(connection: Connection) -> str | None:
 
 
 def check_schema(found: str, field: str, file: Path | None = None) -> None:
-    """Refuse a schema that this version cannot migrate.
+    """Raise an error on a schema that this version cannot migrate.
 
     Raises
     ------
@@ -169,8 +169,9 @@ def check_schema(found: str, field: str, file: Path | None = None) -> None:
         field=field,
         value=found,
         allowed=known,
-        remedy="make a new store with `jackettwin asset add`; carry the records over with `jackettwin intake "
-        "OLD/records/NAME --asset NAME --store NEW`; a backup is a tar file that holds the same folder",
+        remedy="create a new store with `jackettwin asset add`; carry the records over with `jackettwin "
+        "intake OLD/records/NAME --asset NAME --store NEW`; a backup is a tar file that contains the same "
+        "folder",
     )
     require(
         found <= SCHEMA_VERSION,
@@ -184,7 +185,7 @@ def check_schema(found: str, field: str, file: Path | None = None) -> None:
 
 
 def bring_to(connection: Connection, schema: str) -> None:
-    """Bring the tables to a schema, newer or older, within the transaction."""
+    """Migrate the tables to a newer or older schema within the transaction."""
     current = _schema(connection)
     if current == schema:
         return
@@ -199,7 +200,7 @@ def bring_to(connection: Connection, schema: str) -> None:
 
 
 def _copy(connection: Connection, url: str, version: str) -> None:
-    """Keep the database as it is: a file beside SQLite's, a schema of its own in PostgreSQL."""
+    """Copy the database: to a file next to SQLite's, or to a separate schema in PostgreSQL."""
     if connection.dialect.name == "sqlite":
         path = Path(str(make_url(url).database))
         target = path.with_name(f"{path.stem}.schema-{version}{path.suffix}")

@@ -1,4 +1,4 @@
-"""Tables of a store for other programs, as Parquet or an Arrow stream, some rows at a time."""
+"""Export of a store's tables as Parquet or an Arrow stream, in batches of rows."""
 
 from __future__ import annotations
 
@@ -30,18 +30,18 @@ Exported = Literal[
     "work",
     "handling",
 ]
-"""Tables of whose every row it is known which asset it is of; the first is what is asked for most."""
+"""Tables with the asset of each row; the first is requested most."""
 EXPORTED: tuple[Exported, ...] = get_args(Exported)
 _ROWS = 5000
-"""Rows in memory at once, and in a group of rows of the file."""
+"""Number of rows in memory at once, and in a row group of the file."""
 
 
 def exported(database: Engine, name: Exported, seen: Assets, *, arrow: bool = False) -> Iterator[bytes]:
-    """Yield a table of the assets that somebody may see, piece by piece.
+    """Yield a table of the visible assets in pieces of a file.
 
     Parameters
     ----------
-    name : times are UTC, nested values JSON, and bundles and pages are left out
+    name : of the table; times are UTC, nested values JSON, bundles and pages are omitted
     arrow : as a stream of Arrow (IPC) instead of a Parquet file
     """
     import pyarrow as pa
@@ -64,28 +64,28 @@ def exported(database: Engine, name: Exported, seen: Assets, *, arrow: bool = Fa
 
 
 class _Pieces(io.RawIOBase):
-    """A file that is written from its beginning to its end, and handed on piece by piece."""
+    """A file that is written sequentially and passed on in pieces."""
 
     def __init__(self) -> None:
         self._pieces: list[bytes] = []
         self._at = 0
 
     def writable(self) -> bool:
-        """Tell that it can be written."""
+        """Return True."""
         return True
 
     def write(self, piece: Any) -> int:
-        """Take a piece."""
+        """Write a piece."""
         self._pieces.append(bytes(piece))
         self._at += len(self._pieces[-1])
         return len(self._pieces[-1])
 
     def tell(self) -> int:
-        """Return how much was written."""
+        """Return the number of bytes written."""
         return self._at
 
     def taken(self) -> bytes:
-        """Return what was written since the last time."""
+        """Return the bytes written since the last call."""
         pieces, self._pieces = self._pieces, []
         return b"".join(pieces)
 
@@ -99,7 +99,7 @@ def _plain(value: Any) -> Any:
 
 
 def _arrow_type(column: Column[Any]) -> pa.DataType:
-    """Return what a column is in Arrow, whatever its rows hold, so that an empty table has types, too."""
+    """Return the Arrow type of a column, which does not depend on its rows."""
     import pyarrow as pa
 
     kind = column.type

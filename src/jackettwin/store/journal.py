@@ -1,4 +1,4 @@
-"""Events in the order in which they were committed, for all servers of one database."""
+"""Events in order of their commits, for all servers of one database."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from jackettwin.store.tables import events
 
 KINDS = ("record", "observation", "state", "finding", "job", "asset")
 KEPT = timedelta(days=2)
-"""How long a reader may be away and still get every event."""
+"""Time for which a disconnected client can still receive all events."""
 
 
 @dataclass(frozen=True)
 class Event:
-    """Something that happened to an asset."""
+    """An event of an asset."""
 
     id: int
     time_utc: datetime
@@ -28,10 +28,10 @@ class Event:
 
 
 def tell(connection: Connection, kind: str, asset: str, payload: Mapping[str, Any], now: datetime) -> None:
-    """Add an event, with the transaction in which it happened.
+    """Add an event in the transaction of its cause.
 
-    On PostgreSQL numbers are drawn before transactions end: a lock lets them become visible in order, so that
-    no reader who goes on from the last number misses one.
+    PostgreSQL assigns numbers before commits; a lock makes events visible in order, so that a client that
+    continues from the last number misses none.
     """
     if connection.dialect.name == "postgresql":
         connection.execute(text("select pg_advisory_xact_lock(740114)"))
@@ -51,7 +51,7 @@ def last_event(connection: Connection, asset: str | None = None) -> int:
 
 
 def forget_events(connection: Connection, now: datetime) -> None:
-    """Delete what no reader can be waiting for; the newest of each asset stays: its answers' version."""
+    """Delete old events except the newest of each asset, which is the version of its responses."""
     newest = select(func.max(events.c.id)).group_by(events.c.asset)
     old = (events.c.time_utc < now - KEPT, events.c.id.not_in(newest))
     connection.execute(delete(events).where(*old))

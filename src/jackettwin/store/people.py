@@ -1,4 +1,4 @@
-"""Who may: users, sessions of browsers, tokens of machines, and the audit log."""
+"""Users, sessions of browsers, tokens of machines, and the audit log."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from jackettwin.errors import InputError
 from jackettwin.store.tables import audit, tokens, users
 
 ROLES = ("viewer", "engineer", "admin")
-"""Each may what those before it may."""
+"""Roles; each includes the rights of those before it."""
 
 
 @dataclass(frozen=True)
 class User:
-    """Who somebody is, and the hash of the password.
+    """A user with the hash of the password.
 
     Attributes
     ----------
-    password_hash : empty for somebody who logs in elsewhere, by OIDC or a proxy
-    scope : the assets, and groups as ``@NAME``, that the user may see; None for all
-    expires_utc : after which the user is nobody; None for never
-    password_utc : when the password was set; None if it is not known, as of 0.1.0
+    password_hash : empty for a user who logs in by OIDC or a proxy
+    scope : visible assets, and groups as ``@NAME``; None for all
+    expires_utc : end of the user's rights; None for never
+    password_utc : time at which the password was set; None if unknown, as from 0.1.0
     """
 
     name: str
@@ -37,13 +37,13 @@ class User:
     password_utc: datetime | None = None
 
     def may_enter(self, now: datetime) -> bool:
-        """Tell whether the user is neither disabled nor expired."""
+        """Return whether the user is neither disabled nor expired."""
         return not self.disabled and (self.expires_utc is None or self.expires_utc > now)
 
 
 @dataclass(frozen=True)
 class Grant:
-    """A session or token, with its user's name and role; ``csrf`` must come with what a session changes."""
+    """A session or token, with its user's name and role; ``csrf`` is required for changes by a session."""
 
     user: str
     role: str
@@ -54,22 +54,22 @@ class Grant:
 
 
 def secret_hash(secret: str) -> str:
-    """Return what is kept of a random secret of 256 bits: no salt is needed against guessing."""
+    """Return the stored hash of a random secret of 256 bits, which needs no salt."""
     return hashlib.sha256(secret.encode()).hexdigest()
 
 
 def any_user(connection: Connection) -> bool:
-    """Tell whether a user is defined."""
+    """Return whether a user is defined."""
     return bool(connection.scalar(select(func.count()).select_from(users)))
 
 
 def add_user(connection: Connection, user: User) -> None:
-    """Add a user, or replace who has the name; open sessions and tokens of the old one end.
+    """Add a user, or replace the one of this name, whose sessions and tokens end.
 
     Raises
     ------
     InputError
-        If the last admin would become something less, or an admin is to see some assets only.
+        If the last admin would lose the role, or an admin would see only some assets.
     """
     if user.role == "admin" and user.scope is not None:
         raise InputError(
@@ -93,7 +93,7 @@ def known_user(connection: Connection, name: str) -> User:
     Raises
     ------
     InputError
-        If there is none of this name.
+        If there is no user of this name.
     """
     found = find_user(connection, name)
     if found is None:
@@ -118,7 +118,7 @@ def grant(
     now: datetime,
     expires: datetime,
 ) -> None:
-    """Keep a session or token, as a hash."""
+    """Store a session or token as a hash."""
     connection.execute(delete(tokens).where(tokens.c.expires_utc < now))
     connection.execute(
         insert(tokens).values(
@@ -134,7 +134,7 @@ def grant(
 
 
 def find_grant(connection: Connection, secret: str, now: datetime) -> Grant | None:
-    """Return whose session or token a secret is; None if it is nobody's, expired, or its user is disabled."""
+    """Return the session or token of a secret; None if unknown or expired, or if its user is disabled."""
     query = (
         select(tokens.c.user, users.c.role, tokens.c.kind, tokens.c.csrf, tokens.c.expires_utc, users.c.scope)
         .join(users, users.c.name == tokens.c.user)
@@ -153,7 +153,7 @@ def revoke(connection: Connection, secret: str) -> None:
 
 @dataclass(frozen=True)
 class KnownToken:
-    """What is known of a token besides its secret."""
+    """A token without its secret."""
 
     user: str
     label: str
@@ -169,7 +169,7 @@ def list_tokens(connection: Connection) -> list[KnownToken]:
 
 
 def revoke_tokens(connection: Connection, user: str, label: str | None = None) -> int:
-    """End a user's tokens, all or those of a label, and all sessions with the former; return how many."""
+    """End a user's tokens of a label, or all tokens and sessions; return their number."""
     mine = [tokens.c.user == user]
     if label is not None:
         mine += [tokens.c.label == label, tokens.c.kind == "token"]
@@ -177,16 +177,18 @@ def revoke_tokens(connection: Connection, user: str, label: str | None = None) -
 
 
 def remove_user(connection: Connection, name: str) -> bool:
-    """Remove a user with all sessions and tokens; tell whether there was one.
+    """Remove a user with all sessions and tokens; return whether there was one.
 
     Raises
     ------
     InputError
-        If it is the last admin, or the last user, without whom everything would be open again.
+        If it is the last admin or the last user, without whom the server would be open.
     """
     _refuse_last(connection, name)
     if [user.name for user in list_users(connection)] == [name]:
-        raise InputError("the last user stays, or everything would be open", field="user", value=name)
+        raise InputError(
+            "the last user cannot be removed, as the server would then be open", field="user", value=name
+        )
     return _remove(connection, name)
 
 
@@ -195,7 +197,10 @@ def _refuse_last(connection: Connection, name: str) -> None:
     admins = connection.scalars(select(users.c.name).where(*enabled).with_for_update()).all()
     if admins == [name]:
         raise InputError(
-            "the last admin stays", field="user", value=name, remedy="make another one admin before"
+            "the last admin cannot be removed or changed",
+            field="user",
+            value=name,
+            remedy="first make another user admin",
         )
 
 
@@ -220,7 +225,7 @@ def note_down(
 
 @dataclass(frozen=True)
 class AuditLine:
-    """Who did what to whom or what, and what came of it."""
+    """An action of a user with its subject and outcome."""
 
     id: int
     time_utc: datetime
@@ -231,7 +236,7 @@ class AuditLine:
 
 
 def read_audit(connection: Connection, limit: int, before: int | None = None) -> list[AuditLine]:
-    """Return lines of the audit log, newest first: those before a line, or the last ones."""
+    """Return lines of the audit log, newest first, before a line or from the end."""
     query = select(audit).order_by(audit.c.id.desc()).limit(limit)
     if before is not None:
         query = query.where(audit.c.id < before)
@@ -239,14 +244,14 @@ def read_audit(connection: Connection, limit: int, before: int | None = None) ->
 
 
 def forget_audit(connection: Connection, before: datetime) -> int:
-    """Forget the lines of the audit log before a time; return how many."""
+    """Delete the lines of the audit log before a time; return their number."""
     return connection.execute(delete(audit).where(audit.c.time_utc < before)).rowcount
 
 
 def change_password(
     connection: Connection, name: str, password_hash: str, now: datetime, but: str = ""
 ) -> None:
-    """Give a user another password; sessions of the old one end, but for the one that asks."""
+    """Change a user's password; all sessions except the present one end."""
     new = {"password_hash": password_hash, "password_utc": now}
     connection.execute(update(users).where(users.c.name == name).values(**new))
     others = (tokens.c.user == name, tokens.c.kind == "session", tokens.c.hash != secret_hash(but))

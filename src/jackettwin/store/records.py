@@ -1,4 +1,4 @@
-"""Records by content: what arrived, from when to when, and how far it got."""
+"""Records by content, with their time and status."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class StoredRecord:
 
 
 def add_record(connection: Connection, record: StoredRecord) -> bool:
-    """Keep a record unless its content is known; return whether it is new."""
+    """Store a record unless its content is stored already; return whether it is new."""
     return insert_new(connection, records, vars(record))
 
 
@@ -51,7 +51,7 @@ def find_record(connection: Connection, asset: str, record_id: str) -> StoredRec
 
 
 def records_with_id(connection: Connection, record_id: str) -> list[StoredRecord]:
-    """Return the records of any asset that have this content."""
+    """Return the records of all assets with this content."""
     rows = connection.execute(select(records).where(records.c.record_id == record_id))
     return [StoredRecord(**row._mapping) for row in rows]
 
@@ -59,7 +59,7 @@ def records_with_id(connection: Connection, record_id: str) -> list[StoredRecord
 def set_status(
     connection: Connection, asset: str, record_id: str, status: str, problem: Mapping[str, Any] | None = None
 ) -> None:
-    """Say how far a record got, and why no further."""
+    """Set the status of a record, with any problem."""
     if status not in STATUSES:
         raise ValueError(f"no record has the status {status!r}")
     connection.execute(_change(asset, record_id).values(status=status, problem=problem))
@@ -70,7 +70,7 @@ def _change(asset: str, record_id: str) -> Update:
 
 
 def set_picks(connection: Connection, asset: str, record_id: str, picks: Mapping[str, Any] | None) -> None:
-    """Keep the poles that a person chose, who and when among them."""
+    """Store manually selected poles, with user and time."""
     connection.execute(_change(asset, record_id).values(picks=picks))
 
 
@@ -102,7 +102,7 @@ def list_records(
 def all_with_samples(
     connection: Connection, asset: str, since: datetime | None = None, until: datetime | None = None
 ) -> list[StoredRecord]:
-    """Return the records of an asset whose samples are kept and that count, oldest first."""
+    """Return the valid records of an asset with stored samples, oldest first."""
     query = between(select(records).filter_by(asset=asset), records.c.start_utc, since, until)
     query = query.where(records.c.waveform.is_not(None), records.c.status != "set_aside")
     rows = connection.execute(query.order_by(records.c.start_utc, records.c.record_id))
@@ -112,24 +112,24 @@ def all_with_samples(
 def between(
     query: Select[Any], time: Column[datetime], since: datetime | None, until: datetime | None
 ) -> Select[Any]:
-    """Return a query on rows from one time on and before another."""
+    """Return a query restricted to rows from one time until before another."""
     query = query if since is None else query.where(time >= since)
     return query if until is None else query.where(time < until)
 
 
 def with_samples_before(connection: Connection, time: datetime) -> list[StoredRecord]:
-    """Return the observed records that began before a time and whose samples are kept."""
+    """Return the observed records with stored samples that began before a time."""
     where = (records.c.start_utc < time, records.c.waveform.is_not(None), records.c.status == "observed")
     return [StoredRecord(**row._mapping) for row in connection.execute(select(records).where(*where))]
 
 
 def forget_samples(connection: Connection, record: StoredRecord) -> None:
-    """Say that the samples of a record are not kept any more."""
+    """Mark the samples of a record as deleted."""
     connection.execute(_change(record.asset, record.record_id).values(waveform=None))
 
 
 def count_by_status(connection: Connection, asset: str | None = None) -> dict[str, dict[str, int]]:
-    """Return how many records of each asset, or of one, have each status."""
+    """Return the number of records by status, of each asset or of one."""
     query = select(records.c.asset, records.c.status, func.count())
     query = query.group_by(records.c.asset, records.c.status)
     if asset is not None:
@@ -141,17 +141,17 @@ def count_by_status(connection: Connection, asset: str | None = None) -> dict[st
 
 
 def write_cursor(*place: str | int) -> str:
-    """Return a place in a list as an opaque word."""
+    """Return a position in a list as an opaque cursor."""
     return base64.urlsafe_b64encode(json.dumps(place).encode()).decode()
 
 
 def read_cursor(cursor: str) -> list[str | int]:
-    """Return the place that a cursor stands for.
+    """Return the position of a cursor.
 
     Raises
     ------
     InputError
-        If it is not a cursor that we gave.
+        If it is not a valid cursor.
     """
     try:
         place = json.loads(base64.urlsafe_b64decode(cursor.encode()))
@@ -165,6 +165,6 @@ def read_cursor(cursor: str) -> list[str | int]:
             field="cursor",
             value=cursor[:40],
             allowed="the next_cursor of the page before",
-            remedy="leave it out to begin at the first page",
+            remedy="omit it to begin at the first page",
         ) from None
     return place

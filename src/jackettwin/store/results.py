@@ -1,4 +1,4 @@
-"""What the engine said: observations, modes, findings and the states of days."""
+"""Results of the engine: observations, modes, findings and the states of days."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from jackettwin.store.tables import (
 
 @dataclass(frozen=True)
 class StoredObservation:
-    """An observation as a document, with what it is found by."""
+    """An observation as a document, with its search keys."""
 
     asset: str
     model_hash: str
@@ -40,7 +40,7 @@ class StoredObservation:
 
 @dataclass(frozen=True)
 class StoredState:
-    """What the records of one UTC day say together."""
+    """State of one UTC day."""
 
     asset: str
     model_hash: str
@@ -50,7 +50,7 @@ class StoredState:
 
     @property
     def document_hash(self) -> str:
-        """Content hash: two states are equal if theirs are."""
+        """Hash of the content; states with equal hashes are equal."""
         return hashlib.sha256(self.document.encode()).hexdigest()
 
 
@@ -60,7 +60,7 @@ def put_observation(
     mode_rows: Iterable[Mapping[str, Any]],
     finding_rows: Iterable[Mapping[str, Any]],
 ) -> None:
-    """Keep an observation, its modes and its findings in place of what the same record said before."""
+    """Store an observation with modes and findings, replacing an earlier one of the same record."""
     drop_observation(connection, observation.asset, observation.model_hash, observation.record_id)
     connection.execute(insert(observations).values(**vars(observation)))
     if mode_rows := list(mode_rows):
@@ -70,14 +70,14 @@ def put_observation(
 
 
 def drop_observation(connection: Connection, asset: str, model_hash: str, record_id: str) -> None:
-    """Forget what a record said under a model."""
+    """Delete the observation of a record under a model."""
     for table in (observations, modes):
         connection.execute(_deleted(table, asset, model_hash, record_id=record_id))
     connection.execute(_deleted(findings, asset, model_hash, record_id=record_id, origin="observe"))
 
 
 def _deleted(table: Table, asset: str, model_hash: str, **more: str) -> Delete:
-    """Return the deletion of what an asset has under a model, chosen further by values of columns."""
+    """Return the deletion of an asset's rows under a model, further restricted by values of columns."""
     same = {"asset": asset, "model_hash": model_hash, **more}
     return delete(table).where(*(table.c[name] == value for name, value in same.items()))
 
@@ -85,7 +85,7 @@ def _deleted(table: Table, asset: str, model_hash: str, **more: str) -> Delete:
 def observations_between(
     connection: Connection, asset: str, model_hash: str, start: datetime, end: datetime
 ) -> Iterator[StoredObservation]:
-    """Yield the observations of records that began in an interval, by start, then by record."""
+    """Yield the observations of records that began in an interval, by start and record."""
     query = select(observations).filter_by(asset=asset, model_hash=model_hash)
     query = between(query, observations.c.start_utc, start, end)
     for row in connection.execute(query.order_by(observations.c.start_utc, observations.c.record_id)):
@@ -95,7 +95,7 @@ def observations_between(
 def newest_observations(
     connection: Connection, asset: str, model_hash: str, limit: int
 ) -> list[StoredObservation]:
-    """Return the observations of the records that began last, oldest first."""
+    """Return the observations of the latest records, oldest first."""
     query = select(observations).filter_by(asset=asset, model_hash=model_hash).limit(limit)
     query = query.where(observations.c.document != FORGOTTEN)
     rows = connection.execute(query.order_by(observations.c.start_utc.desc(), observations.c.record_id)).all()
@@ -103,7 +103,7 @@ def newest_observations(
 
 
 def observed_time(connection: Connection, asset: str, model_hash: str) -> tuple[int, float]:
-    """Return how many records a model observed as its own, and how long they are together [s]."""
+    """Return the number of a model's valid observations, and their total duration [s]."""
     own = (observations.c.asset == records.c.asset) & (observations.c.record_id == records.c.record_id)
     query = select(func.count(), func.sum(records.c.duration_s)).select_from(observations.join(records, own))
     query = query.where(observations.c.asset == asset, observations.c.model_hash == model_hash)
@@ -114,16 +114,16 @@ def observed_time(connection: Connection, asset: str, model_hash: str) -> tuple[
 def find_observation(
     connection: Connection, asset: str, record_id: str, model_hash: str
 ) -> StoredObservation | None:
-    """Return what a record said under a model, or None."""
+    """Return the observation of a record under a model, or None."""
     query = select(observations).filter_by(asset=asset, record_id=record_id, model_hash=model_hash)
     row = connection.execute(query).first()
     return None if row is None else StoredObservation(**row._mapping)
 
 
 def forget_observations(connection: Connection, before: datetime) -> list[str]:
-    """Forget what the records before a midnight (UTC) said one by one; return the assets that they are of.
+    """Delete the contents of observations before a midnight (UTC); return their assets.
 
-    That there were observations stays known; the days keep what they say together.
+    The rows of the observations and the states of the days remain.
     """
     old = (observations.c.start_utc < before, observations.c.document != FORGOTTEN)
     forgotten = update(observations).where(*old).values(document=FORGOTTEN)
@@ -131,7 +131,7 @@ def forget_observations(connection: Connection, before: datetime) -> list[str]:
 
 
 def count_observations(connection: Connection, asset: str) -> dict[str, int]:
-    """Return how many records of an asset every model observed, {model hash: number}."""
+    """Return the number of observations of an asset by every model, {model hash: number}."""
     query = select(observations.c.model_hash, func.count()).where(observations.c.asset == asset)
     return {model: n for model, n in connection.execute(query.group_by(observations.c.model_hash))}
 
@@ -140,7 +140,7 @@ _STATE = select(*(states.c[name] for name in StoredState.__dataclass_fields__))
 
 
 def put_state(connection: Connection, state: StoredState) -> None:
-    """Keep the state of a day in place of the one before."""
+    """Store the state of a day, replacing an earlier one."""
     connection.execute(_deleted(states, state.asset, state.model_hash, day=state.day))
     connection.execute(insert(states).values(**vars(state), document_hash=state.document_hash))
 
@@ -155,7 +155,7 @@ def find_state(connection: Connection, asset: str, model_hash: str, day: str) ->
 def states_until(
     connection: Connection, asset: str, model_hash: str, day: str | None = None, *, after: str | None = None
 ) -> list[StoredState]:
-    """Return the states of all days, or of those up to a day or after one, in their order."""
+    """Return the states of all days, or of those up to a day or after one, in order."""
     query = _STATE.filter_by(asset=asset, model_hash=model_hash).order_by(states.c.day)
     if day is not None:
         query = query.where(states.c.day <= day)
@@ -181,7 +181,7 @@ def identity_of(hashes: Mapping[str, str]) -> str:
 
 
 def drop_state(connection: Connection, asset: str, model_hash: str, day: str) -> None:
-    """Forget the state of a day, with the findings that advancing made there."""
+    """Delete the state of a day, and the findings of advancing it."""
     connection.execute(_deleted(states, asset, model_hash, day=day))
     connection.execute(_deleted(findings, asset, model_hash, day=day, origin="advance"))
 
@@ -193,16 +193,16 @@ def put_findings(connection: Connection, rows: Sequence[Mapping[str, Any]]) -> N
 
 
 def drop_findings(connection: Connection, asset: str, model_hash: str, *, origin: str) -> None:
-    """Take findings of an origin away, whose cause is gone."""
+    """Delete the findings of an origin."""
     connection.execute(_deleted(findings, asset, model_hash, origin=origin))
 
 
 def put_watched(
     connection: Connection, asset: str, model_hash: str, rows: Sequence[Mapping[str, Any]]
 ) -> list[Mapping[str, Any]]:
-    """Keep what watching a turbine's days says now; return the rows that are new.
+    """Store the present findings of monitoring a turbine's days; return the new ones.
 
-    What was said before and holds no more, since a late record changed a day, is taken away.
+    Earlier findings that no longer apply, as after a late record, are deleted.
     """
     own = select(findings).filter_by(asset=asset, model_hash=model_hash, origin="watch")
     before = {(handling.finding_key(row), row["text"]): row["id"] for row in _rows(connection, own)}
@@ -225,7 +225,7 @@ def list_modes(
     after: int | None = None,
     limit: int | None = 1000,
 ) -> list[Mapping[str, Any]]:
-    """Return modes through time, in the order in which they were found."""
+    """Return modes over time, in the order of their identification."""
     query = select(modes).filter_by(asset=asset, model_hash=model_hash).order_by(modes.c.id).limit(limit)
     if label is not None:
         query = query.where(modes.c.label == label)
@@ -257,7 +257,7 @@ def _rows(connection: Connection, query: Select[Any]) -> list[Mapping[str, Any]]
 
 
 def silent_assets(connection: Connection) -> dict[str, str]:
-    """Return which assets are said to be silent, and since what, {asset: subject}."""
+    """Return the assets with a finding of silence, {asset: subject}."""
     query = select(findings.c.asset, findings.c.subject).where(findings.c.origin == "silence")
     return {asset: since for asset, since in connection.execute(query)}
 
@@ -270,30 +270,30 @@ def put_knowledge(
     report: bytes | None,
     now: datetime,
 ) -> None:
-    """Keep what a state says of the supports under a version, and the page on it, in place of others."""
+    """Store the estimates of the supports under a version with their report, replacing earlier ones."""
     connection.execute(delete(knowledge).where(*_of_version(asset, version)))
     key = {"asset": asset, "version": version, "computed_utc": now}
     connection.execute(insert(knowledge).values(**key, document=dict(document), report=report))
 
 
 def find_kept(connection: Connection, asset: str, version: int) -> Mapping[str, Any]:
-    """Return what is kept from question to question besides the answer, by name."""
+    """Return the stored intermediate results of estimations, by name."""
     document = connection.scalar(select(knowledge.c.document).where(*_of_version(asset, version))) or {}
     return {name: value for name, value in document.items() if name not in ("known", "supports")}
 
 
 def find_supports(connection: Connection, asset: str, version: int) -> dict[str, Any]:
-    """Return what the days say of the supports alone, empty if nothing yet: without what watching keeps."""
+    """Return the estimates of the supports without the state of monitoring; empty if there are none yet."""
     return dict(_part(connection, asset, version, "known"))
 
 
 def find_drawn(connection: Connection, asset: str, version: int, name: str) -> Any:
-    """Return what a page shows: ``explored``, ``structure`` or ``assumptions``; empty if nothing yet."""
+    """Return data of a page: ``explored``, ``structure`` or ``assumptions``; empty if there are none yet."""
     return _part(connection, asset, version, ("together", "known", name))
 
 
 def find_stiffness(connection: Connection, asset: str, version: int) -> dict[str, Any]:
-    """Return the stiffness of the supports on each day, empty if nothing yet."""
+    """Return the stiffness of the supports on each day; empty if there is none yet."""
     return dict(_part(connection, asset, version, "supports"))
 
 
@@ -303,7 +303,7 @@ def _part(connection: Connection, asset: str, version: int, name: str | tuple[st
 
 
 def find_report(connection: Connection, asset: str, version: int) -> bytes | None:
-    """Return the page on what the days say, compressed, or None."""
+    """Return the compressed report, or None."""
     found: bytes | None = connection.scalar(select(knowledge.c.report).where(*_of_version(asset, version)))
     return found
 
@@ -313,9 +313,9 @@ def _of_version(asset: str, version: int) -> tuple[ColumnElement[bool], ...]:
 
 
 def open_alarms(connection: Connection, asset: str | None = None) -> dict[str, int]:
-    """Return how many alarms of the adopted versions wait for somebody, {asset: number}.
+    """Return the number of open alarms of the adopted versions, {asset: number}.
 
-    Those that are muted do not, nor those that somebody acknowledged or closed.
+    Muted, acknowledged and closed alarms are not open.
     """
     columns = (findings.c.asset, findings.c.day, findings.c.code, findings.c.subject)
     query = _adopted(select(*columns), asset).where(findings.c.severity == "alarm")
@@ -331,7 +331,7 @@ def find_finding(connection: Connection, finding_id: int) -> Mapping[str, Any] |
 
 
 def count_findings(connection: Connection, asset: str | None = None) -> dict[str, dict[str, int]]:
-    """Return how many findings of each severity the adopted version of each asset, or of one, has."""
+    """Return the number of findings by severity of the adopted version, of each asset or of one."""
     query = _adopted(select(findings.c.asset, findings.c.severity, func.count()), asset)
     counts: dict[str, dict[str, int]] = {}
     for name, severity, n in connection.execute(query.group_by(findings.c.asset, findings.c.severity)):
@@ -340,7 +340,7 @@ def count_findings(connection: Connection, asset: str | None = None) -> dict[str
 
 
 def _adopted(query: Select[Any], asset: str | None) -> Select[Any]:
-    """Return a query on findings, of the adopted versions of one asset, or of all that are not archived."""
+    """Return a query on findings restricted to adopted versions of one asset, or of all living ones."""
     own = (versions.c.asset == assets.c.name) & (versions.c.version == assets.c.adopted_version)
     same = (findings.c.asset == versions.c.asset) & (findings.c.model_hash == versions.c.model_hash)
     query = query.select_from(assets.join(versions, own).join(findings, same))

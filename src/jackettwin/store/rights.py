@@ -1,4 +1,4 @@
-"""Whose assets somebody may see: all of them, or those that are named, by themselves or by group."""
+"""Assets visible to users: all, or those listed by name or group."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from jackettwin.store.assets import asset_names, check_name
 from jackettwin.store.tables import asset_groups
 
 GROUP = "@"
-"""What the name of a group begins with where assets are named as well."""
+"""Prefix of a group's name in lists of assets."""
 
 Assets = frozenset[str] | None
-"""Those that somebody may see; None for all."""
+"""Visible assets; None for all."""
 
 
 def visible(connection: Connection, scope: Collection[str] | None) -> Assets:
-    """Return the assets that a scope names: themselves, or by a group, as it is now."""
+    """Return the assets of a scope, with the present members of groups."""
     if scope is None:
         return None
     named = {name for name in scope if not name.startswith(GROUP)}
@@ -28,17 +28,17 @@ def visible(connection: Connection, scope: Collection[str] | None) -> Assets:
 
 
 def among(column: ColumnElement[str], seen: Assets) -> ColumnElement[bool]:
-    """Return the condition that a row is of an asset that somebody may see."""
+    """Return the condition that a row belongs to a visible asset."""
     return true() if seen is None else column.in_(sorted(seen))
 
 
 def checked_scope(connection: Connection, scope: Iterable[str]) -> list[str]:
-    """Return a scope whose assets and groups there are, each once.
+    """Return a scope without repetitions, after checking that its assets and groups exist.
 
     Raises
     ------
     InputError
-        If it names nothing, or one that there is not.
+        If it is empty, or an asset or group does not exist.
     """
     known = {*asset_names(connection), *(GROUP + name for name in groups(connection))}
     given = sorted(set(scope))
@@ -55,12 +55,12 @@ def checked_scope(connection: Connection, scope: Iterable[str]) -> list[str]:
 
 
 def put_group(connection: Connection, name: str, members: Iterable[str]) -> list[str]:
-    """Say which assets a group has; without any it is gone, and whoever was named by it sees less.
+    """Define the assets of a group; without assets the group is deleted, with the rights that it gave.
 
     Raises
     ------
     InputError
-        If it cannot be called so, or there is no such asset.
+        If the name is not allowed, or an asset does not exist.
     """
     check_name(name)
     given, known = sorted(set(members)), asset_names(connection)

@@ -1,4 +1,4 @@
-"""What holds for a whole store, whoever serves it."""
+"""Settings of a whole store, common to all its servers."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from jackettwin.store.tables import settings
 
 RAW_DAYS, OBSERVATION_DAYS = "raw_days", "observation_days"
 JOB_DAYS, AUDIT_DAYS = "job_days", "audit_days"
-"""How many days raw samples of observed records, observations, ended work and the audit log are kept; without
-one, for ever."""
+"""Settings of the days for which raw samples of observed records, observations, finished jobs and the audit
+log are stored; without a value there is no limit."""
 
 
 MQTT_CLIENT = "mqtt_client"
-"""The name by which the broker knows the store."""
+"""Client identifier of the store at the broker."""
 
 ALERTED = "alerted"
-"""The numbers of the newest finding when alerts began, and of the last one that was looked at."""
+"""Numbers of the newest finding when alerts began, and of the last processed one."""
 
 ALERT_CHANNELS = "alert_channels"
-"""Channels that were added to a running server, and the rules of each; their secrets lie in files."""
+"""Channels that were added to a running server, and the rules of each; their secrets are in files."""
 
 
 def get(connection: Connection, name: str) -> Any:
@@ -30,7 +30,7 @@ def get(connection: Connection, name: str) -> Any:
 
 
 def put(connection: Connection, name: str, value: Any) -> None:
-    """Keep a setting; None takes it away."""
+    """Store a setting; None deletes it."""
     connection.execute(delete(settings).where(settings.c.name == name))
     if value is not None:
         connection.execute(insert(settings).values(name=name, value=value))

@@ -1,4 +1,4 @@
-"""Packets of streams and conditions of the site, kept until records are made of them."""
+"""Packets of streams and conditions of the site, stored until records are made from them."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from jackettwin.arrays import FloatArray
 
 WINDOW = timedelta(minutes=10)
-"""Streams become records of ten minutes on UTC boundaries, the field's habit."""
+"""Length of the records made from streams, which begin at whole multiples of it in UTC."""
 KEPT = timedelta(days=2)
-"""How late a packet may come and still be put into its record."""
+"""Largest delay of a packet that is still added to its record."""
 INTERVAL = timedelta(minutes=10)
-"""What a row of conditions holds for, unless the next one comes sooner: the field's statistics."""
+"""Longest interval for which a row of conditions is valid, that of the usual ten-minute statistics."""
 LONGEST = timedelta(hours=1)
-"""The longest packet that is taken."""
+"""Longest duration of a packet."""
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 
@@ -39,16 +39,16 @@ class Packet:
 
     @property
     def end_utc(self) -> datetime:
-        """When its last sample's step ends."""
+        """End of the step of its last sample."""
         return self.t0_utc + timedelta(seconds=self.samples.size / self.rate_hz)
 
 
 def add_packets(connection: Connection, new: Iterable[Packet], now: datetime) -> list[Packet]:
-    """Keep packets that are not known yet, by asset, channel and start; return those that are left out.
+    """Store new packets, by asset, channel and start; return the rejected ones.
 
-    One that begins :data:`KEPT` before the newest of its asset is left out: its window's other packets are
-    gone. So is one that is as far ahead of its asset's stream and of our clock: a logger's clock that jumped
-    into the future must not make everything after it come too late.
+    A packet that begins :data:`KEPT` before the newest of its asset is rejected, since the other packets of
+    its window were deleted. So is one that is as far ahead of its asset's stream and of the server's clock,
+    since a logger's clock that jumped into the future must not make all later packets too late.
     """
     left_out = []
     newest: dict[str, datetime | None] = {}
@@ -75,7 +75,7 @@ def add_packets(connection: Connection, new: Iterable[Packet], now: datetime) ->
 
 @dataclass(frozen=True)
 class OpenWindow:
-    """A window whose packets are more than those its record was made of."""
+    """A window with more packets than its record contains."""
 
     asset: str
     window_utc: datetime
@@ -84,12 +84,12 @@ class OpenWindow:
 
 
 def window_start(time: datetime) -> datetime:
-    """Return the start of the window that a time lies in."""
+    """Return the start of the window that contains a time."""
     return _EPOCH + (time - _EPOCH) // WINDOW * WINDOW
 
 
 def open_windows(connection: Connection) -> list[OpenWindow]:
-    """Return the windows that have packets no record contains yet, oldest first."""
+    """Return the windows with packets that no record contains yet, oldest first."""
     columns = (windows.c.asset, windows.c.window_utc, windows.c.n_known, windows.c.record_id)
     query = select(*columns).where(windows.c.n_known != windows.c.n_packets)
     return [OpenWindow(*row) for row in connection.execute(query.order_by(windows.c.window_utc))]
@@ -97,7 +97,7 @@ def open_windows(connection: Connection) -> list[OpenWindow]:
 
 def newest_packet(connection: Connection, asset: str) -> datetime | None:
     """Return the start of the newest packet of an asset: the stream's own clock."""
-    # the last window in which one began, which the index finds
+    # the last window in which a packet began is found by the index
     last = select(func.max(packets.c.window_utc)).where(packets.c.asset == asset).scalar_subquery()
     where = (packets.c.asset == asset, packets.c.window_utc == last)
     newest: datetime | None = connection.scalar(
@@ -107,7 +107,7 @@ def newest_packet(connection: Connection, asset: str) -> datetime | None:
 
 
 def packets_of(connection: Connection, asset: str, window_utc: datetime) -> list[Packet]:
-    """Return every packet that may reach into a window, by channel and time."""
+    """Return every packet that may overlap a window, by channel and time."""
     import numpy as np
 
     near = packets.c.window_utc.between(window_utc - LONGEST, window_utc)
@@ -121,7 +121,7 @@ def packets_of(connection: Connection, asset: str, window_utc: datetime) -> list
 
 
 def close_window(connection: Connection, window: OpenWindow, record_id: str | None) -> None:
-    """Say of which record, made of how many packets, a window's samples are."""
+    """Store the record of a window, and the number of its packets."""
     same = (windows.c.asset == window.asset, windows.c.window_utc == window.window_utc)
     made = {"n_packets": window.n_known, "record_id": record_id}
     connection.execute(update(windows).where(*same).values(**made))
@@ -136,7 +136,7 @@ def forget_packets(connection: Connection, asset: str, before: datetime) -> None
 def put_conditions(
     connection: Connection, asset: str, name: str, values: Mapping[datetime, float | str | None]
 ) -> set[datetime]:
-    """Keep a condition of the site through time; return the times at which it is new or another."""
+    """Store a condition of the site over time; return the times at which it is new or changed."""
     if not values:
         return set()
     same = (conditions.c.asset == asset, conditions.c.name == name)
@@ -165,11 +165,11 @@ def _text(value: float | str | None) -> str | None:
 def conditions_between(
     connection: Connection, asset: str, start: datetime, end: datetime
 ) -> dict[str, float | str]:
-    """Return each condition over a record: the mean of numbers, the one that a text keeps throughout.
+    """Return each condition during a record: the mean of numbers, or a text that does not change.
 
-    A row holds for the interval to the next one, ten minutes at most; it counts if the record has at least
-    half of it, or it has half of the record. A condition that is not known, or a text that changes, is left
-    out.
+    A row is valid until the next one, for at most ten minutes. It is used if the record covers at least half
+    of this interval, or the interval half of the record. Unknown conditions and texts that change are
+    omitted.
     """
     import numpy as np
 
@@ -207,7 +207,7 @@ def _reached(packet: Packet) -> Iterator[datetime]:
 
 
 def _count(connection: Connection, asset: str, window_utc: datetime) -> None:
-    """Count one more packet of a window: a record made of fewer is made anew."""
+    """Count one more packet of a window, so that a record of fewer packets is made again."""
     insert_new(connection, windows, {"asset": asset, "window_utc": window_utc, "n_packets": 0, "n_known": 0})
     same = (windows.c.asset == asset, windows.c.window_utc == window_utc)
     connection.execute(update(windows).where(*same).values(n_known=windows.c.n_known + 1))

@@ -1,7 +1,7 @@
-"""The tables of the living twin, one definition for SQLite and PostgreSQL.
+"""Tables of the store, with one definition for SQLite and PostgreSQL.
 
-What the engine produced is kept as the documents of :mod:`jackettwin.files.stored_schema`; columns beside
-them exist only to be searched. Every time is UTC.
+Results of the engine are stored as documents of :mod:`jackettwin.files.stored_schema`; their other columns
+are only search keys. All times are UTC.
 """
 
 from __future__ import annotations
@@ -32,17 +32,17 @@ from sqlalchemy.types import TypeDecorator
 from jackettwin.store import columns
 
 FIRST_SCHEMA, SCHEMA_VERSION = "0100", "0101"
-"""Migrations of 0.1.0 and of this version: a database between them is migrated when it is opened."""
+"""Migrations of 0.1.0 and of this version: databases between them are migrated when opened."""
 
 
 class Utc(TypeDecorator[datetime]):
-    """A time in UTC: SQLite drops time zones, so they are dropped and set at the border."""
+    """A time in UTC; as SQLite has no time zones, they are removed when storing and set when reading."""
 
     impl = DateTime(timezone=False)
     cache_ok = True
 
     def process_bind_param(self, value: datetime | None, dialect: Dialect) -> datetime | None:
-        """Return the naive UTC time that the database keeps."""
+        """Return the naive UTC time for the database."""
         if value is None:
             return None
         if value.tzinfo is None:
@@ -55,13 +55,13 @@ class Utc(TypeDecorator[datetime]):
 
 
 class Packed(TypeDecorator[str]):
-    """A document of which the database keeps few bytes, and everybody else sees the text."""
+    """A document that is compressed in the database and a text elsewhere."""
 
     impl = LargeBinary
     cache_ok = True
 
     def process_bind_param(self, value: str | None, dialect: Dialect) -> bytes | None:
-        """Return the bytes that the database keeps."""
+        """Return the bytes for the database."""
         return None if value is None else columns.pack(value)
 
     def process_result_value(self, value: Any, dialect: Dialect) -> str | None:
@@ -70,7 +70,7 @@ class Packed(TypeDecorator[str]):
 
 
 BigId = BigInteger().with_variant(Integer, "sqlite")
-"""A row number: SQLite counts up by itself only in a column of type INTEGER."""
+"""A row number; SQLite counts automatically only in a column of type INTEGER."""
 
 metadata = MetaData(
     naming_convention={
@@ -153,7 +153,7 @@ work = Table(
     Index("ix_work_state", "state", "id"),
     Index("ix_work_fair", "state", "kind", "priority", "asset", "id"),
 )
-"""What is to be done, once for each key. ``state``: queued, leased, done, failed, set_aside or cancelled."""
+"""Jobs, one for each key. ``state``: queued, leased, done, failed, set_aside or cancelled."""
 
 servers = Table(
     "servers",
@@ -163,7 +163,7 @@ servers = Table(
     Column("started_utc", Utc, nullable=False),
     Column("about", JSON, nullable=False),
 )
-"""Who leases work. A server whose beat stands still is dead, whatever the clocks say."""
+"""Servers that lease jobs. A server without heartbeat is dead; clocks are not compared."""
 
 posts = Table(
     "posts",
@@ -171,7 +171,7 @@ posts = Table(
     Column("name", String(32), primary_key=True),
     Column("server", String(64), nullable=False),
 )
-"""What one server of several does for all: it keeps a post until it leaves, or is found to be dead."""
+"""Duties that one of several servers performs for all, until it leaves or is dead."""
 
 observations = Table(
     "observations",
@@ -218,7 +218,7 @@ states = Table(
     Column("document", Text, nullable=False),
     Column("document_hash", String(64), nullable=False),
 )
-"""What the records of each UTC day say together: a state of the twin is the sum of its days."""
+"""State of each UTC day; the state of a twin is the sum of its days."""
 
 knowledge = Table(
     "knowledge",
@@ -229,8 +229,8 @@ knowledge = Table(
     Column("document", JSON, nullable=False),
     Column("report", LargeBinary),
 )
-"""What the newest state says under a version, found when there is time since it is costly: ``known`` of the
-supports; ``judged`` is what is kept of watching the days; ``report`` is the page on it, compressed."""
+"""Estimates from the newest state under a version, computed at low priority: ``known`` for the supports,
+``judged`` for the state of monitoring, ``report`` for the compressed report."""
 
 findings = Table(
     "findings",
@@ -251,8 +251,8 @@ findings = Table(
     Index("ix_findings_record", "asset", "record_id"),
     Index("ix_findings_page", "asset", "model_hash", "severity", "id"),
 )
-"""``origin``: observe, advance or watch. Those of advance are written anew when a day is advanced anew, those
-of watch, which are of no single record (``record_id`` is empty), when the days are judged anew."""
+"""``origin``: observe, advance or watch. Those of advance are replaced when a day is advanced again, those
+of watch, which belong to no single record (``record_id`` is empty), when the days are evaluated again."""
 
 handling = Table(
     "handling",
@@ -268,7 +268,8 @@ handling = Table(
     Column("until_utc", Utc),
     Index("ix_handling_finding", "asset", "alarm_key", "id"),
 )
-"""What people did with a finding, which is known by its content; how it stands is its last actions."""
+"""Actions of people on a finding, which is identified by its content; its status follows from the last
+ones."""
 
 conditions = Table(
     "conditions",
@@ -293,7 +294,7 @@ packets = Table(
     UniqueConstraint("asset", "channel", "t0_utc"),
     Index("ix_packets_window", "asset", "window_utc"),
 )
-"""Samples of a stream, kept until their window's record is final."""
+"""Samples of a stream, stored until their window's record is final."""
 
 windows = Table(
     "windows",
@@ -304,7 +305,7 @@ windows = Table(
     Column("n_known", Integer, nullable=False),
     Column("record_id", String(64)),
 )
-"""How many packets of a window are known, and the record that was made of how many."""
+"""Number of packets of a window, the record made from it, and the number of packets in that."""
 
 users = Table(
     "users",
@@ -318,7 +319,7 @@ users = Table(
     Column("expires_utc", Utc),
     Column("password_utc", Utc),
 )
-"""``scope``: the assets and, after an ``@``, the groups of assets that a user may see; NULL for all."""
+"""``scope``: the assets and, after an ``@``, the groups visible to a user; NULL for all."""
 
 asset_groups = Table(
     "asset_groups",
@@ -338,7 +339,7 @@ tokens = Table(
     Column("created_utc", Utc, nullable=False),
     Column("expires_utc", Utc, nullable=False),
 )
-"""Sessions of browsers and tokens of machines; only hashes are kept."""
+"""Sessions of browsers and tokens of machines; only hashes are stored."""
 
 audit = Table(
     "audit",
@@ -361,8 +362,8 @@ events = Table(
     Column("payload", JSON, nullable=False),
     Index("ix_events_asset", "asset", "id"),
 )
-"""What happened, in the order of commits. Whatever changes an answer about an asset adds one: its newest is
-the version of all that can be asked of it."""
+"""Events in order of commits. Every change of a response about an asset adds one; the newest is the version
+of all its responses."""
 
 settings = Table(
     "settings",
@@ -388,5 +389,5 @@ alerts = Table(
     UniqueConstraint("channel", "key"),
     Index("ix_alerts_due", "state", "due_utc"),
 )
-"""What is to be told to people, once for each channel and key. ``state``: waiting, sent, withdrawn (somebody
-dealt with it before, or it holds no more) or given_up."""
+"""Alerts, one for each channel and key. ``state``: waiting, sent, withdrawn (it was handled before, or no
+longer applies) or given_up."""

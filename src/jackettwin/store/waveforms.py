@@ -1,4 +1,4 @@
-"""Raw samples as Parquet files by asset and day, in the fewest bytes that lose nothing."""
+"""Raw samples as losslessly compressed Parquet files, by asset and day."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from jackettwin.records import Channel, Record
 
 SCHEMA_VERSION = 1
 _FINEST = 10**8
-"""Largest denominator of a step: loggers write eight decimals at most."""
+"""Largest denominator of a step, as loggers write at most eight decimals."""
 _GAINS = (1.0, 9.80665, 9.81, 9.80665e-3, 1e-3, 1e-2, 1e-6)
-"""By which readers multiply what loggers write as 32-bit floats in g, mg, mm/s², cm/s² or µm."""
+"""Factors by which readers convert 32-bit floats in g, mg, mm/s², cm/s² or µm."""
 
 
 def waveform_path(asset: str, start_utc: datetime, record_id: str) -> str:
-    """Return where a record's samples lie, relative to the store."""
+    """Return the path of a record's samples, relative to the store."""
     return f"records/{asset}/{start_utc:%Y-%m-%d}/{record_id}.parquet"
 
 
 def write_waveform(record: Record, path: Path) -> int:
-    """Write the samples of a record and all that describes it; return the file's size in bytes."""
+    """Write the samples and description of a record; return the size of the file in bytes."""
     arrays, steps = [], []
     for row in record.data:
         packed, step = packed_samples(row)
@@ -61,7 +61,7 @@ def write_waveform(record: Record, path: Path) -> int:
 
 
 def is_waveform(path: Path) -> bool:
-    """Tell whether a file was written by :func:`write_waveform`."""
+    """Return whether a file was written by :func:`write_waveform`."""
     if path.suffix != ".parquet":
         return False
     try:
@@ -90,16 +90,16 @@ def read_waveform(path: Path) -> Record:
 
 
 def packed_samples(x: FloatArray) -> tuple[npt.NDArray[Any], list[float] | None]:
-    """Return samples as int16, int32 or float32 and their step, or as they are and None.
+    """Return samples as int16, int32 or float32 with their step, or unchanged with None.
 
-    The step is kept as (numerator, denominator): a logger's 0.0012 is 12/10000 to the last bit, but not
+    The step is stored as (numerator, denominator): a logger's 0.0012 is 12/10000 to the last bit, but not
     12 · 0.0001.
     """
     counted = _counts(x)
     if counted is not None:
         return counted
     for gain in _GAINS:
-        with np.errstate(over="ignore"):  # then it is infinite, and not equal
+        with np.errstate(over="ignore"):  # an overflow gives infinity, which is not equal
             single = (x / gain).astype(np.float32)
         if np.array_equal(_unpacked(single, [gain, 1.0]), x, equal_nan=True):
             return single, [gain, 1.0]
@@ -107,7 +107,7 @@ def packed_samples(x: FloatArray) -> tuple[npt.NDArray[Any], list[float] | None]
 
 
 def _counts(x: FloatArray) -> tuple[npt.NDArray[Any], list[float]] | None:
-    """Return samples as multiples of a step, if they are; of 32 bits if a range needs them."""
+    """Return samples as multiples of a step if possible, of 32 bits if their range needs it."""
     known = np.unique(x[np.isfinite(x)])
     if known.size < 2:
         return None
@@ -128,7 +128,7 @@ def _counts(x: FloatArray) -> tuple[npt.NDArray[Any], list[float]] | None:
 
 
 def _unpacked(stored: npt.NDArray[Any], step: list[float] | None) -> FloatArray:
-    """Return samples; the least integer there is stands for a missing one."""
+    """Return samples; the least integer means a missing one."""
     samples = np.asarray(stored, dtype=float)
     if step is None:
         return samples

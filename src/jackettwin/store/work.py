@@ -1,8 +1,8 @@
-"""The queue of work: a row for each (record, model, settings, code), leased, done once.
+"""Queue of jobs, one for each (record, model, settings, code), leased and done once.
 
-A lease has no time in it. Servers count up a beat; whoever sees a beat stand still for long by an own
-stopwatch takes the dead server's leases back. A result is accepted only from the server that still holds
-the lease.
+Leases have no expiry. Each server increments a heartbeat; a server that sees another's unchanged for long, by
+its own monotonic clock, releases the leases of the dead server. A result is accepted only from the server
+that still has the lease.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from jackettwin.store.tables import posts, servers, work
 from jackettwin.version import __version__
 
 OBSERVE, KNOW = "observe", "know"
-"""Kinds of work: observe a record; say what a state says of the supports."""
+"""Kinds of jobs: observe a record; estimate the supports from a state."""
 GONE = -20
-"""Priority of the records of an archived asset: after all others, and in nobody's alarm."""
+"""Priority of records of an archived asset, after all others and without alarm."""
 MOST_TRIES = 3
-"""A record that three workers died of, or could not finish in time, is set aside."""
+"""Number of tries after which a record is set aside if its workers died or exceeded the time limit."""
 
 
 @dataclass(frozen=True)
@@ -60,9 +60,9 @@ def enqueue(
     kind: str = OBSERVE,
     priority: int = 0,
 ) -> int:
-    """Ask for a record to be observed by a version of a twin, or for other work of it; return its number.
+    """Add a job of observing a record by a version of a twin, or of another kind; return its number.
 
-    What is asked for already keeps its own.
+    An existing job keeps its number.
     """
     key = {
         "kind": kind,
@@ -86,10 +86,10 @@ def lease(
     kind: str = OBSERVE,
     served: Mapping[str, int] | None = None,
 ) -> list[Job]:
-    """Take up to ``most`` pieces of queued work of a kind.
+    """Lease up to ``most`` queued jobs of a kind.
 
-    Urgent ones first; of these, turn by turn, those of the asset that was served least of late; of an asset
-    what waits longest. Thousands of records of one turbine hold up no other one's.
+    Jobs are ordered by priority, then in turns by the asset served least recently, then by waiting time, so
+    that thousands of records of one turbine do not delay those of others.
     """
     jobs: list[Job] = []
     for priority in _priorities(connection):
@@ -109,7 +109,7 @@ def lease(
 def _by_turns(
     connection: Connection, same: tuple[ColumnElement[bool], ...], most: int, served: Mapping[str, int]
 ) -> list[Job]:
-    """Return work of several assets alike, of those first that were served least."""
+    """Return jobs in turns of assets, beginning with those served least."""
     if most <= 0:
         return []
     heads = select(work.c.asset, func.min(work.c.id)).where(*same).group_by(work.c.asset)
@@ -128,7 +128,7 @@ def _queued(
 
 
 def _priorities(connection: Connection) -> Iterator[int]:
-    """Yield the priorities of queued work, highest first, each found in the index however long the queue."""
+    """Yield the priorities of queued jobs, highest first, each by one search of the index."""
     highest = select(func.max(work.c.priority)).where(work.c.state == "queued")
     found = connection.scalar(highest)
     while found is not None:
@@ -144,34 +144,34 @@ def finish(
     now: datetime,
     reason: dict[str, Any] | None = None,
 ) -> bool:
-    """End a piece of work; return False if it is no longer this server's, and then keep nothing of it."""
+    """Finish a job; return False if it is no longer leased by this server, and then discard its result."""
     ended = {"state": state, "ended_utc": now, "reason": reason, "owner": None}
     return connection.execute(_mine(job, owner).values(**ended)).rowcount == 1
 
 
 def put_back(connection: Connection, job: Job, owner: str, reason: dict[str, Any]) -> str | None:
-    """Return failed work to the queue, or set it aside after the last try; return its new state."""
+    """Return a failed job to the queue, or set it aside after the last try; return its new state."""
     state = "queued" if job.tries + 1 < MOST_TRIES else "set_aside"
     ended = connection.execute(_mine(job, owner).values(state=state, owner=None, reason=reason))
     return state if ended.rowcount == 1 else None
 
 
 def release(connection: Connection, job: Job, owner: str) -> None:
-    """Return work that was not tried after all, without counting the try."""
+    """Return a job that was not started to the queue, without counting a try."""
     connection.execute(_mine(job, owner).values(**_UNTRIED))
 
 
 def _mine(job: Job, owner: str) -> Update:
-    """Return the change of a piece of work that a server still holds."""
+    """Return the update of a job that a server still leases."""
     return update(work).where(work.c.id == job.id, work.c.state == "leased", work.c.owner == owner)
 
 
 _UNTRIED = {"state": "queued", "owner": None, "tries": work.c.tries - 1}
-"""Of work that was leased, and goes back: that a server died says nothing against the record."""
+"""Change of a leased job that is returned without counting a try, as after the death of a server."""
 
 
 def try_again(connection: Connection, job_id: int, now: datetime) -> bool:
-    """Queue work anew that is done, was set aside, failed or was cancelled: it is asked for now."""
+    """Queue a job again that is done, set aside, failed or cancelled."""
     ended = work.c.state.in_(("set_aside", "failed", "cancelled", "done"))
     return (
         connection.execute(update(work).where(work.c.id == job_id, ended).values(**_anew(now))).rowcount == 1
@@ -179,7 +179,7 @@ def try_again(connection: Connection, job_id: int, now: datetime) -> bool:
 
 
 def renew(connection: Connection, job_id: int, now: datetime) -> bool:
-    """Queue work anew since what it is of has changed: a result that is on its way is not accepted."""
+    """Queue a job again after a change of its inputs; a pending result is not accepted."""
     mine = (work.c.id == job_id, work.c.state.not_in(("queued", "cancelled")))
     return connection.execute(update(work).where(*mine).values(**_anew(now))).rowcount == 1
 
@@ -190,13 +190,13 @@ def _anew(now: datetime) -> dict[str, Any]:
 
 
 def reorder(connection: Connection, asset: str, priority: int) -> None:
-    """Give the records of an asset that wait to be observed another priority."""
+    """Change the priority of an asset's queued records."""
     waiting = (work.c.asset == asset, work.c.kind == OBSERVE, work.c.state == "queued")
     connection.execute(update(work).where(*waiting).values(priority=priority))
 
 
 def cancel(connection: Connection, job_id: int, now: datetime) -> bool:
-    """Cancel work that is queued or leased; a result that comes later is not accepted."""
+    """Cancel a queued or leased job; a later result is not accepted."""
     open_states = work.c.state.in_(("queued", "leased"))
     cancelled = {"state": "cancelled", "ended_utc": now, "owner": None}
     return (
@@ -206,7 +206,7 @@ def cancel(connection: Connection, job_id: int, now: datetime) -> bool:
 
 
 def find_job(connection: Connection, job_id: int) -> Job | None:
-    """Return a piece of work, or None."""
+    """Return a job, or None."""
     row = connection.execute(select(work).where(work.c.id == job_id)).one_or_none()
     return None if row is None else Job(**row._mapping)
 
@@ -219,7 +219,7 @@ def list_jobs(
     limit: int = 100,
     seen: Assets = None,
 ) -> list[Job]:
-    """Return work of the assets that somebody may see, newest first."""
+    """Return jobs of visible assets, newest first."""
     query = select(work).where(among(work.c.asset, seen)).order_by(work.c.id.desc()).limit(limit)
     if state is not None:
         query = query.where(work.c.state == state)
@@ -229,33 +229,33 @@ def list_jobs(
 
 
 def jobs_of(connection: Connection, asset: str, record_id: str) -> list[Job]:
-    """Return all work on a record, oldest first."""
+    """Return all jobs of a record, oldest first."""
     query = select(work).filter_by(asset=asset, record_id=record_id).order_by(work.c.id)
     return [Job(**row._mapping) for row in connection.execute(query)]
 
 
 def any_queued(connection: Connection, kind: str, *, gone: bool = False) -> bool:
-    """Tell whether work of a kind waits, or only of archived assets; it costs the same whatever is done."""
+    """Return whether jobs of a kind are queued, with ``gone`` only of archived assets."""
     urgency = work.c.priority == GONE if gone else work.c.priority > GONE
     query = select(work.c.id).where(work.c.state == "queued", urgency, work.c.kind == kind).limit(1)
     return connection.scalar(query) is not None
 
 
 def forget_jobs(connection: Connection, before: datetime) -> int:
-    """Forget work on records that ended before a time; what was set aside waits for a person."""
+    """Delete jobs on records that finished before a time, except those set aside."""
     over = work.c.state.in_(("done", "failed", "cancelled"))
     old = (work.c.kind == OBSERVE, over, work.c.ended_utc < before)
     return connection.execute(delete(work).where(*old)).rowcount
 
 
 def queue_sizes(connection: Connection, seen: Assets = None) -> dict[str, int]:
-    """Return how much work of the assets that somebody may see is in each state."""
+    """Return the number of jobs of visible assets by state."""
     query = select(work.c.state, func.count()).where(among(work.c.asset, seen)).group_by(work.c.state)
     return {state: n for state, n in connection.execute(query)}
 
 
 def oldest_queued(connection: Connection) -> datetime | None:
-    """Return since when the oldest record to be observed has been waiting, those of archived assets apart."""
+    """Return the time at which the oldest queued record was added, without archived assets."""
     waiting = (work.c.state == "queued", work.c.kind == OBSERVE, work.c.priority > GONE)
     found: datetime | None = connection.scalar(
         select(func.min(work.c.created_utc, type_=work.c.created_utc.type)).where(*waiting)
@@ -264,24 +264,24 @@ def oldest_queued(connection: Connection) -> datetime | None:
 
 
 def join(connection: Connection, server: str, about: dict[str, Any], now: datetime) -> None:
-    """Enter a server into the list of those who may hold leases."""
+    """Add a server to the list of those that may lease jobs."""
     connection.execute(insert(servers).values(id=server, beat=0, started_utc=now, about=about))
 
 
 def beat(connection: Connection, server: str) -> bool:
-    """Count a server's beat up; False if it was declared dead meanwhile."""
+    """Increment a server's heartbeat; return False if it was declared dead meanwhile."""
     counted = update(servers).where(servers.c.id == server).values(beat=servers.c.beat + 1)
     return connection.execute(counted).rowcount == 1
 
 
 def beats(connection: Connection) -> dict[str, tuple[int, dict[str, Any]]]:
-    """Return the beat of every server, and what it says of itself."""
+    """Return the heartbeat of every server, and its data."""
     rows = connection.execute(select(servers.c.id, servers.c.beat, servers.c.about))
     return {server: (count, about) for server, count, about in rows}
 
 
 def bury(connection: Connection, server: str, at_beat: int | None = None) -> Sequence[int]:
-    """Take a dead server off the list and its leases back; nothing happens if it beat again meanwhile."""
+    """Remove a dead server and release its leases, unless its heartbeat has changed meanwhile."""
     where = [servers.c.id == server]
     if at_beat is not None:
         where.append(servers.c.beat == at_beat)
@@ -293,7 +293,7 @@ def bury(connection: Connection, server: str, at_beat: int | None = None) -> Seq
 
 
 def hold_post(connection: Connection, name: str, server: str) -> bool:
-    """Take what one server of several does for all, or keep it; False while another one that lives has it."""
+    """Take or keep a duty of one server for all; return False while another living server has it."""
     free = (posts.c.server == server) | posts.c.server.not_in(select(servers.c.id))
     taken = update(posts).where(posts.c.name == name, free).values(server=server)
     if connection.execute(taken).rowcount == 1:
@@ -302,10 +302,10 @@ def hold_post(connection: Connection, name: str, server: str) -> bool:
 
 
 def take_back_orphans(connection: Connection, me: str, mine: Collection[int]) -> int:
-    """Queue leases that nobody is at.
+    """Return orphaned leases to the queue.
 
-    Those whose server is not on the list, as after the restore of a backup, and our own that we do not know
-    of, as after the database went away when we had them.
+    These are leases of servers that are not on the list, as after a restore, and leases of this server that
+    it does not know, as after a loss of the database.
     """
     alive = select(servers.c.id)
     forgotten = (work.c.owner == me) & work.c.id.not_in(mine)
