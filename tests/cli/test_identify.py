@@ -121,7 +121,7 @@ def test_findings_of_many_records_are_counted(capsys: pytest.CaptureFixture[str]
 def test_a_report_under_another_name_than_that_of_a_page_is_refused(tmp_path: Path) -> None:
     page = tmp_path / "modes.txt"
     code, _, err = run(str(RECORDS / "pile_U12_s301.parquet"), "--report", str(page))
-    assert code == 2 and "'modes.txt' is no name of a page" in err and not page.exists()
+    assert code == 2 and "'modes.txt' is not the name of a page" in err and not page.exists()
 
 
 def test_modes_are_laid_beside_a_structure(tmp_path: Path) -> None:

@@ -135,4 +135,4 @@ def test_weights_are_refused_where_standard_deviations_weigh(twin: Path) -> None
     twin.write_text(text)
     result = CliRunner().invoke(main, ["update", str(twin)])
     assert result.exit_code == 2, result.output
-    assert "update.weights: weights are of the relative cost (8.4)" in " ".join(result.stderr.split())
+    assert "update.weights: weights apply to the relative cost (8.4)" in " ".join(result.stderr.split())

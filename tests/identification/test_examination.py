@@ -50,7 +50,7 @@ def test_modes_of_another_record_at_another_yaw_are_the_same(straight: Examinati
         assert mac(mode.mode_shape, twin.mode_shape) >= 0.95
     # the first pair is 0.6 half bandwidths apart, and what ten minutes say of its shapes is kept
     assert straight.identification.modes[1].mode_shape_unaligned is not None
-    assert any("turned within their plane" in text for text in straight.identification.notes)
+    assert any("rotated within their plane" in text for text in straight.identification.notes)
     assert mac(straight.identification.modes[1].mode_shape_unaligned, found.modes[1].mode_shape) < 0.95
 
 

@@ -71,5 +71,5 @@ def test_reference_sensors_are_those_in_every_setup() -> None:
     with pytest.raises(InputError, match="share no channel"):
         shared_channels([setups[0], setups[1].select(["b"])])
     moved = replace(setups[1], channels=(setups[1].channels[0], Channel("ref", height_m=3.0)))
-    with pytest.raises(InputError, match=r"2: channels.ref: one name stands for different sensors"):
+    with pytest.raises(InputError, match=r"2: channels.ref: one name is used for different sensors"):
         shared_channels([setups[0], moved])

@@ -96,7 +96,11 @@ def test_a_target_may_have_a_shape(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("mac_std: 0.02", "starts: 3", r"update\.mac_std: shapes need the standard deviation of 1 − MAC"),
+        (
+            "mac_std: 0.02",
+            "starts: 3",
+            r"update\.mac_std: fitting shapes needs the standard deviation of 1 − MAC",
+        ),
         ("{x: 1.0, y", "{x: 1.0, z", r"targets\.0\.mode_shape: no sensor .*\['z'\].*allowed: x, y"),
         ("{x: 1.0, y: [0.1, 0.01]}", "{x: 1.0}", r"targets\.mode_shape: a shape needs at least two sensors"),
         (

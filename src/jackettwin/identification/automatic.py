@@ -156,7 +156,7 @@ def identify(
 
 
 def _with_release(found: Identification, record: Record, settings: IdentificationSettings) -> Identification:
-    """Return the identification with the relaxation that shows after a release, if one is asked for."""
+    """Return the identification with the relaxation after a release, if one is requested."""
     release = release_relaxations(record) if settings.real_poles else None
     if release is None or release.pole is None:
         return found
@@ -168,7 +168,7 @@ def _with_release(found: Identification, record: Record, settings: Identificatio
 def _decay(
     record: Record, settings: IdentificationSettings, progress: Callable[[str], None] | None
 ) -> Transient | None:
-    """Return a decay with its modes if it is free, or with those beside it if it is an impact."""
+    """Return a decay with its modes if it is free, or with the ambient modes if it is an impact."""
     decay = transient(record, settings)
     if decay is None or decay.beside is None:
         return decay
@@ -195,7 +195,7 @@ def _with_likelihoods(
 
 
 def _with_picked_orders(ready: Prepared, picks: Sequence[Pick]) -> Prepared:
-    """Return a prepared record whose model orders hold those of the picks."""
+    """Return a prepared record whose model orders include those of the picks."""
     orders = [pick.order for pick in picks if pick.order is not None]
     return replace(ready, settings=with_orders(ready.settings, orders)) if orders else ready
 
@@ -209,11 +209,11 @@ def _pick(poles: Stabilisation, chosen: Candidate, record: str) -> Pick:
 def _refuse_picks(picks: Sequence[Pick], method: str) -> None:
     if picks:
         raise InputError(
-            "has no poles to pick from",
+            "the method has no poles to pick from",
             field="method",
             value=method,
             allowed=", ".join(name for name in method_names() if name not in POLELESS),
-            remedy="leave the picks out, or choose another method",
+            remedy="omit the picks, or choose another method",
         )
 
 

@@ -1,4 +1,4 @@
-"""Identification of one record as JSON data; users' scripts rely on the keys."""
+"""Identification of one record as JSON data, with keys on which users' scripts rely."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def identification_document(
 
 
 def channels_document(channels: Sequence[Channel]) -> dict[str, Any]:
-    """Return what the channels of a mode shape measure, where and in which direction, by name."""
+    """Return quantity, position and direction of the channels of a mode shape, by name."""
     return {
         c.name: {
             "quantity": c.quantity,
@@ -74,7 +74,7 @@ def channels_document(channels: Sequence[Channel]) -> dict[str, Any]:
 
 
 def limits_document(found: ReleaseRelaxations | AmbientLimits) -> dict[str, Any]:
-    """Return which relaxations would have been seen in a record, with 95 % power."""
+    """Return the relaxations that would be detected in a record with 95 % power."""
     if isinstance(found, ReleaseRelaxations):
         names = [channel.name for channel in found.channels]
         return {
@@ -101,7 +101,7 @@ def limits_document(found: ReleaseRelaxations | AmbientLimits) -> dict[str, Any]
 
 
 def mode_document(m: ModalEstimate, channels: Sequence[str] | None) -> dict[str, Any]:
-    """Return one identified mode; shapes are [real, imaginary] per channel, left out without channels."""
+    """Return one identified mode; shapes are [real, imaginary] per channel, omitted without channels."""
     known, interval = m.status != ModeStatus.DAMPING_UNKNOWN, m.damping_ratio_interval_95
     bound = (None, None) if m.cramer_rao_log_std is None else map(float, m.cramer_rao_log_std)
     frequency_bound, damping_bound = bound

@@ -16,7 +16,7 @@ def average_linkage(apart: FloatArray, farthest: float) -> list[Int64Array]:
 
     Parameters
     ----------
-    apart : (n, n) distances; what rounding makes asymmetric or negative is mended
+    apart : (n, n) distances; asymmetry and negative values by rounding are corrected
 
     Examples
     --------

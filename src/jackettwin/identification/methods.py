@@ -36,5 +36,5 @@ def method_names() -> tuple[str, ...]:
 
 
 def is_method(name: str) -> bool:
-    """Tell whether a method has this name, without loading plugins for a built-in one."""
+    """Return whether a method has this name, without loading plugins for a built-in one."""
     return name in POLE_METHODS or name in method_names()

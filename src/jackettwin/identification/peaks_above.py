@@ -1,4 +1,4 @@
-"""Peaks above the band of an identification, which would otherwise be lost in silence."""
+"""Report of peaks above the band of an identification."""
 
 from __future__ import annotations
 
@@ -18,21 +18,22 @@ if TYPE_CHECKING:
     from jackettwin.records import Record
 
 LINES_BELOW = 200
-"""Spectral lines up to the upper edge of the band: a peak of one per cent of damping holds two lines."""
+"""Spectral lines up to the upper edge of the band: a peak of one per cent damping has a width of two
+lines."""
 MOST_SHARE = 1.0 / 16.0
-"""Longest segment, as a share of the record: thirty of them are averaged, and noise has no peaks."""
+"""Longest segment as a share of the record: the average of thirty segments has no peaks of noise."""
 PASSED = 0.8
-"""Share of Nyquist up to which a logger's filter passes."""
+"""Share of the Nyquist frequency up to which a logger's filter passes signals."""
 APART = 1.05
-"""Smallest ratio of frequencies of two peaks that are named."""
+"""Smallest ratio of the frequencies of two reported peaks."""
 NAMED = 6
-"""Most peaks named."""
+"""Largest number of reported peaks."""
 
 
 def peaks_above(
     record: Record, settings: IdentificationSettings, resolved: ResolvedSettings
 ) -> tuple[str, ...]:
-    """Return the sentence that names the clear peaks above the band; none if the band was asked for."""
+    """Return the sentence on clear peaks above the band; none if the user set the band."""
     edge, rate = resolved.highest_frequency_hz, record.sample_rate_hz
     if settings.highest_frequency_hz is not None or edge >= 0.5 * PASSED * rate:
         return ()

@@ -1,4 +1,4 @@
-"""Modes picked by hand or from an earlier run: a selection that can be saved, edited and reused.
+"""Modes picked manually or from an earlier run, which can be saved, edited and reused.
 
 A pick is a pole of the stabilisation diagram. Every result lists the picks that reproduce it. Picks replace
 the criteria on clusters of poles; the limits on the band and on damping uncertainty still apply.
@@ -33,11 +33,11 @@ class Pick:
     frequency_hz : float
         Frequency; the nearest pole is used.
     order : int or None
-        Model order; None leaves it to the clustering.
+        Model order; with None the clustering selects it.
     record : str or None
         Name of the record in which it was picked; None means every record.
     doubtful : bool
-        Whether the mode counts only if the spectrum needs it, as for a doubtful candidate.
+        Whether the mode is accepted only if the spectrum needs it, as for a doubtful candidate.
     """
 
     frequency_hz: float
@@ -52,7 +52,7 @@ def parse_picks(data: Any) -> tuple[Pick, ...]:
     Raises
     ------
     InputError
-        If it is neither, or an entry is wrong; names the entry.
+        If it is neither, or an entry is wrong; the error names the entry.
 
     Examples
     --------
@@ -82,12 +82,12 @@ def of_record(picks: Sequence[Pick], name: str) -> tuple[Pick, ...]:
 
 
 def refuse_strangers(picks: Sequence[Pick], names: Sequence[str]) -> None:
-    """Refuse picks if none concerns the records, since a misspelt name would silently select nothing.
+    """Raise an error if no pick concerns the records, since a misspelt name would silently have no effect.
 
     Raises
     ------
     InputError
-        If there are picks and each names a record that is not there.
+        If all picks name absent records.
     """
     if picks and not any(of_record(picks, name) for name in names):
         named = sorted({pick.record for pick in picks if pick.record is not None})

@@ -103,7 +103,7 @@ def relaxations(ready: Prepared, settings: IdentificationSettings) -> tuple[Real
     Raises
     ------
     InputError
-        If the settings leave the uncertainty out that tells them from noise.
+        If the settings disable the uncertainty that distinguishes them from noise.
     """
     if not uncertain(settings):
         raise InputError(
@@ -113,7 +113,7 @@ def relaxations(ready: Prepared, settings: IdentificationSettings) -> tuple[Real
             allowed=f"method ssi-cov, weighting br, state_matrix shift, blocks ≥ {FEWEST_BLOCKS}",
             remedy="leave these settings at their defaults",
         )
-    # more orders and every instrument: for these alone, so that no mode depends on whether they are sought
+    # more orders and all instruments, only for relaxations, so that the modes do not depend on this option
     ready = replace(ready, settings=dense_orders(ready.settings, settings.order_step))
     resolved, subspace = ready.settings, _subspace(ready, settings, every=1)
     shared = _propagation(ready, subspace, settings, every=1)
@@ -127,7 +127,7 @@ def relaxations(ready: Prepared, settings: IdentificationSettings) -> tuple[Real
 
 
 def uncertain(settings: IdentificationSettings) -> bool:
-    """Tell whether the uncertainty of the poles is requested, and available for this variant."""
+    """Return whether the uncertainty of the poles is requested and available for this variant."""
     variant = (settings.method, settings.weighting, settings.state_matrix)
     return settings.blocks >= FEWEST_BLOCKS and variant == ("ssi-cov", "br", "shift")
 
@@ -148,8 +148,8 @@ def _subspace(ready: Prepared, settings: IdentificationSettings, every: int | No
 def _every(ready: Prepared) -> int:
     """Return the samples between instruments: one if few would be left.
 
-    One, too, where the record tells displacements: relaxations are strong there, and modes beside them are
-    lost with half the instruments.
+    It is also one for displacements, in which relaxations are strong and would hide modes with half the
+    instruments.
     """
     enough = ENOUGH_INSTRUMENTS * max(ready.settings.orders, default=1)
     many = ready.settings.block_rows * len(ready.references) >= EVERY * enough

@@ -1,6 +1,6 @@
-"""Weak modes hidden by strong ones: a further search for poles around peaks without a mode.
+"""Further search for poles around peaks without a mode, for weak modes hidden by strong ones.
 
-The first modes of a tower move it a thousand times as much as its fifth.
+The amplitude of a tower's first modes may be a thousand times that of its fifth.
 Errors of their covariances then exceed the contribution of the fifth,
 although its peak is clear in the spectrum of a channel. For each clear peak that no candidate explains,
 the samples are high-passed and poles are sought in the octave that begins there.
@@ -45,7 +45,7 @@ OCTAVE = 2.0
 """Upper limit of a band's modes over the peak for which it was made."""
 MOST_BANDS = 2
 SAME_SHAPE = 0.8
-"""MAC above which two candidates of one frequency are one."""
+"""MAC above which two candidates of one frequency are the same."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ def with_quiet_bands(first: PoleSearch, ready: Prepared, settings: Identificatio
 
 
 def _explained(peak_hz: float, line_hz: float, search: PoleSearch, ready: Prepared) -> bool:
-    """Tell whether a peak is outside the band or explained by a mode or tone."""
+    """Return whether a peak is outside the band or explained by a mode or tone."""
     resolved, tones = ready.settings, search.tones
     if not resolved.lowest_frequency_hz < peak_hz < resolved.highest_frequency_hz:
         return True
@@ -136,7 +136,7 @@ def _above(ready: Prepared, low_hz: float) -> Prepared:
 
 
 def _joined(out: PoleSearch, ready: Prepared, high_hz: float, settings: IdentificationSettings) -> PoleSearch:
-    """Return the search with those of another band; of two for one mode, the less doubtful is kept."""
+    """Return the search with those of another band; of two for one mode, the less doubtful is used."""
     more, offset = searched(ready, settings), len(out.poles.order)
     if not len(more.poles.order):
         return out

@@ -20,7 +20,7 @@ from jackettwin.records.quality.repair import common_time
 WORTH_SAYING = 1e-3
 """Share of a channel's power above which a tone is reported."""
 FEWEST_TO_COMPARE = 3
-"""Number of sensors without a place above which a finding says that they cannot be compared."""
+"""Number of sensors without a position above which a finding states that they cannot be compared."""
 MOTION = ("acceleration", "velocity", "displacement")
 """Quantities of motion, which one record may mix."""
 DEFORMATION = ("inclination", "strain")
@@ -43,7 +43,7 @@ def prepared(record: Record, steps: Iterable[Step]) -> tuple[Record, Findings]:
 
 
 def repaired(record: Record, *, quality: Quality) -> tuple[Record, Findings]:
-    """Remove samples that the quality reports as damaged."""
+    """Remove samples that the quality check reports as damaged."""
     return repair(record, quality), ()
 
 
@@ -106,7 +106,7 @@ def moving_channels(record: Record) -> Record:
             return record.select(names)
     bare = all(c.unit == "-" for c in record.channels)
     raise InputError(
-        "unit is missing, and no channel's name says what it measures"
+        "the unit is missing, and no channel's name gives its quantity"
         if bare
         else "no channel measures motion",
         field="unit" if bare else "channels",
@@ -116,7 +116,7 @@ def moving_channels(record: Record) -> Record:
         ),
         remedy="--unit (identify, init) or logger.unit (twin) states it"
         if bare
-        else 'write "unit" (of counts and volts "gain", too) of each channel into the JSON beside the record',
+        else 'write "unit" (and for counts and volts "gain") of each channel into the JSON beside the record',
     )
 
 
@@ -148,13 +148,13 @@ def unplaced(record: Record) -> Findings:
 
 
 def unclear(record: Record) -> Findings:
-    """Name the channels that are left out because their quantity is unknown."""
+    """Report the channels that are omitted because their quantity is unknown."""
     names = [f"{c.name} ({c.unit})" for c in record.channels if c.quantity == "other"]
     return (Finding("channels_unclear", _listed(names)),) if names else ()
 
 
 def set_aside(record: Record, chosen: Record) -> Findings:
-    """Name inclinations and strains left out beside channels that measure motion."""
+    """Report inclinations and strains that are omitted because other channels measure motion."""
     names = [
         c.name for c in record.channels if c.quantity in DEFORMATION and c.name not in chosen.channel_names
     ]

@@ -1,10 +1,10 @@
-r"""What strength a relaxation needs to be seen in a record of ambient vibration, found by adding some to it.
+r"""Detection limit of relaxations in a record of ambient vibration, found by adding some to the record.
 
-A first-order process of a rate a, in all instruments in random proportion, is added to the record, and the
-search for real poles is run as it is. The share of trials in which it reports a pole within a factor of two
-of a rises with the process's rms; a logistic curve of ln rms is fitted, and where it reaches 95 % is the
-detection limit, with the interval that the number of trials leaves. So noise, forces, modes and the search's
-own rules are this record's and this method's; nothing is assumed of them.
+A first-order process of rate a, with random amplitudes in all instruments, is added to the record, and the
+search for real poles is run unchanged. The share of trials in which it reports a pole within a factor of two
+of a rises with the process's rms. A logistic curve in ln rms is fitted; the detection limit is the rms at
+which it reaches 95 %, with an interval for the number of trials. Thus no assumption on noise, forces, modes
+and the rules of the search is needed.
 """
 
 from __future__ import annotations
@@ -29,31 +29,31 @@ if TYPE_CHECKING:
     from jackettwin.records import Record
 
 RATES = 3
-"""Rates that are tried, from the lowest of the band upwards."""
+"""Number of rates, from the lowest of the band upwards."""
 TRIALS = 40
-"""At each of them."""
+"""Number of trials at each rate."""
 ALIKE = 2.0
-"""Factor within which a reported rate is that of the process that was added."""
+"""Factor within which a reported rate counts as that of the added process."""
 WEAKEST, STRONGEST = 0.01, 8.0
-"""Least and most rms that is added, in multiples of the record's."""
+"""Least and largest rms of the added process, in multiples of the record's."""
 _HALVINGS = 6
-"""First trials, each in the middle between what was missed and what was seen."""
+"""Number of first trials, by bisection between missed and detected amplitudes."""
 _SLOPE, _SLOPE_LOG_STD, _MIDDLE_STD = 3.0, 1.0, 3.0
-"""Prior of the curve by ln rms: a slope from 5 to 95 % within a factor of seven, and anywhere."""
+"""Prior of the curve in ln rms: a rise from 5 to 95 % within a factor of seven, with a broad middle."""
 
 
 @dataclass(frozen=True)
 class AmbientLimit:
-    """What a relaxation of one rate needs to be seen.
+    """Detection limit of a relaxation of one rate.
 
     Attributes
     ----------
     rate_rad_s : float
     rms_share : float
-        Its rms in multiples of the record's, in the band, from which 95 % are found; infinite if not even
-        those of ``STRONGEST`` are.
+        The rms, in multiples of the record's in the band, at which 95 % are found; infinite if it exceeds
+        ``STRONGEST``.
     interval_95 : (low, high)
-        Of the share, for the number of trials.
+        Of ``rms_share``, for the number of trials.
     found, trials : int
     """
 
@@ -71,7 +71,7 @@ class AmbientLimits:
     Attributes
     ----------
     lowest_rate_rad_s, highest_rate_rad_s : float
-        Ends of the band; of relaxations beyond them the search says nothing.
+        Ends of the band, outside which the search finds no relaxations.
     channels : names
     rms : (n_channels,)
         Of the channels within the band, in their units.
@@ -94,13 +94,13 @@ def ambient_limits(
     seed: int = 0,
     progress: Progress = SILENT,
 ) -> AmbientLimits:
-    """Return what relaxations need to be seen in a record.
+    """Return the detection limits of relaxations in a record.
 
     Parameters
     ----------
     record, settings : as for the identification
     rates : [rad/s]; three from the lowest of the band upwards if none are given
-    progress : told of every rate
+    progress : receives a step for every rate
 
     Raises
     ------
@@ -123,12 +123,12 @@ def ambient_limits(
 def with_relaxation(
     y: FloatArray, rate_rad_s: float, sample_rate_hz: float, rms: float, rng: np.random.Generator
 ) -> FloatArray:
-    """Return channels with a stationary first-order process added, in random proportion.
+    """Return channels with a stationary first-order process added, with random amplitudes.
 
     Parameters
     ----------
     y : (n_channels, n_samples)
-    rms : root mean square of the process over all channels, in units of theirs
+    rms : root mean square of the process over all channels, in units of the channels
     """
     mu = np.exp(-rate_rad_s / sample_rate_hz)
     force = np.sqrt(1.0 - mu**2) * rng.standard_normal(y.shape[1])
@@ -141,7 +141,7 @@ def with_relaxation(
 def _limit(
     ready: Prepared, settings: IdentificationSettings, rate: float, trials: int, rng: np.random.Generator
 ) -> AmbientLimit:
-    """Return the limit at one rate: where trials tell most is where the next is made."""
+    """Return the limit at one rate; each trial is made at the most informative amplitude."""
     sizes: list[float] = []
     seen: list[bool] = []
     low, high, logit = log(WEAKEST), log(STRONGEST), log(POWER / (1.0 - POWER))
@@ -149,7 +149,7 @@ def _limit(
         if k < _HALVINGS:
             x = _bisected(sizes, seen, low, high)
         else:
-            # from a little below the middle to beyond where 95 % are seen
+            # from slightly below the middle to beyond the 95 % point
             middle, slope, _ = _curve(np.array(sizes), np.array(seen))
             x = middle + logit / slope * rng.uniform(-0.3, 1.1)
         x = float(np.clip(x, low, high))
@@ -159,7 +159,7 @@ def _limit(
         seen.append(any(abs(log(p.rate_rad_s / rate)) < log(ALIKE) for p in there))
     middle, slope, covariance = _curve(np.array(sizes), np.array(seen))
     x95 = middle + logit / slope
-    by = np.array([1.0, -logit / slope])  # of x95 by the middle and by ln slope
+    by = np.array([1.0, -logit / slope])  # derivatives of x95 with respect to middle and ln slope
     std = float(np.sqrt(by @ covariance @ by))
     beyond = x95 > high
     interval = (float(np.exp(x95 - 1.96 * std)), float(np.exp(x95 + 1.96 * std)))
@@ -167,7 +167,7 @@ def _limit(
 
 
 def _bisected(sizes: list[float], seen: list[bool], low: float, high: float) -> float:
-    """Return the middle between the largest that was missed and the smallest that was seen."""
+    """Return the middle between the largest missed and the smallest detected size."""
     missed = [x for x, s in zip(sizes, seen, strict=True) if not s]
     there = [x for x, s in zip(sizes, seen, strict=True) if s]
     return 0.5 * (max(missed, default=low) + min(there, default=high))

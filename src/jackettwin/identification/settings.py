@@ -1,4 +1,4 @@
-"""Settings of an identification; those left open follow from the data."""
+"""Settings of an identification; unset ones follow from the data."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class IdentificationSettings(Schema):
         Hard criterion: largest standard deviation of ln ζ. A pole that fits noise has far more.
     max_damping_excess : float
         The same relative to the long-data limit 1/√(2πζfT). Above it a mode is doubtful:
-        it counts only if the spectrum cannot be explained without it (``refine``).
+        it is accepted only if the spectrum cannot be explained without it (``refine``).
     cluster_distance : float
         Poles nearer than this, |Δλ|/|λ| + 1 − MAC on average, belong to one mode.
     min_order_share : float
@@ -99,7 +99,7 @@ class IdentificationSettings(Schema):
                 "canonical variate analysis takes all channels as references",
                 field="reference_channels",
                 value=self.reference_channels,
-                remedy="leave reference_channels out, or set weighting to br",
+                remedy="omit reference_channels, or set weighting to br",
             )
         low, high = self.lowest_frequency_hz, self.highest_frequency_hz
         if low is not None and high is not None and low >= high:
@@ -114,7 +114,7 @@ class IdentificationSettings(Schema):
 
     @property
     def quick(self) -> bool:
-        """Whether poles and shapes alone are asked for, without what tells modes from tones."""
+        """Whether only poles and shapes are requested, without checks that distinguish modes from tones."""
         return self.blocks == 0 and not self.refine
 
     def with_method(self, method: str) -> IdentificationSettings:

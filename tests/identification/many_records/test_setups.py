@@ -64,7 +64,7 @@ def test_two_setups_give_the_whole_shape(
         assert abs(mode.damping_ratio - 0.012) < 4.0 * mode.damping_ratio_std
         single = [m.frequency_std_hz for one in found for m in one.modes if abs(m.frequency_hz - f) < 0.05]
         assert mode.frequency_std_hz < max(single)
-    assert fused.warnings == ("not every record has every channel: shapes are tied by z90, z80",)
+    assert fused.warnings == ("records have different channels: shapes are connected by z90, z80",)
 
 
 def test_fifteen_setups_of_velocities_beside_two_accelerometers() -> None:
@@ -121,7 +121,7 @@ def test_complete_records_give_the_principal_direction(rng: np.random.Generator)
 def test_a_name_that_moved_is_refused(merged: tuple[FusedIdentification, list[Identification]]) -> None:
     _, (first, second) = merged
     moved = tuple(replace(c, height_m=10.0) if c.name == "z80" else c for c in second.channels)
-    with pytest.raises(InputError, match=r"setup 1: channels.z80: one name stands for different sensors"):
+    with pytest.raises(InputError, match=r"setup 1: channels.z80: one name is used for different sensors"):
         fuse([first, replace(second, channels=moved)])
 
 

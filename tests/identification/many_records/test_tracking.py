@@ -132,7 +132,7 @@ def test_records_need_not_share_one_channel_with_all_others() -> None:
     # five sensors may see little of a mixed shape: a few records of the close pair are lost
     assert all(len(mode.sightings) >= 55 for mode in fused.modes)
     assert all(of_true_mode(fused, k) is fused.modes[k] for k in range(5))
-    assert "none is in all" in fused.warnings[0]
+    assert "none of which is in all" in fused.warnings[0]
 
 
 def test_a_mode_not_seen_for_long_is_not_waited_for() -> None:

@@ -7,10 +7,10 @@ vectors of covariance
           h_{ik} = \frac{1}{1 - \beta_{ik}^{-2} - 2 i \zeta_i \beta_{ik}^{-1}}, \quad \beta_{ik} = f_k/f_i
 
 (accelerations under forces of constant density S in the band). With flat priors the posterior is the
-likelihood; its maximum is the most probable value, and the inverse of its curvature there the covariance.
-For one mode the most probable shape is an eigenvector (Au 2011, J. Eng. Mech. 137(3)), so that four numbers
-are sought; for several the likelihood is that of the few coordinates of the dominant subspace (Au 2012, Mech.
-Syst. Signal Process. 26). The number of modes in a band is that of the largest evidence by Schwarz.
+likelihood; its maximum is the most probable value, and the inverse of its curvature there the covariance. For
+one mode the most probable shape is an eigenvector (Au 2011, J. Eng. Mech. 137(3)), which leaves four
+unknowns; for several modes the likelihood is computed in the dominant subspace (Au 2012, Mech. Syst. Signal
+Process. 26). The number of modes in a band maximises the evidence by Schwarz's criterion.
 
 Au, S.K. 2017, Operational Modal Analysis, Springer, chapters 12 and 13.
 """
@@ -32,33 +32,33 @@ if TYPE_CHECKING:
 
 
 MOST_MODES = 3
-"""Most modes in a band."""
+"""Largest number of modes in a band."""
 SMOOTH = 5
-"""Lines over which the power in another direction is averaged."""
+"""Number of lines over which the power in another direction is averaged."""
 MIN_PEAK = 4.0
 """Smallest ratio of its peak to its median for which a further mode is tried."""
 START_DAMPING = 0.01
 """Damping ratio from which the search starts."""
 MAX_DAMPING = 0.2
-"""Damping ratio beyond which a mode of a band is its background, and dropped."""
+"""Damping ratio above which a mode of a band is its background and is dropped."""
 MAX_LOG_STD = 1.0
-"""Standard deviation of ln ζ beyond which a band does not tell a mode."""
+"""Standard deviation of ln ζ above which a band does not determine a mode."""
 LEAST_NOISE = 1e-12
-"""Share of the power that is rounding, without which a matrix of one strong mode has no inverse."""
+"""Least noise as a share of the power, without which the matrix of one strong mode is singular."""
 WIDE = 7.0
-"""Reach of the search about its start, in logarithms and in units of the shapes."""
+"""Half range of the search about its start, in logarithms and in units of the shapes."""
 STEP = 1e-4
-"""Step of the curvature's differences, in logarithms and in units of the shapes."""
+"""Step of the finite differences for the curvature, in logarithms and in units of the shapes."""
 MOST_STEPS = 10
-"""Most of Newton's steps after the search."""
+"""Largest number of Newton steps after the search."""
 MIN_GAIN = 1e-3
-"""Gain of log-posterior that a step must promise, in twice its units."""
+"""Least predicted gain of a step, in twice the log-posterior."""
 MOST_MOVE = 0.5
 """Largest change of a parameter in one step."""
 HALVINGS = 10
-"""Times a step is halved that does not gain."""
+"""Largest number of halvings of a step without gain."""
 FLAT = 1e-9
-"""Share of the largest curvature below which a direction has none: the lengths of shapes."""
+"""Share of the largest curvature below which a direction counts as flat, as those of the shapes' lengths."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class BandPosterior:
     log_covariance : (n_modes, 2, 2)
         Posterior covariance of (ln f, ln ζ).
     shape_std : (n_channels, n_modes)
-        Posterior standard deviation of the entries of the shapes of unit length, from the noise alone.
+        Posterior standard deviation of the entries of the shapes of unit length, due to the noise only.
     evidence : float
         Logarithm of the likelihood less Schwarz's penalty.
     """
@@ -87,9 +87,10 @@ class BandPosterior:
 
 
 def band_posterior(lines: ComplexArray, f: FloatArray, starts_hz: list[float]) -> BandPosterior | None:
-    """Return the most probable modes of a band; None if it tells none.
+    """Return the most probable modes of a band; None if it determines none.
 
-    As many modes as peaks are tried, and one more where it has a peak or the others alone make no sense.
+    As many modes as peaks are tried, and one more if it has a peak or the others are not plausible without
+    it.
 
     Parameters
     ----------
@@ -107,7 +108,8 @@ def band_posterior(lines: ComplexArray, f: FloatArray, starts_hz: list[float]) -
         trials.append([*starts_hz, beside])
     found = [one for starts in trials if (one := _told(scaled, f, starts)) is not None]
     if not found and len(starts_hz) < min(MOST_MODES, len(lines)):
-        # a broad mode beneath a narrow one has no peak of its own, and without it the narrow one has no width
+        # a broad mode below a narrow one has no own peak, but without it the narrow one's width is
+        # not determined
         return _told(scaled, f, [*starts_hz, starts_hz[0]])
     return max(found, key=lambda one: one.evidence, default=None)
 
@@ -117,29 +119,29 @@ def _told(lines: ComplexArray, f: FloatArray, starts_hz: list[float]) -> BandPos
 
 
 def _peak_beside(lines: ComplexArray, f: FloatArray, starts_hz: list[float]) -> float | None:
-    """Return where the next direction of motion has a clear peak, None if it has none or is not sought."""
+    """Return the frequency of a clear peak in the next direction of motion; None if there is none."""
     n_modes = len(starts_hz)
     if n_modes >= min(MOST_MODES, len(lines)):
         return None
     _, vectors = np.linalg.eigh(np.real(lines @ lines.conj().T))
     power = np.abs(vectors[:, -1 - n_modes] @ lines) ** 2
     smooth = np.convolve(power, np.full(SMOOTH, 1.0 / SMOOTH), mode="same")
-    peak = int(np.argmax(smooth))  # at the same frequency, too: pairs of a tower are that close
+    peak = int(np.argmax(smooth))  # possibly at the same frequency, as the pairs of a tower
     return float(f[peak]) if smooth[peak] > MIN_PEAK * np.median(smooth) else None
 
 
 def transfer(f: FloatArray, f_n: FloatArray, zeta: FloatArray) -> ComplexArray:
-    """Return the acceleration of modes under a force of one [per unit modal mass], (n_lines, n_modes)."""
+    """Return the acceleration of modes per unit force and modal mass, (n_lines, n_modes)."""
     beta = np.divide.outer(f, f_n)
     return np.asarray(beta**2 / (beta**2 - 1.0 - 2j * zeta * beta))
 
 
 def _one_mode(lines: ComplexArray, f: FloatArray, start_hz: float) -> BandPosterior | None:
-    """Return the one most probable mode: an eigenvector, and four numbers (ln f, ln ζ, ln S, ln Se)."""
+    """Return the most probable single mode: an eigenvector, and (ln f, ln ζ, ln S, ln Se)."""
     outer = np.real(np.einsum("ak,bk->kab", lines, lines.conj()))
     cost = partial(one_mode_cost, outer=outer, f=f)
     powers = np.linalg.eigvalsh(outer.mean(axis=0))
-    noise = max(float(powers[:-1].mean()), 1e-6)  # one shape leaves all other directions to the noise
+    noise = max(float(powers[:-1].mean()), 1e-6)  # all directions other than the shape contain only noise
     peak = float(np.einsum("kaa->k", outer).max())
     start = np.log([start_hz, START_DAMPING, peak * 4.0 * START_DAMPING**2, noise])
     theta = _most_probable(cost, start, f, 1)
@@ -163,7 +165,7 @@ def _one_mode(lines: ComplexArray, f: FloatArray, start_hz: float) -> BandPoster
 
 
 def one_mode_cost(theta: FloatArray, outer: FloatArray, f: FloatArray) -> float:
-    """Return minus the logarithm of the posterior of (ln f, ln ζ, ln S, ln Se), the shape at its best.
+    """Return minus the log-posterior of (ln f, ln ζ, ln S, ln Se), maximised over the shape.
 
     Parameters
     ----------
@@ -183,14 +185,14 @@ def one_mode_cost(theta: FloatArray, outer: FloatArray, f: FloatArray) -> float:
 
 
 def _weighted(theta: FloatArray, outer: FloatArray, f: FloatArray) -> FloatArray:
-    """Return the sum of the products of lines, each by the share that the mode has of its power."""
+    """Return the sum of the products of lines, weighted by the mode's share of their power."""
     signal = np.exp(theta[2]) * np.abs(transfer(f, np.exp(theta[:1]), np.exp(theta[1:2]))[:, 0]) ** 2
     share = signal / (signal + np.exp(theta[3]))
     return np.asarray(np.tensordot(share, outer, axes=1))
 
 
 def _modes(lines: ComplexArray, f: FloatArray, starts_hz: list[float]) -> BandPosterior | None:
-    """Return the most probable modes of a band that holds several."""
+    """Return the most probable modes of a band with several."""
     m, (n, count) = len(starts_hz), lines.shape
     values, vectors = np.linalg.eigh(np.real(lines @ lines.conj().T))
     basis = vectors[:, ::-1][:, :m]
@@ -228,17 +230,17 @@ def _modes(lines: ComplexArray, f: FloatArray, starts_hz: list[float]) -> BandPo
 def several_modes_cost(
     theta: FloatArray, inner: ComplexArray, f: FloatArray, left: float, n_channels: int
 ) -> float:
-    """Return minus the logarithm of the posterior of several modes in their subspace.
+    """Return minus the log-posterior of several modes in their subspace.
 
     Parameters
     ----------
     theta : (2 m + m² + 1 + m²,)
         ln f, ln ζ, the factor of the forces (logarithms of its diagonal, then real and imaginary parts
-        below), ln Se, and the shapes in the subspace one after another; their lengths do not matter.
+        below), ln Se, and the shapes in the subspace one after another; their lengths have no effect.
     inner : (m, n_lines)
         Lines in the subspace.
     left : float
-        Power outside it.
+        Power outside the subspace.
     """
     m = len(inner)
     noise = np.exp(theta[2 * m + m * m])
@@ -278,9 +280,9 @@ def _most_probable(
 
 
 def _polished(cost: Callable[[FloatArray], float], theta: FloatArray) -> FloatArray:
-    """Return the minimum near a point by Newton's steps along the directions of curvature.
+    """Return the minimum near a point by Newton steps along the eigenvectors of the curvature.
 
-    The search before may stop on the slope of a valley: differences of a cost of thousands are rounded.
+    The preceding search may stop on the slope of a valley, since differences of a large cost are rounded.
     """
     value, steps = cost(theta), STEP * np.eye(len(theta))
     for _ in range(MOST_STEPS):
@@ -315,7 +317,7 @@ def _curvature(cost: Callable[[FloatArray], float], theta: FloatArray) -> FloatA
 
 
 def _covariance(curvature: FloatArray, singular: int = 0) -> FloatArray | None:
-    """Return the inverse of a curvature, without as many directions of none; None if it is no minimum."""
+    """Return the inverse of a curvature without its ``singular`` flat directions; None if not a minimum."""
     if not np.isfinite(curvature).all():
         return None
     values, vectors = np.linalg.eigh(curvature)
@@ -326,7 +328,7 @@ def _covariance(curvature: FloatArray, singular: int = 0) -> FloatArray | None:
 
 
 def _credible(log_f: FloatArray, log_zeta: FloatArray, f: FloatArray, covariance: FloatArray) -> bool:
-    """Tell whether all modes lie in the band, are lightly damped, and known."""
+    """Return whether all modes are in the band, lightly damped, and determined."""
     inside = np.all((np.exp(log_f) > f[0]) & (np.exp(log_f) < f[-1]))
     return bool(
         inside and np.all(np.exp(log_zeta) < MAX_DAMPING) and np.all(np.diag(covariance) < MAX_LOG_STD**2)

@@ -1,6 +1,6 @@
 """Bayesian operational modal analysis by the fast Fourier transform (BAYOMA), with posterior deviations.
 
-Bands around the peaks of the spectrum are taken one by one; ``band_posterior.py`` has what is sought in each.
+Bands around the peaks of the spectrum are evaluated one by one by ``band_posterior.py``.
 Au, S.K. 2017, Operational Modal Analysis, Springer, chapters 12 and 13.
 """
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 SEGMENT_CYCLES = 40.0
-"""Length of the segments in which peaks are sought, in cycles of the lower edge of the band."""
+"""Length of Welch segments for finding peaks, in cycles of the lower edge of the band."""
 BAND_SHARE = 0.08
 """Half width of a mode's band as a share of its frequency: eight half bandwidths at one per cent damping."""
 MIN_HALF_LINES = 12
@@ -80,9 +80,9 @@ def bayoma(record: Record, settings: IdentificationSettings | None = None) -> Id
 
 
 def _bands(peaks_hz: list[float], duration_s: float) -> list[tuple[float, float, list[float]]]:
-    """Return lower and upper edge of every band and the peaks within it; bands that overlap are one.
+    """Return lower and upper edge of every band and its peaks; overlapping bands are merged.
 
-    Neighbouring bands are cut half way between their peaks unless these are closer than one half width.
+    Neighbouring bands end half way between their peaks unless these are closer than one half width.
 
     >>> [(round(a, 2), round(b, 2), n) for a, b, n in _bands([1.0, 1.05, 2.0], 600.0)]
     [(0.92, 1.13, [1.0, 1.05]), (1.84, 2.16, [2.0])]

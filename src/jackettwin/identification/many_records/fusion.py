@@ -9,11 +9,11 @@ where θ is ln f, and ζ itself: each record's estimate is unbiased in ζ but no
 records would inherit that bias. The variance s_r² is evaluated at the *fused* damping: an estimate that
 happens to be high also claims a small relative variance, so that its own weight would bias the mean upwards.
 
-The mean of ζ uses the records in which the mode is ``OK``, that of f those in which it
-is at worst ``DAMPING_UNKNOWN``; if there are none, all records that contain the mode.
-Where the decay of a mode lasts about as long as a record, the estimates would be biased all alike, and ζ is
-found from the likelihoods of the records instead (``joint_damping.py``).
-The status of a fused mode is the median, or what its motion from record to record says (``rotor_orders.py``).
+The mean of ζ uses the records in which the mode is ``OK``, that of f those in which it is at worst
+``DAMPING_UNKNOWN``; if there are none, all records that contain the mode. If the decay time of a mode is
+about the length of a record, all estimates of ζ have the same bias, and ζ is estimated from the likelihoods
+of the records instead (``joint_damping.py``). The status of a fused mode is the median, or a worse one that
+follows from changes of its frequency between records (``rotor_orders.py``).
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ class Average:
 
     @property
     def damping_ratio_interval_95(self) -> tuple[float, float]:
-        """By likelihood ratio where the records' likelihoods are known, else on the logarithm of ζ."""
+        """By likelihood ratio if the records' likelihoods are known, otherwise on the logarithm of ζ."""
         return self.damping_ratio_likelihood_95 or log_interval_95(self.damping_ratio, self.log_std[1])
 
 
@@ -104,7 +104,7 @@ class FusedMode:
     sightings : Sightings
         Estimates of the mode in each record that contains it.
     objection : NoMode or None
-        What its motion from record to record says against it.
+        Objection that follows from changes of its frequency between records.
     """
 
     frequency_hz: float
@@ -122,13 +122,13 @@ class FusedMode:
 
     @property
     def status(self) -> ModeStatus:
-        """Median status over the records that contain the mode, or a worse one that all of them tell."""
+        """Median status over the records that contain the mode, or a worse one by an objection."""
         own = self.sightings.status
         return own if self.objection is None else worse(own, self.objection.status)
 
     @property
     def status_reason(self) -> str | None:
-        """What the records together say against the mode; None if that is nothing."""
+        """Objection of all records together to the mode; None if there is none."""
         return None if self.objection is None else sentence([self.objection.reason])
 
     @property
@@ -149,14 +149,14 @@ class FusedIdentification:
 
 
 def fuse(identifications: Iterable[Identification]) -> FusedIdentification:
-    """Fuse the modes of several records, each read once and not kept.
+    """Fuse the modes of several records, each read once and not stored.
 
     Modes are tracked in the order of the records (``tracking``); shapes cover all channels (``setups``).
 
     Raises
     ------
     InputError
-        If there is no record, records share no channel, or one name stands for different sensors.
+        If there is no record, records share no channel, or one name is used for different sensors.
     """
     return fused_records(follow((found, None) for found in identifications))
 
@@ -287,15 +287,20 @@ def _variances(seen: Sightings, which: int, zeta: float) -> FloatArray:
 
 
 def _warnings(followed: TrackedModes, modes: Sequence[FusedMode]) -> tuple[str, ...]:
-    """Warn if records have different channels, and of modes whose shared sensors hardly move."""
+    """Warn if records have different channels, and on modes in which the shared sensors hardly move."""
     names = [c.name for c in followed.channels]
     if len(followed.shared) == len(names):
         return ()
     if not followed.shared:
-        return ("not every record has every channel, and none is in all: shapes are tied record by record",)
+        return (
+            "records have different channels, none of which is in all: shapes are connected record by record",
+        )
     at = np.array([names.index(name) for name in followed.shared], dtype=np.int64)
     loose = [mode.frequency_hz for mode in modes if tie(mode.mode_shape, at) < WEAK_CONNECTION]
     return (
-        f"not every record has every channel: shapes are tied by {', '.join(followed.shared)}",
-        *(f"{f:.4g} Hz: the shared sensors hardly move; the parts of the shape may not fit" for f in loose),
+        f"records have different channels: shapes are connected by {', '.join(followed.shared)}",
+        *(
+            f"{f:.4g} Hz: the shared sensors hardly move; the parts of the shape may not be consistent"
+            for f in loose
+        ),
     )

@@ -1,6 +1,6 @@
-r"""Damping of a mode from the likelihoods of many records, whose estimates would each be biased.
+r"""Damping of a mode from the likelihoods of many records, since each estimate would be biased.
 
-Frequency, force and noise are each record's own; damping is common but for a scatter τ of ln ζ between
+Frequency, force and noise differ between records; damping is common, apart from a scatter τ of ln ζ between
 records. With ζ̄ the mean over records,
 
 .. math:: \ell(\ln\barζ, \tau) = \sum_r \ln \int L_r(x)\,
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 SCATTERS = (0.2, 0.3, 0.4, 0.55, 0.75, 1.0)
-"""Values of τ besides 0. A smaller one than the step of the nodes is not told from 0."""
+"""Values of τ besides 0. A value below the step of the nodes cannot be distinguished from 0."""
 MIN_SHARE = 0.5
 """Smallest share of the records that must have a likelihood; otherwise estimates are averaged."""
 
@@ -44,7 +44,7 @@ class JointDamping:
 def joint_damping(seen: Sightings) -> JointDamping | None:
     """Return the damping by the likelihoods of the records, or None if too few have one.
 
-    A record in which the mode is ``OK`` but has no likelihood counts with a normal one of ln ζ.
+    A record in which the mode is ``OK`` but has no likelihood is given a normal one in ln ζ.
     """
     has = np.isfinite(seen.damping_log_likelihood).all(axis=1)
     normal = ~has & (seen.severity <= ModeStatus.OK.severity) & np.isfinite(seen.log_covariance[:, 1, 1])

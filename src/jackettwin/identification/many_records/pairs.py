@@ -113,6 +113,6 @@ def _with_shape(mode: ModalEstimate, shape: ComplexArray) -> ModalEstimate:
 def _note(a: ModalEstimate, b: ModalEstimate, first: FloatArray) -> str:
     shares = " and ".join(f"{_share(m.mode_shape, first):.0%}" for m in (a, b))
     return (
-        f"shapes of the pair at {a.frequency_hz:.4g} and {b.frequency_hz:.4g} Hz turned within their plane "
-        f"to fore-aft and side-side: one record does not tell them apart (fore-aft share before: {shares})"
+        f"shapes of the pair at {a.frequency_hz:.4g} and {b.frequency_hz:.4g} Hz rotated within their plane "
+        f"to fore-aft and side-side, as one record does not separate them (fore-aft share before: {shares})"
     )

@@ -1,11 +1,11 @@
-"""Orders of a rotor whose speed nobody measured, recognised across records.
+"""Recognition across records of the orders of a rotor of unknown speed.
 
-A mode stays where it is while a rotor turns faster or slower. The orders 1P, 3P, 6P and 9P move with the
-speed, all by the same factor, so that in every record the ratio of two of them is 3, 2 or 1.5. Turbulence
-that the blades cut makes them broad, and a single record holds them for modes.
+The frequency of a mode does not depend on the rotor's speed. The orders 1P, 3P, 6P and 9P are proportional to
+the speed, so that in every record the ratio of two of them is 3, 2 or 1.5. Rotational sampling of turbulence
+by the blades makes their peaks broad, and they are identified as modes in a single record.
 
-The same records show how often two frequencies have such a ratio by chance: one of them is taken from one
-record and one from another, between which the speed has changed.
+The frequency of such ratios by chance is estimated from pairs of frequencies of different records, between
+which the speed has changed.
 """
 
 from __future__ import annotations
@@ -27,29 +27,29 @@ if TYPE_CHECKING:
 
 
 RATIOS = (2.0, 3.0, 1.5)
-"""Of 3P and 6P, 1P and 3P, 6P and 9P."""
+"""Ratios of 6P to 3P, 3P to 1P, and 9P to 6P."""
 TOLERANCE = 0.015
-"""Largest deviation of ln of a ratio: a broad peak's middle is known to about a per cent."""
+"""Largest deviation of ln of a ratio: the centre of a broad peak is known to about one per cent."""
 SETTLED_SHARE, SETTLED_SPREAD = 0.5, 0.01
-"""Least share of the records that contain a settled mode, and its largest spread of ln f."""
+"""Least share of the records that contain a constant mode, and its largest spread of ln f."""
 LEAST_SWEEP, STEADIER = 0.03, 5.0
-"""Least range of ln f over which orders sweep, and the least multiple of the steadiest mode's range."""
+"""Least range of ln f of orders, absolute and as multiple of the range of the most constant mode."""
 REACH = 0.3
-"""Largest distance in ln f of the rated speed's order from one seen at another speed."""
+"""Largest distance in ln f between an order at rated speed and at another speed."""
 CHANCE = 1e-3
-"""Probability of as many locked pairs below which they are no coincidence."""
+"""Probability of the number of locked pairs below which they are not due to chance."""
 FEWEST = 3
 """Fewest records with a locked pair, and fewest jumps of a frequency."""
 JUMP, STAYS = 0.02, 0.005
-"""Change of ln f from one record to the next that no structure makes, and the largest typical one of another
-mode meanwhile."""
+"""Least change of ln f from one record to the next that excludes a structure, and the largest typical change
+of another mode meanwhile."""
 CLEAR = 4.0
-"""Number of standard deviations beyond which a change is a jump."""
+"""Number of standard deviations above which a change is a jump."""
 
 
 @dataclass(frozen=True)
 class NoMode:
-    """Why a frequency that many records show is no mode."""
+    """Reason why a frequency in many records is not a mode."""
 
     status: ModeStatus
     reason: Finding
@@ -57,7 +57,7 @@ class NoMode:
 
 @dataclass(frozen=True)
 class _All:
-    """Estimates of all records as columns: record, track, ln f and the standard deviation of it."""
+    """Estimates of all records as columns: record, track, ln f and its standard deviation."""
 
     record: Int64Array
     track: Int64Array
@@ -78,12 +78,12 @@ class _Locked:
 
 
 def objections(tracks: Sequence[Sightings]) -> dict[int, NoMode]:
-    """Return by number what speaks against tracks of modes over many records.
+    """Return the objections to tracks of modes over many records, by number of the track.
 
     Parameters
     ----------
     tracks : sequence of Sightings
-        Of all that was tracked, also of what few records contain.
+        All tracks, including those in few records.
     """
     seen = _columns(tracks)
     n_records = len(np.unique(seen.record))
@@ -117,7 +117,7 @@ def _is_settled(log_f: FloatArray, n_records: int) -> bool:
 
 
 def _sweep(log_f: FloatArray) -> float:
-    """Return the range of most values."""
+    """Return the range of most of the values."""
     return float(np.ptp(np.percentile(log_f, (10.0, 90.0)))) if log_f.size >= FEWEST else 0.0
 
 
@@ -135,7 +135,7 @@ def _locked(moving: _All, ratio: float) -> _Locked:
 
 
 def _is_no_chance(moving: _All, locked: _Locked) -> bool:
-    """Tell whether more pairs of one record are locked than pairs of two records are."""
+    """Return whether pairs within records are locked more often than pairs of different records."""
     if len(np.unique(moving.record[locked.low])) < FEWEST:
         return False
     ordered = np.sort(moving.log_f)
@@ -169,9 +169,9 @@ def _of_orders(seen: _All, moving: _All, locked: _Locked) -> dict[int, NoMode]:
 
 
 def _is_away(own: _All, seen: _All, orders: _All) -> bool:
-    """Tell whether a track in the range of the orders is missing where these are elsewhere.
+    """Return whether a track in the orders' range is missing in records with orders at other frequencies.
 
-    A rotor runs at its rated speed most of the time, and its orders seem settled.
+    A rotor turns at rated speed most of the time, and its orders then seem constant.
     """
     middle = float(np.median(own.log_f))
     near = np.abs(orders.log_f - middle) < LEAST_SWEEP
@@ -185,7 +185,7 @@ def _is_away(own: _All, seen: _All, orders: _All) -> bool:
 
 
 def _of_jumps(seen: _All, settled: Sequence[int]) -> dict[int, NoMode]:
-    """Return the tracks that jump from record to record while another mode stays."""
+    """Return the tracks that jump from record to record while another mode is constant."""
     typical = {k: float(np.median(np.abs(_changes(seen.at(seen.track == k))[0]))) for k in settled}
     steadiest = min(typical, key=lambda k: typical[k])
     if typical[steadiest] > STAYS:
@@ -205,6 +205,6 @@ def _of_jumps(seen: _All, settled: Sequence[int]) -> dict[int, NoMode]:
 
 
 def _changes(own: _All) -> tuple[FloatArray, FloatArray]:
-    """Return the changes of ln f from each record to the next with the track, and their uncertainty."""
+    """Return the changes of ln f between successive records with the track, and their uncertainty."""
     order = np.argsort(own.record, kind="stable")
     return np.diff(own.log_f[order]), np.hypot(own.std[order][1:], own.std[order][:-1])

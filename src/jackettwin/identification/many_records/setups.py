@@ -95,13 +95,13 @@ def add_channels(known: dict[str, Channel], result: Identification) -> None:
     Raises
     ------
     InputError
-        If one name stands for sensors of different kind, place or direction.
+        If one name is used for sensors of different kind, position or direction.
     """
     for channel in result.channels:
         before = known.setdefault(channel.name, channel)
         if _differ(before, channel):
             raise InputError(
-                "one name stands for different sensors",
+                "one name is used for different sensors",
                 file=result.records[0],
                 field=f"channels.{channel.name}",
                 value=_description(channel),
@@ -111,7 +111,7 @@ def add_channels(known: dict[str, Channel], result: Identification) -> None:
 
 
 def tied(sets: Sequence[Sequence[str]]) -> bool:
-    """Tell whether sets of channels are connected, directly or through others.
+    """Return whether sets of channels are connected, directly or through others.
 
     >>> tied([("a", "b"), ("c",), ("b", "c")]), tied([("a",), ("b",)])
     (True, False)
@@ -132,7 +132,7 @@ def tie(shape: ComplexArray, shared: Int64Array) -> float:
 
 
 def _differ(a: Channel, b: Channel) -> bool:
-    """Tell whether two descriptions of a channel conflict; zeros and None are unknown."""
+    """Return whether two descriptions of a channel conflict; zeros and None are unknown."""
     placed = [(a.node, b.node), (a.height_m, b.height_m)]
     if a.quantity != b.quantity or any(None not in pair and pair[0] != pair[1] for pair in placed):
         return True

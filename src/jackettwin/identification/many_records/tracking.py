@@ -1,8 +1,8 @@
 """Tracking of modes from record to record by shape and frequency, in nearly constant memory.
 
-Records are added one by one. Of a mode only a few dozen bytes per record are kept, besides its latest shapes,
-by which it is recognised, and sums for its mean shape. The reference of a mode is updated with each record:
-tide, temperature and scour may change a frequency by any amount, provided they do so slowly.
+Records are added one by one. For a mode only a few dozen bytes per record are stored, besides its latest
+shapes, by which it is recognised, and sums for its mean shape. The reference of a mode is updated with each
+record: tide, temperature and scour may change a frequency by any amount, provided they do so slowly.
 """
 
 from __future__ import annotations
@@ -159,12 +159,12 @@ def follow(identifications: Iterable[tuple[Identification, Hashable]]) -> Tracke
     """Track the modes of records, each with a key that names its group.
 
     Modes of a record are assigned to tracks, one each, such that the sum of the distances is smallest;
-    modes that cross thereby keep their shapes. A record is read once and not kept.
+    thereby modes that cross are followed by their shapes. A record is read once and not stored.
 
     Raises
     ------
     InputError
-        If there is no record, some share no channel with the others, or one name stands for different
+        If there is no record, some share no channel with the others, or one name is used for different
         sensors.
     """
     known: dict[str, Channel] = {}
@@ -234,8 +234,8 @@ def _join(
 def _distance(track: Track, seen: Sequence[_Observed]) -> FloatArray:
     """Return the distance of every mode of a record from a track, as medians over its latest records.
 
-    The shapes of a close pair mix within a record; the part of 1 − MAC that their uncertainty explains does
-    not count. Shapes are compared at common channels; without any, the distance is infinite.
+    The shapes of a close pair mix within a record; the part of 1 − MAC that their uncertainty explains is
+    subtracted. Shapes are compared at common channels; without any, the distance is infinite.
     """
     size = 1 + max(int(one.at.max()) for one in (*seen, *track.recent))
     subspace_mac = _shared_mac(_spread(seen, size), _spread(list(track.recent), size))
@@ -322,7 +322,7 @@ def _gap(a: Sightings, b: Sightings) -> float:
 
 
 def _merge(a: Track, b: Track) -> Track:
-    """Return two tracks as one; where both have a record, the first counts."""
+    """Return two tracks as one; if both have a record, the first is used."""
     shapes = dict(a.shapes)
     for key, total in b.shapes.items():
         shapes[key] = shapes[key].plus(total) if key in shapes else total

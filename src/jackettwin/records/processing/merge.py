@@ -48,7 +48,7 @@ def shared_channels(records: Sequence[Record]) -> tuple[str, ...]:
         for record, sensor in zip(records, sensors, strict=True):
             if sensor != sensors[0]:
                 raise InputError(
-                    "one name stands for different sensors",
+                    "one name is used for different sensors",
                     file=record.name,
                     field=f"channels.{name}",
                     value=sensor,
