@@ -41,8 +41,8 @@ from jackettwin.simulate import read_scenario, simulate
 from jackettwin.simulate.members import deflections
 from jackettwin.simulate.motion.motion import simulate_motion
 from jackettwin.structure import Assembly, SectionForces, assemble, section_forces
-from jackettwin.study import WeldMap, updated, updated_systems, weld_map
-from jackettwin.twin import read_twin
+from jackettwin.study import updated, updated_systems
+from jackettwin.twin import WeldMap, read_twin, weld_map
 
 SEED = 36
 STEP_S = 0.05

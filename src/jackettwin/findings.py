@@ -422,6 +422,16 @@ CATALOGUE: dict[str, Kind] = {
         "the days could not be evaluated in {tries} attempts ({reason}): no change would be detected; remove "
         "the cause, then POST /jobs/{job}/retry",
     ),
+    "life_unknown": Kind("warning", "no damage at the welds: {reason}"),
+    "life_share": Kind(
+        "alarm",
+        "takes {ratio:.2g} times its former share of the damage of all welds, against the {days} days before",
+    ),
+    "life_budget": Kind(
+        "alarm",
+        "its damage of a year is {ratio:.2g} times what {years:g} years allow, at least {low:.2g} times "
+        "(90 %)",
+    ),
     "asset_silent": Kind(
         "alarm",
         "no data arrived for more than {hours:g} hours: is the logger or its connection broken?",

@@ -23,7 +23,8 @@ from jackettwin.sensing import (
 )
 from jackettwin.soil import pinned
 from jackettwin.structure import Rayleigh, assemble, section_forces
-from jackettwin.study import record_life, weld_map
+from jackettwin.study import record_life
+from jackettwin.twin import weld_map
 
 WEATHER = Weather(12.0, 2.5, 8.0, 0.3, 72.0)
 STEP_S = 0.05

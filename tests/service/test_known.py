@@ -7,15 +7,17 @@ import json
 from datetime import timedelta
 from pathlib import Path
 
+import numpy as np
 import pytest
 from tests.service.conftest import NOON
 from tests.support.observations import estimate, observation
 
-from jackettwin.service.web.schemas import ExploredOut
+from jackettwin.service.web.schemas import ExploredOut, LifeOut
 from jackettwin.service.workers import engine, verdict
 from jackettwin.service.workers.question import Question
 from jackettwin.service.workers.tasks import know
 from jackettwin.twin import OBSERVATION
+from jackettwin.twin.life.sensed_damage import SensedDamage
 
 TWIN = """structure: jacket15
 gravity: true
@@ -133,3 +135,38 @@ def test_without_a_day_nothing_is_known(tmp_path: Path) -> None:
     outcome = know(Question("wtg", 1, str(tmp_path), {}, {}, of="it"))
     assert outcome is not None and outcome.of == "it"
     assert json.loads(outcome.document)["known"]["status"] == verdict.NO_MODE
+
+
+def test_the_life_of_the_welds_goes_on_from_what_is_kept_as_if_all_days_were_sent(tmp_path: Path) -> None:
+    """A second day, asked with and without what the first one left; findings and rows are equal."""
+    (tmp_path / engine.TWIN_FILE).write_text(TWIN + "life: {years: 20}\n")
+    model = engine.load_twin(tmp_path).model
+    days = {}
+    for k, date in enumerate(("2025-03-01", "2025-03-02")):
+        made = observation(MODES, NOON + timedelta(days=k), name=f"r{k}")
+        damage = SensedDamage(
+            np.array([3, 8]), np.full((2, 8), 500 + 40 * k), np.array([5, 5]), np.array([9, 9]), 90
+        )
+        made = type(made)(**{**vars(made), "model_hash": model.model_hash, "damage": damage})
+        days[date] = engine.advance_day(model, date, None, [json.dumps(OBSERVATION.dump(made))]).document
+
+    def asked(dates: list[str], sent: list[str], kept: dict) -> dict:
+        question = Question(
+            "wtg", 1, str(tmp_path), {d: d for d in dates}, {d: days[d] for d in sent}, (),
+            (len(dates), 600.0), kept=kept,
+        )  # fmt: skip
+        return json.loads(know(question).document)
+
+    first = asked(["2025-03-01"], ["2025-03-01"], {})
+    whole = asked([*days], [*days], {})
+    rows, past, _ = verdict.lived(
+        engine.load_twin(tmp_path), {d: d for d in days}, {"2025-03-02": days["2025-03-02"]}, whole["lived"]
+    )
+    assert rows == whole["life"] and past == whole["lived"]
+    assert first["life"][0]["records"] == 1 and rows[0]["records"] == 2
+    assert rows[0]["budget_per_year"] == pytest.approx(0.05)
+    assert [LifeOut(**row, model_version=1).joint for row in rows]
+
+
+def test_a_twin_that_does_not_ask_for_life_has_none(kept: tuple[dict, str]) -> None:
+    assert kept[0]["life"] == [] and kept[0]["lived"] is None

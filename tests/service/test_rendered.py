@@ -37,7 +37,7 @@ QUERIES = {
     "/assets/{asset}/explore": 4,
     "/assets/{asset}/assumptions": 4,
     "/assets/{asset}/comparison": 12,
-    "/assets/{asset}/life": 3,
+    "/assets/{asset}/life": 4,
     "/assets/{asset}/findings": 5,
     "/assets/{asset}/alarms": 5,
 }

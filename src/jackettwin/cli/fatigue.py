@@ -26,15 +26,13 @@ from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
     from jackettwin.arrays import FloatArray
-    from jackettwin.fatigue import Cycles, Environment, LifeModel, ModelsAtHeight, WeldLife
+    from jackettwin.fatigue import Cycles, Environment, WeldLife
 
 _UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "N/mm^2": 1e6, "ksi": 6.894757293168e6}
 _STRONGEST_PA = 2e9
 """Stress range above which the unit must be wrong."""
 _N_EQ = 1e7
 _SHOWN = 10
-_SPLASH_M = (-5.0, 5.0)
-"""Splash zone about the sea level [m], where cathodic protection is not permanent."""
 _OF_WELDS = (
     Omission("cans, butt welds, flanges, grout and piles"),
     Omission("joints in several planes: each plane is assessed separately"),
@@ -213,11 +211,11 @@ def scf(file: Path) -> Reply:
     FILE (YAML or JSON) contains class (y, x or k), chord_diameter_m, chord_thickness_m, chord_length_m,
     fixity, braces with diameter_m, thickness_m and angle_deg, and gap_m.
     """
-    from jackettwin.fatigue import concentration, read_joint
+    from jackettwin.fatigue import concentration, factors_document, read_joint
 
     kind, joint = read_joint(file)
     factors, warnings = concentration(joint, kind)
-    rows = [_factors(kind, one) for one in factors]
+    rows = [factors_document(one, kind) for one in factors]
     document = {"class": kind, "braces": rows, "warnings": list(warnings)}
 
     def show() -> None:
@@ -234,26 +232,6 @@ def scf(file: Path) -> Reply:
     return Reply(document, show)
 
 
-def _factors(kind: str, f: Any) -> dict[str, dict[str, float]]:
-    """Return the factors of a brace by load and place."""
-    if kind == "k":
-        axial = {"chord": f.axial_chord_crown, "brace": f.axial_brace_crown}
-        out = {"chord": f.out_of_plane_chord, "brace": f.out_of_plane_brace}
-    else:
-        axial = {
-            "chord_saddle": f.axial_chord_saddle,
-            "chord_crown": f.axial_chord_crown,
-            "brace_saddle": f.axial_brace_saddle,
-            "brace_crown": f.axial_brace_crown,
-        }
-        out = {"chord_saddle": f.out_of_plane_chord, "brace_saddle": f.out_of_plane_brace}
-    return {
-        "axial": axial,
-        "in_plane": {"chord_crown": f.in_plane_chord, "brace_crown": f.in_plane_brace},
-        "out_of_plane": out,
-    }
-
-
 @fatigue_command.command("scenario")
 @click.argument("scenario")
 @click.option("--curve", default="T", show_default=True, help="S-N curve of tubular joints.")
@@ -268,10 +246,11 @@ def scenario_(scenario: str, curve: str, design_factor: float, edition: str | No
 
     Joints are in air above the splash zone, corrode freely in it, and are cathodically protected below it.
     """
+    from jackettwin.fatigue import models_at_height
     from jackettwin.simulate import read_scenario, scenario_life
 
     read = read_scenario(scenario)
-    model = _models(curve, design_factor, edition)
+    model = models_at_height(curve, design_factor=design_factor, edition=edition)
     with working("stresses at the welds"):
         welds = scenario_life(read, model)
     rows = [_weld(one) for one in welds]
@@ -331,10 +310,11 @@ def record_(
 
     The supports of TWIN are updated first, by its records or targets, otherwise by RECORD.
     """
+    from jackettwin.fatigue import models_at_height
     from jackettwin.study import count_steps, life_of_record, sensed, updated, with_record
     from jackettwin.twin import read_twin
 
-    model = _models(curve, design_factor, edition)
+    model = models_at_height(curve, design_factor=design_factor, edition=edition)
     config = with_record(read_twin(twin), record)
     readings, weather = sensed(config, record, feel_gravity=feel_gravity)
     with progress(count_steps(config), config.name) as step:
@@ -363,24 +343,6 @@ def record_(
     return Reply(document, lambda: _show_welds(document, record.name))
 
 
-def _models(curve: str, design_factor: float, edition: str | None) -> ModelsAtHeight:
-    """Return the function of a weld's elevation above the sea [m] for its environment and S-N curve."""
-    from jackettwin.fatigue import LifeModel, read_curve
-
-    source = () if edition is None else (edition,)
-    by_environment = {
-        name: LifeModel(read_curve(curve, name, *source), design_factor)
-        for name in ("air", "free-corrosion", "cathodic")
-    }
-
-    def model(z_m: float) -> tuple[Environment, LifeModel]:
-        low, high = _SPLASH_M
-        name: Environment = "air" if z_m > high else "cathodic" if z_m < low else "free-corrosion"
-        return name, by_environment[name]
-
-    return model
-
-
 def _weld(one: WeldLife) -> dict[str, Any]:
     life, weld = one.life, one.weld
     return {
@@ -391,7 +353,7 @@ def _weld(one: WeldLife) -> dict[str, Any]:
         "position": one.position,
         "z_m": one.z_m,
         "environment": one.environment,
-        "scf": {kind: _factors("y", factors) for kind, factors in weld.factors.items()},
+        "scf": weld.scf,
         "largest_range_mpa": 1e-6 * one.largest_range_pa,
         "damage": life.damage,
         "damage_by_point": one.damage_by_point,

@@ -12,10 +12,13 @@ from .efthymiou import (
     JointClass as JointClass,
     TubularJoint as TubularJoint,
     concentration as concentration,
+    factors_document as factors_document,
     read_joint as read_joint,
 )
+from .environment import models_at_height as models_at_height
 from .hot_spots import POSITIONS as POSITIONS, SIDES as SIDES, hot_spot_matrix as hot_spot_matrix
 from .joint_life import HotSpot as HotSpot, JointStresses as JointStresses, joint_stresses as joint_stresses
-from .life import LifeModel as LifeModel, SpotLife as SpotLife
+from .life import YEAR_S as YEAR_S, LifeModel as LifeModel, SpotLife as SpotLife
+from .remaining import RemainingLife as RemainingLife
 from .spectral import dirlik as dirlik, tovo_benasciutti as tovo_benasciutti
 from .weld_life import ModelsAtHeight as ModelsAtHeight, WeldLife as WeldLife, weld_lives as weld_lives

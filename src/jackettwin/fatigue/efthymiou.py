@@ -325,3 +325,23 @@ def read_joint(path: Path) -> tuple[JointClass, TubularJoint]:
                 braces.append(BraceTube(one.diameter_m, one.thickness_m, radians(one.angle_deg)))
         D, T, L = said.chord_diameter_m, said.chord_thickness_m, said.chord_length_m
         return said.class_, TubularJoint(D, T, L, tuple(braces), said.fixity, said.gap_m)
+
+
+def factors_document(f: ConcentrationFactors, kind: JointClass) -> dict[str, dict[str, float]]:
+    """Return the factors of a brace by load and place; of a K joint, saddles and crowns have one."""
+    if kind == "k":
+        axial = {"chord": f.axial_chord_crown, "brace": f.axial_brace_crown}
+        out = {"chord": f.out_of_plane_chord, "brace": f.out_of_plane_brace}
+    else:
+        axial = {
+            "chord_saddle": f.axial_chord_saddle,
+            "chord_crown": f.axial_chord_crown,
+            "brace_saddle": f.axial_brace_saddle,
+            "brace_crown": f.axial_brace_crown,
+        }
+        out = {"chord_saddle": f.out_of_plane_chord, "brace_saddle": f.out_of_plane_brace}
+    return {
+        "axial": axial,
+        "in_plane": {"chord_crown": f.in_plane_chord, "brace_crown": f.in_plane_brace},
+        "out_of_plane": out,
+    }

@@ -14,6 +14,7 @@ from jackettwin.fatigue.efthymiou import (
     JointClass,
     TubularJoint,
     concentration,
+    factors_document,
 )
 from jackettwin.fatigue.hot_spots import hot_spot_matrix
 from jackettwin.structure import Assembly, SectionForces, Structure
@@ -44,6 +45,11 @@ class HotSpot:
     thickness_m: tuple[float, float]
     per_force: FloatArray
     warnings: tuple[str, ...]
+
+    @property
+    def scf(self) -> dict[str, dict[str, dict[str, float]]]:
+        """The factors by class, load and place."""
+        return {kind: factors_document(factors, "y") for kind, factors in self.factors.items()}
 
 
 @dataclass(frozen=True)

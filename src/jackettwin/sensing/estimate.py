@@ -102,17 +102,21 @@ def sensed_model(system: System, weather: Weather) -> MotionModel:
     return motion_model(system, forces, below_hz=BAND_HZ)
 
 
-def moved(model: MotionModel, readings: SensorReadings) -> MotionEstimate:
-    """Return the motion of a model from what sensors read."""
+def moved(model: MotionModel, readings: SensorReadings, *, draws: int = 0) -> MotionEstimate:
+    """Return the motion of a model from what sensors read; ``draws`` other levels are in its levels."""
     n, h = readings.y.shape[1], readings.step_s
     which = thinned(n, h, min(0.9 * BAND_HZ, 0.4 / h))
     omega = np.asarray(2.0 * np.pi * np.fft.rfftfreq(n, h)[which], dtype=np.float64)
     seen = model.transfer(readings.rows, readings.tilt, readings.derivative, omega)
-    levels = find_levels(readings.y, h, seen, which, model.forces, readings.groups)
-    found = model.with_forces(levels.forces)
-    F, Q = discrete(*found.dynamics(), h)
-    C = found.motion_rows(readings.rows, readings.tilt, readings.derivative)
-    return MotionEstimate(found, steady_smoother(F, Q, C, levels.noise), readings, levels)
+    levels = find_levels(readings.y, h, seen, which, model.forces, readings.groups, draws=draws)
+    return under(model.with_forces(levels.forces), readings, levels)
+
+
+def under(model: MotionModel, readings: SensorReadings, levels: Levels) -> MotionEstimate:
+    """Return the motion of a model whose forces have levels, whoever found them."""
+    F, Q = discrete(*model.dynamics(), readings.step_s)
+    C = model.motion_rows(readings.rows, readings.tilt, readings.derivative)
+    return MotionEstimate(model, steady_smoother(F, Q, C, levels.noise), readings, levels)
 
 
 def section_rows(model: MotionModel) -> SectionForces:

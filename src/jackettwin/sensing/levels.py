@@ -33,6 +33,8 @@ _SMOOTHED = 9
 _DELTA = 1e-4
 _REACH = 8.0
 """Of a search about its start, in logarithms."""
+_MORE, _NEAREST = 2.0, 0.05
+"""Of −ln L, by which a drawn level may be worse than a normal distribution says; and how near it comes."""
 
 
 @dataclass(frozen=True)
@@ -45,12 +47,14 @@ class Levels:
     noise : (n_channels,) variances of white noise
     log_likelihood : float
     evaluations : int
+    others : forces at other levels, as probable as these
     """
 
     forces: tuple[LatentForce, ...]
     noise: FloatArray
     log_likelihood: float
     evaluations: int
+    others: tuple[tuple[LatentForce, ...], ...] = ()
 
 
 def find_levels(
@@ -60,8 +64,11 @@ def find_levels(
     which: IntArray,
     forces: tuple[LatentForce, ...],
     groups: tuple[int, ...],
+    *,
+    draws: int = 0,
+    seed: int = 0,
 ) -> Levels:
-    """Return the most probable levels, rates and noise of a record.
+    """Return the most probable levels, rates and noise of a record, and ``draws`` other levels.
 
     Parameters
     ----------
@@ -70,60 +77,135 @@ def find_levels(
     which : (n_frequencies,) the FFT's frequencies that are used
     groups : channels of one group share one noise level
     """
-    n = y.shape[1]
-    whole = np.fft.rfft(y, axis=1) * np.sqrt(step_s / n)
-    Y, power = whole[:, which].T, uniform_filter1d(np.abs(whole) ** 2, _SMOOTHED, axis=1)[:, which].T
-    omega = np.asarray(2.0 * np.pi * np.fft.rfftfreq(n, step_s)[which], dtype=np.float64)
-    k, bands = len(forces), tuple(dict.fromkeys((f.kind, f.rate, f.rate_log_std) for f in forces))
-    of = np.array([bands.index((f.kind, f.rate, f.rate_log_std)) for f in forces])
-    members = np.array([[group == g for group in groups] for g in range(max(groups) + 1)], dtype=float)
-    floor = np.array([_floor(Y, members[g] > 0.0) / step_s for g in range(len(members))])
-    start = np.concatenate([[log(f.level) for f in forces], np.zeros(len(bands)), np.log(floor)])
-    std = np.concatenate(
-        [
-            [f.level_log_std for f in forces],
-            [std for _, _, std in bands],
-            np.full(len(members), _NOISE_STD),
-        ]
-    )
-    unit = tuple(force.with_level(1.0) for force in forces)
-
-    def densities(z: FloatArray) -> FloatArray:
-        return np.stack(
-            [
-                exp(2.0 * z[j]) * f.with_level(1.0, f.rate * exp(z[k + of[j]])).density(omega)
-                for j, f in enumerate(unit)
-            ]
-        )
-
-    def cost(z: FloatArray) -> tuple[float, FloatArray]:
-        S_f = densities(z)
-        white, missed = np.exp(z[k + len(bands) :]) @ members * step_s, _MISFIT**2 * power
-        r = white + missed
-        value, by_force, by_noise = _whittle(Y, transfer, S_f, r)
-        gradient = np.zeros(z.size)
-        gradient[:k] = 2.0 * (by_force * S_f).sum(axis=1)
-        for band in range(len(bands)):
-            moved = z.copy()
-            moved[k + band] += _DELTA
-            gradient[k + band] = (by_force * (densities(moved) - S_f)).sum() / _DELTA
-        gradient[k + len(bands) :] = members @ (by_noise.sum(axis=0) * white)
-        away = (z - start) / std
-        return value + 0.5 * float(away @ away), gradient + away / std
-
-    reach = np.minimum(_REACH, 4.0 * std)
+    evidence = _Evidence.of(y, step_s, transfer, which, forces, groups)
+    reach = np.minimum(_REACH, 4.0 * evidence.std)
     found = minimize(
-        cost,
-        start,
+        evidence.cost,
+        evidence.start,
         jac=True,
         method="L-BFGS-B",
-        bounds=list(zip(start - reach, start + reach, strict=True)),
+        bounds=list(zip(evidence.start - reach, evidence.start + reach, strict=True)),
         options={"maxiter": 60, "ftol": 1e-7},
     )
-    z = found.x
-    chosen = tuple(f.with_level(exp(z[j]), f.rate * exp(z[k + of[j]])) for j, f in enumerate(unit))
-    noise = np.exp(z[k + len(bands) :]) @ members
-    return Levels(chosen, noise, -float(found.fun), int(found.nfev))
+    return Levels(
+        evidence.forces_at(found.x),
+        np.exp(evidence.split(found.x)[2]) @ evidence.members,
+        -float(found.fun),
+        int(found.nfev),
+        tuple(evidence.forces_at(z) for z in evidence.draws(found.x, draws, np.random.default_rng(seed))),
+    )
+
+
+@dataclass(frozen=True)
+class _Evidence:
+    """Whittle's likelihood of a record by z: ln levels, ln rates of the bands over their own, ln noise.
+
+    Attributes
+    ----------
+    Y, power : (n_frequencies, n_channels) Fourier coefficients, and their smoothed squares
+    H : (n_frequencies, n_channels, n_forces)
+    omega : (n_frequencies,)
+    step_s : float
+    unit : the forces at level 1
+    band : (n_forces,) of each force
+    members : (n_groups, n_channels) 1 where a channel is of a group
+    start, std : (n,) what is known of z beforehand
+    """
+
+    Y: ComplexArray
+    power: FloatArray
+    H: ComplexArray
+    omega: FloatArray
+    step_s: float
+    unit: tuple[LatentForce, ...]
+    band: IntArray
+    members: FloatArray
+    start: FloatArray
+    std: FloatArray
+
+    @classmethod
+    def of(
+        cls,
+        y: FloatArray,
+        step_s: float,
+        transfer: ComplexArray,
+        which: IntArray,
+        forces: tuple[LatentForce, ...],
+        groups: tuple[int, ...],
+    ) -> _Evidence:
+        """Return that of readings (n_channels, n_samples), as :func:`find_levels` takes them."""
+        n = y.shape[1]
+        whole = np.fft.rfft(y, axis=1) * np.sqrt(step_s / n)
+        Y, power = whole[:, which].T, uniform_filter1d(np.abs(whole) ** 2, _SMOOTHED, axis=1)[:, which].T
+        omega = np.asarray(2.0 * np.pi * np.fft.rfftfreq(n, step_s)[which], dtype=np.float64)
+        bands = tuple(dict.fromkeys((f.kind, f.rate, f.rate_log_std) for f in forces))
+        band = np.array([bands.index((f.kind, f.rate, f.rate_log_std)) for f in forces])
+        members = np.array([[group == g for group in groups] for g in range(max(groups) + 1)], dtype=float)
+        floor = np.array([_floor(Y, members[g] > 0.0) / step_s for g in range(len(members))])
+        start = np.concatenate([[log(f.level) for f in forces], np.zeros(len(bands)), np.log(floor)])
+        std = [f.level_log_std for f in forces] + [s for _, _, s in bands] + [_NOISE_STD] * len(members)
+        unit = tuple(force.with_level(1.0) for force in forces)
+        return cls(Y, power, transfer, omega, step_s, unit, band, members, start, np.array(std))
+
+    def split(self, z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return ln levels, ln rates over their own, ln noise."""
+        level, rate, noise = np.split(z, [len(self.unit), z.size - len(self.members)])
+        return level, rate, noise
+
+    def forces_at(self, z: FloatArray) -> tuple[LatentForce, ...]:
+        """Return the forces at z."""
+        level, rate, _ = self.split(z)
+        return tuple(
+            f.with_level(exp(a), f.rate * exp(rate[b]))
+            for f, a, b in zip(self.unit, level, self.band, strict=True)
+        )
+
+    def densities(self, z: FloatArray) -> FloatArray:
+        """Return the densities of the forces, (n_forces, n_frequencies)."""
+        return np.stack([force.density(self.omega) for force in self.forces_at(z)])
+
+    def noise(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the density of white noise (n_channels,), and of all that no force explains."""
+        white = np.exp(self.split(z)[2]) @ self.members * self.step_s
+        return white, white + _MISFIT**2 * self.power
+
+    def cost(self, z: FloatArray) -> tuple[float, FloatArray]:
+        """Return −ln of likelihood and prior, and its gradient."""
+        S_f, (white, r) = self.densities(z), self.noise(z)
+        value, by_force, by_noise = _whittle(self.Y, self.H, S_f, r)
+        level, rate, _ = self.split(z)
+        k, gradient = level.size, np.zeros(z.size)
+        gradient[:k] = 2.0 * (by_force * S_f).sum(axis=1)
+        for band in range(rate.size):
+            moved = z.copy()
+            moved[k + band] += _DELTA
+            gradient[k + band] = (by_force * (self.densities(moved) - S_f)).sum() / _DELTA
+        gradient[k + rate.size :] = self.members @ (by_noise.sum(axis=0) * white)
+        away = (z - self.start) / self.std
+        return value + 0.5 * float(away @ away), gradient + away / self.std
+
+    def draws(self, z: FloatArray, number: int, rng: np.random.Generator) -> list[FloatArray]:
+        """Return other levels as probable as z, in pairs about it.
+
+        Normal by Fisher's information; where the evidence falls faster than that, as it does for a force that
+        the record does not show and would if it were large, they come nearer.
+        """
+        k = len(self.unit)
+        known = _information(self.H, self.densities(z), self.noise(z)[1]) + np.diag(self.std[:k] ** -2.0)
+        root, best, found = np.linalg.cholesky(known), self.cost(z)[0] if number else 0.0, []
+        for i in range(number):
+            if i % 2 == 0:
+                u = rng.standard_normal(k)
+            away = np.zeros(z.size)
+            away[:k] = (1.0 - 2.0 * (i % 2)) * np.linalg.solve(root.T, u)
+            share = 1.0
+            while share > _NEAREST:
+                rise = self.cost(z + share * away)[0] - best
+                if rise <= 0.5 * float(u @ u) * share**2 + _MORE:
+                    break
+                share *= 0.6
+            found.append(z + share * away)
+        return found
 
 
 def _whittle(
@@ -145,6 +227,16 @@ def _whittle(
     fit = np.abs(np.einsum("fij,fi->fj", h.conj(), solved)) ** 2
     by_noise = (np.einsum("fii->fi", inverse).real - np.abs(solved) ** 2) / r
     return value, ((own - fit) / S_f.T).T, by_noise
+
+
+def _information(H: ComplexArray, S_f: FloatArray, r: FloatArray) -> FloatArray:
+    r"""Return what spectra say of the logarithms of the levels (n_forces, n_forces).
+
+    Fisher's information of Whittle's likelihood, :math:`4 \sum_f S_i S_j |h_i^H S^{-1} h_j|^2`.
+    """
+    h = H / np.sqrt(r)[:, :, None] * np.sqrt(S_f.T)[:, None, :]
+    S = h @ h.conj().transpose(0, 2, 1) + np.eye(r.shape[1])
+    return np.asarray(4.0 * (np.abs(h.conj().transpose(0, 2, 1) @ np.linalg.solve(S, h)) ** 2).sum(axis=0))
 
 
 def _floor(Y: ComplexArray, which: FloatArray) -> float:

@@ -55,6 +55,15 @@ class MotionModel:
         """Loads on the modes per unit of each force, (n_modes, n_forces)."""
         return np.asarray(self.shapes.T @ np.column_stack([force.load for force in self.forces]))
 
+    def with_ratios(self, ratios: FloatArray) -> MotionModel:
+        """Return the model with damping ratios (n_modes,) of its modes; NaN leaves a mode its own."""
+        own = np.diag(self.damping) / (2.0 * self.omega)
+        kept = np.where(np.isnan(ratios), own, ratios)
+        known = ~np.isnan(ratios)
+        damping = np.where(known[:, None] | known, 0.0, self.damping)
+        np.fill_diagonal(damping, 2.0 * kept * self.omega)
+        return replace(self, damping=damping)
+
     def with_forces(self, forces: tuple[LatentForce, ...]) -> MotionModel:
         """Return the model with the same patterns at other levels and rates."""
         return replace(self, forces=forces)

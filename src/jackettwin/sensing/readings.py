@@ -19,6 +19,8 @@ from jackettwin.structure import Assembly
 
 _DERIVATIVE = {"acceleration": 2, "velocity": 1}
 _MOST_MISSING = 0.02
+_CALM_M = 0.02
+"""Significant height of a sea that is said to be without waves."""
 
 
 @dataclass(frozen=True)
@@ -69,10 +71,11 @@ class Weather:
             value = conditions.get(name)
             return float(value) if isinstance(value, (int, float)) and value > 0.0 else None
 
+        calm = conditions.get("wave_height_m") == 0.0 or conditions.get("waves") == "none"
         direction = conditions.get("wave_direction_deg")
         return cls(
             number("mean_wind_speed_m_s"),
-            number("wave_height_m"),
+            _CALM_M if calm else number("wave_height_m"),
             number("wave_period_s"),
             radians(float(direction)) if isinstance(direction, (int, float)) else 0.0,
             depth_m,

@@ -279,7 +279,7 @@ def put_knowledge(
 def find_kept(connection: Connection, asset: str, version: int) -> Mapping[str, Any]:
     """Return the stored intermediate results of estimations, by name."""
     document = connection.scalar(select(knowledge.c.document).where(*_of_version(asset, version))) or {}
-    return {name: value for name, value in document.items() if name not in ("known", "supports")}
+    return {name: value for name, value in document.items() if name not in ("known", "supports", "life")}
 
 
 def find_supports(connection: Connection, asset: str, version: int) -> dict[str, Any]:
@@ -295,6 +295,11 @@ def find_drawn(connection: Connection, asset: str, version: int, name: str) -> A
 def find_stiffness(connection: Connection, asset: str, version: int) -> dict[str, Any]:
     """Return the stiffness of the supports on each day; empty if there is none yet."""
     return dict(_part(connection, asset, version, "supports"))
+
+
+def find_life(connection: Connection, asset: str, version: int) -> list[dict[str, Any]]:
+    """Return the welds that records damage most with their life, the shortest first; empty if nothing yet."""
+    return list(_part(connection, asset, version, "life"))
 
 
 def _part(connection: Connection, asset: str, version: int, name: str | tuple[str, ...]) -> Any:

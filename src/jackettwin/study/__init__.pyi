@@ -20,13 +20,13 @@ from .follow_result import (
     days_document as days_document,
     in_time_document as in_time_document,
 )
+from .life.asset_life import AssetLife as AssetLife, asset_life as asset_life
+from .life.life_so_far import LIFE_SO_FAR as LIFE_SO_FAR, LifeSoFar as LifeSoFar
 from .life.record_life import (
     RecordLife as RecordLife,
-    WeldMap as WeldMap,
     life_of_record as life_of_record,
     record_life as record_life,
     sensed as sensed,
-    weld_map as weld_map,
 )
 from .life.updated_system import (
     updated as updated,

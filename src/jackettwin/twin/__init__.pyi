@@ -3,6 +3,11 @@ from .config import TwinConfig as TwinConfig
 from .exact_sums import UNIT as UNIT, average as average, plus as plus
 from .files import read_twin as read_twin, shipped_twins as shipped_twins
 from .inputs import inputs_document as inputs_document
+from .life.damage_sums import SensedTime as SensedTime, WeldSums as WeldSums
+from .life.likely_structures import StressModel as StressModel
+from .life.sensed_damage import DAMAGE_UNIT as DAMAGE_UNIT
+from .life.settings import LifeSettings as LifeSettings
+from .life.weld_map import WeldMap as WeldMap, planned_joints as planned_joints, weld_map as weld_map
 from .model import TwinModel as TwinModel, twin_model as twin_model
 from .observation import OBSERVATION as OBSERVATION, Observation as Observation
 from .observe import examined as examined, observe as observe

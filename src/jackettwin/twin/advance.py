@@ -18,6 +18,7 @@ from jackettwin.errors import InputError
 from jackettwin.findings import Finding
 from jackettwin.identification import RealPole
 from jackettwin.twin.exact_sums import of_estimate, plus, whole
+from jackettwin.twin.life.damage_sums import sensed_time, weld_sums
 from jackettwin.twin.observation import Observation
 from jackettwin.twin.pair_angles import pair_angles
 from jackettwin.twin.state import (
@@ -145,7 +146,10 @@ def _operation(seen: Observation) -> Operation:
         for number, (_, known) in sorted(seen.modes.items())
         if known.label in directions
     }
-    return Operation(conditions, modes, rates, _beside(seen), angles)
+    welds = weld_sums(seen.damage)
+    return Operation(
+        conditions, modes, rates, _beside(seen), angles, sensed_time(seen.damage, duration), welds
+    )
 
 
 def _beside(seen: Observation) -> dict[str, NumberSum]:

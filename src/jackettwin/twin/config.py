@@ -19,6 +19,7 @@ from jackettwin.response import Sensor
 from jackettwin.soil import DEFAULT_LAWS
 from jackettwin.structure import Assembly, Rayleigh, Structure, assemble
 from jackettwin.twin.calibration import Calibrations
+from jackettwin.twin.life.settings import LifeSettings
 from jackettwin.twin.operation import OperationRule
 from jackettwin.twin.water import WaterConfig, moving_mass
 from jackettwin.updating import MOST_EVALUATIONS, Problem, Target, points_of
@@ -238,6 +239,8 @@ class TwinConfig:
     """Settings of the monitoring for change."""
     tolerances: TwinTolerances = TwinTolerances()
     """Tolerances of drawings and sea."""
+    life: LifeSettings | None = None
+    """Settings of the damage at welds; None computes none."""
     rotor_speed_rpm: tuple[float, float] | None = None
     """Lowest and highest speed of the rotor in operation; with None, that of ``update.rotor``."""
     mode_damping: Mapping[int, float] = field(default_factory=dict)

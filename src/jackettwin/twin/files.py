@@ -28,6 +28,7 @@ from jackettwin.twin.config import (
     UpdateSettings,
     assembled,
 )
+from jackettwin.twin.life.settings import LifeSettings
 from jackettwin.twin.schema import DampingSchema, SupportSchema, TwinSchema
 from jackettwin.twin.stated_model import model_of_records
 from jackettwin.twin.targets_table import assigned_modes, read_targets_table
@@ -196,6 +197,7 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         calibrations=tuple(c for sensor in schema.sensors for c in sensor.history()),
         operation=schema.operation,
         watch=schema.watch,
+        life=_life(schema.life),
         records=tuple(folder / record for record in schema.records),
         unsaid=unsaid,
         targets=targets,
@@ -225,6 +227,14 @@ def _tolerances(schema: TwinSchema) -> TwinTolerances:
         )
         given[name] = 0.0 if own.weighed and own.std is None else own.std or 0.0
     return TwinTolerances(given)
+
+
+def _life(given: LifeSettings | None) -> LifeSettings | None:
+    """Return the settings, if there is such a curve."""
+    if given is not None:
+        with located(field="life"):
+            assert given.models is not None
+    return given
 
 
 def _numbered(field: str, names: Iterable[str]) -> Iterator[tuple[str, str]]:

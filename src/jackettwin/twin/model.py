@@ -12,10 +12,12 @@ from jackettwin.files import digest
 from jackettwin.identification import Examination, IdentificationSettings, Pick
 from jackettwin.records import Record
 from jackettwin.response import Sensor, UndampedModes, mode_kinds, mode_labels, observation_matrix, sees
-from jackettwin.structure import Assembly
+from jackettwin.structure import Assembly, assemble
 from jackettwin.twin.calibration import Calibrations, sensors_at
 from jackettwin.twin.config import PAIRED_MODES, TwinConfig, assembled
+from jackettwin.twin.life.likely_structures import StressModel
 from jackettwin.twin.operation import OperationRule
+from jackettwin.twin.tolerances.registry import directions
 from jackettwin.updating import Feet, modes_by_foot_stiffness, numbered_modes, pairing_score
 
 
@@ -47,6 +49,8 @@ class TwinModel:
         Calibrations of sensors, each for a period, which replace ``sensors``.
     operation : OperationRule
         Rule for the state of operation of a record, and whether it may update the supports.
+    stress : StressModel or None
+        Model of the damage at welds; None computes none.
     """
 
     name: str
@@ -61,6 +65,7 @@ class TwinModel:
     with_shapes: bool = False
     calibrations: Calibrations = ()
     operation: OperationRule = OperationRule()
+    stress: StressModel | None = None
 
     def __repr__(self) -> str:
         modes = ", ".join(self.labels)
@@ -78,6 +83,8 @@ class TwinModel:
             parts["calibrations"] = self.calibrations
         if self.operation.states:
             parts["operation"] = self.operation.states
+        if self.stress is not None:
+            parts["life"] = [self.stress.settings.curve, self.stress.settings.edition]
         if self.assembly is not None:
             for name in ("mass", "stiffness"):
                 matrix = getattr(self.assembly, name).tocsc()
@@ -187,4 +194,21 @@ def twin_model(config: TwinConfig, assembly: Assembly | None = None) -> TwinMode
         with_shapes=config.update.mac_std is not None,
         calibrations=config.calibrations,
         operation=config.operation,
+        stress=_stress_model(config, assembly, numbered),
+    )
+
+
+def _stress_model(config: TwinConfig, assembly: Assembly, numbered: UndampedModes) -> StressModel | None:
+    """Return what damage is told with, if the twin asks for it."""
+    if config.life is None:
+        return None
+    beam, rotary, subdivide = config.beam, config.rotary_inertia, config.subdivide
+    return StressModel(
+        config.life,
+        assembly,
+        assemble(config.structure, beam_theory=beam, rotary_inertia=rotary, subdivide=subdivide),
+        config.rayleigh,
+        numbered,
+        directions(config, assembly),
+        None if config.water is None else config.water.depth_m,
     )

@@ -11,6 +11,7 @@ from jackettwin.files import StoredSchema
 from jackettwin.findings import Finding
 from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.response import Sensor
+from jackettwin.twin.life.sensed_damage import SensedDamage
 from jackettwin.updating import Counterpart
 
 
@@ -61,6 +62,8 @@ class Observation:
         For each identified mode, the model's mode it was compared with; empty without a structure.
     truth : mapping
         True values that simulated records state: ``true_modes``, ``true_support``.
+    damage : SensedDamage or None
+        At the most damaged welds; None without ``life`` in the twin file, or without welded tubes.
     """
 
     record_id: str
@@ -77,6 +80,7 @@ class Observation:
     findings: tuple[Finding, ...] = ()
     held: tuple[Counterpart, ...] = ()
     truth: Mapping[str, Any] = field(default_factory=dict)
+    damage: SensedDamage | None = None
 
     def __repr__(self) -> str:
         labels = ", ".join(filter(None, self.labels)) or "none"

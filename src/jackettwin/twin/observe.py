@@ -4,19 +4,25 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from jackettwin.errors import JackettwinError
 from jackettwin.files import NOT_KEPT, Keep
 from jackettwin.findings import Finding
 from jackettwin.identification import Examination, examine
 from jackettwin.records import Channel, Record, record_id
+from jackettwin.sensing import Weather, readings_of
 from jackettwin.twin.calibration import calibrated, sensors_at, uncalibrated
+from jackettwin.twin.life.likely_structures import likely_structures
+from jackettwin.twin.life.sensed_damage import SensedDamage, sensed_damage
 from jackettwin.twin.mode_doubts import sea_share, unlike_model
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.observation import Observation, Recognised
 from jackettwin.twin.operation import UNKNOWN
 from jackettwin.twin.sensor_polarity import sensor_polarity
-from jackettwin.updating import Counterpart, Feet, counterparts, pair
+from jackettwin.updating import STIFFEST_N_M, Counterpart, Feet, counterparts, pair
 from jackettwin.version import __version__
 
+_STRESS_RATE_HZ = 10.0
+"""At which motion is followed for stress: of ranges at 1 Hz, more than most of it, a sixtieth is lost."""
 TRUTH = ("true_modes", "true_support", "model")
 """Metadata keys of records of a known structure."""
 
@@ -72,6 +78,7 @@ def observed(record: Record, seen: Examination, model: TwinModel) -> Observation
     found = seen.identification
     feet = model.likest_feet(seen)
     known = _known(seen, model, feet)
+    damage, unsaid = _damage(seen, model, known, feet)
     if model.identification.refine and known.held and feet is not None:
         sea = sea_share(found.modes, model.structure, model.sees(seen), feet)
         found = unlike_model(found, known.held, sea)
@@ -98,7 +105,9 @@ def observed(record: Record, seen: Examination, model: TwinModel) -> Observation
             *known.findings,
             *uncalibrated(model.calibrations, record.start_utc),
             *_unsaid(model, seen.record),
+            *unsaid,
         ),
+        damage=damage,
         truth={key: value for key, value in record.metadata.items() if key in TRUTH},
     )
 
@@ -109,6 +118,26 @@ def _unsaid(model: TwinModel, record: Record) -> tuple[Finding, ...]:
     if not missing or model.operation.with_state(record.conditions)["state"] != UNKNOWN:
         return ()
     return (Finding("operation_unknown", params={"missing": ", ".join(missing)}),)
+
+
+def _damage(
+    seen: Examination, model: TwinModel, known: _Known, feet: Feet | None
+) -> tuple[SensedDamage | None, tuple[Finding, ...]]:
+    """Return the damage of a record at the welds, or why there is none."""
+    if model.stress is None or feet is None or not any(known.recognised):
+        return None, ()
+    modes = {
+        of.mode: mode
+        for mode, of in zip(seen.identification.modes, known.recognised, strict=True)
+        if of is not None and mode.status.is_a_mode
+    }
+    record = seen.record
+    try:
+        likely = likely_structures(model.stress, modes, min(feet.stiffness_n_m, STIFFEST_N_M))
+        readings = readings_of(record, model.placed(record), model.structure, rate_hz=_STRESS_RATE_HZ)
+        return sensed_damage(likely, readings, Weather.of(record.conditions, model.stress.depth_m)), ()
+    except JackettwinError as error:
+        return None, (Finding("life_unknown", params={"reason": str(error)}),)
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,7 @@ from jackettwin.twin.config import (
     UpdateSettings,
     WatchSettings,
 )
+from jackettwin.twin.life.settings import LifeSettings
 from jackettwin.twin.operation import OperationRule
 from jackettwin.updating import Target
 
@@ -246,3 +247,4 @@ class TwinSchema(Schema):
     tolerances: Literal["none"] | dict[str, Annotated[float, Field(ge=0.0)] | ToleranceSchema] = {}
     operation: OperationRule = OperationRule()
     watch: WatchSettings = WatchSettings()
+    life: LifeSettings | None = None

@@ -17,6 +17,7 @@ from jackettwin.arrays import ComplexArray
 from jackettwin.files import StoredSchema, digest
 from jackettwin.response import Sensor
 from jackettwin.twin.exact_sums import UNIT, ModeSums, ModeTotal, Sums, negated, of_day, plus, whole
+from jackettwin.twin.life.damage_sums import SensedTime, WeldSums
 from jackettwin.twin.model import TwinModel
 
 ALL = "all"
@@ -131,6 +132,10 @@ class Operation:
         Levels and temperatures, as whole numbers, which affect frequencies besides wind and waves.
     angles : {mode: AngleSums}
         Of the lower modes of bending pairs.
+    sensed : SensedTime
+        Of the records that tell of damage.
+    welds : {side of a weld: WeldSums}
+        Damage of the worst of each record.
     """
 
     conditions: ConditionSums = ConditionSums()
@@ -138,6 +143,8 @@ class Operation:
     rates: Mapping[str, RateSums] = field(default_factory=dict)
     beside: Mapping[str, NumberSum] = field(default_factory=dict)
     angles: Mapping[int, AngleSums] = field(default_factory=dict)
+    sensed: SensedTime = SensedTime()
+    welds: Mapping[int, WeldSums] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -181,6 +188,8 @@ class OperationTotal:
     conditions: ConditionSums = ConditionSums()
     modes: Mapping[int, ModeTotal] = field(default_factory=dict)
     rates: Mapping[str, RateSums] = field(default_factory=dict)
+    sensed: SensedTime = SensedTime()
+    welds: Mapping[int, WeldSums] = field(default_factory=dict)
 
     def plus(self, other: OperationTotal) -> OperationTotal:
         """Return the total of both, without sums that became zero."""
@@ -189,6 +198,8 @@ class OperationTotal:
             plus(self.conditions, other.conditions),
             {m: total for m, total in modes.items() if total.sums.n},
             {b: sums for b, sums in _joined(self.rates, other.rates, RateSums()).items() if sums.n},
+            plus(self.sensed, other.sensed),
+            {w: sums for w, sums in _joined(self.welds, other.welds, WeldSums()).items() if sums.n},
         )
 
     def negated(self) -> OperationTotal:
@@ -197,6 +208,8 @@ class OperationTotal:
             negated(self.conditions),
             {m: negated(total) for m, total in self.modes.items()},
             {b: negated(sums) for b, sums in self.rates.items()},
+            negated(self.sensed),
+            {w: negated(sums) for w, sums in self.welds.items()},
         )
 
 
@@ -296,7 +309,9 @@ def day_totals(day: Day) -> dict[str, OperationTotal]:
         whole = join(whole, operation)
     named = {**day.operations, ALL: whole} if day.operations else {}
     return {
-        name: OperationTotal(o.conditions, {m: of_day(sums) for m, sums in o.modes.items()}, o.rates)
+        name: OperationTotal(
+            o.conditions, {m: of_day(sums) for m, sums in o.modes.items()}, o.rates, o.sensed, o.welds
+        )
         for name, o in named.items()
     }
 
@@ -309,6 +324,8 @@ def join(a: Operation, b: Operation) -> Operation:
         _joined(a.rates, b.rates, RateSums()),
         _joined(a.beside, b.beside, NumberSum()),
         _joined(a.angles, b.angles, AngleSums()),
+        plus(a.sensed, b.sensed),
+        _joined(a.welds, b.welds, WeldSums()),
     )
 
 

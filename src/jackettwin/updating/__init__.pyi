@@ -1,7 +1,11 @@
 from .band import numbered_modes as numbered_modes
 from .budget import SOURCES as SOURCES, beyond_literature as beyond_literature
 from .build import support_model as support_model
-from .data.foot_stiffness import Feet as Feet, modes_by_foot_stiffness as modes_by_foot_stiffness
+from .data.foot_stiffness import (
+    STIFFEST_N_M as STIFFEST_N_M,
+    Feet as Feet,
+    modes_by_foot_stiffness as modes_by_foot_stiffness,
+)
 from .data.misfit import misfit as misfit
 from .data.pairing import (
     LEAST_MAC as LEAST_MAC,
@@ -44,6 +48,7 @@ from .model_error.directions import (
     Direction as Direction,
     Tolerance as Tolerance,
     ToleranceDirections as ToleranceDirections,
+    moved_along as moved_along,
 )
 from .model_error.error_model import ErrorModel as ErrorModel
 from .model_error.influence import Influence as Influence, influences as influences

@@ -258,6 +258,11 @@ def days_unsummed(past: Mapping[str, Any] | None, identities: Mapping[str, str])
     return past["through"] if past["of"] == _identity(identities, past["through"]) else None
 
 
+def kept_through(so_far: Mapping[str, Any], through: str, identities: Mapping[str, str]) -> dict[str, Any]:
+    """Return what is kept of the days through one, so that :func:`days_unsummed` tells whether it holds."""
+    return {"so_far": so_far, "through": through, "of": _identity(identities, through)}
+
+
 def _identity(identities: Mapping[str, str], through: str) -> str:
     return digest([item for item in identities.items() if item[0] <= through])
 

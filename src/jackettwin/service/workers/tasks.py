@@ -214,6 +214,9 @@ def know(question: Question) -> Outcome | None:
             twin, question.identities, question.days, question.kept.get("judged")
         )
         followed, gone_on_from = verdict.through_time(twin, question)
+        life, past_life, of_life = verdict.lived(
+            twin, question.identities, question.days, question.kept.get("lived")
+        )
         sums, past = engine.summed(twin, question.kept.get("past"), question.identities, question.days)
     except KeyError:
         return None
@@ -230,9 +233,12 @@ def know(question: Question) -> Outcome | None:
         together = verdict.asked_together(known, question, changes)
     document = {
         "known": verdict.of_today(together["known"], followed), "supports": verdict.supports(followed),
-        "judged": judged, "past": past, "followed": gone_on_from, "together": together,
+        "judged": judged, "past": past, "followed": gone_on_from, "together": together, "life": life,
+        "lived": past_life,
     }  # fmt: skip
-    return Outcome(json.dumps(document), findings=findings, page=page, of=question.of, same_page=not asked)
+    return Outcome(
+        json.dumps(document), findings=(*findings, *of_life), page=page, of=question.of, same_page=not asked
+    )
 
 
 def observe_stored(task: Task) -> Outcome:

@@ -26,9 +26,12 @@ from jackettwin.report.pages.page import page_text
 from jackettwin.service.workers import engine, stiffness
 from jackettwin.soil import parameter_words
 from jackettwin.study import (
+    LIFE_SO_FAR,
     ExploreSettings,
     Followed,
+    LifeSoFar,
     TwinResult,
+    asset_life,
     days_document,
     exploration_document,
     explore_update,
@@ -264,3 +267,42 @@ def watched(
     return JUDGED.dump(judged), tuple(
         engine.finding_row(f) | {"time_utc": at, "day": at[:10]} for at, f in said
     )
+
+
+def lived(
+    twin: engine.Twin,
+    identities: Mapping[str, str],
+    documents: Mapping[str, str],
+    kept: Mapping[str, Any] | None,
+) -> tuple[list[dict[str, Any]], Mapping[str, Any] | None, tuple[dict[str, Any], ...]]:
+    """Return the life of the welds, what to keep of the past days, and findings as rows.
+
+    Nothing if the twin does not ask for life. The last day, which still grows, is not kept.
+
+    Raises
+    ------
+    KeyError
+        If a day is needed that has no document here.
+    """
+    model = twin.model.stress
+    if model is None:
+        return [], None, ()
+    known = engine.days_unsummed(kept, identities) is not None and kept is not None
+    so_far = LIFE_SO_FAR.load(kept["so_far"]) if known and kept is not None else LifeSoFar()
+    days = [day for day in identities if day > so_far.through]
+    if not days:
+        return [], None, ()
+    *before, last = days
+
+    def plus(state: LifeSoFar, name: str) -> LifeSoFar:
+        return state.plus(name, engine.DAY.load(json.loads(documents[name])), model.settings.budget)
+
+    for name in before:
+        so_far = plus(so_far, name)
+    past = engine.kept_through(LIFE_SO_FAR.dump(so_far), so_far.through, identities)
+    found = asset_life(model, plus(so_far, last))
+    rows = tuple(
+        engine.finding_row(f) | {"time_utc": f"{day}T00:00:00+00:00", "day": day}
+        for day, f in found.findings()
+    )
+    return _rounded(found.rows()), past, rows

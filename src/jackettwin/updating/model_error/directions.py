@@ -11,7 +11,8 @@ structure.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
 
@@ -83,6 +84,26 @@ class Direction:
     feet: FloatArray | None = None
     loss_growth: float = 0.0
     resonance_hz: float = 0.0
+
+
+def moved_along(
+    assembly: Assembly, directions: Sequence[Direction], amounts: FloatArray
+) -> tuple[Assembly, FloatArray]:
+    """Return a structure that differs along directions, and by which share its feet do, (n_feet, 6).
+
+    Loss that grows otherwise changes neither; a mass on springs of its own is left as it is.
+
+    Parameters
+    ----------
+    amounts : (n_directions,) in their standard deviations
+    """
+    mass, stiffness = assembly.mass, assembly.stiffness
+    shares = np.zeros((len(assembly.structure.reaction_nodes), 6))
+    for amount, one in zip(amounts, directions, strict=True):
+        mass = mass if one.mass is None or one.resonance_hz else mass + amount * one.mass
+        stiffness = stiffness if one.stiffness is None else stiffness + amount * one.stiffness
+        shares += 0.0 if one.feet is None else amount * one.feet
+    return replace(assembly, mass=mass, stiffness=stiffness), shares
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,6 +27,7 @@ from jackettwin.service.web.schemas import (
     BudgetOut,
     ComparisonOut,
     ExploredOut,
+    LifeOut,
     ModeOut,
     Page,
     SensitivityOut,
@@ -122,10 +123,14 @@ def structure(asset: AssetName, connection: Told, version: AnyVersion = None) ->
 
 
 @router.get("/assets/{asset}/life", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def life(asset: AssetName, connection: Told) -> Page[dict[str, object]]:
-    """Return the life at every joint; empty until the twin computes fatigue."""
-    known_asset(connection, asset)
-    return Page(items=[])
+def life(asset: AssetName, connection: Told, version: AnyVersion = None) -> Page[LifeOut]:
+    """Return the life of the welds that records damage most, the shortest first.
+
+    Empty before a record told of damage, or if the twin does not ask for it (``life:``).
+    """
+    asked = known_version(connection, asset, version)
+    found = results.find_life(connection, asset, asked.version)
+    return Page(items=[LifeOut(**row, model_version=asked.version) for row in found])
 
 
 @router.get(

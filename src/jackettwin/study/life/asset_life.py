@@ -1,0 +1,187 @@
+"""Damage and life of the welds of an asset by all its records: accumulated, now, and what is left."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import date
+from math import exp, isfinite, log, sqrt
+from typing import Any
+
+import numpy as np
+
+from jackettwin.fatigue import POSITIONS, SIDES, HotSpot, RemainingLife
+from jackettwin.findings import Finding
+from jackettwin.intervals import NORMAL_90
+from jackettwin.structure import Structure
+from jackettwin.study.life.life_so_far import LifeSoFar, damage_of_year
+from jackettwin.study.life.shares import BLOCK_DAYS, LAST
+from jackettwin.twin import DAMAGE_UNIT, SensedTime, StressModel, WeldSums, planned_joints
+
+_DAYS_A_YEAR = 365.25
+
+
+@dataclass(frozen=True)
+class AssetWeld:
+    """One side of a weld of an asset.
+
+    Attributes
+    ----------
+    number : of the side
+    weld : HotSpot
+    side, position : chord or brace; the point with most damage of all records together
+    sums : WeldSums
+    environment : what corrodes it
+    rate, rate_std : damage of a year by the design curve; of its logarithm, what the records leave open
+    remaining : what is left of its life, by the mean of the tests
+    variances : {source: variance of ln D}
+    by_state : {state of operation: share of the damage of the point}
+    """
+
+    number: int
+    weld: HotSpot
+    side: str
+    position: str
+    sums: WeldSums
+    environment: str
+    rate: float
+    rate_std: float
+    remaining: RemainingLife
+    variances: Mapping[str, float]
+    by_state: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class AssetLife:
+    """Life of the welds of an asset, the shortest first; none before a record told of damage."""
+
+    model: StressModel
+    so_far: LifeSoFar
+    time: SensedTime
+    welds: tuple[AssetWeld, ...]
+
+    def findings(self) -> list[tuple[str, Finding]]:
+        """Return what asks for a person, each with the day since when it does."""
+        found, years = [], self.model.settings.years
+        for one in self.welds:
+            subject = f"{one.weld.brace} at {one.weld.node}, {one.side}"
+            if one.number in self.so_far.departed:
+                day, ratio = self.so_far.departed[one.number]
+                days = BLOCK_DAYS * LAST
+                found.append((day, Finding("life_share", subject, {"ratio": ratio, "days": days})))
+            if one.number in self.so_far.over_budget and not one.weld.warnings:
+                day, ratio, low = self.so_far.over_budget[one.number]
+                said = {"ratio": ratio, "low": low, "years": years}
+                found.append((day, Finding("life_budget", subject, said)))
+        return found
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Return the welds as plain JSON data."""
+        return [self._row(one) for one in self.welds]
+
+    def _row(self, one: AssetWeld) -> dict[str, Any]:
+        structure, sums, weld, settings = (
+            self.model.assembly.structure, one.sums, one.weld, self.model.settings,
+        )  # fmt: skip
+        total, years = sum(one.variances.values()), self.time.seconds / (_DAYS_A_YEAR * 86400.0)
+        median, spread = one.remaining.rate * years, exp(NORMAL_90 * sqrt(total))
+        low, mid, high = (one.remaining.quantile(p) for p in (0.05, 0.5, 0.95))
+        left_out = (self.time.n - sums.n) / self.time.n * self.time.beyond
+        return {
+            "joint": weld.node,
+            "chord": weld.chord,
+            "brace": weld.brace,
+            "side": one.side,
+            "position": one.position,
+            "z_m": structure.nodes[weld.node][2],
+            "node_m": list(structure.nodes[weld.node]),
+            "brace_end_m": list(_other_end(structure, weld)),
+            "environment": one.environment,
+            "scf": weld.scf,
+            "beyond_validity": list(weld.warnings),
+            "observed_s": self.time.seconds,
+            "records": self.time.n,
+            "damage": DAMAGE_UNIT * sums.worst,
+            "damage_at_most": DAMAGE_UNIT * (sums.worst + left_out),
+            "damage_by_point": [DAMAGE_UNIT * p for p in sums.points],
+            "damage_interval_90": [median / spread, median * spread],
+            "rate_per_year": one.rate,
+            "rate_interval_90": [one.rate * exp(s * NORMAL_90 * one.rate_std) for s in (-1.0, 1.0)],
+            "recent_rate_per_year": self.so_far.recent_rate(one.number, sums),
+            "budget_per_year": settings.budget,
+            "life_years": 1.0 / (one.rate * settings.design_factor),
+            "remaining_years": {"p05": _finite(low), "p50": _finite(mid), "p95": _finite(high)},
+            "age_years": one.remaining.age_years,
+            "failure_probability_per_year": one.remaining.failure_in(1.0),
+            "reliability_index": one.remaining.reliability_index,
+            "variance_shares": {name: v / total for name, v in one.variances.items()},
+            "damage_by_state": dict(one.by_state),
+            "departed": _since(self.so_far.departed.get(one.number)),
+            "over_budget": _since(self.so_far.over_budget.get(one.number)),
+        }
+
+
+def asset_life(model: StressModel, so_far: LifeSoFar) -> AssetLife:
+    """Return the life of the welds that records named among their worst."""
+    time, sums = so_far.total
+    joints = planned_joints(model.assembly) if sums else ()
+    welds = [weld for joint in joints for weld in joint.welds]
+    age = _age_years(model, so_far, time)
+    found = [
+        _weld(model, so_far, side, welds[side // len(SIDES)], sums[side], time, age)
+        for side in sums
+        if sums[side].worst
+    ]
+    return AssetLife(model, so_far, time, tuple(sorted(found, key=lambda one: (-one.rate, one.number))))
+
+
+def _weld(
+    model: StressModel,
+    so_far: LifeSoFar,
+    side: int,
+    weld: HotSpot,
+    sums: WeldSums,
+    time: SensedTime,
+    age: float,
+) -> AssetWeld:
+    structure = model.assembly.structure
+    environment, own = model.settings.models(structure.nodes[weld.node][2] - structure.sea_level_z_m)
+    m, point = float(np.mean(own.curve.m)), int(np.argmax(sums.points))
+    open_ = so_far.variances(side, time, sums)
+    variances = {
+        "S-N scatter": (log(10.0) * own.curve.log_std) ** 2,
+        "stress concentration": (m * own.scf_cov) ** 2,
+        "Miner's sum": own.miner_cov**2,
+        **open_,
+    }
+    rate = damage_of_year(sums, time)
+    median = rate * 10.0 ** (-2.0 * own.curve.log_std)
+    by_state = {op: s[side].points[point] / sums.worst for op, s in so_far.welds.items() if side in s}
+    return AssetWeld(
+        side, weld, SIDES[side % len(SIDES)], POSITIONS[point], sums, environment, rate,
+        sqrt(sum(open_.values())), RemainingLife(median, sqrt(sum(variances.values())), age), variances,
+        by_state,
+    )  # fmt: skip
+
+
+def _age_years(model: StressModel, so_far: LifeSoFar, time: SensedTime) -> float:
+    """Return for how long damage has been done: since the start of service, else since the first record."""
+    began = model.settings.in_service
+    if not so_far.through:
+        return time.seconds / (_DAYS_A_YEAR * 86400.0)
+    last = date.fromisoformat(so_far.through).toordinal() + 1
+    first = date.fromisoformat(so_far.first).toordinal() if began is None else began.toordinal()
+    return max(last - first, 1) / _DAYS_A_YEAR
+
+
+def _other_end(structure: Structure, weld: HotSpot) -> tuple[float, float, float]:
+    brace = next(member for member in structure.members if member.name == weld.brace)
+    return structure.nodes[brace.end if brace.start == weld.node else brace.start]
+
+
+def _finite(value: float) -> float | None:
+    return value if isfinite(value) else None
+
+
+def _since(found: tuple[Any, ...] | None) -> dict[str, Any] | None:
+    return None if found is None else {"since": found[0], "ratio": found[1]}

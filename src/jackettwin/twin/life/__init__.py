@@ -1,0 +1,1 @@
+"""Damage at the welds of a structure from one record's motion, and its exact sums."""

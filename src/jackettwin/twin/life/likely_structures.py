@@ -1,0 +1,180 @@
+r"""The structure as a record's own frequencies leave it: its feet, and what drawings do not fix.
+
+Unknowns are the logarithms of the feet's stiffness sideways and upright and the tolerances φ of the twin, in
+their standard deviations. Frequencies of the record's modes tell of them to first order,
+
+.. math:: \frac{∂ \ln ω}{∂θ} = \frac{x^T (∂K - ω^2 ∂M)\,x}{2 ω^2}, \qquad x^T M x = 1,
+
+about the point that Gauss and Newton find, so that they are normal there (Tarantola 2005, eq. (3.51)). This
+is no update: supports stay springs, and one record's modes tell of them what one record can.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.identification import ModalEstimate
+from jackettwin.response import System, UndampedModes, build_system, track_modes, undamped_modes
+from jackettwin.sensing import MotionModel
+from jackettwin.soil import Prony, Spring, Support, standing
+from jackettwin.structure import Assembly, Rayleigh
+from jackettwin.twin.life.settings import LifeSettings
+from jackettwin.updating import Direction, moved_along
+
+_STEPS = 3
+_LONGEST_STEP = 1.5
+_MODES = 5
+"""Both bending pairs and torsion; higher ones feel blades and braces more than feet."""
+_REMAINDER = 0.005
+"""Of a frequency: what beams and springs miss of it."""
+_COMMON_STD, _OWN_STD, _UPRIGHT = 1.5, 0.5, 0.7
+"""Of ln k of all feet together, of each way alone, and how much stiffer feet are upright."""
+_WAYS = (np.diag([1.0, 1.0, 0.0, 0.0, 0.0, 0.0]), np.diag([0.0, 0.0, 1.0, 0.0, 0.0, 0.0]))
+_USUAL_RATIO = 0.01
+_EXTRA = 6
+
+
+@dataclass(frozen=True)
+class StressModel:
+    """What a twin's stresses are told with.
+
+    Attributes
+    ----------
+    settings : LifeSettings
+    assembly : with what drawings say
+    dry : with the mass of steel alone
+    rayleigh : damping of the steel
+    numbered : modes on pinned feet
+    directions : what tolerances that are open do to the structure
+    depth_m : of the water; None takes the lowest node for the bed
+    """
+
+    settings: LifeSettings
+    assembly: Assembly
+    dry: Assembly
+    rayleigh: Rayleigh
+    numbered: UndampedModes
+    directions: tuple[Direction, ...] = ()
+    depth_m: float | None = None
+
+    @cached_property
+    def n_ways(self) -> int:
+        """How many stiffnesses the feet have; none where pins do not hold the structure up."""
+        fixed = standing(self.assembly.structure).fixed
+        return len(_WAYS) if fixed and all(len(dofs) == len("xyz") for _, dofs in fixed) else 0
+
+    def system(self, theta: FloatArray) -> System:
+        """Return the structure with ln k of its feet and tolerances (n_ways + n_directions,)."""
+        ways, phi = np.split(theta, [self.n_ways])
+        structure = self.assembly.structure
+        assembly, shares = moved_along(self.assembly, self.directions, phi)
+        springs = tuple(
+            Spring(node, pattern * np.diag(np.exp(own)), Prony(k0=float(np.exp(k))))
+            for k, pattern in zip(ways, _WAYS, strict=False)
+            for node, own in zip(structure.reaction_nodes, shares, strict=True)
+        )
+        support = Support(springs) if springs else standing(structure)
+        return build_system(assembly, support, rayleigh=self.rayleigh)
+
+    def slopes(self, system: System, shapes: FloatArray, omega: FloatArray) -> FloatArray:
+        """Return ∂ ln ω/∂θ (n_modes, n_ways + n_directions) of mass-normalised shapes (n_dof, n_modes)."""
+        found = np.zeros((omega.size, self.n_ways + len(self.directions)))
+        on_feet = np.zeros((omega.size, self.n_ways, len(self.assembly.structure.reaction_nodes), 6))
+        for spring in system.support.springs:
+            f = self.assembly.structure.reaction_nodes.index(spring.node)
+            way = int(spring.matrix[2, 2] > 0.0)
+            x = shapes[self.assembly.dofs(spring.node)]
+            on_feet[:, way, f] = (spring.law.static_stiffness * np.diag(spring.matrix)[:, None] * x**2).T
+        found[:, : self.n_ways] = on_feet.sum(axis=(2, 3))
+        for j, one in enumerate(self.directions, start=self.n_ways):
+            if one.stiffness is not None:
+                found[:, j] += np.einsum("im,im->m", shapes, one.stiffness @ shapes)
+            if one.mass is not None:
+                found[:, j] -= omega**2 * np.einsum("im,im->m", shapes, one.mass @ shapes)
+            if one.feet is not None:
+                found[:, j] += (on_feet * one.feet).sum(axis=(1, 2, 3))
+        return found / (2.0 * omega[:, None] ** 2)
+
+
+@dataclass(frozen=True)
+class LikelyStructures:
+    """Structures that a record's frequencies leave likely: a normal distribution of their unknowns.
+
+    Attributes
+    ----------
+    model : StressModel
+    mean : (n,) ln k of the feet, then tolerances
+    covariance : (n, n)
+    ratios : {mode: damping ratio} as measured
+    """
+
+    model: StressModel
+    mean: FloatArray
+    covariance: FloatArray
+    ratios: Mapping[int, float]
+
+    def systems(self, number: int, *, seed: int = 0) -> tuple[System, ...]:
+        """Return the likeliest structure, then others as probable, in pairs about it."""
+        rng = np.random.default_rng(seed)
+        values, vectors = np.linalg.eigh(self.covariance)
+        root, found = vectors * np.sqrt(np.maximum(values, 0.0)), [self.mean]
+        while len(found) < number:
+            away = root @ rng.standard_normal(values.size)
+            found += [self.mean + away, self.mean - away]
+        return tuple(self.model.system(theta) for theta in found[:number])
+
+    def damped(self, motion: MotionModel) -> MotionModel:
+        """Return a model of the motion with the record's damping ratios, and a usual one of other modes."""
+        numbered, ratios = self.model.numbered, np.full(motion.n_modes, _USUAL_RATIO)
+        successor = track_modes(self.model.assembly.mass, numbered.omega, numbered.shapes, motion.shapes)
+        for mode, ratio in self.ratios.items():
+            if mode <= successor.size and successor[mode - 1] >= 0:
+                ratios[successor[mode - 1]] = ratio
+        return motion.with_ratios(ratios)
+
+
+def likely_structures(
+    model: StressModel, modes: Mapping[int, ModalEstimate], stiffness_n_m: float
+) -> LikelyStructures:
+    """Return the structures that modes of a record leave likely.
+
+    Parameters
+    ----------
+    modes : {number on pinned feet: as measured}
+    stiffness_n_m : of each foot, to start from
+    """
+    measured = {m: modes[m] for m in sorted(modes) if m <= min(_MODES, model.numbered.omega.size)}
+    k = np.log(stiffness_n_m) + _UPRIGHT * (np.arange(model.n_ways) - 0.5 * (model.n_ways - 1))
+    prior = np.concatenate([k, np.zeros(len(model.directions))])
+    P0 = np.eye(prior.size)
+    P0[: model.n_ways, : model.n_ways] *= _OWN_STD**2
+    P0[: model.n_ways, : model.n_ways] += _COMMON_STD**2
+    theta, P = prior, P0
+    for _ in range(_STEPS if measured else 0):
+        H, r, R = _misfit(model, theta, measured)
+        gain = P0 @ H.T @ np.linalg.inv(H @ P0 @ H.T + np.diag(R))
+        step = prior + gain @ (r + H @ (theta - prior)) - theta
+        theta = theta + step * min(1.0, _LONGEST_STEP / max(np.abs(step).max(), 1e-300))
+        P = P0 - gain @ H @ P0
+    return LikelyStructures(model, theta, P, {m: mode.damping_ratio for m, mode in measured.items()})
+
+
+def _misfit(
+    model: StressModel, theta: FloatArray, measured: Mapping[int, ModalEstimate]
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return slopes (m, n), what measured ln f exceed the model's by (m,), and their variances (m,)."""
+    system, numbered = model.system(theta), model.numbered
+    modes = undamped_modes(system, numbered.omega.size + _EXTRA)
+    successor = track_modes(model.assembly.mass, numbered.omega, numbered.shapes, modes.shapes)
+    known = [m for m in measured if successor[m - 1] >= 0]
+    at = successor[[m - 1 for m in known]] if known else np.zeros(0, dtype=np.intp)
+    H = model.slopes(system, modes.shapes[:, at], modes.omega[at])
+    r = np.array([np.log(measured[m].frequency_hz) for m in known]) - np.log(modes.frequency_hz[at])
+    own = [measured[m].log_covariance for m in known]
+    R = np.array([_REMAINDER**2 + (_REMAINDER**2 if c is None else float(c[0, 0])) for c in own])
+    return H, r, R

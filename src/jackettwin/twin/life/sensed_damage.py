@@ -1,0 +1,187 @@
+"""Damage of one record at the welds that it damages most, small enough to be kept of every record."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray, IntArray
+from jackettwin.fatigue import POSITIONS, SIDES, HotSpot, LifeModel, ModelsAtHeight, count
+from jackettwin.sensing import (
+    BAND_HZ,
+    MotionEstimate,
+    SensorReadings,
+    Weather,
+    motion_model,
+    moved,
+    sensed_model,
+    under,
+)
+from jackettwin.structure import Structure
+from jackettwin.twin.life.likely_structures import LikelyStructures
+from jackettwin.twin.life.weld_map import WeldMap, weld_map
+
+DAMAGE_UNIT = 1e-11
+"""Of damage: a weld that has this of a record lasts a million years."""
+KEPT = 16
+"""Sides of welds that are kept of a record."""
+_COUNTED = 24
+"""Sides of welds whose cycles are counted: those whose stress varies most, for its curve."""
+STEP = 0.02
+"""Of logarithms that are kept: a damage is known to a hundredth."""
+STRUCTURES, DRAWS = 3, 2
+"""Structures that count, and motions of each, in pairs about the likeliest."""
+
+
+@dataclass(frozen=True)
+class SensedDamage:
+    """Damage of a record by the design curve, as whole steps of logarithms; the worst side first.
+
+    Attributes
+    ----------
+    sides : (n,) 2 · weld + side (0 chord, 1 brace), welds in the order of the structure's joints
+    points : (n, 8) steps of ln(damage/DAMAGE_UNIT) at each point, 0 where there is less than that
+    unseen, model : (n,) steps of the standard deviation of ln damage: of what sensors do not see, and of
+        the structures that the record leaves likely
+    beyond : steps of what all points that are left out have at most
+    """
+
+    sides: IntArray
+    points: IntArray
+    unseen: IntArray
+    model: IntArray
+    beyond: int = 0
+
+
+def damage_of(steps: IntArray | int) -> FloatArray:
+    """Return the damage that steps tell, in :data:`DAMAGE_UNIT`; zero for none."""
+    return np.asarray(np.where(np.greater(steps, 0), np.exp(STEP * np.asarray(steps)), 0.0))
+
+
+def steps_of(damage: FloatArray) -> IntArray:
+    """Return damage in steps."""
+    more = np.maximum(damage / DAMAGE_UNIT, 1.0)
+    return np.asarray(np.rint(np.log(more) / STEP), dtype=np.intp)
+
+
+def sensed_damage(
+    likely: LikelyStructures,
+    readings: SensorReadings,
+    weather: Weather,
+    *,
+    structures: int = STRUCTURES,
+    draws: int = DRAWS,
+) -> SensedDamage | None:
+    """Return the damage of a record at the worst of a structure's welds; None without welds of tubes.
+
+    Levels of the forces are found once, on the likeliest structure; others have those that are as probable.
+
+    Raises
+    ------
+    InputError
+        If no tube reaches into the water.
+    NumericalError
+        If the filter does not come to rest.
+    """
+    first, *others = likely.systems(structures)
+    motion = likely.damped(sensed_model(first, weather))
+    estimate = moved(motion, readings, draws=len(others))
+    charts, estimates = [weld_map(first, estimate.model, likely.model.dry)], [estimate]
+    for system, forces in zip(others, estimate.levels.others, strict=True):
+        model = likely.damped(motion_model(system, forces, below_hz=BAND_HZ))
+        estimates.append(under(model, readings, estimate.levels))
+        charts.append(weld_map(system, model, likely.model.dry))
+    curves = _Curves.of(likely.model.assembly.structure, charts[0], likely.model.settings.models)
+    sides, guessed, largest_left = curves.worst(charts[0], estimate)
+    damage = np.array(
+        [
+            [curves.damage(chart, motion, sides) for motion in one.draws(draws, seed=k)]
+            for k, (one, chart) in enumerate(zip(estimates, charts, strict=True))
+        ]
+    )
+    worst = damage.mean(axis=(0, 1)).max(axis=1)
+    return _kept(sides, damage, largest_left * float((worst / guessed).max(initial=0.0)))
+
+
+def _kept(sides: IntArray, damage: FloatArray, bound: float) -> SensedDamage:
+    """Return what is kept of damages (n_structures, n_draws, n_sides, 8) of the sides that were counted."""
+    mean = damage.mean(axis=(0, 1))
+    order = np.argsort(-mean.max(axis=1), kind="stable")
+    kept, rest = order[:KEPT], order[KEPT:]
+    kept = kept[mean[kept].max(axis=1) >= DAMAGE_UNIT]
+    at = mean[kept].argmax(axis=1)
+    logs = np.log(np.maximum(damage[:, :, kept, at], DAMAGE_UNIT))
+    unseen = logs.std(axis=1, ddof=1).mean(axis=0) if logs.shape[1] > 1 else np.zeros(kept.size)
+    model = logs.mean(axis=1).std(axis=0, ddof=1) if len(logs) > 1 else np.zeros(kept.size)
+    model = np.sqrt(np.maximum(model**2 - unseen**2 / logs.shape[1], 0.0))
+    left = max(bound, float(mean[rest].max(initial=0.0)))
+    by_chance, shared = (np.rint(std / STEP).astype(np.intp) for std in (unseen, model))
+    return SensedDamage(sides[kept], steps_of(mean[kept]), by_chance, shared, int(steps_of(np.array(left))))
+
+
+@dataclass(frozen=True)
+class _Curves:
+    """The curve and thickness of every side of every weld; the joint it is of."""
+
+    models: tuple[LifeModel, ...]
+    thickness_m: FloatArray
+    joint: IntArray
+
+    @classmethod
+    def of(cls, structure: Structure, chart: WeldMap, models: ModelsAtHeight) -> _Curves:
+        """Return those of a structure's welds."""
+        welds = welds_of(chart)
+        at = [models(structure.nodes[w.node][2] - structure.sea_level_z_m)[1] for w in welds]
+        joint = np.repeat(np.arange(len(chart.joints)), [len(j.welds) for j in chart.joints])
+        return cls(tuple(at), np.array([w.thickness_m for w in welds]), joint)
+
+    def worst(self, chart: WeldMap, estimate: MotionEstimate) -> tuple[IntArray, FloatArray, float]:
+        """Return the sides that vary most for their curves, what one cycle does to them, and to the next."""
+        motion = estimate.mean()
+        seen = np.cov(motion.T) + estimate.covariance
+        size = np.concatenate([_spread(chart, j, seen) for j in range(len(chart.joints))])
+        per_cycle = np.array(
+            [
+                [
+                    model.curve.damage(_TYPICAL * size[w, s : s + 1], np.ones(1), thickness_m=t)
+                    for s, t in enumerate(self.thickness_m[w])
+                ]
+                for w, model in enumerate(self.models)
+            ]
+        ).ravel()
+        order = np.argsort(-per_cycle, kind="stable")
+        chosen, rest = order[:_COUNTED], order[_COUNTED:]
+        return chosen, np.maximum(per_cycle[chosen], 1e-300), float(per_cycle[rest].max(initial=0.0))
+
+    def damage(self, chart: WeldMap, motion: FloatArray, sides: IntArray) -> FloatArray:
+        """Return the damage (n_sides, 8) of a motion at the points of some sides."""
+        welds, found = sides // len(SIDES), np.zeros((sides.size, len(POSITIONS)))
+        first = np.concatenate([[0], np.cumsum(np.bincount(self.joint))])
+        for joint in np.unique(self.joint[welds]):
+            stress = chart.stress(int(joint), motion)
+            for i in np.flatnonzero(self.joint[welds] == joint):
+                w, s = divmod(int(sides[i]), len(SIDES))
+                curve, t = self.models[w].curve, float(self.thickness_m[w, s])
+                for p, series in enumerate(stress[w - first[joint], s]):
+                    cycles = count(series)
+                    found[i, p] = curve.damage(cycles.ranges, cycles.numbers, thickness_m=t)
+        return found
+
+
+_TYPICAL = 3.5
+"""Ranges over standard deviations that do most damage: to choose welds with alone."""
+
+
+def _spread(chart: WeldMap, joint: int, covariance: FloatArray) -> FloatArray:
+    """Return the largest standard deviation (n_welds, 2) of the points of a joint, as if of a K, Y or X."""
+    rows = chart.rows[joint]
+    between = rows @ covariance @ rows.transpose(0, 2, 1)
+    matrices = np.array([weld.matrices for weld in chart.joints[joint].welds])
+    square = np.einsum("wkspi,wij,wkspj->wksp", matrices, between, matrices)
+    return np.asarray(np.sqrt(square.max(axis=(1, 3))))
+
+
+def welds_of(chart: WeldMap) -> tuple[HotSpot, ...]:
+    """Return all welds in their order."""
+    return tuple(weld for joint in chart.joints for weld in joint.welds)

@@ -1,0 +1,74 @@
+"""Stress at every weld of a structure from a motion of its model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from jackettwin.arrays import FloatArray
+from jackettwin.checks import joint_plans
+from jackettwin.errors import require
+from jackettwin.fatigue import Cycles, JointStresses, count, joint_stresses
+from jackettwin.response import System, self_weight, static_displacement
+from jackettwin.sensing import MotionModel, section_rows
+from jackettwin.structure import Assembly, element_weight, section_forces
+
+_YIELD_PA = 355e6
+"""Yield strength that the design of joints requires and fatigue does not use."""
+
+
+@dataclass(frozen=True)
+class WeldMap:
+    """Stress at every weld from the coordinates of a motion.
+
+    Attributes
+    ----------
+    joints : tuple of JointStresses
+    rows : for every joint, (n_braces, 3, n_coordinates) nominal stress at unit coordinates
+    at_rest : for every joint, (n_braces, 3) nominal stress under the steel's weight
+    """
+
+    joints: tuple[JointStresses, ...]
+    rows: tuple[FloatArray, ...]
+    at_rest: tuple[FloatArray, ...]
+
+    def stress(self, joint: int, motion: FloatArray) -> FloatArray:
+        """Return stresses (n_braces, 2, 8, n) [Pa] of a joint in a motion (n, n_coordinates)."""
+        nominal = self.rows[joint] @ motion.T + self.at_rest[joint][:, :, None]
+        return self.joints[joint].stress_under(nominal)
+
+    def cycles(self, motion: FloatArray) -> list[list[list[Cycles]]]:
+        """Return the cycles at (welds, 2 sides, 8 points) of a motion."""
+        return [
+            [[count(series) for series in side] for side in weld]
+            for joint in range(len(self.joints))
+            for weld in self.stress(joint, motion)
+        ]
+
+
+def planned_joints(assembly: Assembly) -> tuple[JointStresses, ...]:
+    """Return the joints of tubes of a structure with their welds; none where no brace stands on a chord."""
+    return joint_stresses(assembly.structure, joint_plans(assembly, _YIELD_PA))
+
+
+def weld_map(system: System, model: MotionModel, dry: Assembly) -> WeldMap:
+    """Return the map from a motion of the model to the stresses of the structure's welds.
+
+    Parameters
+    ----------
+    dry : the assembly with the steel's mass only, whose weight divides forces between K, Y and X joints
+
+    Raises
+    ------
+    InputError
+        If no brace is welded to a chord.
+    """
+    joints = planned_joints(model.assembly)
+    require(joints, "no brace is welded to a chord", field="structure", remedy="joints of tubes are checked")
+    weight = static_displacement(system, self_weight(dry))
+    still = section_forces(model.assembly, weight[None], along=element_weight(dry)[None])
+    moving = section_rows(model)
+    return WeldMap(
+        joints,
+        tuple(joint.nominal(model.assembly, moving) for joint in joints),
+        tuple(joint.nominal(model.assembly, still)[:, :, 0] for joint in joints),
+    )

@@ -1,0 +1,138 @@
+"""Damage of a record at the welds, and its sums in the state."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from observations import estimate, observation
+
+from jackettwin.decks import read_structure
+from jackettwin.response import undamped_modes
+from jackettwin.structure import Rayleigh, assemble
+from jackettwin.twin import (
+    DAMAGE_UNIT,
+    OBSERVATION,
+    STATE,
+    LifeSettings,
+    Observation,
+    StressModel,
+    TwinState,
+    advance_all,
+)
+from jackettwin.twin.life.damage_sums import weld_sums
+from jackettwin.twin.life.likely_structures import likely_structures
+from jackettwin.twin.life.sensed_damage import STEP, SensedDamage, damage_of, steps_of
+from jackettwin.updating import Direction, Tolerance, numbered_modes
+
+NOON = datetime(2025, 3, 1, 12, tzinfo=UTC)
+
+
+def damaged(k: int, rng: np.random.Generator) -> Observation:
+    """Return the observation of a record that names some of thirty sides."""
+    sides = np.sort(rng.choice(30, 5, replace=False))
+    damage = SensedDamage(
+        sides, rng.integers(0, 900, (5, 8)), rng.integers(0, 20, 5), rng.integers(0, 30, 5), 300
+    )
+    made = observation(
+        {1: estimate(0.18, 0.01)}, NOON + timedelta(hours=7 * k), name=f"r{k}",
+        conditions={"state": "parked" if k % 3 else "idling"},
+    )  # fmt: skip
+    return replace(made, damage=damage)
+
+
+@pytest.fixture(scope="module")
+def records() -> list[Observation]:
+    rng = np.random.default_rng(3)
+    return [damaged(k, rng) for k in range(12)]
+
+
+def test_damage_is_kept_to_a_hundredth_in_a_kilobyte() -> None:
+    """Sixteen sides of eight points: half a step of the logarithm is all that is lost."""
+    rng = np.random.default_rng(0)
+    damage = 10.0 ** rng.uniform(-10.5, -4.0, (16, 8))
+    assert_allclose(DAMAGE_UNIT * damage_of(steps_of(damage)), damage, rtol=np.expm1(0.5 * STEP) * 1.01)
+    assert damage_of(steps_of(np.array([0.5 * DAMAGE_UNIT]))) == 0.0
+    kept = SensedDamage(np.arange(16), steps_of(damage), np.full(16, 20), np.full(16, 30), 500)
+    made = replace(observation({1: estimate(0.18, 0.01)}, NOON), damage=kept)
+    document = OBSERVATION.dump(made)
+    assert len(json.dumps(document["damage"])) < 1024
+    again = OBSERVATION.load(json.loads(json.dumps(document)))
+    assert again.damage is not None
+    assert weld_sums(again.damage) == weld_sums(kept)
+
+
+def test_sums_are_the_same_in_any_order_and_add_points_apart(records: list[Observation]) -> None:
+    """Bit for bit; and the sum of a side is that of each point over the records that name it."""
+    one, _ = advance_all(TwinState("model"), records)
+    other, _ = advance_all(TwinState("model"), [*records[::-1], records[3]])
+    assert other.state_hash == one.state_hash
+    total = one.totals["all"]
+    for side, sums in total.welds.items():
+        own = [(r.damage.points[list(r.damage.sides).index(side)]) for r in records if side in r.damage.sides]
+        assert_allclose(sums.points, np.sum([damage_of(p) for p in own], axis=0), atol=0.5 * len(own))
+        assert sums.n == len(own)
+    assert total.sensed.n == 12 and total.sensed.seconds == 7200
+
+
+def test_a_day_taken_out_leaves_what_the_others_say(records: list[Observation]) -> None:
+    whole, _ = advance_all(TwinState("model"), records)
+    date = "2025-03-02"
+    fewer, _ = advance_all(TwinState("model"), [r for r in records if f"{r.start_utc:%Y-%m-%d}" != date])
+    assert whole.without_day(date).state_hash == fewer.state_hash
+    replayed = whole.with_day(date, whole.days[date])
+    assert replayed.totals == whole.totals
+
+
+def test_states_with_damage_are_read_again(records: list[Observation]) -> None:
+    state, _ = advance_all(TwinState("model"), records)
+    assert STATE.load(json.loads(json.dumps(STATE.dump(state)))).state_hash == state.state_hash
+
+
+def test_records_without_damage_tell_no_time() -> None:
+    state, _ = advance_all(TwinState("model"), [observation({1: estimate(0.18, 0.01)}, NOON)])
+    assert state.totals["all"].sensed == (0, 0, 0)
+
+
+@pytest.fixture(scope="module")
+def stress_model() -> StressModel:
+    structure = read_structure("jacket15")
+    assembly = assemble(structure, gravity=True)
+    heavier = Tolerance("mass", "all of the mass", 0.02, "-", "", "")
+    return StressModel(
+        LifeSettings(), assembly, assemble(structure), Rayleigh.minimum(0.005, 0.3),
+        numbered_modes(assembly, 12), (Direction(heavier, 0.02 * assembly.mass),),
+    )  # fmt: skip
+
+
+def test_a_records_frequencies_tell_the_feet(stress_model: StressModel) -> None:
+    """From feet six times too stiff; the interval holds both truths, and mass goes unexplained."""
+    true = np.log([1.5e9, 4.0e9])
+    modes = undamped_modes(stress_model.system(np.append(true, 0.0)), 5)
+    seen = {m + 1: estimate(float(f), 0.01, 1e-3) for m, f in enumerate(modes.frequency_hz)}
+    found = likely_structures(stress_model, seen, 1e10)
+    std = np.sqrt(np.diag(found.covariance))
+    assert (np.abs(found.mean[:2] - true) < 2.0 * std[:2]).all()
+    assert std[1] < 0.5 and abs(found.mean[2]) < 1.0
+
+
+def test_slopes_are_differences_of_frequencies(stress_model: StressModel) -> None:
+    """Every unknown by a small step; a turned sign or a lost half would show."""
+    at, h = np.array([*np.log([1.5e9, 4.0e9]), 0.3]), 1e-4
+    modes = undamped_modes(stress_model.system(at), 2)
+    slopes = stress_model.slopes(stress_model.system(at), modes.shapes, modes.omega)
+    for j in range(3):
+        step = h * np.eye(3)[j]
+        ahead, behind = (undamped_modes(stress_model.system(at + s), 2).omega for s in (step, -step))
+        assert_allclose(slopes[:, j], np.log(ahead / behind) / (2.0 * h), rtol=1e-4, atol=1e-9)
+
+
+def test_likely_structures_come_in_pairs_about_the_likeliest(stress_model: StressModel) -> None:
+    seen = {1: estimate(0.17, 0.01), 2: estimate(0.175, 0.012)}
+    found = likely_structures(stress_model, seen, 1e9)
+    first, one, other = (undamped_modes(s, 1).frequency_hz[0] for s in found.systems(3, seed=1))
+    assert (one - first) * (other - first) < 0.0
