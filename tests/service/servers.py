@@ -78,8 +78,9 @@ def found(program: str) -> str:
 class Database:
     """A PostgreSQL in a folder of its own, to be started, stopped and killed."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, **settings: str) -> None:
         self.data, self.port, self.log = folder / "data", free_port(), folder / "postgresql.log"
+        self._settings = settings
         self.url = f"postgresql+psycopg://postgres@127.0.0.1:{self.port}/postgres"
         self._as_user = ["runuser", "-u", "postgres", "--"] if os.geteuid() == 0 else []
         self._process: subprocess.Popen[bytes] | None = None
@@ -96,6 +97,7 @@ class Database:
         (self.data / "postmaster.pid").unlink(missing_ok=True)
         arguments = ["-D", str(self.data), "-p", str(self.port), "-k", "", "-h", "127.0.0.1"]
         arguments += ["-c", "fsync=off"]  # we kill it, not the machine it runs on
+        arguments += [word for name, value in self._settings.items() for word in ("-c", f"{name}={value}")]
         with self.log.open("ab") as log:
             self._process = subprocess.Popen(
                 [server, *arguments], stdout=log, stderr=log, cwd="/", user=self._user()

@@ -1,6 +1,7 @@
 """A backup restores into either kind of database; a damaged one restores nothing."""
 
-from datetime import UTC, datetime
+import tarfile
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import numpy as np
@@ -120,3 +121,65 @@ def test_a_failed_restore_leaves_no_store_behind(tmp_path: Path) -> None:
     found = CliRunner().invoke(restore_command, [str(tmp_path / "none.tar.gz"), str(tmp_path / "new")])
     assert isinstance(found.exception, InputError)
     assert not (tmp_path / "new").exists()
+
+
+def test_backups_that_follow_one_another_are_the_store_again(database: Engine, tmp_path: Path) -> None:
+    """Observations that changed, went or came since; waveforms that came or were pruned."""
+    store, new = tmp_path / "a", tmp_path / "b"
+    filled(database, store)
+
+    def put(day: int, text: str, number: str = "ab12") -> None:
+        at = NOW + timedelta(days=day)
+        seen = results.StoredObservation("wtg", "m", "s", f"{number}{day}", at, "1", text)
+        with writing(database) as c:
+            results.put_observation(c, seen, [], [])
+
+    def waveform(number: str) -> Path:
+        place = waveform_path("wtg", NOW, number)
+        write_waveform(Record(np.ones((1, 9)), 1.0, (Channel("a"),), NOW), store / place)
+        with writing(database) as c:
+            about = (NOW, 9.0, 1.0, [], {}, "f", NOW, place, 1)
+            records.add_record(c, records.StoredRecord("wtg", number, "received", *about))
+        return store / place
+
+    files = [tmp_path / f"{k}.tar.gz" for k in range(3)]
+    for day in range(3):
+        put(day, f'{{"day": {day}}}')
+    backup(database, store, files[0])
+    put(1, '{"day": "another"}')
+    put(3, '{"day": 3}')
+    waveform("cd34")
+    backup(database, store, files[1], files[0])
+    with writing(database) as c:
+        results.drop_observation(c, "wtg", "m", "ab122")
+        record = records.find_record(c, "wtg", "cd34")
+        records.forget_samples(c, record)
+    waveform("ef56")
+    put(1, '{"day": 1}')  # as it was at first
+    backup(database, store, files[2], files[1])
+    sizes = [sum(m.name.startswith("records/") for m in tarfile.open(f).getmembers()) for f in files]
+    assert sizes == [1, 1, 1]
+    with tarfile.open(files[2]) as archive:
+        assert archive.extractfile("tables/observations.jsonl").read().count(b"\n") == 1
+    other = open_database(f"sqlite:///{tmp_path / 'other.sqlite'}")
+    restore(files[2], other, new, files[:2])
+    with database.connect() as one, other.connect() as two:
+        for table in (tables.observations, tables.records, tables.events):
+            rows = select(table).order_by(*table.primary_key.columns)
+            assert one.execute(rows).all() == two.execute(rows).all(), table.name
+    kept = {p.name for p in new.rglob("*.parquet")}
+    assert kept == {"ab12.parquet", "ef56.parquet"}
+    other.dispose()
+    for wrong in ([files[1]], [files[0]], [files[1], files[0]], []):
+        empty = open_database(f"sqlite:///{tmp_path / f'{len(wrong)}{wrong and wrong[0].stem}.sqlite'}")
+        with pytest.raises(InputError, match="does not follow"):
+            restore(files[2], empty, tmp_path / "c", wrong)
+        empty.dispose()
+
+
+def test_what_is_no_backup_is_followed_by_none(database: Engine, tmp_path: Path) -> None:
+    filled(database, tmp_path / "a")
+    (tmp_path / "x.tar.gz").write_text("no archive")
+    with pytest.raises(InputError, match="another one can follow"):
+        backup(database, tmp_path / "a", tmp_path / "y.tar.gz", tmp_path / "x.tar.gz")
+    assert not (tmp_path / "y.tar.gz").exists()

@@ -14,9 +14,15 @@ from jackettwin.cli.store_options import StorePlace, database_option
 @click.command("restore")
 @click.argument("file", type=click.Path(path_type=Path, exists=True, dir_okay=False))
 @click.argument("store", type=click.Path(path_type=Path, file_okay=False))
+@click.option(
+    "--earlier",
+    multiple=True,
+    type=click.Path(path_type=Path, exists=True, dir_okay=False),
+    help="A backup that FILE follows, the whole one first; again for each.",
+)
 @database_option
 @answers
-def restore_command(file: Path, store: Path, database: str | None) -> Reply:
+def restore_command(file: Path, store: Path, earlier: tuple[Path, ...], database: str | None) -> Reply:
     """Fill the empty STORE from a backup FILE.
 
     It is filled completely or not at all.
@@ -27,7 +33,7 @@ def restore_command(file: Path, store: Path, database: str | None) -> Reply:
 
     messages.print("reading tables and samples …")
     try:
-        counts = restore(file, engine, store)
+        counts = restore(file, engine, store, earlier)
     except BaseException:
         engine.dispose()
         if made:

@@ -1,6 +1,8 @@
 """Backup of a whole store in one file: every table as lines of JSON, every waveform, one manifest.
 
-The format is the same for SQLite and PostgreSQL, so that a backup of one can be restored into the other.
+The format is the same for SQLite and PostgreSQL, so that a backup of one can be restored into the other. A backup
+since an earlier one leaves out what that one has of what is large: waveforms, and the observations of days
+that have not changed. What there is in all stands in ``contents.txt``, in order, at the head of each.
 """
 
 from __future__ import annotations
@@ -10,13 +12,14 @@ import io
 import json
 import tarfile
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence, Set
 from datetime import UTC, datetime
-from itertools import islice
+from itertools import groupby, islice
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import IO, Any
 
 from sqlalchemy import (
+    Column,
     Connection,
     DateTime,
     Engine,
@@ -33,46 +36,77 @@ from sqlalchemy import (
 from jackettwin.errors import InputError
 from jackettwin.files import atomic_path
 from jackettwin.store import tables
+from jackettwin.store.backup_chain import CONTENTS, checked_chain, earlier_contents, identity_of, lines_not_in
 from jackettwin.store.database import bring_to, check_schema, writing
 from jackettwin.store.tables import SCHEMA_VERSION, Packed
 
 _LEFT_OUT = ("servers", "alembic_version")
 """Tables without a backup: the list of servers, since leases are released after a restore, and the schema."""
+_DAY, _WAVEFORM = b"o\t", b"w\t"
+"""What lines of the contents begin with: a day of observations with its hash, a waveform."""
 _ROWS = 500
 """Number of rows that are inserted at once."""
 
 
-def backup(database: Engine, store: Path, target: Path) -> dict[str, int]:
+def backup(database: Engine, store: Path, target: Path, since: Path | None = None) -> dict[str, int]:
     """Write a store to a file, completely or not at all; return the number of rows of each table.
 
     Tables are read in one transaction, while the store may be served. Waveforms never change after writing,
-    so that those in the tables are consistent.
+    so that those in the tables are consistent. No table is in memory as a whole.
+
+    Parameters
+    ----------
+    since : an earlier backup, which is needed, too, to restore this one
+
+    Raises
+    ------
+    InputError
+        If the earlier file is no backup that another one can follow.
     """
     counts: dict[str, int] = {}
     with (
         atomic_path(target, mode=0o600) as temporary,  # it contains hashes of passwords
         database.connect() as connection,
-        tarfile.open(temporary, "w:gz") as out,
+        tarfile.open(temporary, "w:gz", compresslevel=6) as out,
+        tempfile.TemporaryFile() as contents,
+        tempfile.TemporaryFile() as new,
     ):
         if connection.dialect.name == "postgresql":
             connection.execution_options(isolation_level="REPEATABLE READ")
+        contents.writelines(_contents(connection))
+        _add_stream(out, CONTENTS, contents)
+        contents.seek(0)
+        identity = identity_of(contents)
+        contents.seek(0)
+        with earlier_contents(since) as (before, of):
+            new.writelines(lines_not_in(contents, before))
+        new.seek(0)
+        days = {line.split(b"\t")[1].decode() for line in new if line.startswith(_DAY)}
         for table in _tables():
-            counts[table.name] = _add_table(out, connection, table)
-        for place in connection.scalars(select(tables.records.c.waveform).execution_options(yield_per=_ROWS)):
-            if place is not None and (store / place).exists():
+            only = days if table is tables.observations else None
+            counts[table.name] = _add_table(out, connection, table, only)
+        new.seek(0)
+        for line in new:
+            place = line.rstrip(b"\n").split(b"\t")[1].decode()
+            if line.startswith(_WAVEFORM) and (store / place).exists():
                 out.add(store / place, arcname=place, recursive=False)
-        manifest = {"schema_version": SCHEMA_VERSION, "tables": counts}
+        manifest = {"schema_version": SCHEMA_VERSION, "tables": counts, "contents": identity, "since": of}
         _add(out, "manifest.json", json.dumps(manifest).encode())
     return counts
 
 
-def restore(source: Path, database: Engine, store: Path) -> dict[str, int]:
+def restore(source: Path, database: Engine, store: Path, earlier: Sequence[Path] = ()) -> dict[str, int]:
     """Fill an empty store from a backup, completely or not at all; return the number of rows of each table.
+
+    Parameters
+    ----------
+    earlier : the backups that it follows, oldest first, the first of them a whole one
 
     Raises
     ------
     InputError
-        If the file is not a backup, has another schema or is damaged, or the store is not empty.
+        If the file is no backup, of another schema, damaged, does not follow the earlier ones, or the store
+        holds something already.
     """
     counts: dict[str, int] = {}
     with writing(database) as connection:
@@ -81,15 +115,22 @@ def restore(source: Path, database: Engine, store: Path) -> dict[str, int]:
                 "the store is not empty", field="store", value=str(store), remedy="restore into a new folder"
             )
         try:
+            days = checked_chain([*earlier, source])
             with tarfile.open(source, "r:gz") as archive:
                 schema = _schema(archive, source)
                 bring_to(connection, schema)
                 for table in _tables_of(connection):
-                    counts[table.name] = _insert(connection, table, archive)
+                    counts[table.name] = _insert(connection, table, archive, days.get(source))
+                seen = tables.observations.name
+                for file in earlier:
+                    with tarfile.open(file, "r:gz") as older:
+                        observations = next(t for t in _tables_of(connection) if t.name == seen)
+                        counts[seen] += _insert(connection, observations, older, days[file])
                 bring_to(connection, SCHEMA_VERSION)
-                for member in archive:
-                    if member.name.startswith("records/"):
-                        _extract(archive, member, store)
+                _extract_all(archive, connection, store)
+            for file in earlier:
+                with tarfile.open(file, "r:gz") as older:
+                    _extract_all(older, connection, store)
         except (tarfile.TarError, EOFError, OSError, KeyError, ValueError) as error:
             raise InputError(
                 "not a complete backup", file=source, value=str(error)[:200], remedy="take another backup"
@@ -102,26 +143,61 @@ def _tables() -> list[Table]:
     return [table for table in tables.metadata.sorted_tables if table.name not in _LEFT_OUT]
 
 
-def _add_table(archive: tarfile.TarFile, connection: Connection, table: Table) -> int:
-    """Write the rows of a table through a temporary file, since a table may not fit into memory."""
-    count = 0
+def _contents(connection: Connection) -> Iterator[bytes]:
+    """Yield what is large, a line each, in order: days of observations with their hash, then waveforms."""
+    lines = _lines(connection, tables.observations, (*_DAY_KEY, tables.observations.c.record_id))
+    days = []
+    for day, of_day in groupby(lines, lambda found: found[0]):
+        days.append(_DAY + f"{day}\t{identity_of(line for _, line in of_day)}\n".encode())
+    yield from sorted(days)
+    kept = tables.records.c.waveform
+    in_order = kept.collate("C") if connection.dialect.name == "postgresql" else kept  # as bytes are
+    places = select(kept).where(kept.is_not(None)).order_by(in_order).execution_options(yield_per=_ROWS)
+    for place in connection.scalars(places):
+        yield _WAVEFORM + f"{place}\n".encode()
+
+
+_DAY_KEY = (
+    tables.observations.c.asset,
+    tables.observations.c.model_hash,
+    tables.observations.c.start_utc,
+)
+
+
+def _day_of(row: Mapping[str, Any]) -> str:
+    """Return which day of whom an observation is of, under which model."""
+    return f"{row['asset']} {row['model_hash']} {row['start_utc'][:10]}"
+
+
+def _add_table(archive: tarfile.TarFile, connection: Connection, table: Table, only: Set[str] | None) -> int:
+    """Write the rows of a table by way of a file of their own; of observations those of some days."""
     with tempfile.TemporaryFile() as lines:
-        for line in _lines(connection, table):
-            lines.write(line)
-            count += 1
-        member = tarfile.TarInfo(f"tables/{table.name}.jsonl")
-        member.size = lines.tell()
-        lines.seek(0)
-        archive.addfile(member, lines)
+        count = 0
+        for day, line in _lines(connection, table, tuple(table.primary_key.columns)):
+            if only is None or day in only:
+                lines.write(line)
+                count += 1
+        _add_stream(archive, f"tables/{table.name}.jsonl", lines)
     return count
 
 
-def _lines(connection: Connection, table: Table) -> Iterator[bytes]:
+def _add_stream(archive: tarfile.TarFile, name: str, stream: IO[bytes]) -> None:
+    member = tarfile.TarInfo(name)
+    member.size = stream.tell()
+    stream.seek(0)
+    archive.addfile(member, stream)
+
+
+def _lines(
+    connection: Connection, table: Table, order: tuple[Column[Any], ...]
+) -> Iterator[tuple[str, bytes]]:
+    """Yield the rows of a table as lines, each with the day that it is of if they are observations."""
     stored = [type_coerce(c, LargeBinary).label(c.name) if isinstance(c.type, Packed) else c for c in table.c]
-    rows = select(*stored).order_by(*table.primary_key.columns).execution_options(yield_per=_ROWS)
+    rows = select(*stored).order_by(*order).execution_options(yield_per=_ROWS)
     for row in connection.execute(rows):
         plain = {name: _plain(value) for name, value in row._mapping.items()}
-        yield json.dumps(plain, ensure_ascii=False).encode() + b"\n"
+        day = _day_of(plain) if table is tables.observations else ""
+        yield day, json.dumps(plain, ensure_ascii=False).encode() + b"\n"
 
 
 def _plain(value: Any) -> Any:
@@ -159,13 +235,26 @@ def _tables_of(connection: Connection) -> list[Table]:
     return there.sorted_tables
 
 
-def _insert(connection: Connection, table: Table, archive: tarfile.TarFile) -> int:
+def _insert(connection: Connection, table: Table, archive: tarfile.TarFile, days: Set[str] | None) -> int:
+    """Insert the rows of a table; of observations those of some days, None for all."""
     stream = archive.extractfile(f"tables/{table.name}.jsonl")
     rows, count = (json.loads(line) for line in stream or ()), 0
+    if table.name == tables.observations.name and days is not None:
+        rows = (row for row in rows if _day_of(row) in days)
     while part := [{k: _value(table, k, v) for k, v in row.items()} for row in islice(rows, _ROWS)]:
         connection.execute(insert(table), part)
         count += len(part)
     return count
+
+
+def _extract_all(archive: tarfile.TarFile, connection: Connection, store: Path) -> None:
+    """Write the waveforms that a restored record names, each once."""
+    for member in archive:
+        if member.name.startswith("records/"):
+            number = PurePosixPath(member.name).stem
+            named = select(tables.records.c.waveform).where(tables.records.c.record_id == number)
+            if member.name in connection.scalars(named).all() and not (store / member.name).exists():
+                _extract(archive, member, store)
 
 
 def _extract(archive: tarfile.TarFile, member: tarfile.TarInfo, store: Path) -> None:
