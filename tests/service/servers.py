@@ -103,7 +103,21 @@ class Database:
                 [server, *arguments], stdout=log, stderr=log, cwd="/", user=self._user()
             )
         wait_for_port(self.port, 120.0)
-        time.sleep(0.5)  # it listens a moment before it answers
+        self._wait_until_it_answers(120.0)
+
+    def _wait_until_it_answers(self, seconds: float) -> None:
+        """Wait: it listens a while before it answers, and longer if it recovers."""
+        import psycopg
+
+        end = time.monotonic() + seconds
+        while True:
+            try:
+                psycopg.connect(self.url.replace("+psycopg", "")).close()
+                return
+            except psycopg.OperationalError:
+                if time.monotonic() > end:
+                    raise
+                time.sleep(0.1)
 
     def _let_in(self) -> None:
         """Let PostgreSQL, which refuses to run as root, reach its folder.

@@ -157,6 +157,7 @@ def test_the_unit_file_serves_and_every_kind_of_work_is_done(store: Path) -> Non
         finally:
             with suppress(ProcessLookupError):
                 process.kill()
+    assert "Matplotlib created a temporary" not in (store.parent / "log").read_text()
     owners = {path.stat().st_uid for path in store.rglob("*")}
     assert owners == {NOBODY}
     assert not any(path.stat().st_mode & 0o077 for path in (store, *store.glob("*.sqlite*")))

@@ -74,6 +74,16 @@ Place = OpenStore | Service
 """Context for storing results: location of the store, its database, and the time."""
 
 
+def _keep_caches(folder: Path) -> None:
+    """Have workers keep what they compile, and what they know of fonts, in the store if nowhere else."""
+    if not os.access(Path(__file__).parent, os.W_OK):
+        os.environ.setdefault("NUMBA_CACHE_DIR", str(folder))
+    if not os.access(Path.home(), os.W_OK):
+        fonts = folder / "matplotlib"
+        fonts.mkdir(parents=True, exist_ok=True)
+        os.environ.setdefault("MPLCONFIGDIR", str(fonts))
+
+
 def open_service(settings: ServiceSettings) -> Service:
     """Open the database and start the workers.
 
@@ -83,10 +93,7 @@ def open_service(settings: ServiceSettings) -> Service:
         If the database cannot be opened.
     """
     private_folder(settings.store)
-    if not os.access(
-        Path(__file__).parent, os.W_OK
-    ):  # the default cache is next to the code; home folders may not be writable
-        os.environ.setdefault("NUMBA_CACHE_DIR", str(settings.store / "cache"))
+    _keep_caches(settings.store / "cache")
     for folder in (settings.spool, settings.models):
         folder.mkdir(parents=True, exist_ok=True)
     database = open_database(settings.database_url)

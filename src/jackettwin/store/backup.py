@@ -1,6 +1,6 @@
 """Backup of a whole store in one file: every table as lines of JSON, every waveform, one manifest.
 
-The format is the same for SQLite and PostgreSQL, so that a backup of one can be restored into the other. A backup
+The format is the same for SQLite and PostgreSQL, so that one restores into the other. A backup
 since an earlier one leaves out what that one has of what is large: waveforms, and the observations of days
 that have not changed. What there is in all stands in ``contents.txt``, in order, at the head of each.
 """
