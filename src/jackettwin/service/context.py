@@ -78,7 +78,7 @@ def _keep_caches(folder: Path) -> None:
     """Have workers keep what they compile, and what they know of fonts, in the store if nowhere else."""
     if not os.access(Path(__file__).parent, os.W_OK):
         os.environ.setdefault("NUMBA_CACHE_DIR", str(folder))
-    if not os.access(Path.home(), os.W_OK):
+    if not os.access(os.path.expanduser("~"), os.W_OK):
         fonts = folder / "matplotlib"
         fonts.mkdir(parents=True, exist_ok=True)
         os.environ.setdefault("MPLCONFIGDIR", str(fonts))

@@ -26,6 +26,7 @@ from jackettwin.service.context import Service, open_service
 from jackettwin.service.intake.files import Accepted, parse_here, take_file
 from jackettwin.service.intake.folder import watch_folders
 from jackettwin.service.intake.mqtt import MqttIntake
+from jackettwin.service.intake.opcua import OpcUaIntake
 from jackettwin.service.settings import ServiceSettings, refuse_exposed
 from jackettwin.service.systemd import tell_systemd
 from jackettwin.service.web.app import create_app
@@ -66,14 +67,24 @@ def running(settings: ServiceSettings) -> Iterator[Service]:
         dispatcher, stop = Dispatcher(service), Event()
         service.wake, service.turning = dispatcher.wake.set, lambda: dispatcher.turning
         in_the_end.callback(dispatcher.stop)
+        silent = []
         if settings.mqtt is not None:
             mqtt = MqttIntake(service, settings.mqtt)
-            windows = StreamWindows(service, mqtt.silent)
-            service.periodic += [mqtt.turn, lambda: windows.turn() if service.has_intake else None]
+            silent.append(mqtt.silent)
+            service.periodic.append(mqtt.turn)
             service.on_lost.append(mqtt.leave)
             service.broker_connected = lambda: mqtt.connected if service.has_intake else None
             service.packets_refused = lambda: mqtt.refused
             in_the_end.callback(mqtt.stop)
+        if settings.opcua is not None:
+            opcua = OpcUaIntake(service, settings.opcua)
+            silent.append(opcua.silent)
+            service.periodic.append(opcua.turn)
+            service.on_lost.append(opcua.stop)
+            in_the_end.callback(opcua.stop)
+        if silent:
+            windows = StreamWindows(service, lambda asset: all(of(asset) for of in silent))
+            service.periodic.append(lambda: windows.turn() if service.has_intake else None)
         dispatcher.start()
         outbox = Outbox(service, told, settings.alerts_folder)
         outbox.start()

@@ -60,6 +60,8 @@ class ServiceSettings(BaseSettings):
     mqtt_certificate: Path | None = None
     """Certificate of this server for the broker, with ``mqtt_key``."""
     mqtt_key: Path | None = None
+    opcua: Path | None = None
+    """File that says which nodes of an OPC UA server are channels."""
     alerts: Path | None = None
     """Alerts file; without it no alerts are sent."""
     tls_certificate: Path | None = None

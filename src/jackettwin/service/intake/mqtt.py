@@ -16,7 +16,7 @@ from paho.mqtt.enums import CallbackAPIVersion, MQTTProtocolVersion
 
 from jackettwin.errors import InputError
 from jackettwin.service.credentials import secret_of, tls_context
-from jackettwin.service.intake.packets import TOPIC, read_packets
+from jackettwin.service.intake.packets import SILENT_S, TOPIC, read_packets
 from jackettwin.store import Packet, assets, settings, streams, writing
 
 if TYPE_CHECKING:
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
-SILENT_S = 120.0
-"""Time without packets, by the server's monotonic clock, after which a stream is silent."""
 _PORTS = {"mqtt": 1883, "mqtts": 8883}
 _BATCH = 500
 _REMEMBERED = 1000

@@ -15,6 +15,8 @@ from jackettwin.store import Packet, assets
 from jackettwin.store.streams import LONGEST
 
 TOPIC = "jackettwin"
+SILENT_S = 120.0
+"""A stream of which nothing came for so long, by our stopwatch, is silent."""
 
 
 def read_packets(topic: str, payload: bytes | bytearray) -> list[Packet]:
