@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from jackettwin.arrays import FloatArray, IntArray
-from jackettwin.soil.laws.coefficients import BRANCHES, K0
+from jackettwin.soil import BRANCHES, K0
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.search.descent import End
 from jackettwin.updating.search.path import Path, held_minimum, minimum
