@@ -128,6 +128,9 @@ def broker(folder: Path) -> Iterator[int]:
         process.wait(timeout=20)
 
 
+@pytest.mark.filterwarnings(
+    "ignore::pytest.PytestUnraisableExceptionWarning"
+)  # paho's, of a refused handshake
 def test_a_broker_is_told_by_tls_and_password(folder: Path, broker: int) -> None:
     """Somebody listens who is a user of the broker, too."""
     came: Queue[tuple[str, int, bool, bytes]] = Queue()
