@@ -16,7 +16,7 @@ from jackettwin.store.streams import LONGEST
 
 TOPIC = "jackettwin"
 SILENT_S = 120.0
-"""A stream of which nothing came for so long, by our stopwatch, is silent."""
+"""Time without packets, by the monotonic clock of the server, after which a stream is silent."""
 
 
 def read_packets(topic: str, payload: bytes | bytearray) -> list[Packet]:
