@@ -2,7 +2,8 @@
 
 A fault is a piece of text that stands once in its room, and what it becomes: a sign, a factor, a quantile, an
 index off by one, a unit, swapped axes, a lock that is dropped. The room's own tests run on a copy of the
-source with that fault; a fault that no test fails on has survived, and is listed with its reason.
+source with that fault, first those that name its module; a fault that no test fails on has survived, and is
+listed with its reason.
 
 Bar: 92 % of at least 80 faults are caught. The whole campaign takes over an hour: a verdict is kept in
 ``out/mutations.json``, and is not sought again while the room's source and tests stay as they are.
@@ -15,6 +16,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -29,6 +31,8 @@ ROOT = Path(__file__).parents[1]
 PACKAGE = Path("src") / "jackettwin"
 BAR = 0.92
 VERDICTS = ROOT / "out" / "mutations.json"
+MOST_NEAR = 3
+"""Files of tests that are tried before the room's others."""
 LONGEST_S = 1800
 """After which a run of tests counts as having caught its fault: it hangs."""
 
@@ -63,13 +67,44 @@ def code_of(tests: tuple[str, ...], copy: Path) -> int:
     return ended.returncode
 
 
-def is_caught(fault: Fault, copy: Path) -> bool:
-    """Tell whether the tests of a fault's room fail on a copy of the source that has it."""
+def nearest(fault: Fault, module: Path) -> tuple[str, ...]:
+    """Return the test files of a fault's room that name its module, the one called like it first."""
+    files = [f for tests in fault.tests for f in _test_files(ROOT / tests)]
+    word = re.compile(rf"\b{module.stem}\b")
+    naming = [f for f in files if f.stem == f"test_{module.stem}" or word.search(f.read_text("utf-8"))]
+    naming.sort(key=lambda f: (f.stem != f"test_{module.stem}", f.stat().st_size))
+    return tuple(str(f.relative_to(ROOT)) for f in naming[:MOST_NEAR])
+
+
+def _test_files(place: Path) -> list[Path]:
+    return [place] if place.is_file() else sorted(place.rglob("test_*.py"))
+
+
+def is_caught(fault: Fault, copy: Path, whole: set[tuple[str, ...]]) -> bool:
+    """Tell whether the tests of a fault's room fail on a copy of the source that has it.
+
+    Parameters
+    ----------
+    whole : tests that are known to pass without a fault; others are run, and join them
+    """
+    near = nearest(fault, home(fault, copy / PACKAGE))
+    for tests in (near, fault.tests):
+        if not tests:
+            continue
+        if tests not in whole and code_of(tests, copy) != 0:
+            sys.exit(f"without a fault {' '.join(tests)} must pass")
+        whole.add(tests)
+        if _fails(fault, tests, copy):
+            return True
+    return False
+
+
+def _fails(fault: Fault, tests: tuple[str, ...], copy: Path) -> bool:
     path = home(fault, copy / PACKAGE)
     whole, stat = path.read_text("utf-8"), path.stat()
     path.write_text(whole.replace(fault.text, fault.becomes), "utf-8")
     try:
-        return code_of(fault.tests, copy) == 1  # an import that fails or no test at all is no verdict
+        return code_of(tests, copy) == 1  # an import that fails or no test at all is no verdict
     finally:
         path.write_text(whole, "utf-8")
         os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))  # what Numba compiled of it stays valid
@@ -95,12 +130,10 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder)
         shutil.copytree(ROOT / PACKAGE, copy / PACKAGE, ignore=shutil.ignore_patterns("__pycache__"))
-        for tests in {f.tests for f in faults if key(f) not in verdicts}:
-            if code_of(tests, copy) != 0:
-                sys.exit(f"without a fault {' '.join(tests)} must pass")
+        passing: set[tuple[str, ...]] = set()
         for fault in faults:
             if key(fault) not in verdicts:
-                verdicts[key(fault)] = is_caught(fault, copy)
+                verdicts[key(fault)] = is_caught(fault, copy, passing)
                 VERDICTS.parent.mkdir(exist_ok=True)
                 VERDICTS.write_text(json.dumps(verdicts), "utf-8")
             found = verdicts[key(fault)]
