@@ -66,6 +66,23 @@ def test_at_the_limit_95_percent_are_found(k: int, colour: float) -> None:
     assert low <= found <= high
 
 
+def test_a_mode_too_damped_to_be_fitted_is_no_relaxation() -> None:
+    """At 1 Hz with 30 % it dies out like a relaxation of 8 1/s, faster than any rate that is tested."""
+    t = np.arange(3000) / 20.0
+    pole = 2.0 * np.pi * (-0.3 + 1j * np.sqrt(1.0 - 0.3**2))
+    y = np.stack([
+        np.cos(2.0 * np.pi * f * t) * np.exp(-2.0 * np.pi * f * 0.015 * t) + a * np.exp(pole * t).real
+        for f, a in ((0.28, 0.5), (0.3, 0.3))
+    ])  # fmt: skip
+    y = np.concatenate([np.zeros((2, 400)), y], axis=1)
+    y += 0.003 * np.random.default_rng(2).standard_normal(y.shape)
+    channels = tuple(Channel(name, "acceleration", "m/s²") for name in ("x", "y"))
+    found = release_relaxations(Record(y, 20.0, channels))
+    assert found is not None
+    rates = [limit.rate_rad_s for limit in found.limits]
+    assert found.pole is None or rates[0] <= found.pole.rate_rad_s <= rates[-1]
+
+
 def test_half_the_limit_is_mostly_missed() -> None:
     """The limit is no upper bound that anything would pass: at half of it the power is t's, below a half."""
     rng, n, found = np.random.default_rng(5), 200, 0

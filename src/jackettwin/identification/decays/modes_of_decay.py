@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
-from jackettwin.arrays import FloatArray
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.identification.decays.damped_cosines import DampedCosines, damped_cosines
 from jackettwin.identification.mode_shapes import mac
 from jackettwin.identification.preparation.spectra import densities
@@ -23,6 +24,12 @@ MAX_REFUSED = 3
 """Number of refused poles that ends the search."""
 MIN_SEPARATION = 0.02
 """Smallest distance between two modes of a decay, relative to their frequency."""
+CLOSE = 0.1
+"""Largest logarithmic ratio of two frequencies that may be one pole of a lower model order."""
+HALVED = 0.5
+"""Two poles replace one where they leave less than this share of what it leaves unexplained."""
+SAME_POLE = 1e-3
+"""Largest logarithmic ratio of two frequencies that are one, whatever their shapes."""
 SAME_MODE_DISTANCE = 0.25
 """Largest logarithmic ratio of two frequencies of similar shapes that count as one mode."""
 SAME_SHAPE = 0.9
@@ -66,7 +73,7 @@ def modes_of_decay(
     noise : (n_channels, n_more) or None
         The same channels after the decay.
     """
-    f, zeta = _poles(y, sample_rate_hz, strongest_hz)
+    f, zeta, order = _poles(y, sample_rate_hz, strongest_hz)
     about = y - y.mean(axis=1, keepdims=True)
     if not len(f) or _explained(about, sample_rate_hz, f, zeta) < MIN_EXPLAINED_BY_POLES:
         return None
@@ -77,13 +84,17 @@ def modes_of_decay(
         gains = [_explained(left, sample_rate_hz, f[[i]], zeta[[i]]) for i in open_to]
         k = open_to[int(np.argmax(gains))]
         open_to = [i for i in open_to if abs(np.log(f[i] / f[k])) > MIN_SEPARATION]
-        start = np.array([[f[k]], [zeta[k]]])
-        if best is not None:
-            start = np.hstack([[best.fit.frequency_hz, best.fit.damping_ratio], start])
-        fit = damped_cosines(y, sample_rate_hz, *start, noise=noise)
-        found = DecayFit(fit, _ratios(fit, sample_rate_hz, y.shape[1], noise))
-        if found.ratio.min() > MIN_RATIO and fit.damping_ratio.max() < MAX_DAMPING_RATIO and _distinct(fit):
-            best, left = found, fit.residual
+        for new in (*_pair_in_place_of(left, sample_rate_hz, f, zeta, order, k), [k]):
+            start = np.stack([f[new], zeta[new]])
+            if best is not None:
+                start = np.hstack([[best.fit.frequency_hz, best.fit.damping_ratio], start])
+            fit = damped_cosines(y, sample_rate_hz, *start, noise=noise)
+            found = DecayFit(fit, _ratios(fit, sample_rate_hz, y.shape[1], noise))
+            clear = found.ratio.min() > MIN_RATIO and fit.damping_ratio.max() < MAX_DAMPING_RATIO
+            if clear and _distinct(fit):
+                best, left = found, fit.residual
+                open_to = [i for i in open_to if np.abs(np.log(f[i] / f[new])).min() > MIN_SEPARATION]
+                break
         else:
             refused += 1
     return best
@@ -111,8 +122,29 @@ class _Background:
         return np.array(level) * self.sample_rate_hz + 1e-300
 
 
-def _poles(y: FloatArray, sample_rate_hz: float, strongest_hz: float) -> tuple[FloatArray, FloatArray]:
-    """Return the poles of the decay for all orders, by subspace identification from its lagged products."""
+def _pair_in_place_of(
+    y: FloatArray, sample_rate_hz: float, f: FloatArray, zeta: FloatArray, order: IntArray, k: int
+) -> list[list[int]]:
+    """Return two poles of one model order beside a pole that explain what it alone leaves, or nothing.
+
+    A low order has one pole for both modes of a close pair, between them, and alone it explains the most.
+    """
+    near = np.flatnonzero(np.abs(np.log(f / f[k])) < CLOSE)
+    pairs = [[int(i), int(j)] for i, j in combinations(near, 2) if order[i] == order[j]]
+    if not pairs:
+        return []
+    gains = [_explained(y, sample_rate_hz, f[pair], zeta[pair]) for pair in pairs]
+    alone = _explained(y, sample_rate_hz, f[[k]], zeta[[k]])
+    return [pairs[int(np.argmax(gains))]] if 1.0 - max(gains) < HALVED * (1.0 - alone) else []
+
+
+def _poles(
+    y: FloatArray, sample_rate_hz: float, strongest_hz: float
+) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Return the poles of the decay for all orders, and which order each is of.
+
+    They are those of subspace identification from its lagged products.
+    """
     rows = min(
         max(round(BLOCK_ROW_CYCLES * sample_rate_hz / strongest_hz), 6), MAX_ROWS, (y.shape[1] - 2) // 2
     )
@@ -124,8 +156,9 @@ def _poles(y: FloatArray, sample_rate_hz: float, strongest_hz: float) -> tuple[F
         for p in order_poles(subspace, subspace.orders(ORDERS))
     ]
     f, zeta = (np.concatenate([row[i] for row in table]) for i in (0, 1))
+    order = np.repeat(np.arange(len(table)), [len(row[0]) for row in table])
     good = (zeta > MIN_DAMPING_RATIO) & (zeta < MAX_DAMPING_RATIO) & (f < 0.45 * sample_rate_hz)
-    return f[good], zeta[good]
+    return f[good], zeta[good], order[good]
 
 
 def _lagged_products(lags: FloatArray, rows: int) -> FloatArray:
@@ -165,5 +198,5 @@ def _distinct(fit: DampedCosines) -> bool:
     """Tell whether all modes differ; two close ones of one shape are one mode whose damping varies."""
     apart = np.abs(np.log(fit.frequency_hz[:, None] / fit.frequency_hz))
     alike = mac(fit.amplitudes, fit.amplitudes)
-    same = (apart < 0.5 * MIN_SEPARATION) | ((apart < SAME_MODE_DISTANCE) & (alike > SAME_SHAPE))
+    same = (apart < SAME_POLE) | ((apart < SAME_MODE_DISTANCE) & (alike > SAME_SHAPE))
     return int(same.sum()) == len(same)

@@ -196,6 +196,9 @@ def _tested(
         fit = damped_cosines(y - slow, sample_rate_hz, f, zeta)
         f, zeta = fit.frequency_hz, fit.damping_ratio
         test = amplitude_test(y, sample_rate_hz, f, zeta, rates)
+    if pole is not None and not rates[0] <= pole.rate_rad_s <= rates[-1]:
+        # beyond the rates that were tested: what is left of modes that the fit does not hold
+        pole, amplitude, slow = None, np.zeros(len(y)), np.zeros_like(y)
     return pole, amplitude, amplitude_test(y - slow, sample_rate_hz, f, zeta, rates).limit
 
 
