@@ -249,11 +249,11 @@ def page(found: list[Case], draws: int) -> list[str]:
     error, chance, most = calibration(found)
     confident = [c for c in found if c[4] > CONFIDENT and not c[5] and not c[7]]
     lines = [
-        "# Diagnosis of changes made by hand",
+        "# Diagnosis of changes to the drawing",
         "",
         f"`python qualify/diagnosis_by_hand.py {draws}`: jackets whose feet and members all differ from the",
-        "model's, changed on the drawing: braces cut, walls thinned, masses added; scour from the curves.",
-        "Nothing of `jackettwin.change` makes the truth. Five modes, changes known to 0.03 % and 2 % of",
+        "model's, changed in the drawing: braces cut, walls thinned, masses added; scour from soil curves.",
+        "The truth does not use `jackettwin.change`. Five modes, changes known to 0.03 % and 2 % of",
         "frequency and damping; the model's feet are fitted to the frequencies before. Changes too small for",
         "an alarm are left out.",
         "",
@@ -265,14 +265,18 @@ def page(found: list[Case], draws: int) -> list[str]:
         f"| expected calibration error; by chance, mean and 95 of 100 below | {100 * error:.1f} %; "
         f"{100 * chance:.1f} %; {100 * most:.1f} % |",
         "",
-        "| jacket | first place or group | wrong and sure |",
+        "| jacket | first place or group | wrong with more than 90 % |",
         "|---|---|---|",
     ]
     for jacket in dict.fromkeys(c[0] for c in found):
         own = [c for c in found if c[0] == jacket]
         sure = sum(c in confident for c in own)
         lines.append(f"| {jacket} | {share(sum(c[5] or c[7] for c in own), len(own))} | {sure} |")
-    lines += ["", "| planted | first place | or in its group | most often taken for |", "|---|---|---|---|"]
+    lines += [
+        "",
+        "| change | first place | or in its group | most often confused with |",
+        "|---|---|---|---|",
+    ]
     for name in dict.fromkeys(c[1] for c in found):
         own = [c for c in found if c[1] == name]
         wrong = [c[2] for c in own if not c[5]]

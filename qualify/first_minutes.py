@@ -1,12 +1,11 @@
-"""From a deck and a folder of CSVs to a verdict, as a new user goes: ``init``, ``run``, nothing typed.
+"""From a deck and a folder of CSV files to a verdict, by the commands of a new user: ``init`` and ``run``.
 
-Three jackets of nobody, symmetric as most are, with records the program's own ``simulate`` made of them on
-known feet, written as loggers write them. Each command is a process of its own; the cache is empty, so that
-``run`` compiles the kernels, too. Measured: time, CPU, the first line, the longest silence, modes called
-``ok`` that are none, and whether the known stiffness lies in the stated interval or the page says that the
-model does not fit.
+Three fictitious symmetric jackets have records from ``simulate`` on known feet, in the formats of loggers.
+Each command runs in its own process; the cache is empty, so that ``run`` also compiles the kernels. Measured:
+time, CPU, first line, longest silence, false modes with status ``ok``, and whether the interval contains the
+known stiffness or the page states that the model does not fit.
 
-Bars: ten minutes and 90 CPU-s (where a dense 800 × 800 ``eig`` takes 0.8) a jacket, first line of a command
+Limits: ten minutes and 90 CPU-s (where a dense 800 × 800 ``eig`` takes 0.8) a jacket, first line of a command
 within 1 s, no silence over 2 s, no false mode.
 """
 

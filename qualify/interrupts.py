@@ -116,9 +116,9 @@ def main() -> None:
         [
             "# Ctrl-C and silence",
             "",
-            f"`python qualify/interrupts.py --moments {moments}`: every command once to its end, then",
-            f"interrupted at {moments} moments spread over that time. The exit code is 130; −2 where Python",
-            "itself was still starting, 0 of one that had ended before.",
+            f"`python qualify/interrupts.py --moments {moments}`: every command ran to its end, and was then",
+            f"interrupted at {moments} moments spread over that time. The exit code is 130; −2 if Python",
+            "was still starting, 0 if the command had ended before.",
             "",
             "| command | whole [s] | longest silence [s] | ended after Ctrl-C [s] | exit codes | faults |",
             "|---|---|---|---|---|---|",

@@ -82,11 +82,11 @@ def main() -> None:
     write_page(
         "record_subsets",
         [
-            "# A few of the OpenFAST records at a time",
+            "# Subsets of the OpenFAST records",
             "",
             "`python qualify/record_subsets.py`: `jackettwin run openfast_pile` under the default law with",
-            "some of its records. Truth, then the 90 % interval; what is outside stands bold. Subsets share",
-            "records: their errors are not independent.",
+            "some of its records. True value and 90 % interval; bold if it is outside. Subsets share",
+            "records, so that their errors are not independent.",
             "",
             "| records | k_v [GN/m] | rotor's part of side-side 1 [%] | of fore-aft 1 [%] |",
             "|---|---|---|---|",

@@ -65,12 +65,12 @@ def main() -> None:
 def introduction() -> list[str]:
     heads = [f"{side}, {band}" for side in ("fore-aft", "side-side") for band in BANDS]
     return [
-        "# Forces on a standing rotor, in one wind",
+        "# Forces on a standing rotor in the same wind field",
         "",
         "The IEA 15 MW rotor, feathered and locked, ten minutes in class B on a grid of 19.1 m: the wind's",
         "generalised force on the first modes (F_x + s M_y, F_y − s M_x at the tower top, s 0.012/m),",
-        "root mean square, ours over AeroDyn's of OpenFAST 5.0.0 (quasi-steady, no induction, its tower's",
-        "potential flow and shadow on) in the very same wind field. `OPENFAST=… IEA15=… make qualify` writes",
+        "rms, ratio of jackettwin to AeroDyn of OpenFAST 5.0.0 (quasi-steady, no induction, its tower's",
+        "potential flow and shadow on) in the same wind field. `OPENFAST=… IEA15=… make qualify` writes",
         "this page.",
         "",
         f"| wind | {' | '.join(heads)} |",
