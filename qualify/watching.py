@@ -280,8 +280,8 @@ def changes(pieces: dict[str, Any]) -> list[str]:
         "## Changes",
         "",
         f"{number} turbines each, ARL 10 years, one year of baseline; the change comes 20 to 200 days later.",
-        "Named: the likeliest cause without a model is the right pattern. Interval: how many 90 %",
-        "intervals of those found hold the begin. Alarms before the begin (early) are not counted as found.",
+        "Named: the most probable cause without a model is the right pattern. Interval: number of 90 %",
+        "intervals that contain the onset. Alarms before the onset (early) are not counted as found.",
         "",
         "| change | found | median delay [d] | 90 % | longest | named | began in interval | early |",
         "|---|---|---|---|---|---|---|---|",
@@ -366,16 +366,16 @@ def information(pieces: dict[str, Any]) -> list[str]:
     kept = np.array([[np.inf if x is None else x for x in row] for row in rows if (row[0] or 0.0) >= 0.0])
     ours, *bounds = np.median(kept, axis=0)
     lines = [
-        "## What the seasons' information allows",
+        "## Bound of the detection delay",
         "",
-        "The same statistic, told which covariances these seasons have (not which one a turbine has, nor",
-        "how large), with the same stakes: no watch that keeps the same promise on these seasons and looks",
-        "for the same changes is faster on average over them",
-        "([theory](../theory/watching.md#what-the-seasons-allow)).",
-        "Below it what knowing the change beforehand would be worth: that the first pair falls, and by what.",
+        "The same statistic with the covariances of these seasons (but not which one a turbine has, nor",
+        "how large) and the same prior weights. No detector with the same false alarm rate that looks",
+        "for the same changes is faster on average over these seasons",
+        "([theory](../theory/watching.md#bound-of-the-detection-delay)).",
+        "Below it the delay if the change were known in advance: that the first pair falls, and by how much.",
         f"Scour on {len(kept)} turbines, medians in days; this detector {ours:.1f}:",
         "",
-        "| told | median delay [d] | this detector over it |",
+        "| known | median delay [d] | ratio of this detector |",
         "|---|---|---|",
     ]
     names = ("the covariances: the bound", "and that the first pair falls", "and by 0.2 %")
@@ -409,11 +409,11 @@ def charted(seed: int) -> dict[str, Any]:
 def charts(pieces: dict[str, Any]) -> list[str]:
     found = _of(pieces, "charted/")
     lines = [
-        "## What people run today",
+        "## Usual control charts",
         "",
         "Daily medians, same conditions and their squares, limits for one alarm in ten years if residuals",
         f"were independent and normal; {len(found)} quiet turbines, and scour after the limits were raised,",
-        "with hindsight, to what keeps one alarm in ten years on these turbines.",
+        "in hindsight, to one alarm in ten years on these turbines.",
         "",
         "| chart | turbines with false alarms | limit raised by | scour found in a year | median delay [d] |",
         "|---|---|---|---|---|",
@@ -540,8 +540,8 @@ def main() -> None:
         "no condition explains, stated standard deviations wrong by 15 %, 0.4 % outliers",
         "(`qualify/common/seasons.py`, which shares no code with the detector). Directions turn as",
         "couplings of the same size and memory mix the modes of a pair, and are stated as the twin does it:",
-        "of the closer pair in a fifth of the records. As `jackettwin watch` does, it bets on a twin's",
-        "causes beside the general directions: what they do to the bending pairs of the reference jacket.",
+        "of the closer pair in a fifth of the records. As `jackettwin watch` does, it tests a twin's",
+        "causes besides general directions, by their effect on bending pairs of the reference jacket.",
         "",
     ]
     parts = [*changes(pieces), *information(pieces), *charts(pieces), *speed()]
