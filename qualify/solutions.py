@@ -107,7 +107,7 @@ def main() -> None:
         [
             "# Every solution",
             "",
-            f"`python qualify/solutions.py {number}`: a truth drawn at random, its modes as targets",
+            f"`python qualify/solutions.py {number}`: random true parameters, whose modes are the targets",
             "(relative cost), the search from five seeds with its default settings.",
             f"A search takes {np.mean([r['cpu_s'] for r in found]) / len(SEEDS):.1f} CPU-s in the mean,",
             f"{max(r['slowest'] for r in found):.1f} CPU-s at most.",

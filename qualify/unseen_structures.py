@@ -141,7 +141,8 @@ def main() -> None:
             f" {max(r['cpu_s'] for r in found):.1f} at most;"
             f" {sum(r['status'] != 'ok' for r in found)} posteriors did not converge.",
             "",
-            f"90 % intervals hold the truth in {inside} of {total} ({percent(limits.low, limits.high)}).",
+            f"90 % intervals contain the true value in {inside} of {total} "
+            f"({percent(limits.low, limits.high)}).",
             "",
             "| structure | parameter | inside (95 % limits) | verdicts |",
             "|---|---|---|---|",
