@@ -29,7 +29,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from common import living
 from tests.service.conftest import description, hour, record_file
-from tests.service.servers import Broker, Database, Server, opened, publish
+from tests.service.servers import Broker, Database, Relay, Scheduler, Server, opened, publish
 
 from jackettwin.store import assets, backup, reading, sqlite_url, work, writing
 from jackettwin.store.backup import restore
@@ -173,18 +173,25 @@ def by_the_clock(folder: Path, given: argparse.Namespace) -> Figures:
 
 
 def kills(folder: Path, given: argparse.Namespace) -> Figures:
-    """Kill servers, workers, the database and the broker while records and a stream arrive."""
+    """Kill servers, workers, the database, the broker and a scheduler, and cut the way to the database.
+
+    Records and a stream arrive meanwhile. One server has workers of its own, the other asks a scheduler.
+    """
     sent = records(given.kill_records, CHEAP)
     expected = undisturbed(folder / "undisturbed", sent)
     database, broker = Database(folder / "postgresql"), Broker(folder / "broker")
     database.start()
     broker.start()
+    relay, scheduler = Relay(database.port), Scheduler(folder / "scheduler")
+    url = database.url.replace(str(database.port), str(relay.port))
+    scheduler.start()
     store = living.new_store(folder / "fire", CHEAP_TWIN, database.url, "stream")
-    options = ("--database", database.url, "--mqtt", f"mqtt://127.0.0.1:{broker.port}", "--workers", "1")
-    servers = [Server(store, *options), Server(store, *options)]
+    options = ("--database", url, "--mqtt", f"mqtt://127.0.0.1:{broker.port}")
+    servers = [Server(store, *options, "--workers", "1"), Server(store, *options, *scheduler.options)]
     for server in servers:
         server.start()
-    rng, struck = random.Random(given.seed), dict.fromkeys(("server", "worker", "database", "broker"), 0)
+    parts: dict[str, Any] = {"database": database, "broker": broker, "scheduler": scheduler, "way": relay}
+    rng, struck = random.Random(given.seed), dict.fromkeys(("server", "worker", *parts), 0)
     due = sorted(rng.choices(range(len(sent)), k=given.kills))
     due_parts = [PARTS[i % len(PARTS)] for i in range(given.kills)]
     rng.shuffle(due_parts)
@@ -195,7 +202,7 @@ def kills(folder: Path, given: argparse.Namespace) -> Figures:
             for _ in range(due.count(k)):
                 what, victim = due_parts.pop(), rng.choice(servers)
                 time.sleep(rng.uniform(0.0, 1.5))
-                struck[what] += strike(what, victim, database, broker)
+                struck[what] += strike(what, victim, parts, rng.uniform(0.5, 10.0))
                 print(f"record {k}: {struck}", file=sys.stderr, flush=True)
         servers[0].wait_until_observed(len(sent) + WINDOWS, seconds=3600.0)
         servers[0].wait_for_windows()  # one that was closed in a long silence is made anew of what came later
@@ -204,11 +211,13 @@ def kills(folder: Path, given: argparse.Namespace) -> Figures:
     finally:
         for server in servers:
             server.stop()
+        scheduler.stop()
+        relay.cut()
         broker.stop()
         database.stop()
 
 
-PARTS = ("server", "worker", "worker", "database", "broker")
+PARTS = ("server", "worker", "worker", "database", "broker", "scheduler", "way")
 """What is killed in turn, and then shuffled: a server takes its workers with it."""
 WINDOWS = 3
 """Windows of the stream, and so records of it."""
@@ -225,11 +234,16 @@ def stream(broker: Broker, k: int, n: int) -> None:
         time.sleep(0.5)
 
 
-def strike(what: str, server: Server, database: Database, broker: Broker) -> int:
-    """Kill a part and start it again; return whether it was there to be killed."""
+def strike(what: str, server: Server, parts: dict[str, Any], cut_s: float) -> int:
+    """Kill a part and start it again, or cut the way for a while; return whether it was there."""
     if what == "worker":
         return int(server.kill_a_worker())
-    part = {"server": server, "database": database, "broker": broker}[what]
+    if what == "way":
+        parts[what].cut()
+        time.sleep(cut_s)
+        parts[what].mend()
+        return 1
+    part = server if what == "server" else parts[what]
     part.kill()
     part.start()
     return 1
@@ -383,8 +397,13 @@ def summed(pieces: list[Figures]) -> Figures:
     for piece in pieces[1:]:
         for name in ("records", "lost", "doubled", "days", "different"):
             total[name] += piece[name]
-        total["struck"] = {part: n + piece["struck"][part] for part, n in total["struck"].items()}
+        known = {**total["struck"], **piece["struck"]}  # earlier pieces had fewer parts
+        total["struck"] = {part: _of(total, part) + _of(piece, part) for part in known}
     return total
+
+
+def _of(piece: Figures, part: str) -> int:
+    return int(piece["struck"].get(part, 0))
 
 
 def page(kept: dict[str, list[Figures]]) -> list[str]:
@@ -510,7 +529,8 @@ PAGES: dict[str, Callable[[list[Figures]], list[str]]] = {
         "Kills",
         "Two servers on one PostgreSQL, a stream through a broker, and kill −9 at moments drawn from a seed: "
         "{struck[server]} of a server, {struck[worker]} of a worker, {struck[database]} of the database, "
-        "{struck[broker]} of the broker.",
+        "{struck[broker]} of the broker, {struck[scheduler]} of the scheduler of one server with its worker; "
+        "{struck[way]} times the way to the database was cut for up to ten seconds.",
     ),
     "disk": _faults(
         "A full disk",

@@ -10,6 +10,7 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 from collections import Counter
 from collections.abc import Iterator
@@ -150,6 +151,99 @@ class Database:
         if self._process is not None and self._process.poll() is None:
             self._process.send_signal(signal.SIGINT)
             self._process.wait(timeout=20)
+
+
+class Scheduler:
+    """A scheduler of Dask by TLS with a worker, as somebody runs them elsewhere; killed and started together."""
+
+    def __init__(self, folder: Path) -> None:
+        from jackettwin.service.workers.certificates import own_security
+
+        folder.mkdir()
+        self.port, self._folder, security = free_port(), folder, own_security()
+        self._processes: list[subprocess.Popen[bytes]] = []
+        files = {name: folder / f"{name}.pem" for name in ("ca", "certificate", "key")}
+        files["ca"].write_text(security.tls_ca_file)
+        files["certificate"].write_text(security.tls_scheduler_cert)
+        files["key"].write_text(security.tls_scheduler_key)
+        named = (("ca-file", "ca"), ("cert", "certificate"), ("key", "key"))
+        self._tls = [word for option, name in named for word in (f"--tls-{option}", str(files[name]))]
+        self.options = ["--scheduler", f"tls://127.0.0.1:{self.port}"]
+        self.options += [word for name, path in files.items() for word in (f"--scheduler-{name}", str(path))]
+
+    def start(self) -> None:
+        """Start both; servers find them by themselves."""
+        place = ["--protocol", "tls", "--host", "127.0.0.1"]
+        self._run("scheduler", *place, "--port", str(self.port), "--no-dashboard")
+        wait_for_port(self.port, 120.0)
+        self._run("worker", f"tls://127.0.0.1:{self.port}", *place, "--nthreads", "1", "--no-dashboard")
+
+    def _run(self, kind: str, *options: str) -> None:
+        command = [sys.executable, "-m", f"distributed.cli.dask_{kind}", *options, *self._tls]
+        with (self._folder / f"{kind}.log").open("ab") as log:
+            self._processes.append(
+                subprocess.Popen(command, stdout=log, stderr=log, cwd=self._folder, start_new_session=True)
+            )
+
+    def kill(self) -> None:
+        """Kill both at once, the worker's nanny with it."""
+        for process in self._processes:
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait(timeout=20)
+        self._processes = []
+
+    stop = kill
+
+
+class Relay:
+    """The way to a server on loopback, which a test cuts and mends: what is on it is lost at once."""
+
+    def __init__(self, to: int) -> None:
+        self.to, self.port = to, free_port()
+        self._open: set[socket.socket] = set()
+        self._door: socket.socket | None = None
+        self.mend()
+
+    def mend(self) -> None:
+        """Let connections through."""
+        self._door = socket.create_server(("127.0.0.1", self.port))
+        threading.Thread(target=self._accept, args=(self._door,), daemon=True).start()
+
+    def cut(self) -> None:
+        """End every connection, and take no more."""
+        door, self._door = self._door, None
+        if door is not None:
+            with suppress(OSError):
+                door.shutdown(socket.SHUT_RDWR)
+            door.close()
+        for end in list(self._open):
+            with suppress(OSError):
+                end.shutdown(socket.SHUT_RDWR)
+
+    def _accept(self, door: socket.socket) -> None:
+        with suppress(OSError):  # the door is closed
+            while True:
+                one, _ = door.accept()
+                try:
+                    other = socket.create_connection(("127.0.0.1", self.to))
+                except OSError:
+                    one.close()
+                    continue
+                self._open |= {one, other}
+                for ends in ((one, other), (other, one)):
+                    threading.Thread(target=self._carry, args=ends, daemon=True).start()
+
+    def _carry(self, source: socket.socket, sink: socket.socket) -> None:
+        with suppress(OSError):
+            while part := source.recv(65536):
+                sink.sendall(part)
+        for end in (source, sink):
+            with suppress(OSError):
+                end.shutdown(socket.SHUT_RDWR)
+        with suppress(OSError):
+            source.close()
+        self._open.discard(source)
 
 
 @contextmanager

@@ -48,6 +48,7 @@ for place in /tmp /var/tmp; do mount -t tmpfs tmpfs "$place"; done
 umask "$MASK"
 exec setpriv --reuid="$WHO" --regid="$WHO" --clear-groups --no-new-privs env -i \\
   PATH=/usr/bin:/bin HOME=/nonexistent LD_LIBRARY_PATH=/opt/python/lib OMP_NUM_THREADS=1 \\
+  JACKETTWIN_SERVE_PARSE_LIMIT_S=900 \\
   PYTHONPATH=/opt/source:/opt/packages NOTIFY_SOCKET="$NOTIFY" "$@"
 """
 """ProtectSystem=strict, ProtectHome=true, ReadWritePaths=/srv/twin, PrivateTmp=true, NoNewPrivileges=true."""
@@ -139,7 +140,7 @@ def test_the_unit_file_serves_and_every_kind_of_work_is_done(store: Path) -> Non
             client = httpx.Client(
                 base_url=f"http://127.0.0.1:{port}/api/v1",
                 headers={"Authorization": f"Bearer {secret}", "X-Forwarded-Proto": "https"},
-                timeout=120.0,
+                timeout=900.0,
             )
             with client:
                 sent = client.post(
