@@ -154,7 +154,7 @@ class Database:
 
 
 class Scheduler:
-    """A scheduler of Dask by TLS with a worker, as somebody runs them elsewhere; killed and started together."""
+    """A scheduler of Dask by TLS with a worker, as on another machine; killed and started together."""
 
     def __init__(self, folder: Path) -> None:
         from jackettwin.service.workers.certificates import own_security

@@ -1,4 +1,4 @@
-"""The way to the database is cut while records arrive, and comes back: nothing is lost, doubled or half-kept."""
+"""The way to the database is cut while records arrive: nothing is lost, doubled or half-kept."""
 
 from __future__ import annotations
 
