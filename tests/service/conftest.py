@@ -165,7 +165,14 @@ def known(twin: Any, sums: Any, newest: Any, in_all: tuple[int, float]) -> tuple
         "frequency_sensitivity": {"k": 0.02},
         "damping_sensitivity": {"k": -0.01},
     }
-    found = {"status": "ok", "parameters": parameters, "records": in_all[0], "budget": budget}
+    answers = [{"question": "Whose damping is it?", "answer": "the rotor's"}]
+    found = {
+        "status": "ok",
+        "parameters": parameters,
+        "records": in_all[0],
+        "budget": budget,
+        "answers": answers,
+    }
     assumed = [EXAMPLES["AssumptionOut"]]
     drawn = {
         "explored": EXAMPLES["ExploredOut"],

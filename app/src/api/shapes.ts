@@ -25,5 +25,7 @@ export interface Knowledge {
   statement?: string;
   records?: number;
   until_utc?: string;
+  /** The questions of the report's first page, and what is said to each in short. */
+  answers?: { question: string; answer: string }[];
   parameters?: Record<string, KnownParameter>;
 }

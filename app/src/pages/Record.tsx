@@ -219,7 +219,11 @@ export default function Record({ asset, id }: PageProps) {
             <Stabilisation record={data} modes={modes.data ?? []} again={record.again} />
           </>
         ) : (
-          <p class="quiet">Its samples are not kept any more.</p>
+          <p class="quiet">
+            {data.conditions["simulated"]
+              ? "There are no samples: nobody measured this day."
+              : "Its samples are not kept any more."}
+          </p>
         )}
       </div>
     </>

@@ -116,6 +116,7 @@ function Drawn({ modes, marks, what, wanted, range, open }: DrawnProps) {
   const last = useMemo(() => modes.reduce((t, m) => Math.max(t, seconds(m.time_utc)), 0), [modes]);
   const shown = plots.filter((p) => !wanted || p.label === wanted);
   const show = (days: string): void => keepRange(days ? [last - Number(days) * DAY_S, last + DAY_S] : null);
+  const simulated = useMemo(() => modes.filter((m) => m.status === "simulated").length, [modes]);
   const span = range ? String(Math.round((range[1] - range[0]) / DAY_S - 1)) : "";
   return (
     <>
@@ -139,7 +140,13 @@ function Drawn({ modes, marks, what, wanted, range, open }: DrawnProps) {
           </select>
         </label>
       </div>
-      <Card title={what === "damping" ? "Damping ratios" : "Frequencies"} wide>
+      <Card
+        title={what === "damping" ? "Damping ratios" : "Frequencies"}
+        wide
+        note={
+          simulated > 0 && `${simulated} of ${modes.length} points are simulated: nobody measured these days.`
+        }
+      >
         {shown.map(({ label, rows, plot }) => (
           <Plot
             key={label}

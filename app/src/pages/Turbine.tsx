@@ -93,6 +93,22 @@ function Supports({ known }: { known: Knowledge }) {
   );
 }
 
+/** The report's first page in short, where a reader begins. */
+function Answers({ asset, known }: { asset: string; known: Knowledge }) {
+  return (
+    <Card title="What is known, and what to do" wide more={<a href={assetUrl(asset, "reports")}>Report</a>}>
+      <dl class="answers">
+        {known.answers?.map(({ question, answer }) => (
+          <div key={question}>
+            <dt>{question}</dt>
+            <dd>{answer}</dd>
+          </div>
+        ))}
+      </dl>
+    </Card>
+  );
+}
+
 function Head({ asset, twin }: { asset: Asset; twin: Twin | undefined }) {
   const left = ["refused", "mismatched", "set_aside"].reduce((n, s) => n + (asset.records[s] ?? 0), 0);
   const waiting = (asset.records["received"] ?? 0) + (asset.records["observing"] ?? 0);
@@ -112,6 +128,7 @@ function Head({ asset, twin }: { asset: Asset; twin: Twin | undefined }) {
         {left ? `, ${count(left, "record")} left out` : ""}
         {` · model version ${asset.version}`}
       </span>
+      {asset.comment && <p>{asset.comment}</p>}
       {twin && twin.status !== "ok" && <p class="said">{twin.status}</p>}
     </div>
   );
@@ -134,6 +151,7 @@ export function Turbine({ asset }: PageProps) {
       {own.data ? <Head asset={own.data} twin={twin.data} /> : <div class="head bones" />}
       {twin.data && twin.data.records > 0 && <Figures twin={twin.data} alarms={alarms.data?.items ?? []} />}
       <div class="grid">
+        {known?.answers && <Answers asset={asset} known={known} />}
         <Card title="What changed, and why" more={<a href={assetUrl(asset, "alarms")}>All alarms</a>}>
           <Shown of={alarms} empty={(data) => (data.items.length ? null : <Unchanged own={own} />)} lines={3}>
             {(data) => <AlarmList alarms={mostUrgent(data.items).slice(0, 3)} again={alarms.again} />}

@@ -14,6 +14,7 @@ from .estimate import (
     ModalEstimate as ModalEstimate,
     RealPole as RealPole,
     Rejected as Rejected,
+    ResolvedSettings as ResolvedSettings,
     Spectrum as Spectrum,
     Stabilisation as Stabilisation,
 )

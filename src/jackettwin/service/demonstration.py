@@ -1,6 +1,6 @@
-"""A demonstration asset whose records arrive every few seconds.
+"""A demonstration asset: two years of simulated days, then its records, which arrive in fast motion.
 
-It shows a running twin within a minute.
+So that a newcomer sees a twin live within a minute, and on every page something that happened.
 """
 
 from __future__ import annotations
@@ -15,19 +15,29 @@ from threading import Thread
 from typing import TYPE_CHECKING
 
 from jackettwin.records import read_record
+from jackettwin.service.intake.bundles import bundle, twin_folder
 from jackettwin.service.intake.files import accept
-from jackettwin.service.store_commands import add_twin
-from jackettwin.service.workers.tasks import stored
-from jackettwin.store import assets, reading, writing
+from jackettwin.service.story import story
+from jackettwin.service.web.catalogue import add_version
+from jackettwin.service.work.consequences import keep_observation
+from jackettwin.service.workers.engine import TWIN_FILE, load_twin, observed_as
+from jackettwin.service.workers.tasks import Outcome, stored
+from jackettwin.store import assets, reading, records, work, writing
 from jackettwin.twin import read_twin
 
 if TYPE_CHECKING:
+    from sqlalchemy import Connection
+
     from jackettwin.service.context import Service
+    from jackettwin.twin import Observation
 
 log = logging.getLogger(__name__)
 
 ASSET = "demo"
 TWIN = "openfast_pile"
+SAID = "The demonstration: its five records are OpenFAST's, the two years of days before them are simulated."
+_LOCKED = b"\noperation: {updates: [parked]} # of the days before its records, those with a locked shaft\n"
+"""What the demonstration adds to the shipped twin: the rotor's damping is predicted for a rotor at rest."""
 _EVERY_S = 4.0
 
 
@@ -48,7 +58,10 @@ def _arrive(service: Service) -> None:
         with reading(service.database) as connection:
             known = ASSET in assets.asset_names(connection)
         if not known:
-            add_twin(service.database, service.settings.store, ASSET, source, "the shipped demonstration")
+            contents = bundle(source)
+            contents[TWIN_FILE] += _LOCKED
+            add_version(service, ASSET, contents, "demonstration", SAID)
+            tell_story(service, ASSET)
         hour = datetime.now(UTC).replace(minute=0, second=0, microsecond=0)
         paths = read_twin(source).records
         for i, path in enumerate(paths):
@@ -60,3 +73,56 @@ def _arrive(service: Service) -> None:
             time.sleep(_EVERY_S)
     except Exception:
         log.exception("the demonstration stopped")
+
+
+def tell_story(service: Service, asset: str) -> None:
+    """Keep two years of simulated days of an asset, as if each had been observed: all or none."""
+    with reading(service.database) as connection:
+        version = assets.found_version(connection, asset)
+        twin = load_twin(twin_folder(connection, service, asset, version.version))
+    days = list(story(twin.config, twin.model, service.now().date()))
+    with writing(service.database) as connection:
+        for seen in days:
+            _keep(connection, service, version, seen)
+    service.wake()
+
+
+def _keep(connection: Connection, service: Service, version: assets.Version, seen: Observation) -> None:
+    now = service.now()
+    document, modes, findings, problem = observed_as(seen)
+    assert seen.start_utc is not None
+    record = records.StoredRecord(
+        asset=version.asset,
+        record_id=seen.record_id,
+        status="received",
+        start_utc=seen.start_utc,
+        duration_s=seen.duration_s,
+        sample_rate_hz=seen.identification.settings.sample_rate_hz,
+        channels=[],
+        conditions=dict(seen.conditions),
+        source_name=seen.name,
+        received_utc=now,
+        waveform=None,
+        size_bytes=0,
+    )
+    job = work.Job(
+        id=0,
+        kind=work.OBSERVE,
+        asset=version.asset,
+        record_id=seen.record_id,
+        version=version.version,
+        model_hash=version.model_hash,
+        settings_hash=version.settings_hash,
+        code_version=seen.code_version,
+        state="done",
+        priority=0,
+        tries=1,
+        owner=None,
+        created_utc=now,
+        started_utc=now,
+        ended_utc=now,
+        reason=None,
+    )
+    said = tuple({**mode, "status": "simulated"} for mode in modes)
+    if records.add_record(connection, record):
+        keep_observation(connection, service, job, record, Outcome(document, said, findings, problem))

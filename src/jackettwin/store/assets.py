@@ -138,7 +138,7 @@ def asset_names(connection: Connection, *, archived: bool = True) -> list[str]:
 
 @dataclass(frozen=True)
 class Summary:
-    """An asset, its adopted version, the start of its latest record, and the time of archiving."""
+    """An asset, its adopted version and the comment on it, its latest record, and the time of archiving."""
 
     name: str
     version: int
@@ -146,6 +146,7 @@ class Summary:
     created_utc: datetime
     last_record_utc: datetime | None
     archived_utc: datetime | None
+    comment: str
 
 
 def summaries(connection: Connection, name: str | None = None, *, archived: bool = False) -> list[Summary]:
@@ -161,6 +162,7 @@ def summaries(connection: Connection, name: str | None = None, *, archived: bool
         assets.c.created_utc,
         last.correlate(assets).scalar_subquery().label("last_record_utc"),
         assets.c.archived_utc,
+        versions.c.comment,
     ).join(versions, adopted)
     of = assets.c.archived_utc.is_not(None) if archived else assets.c.archived_utc.is_(None)
     query = query.where(of if name is None else assets.c.name == name)

@@ -9,7 +9,11 @@ from .life.sensed_damage import DAMAGE_UNIT as DAMAGE_UNIT
 from .life.settings import LifeSettings as LifeSettings
 from .life.weld_map import WeldMap as WeldMap, planned_joints as planned_joints, weld_map as weld_map
 from .model import TwinModel as TwinModel, twin_model as twin_model
-from .observation import OBSERVATION as OBSERVATION, Observation as Observation
+from .observation import (
+    OBSERVATION as OBSERVATION,
+    Observation as Observation,
+    Recognised as Recognised,
+)
 from .observe import examined as examined, observe as observe
 from .observe_files import Failed as Failed, observe_files as observe_files, sorted_out as sorted_out
 from .pair_angles import stations as stations

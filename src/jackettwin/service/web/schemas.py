@@ -124,6 +124,7 @@ class AssetOut(BaseModel):
     archived_utc: datetime | None = Field(
         default=None, description="Time from which it accepts no more records."
     )
+    comment: str = Field(default="", description="Comment on the adopted version.")
     records: dict[str, int] = Field(description="Number of records by status.")
     findings: dict[str, int] = Field(description="Number of findings by severity.")
     status: Literal["ok", "warning", "alarm", "no data"]

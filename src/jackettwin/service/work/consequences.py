@@ -145,7 +145,6 @@ def ask_known(connection: Connection, service: Place, version: assets.Version) -
 def keep(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
     """Store the outcome of a job and all its consequences, unless another server has taken the job."""
     now, me = service.now(), service.server_id
-    adopted = assets.found_version(connection, job.asset)
     if outcome.document is None:
         if work.finish(connection, job, me, "failed", now, outcome.problem):
             _end_open(connection, job, "refused", outcome.problem or {}, now)
@@ -156,6 +155,15 @@ def keep(connection: Connection, service: Service, job: work.Job, outcome: Outco
     record = records.find_record(connection, job.asset, job.record_id)
     if record is None or record.status == "set_aside":
         return
+    keep_observation(connection, service, job, record, outcome)
+
+
+def keep_observation(
+    connection: Connection, service: Service, job: work.Job, record: records.StoredRecord, outcome: Outcome
+) -> None:
+    """Keep what was observed in a record, and advance the state of its day."""
+    assert outcome.document is not None
+    now, adopted = service.now(), assets.found_version(connection, job.asset)
     key = {"asset": job.asset, "model_hash": job.model_hash, "record_id": job.record_id}
     again = results.find_observation(connection, job.asset, job.record_id, job.model_hash) is not None
     observation = StoredObservation(

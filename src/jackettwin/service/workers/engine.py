@@ -23,6 +23,7 @@ from jackettwin.twin import (
     ALL,
     OBSERVATION,
     Day,
+    Observation,
     TwinConfig,
     TwinModel,
     TwinState,
@@ -159,7 +160,13 @@ def observed(
         model = model.with_picks(tuple(Pick(float(p["frequency_hz"]), p.get("order")) for p in picks))
     record = read_waveform(waveform)
     record = replace(record, conditions={**conditions, **record.conditions})
-    seen = observe(record, model)
+    return observed_as(observe(record, model))
+
+
+def observed_as(
+    seen: Observation,
+) -> tuple[str, tuple[dict[str, Any], ...], tuple[dict[str, Any], ...], dict[str, Any] | None]:
+    """Return an observation as :func:`observed` does."""
     rows = []
     for mode, known in zip(seen.identification.modes, seen.recognised, strict=True):
         low, high = mode.damping_ratio_interval_95 or (None, None)

@@ -20,7 +20,14 @@ from jackettwin.caveats import assumption_documents
 from jackettwin.change import JUDGED, Days, Ground, corrections, finding_of, judge, sight_of
 from jackettwin.errors import JackettwinError
 from jackettwin.files import null_for_nan
-from jackettwin.report import PageSection, span_words, stiffness_section, structure_view, view_document
+from jackettwin.report import (
+    PageSection,
+    sentences,
+    span_words,
+    stiffness_section,
+    structure_view,
+    view_document,
+)
 from jackettwin.report.build import report_sections
 from jackettwin.report.pages.page import page_text
 from jackettwin.service.workers import engine, stiffness
@@ -177,6 +184,7 @@ def known(
             p.name: {"median": float(value), "interval_90": span, "unit": p.unit}
             for p, value, span in zip(u.problem.parameters, median, spans, strict=True)
         },
+        "answers": [{"question": q.title, "answer": " ".join(q.short)} for q in sentences(answers).questions],
         "budget": [_budget(mode) for mode in answers.modes],
         "sensitivity": _sensitivity(u, median, result),
         "explored": _explored(u, median, result.name),

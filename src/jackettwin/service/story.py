@@ -1,0 +1,167 @@
+"""Two years of days that nobody measured: what a turbine's modes might have done, for the demonstration.
+
+A day is the mean of its 144 records. Season and tide move every mode, a storm in the second spring washes
+the ground from around the feet, and the mast says nothing for four days of a maintenance stop. The size of
+each effect is stated below; what scour does is the model's own. The days say of themselves that they are
+simulated, and go the way of every observation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import UTC, date, datetime, timedelta
+from math import exp, log, pi, sin
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.change import Ground
+from jackettwin.files import digest
+from jackettwin.identification import (
+    Identification,
+    ModalEstimate,
+    ResolvedSettings,
+    Spectrum,
+    Stabilisation,
+)
+from jackettwin.records import Channel
+from jackettwin.response import build_system, undamped_modes
+from jackettwin.soil import Spring, Support
+from jackettwin.twin import Observation, Recognised, TwinConfig, TwinModel
+from jackettwin.version import __version__
+
+DAYS = 730
+STORM, SCOUR_M = 500, 1.4
+"""The day after whose storm the ground is gone, and how deep."""
+_STOP = range(400, 404)
+"""Days of a maintenance stop, on which nothing is measured."""
+_PARKED_EVERY = 10
+"""Days from one on which the shaft is locked to the next; on the others the rotor idles."""
+_GROUND = (0.84e9, 4.7e9)
+"""Stiffness of a foot sideways and along its pile [N/m]: what the five records of the demonstration say."""
+_MODES = {
+    "side_side_1": (0.1744, 0.0311, 0.012, 0.40),
+    "fore_aft_1": (0.1781, 0.0115, 0.006, 0.50),
+    "torsion_1": (0.6418, 0.0088, 0.0036, 0.44),
+    "side_side_2": (0.7435, 0.0251, 0.0048, 0.18),
+    "fore_aft_2": (0.7634, 0.0166, 0.0036, 0.21),
+}
+"""Frequency [Hz], damping ratio, and the standard deviations of their logarithms in a record.
+
+Means over the five records."""
+_RECORDS = 144
+_PER_DEGREE, _PER_METRE = -2.5e-4, -6e-4
+"""Relative frequency by air temperature [1/°C] (the tower's steel) and sea level [1/m] (added mass)."""
+_OWN = 4e-4
+"""Scatter of a day's frequencies beyond that of the estimates."""
+
+
+@dataclass(frozen=True)
+class Weather:
+    """What a day was like."""
+
+    wind_m_s: float
+    wave_m: float
+    air_c: float
+    level_m: float
+
+
+def story(config: TwinConfig, model: TwinModel, until: date, seed: int = 7) -> Iterator[Observation]:
+    """Yield an observation for every day that something was measured on, the last one the day before a date.
+
+    Parameters
+    ----------
+    config, model : the twin and its model; modes that it does not have are left out
+    seed : of weather and scatter
+    """
+    rng = np.random.default_rng(seed)
+    scour = _scour_effect(config, model)
+    numbers = {label: model.labels.index(label) + 1 for label in _MODES if label in model.labels}
+    for day, weather in enumerate(_weather(rng, until)):
+        common = _PER_DEGREE * (weather.air_c - 10.0) + _PER_METRE * weather.level_m
+        modes = {}
+        for label, number in numbers.items():
+            f, zeta, f_std, zeta_std = _MODES[label]
+            own = common + SCOUR_M * scour[number - 1] * (day > STORM)
+            std = np.array([f_std, zeta_std]) / np.sqrt(_RECORDS)
+            x, y = rng.standard_normal(2) * np.hypot(std, [_OWN, 0.06])
+            modes[label] = ModalEstimate(
+                f * exp(own + x), zeta * exp(y), np.ones(1, complex), 1.0, 0.0, 1.0,
+                log_covariance=np.diag(std**2),
+            )  # fmt: skip
+        if day not in _STOP:
+            yield _observation(model, day, until - timedelta(days=DAYS - day), weather, modes)
+
+
+def _weather(rng: np.random.Generator, until: date) -> Iterator[Weather]:
+    """Yield the weather of each day: wind and temperature remember yesterday's."""
+    wind = air = 0.0
+    first = (until - timedelta(days=DAYS)).timetuple().tm_yday
+    for day in range(DAYS):
+        wind = 0.6 * wind + 2.0 * rng.standard_normal()
+        air = 0.8 * air + 0.9 * rng.standard_normal()
+        winter = sin(2.0 * pi * (first + day + 75) / 365.25)  # most in the middle of January
+        v = 24.0 if day == STORM else float(np.clip(10.0 + 1.5 * winter + wind, 3.0, 21.0))
+        yield Weather(
+            wind_m_s=v,
+            wave_m=8.5 if day == STORM else 0.1 * v**1.1 * exp(0.1 * rng.standard_normal()),
+            air_c=10.0 - 6.0 * winter + air,
+            level_m=0.8 * sin(2.0 * pi * day / 14.77) + 0.15 * rng.standard_normal(),
+        )
+
+
+def _scour_effect(config: TwinConfig, model: TwinModel) -> FloatArray:
+    """Return d ln f/d scour of every mode [1/m], by the model on springs under its feet."""
+    assert model.assembly is not None
+    feet = model.assembly.structure.reaction_nodes
+
+    def frequencies(scour_m: float) -> FloatArray:
+        h, v = (k * exp(-loss * scour_m) for k, loss in zip(_GROUND, loss_per_m, strict=True))
+        springs = tuple(Spring(node, np.diag([h, h, v, 0.0, 0.0, 0.0])) for node in feet)
+        system = build_system(model.assembly, Support(springs))
+        return np.asarray(undamped_modes(system, len(_MODES)).frequency_hz)
+
+    loss_per_m = Ground.of(config).scour_loss
+    return np.log(frequencies(SCOUR_M) / frequencies(0.0)) / SCOUR_M
+
+
+def _observation(
+    model: TwinModel, day: int, of: date, weather: Weather, modes: dict[str, ModalEstimate]
+) -> Observation:
+    start = datetime(of.year, of.month, of.day, tzinfo=UTC)
+    none, whole = np.empty(0), np.empty(0, dtype=np.int64)
+    no = np.empty(0, dtype=bool)
+    seen = Identification(
+        records=(f"simulated day {day + 1}",),
+        channels=(Channel("simulated"),),
+        modes=tuple(modes.values()),
+        rejected=(),
+        stabilisation=Stabilisation(whole, none, none, np.empty((0, 1), complex), no, no, no, whole),
+        spectrum=Spectrum(none, np.empty((1, 0)), np.empty((1, 0))),
+        settings=ResolvedSettings(0.1, 2.0, 5.0, 20, (2, 4), 8.0),
+        duration_s=86_400.0,
+    )
+    conditions = {
+        "simulated": "a day of the demonstration that nobody measured; the mean of 144 records",
+        "state": "parked" if day % _PARKED_EVERY == 0 else "idling",
+        "mean_wind_speed_m_s": round(weather.wind_m_s, 2),
+        "wave_height_m": round(weather.wave_m, 2),
+        "wave_period_s": round(4.0 + weather.wave_m**0.5 * 3.0, 2),
+        "air_temperature_c": round(weather.air_c, 2),
+        "water_level_m": round(weather.level_m, 3),
+    }
+    recognised = tuple(Recognised(model.labels.index(label) + 1, label, 1.0) for label in modes)
+    return Observation(
+        record_id=digest(["story", of.isoformat(), [log(m.frequency_hz) for m in modes.values()]]),
+        model_hash=model.model_hash,
+        settings_hash=model.settings_hash(""),
+        code_version=__version__,
+        name=f"simulated day {day + 1}",
+        start_utc=start,
+        conditions=conditions,
+        quality={"score": 1.0},
+        identification=seen,
+        recognised=recognised,
+        sensors=(),
+    )
