@@ -71,4 +71,5 @@ def test_the_story_goes_the_way_of_every_record(tmp_path: Path, monkeypatch: pyt
             assert len(results.state_hashes(connection, "demo", asset.model_hash)) == DAYS - 4
             rows = results.list_modes(connection, "demo", asset.model_hash, limit=6)
             assert {row["status"] for row in rows} == {"simulated"}
+            assert all(0.0 < row["frequency_std_hz"] < 2e-3 * row["frequency_hz"] for row in rows)
             assert [row["label"] for row in rows[:2]] == ["side_side_1", "fore_aft_1"]

@@ -25,6 +25,7 @@ from jackettwin.identification import (
     Spectrum,
     Stabilisation,
 )
+from jackettwin.intervals import log_interval_95
 from jackettwin.records import Channel
 from jackettwin.response import build_system, undamped_modes
 from jackettwin.soil import Spring, Support
@@ -86,9 +87,11 @@ def story(config: TwinConfig, model: TwinModel, until: date, seed: int = 7) -> I
             own = common + SCOUR_M * scour[number - 1] * (day > STORM)
             std = np.array([f_std, zeta_std]) / np.sqrt(_RECORDS)
             x, y = rng.standard_normal(2) * np.hypot(std, [_OWN, 0.06])
+            f, zeta = f * exp(own + x), zeta * exp(y)
             modes[label] = ModalEstimate(
-                f * exp(own + x), zeta * exp(y), np.ones(1, complex), 1.0, 0.0, 1.0,
-                log_covariance=np.diag(std**2),
+                f, zeta, np.ones(1, complex), 1.0, 0.0, 1.0, frequency_std_hz=f * std[0],
+                damping_ratio_std=zeta * std[1], log_covariance=np.diag(std**2),
+                damping_ratio_interval_95=log_interval_95(zeta, std[1]),
             )  # fmt: skip
         if day not in _STOP:
             yield _observation(model, day, until - timedelta(days=DAYS - day), weather, modes)
