@@ -296,7 +296,7 @@ def test_the_structure_moves_and_stops(opened: Open) -> None:
     """Its picture changes from frame to frame, until the button is pressed; colours follow the theme."""
     page = opened.page("/assets/wtg/structure")
     picture = page.locator(".picture canvas")
-    assert page.get_by_label("Motion").locator("option").all_inner_texts() == ["still", "fore-aft 1"]
+    expect(page.get_by_label("Motion").locator("option")).to_have_text(["still", "fore-aft 1"])
     expect(page.get_by_text("0.2500 Hz")).to_be_visible()
     before = picture.screenshot()
     page.wait_for_timeout(300)
@@ -307,6 +307,15 @@ def test_the_structure_moves_and_stops(opened: Open) -> None:
     assert picture.screenshot() == before
     page.get_by_role("button", name="Show in dark colours").click()
     assert picture.screenshot() != before
+    page.context.close()
+
+
+def test_a_turbine_begins_with_answers_and_what_they_hang_on(opened: Open) -> None:
+    page = opened.page("/assets/wtg")
+    expect(page.get_by_text("Whose damping is it?")).to_be_visible()
+    expect(page.get_by_text("moves k by 12 %; to settle it: weigh it")).to_be_visible()
+    page.get_by_role("button", name="Confirm").click()
+    expect(page.get_by_label("How it was settled")).to_be_visible()
     page.context.close()
 
 

@@ -4,6 +4,7 @@ import { type Answer, useAnswer } from "../api/answer";
 import { api, type Alarm, type Asset, type Schemas, told } from "../api/client";
 import type { Knowledge, KnownMode } from "../api/shapes";
 import { AlarmList } from "../parts/AlarmList";
+import { Assumptions } from "../parts/Assumptions";
 import { Ago, Card, Light, Time } from "../parts/Bits";
 import { Budget } from "../parts/Budget";
 import { Empty, Shown, Trouble } from "../parts/Shown";
@@ -174,6 +175,7 @@ export function Turbine({ asset }: PageProps) {
             {(data) => <Budget modes={data.items} />}
           </Shown>
         </Card>
+        <Assumptions asset={asset} />
         <Card title="Ground and rotor" more={<a href={assetUrl(asset, "reports")}>Report</a>}>
           <Shown of={twin} empty={() => (known?.parameters ? null : <NotYet />)} lines={5}>
             {() => <Supports known={known ?? {}} />}

@@ -37,7 +37,7 @@ STORM, SCOUR_M = 500, 1.4
 """The day after whose storm the ground is gone, and how deep."""
 _STOP = range(400, 404)
 """Days of a maintenance stop, on which nothing is measured."""
-_PARKED_EVERY = 10
+_PARKED_EVERY = 30
 """Days from one on which the shaft is locked to the next; on the others the rotor idles."""
 _GROUND = (0.84e9, 4.7e9)
 """Stiffness of a foot sideways and along its pile [N/m]: what the five records of the demonstration say."""

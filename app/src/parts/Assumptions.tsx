@@ -1,0 +1,104 @@
+// What answers take for granted, and the way to say that one has looked.
+import { useState } from "preact/hooks";
+import { useAnswer } from "../api/answer";
+import { api, type Schemas, told } from "../api/client";
+import { may, useDeed } from "../api/do";
+import { assetUrl } from "../shell/place";
+import { Card } from "./Bits";
+import { Empty, Shown } from "./Shown";
+
+type Assumption = Schemas["AssumptionOut"];
+
+/** By how much a standard deviation of it moves what it moves most. */
+function moved(one: Assumption): string {
+  const [name, most] =
+    Object.entries(one.moves ?? {}).toSorted(([, a], [, b]) => Math.abs(b) - Math.abs(a))[0] ?? [];
+  return name === undefined || most === undefined
+    ? ""
+    : `moves ${name} by ${(100 * Math.abs(most)).toPrecision(2)} %`;
+}
+
+function Confirm({ asset, one, done }: { asset: string; one: Assumption; done: (version: number) => void }) {
+  const [open, setOpen] = useState(false);
+  const deed = useDeed();
+  if (!open)
+    return (
+      <button type="button" onClick={() => setOpen(true)}>
+        Confirm
+      </button>
+    );
+  const send = async (event: SubmitEvent): Promise<void> => {
+    event.preventDefault();
+    const comment = String(new FormData(event.currentTarget as HTMLFormElement).get("comment") ?? "");
+    await deed.run(async () => {
+      const params = { path: { asset, key: one.key } };
+      const path = "/api/v1/assets/{asset}/assumptions/{key}/confirm";
+      done((await told(api.POST(path, { params, body: { comment } }))).version);
+    });
+  };
+  return (
+    <form class="stack" onSubmit={(event) => void send(event)}>
+      <label>
+        How it was settled
+        <textarea name="comment" required maxLength={2000} placeholder={one.settled_by ?? ""} />
+      </label>
+      {deed.problem && (
+        <p class="error" role="alert">
+          {deed.problem.message}
+        </p>
+      )}
+      <span>
+        <button class="main" disabled={deed.busy}>
+          Confirm
+        </button>{" "}
+        <button type="button" onClick={() => setOpen(false)}>
+          Not now
+        </button>
+      </span>
+    </form>
+  );
+}
+
+export function Assumptions({ asset }: { asset: string }) {
+  const [version, setVersion] = useState<number | null>(null);
+  const found = useAnswer(asset, `assumptions ${asset}`, () =>
+    told(api.GET("/api/v1/assets/{asset}/assumptions", { params: { path: { asset } } })),
+  );
+  return (
+    <Card
+      title="Open assumptions"
+      note="What the answers hang on and nobody has settled, the weightiest first."
+    >
+      {version !== null && (
+        <p class="said-done" role="status">
+          Version {version} takes it as settled. <a href={assetUrl(asset, "model")}>Adopt it</a> once its
+          records are observed.
+        </p>
+      )}
+      <Shown
+        of={found}
+        empty={(data) =>
+          data.items.some((one) => one.confirmed === false) ? null : <Empty title="None is open" />
+        }
+      >
+        {(data) => (
+          <ul class="list">
+            {data.items
+              .filter((one) => one.confirmed === false)
+              .map((one) => (
+                <li key={one.key}>
+                  <p>{one.value}</p>
+                  <p class="quiet">
+                    {[moved(one), one.settled_by && `to settle it: ${one.settled_by}`]
+                      .filter(Boolean)
+                      .join("; ")}
+                  </p>
+                  {may("engineer") && <Confirm asset={asset} one={one} done={setVersion} />}
+                </li>
+              ))}
+          </ul>
+        )}
+      </Shown>
+    </Card>
+  );
+}
