@@ -116,13 +116,14 @@ def _weather(rng: np.random.Generator, until: date) -> Iterator[Weather]:
 
 def _scour_effect(config: TwinConfig, model: TwinModel) -> FloatArray:
     """Return d ln f/d scour of every mode [1/m], by the model on springs under its feet."""
-    assert model.assembly is not None
-    feet = model.assembly.structure.reaction_nodes
+    assembly = model.assembly
+    assert assembly is not None
+    feet = assembly.structure.reaction_nodes
 
     def frequencies(scour_m: float) -> FloatArray:
         h, v = (k * exp(-loss * scour_m) for k, loss in zip(_GROUND, loss_per_m, strict=True))
         springs = tuple(Spring(node, np.diag([h, h, v, 0.0, 0.0, 0.0])) for node in feet)
-        system = build_system(model.assembly, Support(springs))
+        system = build_system(assembly, Support(springs))
         return np.asarray(undamped_modes(system, len(_MODES)).frequency_hz)
 
     loss_per_m = Ground.of(config).scour_loss
