@@ -139,6 +139,10 @@ export function App() {
     else stopListening();
   }, [user, page]);
   useEffect(() => {
+    const here = document.querySelector(".tabs [aria-current]"); // on a phone the row is longer than the screen
+    here?.scrollIntoView({ inline: "center", block: "nearest" });
+  }, [asset, page]);
+  useEffect(() => {
     document.title = [asset, page]
       .filter((part) => part && part !== "turbine")
       .concat("jackettwin")

@@ -59,7 +59,7 @@ _OWN = 4e-4
 
 
 @dataclass(frozen=True)
-class Weather:
+class DayWeather:
     """What a day was like."""
 
     wind_m_s: float
@@ -97,7 +97,7 @@ def story(config: TwinConfig, model: TwinModel, until: date, seed: int = 7) -> I
             yield _observation(model, day, until - timedelta(days=DAYS - day), weather, modes)
 
 
-def _weather(rng: np.random.Generator, until: date) -> Iterator[Weather]:
+def _weather(rng: np.random.Generator, until: date) -> Iterator[DayWeather]:
     """Yield the weather of each day: wind and temperature remember yesterday's."""
     wind = air = 0.0
     first = (until - timedelta(days=DAYS)).timetuple().tm_yday
@@ -106,7 +106,7 @@ def _weather(rng: np.random.Generator, until: date) -> Iterator[Weather]:
         air = 0.8 * air + 0.9 * rng.standard_normal()
         winter = sin(2.0 * pi * (first + day + 75) / 365.25)  # most in the middle of January
         v = 24.0 if day == STORM else float(np.clip(10.0 + 1.5 * winter + wind, 3.0, 21.0))
-        yield Weather(
+        yield DayWeather(
             wind_m_s=v,
             wave_m=8.5 if day == STORM else 0.1 * v**1.1 * exp(0.1 * rng.standard_normal()),
             air_c=10.0 - 6.0 * winter + air,
@@ -131,7 +131,7 @@ def _scour_effect(config: TwinConfig, model: TwinModel) -> FloatArray:
 
 
 def _observation(
-    model: TwinModel, day: int, of: date, weather: Weather, modes: dict[str, ModalEstimate]
+    model: TwinModel, day: int, of: date, weather: DayWeather, modes: dict[str, ModalEstimate]
 ) -> Observation:
     start = datetime(of.year, of.month, of.day, tzinfo=UTC)
     none, whole = np.empty(0), np.empty(0, dtype=np.int64)

@@ -62,6 +62,10 @@ export function csvOf(plot: PlotData): string {
   return [head, ...lines].join("\n") + "\n";
 }
 
+const FEW = 30;
+/** Of more points, the widest intervals are cut off: a few short records would hide what all others show. */
+const ROOM = 0.25;
+
 /** The extremes of what is shown between two places of x; of positive numbers only if logarithmic. */
 export function spanOf(plot: PlotData, range: Range | null): Range {
   let [low, high] = [Infinity, -Infinity];
@@ -75,12 +79,14 @@ export function spanOf(plot: PlotData, range: Range | null): Range {
       const x = s.x[i] ?? NaN;
       if (range && (x < range[0] || x > range[1])) continue;
       see(s.y[i]);
+      if (s.kind === "points" && s.x.length > FEW) continue;
       see(s.low?.[i]);
       see(s.high?.[i]);
     }
   if (low > high) return plot.log ? [0.1, 1] : [0, 1];
   if (plot.log) return [low / 1.3, high * 1.3];
-  const room = (high - low || Math.abs(high) || 1) * 0.08;
+  const cut = plot.series.some((s) => s.kind === "points" && s.x.length > FEW && s.low);
+  const room = (high - low || Math.abs(high) || 1) * (cut ? ROOM : 0.08);
   return [low - room, high + room];
 }
 
