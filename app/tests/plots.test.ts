@@ -37,6 +37,17 @@ describe("a plot", () => {
     expect(spanOf({ ...plot, log: true }, null)[0]).toBeGreaterThan(0);
     expect(extentOf(plot)).toEqual([-1.2, 61.2]);
   });
+  test("is not hidden by a few wide intervals among many points", () => {
+    const [n, wide] = [100, 1000];
+    const x = Array.from({ length: n }, (_, i) => i);
+    const y = x.map((i) => i % 2);
+    const low = x.map((i) => (i === 5 ? -wide : (y[i] ?? 0) - 0.1));
+    const series = [{ name: "a", colour: "blue", kind: "points" as const, x, y, low, high: y }];
+    const [from, to] = spanOf({ ...plot, series }, null);
+    expect(from).toBeGreaterThan(-1);
+    expect(from).toBeLessThan(-0.1);
+    expect(to).toBeGreaterThan(1);
+  });
   test("is drawn without letting a name become markup", () => {
     const drawn = svgOf(plot, [0, 60], () => "#123456");
     expect(drawn).toContain("side-side &quot;1&quot; &lt;b&gt;");
