@@ -112,6 +112,7 @@ FAULTS = (
         ("Student's factor is inverted", "wider = scipy.special.stdtrit(freedom, 0.975) / scipy.special.ndtri(0.975)", "wider = scipy.special.ndtri(0.975) / scipy.special.stdtrit(freedom, 0.975)"),
         ("covariances of one lag more", "length = (n_samples - n_lags) // n_blocks", "length = (n_samples - n_lags - 1) // (2 * n_blocks)"),
         ("real poles have the wrong rate", "a = -np.log(p.eigenvalues.real) * rate", "a = -np.log(p.eigenvalues.real) / rate"),
+        ("orders of a rotor lock at the inverse ratio", "- moving.log_f[rows][:, None] - np.log(ratio)", "- moving.log_f[rows][:, None] + np.log(ratio)"),
         ("bias of low damping is added", "np.exp(p.log_zeta[mode] - bias[:, 1])", "np.exp(p.log_zeta[mode] + bias[:, 1])"),
     )),
     *_of("watching", rows=(
@@ -119,6 +120,7 @@ FAULTS = (
         ("learning forgets to shrink the covariance", "row[j] -= part * g[j]", "row[j] -= 0.5 * part * g[j]"),
         ("innovations are not divided by their variance", "mean[i] += g[i] * nu / s", "mean[i] += g[i] * nu"),
         ("Bayes factors of steps lack one half", "each[k] = 0.5 * (bent / wide - np.log(wide)) + log_weight[k]", "each[k] = (bent / wide - np.log(wide)) + log_weight[k]"),
+        ("slow regressors start anew with a baseline", "np.where(slow, last, first)", "np.where(slow, first, first)"),
         ("processes age with the square root of time", "np.exp(-gaps[r] * rates[k])", "np.exp(-np.sqrt(gaps[r] * rates[k]))"),
     )),
     *_of("updating", rows=(

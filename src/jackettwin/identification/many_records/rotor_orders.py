@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.special import bdtr, bdtrc
+from scipy.special import bdtrc
 
 from jackettwin.arrays import BoolArray, FloatArray, Int64Array
 from jackettwin.findings import Finding
@@ -32,10 +32,13 @@ TOLERANCE = 0.015
 """Largest deviation of ln of a ratio: the centre of a broad peak is known to about one per cent."""
 SETTLED_SHARE, SETTLED_SPREAD = 0.5, 0.01
 """Least share of the records that contain a constant mode, and its largest spread of ln f."""
+PERMANENT_SHARE = 0.9
+"""Share of the records from which a constant peak is no order: a rotor turns at rated speed most of the time,
+but not always."""
+MOST_BESIDE = 0.2
+"""Largest share of the records with orders at other frequencies in which an order at rated speed is found."""
 LEAST_SWEEP, STEADIER = 0.03, 5.0
 """Least range of ln f of orders, absolute and as multiple of the range of the most constant mode."""
-REACH = 0.3
-"""Largest distance in ln f between an order at rated speed and at another speed."""
 CHANCE = 1e-3
 """Probability of the number of locked pairs below which they are not due to chance."""
 FEWEST = 3
@@ -91,12 +94,14 @@ def objections(tracks: Sequence[Sightings]) -> dict[int, NoMode]:
     if not settled:
         return {}
     still = min(_sweep(seen.log_f[seen.track == k]) for k in settled)
-    moving = seen.at(~np.isin(seen.track, settled))
+    permanent = [k for k in settled if np.sum(seen.track == k) >= PERMANENT_SHARE * n_records]
+    moving = seen.at(~np.isin(seen.track, permanent))
     out: dict[int, NoMode] = {}
     for locked in (_locked(moving, ratio) for ratio in RATIOS):
         sweep = _sweep(moving.log_f[locked.low])
         if sweep > max(LEAST_SWEEP, STEADIER * still) and _is_no_chance(moving, locked):
-            out |= {k: one for k, one in _of_orders(seen, moving, locked).items() if k not in out}
+            caught = _of_orders(moving, locked, settled)
+            out |= {k: one for k, one in caught.items() if k not in out}
     return _of_jumps(seen, settled) | out
 
 
@@ -147,41 +152,26 @@ def _is_no_chance(moving: _All, locked: _Locked) -> bool:
     return bool(bdtrc(locked.low.size - 1, within, min(chance, 1.0)) < CHANCE)
 
 
-def _of_orders(seen: _All, moving: _All, locked: _Locked) -> dict[int, NoMode]:
+def _of_orders(moving: _All, locked: _Locked, settled: Sequence[int]) -> dict[int, NoMode]:
     """Return the tracks that consist of a rotor's orders."""
     rows = np.unique(np.concatenate([locked.low, locked.high]))
-    records = np.unique(moving.record[rows])
-    numbers = np.exp(moving.log_f[locked.low])
+    orders, numbers = moving.at(rows), np.exp(moving.log_f[locked.low])
     reason = Finding(
         "rotor_order_across_records",
         params={
             "ratio": locked.ratio, "low_hz": float(numbers.min()), "high_hz": float(numbers.max()),
-            "number": len(records),
+            "number": len(np.unique(orders.record)),
         },
     )  # fmt: skip
     out = {}
-    for k in np.unique(seen.track):
-        own = seen.at(seen.track == k)
-        caught = np.isin(np.flatnonzero(moving.track == k), rows)
-        if caught.size and 2 * caught.sum() >= caught.size or _is_away(own, seen, moving.at(rows)):
+    for k in np.unique(orders.track):
+        own = moving.record[moving.track == k]
+        caught = orders.record[orders.track == k]
+        elsewhere = np.setdiff1d(orders.record, caught)
+        beside = np.isin(elsewhere, own).sum() > MOST_BESIDE * elsewhere.size
+        if 2 * caught.size >= own.size and not (k in settled and beside):
             out[int(k)] = NoMode(ModeStatus.TONE, reason)
     return out
-
-
-def _is_away(own: _All, seen: _All, orders: _All) -> bool:
-    """Return whether a track in the orders' range is missing in records with orders at other frequencies.
-
-    A rotor turns at rated speed most of the time, and its orders then seem constant.
-    """
-    middle = float(np.median(own.log_f))
-    near = np.abs(orders.log_f - middle) < LEAST_SWEEP
-    elsewhere = np.setdiff1d(orders.record, orders.record[near])
-    others = np.setdiff1d(seen.record, elsewhere)
-    if min(len(elsewhere), len(others)) <= FEWEST or np.abs(orders.log_f - middle).min() > REACH:
-        return False
-    there = np.isin(elsewhere, own.record).sum()
-    usual = np.isin(others, own.record).mean()
-    return bool(bdtr(there, len(elsewhere), min(usual, 0.95)) < CHANCE)
 
 
 def _of_jumps(seen: _All, settled: Sequence[int]) -> dict[int, NoMode]:
