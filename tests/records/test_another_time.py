@@ -85,11 +85,15 @@ def test_more_groups_than_directions_are_of_other_days(tower: SimpleNamespace) -
     assert alarms(of_three) == []
 
 
-def test_channels_of_no_stated_place_are_blamed_with_the_remedy(tower: SimpleNamespace) -> None:
-    record = without_directions(tower.record(1))
+def test_of_channels_without_places_halves_are_asked_about_and_one_is_blamed(tower: SimpleNamespace) -> None:
+    """Half of the sensors of a tower point across; one that is like no other does not."""
+    record, other = without_directions(tower.record(1)), tower.record(2)
     nowhere = replace(record, channels=tuple(replace(c, height_m=None) for c in record.channels))
-    (blamed,) = [f for f in assess(nowhere).findings if f.code == "another_time"]
-    assert "state their directions" in blamed.text
+    assert alarms(nowhere) == []
+    assert [f.code for f in assess(nowhere).findings if f.severity == "warning"] == ["direction_unknown"]
+    odd = replace(nowhere, data=np.vstack([record.data[:2], other.data[2:3], record.data[3:]]))
+    (blamed,) = [f for f in assess(odd).findings if f.code == "another_time"]
+    assert blamed.params["channels"] == odd.channel_names[2] and "state their directions" in blamed.text
 
 
 def test_a_channel_of_noise_is_no_stranger(tower: SimpleNamespace) -> None:

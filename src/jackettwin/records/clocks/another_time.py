@@ -71,8 +71,9 @@ def strangers(
 ) -> tuple[Strangers, ...]:
     """Return channels that resemble the others but are not coherent with most of them.
 
-    Where each shares its place with one of the others, no two of them are stated to be parallel, and there
-    are no more groups than directions in space, they may as well measure across.
+    Where each shares its place with one of the others, or no place is known and they are not few, no two of
+    them are stated to be parallel, and there are no more groups than directions in space, they may as well
+    measure across.
 
     Parameters
     ----------
@@ -112,10 +113,12 @@ def strangers(
         backwards = _common(turned, np.asarray(pairs + [0, len(y)], dtype=np.intp))
         turns = bool(np.any(backwards > MIN_COHERENCE_SUM))
         parallel = pairs[stated[pairs].all(axis=1)]
-        theirs = {places[i] for i in larger} - {None}
+        theirs, own = {places[i] for i in larger} - {None}, {places[j] for j in rows}
+        # of channels without places, two at each would be half of them
+        beside = 2 * len(rows) >= len(groups[0]) if own == {None} else theirs.issuperset(own)
         blamed = (
             turns
-            or not theirs.issuperset(places[j] for j in rows)
+            or not beside
             or len(groups) > DIRECTIONS
             or bool(np.any(alike[parallel[:, 0], parallel[:, 1]] >= MIN_SPECTRAL_CORRELATION))
         )
