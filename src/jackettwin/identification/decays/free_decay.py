@@ -118,7 +118,7 @@ def transient(record: Record, settings: IdentificationSettings, *, impacts: bool
 
     Parameters
     ----------
-    knocks : bool
+    impacts : bool
         Whether a decay that may come from an impact is identified too.
 
     Raises
