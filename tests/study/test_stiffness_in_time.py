@@ -19,7 +19,7 @@ from jackettwin.study.in_time.stiffness import Reference, Sensitivity, Stiffness
 from jackettwin.study.in_time.track import LEARNT_DAYS, STEP_DAYS, StiffnessTrack, Tracked, resumed
 from jackettwin.twin import TwinModel, TwinState, advance, empty_state, read_twin, twin_model
 from jackettwin.updating import Residuals, SupportModel, Target, single, support_model
-from jackettwin.watching import Mixture
+from jackettwin.watching import Mixture, after_row
 
 Table = tuple[np.ndarray, np.ndarray, np.ndarray]
 LOSS = 0.1
@@ -185,6 +185,30 @@ def test_days_that_changed_are_not_gone_on_from(
     dates = list(state.days)
     late = replace(state, days={**state.days, dates[3]: state.days[dates[4]]})
     assert resumed(model, Days.of(late), stored, dates).dates == ()
+
+
+def test_no_day_follows_more_than_two_months_again(
+    stepped: tuple[History, TwinState, StiffnessTrack],
+    model: TwinModel,
+    about: Sensitivity,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Neither one on which conditions are learnt anew nor one on which the window moves."""
+    h, state, _ = stepped
+    counted: list[int] = []
+
+    def counting(*given: object) -> object:
+        counted.append(1)
+        return after_row(*given)  # type: ignore[arg-type]
+
+    monkeypatch.setattr("jackettwin.study.in_time.track.after_row", counting)
+    followed, rows = StiffnessTrack(model, Days.of(state)), []
+    for n, date in enumerate(list(state.days)[: 3 * STEP_DAYS + 1], start=1):
+        counted.clear()
+        followed = gone_on(h, followed, n, date, about)
+        rows.append(len(counted))
+    assert max(rows) <= 2 * STEP_DAYS + 1
+    assert rows[max(LEARNT_DAYS) - 1] == max(LEARNT_DAYS) and rows[2 * STEP_DAYS - 1] > STEP_DAYS
 
 
 @pytest.mark.parametrize("told", [True, False])
