@@ -8,11 +8,11 @@ from __future__ import annotations
 import sys
 import time
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from common.page import write_page
 from common.stiffness_histories import KINDS, MODES, History, history, modes_table
-from tests.support.observations import estimate, observation
 
 from jackettwin.change import Days
 from jackettwin.files import StoredSchema
@@ -21,6 +21,9 @@ from jackettwin.study.in_time.stiffness import Reference, Sensitivity, sensitivi
 from jackettwin.study.in_time.track import LEARNT_DAYS, StiffnessTrack, Tracked, resumed
 from jackettwin.twin import TwinModel, TwinState, advance, empty_state, read_twin, twin_model
 from jackettwin.updating import Residuals, SupportModel, Target, single, support_model
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from tests.support.observations import estimate, observation
 
 FIRST_SEED, LOSS, GROWN = 5000, 0.1, 1.3
 """Seeds below were used while it was written."""
