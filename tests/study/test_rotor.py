@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from datetime import UTC, datetime
+from typing import Any
 
 import numpy as np
 import pytest
@@ -47,9 +48,14 @@ def found(winds: tuple[tuple[float, float | None], ...]) -> TwinState:
     return advance_all(TwinState("model", by_wind=True), observations)[0]
 
 
+def standing(config: TwinConfig) -> dict[str, Any]:
+    assembly = assemble(config.structure, gravity=True)
+    return {"assembly": assembly, "numbered": numbered_modes(assembly, 2)}
+
+
 def test_side_side_damping_is_fitted_in_each_wind(config: TwinConfig) -> None:
     assert mean_wind(config, found(WINDS)) == 12.0
-    states = operating_states(config, MODES, found(WINDS), RESIDUALS, 12.0)
+    states = operating_states(config, MODES, found(WINDS), RESIDUALS, 12.0, **standing(config))
     assert list(states) == ["all winds", "8 m/s", "12 m/s", "16 m/s"]
     common = states["all winds"][0].targets
     assert common[0].damping_ratio is None and common[0].frequency_hz == 0.175
@@ -64,9 +70,9 @@ def test_side_side_damping_is_fitted_in_each_wind(config: TwinConfig) -> None:
 def test_without_winds_or_dashpots_everything_is_one_state(config: TwinConfig) -> None:
     unknown = tuple((zeta, None) for zeta, _ in WINDS)
     assert mean_wind(config, found(unknown)) is None
-    assert list(operating_states(config, MODES, found(unknown), RESIDUALS, None)) == [""]
+    assert list(operating_states(config, MODES, found(unknown), RESIDUALS, None, **standing(config))) == [""]
     still = replace(config, update=config.update.model_copy(update={"dashpots": ()}))
-    assert list(operating_states(still, MODES, found(WINDS), RESIDUALS, 12.0)) == [""]
+    assert list(operating_states(still, MODES, found(WINDS), RESIDUALS, 12.0, **standing(config))) == [""]
 
 
 def test_a_dashpot_takes_from_the_first_mode_what_the_rotor_does(config: TwinConfig) -> None:
@@ -101,6 +107,25 @@ def test_the_prior_is_the_known_aerodynamic_damping(config: TwinConfig) -> None:
     # this twin's mode slopes a little differently
     assert zeta == pytest.approx(0.0242, rel=0.15)
     assert log_std == 0.4
+
+
+def test_a_rotor_at_work_damps_fore_aft_as_computed_in_each_wind(config: TwinConfig) -> None:
+    """Above rated wind its fore-aft damping hardly changes: no part of it is proportional to the wind."""
+    works = replace(config, update=config.update.model_copy(update={"rotor_state": "operating"}))
+    stands = standing(works)
+    found_priors = rotor_damping(works, stands["assembly"], stands["numbered"], 12.0).priors
+    c, log_std = found_priors["c_fore_aft"]
+    zeta = c / (2.0 * 1.12e6 * 2.0 * np.pi * 0.183)
+    # literature of large turbines at work, aeroelastic and measured: 5 to 10 %; rigid blades give more
+    assert 0.05 < zeta < 0.20
+    assert log_std < 0.4
+    states = operating_states(works, MODES, found(WINDS), RESIDUALS, 12.0, **stands)
+    residuals, factors = states["16 m/s"]
+    assert [t.mode for t in residuals.targets] == [1, 2]
+    assert factors["c_fore_aft"] == pytest.approx(1.0, abs=0.05)
+    assert 1.1 < factors["c_side_side"] < 16.0 / 12.0 + 0.1
+    grown = rotor_damping(works, stands["assembly"], stands["numbered"], 16.0).priors
+    assert grown["c_side_side"][0] == pytest.approx(factors["c_side_side"] * found_priors["c_side_side"][0])
 
 
 def test_modes_beside_the_circle_do_not_spoil_the_certificate(config: TwinConfig) -> None:

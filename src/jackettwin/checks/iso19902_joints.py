@@ -25,6 +25,10 @@ C_2 = (43.0, 11.0, 22.0)
 C_BENDING = (25.0, 43.0)
 """The same against moments, whatever the joint."""
 _HIGHEST_YIELD_PA = 500e6
+GAMMA_Z = 1.17
+"""Extra resistance factor of critical joints, (14.3-13): their braces are to fail first."""
+YIELD_OF_TENSILE = 0.8
+"""Share of the tensile strength up to which the chord's yield strength counts, 14.2.3."""
 IN_PLANE = float(np.cos(np.radians(15.0)))
 """Braces within 15° of each other count as one plane, 14.2.4."""
 
@@ -34,6 +38,8 @@ class Joint:
     """A brace on its chord: lengths [m], θ [rad], yield strengths [Pa].
 
     ``gap`` is the largest to a brace beside it in its plane, negative where they overlap; NaN without one.
+    ``can_factor`` is what the length of its can leaves of the axial strength of Y and X joints,
+    ``can_short_m`` how much longer it ought to be [m] (cans.py).
     """
 
     D: float
@@ -44,6 +50,8 @@ class Joint:
     f_y: float
     f_yb: float
     gap: float = np.nan
+    can_factor: float = 1.0
+    can_short_m: float = 0.0
 
     def __post_init__(self) -> None:
         for name in ("D", "T", "d", "t", "f_y", "f_yb"):
@@ -179,6 +187,7 @@ def joint_use(
     """
     q = strength_factors(joint)
     by_kind = np.where(forces.axial >= 0.0, q.tension[:, None], q.compression[:, None])
+    by_kind = by_kind * np.array([1.0, joint.can_factor, joint.can_factor])[:, None]
     C_1n, C_2n = np.array(C_1) @ shares, np.array(C_2) @ shares
     Q_u = (shares * by_kind).sum(axis=0)
     if conservative:

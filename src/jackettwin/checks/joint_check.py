@@ -10,6 +10,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.checks.iso19902_joints import (
+    GAMMA_Z,
     IN_PLANE,
     KINDS,
     BraceForces,
@@ -74,6 +75,10 @@ class BraceUse:
     forces: tuple[float, float, float]
     Q_u: float
     Q_f: float
+    to_brace: float = np.nan
+    """γ_z U_j over the use of the brace's own section there, (14.3-13): at most 1 at a critical joint."""
+    case: str = ""
+    """The combination of actions it is of."""
 
     @property
     def kind(self) -> str:
@@ -158,36 +163,58 @@ def _plan(
 
 
 def joint_uses(
-    assembly: Assembly, plans: tuple[JointPlan, ...], forces: SectionForces, *, conservative: bool = False
+    assembly: Assembly,
+    plans: tuple[JointPlan, ...],
+    forces: SectionForces,
+    *,
+    conservative: bool = False,
+    at_face: bool = False,
+    section_use: FloatArray | None = None,
 ) -> tuple[BraceUse, ...]:
-    """Return the worst use of every brace's joint over all instants (n_cases, n_elements, 2) of forces."""
+    """Return the worst use of every brace's joint over all instants (n_cases, n_elements, 2) of forces.
+
+    Parameters
+    ----------
+    at_face : bool
+        Take the braces' forces where they meet the chord's wall instead of at the node.
+    section_use : (n_cases, n_elements, 2), optional
+        Of the members' own sections, by clause 13.
+    """
     uses = []
     for plan in plans:
-        own, shares = joint_forces(assembly, plan, forces)
+        own, shares = joint_forces(assembly, plan, forces, at_face=at_face)
         sides = [(e.element, e.at_end) for e in plan.chord]
         chord_axial = np.array([forces.axial[:, k, end] for k, end in sides])
         chord_bending = np.array([forces.bending[:, k, end] for k, end in sides])
         for i, (end, joint) in enumerate(zip(plan.braces, plan.joints, strict=True)):
             mine = shares[:, i]
             found = joint_use(joint, own[i], mine, chord_axial, chord_bending, conservative=conservative)
-            uses.append(_worst(plan, end, joint, own[i], mine, found))
+            brace = None if section_use is None else section_use[:, end.element, end.at_end]
+            uses.append(_worst(plan, end, joint, own[i], mine, found, brace))
     return tuple(uses)
 
 
 def joint_forces(
-    assembly: Assembly, plan: JointPlan, forces: SectionForces
+    assembly: Assembly, plan: JointPlan, forces: SectionForces, *, at_face: bool = False
 ) -> tuple[tuple[BraceForces, ...], FloatArray]:
-    """Return every brace's forces at the node (n_cases,), and how much of them is a K, Y and X joint's.
+    """Return every brace's forces at its joint (n_cases,), and how much of them is a K, Y and X joint's.
 
     The shares are (3, n_braces, n_cases), by the balance of axial forces of 14.2.4.
     """
-    own = brace_forces(assembly, plan, forces)
+    own = brace_forces(assembly, plan, forces, at_face=at_face)
     return own, joint_shares(plan, np.array([one.axial for one in own]))
 
 
-def brace_forces(assembly: Assembly, plan: JointPlan, forces: SectionForces) -> tuple[BraceForces, ...]:
-    """Return every brace's forces at the node (n_cases,): linear in the section forces."""
-    return tuple(_brace_forces(assembly, forces, end, plan.chord[0].away) for end in plan.braces)
+def brace_forces(
+    assembly: Assembly, plan: JointPlan, forces: SectionForces, *, at_face: bool = False
+) -> tuple[BraceForces, ...]:
+    """Return every brace's forces at node or chord wall (n_cases,): linear in the section forces."""
+    return tuple(
+        _brace_forces(
+            assembly, forces, end, plan.chord[0].away, 0.5 * joint.D / np.sin(joint.theta) if at_face else 0.0
+        )
+        for end, joint in zip(plan.braces, plan.joints, strict=True)
+    )
 
 
 def joint_shares(plan: JointPlan, axial: FloatArray) -> FloatArray:
@@ -195,18 +222,37 @@ def joint_shares(plan: JointPlan, axial: FloatArray) -> FloatArray:
     return load_path(axial, np.array([joint.theta for joint in plan.joints]), plan.across)
 
 
-def _brace_forces(assembly: Assembly, forces: SectionForces, end: MemberEnd, line: FloatArray) -> BraceForces:
-    """Return a brace's forces at its node, moments about the plane of brace and chord and across it."""
+def _brace_forces(
+    assembly: Assembly, forces: SectionForces, end: MemberEnd, line: FloatArray, offset: float
+) -> BraceForces:
+    """Return a brace's forces ``offset`` [m] from its node: moments in their plane and out of it.
+
+    Moments run straight from the node on, as the shear at its end makes them.
+    """
     k, at = end.element, end.at_end
-    axes = assembly.mesh.axes[k]
-    moment = np.outer(forces.bending_y[:, k, at], axes[1]) + np.outer(forces.bending_z[:, k, at], axes[2])
+    mesh = assembly.mesh
+    axes = mesh.axes[k]
+    length = float(np.linalg.norm(mesh.coordinates[mesh.end[k]] - mesh.coordinates[mesh.start[k]]))
+    share = offset / length
+
+    def there(component: FloatArray) -> FloatArray:
+        near, far = component[:, k, at], component[:, k, 1 - at]
+        return np.asarray(near + share * (far - near))
+
+    moment = np.outer(there(forces.bending_y), axes[1]) + np.outer(there(forces.bending_z), axes[2])
     normal = np.cross(line, end.away)
     normal /= np.linalg.norm(normal)
     return BraceForces(forces.axial[:, k, at], moment @ normal, moment @ np.cross(normal, end.away))
 
 
 def _worst(
-    plan: JointPlan, end: MemberEnd, joint: Joint, own: BraceForces, shares: FloatArray, found: JointUse
+    plan: JointPlan,
+    end: MemberEnd,
+    joint: Joint,
+    own: BraceForces,
+    shares: FloatArray,
+    found: JointUse,
+    brace: FloatArray | None,
 ) -> BraceUse:
     at = int(found.utilisation.argmax())
     K, Y, X = (float(v) for v in shares[:, at])
@@ -221,6 +267,7 @@ def _worst(
         (N, in_plane, out_of_plane),
         float(found.Q_u[at]),
         float(found.Q_f[0, at]),
+        np.nan if brace is None else GAMMA_Z * float(found.utilisation[at]) / max(float(brace[at]), 1e-12),
     )
 
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.checks.cans import with_cans
 from jackettwin.checks.columns import columns
 from jackettwin.checks.iso19902 import (
     CHECKS,
@@ -19,8 +20,10 @@ from jackettwin.checks.iso19902 import (
     strength,
     utilisation,
 )
+from jackettwin.checks.iso19902_joints import YIELD_OF_TENSILE
 from jackettwin.checks.iso19902_pressure import PRESSURE_CHECKS, HoopStrength, hoop_strength, pressure_use
-from jackettwin.checks.joint_check import BraceUse, joint_plans, joint_uses, worst_joints
+from jackettwin.checks.joint_check import BraceUse, JointPlan, joint_plans, joint_uses, worst_joints
+from jackettwin.checks.member_classes import K_OF_CLASS, OTHER, column_lengths, member_classes
 from jackettwin.errors import InputError
 from jackettwin.structure import Assembly, SectionForces, section_forces, tube_radius, von_mises_stress
 
@@ -45,6 +48,12 @@ class DesignBasis:
         else (table 13.5-1 allows 0.7 to 0.8 for braces).
     conservative_joints : bool
         Take the weakest of K, Y and X for every brace instead of its load path.
+    tensile_strength_pa : float or None
+        Of the chords, whose yield strength counts up to 0.8 of it at joints (14.2.3).
+    by_class : bool
+        Give braces the effective lengths of their class (table 13.5-1) where ``K`` says nothing.
+    joints_at_face : bool
+        Take the braces' forces where they meet the chord's wall instead of at the node.
     """
 
     yield_strength_pa: float = 355e6
@@ -52,6 +61,16 @@ class DesignBasis:
     C_m: float = 1.0
     K: Mapping[str, float] = field(default_factory=dict)
     conservative_joints: bool = False
+    tensile_strength_pa: float | None = None
+    by_class: bool = False
+    joints_at_face: bool = False
+
+    @property
+    def chord_yield_pa(self) -> float:
+        """Yield strength of a chord at its joints [Pa]."""
+        if self.tensile_strength_pa is None:
+            return self.yield_strength_pa
+        return min(self.yield_strength_pa, YIELD_OF_TENSILE * self.tensile_strength_pa)
 
 
 class Buckling(NamedTuple):
@@ -95,6 +114,8 @@ class MemberUse:
     """Largest von Mises stress, whatever the governing check [Pa]."""
     covered: bool
     """Whether D/t ≤ 120, the scope of clause 13."""
+    case: str = ""
+    """The combination of actions it is of."""
 
 
 @dataclass(frozen=True)
@@ -103,6 +124,13 @@ class FrameUse:
 
     members: tuple[MemberUse, ...] = ()
     joints: tuple[BraceUse, ...] = ()
+
+    def named(self, case: str) -> FrameUse:
+        """Return the same uses, of a combination of actions with this name."""
+        return FrameUse(
+            tuple(replace(one, case=case) for one in self.members),
+            tuple(replace(one, case=case) for one in self.joints),
+        )
 
     def worse(self, other: FrameUse) -> FrameUse:
         """Return the worst use over both sets of cases."""
@@ -142,8 +170,9 @@ def frame_use(
             allowed="circular tubes (MType 1c)",
             remedy="check other sections by their own code",
         )
-    check = _MemberCheck(assembly, basis, pressure)
-    plans = joint_plans(assembly, basis.yield_strength_pa)
+    plans = joint_plans(assembly, basis.chord_yield_pa)
+    check = _MemberCheck(assembly, basis, pressure, plans)
+    plans = tuple(with_cans(assembly.structure, plan) for plan in plans)
     cases = displacement.reshape(-1, assembly.n_dof)
     spread = None if along is None else along.reshape(-1, *along.shape[-2:])
     worst = FrameUse()
@@ -151,25 +180,39 @@ def frame_use(
         here = slice(first, first + _BLOCK)
         loads = spread if spread is None or len(spread) == 1 else spread[here]
         forces = section_forces(assembly, cases[here], along=loads)
-        joints = joint_uses(assembly, plans, forces, conservative=basis.conservative_joints)
-        worst = worst.worse(FrameUse(check.uses(forces), joints))
+        members, section = check.uses(forces)
+        joints = joint_uses(
+            assembly,
+            plans,
+            forces,
+            conservative=basis.conservative_joints,
+            at_face=basis.joints_at_face,
+            section_use=section,
+        )
+        worst = worst.worse(FrameUse(members, joints))
     return worst
 
 
 class _MemberCheck:
     """Tubes, strengths and pressure of all members, which are the same at every instant."""
 
-    def __init__(self, assembly: Assembly, basis: DesignBasis, pressure: FloatArray | None) -> None:
+    def __init__(
+        self,
+        assembly: Assembly,
+        basis: DesignBasis,
+        pressure: FloatArray | None,
+        plans: tuple[JointPlan, ...],
+    ) -> None:
         self.assembly, self.basis = assembly, basis
-        self.lengths = buckling_lengths(assembly, basis)
+        self.lengths = buckling_lengths(assembly, basis, plans)
         self.tube = _tubes(assembly, basis, self.lengths)
         self.strength: Strength = strength(self.tube)
         self.pressure = pressure if pressure is not None and (pressure > 0.0).any() else None
         spacing = np.array([L for _, L in self.lengths])[assembly.mesh.member][:, None]
         self.hoop: HoopStrength = hoop_strength(self.tube, spacing)
 
-    def uses(self, forces: SectionForces) -> tuple[MemberUse, ...]:
-        """Return the use of every member under section forces (n_cases, n_elements, 2)."""
+    def uses(self, forces: SectionForces) -> tuple[tuple[MemberUse, ...], FloatArray]:
+        """Return the use of members under section forces, and of all sections (n_cases, n_elements, 2)."""
         stress, basis = section_stress(self.assembly, forces), self.basis
         U = [*utilisation(self.strength, stress, C_m=basis.C_m, edition=basis.edition)]
         if self.pressure is not None:
@@ -178,7 +221,8 @@ class _MemberCheck:
             )
             U += [np.broadcast_to(one, U[0].shape) for one in under]
         slender = (self.tube.D / self.tube.t)[:, 0]
-        return _uses(self.assembly, np.stack(U), forces, self.lengths, slender)
+        section = U[list(CHECKS).index("section")]
+        return _uses(self.assembly, np.stack(U), forces, self.lengths, slender), section
 
 
 def worst_uses(first: tuple[MemberUse, ...], second: tuple[MemberUse, ...]) -> tuple[MemberUse, ...]:
@@ -220,14 +264,16 @@ def _uses(
     return tuple(uses)
 
 
-def buckling_lengths(assembly: Assembly, basis: DesignBasis) -> list[Buckling]:
+def buckling_lengths(assembly: Assembly, basis: DesignBasis, plans: tuple[JointPlan, ...]) -> list[Buckling]:
     """Return K and L of every member."""
     runs = columns(assembly.structure)
+    classes = member_classes(plans) if basis.by_class else {}
+    length = column_lengths(plans, runs) if basis.by_class else {}
     found = []
     for m in assembly.structure.members:
-        own = 2.0 if runs[m.name].is_cantilever else 1.0
+        own = 2.0 if runs[m.name].is_cantilever else K_OF_CLASS.get(classes.get(m.name, OTHER), 1.0)
         K = basis.K.get(m.name, basis.K.get(m.part, own))
-        found.append(Buckling(K, runs[m.name].length_m))
+        found.append(Buckling(K, length.get(m.name, runs[m.name].length_m)))
     return found
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -10,7 +11,7 @@ import numpy as np
 
 from jackettwin.caveats import Omission, omission_documents, omission_sentences
 from jackettwin.checks import EDITIONS
-from jackettwin.cli.console import FiniteFloat, Reply, answers, numbers_of, say, say_all, show_table
+from jackettwin.cli.console import FiniteFloat, Reply, answers, numbers_of, say, say_all, show_table, working
 from jackettwin.cli.modes import pile_model_option, supported_option
 from jackettwin.errors import InputError, look_up
 from jackettwin.report import Table, TableColumn
@@ -18,7 +19,6 @@ from jackettwin.report import Table, TableColumn
 if TYPE_CHECKING:
     from jackettwin.arrays import FloatArray
     from jackettwin.checks import BraceUse, DesignBasis, FrameUse, MemberUse, SheetLine, VortexUse
-    from jackettwin.loads import Water
     from jackettwin.response import System
     from jackettwin.soil import PileModel, PileUse
     from jackettwin.structure import Assembly
@@ -36,6 +36,11 @@ _HEADINGS = ("N", "Vy", "Vz", "T", "My", "Mz")
 @click.command("check")
 @click.argument("structure", required=False)
 @click.option("--scenario", help="Check the worst instant of a simulated scenario instead.")
+@click.option(
+    "--combinations",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Check the envelope of the factored combinations of a YAML file.",
+)
 @click.option("--support", help="As for `jackettwin modes`.")
 @pile_model_option
 @click.option(
@@ -63,7 +68,22 @@ _HEADINGS = ("N", "Vy", "Vz", "T", "My", "Mz")
     help="Add buoyancy, and hydrostatic pressure on members that are not flooded.",
 )
 @click.option("--flooded", multiple=True, metavar="MEMBER|PART", help="With --still-water; may be repeated.")
-@click.option("--sheet", metavar="MEMBER", help="Show the calculation of a member line by line.")
+@click.option(
+    "--joint-forces",
+    default="node",
+    show_default=True,
+    type=click.Choice(("node", "face")),
+    help="Braces' forces where axes meet, or where they meet the chord's wall.",
+)
+@click.option(
+    "--effective-lengths",
+    default="one",
+    show_default=True,
+    type=click.Choice(("one", "class")),
+    help="K of braces: 1, or by class, table 13.5-1.",
+)
+@click.option("--tensile-strength", type=FiniteFloat(min=1e6), help="f_u of chords [Pa]: f_y ≤ 0.8 f_u.")
+@click.option("--sheet", metavar="MEMBER", help="The calculation of a member, line by line, for a checker.")
 @click.option(
     "--pile-resistance",
     default=1.25,
@@ -86,6 +106,7 @@ _HEADINGS = ("N", "Vy", "Vz", "T", "My", "Mz")
 def check_command(
     structure: str | None,
     scenario: str | None,
+    combinations: Path | None,
     support: str | None,
     pile_model: PileModel | None,
     forces: tuple[str, ...],
@@ -93,6 +114,9 @@ def check_command(
     yield_strength: float,
     edition: str,
     joints: str,
+    joint_forces: str,
+    effective_lengths: str,
+    tensile_strength: float | None,
     still_water: bool,
     flooded: tuple[str, ...],
     sheet: str | None,
@@ -103,16 +127,37 @@ def check_command(
 ) -> Reply:
     """Check members and joints of STRUCTURE, or of a scenario.
 
-    STRUCTURE is in static equilibrium under its weight and the given forces.
+    STRUCTURE is at rest under its weight and the forces given, or under those that --combinations factors.
     """
     from jackettwin.checks import DesignBasis, frame_use, left_out, vortex_uses
     from jackettwin.decks import read_structure
     from jackettwin.loads import Water
     from jackettwin.response import build_system, nodal_load, self_weight, static_displacement, undamped_modes
-    from jackettwin.simulate import read_scenario, scenario_uses, water_notes
+    from jackettwin.simulate import read_scenario, scenario_uses, water_at_rest, water_notes
     from jackettwin.structure import assemble, element_weight
 
-    basis = DesignBasis(yield_strength, edition, conservative_joints=joints == "conservative")
+    basis = DesignBasis(
+        yield_strength,
+        edition,
+        conservative_joints=joints == "conservative",
+        tensile_strength_pa=tensile_strength,
+        by_class=effective_lengths == "class",
+        joints_at_face=joint_forces == "face",
+    )
+    if combinations is not None:
+        _refuse(
+            "belongs to actions that are not combined",
+            "leave it out: the file of combinations has the actions",
+            scenario=scenario,
+            force=forces or None,
+            no_weight=no_weight or None,
+            still_water=still_water or None,
+            flooded=flooded or None,
+            sheet=sheet,
+            wind=wind,
+            current=current,
+        )
+        return _combined(combinations, structure, support, pile_model, subdivide, basis)
     if (structure is None) == (scenario is None):
         raise InputError(
             "give a structure or --scenario", field="STRUCTURE", remedy="keep exactly one of them"
@@ -120,7 +165,9 @@ def check_command(
     if flooded and not still_water:
         raise InputError("needs --still-water", field="--flooded", value=flooded, remedy="add --still-water")
     if scenario is not None:
-        _refuse_beside_scenario(wind=wind, current=current, sheet=sheet, still_water=still_water or None)
+        at_rest = "belongs to a structure at rest"
+        _refuse(at_rest, "leave it out: a scenario has its own water", still_water=still_water or None)
+        _refuse(at_rest, "name the structure", wind=wind, current=current, sheet=sheet)
         chosen_scenario = read_scenario(scenario)
         use = scenario_uses(chosen_scenario, basis)
         stands = chosen_scenario.asset.structure
@@ -136,7 +183,8 @@ def check_command(
         load, along = load + self_weight(assembly), element_weight(assembly)
     pressure = None
     if still_water:
-        load, along, pressure = _in_water(assembly, Water(flooded), load, along)
+        wet, wet_along, pressure = water_at_rest(assembly, Water(flooded))
+        load, along = load + wet, wet_along if along is None else along + wet_along
     system = build_system(assembly, held)
     u = static_displacement(system, load)
     use = frame_use(assembly, u, basis, along=along, pressure=pressure)
@@ -159,15 +207,41 @@ def check_command(
     )
 
 
-def _refuse_beside_scenario(**given: object) -> None:
-    """Raise an error on options that apply only to a static check."""
+def _refuse(problem: str, remedy: str, **given: object) -> None:
+    """Refuse options that do not belong to what is checked."""
     for name, value in given.items():
         if value is not None:
-            option = f"--{name.replace('_', '-')}"
-            remedy = (
-                "omit it: a scenario has its own water" if name == "still_water" else "name the structure"
-            )
-            raise InputError("applies only to the static check of a structure", field=option, remedy=remedy)
+            raise InputError(problem, field=f"--{name.replace('_', '-')}", remedy=remedy)
+
+
+def _combined(
+    path: Path,
+    structure: str | None,
+    support: str | None,
+    pile_model: PileModel | None,
+    subdivide: int | None,
+    basis: DesignBasis,
+) -> Reply:
+    """Return the envelope of a file of combinations, with each one's own worst use."""
+    from jackettwin.checks import left_out
+    from jackettwin.decks import read_structure
+    from jackettwin.response import build_system
+    from jackettwin.simulate import combined_uses, read_combinations
+    from jackettwin.structure import assemble
+
+    file, system = read_combinations(path), None
+    name, stands = path.stem, None
+    if structure is not None:
+        assembly = assemble(read_structure(structure), subdivide=subdivide)
+        stands, held = supported_option(support, assembly, pile_model)
+        system = build_system(assemble(stands, subdivide=subdivide), held)
+        name = stands.name
+    with working(f"combinations of {path.name}"):
+        found = combined_uses(file, basis, system)
+    omissions = () if stands is None else left_out(stands)
+    factored = [one for one in omissions if "partial action factors" not in one.what]
+    missing = (*factored, *_flows_left_out(None, None), *_piles_left_out(()))
+    return _answer(name, found.envelope, [], missing, combinations=found.each)
 
 
 def _sheet(
@@ -219,34 +293,6 @@ def _piles_left_out(piles: tuple[PileUse, ...]) -> tuple[Omission, ...]:
     )
 
 
-def _in_water(
-    assembly: Assembly, water: Water, load: FloatArray, along: FloatArray | None
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return loads with buoyancy, and the pressure on the elements' ends; the bed is at the lowest foot."""
-    from jackettwin.loads import (
-        Coefficients,
-        morison_points,
-        outside_pressure,
-        still_water as still_water_loads,
-    )
-
-    structure = assembly.structure
-    depth = structure.sea_level_z_m - min(structure.nodes[name][2] for name in structure.reaction_nodes)
-    if not depth > 0.0:
-        raise InputError(
-            "the structure is above still water",
-            field="--still-water",
-            value=structure.sea_level_z_m,
-            allowed="sea_level_z_m above the lowest foot",
-            remedy="state sea_level_z_m in the structure's file, or omit --still-water",
-        )
-    coefficients = Coefficients()
-    grid = morison_points(assembly, highest_z=0.0, lowest_z=-depth, coefficients=coefficients)
-    wet = still_water_loads(assembly, grid, water)
-    pressure = outside_pressure(assembly, water, density_kg_m3=coefficients.density_kg_m3, depth_m=depth)
-    return load + wet.load, wet.along if along is None else along + wet.along, pressure
-
-
 def _flows_left_out(wind: float | None, current: float | None) -> tuple[Omission, ...]:
     """Return the omitted parts of the screening for vortices, and how to include them."""
     found = []
@@ -269,6 +315,7 @@ def _answer(
     piles: tuple[PileUse, ...] = (),
     vortices: tuple[VortexUse, ...] = (),
     sheet: tuple[SheetLine, ...] | None = None,
+    combinations: Mapping[str, FrameUse] | None = None,
 ) -> Reply:
     members = sorted(use.members, key=lambda one: (not one.covered, -one.utilisation))
     joints = sorted(use.joints, key=lambda one: (bool(one.joint.beyond_validity), -one.utilisation))
@@ -277,6 +324,7 @@ def _answer(
         "largest_von_mises_stress_pa": max(one.von_mises_pa for one in use.members),
         "members": [_row(one) for one in members],
         "joints": [_joint_row(one) for one in joints],
+        "combinations": [_combination_row(case, one) for case, one in (combinations or {}).items()],
         "sheet": None if sheet is None else [line._asdict() for line in sheet],
         "piles": [_pile_row(one) for one in sorted(piles, key=lambda one: -one.axial)],
         "vortices": [_vortex_row(one) for one in vortices],
@@ -284,6 +332,21 @@ def _answer(
         "left_out": omission_documents(missing),
     }
     return Reply(document, lambda: _show(document))
+
+
+def _combination_row(case: str, use: FrameUse) -> dict[str, Any]:
+    """Return the largest uses of a combination within the ranges of their rules."""
+    members = [one for one in use.members if one.covered]
+    joints = [one for one in use.joints if not one.joint.beyond_validity]
+    member = max(members, key=lambda one: one.utilisation, default=None)
+    joint = max(joints, key=lambda one: one.utilisation, default=None)
+    return {
+        "combination": case,
+        "member": None if member is None else member.member,
+        "utilisation": None if member is None else member.utilisation,
+        "joint": None if joint is None else f"{joint.brace} at {joint.node}",
+        "joint_utilisation": None if joint is None else joint.utilisation,
+    }
 
 
 def nodal_force(text: str) -> tuple[str, tuple[float, ...]]:
@@ -316,6 +379,7 @@ def _row(use: MemberUse) -> dict[str, Any]:
         "end": _forces(worst.end_forces[1]),
         "von_mises_stress_pa": use.von_mises_pa,
         "covered": use.covered,
+        "combination": use.case or None,
     }
 
 
@@ -345,6 +409,10 @@ def _joint_row(use: BraceUse) -> dict[str, Any]:
         "theta_deg": float(np.degrees(joint.theta)),
         "gap_m": joint.gap if np.isfinite(joint.gap) else None,
         "beyond_validity": list(joint.beyond_validity),
+        "can_factor": joint.can_factor,
+        "can_short_m": joint.can_short_m,
+        "to_brace": use.to_brace if np.isfinite(use.to_brace) else None,
+        "combination": use.case or None,
     }
 
 
@@ -405,8 +473,13 @@ def _warnings(use: FrameUse) -> list[str]:
 
     # rows beyond a rule's range are last in the tables and not in the headline
     thin = [one.member for one in use.members if not one.covered]
-    over = [one.member for one in use.members if one.utilisation > 1.0]
-    joints = [f"{one.brace} at {one.node}" for one in use.joints if one.utilisation > 1.0]
+    over = [one.member for one in use.members if one.covered and one.utilisation > 1.0]
+    joints = [
+        f"{one.brace} at {one.node}"
+        for one in use.joints
+        if one.utilisation > 1.0 and not one.joint.beyond_validity
+    ]
+    short = [f"{one.brace} at {one.node}" for one in use.joints if one.joint.can_short_m > 0.0]
     beyond = [(f"{one.brace} at {one.node}", why) for one in use.joints for why in one.joint.beyond_validity]
     found = []
     if thin:
@@ -415,6 +488,8 @@ def _warnings(use: FrameUse) -> list[str]:
         found.append(f"used above 1: {few(over)}")
     if joints:
         found.append(f"joints used above 1: {few(joints)}")
+    if short:
+        found.append(f"cans shorter than ISO 19902 14.2.2 asks: {few(short)}")
     if beyond:
         named = few(list(dict.fromkeys(name for name, _ in beyond)))
         found.append(f"joints beyond the ranges of ISO 19902 14.3.1 ({beyond[0][1]}, …): {named}")
@@ -426,6 +501,8 @@ def _show(document: dict[str, Any]) -> None:
     show_table(Table(document["structure"], _USE, members[:_SHOWN]))
     if not all(row["covered"] for row in members[:_SHOWN]):
         say("* D/t above 120, beyond 13.1")
+    if document["combinations"]:
+        show_table(Table("combinations", _COMBINATIONS, document["combinations"]))
     show_table(Table("section forces there [kN, kN·m]", _SECTION_FORCES, members[:_SHOWN]))
     if len(members) > _SHOWN:
         more = len(members) - _SHOWN
@@ -465,6 +542,13 @@ _USE = (
     TableColumn("governed by", "clause"),
     TableColumn("K", "effective_length_factor", "g"),
     TableColumn("L [m]", "column_length_m", ".2f"),
+)
+_COMBINATIONS = (
+    TableColumn("combination", "combination"),
+    TableColumn("member", "member"),
+    TableColumn("utilisation", "utilisation", ".3f"),
+    TableColumn("joint", "joint"),
+    TableColumn("utilisation", "joint_utilisation", ".3f"),
 )
 _SECTION_FORCES = (
     TableColumn("member", "member"),

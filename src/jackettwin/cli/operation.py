@@ -11,6 +11,7 @@ import click
 from jackettwin.cli.console import FiniteFloat, Reply, answers, numbers_of, say_all, show_table, working
 from jackettwin.cli.modes import rayleigh_option, supported_option
 from jackettwin.errors import InputError, located
+from jackettwin.omissions import omission_documents, omission_sentences
 from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
@@ -113,7 +114,7 @@ def operation_command(
         "hub_height_m": hub,
         "winds": rows,
         "warnings": _warnings(rows, control),
-        "left_out": list(LEFT_OUT),
+        "left_out": omission_documents(LEFT_OUT),
     }
     return Reply(document, lambda: _show(document))
 
@@ -189,4 +190,4 @@ def _show(document: dict[str, Any]) -> None:
     )
     show_table(Table(title, columns, rows))
     say_all(document["warnings"], "warning")
-    say_all(document["left_out"], "left out")
+    say_all(omission_sentences(document["left_out"]), "left out")

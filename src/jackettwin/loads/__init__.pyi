@@ -53,7 +53,10 @@ from .operation.bem import (
     OperatingPoint as OperatingPoint,
     operating_point as operating_point,
 )
-from .operation.dynamic_inflow import operating_damping as operating_damping
+from .operation.dynamic_inflow import (
+    OPERATING_LOG_STD as OPERATING_LOG_STD,
+    operating_damping as operating_damping,
+)
 from .operation.excitation import (
     TowerOutline as TowerOutline,
     Turbulent as Turbulent,

@@ -1,5 +1,10 @@
 from .at_work import LEFT_OUT as LEFT_OUT, at_work as at_work, work_row as work_row
 from .batch import pending_cases as pending_cases, record_path as record_path, run_set as run_set
+from .combinations import (
+    combined_uses as combined_uses,
+    read_combinations as read_combinations,
+    water_at_rest as water_at_rest,
+)
 from .members import scenario_uses as scenario_uses, water_notes as water_notes
 from .motion.model import asset_model as asset_model
 from .record import Simulation as Simulation, simulate as simulate

@@ -10,6 +10,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.loads import (
+    OPERATING_LOG_STD,
     Control,
     Linearised,
     OperatingPoint,
@@ -22,7 +23,7 @@ from jackettwin.loads import (
     passing_loads,
     turbulent_loads,
 )
-from jackettwin.loads.operation.dynamic_inflow import LOG_STD
+from jackettwin.omissions import Omission
 from jackettwin.simulate.motion.model import Model, TrueMode, asset_model, true_modes, with_aerodynamics
 from jackettwin.simulate.scenario.asset import Asset
 from jackettwin.structure import Structure
@@ -31,11 +32,14 @@ _FIRST = {"fore_aft": "fore_aft_1", "side_side": "side_side_1"}
 _BELOW_HZ = 1.5
 _NORMAL_90 = 1.645
 _LOADS = ("x_n", "y_n", "z_n", "x_nm", "y_nm", "z_nm")
-LEFT_OUT = (
-    "the controller's own pitch and torque: they are held, and a real one changes fore-aft damping",
-    "blades that bend, unsteady aerodynamics and dynamic stall: within the interval",
-    "rotor speed that follows gusts; unequal blades, whose mass or pitch shakes at the rotor's own frequency",
-    "yaw error, wakes of neighbours",
+LEFT_OUT = tuple(
+    Omission(what)
+    for what in (
+        "the controller's own pitch and torque: they are held, and a real one changes fore-aft damping",
+        "blades that bend, unsteady aerodynamics and dynamic stall: within the interval",
+        "rotor speed that follows gusts; unequal blades, which shake at the rotor's own frequency",
+        "yaw error, wakes of neighbours",
+    )
 )
 
 
@@ -128,7 +132,7 @@ def _side_row(modes: tuple[TrueMode, ...], side: str) -> dict[str, Any] | None:
     if mode is None:
         return None
     part = mode.damping_by_source["rotor"]
-    width = exp(_NORMAL_90 * LOG_STD[side])
+    width = exp(_NORMAL_90 * OPERATING_LOG_STD[side])
     return {
         "frequency_hz": mode.frequency_hz,
         "damping_ratio": mode.damping_ratio,

@@ -37,18 +37,20 @@ def scenario_uses(scenario: Scenario, basis: DesignBasis | None = None) -> Frame
     """
     motion = simulate_motion(scenario)
     assembly = motion.model.assembly
-    pressure = _pressure(scenario, assembly)
+    pressure = pressure_outside(scenario, assembly)
     worst = FrameUse()
     for u, along in deflections(scenario, motion):
         worst = worst.worse(frame_use(assembly, u, basis, along=along, pressure=pressure))
     return worst
 
 
-def deflections(scenario: Scenario, motion: Motion) -> Iterator[tuple[FloatArray, FloatArray]]:
+def deflections(
+    scenario: Scenario, motion: Motion, *, permanent: float = 1.0, environmental: float = 1.0
+) -> Iterator[tuple[FloatArray, FloatArray]]:
     """Yield a scenario in blocks of instants, without what is discarded.
 
     Each block is displacements (n, n_dof), weight included, and loads along the elements, (n_elements, 12) or
-    one for every instant.
+    one for every instant. ``permanent`` multiplies weight and buoyancy, ``environmental`` all that moves.
     """
     assembly, modes = motion.model.assembly, motion.model.reduced.basis.T
     q = motion.states[:, : motion.space.n]
@@ -57,11 +59,13 @@ def deflections(scenario: Scenario, motion: Motion) -> Iterator[tuple[FloatArray
     waves = _waves_along(scenario, assembly)
     for first in range(round(scenario.clock.discard_s / motion.step_s), len(q), _BLOCK):
         here = slice(first, first + _BLOCK)
-        along = rest.along if waves is None else np.add(rest.along, waves(t[here]))
-        yield rest.displacement + q[here] @ modes, along
+        along = permanent * rest.along
+        if waves is not None:
+            along = along + environmental * waves(t[here])
+        yield permanent * rest.displacement + environmental * (q[here] @ modes), along
 
 
-def _pressure(scenario: Scenario, assembly: Assembly) -> FloatArray | None:
+def pressure_outside(scenario: Scenario, assembly: Assembly) -> FloatArray | None:
     """Return the water pressure on the elements' ends, (n_elements, 2) [Pa]; None if unknown inside."""
     sea = scenario.sea
     if sea is None or sea.water is None:

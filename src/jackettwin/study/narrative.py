@@ -94,9 +94,12 @@ def _beside_law(config: TwinConfig, wind: float | None) -> list[Assumption]:
     found = []
     if config.update.dashpots:
         shape = "with the pattern of its blades" if config.update.rotor else "on the tower top"
-        where = "" if wind is None else f", stated at a wind of {wind:.3g} m/s and proportional to it"
-        parked = f"The rotor is parked: dashpots {', '.join(config.update.dashpots)} {shape}{where}."
-        found.append(Assumption("rotor", parked))
+        works = config.update.rotor_state == "operating"
+        grows = "changing with it as computed, pitch and speed held" if works else "proportional to it"
+        where = "" if wind is None else f", stated at a wind of {wind:.3g} m/s and {grows}"
+        state = "at work" if works else "parked"
+        rotor = f"The rotor is {state}: dashpots {', '.join(config.update.dashpots)} {shape}{where}."
+        found.append(Assumption("rotor", rotor))
     if config.update.water:
         water = (
             f"Factors of the water are updated: {', '.join(config.update.water)}. Drag is linear, in one "

@@ -1,15 +1,23 @@
-"""The parked rotor of a twin: its wind speed and its expected damping."""
+"""The rotor of a twin, parked or at work: what wind it was in, and what damping to expect of it."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import located
-from jackettwin.loads import Rotor, linearise, read_rotor
+from jackettwin.loads import (
+    OPERATING_LOG_STD,
+    linearise,
+    operating_damping,
+    operating_point,
+    read_rotor,
+    read_schedule,
+)
 from jackettwin.response import UndampedModes
 from jackettwin.structure import Assembly
 from jackettwin.study.measure import mean_target
@@ -17,12 +25,16 @@ from jackettwin.study.measurements import MeasuredMode
 from jackettwin.twin import ALL, OperationTotal, TwinConfig, TwinState
 from jackettwin.updating import DASHPOTS, Residuals, Target
 
-_LOG_STD = {"c_fore_aft": 0.8, "c_side_side": 0.4}
-"""Standard deviation of ln c: blades bend, the flow lags, turbulence reduces c by 11–18 %; drag is small."""
+_LOG_STD = {
+    "parked": {"c_fore_aft": 0.8, "c_side_side": 0.4},
+    "operating": {f"c_{side}": std for side, std in OPERATING_LOG_STD.items()},
+}
+"""How far it may be off: blades bend, air lags, turbulence takes 11–18 %; drag is small."""
 _BLADES = 3
 """Number of blades of a rotor without a description."""
 _ANY_WIND_M_S = 10.0
-"""Arbitrary wind speed for the damping of a parked rotor, which is proportional to it."""
+"""Where the wind is not known: it scales a parked rotor's damping, and hardly changes the pattern of one at
+work."""
 _SIDES = {"c_fore_aft": (0, 2, 4), "c_side_side": (1, 3, 5)}
 """Degrees of freedom of the tower top that a rotor without yaw error couples with each other."""
 
@@ -76,33 +88,60 @@ def rotor_damping(
     """Return the dashpots' patterns S and priors.
 
     C = cS with c = φᵀCφ/φ_j², φ the tower top's motion in the first mode of that direction.
+
+    Raises
+    ------
+    InputError
+        If the rotor's files are wrong, or its schedule does not reach the wind.
     """
     if config.update.rotor is None:
         return RotorDamping({}, {})
-    with located(file=config.path, field="update"):
-        per_wind = _per_wind(read_rotor(config.update.rotor)[0], config.update.shaft)
-    top = numbered.shapes[assembly.dofs(assembly.structure.top_node)]
+    C = _rotor_matrix(config, numbered, wind or _ANY_WIND_M_S)
     patterns: dict[str, FloatArray] = {}
     priors: dict[str, tuple[float, float]] = {}
     for name in config.update.dashpots:
-        axis, dofs = DASHPOTS[name], np.ix_(_SIDES[name], _SIDES[name])
-        C = np.zeros((6, 6))
-        C[dofs] = per_wind[dofs]
-        phi = top[:, int(np.argmax(np.abs(top[axis, :2])))]
-        c = float(phi @ C @ phi / phi[axis] ** 2)
-        patterns[name] = C / c
+        part = _of_side(C, name)
+        c = _dashpot(part, name, assembly, numbered)
+        patterns[name] = part / c
         if wind is not None:
-            priors[name] = (c * wind, _LOG_STD[name])
+            priors[name] = (c, _LOG_STD[config.update.rotor_state][name])
     return RotorDamping(patterns, priors)
 
 
-def _per_wind(rotor: Rotor, shaft: str) -> FloatArray:
-    """Return the symmetric damping (6, 6) of a feathered rotor per m/s of wind, averaged over azimuth.
+def _of_side(C: FloatArray, name: str) -> FloatArray:
+    """Return what a rotor's matrix (6, 6) has on the degrees of freedom of one direction."""
+    dofs = np.ix_(_SIDES[name], _SIDES[name])
+    part = np.zeros((6, 6))
+    part[dofs] = C[dofs]
+    return part
+
+
+def _dashpot(C: FloatArray, name: str, assembly: Assembly, numbered: UndampedModes) -> float:
+    """Return the dashpot at the tower top that takes what C does from the first mode of its direction."""
+    top = numbered.shapes[assembly.dofs(assembly.structure.top_node)]
+    axis = DASHPOTS[name]
+    phi = top[:, int(np.argmax(np.abs(top[axis, :2])))]
+    return float(phi @ C @ phi / phi[axis] ** 2)
+
+
+def _rotor_matrix(config: TwinConfig, numbered: UndampedModes, wind: float) -> FloatArray:
+    """Return the damping (6, 6) of the rotor in a wind: symmetric, averaged over azimuth.
 
     The geometry includes cone and prebend, which place the blades upwind of the hub and so double the damping
     of a pitching or yawing tower top compared with straight blades.
     """
-    C = linearise(rotor, _ANY_WIND_M_S, pitch=0.5 * np.pi, shaft=shaft).damping / _ANY_WIND_M_S
+    given = config.update
+    with located(file=config.path, field="update"):
+        rotor, control = read_rotor(given.rotor or "")
+        if given.rotor_state == "parked":
+            parked = linearise(rotor, _ANY_WIND_M_S, pitch=0.5 * np.pi, shaft=given.shaft or "locked")
+            C = parked.damping * (wind / _ANY_WIND_M_S)
+        else:
+            if given.rotor_schedule is not None:
+                control = replace(control, schedule=read_schedule(Path(given.rotor_schedule)))
+            operation = operating_point(rotor, control, wind)
+            omega = float(numbered.omega[0])
+            C = operating_damping(rotor, operation, omega=omega, shaft=given.shaft or "free").damping
     return np.asarray(0.5 * (C + C.T))
 
 
@@ -112,17 +151,23 @@ def operating_states(
     state: TwinState | None,
     residuals: Residuals,
     wind: float | None,
+    *,
+    assembly: Assembly,
+    numbered: UndampedModes,
 ) -> States:
     """Return the data by wind speed: modes that the rotor damps in each wind, all other modes once.
 
-    A parked rotor's damping is proportional to the wind (thin aerofoils at the same angle), so that one
-    unknown suffices for all winds. The model error, common to all winds, is assigned to the first state.
+    A parked rotor's damping is proportional to the wind (thin aerofoils at the same angle), that of one at
+    work changes as computed: one unknown serves every wind. The model's error stays where it is common to all
+    winds, in the first state.
     """
     if state is None or wind is None or residuals.relative or "c_side_side" not in config.update.dashpots:
         return {"": (residuals, {})}
-    # fore-aft the rotor's drag is small, and its growth is less than the scatter between records
-    wanted = [m.mode for m in measured if m.fits_damping and m.label.startswith("side_side")]
-    # a dashpot without the rotor's pattern damps the first modes only
+    # fore-aft a parked rotor's drag is a small part: there its growth drowns in the records' scatter
+    works = config.update.rotor_state == "operating"
+    sides = ("side_side", "fore_aft") if works else ("side_side",)
+    wanted = [m.mode for m in measured if m.fits_damping and m.label.startswith(sides)]
+    # a dashpot without the rotor's pattern touches the first modes alone
     touched = (1, 2) if config.update.rotor is None else (1, 2, 4, 5)
     winds = {name: (total, total.conditions.wind_m_s) for name, total in state.totals.items() if name != ALL}
     apart = [mode for mode in wanted if mode in touched and _in_several_winds(mode, winds)]
@@ -140,9 +185,23 @@ def operating_states(
             if mode in total.modes
         ]
         if targets and v is not None:
-            factors: dict[str, float] = dict.fromkeys(config.update.dashpots, v / wind)
-            states[name] = (Residuals(tuple(targets), relative=False), factors)
+            grown = _growth(config, assembly, numbered, v, wind)
+            states[name] = (Residuals(tuple(targets), relative=False), grown)
     return states
+
+
+def _growth(
+    config: TwinConfig, assembly: Assembly, numbered: UndampedModes, wind: float, stated: float
+) -> dict[str, float]:
+    """Return by how much each dashpot is larger in a wind than where it is stated."""
+    if config.update.rotor is None or config.update.rotor_state == "parked":
+        return dict.fromkeys(config.update.dashpots, wind / stated)
+    here, there = (_rotor_matrix(config, numbered, v) for v in (wind, stated))
+    return {
+        name: _dashpot(_of_side(here, name), name, assembly, numbered)
+        / _dashpot(_of_side(there, name), name, assembly, numbered)
+        for name in config.update.dashpots
+    }
 
 
 def _in_several_winds(mode: int, winds: Mapping[str, tuple[OperationTotal, float | None]]) -> bool:

@@ -108,7 +108,15 @@ def updated_twin(
     )
     relaxations = measured_relaxations(config, state)
     wind = mean_wind(config, state)
-    states = operating_states(config, measured, state, residuals(config, measured, relaxations), wind)
+    states = operating_states(
+        config,
+        measured,
+        state,
+        residuals(config, measured, relaxations),
+        wind,
+        assembly=assembly,
+        numbered=numbered,
+    )
     evidence = UpdateEvidence(
         assembly, state, states, rotor_damping(config, assembly, numbered, wind), relaxations
     )

@@ -148,9 +148,13 @@ class UpdateSettings(Schema):
     dashpots: tuple[Literal["c_fore_aft", "c_side_side"], ...] = ()
     """Nacelle dashpots that are also updated, stated at the mean wind speed."""
     rotor: str | None = None
-    """A windIO file or shipped rotor that gives the dashpots' priors and patterns."""
-    shaft: Literal["locked", "free"] = "locked"
-    """Whether the parked rotor's shaft is locked to the nacelle."""
+    """A windIO file or shipped rotor from which the dashpots' priors and patterns follow."""
+    rotor_state: Literal["parked", "operating"] = "parked"
+    """What the rotor does in the records that may update the supports."""
+    rotor_schedule: str | None = None
+    """A CSV of its speed and pitch by wind; None leaves them to the windIO file's control."""
+    shaft: Literal["locked", "free"] | None = None
+    """Whether the rotor turns with the nacelle: by default a parked one does, one at work does not."""
     wind_speed_m_s: Positive | None = None
     """Wind speed that replaces the mean over the records' conditions."""
     water: tuple[Literal["water_mass", "water_damping"], ...] = ()

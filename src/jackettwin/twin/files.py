@@ -415,6 +415,7 @@ def _update_settings(schema: TwinSchema, folder: Path) -> UpdateSettings:
         "laws": tuple(dict.fromkeys([*first, *u.laws])),
         "dashpots": _dashpots(u),
         "rotor": str(folder / u.rotor) if u.rotor and Path(u.rotor).suffix else u.rotor,
+        "rotor_schedule": str(folder / u.rotor_schedule) if u.rotor_schedule else None,
         "water": tuple(dict.fromkeys(u.water)),
         "parameters": tuple(dict.fromkeys(u.parameters)),
     }

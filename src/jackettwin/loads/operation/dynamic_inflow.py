@@ -17,7 +17,7 @@ from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.loads.aerodynamics.rotor import AIR_KG_M3, Linearised, Rotor, linearise
 from jackettwin.loads.operation.bem import OperatingPoint, balanced_wake, ring_forces, ring_radius
 
-LOG_STD = {"fore_aft": 0.15, "side_side": 0.4}
+OPERATING_LOG_STD = {"fore_aft": 0.15, "side_side": 0.4}
 """How far the rotor's part of the first bending modes' damping may be off, as a standard deviation of its
 logarithm."""
 _FAST_SHARE = 0.6

@@ -78,7 +78,9 @@ def data_of(config: TwinConfig, model: TwinModel, state: TwinState, wind: float 
             value=config.update.weighting,
             allowed="auto or covariance",
         )
-    return operating_states(config, measured, state, fitted, wind)
+    return operating_states(
+        config, measured, state, fitted, wind, assembly=model.structure, numbered=model.modes
+    )
 
 
 @dataclass(frozen=True)
