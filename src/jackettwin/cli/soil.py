@@ -35,9 +35,15 @@ _POINTS = 31
 _REACH = {"py": 0.1, "tz": 0.02, "qz": 0.1}
 """Largest displacement of a curve in the tables, in pile diameters."""
 _LEFT_OUT = (
-    Omission("yield of the pile's steel in the pushover", "ISO 19902 17"),
-    Omission("group effects", "ISO 19902 17"),
-    Omission("cyclic degradation along the axis, set-up, weight of pile and plug", "ISO 19902 17"),
+    Omission("axial force and strain hardening in the pushover's yielding steel", "ISO 19902 17"),
+    Omission(
+        "ground between the piles of a group: `curves: {p_multiplier: …}` weakens each one's own",
+        "ISO 19902 17",
+    ),
+    Omission(
+        "cyclic degradation along the axis and set-up but by `t_multiplier`; weight of pile and plug",
+        "ISO 19902 17",
+    ),
     Omission("base and side shear of stocky piles"),
 )
 _LINEAR = "linear ground has no curves and no capacity; describe the ground by layers"
@@ -80,7 +86,13 @@ def soil_command(
     pushed = None
     with working(f"piles of {Path(foundation).stem}"):
         if ground.curves is not None:
-            pushed = pushover(ground.pile, ground.curves, arm_m=arm_m, steps=steps)
+            pushed = pushover(
+                ground.pile,
+                ground.curves,
+                arm_m=arm_m,
+                steps=steps,
+                yield_strength_pa=yield_strength,
+            )
         document = _document(Path(foundation).stem, ground, pushed, frequency_hz, arm_m)
         if pushed is not None:
             _add_yield(document, ground, pushed, yield_strength)
@@ -121,13 +133,14 @@ def _document(
 
 
 def _add_yield(document: dict[str, Any], ground: Foundation, pushed: Pushover, f_y: float) -> None:
-    """Add the load at which the pile's steel first yields, which the pushover neglects."""
+    """Add the load from which on the pile's steel yields, and what has become of it at the end."""
     first = pushed.first_load_n(f_y * ground.pile.elastic_modulus_m3)
     document["capacity"]["steel_yields_at_n"] = first
     if first is not None:
         document["warnings"].append(
             f"the pile's steel yields from {1e-6 * first:.2f} MN on (f_y = {1e-6 * f_y:g} MPa, bending "
-            "alone); the pushover assumes elastic steel and so exceeds the pile's capacity"
+            f"alone); at the end its curvature is {pushed.ductility:.1f} times that of first yield, "
+            f"{pushed.hinge_m:.1f} m deep"
         )
 
 
@@ -188,6 +201,8 @@ def _pushover(pushed: Pushover, arm_m: float) -> dict[str, Any]:
         "head_m": pushed.head_m,
         "rotation_rad": pushed.rotation_rad,
         "largest_moment_nm": pushed.moment_nm,
+        "ductility": pushed.ductility,
+        "hinge_m": pushed.hinge_m,
     }
 
 

@@ -11,7 +11,8 @@ from pydantic import Field
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean, located, look_up, require, require_between
-from jackettwin.files import Schema, read_yaml, validate
+from jackettwin.files import Placed, Schema, read_yaml, validate
+from jackettwin.soil.caisson import Caisson
 from jackettwin.soil.foundation import (
     Foundation,
     PileModel,
@@ -31,7 +32,8 @@ class SpringSchema(Schema):
     """One entry of ``supports``."""
 
     nodes: Literal["reaction"] | list[str]
-    stiffness: list[float] | list[list[float]]
+    stiffness: list[float] | list[list[float]] | None = None
+    caisson: Placed[Caisson] | None = None
     law: LawSchema = ElasticLaw(type="elastic")
 
     def build(self, structure: Structure) -> list[Spring]:
@@ -40,7 +42,17 @@ class SpringSchema(Schema):
         for node in nodes:
             remedy = did_you_mean(node, structure.nodes) or "name a node of the structure"
             require(node in structure.nodes, "no such node", field="nodes", value=node, remedy=remedy)
-        matrix, law = _matrix(self.stiffness), self.law.build()
+        require(
+            (self.stiffness is None) != (self.caisson is None),
+            "a support is a stiffness, or a caisson",
+            field="stiffness, caisson",
+            remedy="give exactly one of them",
+        )
+        if self.caisson is not None:
+            matrix = self.caisson.stiffness()
+        else:
+            matrix = _matrix(self.stiffness or [])
+        law = self.law.build()
         return [Spring(node, matrix, law) for node in nodes]
 
 

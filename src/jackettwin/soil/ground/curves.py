@@ -80,6 +80,28 @@ class CubeRoot:
         return np.asarray(np.sign(y) * np.minimum(0.5 * np.cbrt(np.abs(y) / self.y50), 1.0) * self.capacity)
 
 
+@dataclass(frozen=True)
+class ScaledCurve:
+    """A curve whose reaction is ``factor`` times another's at the same displacement."""
+
+    of: Curve
+    factor: float
+
+    @property
+    def initial_stiffness(self) -> float:
+        """The other's, times the factor."""
+        return self.factor * self.of.initial_stiffness
+
+    @property
+    def capacity(self) -> float:
+        """The other's, times the factor."""
+        return self.factor * self.of.capacity
+
+    def force(self, y: FloatArray | float) -> FloatArray:
+        """Return the reaction at displacement ``y`` [m]."""
+        return np.asarray(self.factor * self.of.force(y))
+
+
 NOTHING = TabulatedCurve((0.0, 1.0), (0.0, 0.0))
 """The curve of ground that is not there."""
 

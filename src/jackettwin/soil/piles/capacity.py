@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -13,6 +13,7 @@ from jackettwin.errors import NumericalError, require
 from jackettwin.soil.ground.curves import tangent_stiffness
 from jackettwin.soil.piles.impedance import pile_matrices
 from jackettwin.soil.piles.piles import Pile, PileSprings
+from jackettwin.soil.piles.plastic_steel import PlasticSteel
 from jackettwin.soil.piles.reaction_curves import PileCurves, linearised
 
 FAILED_AT = 0.1
@@ -154,6 +155,8 @@ class Pushover:
     moment_nm : (n,) largest bending moment along the pile
     ultimate_n : load with which the head has moved by ``FAILED_AT`` diameters
     highest_n : largest load on the way, at least that
+    ductility : largest curvature at the end over that at first yield; None of elastic steel
+    hinge_m : depth of that curvature
     """
 
     load_n: FloatArray
@@ -162,6 +165,8 @@ class Pushover:
     moment_nm: FloatArray
     ultimate_n: float
     highest_n: float
+    ductility: float | None = None
+    hinge_m: float | None = None
 
     def first_load_n(self, moment_nm: float) -> float | None:
         """Return the first load at which the largest moment reaches ``moment_nm``; None if it never does."""
@@ -184,11 +189,19 @@ def axial_capacity(pile: Pile, curves: PileCurves) -> AxialCapacity:
     return min(plug, core, key=lambda one: one.compression_n)
 
 
-def pushover(pile: Pile, curves: PileCurves, *, arm_m: float = 0.0, steps: int = 20) -> Pushover:
+def pushover(
+    pile: Pile,
+    curves: PileCurves,
+    *,
+    arm_m: float = 0.0,
+    steps: int = 20,
+    yield_strength_pa: float | None = None,
+) -> Pushover:
     """Return a pile pushed to failure by a lateral load ``arm_m`` [m] above its free head.
 
     The head is moved step by step, and the load that holds it there is found with it: ground that softens is
-    followed beyond the largest load.
+    followed beyond the largest load. Steel with a yield strength is elastic, then perfectly plastic in
+    bending, fibre by fibre: hinges form where they will.
 
     Raises
     ------
@@ -204,7 +217,7 @@ def pushover(pile: Pile, curves: PileCurves, *, arm_m: float = 0.0, steps: int =
         field="soil",
         remedy="check its strength",
     )
-    path = _HeldHead(pile, curves, arm_m)
+    path = _HeldHead(pile, curves, arm_m, yield_strength_pa)
     limit, fine = FAILED_AT * curves.diameter_m, -(-_LEAST_STEPS // steps)
     way = [path.move_to(limit * k / (steps * fine)) for k in range(1, steps * fine + 1)]
     # of two mirrored paths the one in which the load is positive
@@ -212,15 +225,22 @@ def pushover(pile: Pile, curves: PileCurves, *, arm_m: float = 0.0, steps: int =
     every = forwards * np.array([load for load, _ in way])
     u = forwards * np.array([u for _, u in way[fine - 1 :: fine]])
     load = every[fine - 1 :: fine]
-    moment = np.array([_largest_moment(pile, curves, LoadedPile(one)) for one in u])
-    return Pushover(load, u[:, 0, 0], u[:, 0, 4], moment, float(load[-1]), float(every.max()))
+    moment = np.array([_largest_moment(pile, curves, one, path.yielding) for one in u])
+    found = Pushover(load, u[:, 0, 0], u[:, 0, 4], moment, float(load[-1]), float(every.max()))
+    if path.yielding is None:
+        return found
+    kappa = np.abs(path.yielding.curvature(u[-1]))
+    at = int(kappa.max(axis=0).argmax())
+    ductility = float(kappa.max()) / path.yielding.tube.yield_curvature
+    return replace(found, ductility=ductility, hinge_m=float(curves.at.node_depth[at : at + 2].mean()))
 
 
 class _HeldHead:
     """A pile whose head is moved sideways, with the load that does it."""
 
-    def __init__(self, pile: Pile, curves: PileCurves, arm_m: float) -> None:
+    def __init__(self, pile: Pile, curves: PileCurves, arm_m: float, f_y: float | None) -> None:
         initial = linearised(curves)
+        self.yielding = None if f_y is None else PlasticSteel(pile, initial.node_depth, f_y)
         self.curves, self.torsional = curves, initial.torsional
         self.steel = pile_matrices(pile, initial).steel
         self.unit = np.zeros((initial.node_depth.size, 6))
@@ -243,25 +263,32 @@ class _HeldHead:
     def _settle(self, head_m: float) -> None:
         """Newton's method on displacements and load together: the head is where it is asked to be."""
         for _ in range(60):
-            force, _ = soil_reaction(self.curves, self.torsional, self.u)
-            inside = force + (self.steel @ self.u.ravel()).reshape(self.u.shape)
+            inside, tangent = self._inside()
             residual = self.load * self.unit - inside
             scale = max(abs(self.load) * max(1.0, abs(self.unit[0, 4])), 1.0)
             if np.abs(residual).max() <= 1e-6 * scale and abs(self.u[0, 0] - head_m) <= 1e-9:
                 return
-            change = self._solve(residual, head_m - self.u[0, 0])
+            change = self._solve(residual, tangent, head_m - self.u[0, 0])
             self.u, self.load = self.u + change[:-1].reshape(self.u.shape), self.load + float(change[-1])
             if not np.isfinite(self.u).all() or np.abs(self.u[:, :3]).max() > 100.0:
                 break
         raise NumericalError("the pile finds no equilibrium with its head held there")
 
-    def _solve(self, residual: FloatArray, head_m: float) -> FloatArray:
+    def _inside(self) -> tuple[FloatArray, sp.csc_array]:
+        """Return forces (n, 6) of ground and steel, and their tangent."""
+        force, tangent = soil_reaction(self.curves, self.torsional, self.u)
+        force, tangent = force + (self.steel @ self.u.ravel()).reshape(force.shape), tangent + self.steel
+        if self.yielding is not None:
+            lost, slope = self.yielding.lost(self.u)
+            force, tangent = force - lost, tangent - slope
+        return force, tangent
+
+    def _solve(self, residual: FloatArray, tangent: sp.csc_array, head_m: float) -> FloatArray:
         """Return the changes of displacements and load, (6n + 1,), even where all ground is plastic."""
-        _, tangent = soil_reaction(self.curves, self.torsional, self.u)
         held = np.zeros((1, residual.size))
         held[0, 0] = scale = float(np.abs(self.steel.diagonal()).max())
         load = sp.csc_array(-scale * self.unit.reshape(-1, 1))
-        bordered = sp.bmat([[self.steel + tangent, load], [sp.csc_array(held), None]])
+        bordered = sp.bmat([[tangent, load], [sp.csc_array(held), None]])
         try:
             factors = spla.splu(sp.csc_matrix(bordered))
         except RuntimeError:
@@ -271,15 +298,17 @@ class _HeldHead:
         return change
 
 
-def _largest_moment(pile: Pile, curves: PileCurves, loaded: LoadedPile) -> float:
-    """Return the largest bending moment [N·m]: EI times the curvature of the elements' ends."""
-    z, u = curves.at.node_depth, loaded.displacement
+def _largest_moment(pile: Pile, curves: PileCurves, u: FloatArray, yielding: PlasticSteel | None) -> float:
+    """Return the largest bending moment [N·m], of the curvature of the elements' ends."""
+    z = curves.at.node_depth
     L = np.diff(z)
     D, d = pile.outer_diameter_m, pile.outer_diameter_m - 2.0 * pile.thickness_m
     EI = pile.youngs_modulus_pa * np.pi / 64.0 * (D**4 - d**4)
     # slope dx/dz downwards is −θ_y; M = EI x'' at both ends of a cubic element
     x, slope = u[:, 0], -u[:, 4]
     chord = np.diff(x) / L
-    first = EI * (6.0 * chord - 4.0 * slope[:-1] - 2.0 * slope[1:]) / L
-    last = EI * (-6.0 * chord + 2.0 * slope[:-1] + 4.0 * slope[1:]) / L
-    return float(np.abs(np.concatenate([first, last])).max())
+    first = (6.0 * chord - 4.0 * slope[:-1] - 2.0 * slope[1:]) / L
+    last = (-6.0 * chord + 2.0 * slope[:-1] + 4.0 * slope[1:]) / L
+    kappa = np.abs(np.concatenate([first, last])).max(keepdims=True)
+    moment = EI * kappa if yielding is None else yielding.tube.moment(kappa)[0]
+    return float(moment[0])

@@ -13,7 +13,7 @@ from typing import Literal, NamedTuple, cast
 
 from jackettwin.errors import look_up, require, require_between
 from jackettwin.plugins import plugins_of_type
-from jackettwin.soil.ground.curves import Curve
+from jackettwin.soil.ground.curves import Curve, ScaledCurve
 from jackettwin.soil.ground.profile import Clay, Point, Sand
 from jackettwin.soil.ground.py_curves import dry_stiff_clay_py, sand_py, soft_clay_py, stiff_clay_py
 from jackettwin.soil.ground.tz_curves import (
@@ -48,9 +48,15 @@ class CurveOptions:
     clay_tz: str = "rp2geo"
     sand_qz: str = "rp2geo"
     clay_qz: str = "rp2geo"
+    p_multiplier: float = 1.0
+    """On every p-y curve: of a pile in a group, behind others of its row."""
+    t_multiplier: float = 1.0
+    """On every t-z curve: shaft friction that cycles along the axis have left, or set-up has added."""
 
     def __post_init__(self) -> None:
         require_between("cycles", self.cycles, 1.0, 1e9)
+        for name in ("p_multiplier", "t_multiplier"):
+            require_between(name, getattr(self, name), 0.01, 5.0)
         require(
             self.layering in LAYERING,
             "unknown way of layering",
@@ -79,7 +85,9 @@ class CurveOptions:
     def curve(self, of: Literal["py", "tz", "qz"], point: Point, pile: Pile) -> Curve:
         """Return the lateral, shaft or tip reaction of the ground at one depth of a pile."""
         reaction = _reaction(point.soil, of)
-        return soil_curves(reaction)[getattr(self, reaction)].build(point, pile, self)
+        found = soil_curves(reaction)[getattr(self, reaction)].build(point, pile, self)
+        factor = {"py": self.p_multiplier, "tz": self.t_multiplier, "qz": 1.0}[of]
+        return found if factor == 1.0 else ScaledCurve(found, factor)
 
 
 def _reaction(soil: Sand | Clay, of: str) -> str:
