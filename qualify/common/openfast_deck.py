@@ -6,7 +6,7 @@ ReadTowerFile and ReadBladeFile of ElastoDyn_IO.f90, v5.0.0).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +23,8 @@ FloatArray = npt.NDArray[np.float64]
 Row = tuple[object, str]
 
 BLADE_NODES, TOWER_NODES = 50, 60
+STUB_M = 0.02
+"""Height of a tower that is inside the superelement."""
 
 
 @dataclass(frozen=True)
@@ -91,12 +93,16 @@ class Run:
 def write_case(
     folder: Path, structure: Structure, turbine: Turbine, run: Run, *, foundation: str, depth_m: float
 ) -> Path:
-    """Write the files of a case beside its foundation's; return the ``.fst``."""
+    """Write the files of a case beside its foundation's; return the ``.fst``.
+
+    Of an interface at the tower's top ElastoDyn's own tower is a stiff stub without mass.
+    """
     base = structure.nodes[structure.interface_nodes[0]][2] - structure.sea_level_z_m
+    inside = structure.interface_nodes == (structure.top_node,)
     texts = {
         "case.fst": _primary(run, foundation, depth_m),
         "elastodyn.dat": _elastodyn(structure, turbine, run, base),
-        "tower.dat": _tower(structure, turbine),
+        "tower.dat": _stub() if inside else _tower(structure, turbine),
         "blade.dat": _blade(turbine.rotor),
     }
     for name, text in texts.items():
@@ -176,15 +182,22 @@ def _elastodyn(structure: Structure, turbine: Turbine, run: Run, base: float) ->
     bends = str(run.flexible)
     tip = r.hub_radius + float(r.blade.z[-1])
     top = structure.nodes[structure.top_node][2] - structure.sea_level_z_m
+    inside = top == base
+    top += STUB_M if inside else 0.0
     overhang = -r.overhang / np.cos(r.tilt)
     rows: list[Row | str] = ["SIMULATION CONTROL", ("False", "Echo"), (3, "Method"), ('"default"', "DT")]
     rows += ["DEGREES OF FREEDOM", (bends, "FlapDOF1"), (bends, "FlapDOF2"), (bends, "EdgeDOF")]
     rows += [("False", key) for key in ("PitchDOF", "TeetDOF", "DrTrDOF", "GenDOF", "YawDOF")]
-    rows += [(str(not run.fixed), key) for key in ("TwFADOF1", "TwFADOF2", "TwSSDOF1", "TwSSDOF2")]
+    bends = not (run.fixed or inside)
+    rows += [(str(bends), key) for key in ("TwFADOF1", "TwFADOF2", "TwSSDOF1", "TwSSDOF2")]
     rows += [(str(not run.fixed), f"Ptfm{key}DOF") for key in ("Sg", "Sw", "Hv", "R", "P", "Y")]
     rows += ["INITIAL CONDITIONS", (0.0, "OoPDefl"), (0.0, "IPDefl")]
     rows += [(np.degrees(r.pitch), f"BlPitch({k})") for k in (1, 2, 3)]
     rows += [(0.0, "TeetDefl"), (0.0, "Azimuth"), (run.rotor_rpm, "RotSpeed"), (0.0, "NacYaw")]
+    if inside:
+        # the platform is drawn aside instead of a tower that does not bend
+        run = replace(run, rest=(run.rest[0] + run.offset_m, run.rest[1] + run.offset_m, *run.rest[2:]))
+        run = replace(run, offset_m=0.0, rest=(*run.rest[:6], *run.rest[:6]))
     bend = np.subtract(run.rest[6:8], run.rest[:2]) - (top - base) * np.array([run.rest[4], -run.rest[3]])
     rows += [(run.offset_m + bend[0], "TTDspFA"), (run.offset_m + bend[1], "TTDspSS")]
     rows += [(run.rest[k], f"Ptfm{key}") for k, key in enumerate(("Surge", "Sway", "Heave"))]
@@ -245,6 +258,21 @@ def _tower(structure: Structure, turbine: Turbine) -> str:
     return "\n".join([*lines, "-- CONCENTRATED", "0  NTwCMass", ""])
 
 
+def _stub() -> str:
+    """Return a tower of two stations that weighs nothing and does not bend."""
+    rows: list[Row | str] = ["TOWER PARAMETERS", (2, "NTwInpSt")]
+    rows += [(0.0, f"Twr{side}Dmp({k})") for side in ("FA", "SS") for k in (1, 2)]
+    rows += ["ADJUSTMENT", *((1.0, f"{side}StTunr({k})") for side in ("FA", "SS") for k in (1, 2))]
+    rows += [(1.0, "AdjTwMa"), (1.0, "AdjFASt"), (1.0, "AdjSSSt")]
+    lines = [_rows("ELASTODYN TOWER", rows).rstrip(), "-- DISTRIBUTED"]
+    lines += ["HtFract TMassDen TwFAStif TwSSStif", "(-) (kg/m) (Nm^2) (Nm^2)"]
+    lines += [f"{f} 1.0 1.0e12 1.0e12" for f in (0.0, 1.0)]
+    for side in ("FA", "SS"):
+        lines.append(f"-- {side} SHAPES")
+        lines += [f"{float(p == 2)}  Tw{side}M{k}Sh({p})" for k in (1, 2) for p in range(2, 7)]
+    return "\n".join([*lines, "-- CONCENTRATED", "0  NTwCMass", ""])
+
+
 def _tower_stations(structure: Structure) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return height fraction, mass [kg/m] and EI [N·m²] of the tower, members of constant section."""
     from jackettwin.structure.mesh import discretise
@@ -286,7 +314,6 @@ def _tower_shapes(structure: Structure, body: PointMass, across: int) -> list[Fl
 
 
 def _standing(tower: Structure, reaction: object) -> Structure:
-    from dataclasses import replace
 
     return replace(tower, reactions=(reaction,))
 
@@ -325,8 +352,6 @@ def _blade(rotor: FlexibleRotor) -> str:
 
 def _blade_shapes(blade: BladeStructure) -> list[tuple[str, FloatArray]]:
     """Return ElastoDyn's polynomials: of an untwisted blade, which it twists itself."""
-    from dataclasses import replace
-
     from jackettwin.structure.blades import blade_modes
 
     modes = blade_modes(replace(blade, twist=np.zeros_like(blade.twist)), 4, pitch=0.0)

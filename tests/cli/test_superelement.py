@@ -55,6 +55,26 @@ def test_a_superelement_goes_from_format_to_format(tmp_path: Path) -> None:
     assert "coordinates" in run(str(npz), "--out", str(tmp_path / "third.dat")).stdout
 
 
+def test_a_tower_goes_inside_and_leaves_its_top_to_the_turbine(tmp_path: Path) -> None:
+    """The interface is the tower's top: every mode of the whole is there, the turbine's mass is not."""
+    feet = ("--support", "kelvin-voigt:k=2.5e9,c=7.6e8", "--gravity")
+    out = tmp_path / "se.npz"
+    found = json.loads(run("jacket15", *feet, "--tower-inside", "--out", str(out), "--json").stdout)
+    outside = json.loads(run("jacket15", *feet, "--out", str(tmp_path / "o.npz"), "--json").stdout)
+    assert found["reference_m"][2] == pytest.approx(216.0)
+    assert found["largest_frequency_error"] < 1e-4
+    for inside, other in zip(found["modes"], outside["modes"], strict=False):
+        assert inside["frequency_hz"] == pytest.approx(other["frequency_hz"], rel=1e-9)
+        assert inside["reduced_damping_ratio"] == pytest.approx(inside["damping_ratio"], rel=0.02, abs=1e-5)
+    # the top carries no turbine: 809 t less
+    top, whole = found["interface_mass"], outside["interface_mass"]
+    assert 0.0 < top[0][0] < 809e3
+    assert np.shape(whole) == (6, 6)
+    refused = run("jacket15", *feet, "--tower-inside", "--interface", "tp_top", "--out", str(out))
+    assert refused.exit_code == 2
+    assert "given twice" in refused.stderr
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,8 @@ from jackettwin.report import Table, TableColumn
 from jackettwin.response import DEFAULT, LAYOUTS
 
 if TYPE_CHECKING:
+    import scipy.sparse as sp
+
     from jackettwin.arrays import FloatArray
     from jackettwin.decks import DeckDamping
     from jackettwin.response import Layout, ReducedModes, Superelement
@@ -28,6 +31,11 @@ if TYPE_CHECKING:
     "--support", help="pinned, clamped, LAW:arguments, or a YAML file; default: the structure's own."
 )
 @joint_options
+@click.option(
+    "--tower-inside",
+    is_flag=True,
+    help="Reduce the tower, too: the interface is its top, whose masses are left to the turbine.",
+)
 @click.option(
     "--modes",
     "number",
@@ -86,6 +94,7 @@ def superelement_command(
     support: str | None,
     interface: str | None,
     feet: str | None,
+    tower_inside: bool,
     number: int,
     reference: str | None,
     rayleigh: str | None,
@@ -123,7 +132,11 @@ def superelement_command(
     if is_superelement(Path(structure)):
         return _answer(_rewritten(Path(structure), out, layout))
     whole = with_joints(read_structure(structure), interface, feet)
-    foundation, rest = at_interface(whole)
+    turbine: tuple[str, ...] = ()
+    if tower_inside:
+        whole, turbine = _up_to_the_top(whole, interface), (whole.top_node,)
+    bare = whole.with_masses(tuple(mass for mass in whole.masses if mass.node not in turbine))
+    foundation, rest = at_interface(bare)
     point = _point(reference)
 
     complete = assemble(whole, beam_theory=beam, subdivide=subdivide, gravity=gravity)
@@ -141,18 +154,48 @@ def superelement_command(
     if step_s is not None:
         element = slowed(element, step_s=step_s, band_hz=band)
     plain = superelement(base, number=number, reference_m=point, band_hz=band, damped=False)
+    carried, plain = (_carrying(one, complete, built(bare), turbine) for one in (element, plain))
     written = with_deck_damping(element, _deck_damping(structure)) if deck_damping else element
     files = write_superelement(written, out, layout=layout)
     document = _document(
         written,
         fixed_interface_frequencies(base, max(number, 1)),
-        reduced_modes(element, full, top, band_hz=band),
+        reduced_modes(carried, full, top, band_hz=band),
         reduced_modes(plain, full, top, band_hz=band),
         band,
         explicit=out.suffix.lower() == ".dat" and layout != DEFAULT,
     )
     document |= {"structure": whole.name, "files": [str(path) for path in files]}
     return _answer(document)
+
+
+def _up_to_the_top(structure: Structure, interface: str | None) -> Structure:
+    """Return the structure with its tower's top as the interface."""
+    if interface is not None:
+        raise InputError(
+            "the interface is given twice",
+            field="--tower-inside, --interface",
+            value=interface,
+            remedy="keep one of them",
+        )
+    return replace(structure, interface_nodes=(structure.top_node,))
+
+
+def _carrying(
+    element: Superelement, whole: Assembly, bare: Assembly, turbine: tuple[str, ...]
+) -> Superelement:
+    """Return the element with the masses that the turbine has on its interface, to compare modes."""
+    if not turbine:
+        return element
+    dofs = whole.dofs(turbine[0])
+
+    def added(own: FloatArray, much: sp.csc_array, less: sp.csc_array) -> FloatArray:
+        total = own.copy()
+        total[:6, :6] += (much - less)[dofs][:, dofs].toarray()
+        return total
+
+    M, K = added(element.M, whole.mass, bare.mass), added(element.K, whole.stiffness, bare.stiffness)
+    return replace(element, M=M, K=K)
 
 
 def _deck_damping(structure: str) -> DeckDamping:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -288,7 +289,8 @@ class _HeldHead:
         held = np.zeros((1, residual.size))
         held[0, 0] = scale = float(np.abs(self.steel.diagonal()).max())
         load = sp.csc_array(-scale * self.unit.reshape(-1, 1))
-        bordered = sp.bmat([[tangent, load], [sp.csc_array(held), None]])
+        blocks: list[list[Any]] = [[tangent, load], [sp.csc_array(held), None]]
+        bordered = sp.bmat(blocks)
         try:
             factors = spla.splu(sp.csc_matrix(bordered))
         except RuntimeError:
