@@ -124,6 +124,18 @@ def cases() -> Iterator[tuple[Asset, bool]]:
         False,
     )
     yield on_feet(f"three legs, leaning by 0.1, on {SOFTER}", SOFTER, structure=three_legs(lean=0.1)), False
+    yield tower_inside(on_feet(feet, KELVIN_VOIGT)), False
+    yield tower_inside(on_feet(feet, KELVIN_VOIGT)), True
+    yield (
+        tower_inside(
+            on_feet(
+                f"three legs, turned by 20°, on {SPRINGPOTS}", SPRINGPOTS, structure=three_legs(turn_deg=20.0)
+            )
+        ),
+        False,
+    )
+    leaning = on_feet(f"three legs, leaning by 0.1, on {SOFTER}", SOFTER, structure=three_legs(lean=0.1))
+    yield tower_inside(leaning), False
 
 
 def on_feet(title: str, support: str, pitch_deg: float = 90.0, structure: Structure | None = None) -> Asset:
@@ -143,6 +155,19 @@ def three_legs(*, turn_deg: float = 0.0, lean: float = 0.0) -> Structure:
         for name, (x, y, z) in steel.nodes.items()
     }
     return replace(steel, nodes=nodes)
+
+
+def tower_inside(asset: Asset) -> Asset:
+    """Return an asset whose interface is the tower's top: `superelement --tower-inside`."""
+    structure = replace(asset.structure, interface_nodes=(asset.structure.top_node,))
+    return replace(asset, title=f"{asset.title}, tower inside", structure=structure)
+
+
+def without_turbine(structure: Structure) -> Structure:
+    """Return what is reduced: without the turbine, where that stands on the interface itself."""
+    kept = tuple(mass for mass in structure.masses if mass.node not in structure.interface_nodes)
+    inside = structure.interface_nodes == (structure.top_node,)
+    return structure.with_masses(kept) if inside else structure
 
 
 def on_piles() -> Asset:
@@ -170,7 +195,7 @@ def compared(program: str, folder: Path, asset: Asset, *, flexible: bool) -> lis
 
 def reduced_to_interface(asset: Asset) -> Superelement:
     """Return the foundation under the weight of all that stands on it."""
-    foundation, _ = at_interface(asset.structure)
+    foundation, _ = at_interface(without_turbine(asset.structure))
     weight = assemble(asset.structure, gravity=True).weight
     base = build_system(assemble(foundation, gravity=True, weight=weight), asset.support)
     return superelement(base, number=MODES, band_hz=BAND_HZ)
@@ -184,7 +209,8 @@ def at_rest(
     ``thrust`` (6,) are forces and moments at the tower top beside it [N, N·m].
     """
     _, tower = at_interface(structure)
-    assert tower is not None
+    if tower is None:
+        return 2 * _top_at_rest(structure, element, thrust)
     base = structure.interface_nodes[0]
     assembly = assemble(replace(tower, reactions=(Reaction(base),)), gravity=True)
     load = self_weight(assembly)
@@ -194,6 +220,15 @@ def at_rest(
     springs = Support(springs=(Spring(base, element.interface_stiffness),))
     u = static_displacement(build_system(assembly, springs), load)
     return tuple(float(v) for node in (base, structure.top_node) for v in u[assembly.dofs(node)])
+
+
+def _top_at_rest(structure: Structure, element: Superelement, thrust: FloatArray | None) -> tuple[float, ...]:
+    """Return the motion (6,) of an interface at the tower's top under the turbine's weight."""
+    whole, bare = (assemble(one) for one in (structure, without_turbine(structure)))
+    top = whole.dofs(structure.top_node)
+    load = (self_weight(whole) - self_weight(bare))[top] + element.weight_n[:INTERFACE]
+    load = load if thrust is None else load + thrust
+    return tuple(float(v) for v in np.linalg.solve(element.interface_stiffness, load))
 
 
 def pairs(system: System, structure: Structure) -> dict[str, complex]:

@@ -44,7 +44,7 @@ _LEFT_OUT = (
         "cyclic degradation along the axis and set-up but by `t_multiplier`; weight of pile and plug",
         "ISO 19902 17",
     ),
-    Omission("base and side shear of stocky piles"),
+    Omission("base and side terms of stocky piles, but by `curves: {sand_py: pisa, clay_py: pisa}`"),
 )
 _LINEAR = "linear ground has no curves and no capacity; describe the ground by layers"
 

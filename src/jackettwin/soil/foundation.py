@@ -92,6 +92,12 @@ class Foundation:
                 "linear ground has no loops", field="hysteresis", remedy="describe the ground by layers"
             )
         require(
+            not self.curves.sides,
+            "loops know no moments along the shaft",
+            field="hysteresis",
+            remedy="take other curves than PISA's",
+        )
+        require(
             self.law == ELASTIC,
             "loops are the ground's damping already",
             field="hysteresis",
@@ -182,7 +188,8 @@ class FoundationSchema(Schema):
                 "the lowest is taken to go on below"
             )
         slenderness = length / self.pile.outer_diameter_m
-        if slenderness < SLENDER:
+        stocky = all(self.curves.is_stocky(layer.soil) for layer in self.soil.layers)
+        if slenderness < SLENDER and not stocky:
             notes.append(
                 f"the pile is only {slenderness:.1f} diameters long: API's curves are of slender piles; base "
                 "and side shear, by which a monopile or a caisson carries much of its load, are left out"

@@ -22,6 +22,8 @@ class Sand:
     """Siliceous sand; API RP 2GEO (2011) table 1 gives β and its limits by density.
 
     ``modulus_n_m3`` is the initial modulus of subgrade reaction k; None takes it from the friction angle.
+    ``shear_modulus_pa``, of small strain at the layer's top and bottom, and ``relative_density`` (0 to 1) are
+    for PISA's curves alone.
     """
 
     friction_angle_deg: float
@@ -30,11 +32,16 @@ class Sand:
     bearing_factor: float = 40.0
     limit_bearing_pa: float = 10e6
     modulus_n_m3: float | None = None
+    relative_density: float | None = None
+    shear_modulus_pa: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         _check("friction_angle_deg", self.friction_angle_deg, 20.0, 45.0)
         for name, highest in _SAND_AT_MOST.items():
             _check(name, getattr(self, name), 0.0, highest)
+        _check_shear_modulus(self.shear_modulus_pa)
+        if self.relative_density is not None:
+            _check("relative_density", self.relative_density, 0.2, 1.0)
         if self.modulus_n_m3 is not None:
             _check("modulus_n_m3", self.modulus_n_m3, 0.0, 1e10)
         refuse_tiny("limit_friction_pa", self.limit_friction_pa, least=1e3, remedy="Pa: 96 kPa is 96e3")
@@ -47,7 +54,8 @@ class Clay:
     """Clay; ``strength_pa`` is the undrained shear strength at the layer's top and bottom, linear in between.
 
     ``stiff`` chooses the p-y curve of Reese et al. (1975) in place of Matlock's (1970), or without
-    ``free_water`` that of Welch & Reese (1972).
+    ``free_water`` that of Welch & Reese (1972). ``shear_modulus_pa``, of small strain at the layer's top and
+    bottom, is for PISA's curves alone.
     """
 
     strength_pa: tuple[float, float]
@@ -56,8 +64,10 @@ class Clay:
     residual: float = 0.9
     stiff: bool = False
     free_water: bool = True
+    shear_modulus_pa: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
+        _check_shear_modulus(self.shear_modulus_pa)
         for strength in self.strength_pa:
             _check("strength_pa", strength, 0.0, 1e8)
             refuse_tiny("strength_pa", strength, least=500.0, remedy="Pa: 20 kPa is 20e3")
@@ -156,7 +166,8 @@ class Point:
     """The ground at one depth, scour allowed for.
 
     ``depth_m`` counts from the bottom of the scour hole, ``stress_pa`` is σ'_v, ``strength_pa`` is s_u and
-    ``mean_strength_pa`` its mean over the clay from there down (zero in sand).
+    ``mean_strength_pa`` its mean over the clay from there down (zero in sand); ``shear_modulus_pa`` is 0
+    where the layer says none.
     """
 
     depth_m: float
@@ -164,6 +175,7 @@ class Point:
     strength_pa: float
     mean_strength_pa: float
     soil: Sand | Clay
+    shear_modulus_pa: float = 0.0
 
 
 def ground_at(profile: SoilProfile, z: float, layer: int, *, diameter: float) -> Point | None:
@@ -176,7 +188,7 @@ def ground_at(profile: SoilProfile, z: float, layer: int, *, diameter: float) ->
     soil = profile.layers[layer].soil
     strength = _strength(profile, layer, z)
     mean = _mean_strength(profile, layer, scour.total_m, z) if isinstance(soil, Clay) else 0.0
-    return Point(depth, stress, strength, mean, soil)
+    return Point(depth, stress, strength, mean, soil, _between(profile, layer, z, soil.shear_modulus_pa))
 
 
 def _stress(profile: SoilProfile, depth: float, recovery: float) -> float:
@@ -192,9 +204,16 @@ def _strength(profile: SoilProfile, layer: int, z: float) -> float:
     one = profile.layers[layer]
     if not isinstance(one.soil, Clay):
         return 0.0
-    upper, lower = one.soil.strength_pa
+    return _between(profile, layer, z, one.soil.strength_pa)
+
+
+def _between(profile: SoilProfile, layer: int, z: float, ends: tuple[float, float] | None) -> float:
+    """Return a value at depth ``z`` from those at a layer's top and bottom, constant below; 0 of none."""
+    if ends is None:
+        return 0.0
+    upper, lower = ends
     top = float(np.sum([above.thickness_m for above in profile.layers[:layer]]))
-    return upper + (lower - upper) * min((z - top) / one.thickness_m, 1.0)
+    return upper + (lower - upper) * min((z - top) / profile.layers[layer].thickness_m, 1.0)
 
 
 def _mean_strength(profile: SoilProfile, layer: int, top: float, z: float) -> float:
@@ -210,6 +229,11 @@ def _mean_strength(profile: SoilProfile, layer: int, top: float, z: float) -> fl
             total += float(np.trapezoid([_strength(profile, k, depth) for depth in at], at))
             length += bottom - start
     return total / length if length > 0.0 else _strength(profile, layer, z)
+
+
+def _check_shear_modulus(ends: tuple[float, float] | None) -> None:
+    for value in ends or ():
+        _check("shear_modulus_pa", value, 1e5, 1e11)
 
 
 def _check(field: str, value: float, low: float, high: float) -> None:

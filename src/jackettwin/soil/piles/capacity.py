@@ -92,6 +92,9 @@ def soil_reaction(
     radial = np.where(r > 0.0, r, 1.0)
     direction = np.where((r > 0.0)[:, None], u[:, :2] / radial[:, None], [1.0, 0.0])
     p, dp = _nodal(curves, "py", r)
+    along_shaft = p.copy()
+    p[-1] += float(curves.base_shear.force(r[-1]))
+    dp[-1] += float(tangent_stiffness(curves.base_shear, r[-1]))
     t, dt = _nodal(curves, "tz", u[:, 2])
     t[-1] += float(curves.qz.force(u[-1, 2]))
     dt[-1] += float(tangent_stiffness(curves.qz, u[-1, 2]))
@@ -104,7 +107,36 @@ def soil_reaction(
     secant = np.where(r > 0.0, p / radial, dp)[:, None, None]
     blocks[:, :2, :2] = dp[:, None, None] * along + secant * (np.eye(2) - along)
     blocks[:, 2, 2], blocks[:, 5, 5] = dt, torsional
+    if curves.sides:
+        turned, stiffness = _turning(curves, along_shaft, u[:, 3:5])
+        force[:, 3:5], blocks[:, 3:5, 3:5] = turned, stiffness
     return force, sp.csc_array(sp.block_diag(list(blocks)))
+
+
+def _turning(curves: PileCurves, p: FloatArray, rotation: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return moments (n, 2) of shaft and base against rotations (n, 2), and their slopes (n, 2, 2).
+
+    In sand they grow with the nodal lateral force ``p``, which counts as known: Newton's method
+    converges a little slower for it, and to the same.
+    """
+    at = curves.at
+    theta = np.hypot(rotation[:, 0], rotation[:, 1])
+    safe = np.where(theta > 0.0, theta, 1.0)
+    direction = np.where((theta > 0.0)[:, None], rotation / safe[:, None], [0.0, 1.0])
+    moved = theta[at.node]
+    force = np.array([float(side.curve.force(v)) for side, v in zip(curves.sides, moved, strict=True)])
+    slope = np.array(
+        [float(tangent_stiffness(side.curve, v)) for side, v in zip(curves.sides, moved, strict=True)]
+    )
+    by_force = np.array([side.by_force for side in curves.sides])
+    length = at.at_nodes(np.ones_like(at.weight))
+    with_p = np.abs(p / length)[at.node]
+    m, dm = (at.at_nodes(np.where(by_force, with_p, 1.0) * one) for one in (force, slope))
+    m[-1] += float(curves.base_moment.force(theta[-1]))
+    dm[-1] += float(tangent_stiffness(curves.base_moment, theta[-1]))
+    along = direction[:, :, None] * direction[:, None, :]
+    secant = np.where(theta > 0.0, m / safe, dm)[:, None, None]
+    return m[:, None] * direction, dm[:, None, None] * along + secant * (np.eye(2) - along)
 
 
 def _nodal(curves: PileCurves, kind: str, y: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -45,9 +45,7 @@ def pile_assembly(pile: Pile, node_depth: FloatArray) -> Assembly:
 
 
 def _at_nodes(springs: PileSprings) -> sp.csc_array:
-    zero = np.zeros_like(springs.lateral)
-    nodal = np.stack([springs.lateral, springs.lateral, springs.axial, zero, zero, springs.torsional], axis=1)
-    return sp.csc_array(sp.diags_array(nodal.ravel()))
+    return sp.csc_array(sp.diags_array(springs.by_node.ravel()))
 
 
 def head_impedance(

@@ -136,12 +136,23 @@ def stations(pile: Pile, boundaries: FloatArray | tuple[float, ...] = ()) -> Sta
 
 @dataclass(frozen=True)
 class PileSprings:
-    """Linear springs on a pile's nodes: lateral, axial, torsional (n_nodes,) [N/m, N/m, N·m/rad]."""
+    """Linear springs on a pile's nodes: lateral, axial, torsional (n_nodes,) [N/m, N/m, N·m/rad].
+
+    ``rocking`` (n_nodes,) [N·m/rad] is of ground that resists a stocky pile's turning; None is none.
+    """
 
     node_depth: FloatArray
     lateral: FloatArray
     axial: FloatArray
     torsional: FloatArray
+    rocking: FloatArray | None = None
+
+    @property
+    def by_node(self) -> FloatArray:
+        """Springs (n_nodes, 6) of every node's translations and rotations."""
+        turning = np.zeros_like(self.lateral) if self.rocking is None else self.rocking
+        columns = (self.lateral, self.lateral, self.axial, turning, turning, self.torsional)
+        return np.stack(columns, axis=1)
 
 
 def linear_springs(
@@ -207,10 +218,7 @@ def with_piles(
 
 
 def _springs_at(names: tuple[str, ...], springs: PileSprings, law: Law) -> list[Spring]:
-    return [
-        Spring(name, np.diag([h, h, v, 0.0, 0.0, t]), law)
-        for name, h, v, t in zip(names, springs.lateral, springs.axial, springs.torsional, strict=True)
-    ]
+    return [Spring(name, np.diag(row), law) for name, row in zip(names, springs.by_node, strict=True)]
 
 
 def pile_beams(

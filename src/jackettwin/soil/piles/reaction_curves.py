@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -11,20 +11,35 @@ from jackettwin.arrays import FloatArray
 from jackettwin.errors import require
 from jackettwin.soil.ground.curves import NOTHING, Curve, secant_stiffness
 from jackettwin.soil.ground.layering import equivalent_points
+from jackettwin.soil.ground.pisa import StockyGround
 from jackettwin.soil.ground.profile import Point, SoilProfile, ground_at
 from jackettwin.soil.piles.piles import Pile, PileSprings, Stations, stations
 from jackettwin.soil.piles.soil_curves import CurveOptions
 
 
+class SideMoment(NamedTuple):
+    """Moment per length against rotation [N]; ``by_force``: for each N/m of lateral force there."""
+
+    curve: Curve
+    by_force: bool
+
+
 @dataclass(frozen=True)
 class PileCurves:
-    """Reaction curves of a pile: p-y and t-z at every station, q-z at the tip."""
+    """Reaction curves of a pile: p-y and t-z at every station, q-z at the tip.
+
+    ``sides`` are the moments along the shaft of a stocky pile, one a station or none, ``base_shear`` and
+    ``base_moment`` those under its tip.
+    """
 
     at: Stations
     py: tuple[Curve, ...]
     tz: tuple[Curve, ...]
     qz: Curve
     diameter_m: float
+    sides: tuple[SideMoment, ...] = ()
+    base_shear: Curve = NOTHING
+    base_moment: Curve = NOTHING
 
 
 def pile_curves(pile: Pile, profile: SoilProfile, options: CurveOptions | None = None) -> PileCurves:
@@ -59,13 +74,36 @@ def pile_curves(pile: Pile, profile: SoilProfile, options: CurveOptions | None =
     sideways = points
     if options.layering == "georgiadis":
         sideways = equivalent_points(profile, at.depth, layer, lambda point: curve("py", point).capacity)
-    return PileCurves(
+    found = PileCurves(
         at=at,
         py=tuple(curve("py", point) for point in sideways),
         tz=tuple(curve("tz", point) for point in points),
         qz=curve("qz", points[-1]),
         diameter_m=D,
     )
+    if not any(point is not None and options.is_stocky(point.soil) for point in points):
+        return found
+    return _with_sides_and_base(found, points, options, pile.length_m - scour)
+
+
+def _with_sides_and_base(
+    curves: PileCurves, points: list[Point | None], options: CurveOptions, length: float
+) -> PileCurves:
+    """Return the curves of a stocky pile with what turns it along its shaft and under its tip."""
+    D = curves.diameter_m
+    grounds = [
+        StockyGround(p, D, length) if p is not None and options.is_stocky(p.soil) else None for p in points
+    ]
+    sides = tuple(
+        SideMoment(NOTHING, by_force=False)
+        if one is None
+        else SideMoment(one.moment, by_force=one.moment_grows_with_force)
+        for one in grounds
+    )
+    tip = grounds[-1]
+    if tip is None:
+        return replace(curves, sides=sides)
+    return replace(curves, sides=sides, base_shear=tip.base_shear, base_moment=tip.base_moment)
 
 
 def _layers(pile: Pile, profile: SoilProfile, at: Stations) -> list[int | None]:
@@ -94,4 +132,13 @@ def linearised(
     shaft = at.at_nodes(k_v)
     axial = shaft.copy()
     axial[-1] += float(secant_stiffness(curves.qz, z[-1]))
-    return PileSprings(at.node_depth, at.at_nodes(k_h), axial, 0.25 * curves.diameter_m**2 * shaft)
+    lateral = at.at_nodes(k_h)
+    lateral[-1] += float(secant_stiffness(curves.base_shear, y[-1]))
+    torsional = 0.25 * curves.diameter_m**2 * shaft
+    if not curves.sides:
+        return PileSprings(at.node_depth, lateral, axial, torsional)
+    # sand's moments grow with the force: none at rest
+    turning = np.array([0.0 if by_force else curve.initial_stiffness for curve, by_force in curves.sides])
+    rocking = at.at_nodes(turning)
+    rocking[-1] += curves.base_moment.initial_stiffness
+    return PileSprings(at.node_depth, lateral, axial, torsional, rocking)

@@ -14,6 +14,7 @@ from typing import Literal, NamedTuple, cast
 from jackettwin.errors import look_up, require, require_between
 from jackettwin.plugins import plugins_of_type
 from jackettwin.soil.ground.curves import Curve, ScaledCurve
+from jackettwin.soil.ground.pisa import StockyGround
 from jackettwin.soil.ground.profile import Clay, Point, Sand
 from jackettwin.soil.ground.py_curves import dry_stiff_clay_py, sand_py, soft_clay_py, stiff_clay_py
 from jackettwin.soil.ground.tz_curves import (
@@ -30,6 +31,8 @@ from jackettwin.soil.piles.piles import Pile
 REACTIONS = ("sand_py", "clay_py", "sand_tz", "clay_tz", "sand_qz", "clay_qz")
 """Lateral, along the shaft, under the tip, in either soil: fields of :class:`CurveOptions`."""
 LAYERING = ("overburden", "georgiadis")
+PISA = "pisa"
+"""Name of the lateral curves that come with moments along the shaft, and shear and moment at the base."""
 
 
 @dataclass(frozen=True)
@@ -76,6 +79,21 @@ class CurveOptions:
             value=self.clay_py,
             allowed="table, if cyclic",
         )
+        for key in ("sand_py", "clay_py"):
+            require(
+                not (self.cyclic and getattr(self, key) == PISA),
+                "PISA's curves are for static loads",
+                field=key,
+                value=PISA,
+                allowed="rp2geo or table, if cyclic",
+            )
+
+    def is_stocky(self, soil: Sand | Clay) -> bool:
+        """Return whether lateral curves in a soil come with moments and with base terms."""
+        return self._kind(soil) == PISA
+
+    def _kind(self, soil: Sand | Clay) -> str:
+        return str(getattr(self, _reaction(soil, "py")))
 
     def kinds(self, soils: Collection[Sand | Clay]) -> tuple[SoilCurve, ...]:
         """Return the kind of curve that stands for each reaction of some soils."""
@@ -161,10 +179,18 @@ def _clay_qz(point: Point, pile: Pile, options: CurveOptions) -> Curve:
     return tip_qz(bearing_pa=q, D=pile.outer_diameter_m, area_m2=pile.tip_area_m2)
 
 
+def _pisa(point: Point, pile: Pile, options: CurveOptions) -> Curve:
+    return StockyGround(point, pile.outer_diameter_m, pile.length_m).lateral
+
+
 SOIL_CURVES = (
     SoilCurve("sand_py", "rp2geo", "API RP 2GEO, O'Neill & Murchison (1983)", _sand_py),
     SoilCurve("clay_py", "table", "Matlock (1970), points of the code; stiff clay by its layer", _clay_py),
     SoilCurve("clay_py", "cube-root", "Matlock's parabola, static only; stiff clay by its layer", _clay_py),
+    SoilCurve(
+        "sand_py", PISA, "PISA, dense Dunkirk sand (Burd et al. 2020), with base and side terms", _pisa
+    ),
+    SoilCurve("clay_py", PISA, "PISA, Cowden till (Byrne et al. 2020), with base and side terms", _pisa),
     SoilCurve("sand_tz", "rp2geo", "API RP 2GEO: peak at 1 % of the diameter", _sand_tz),
     SoilCurve("sand_tz", "rp2a", "API RP 2A-WSD: straight to the peak at 2.54 mm", _sand_tz),
     SoilCurve("clay_tz", "rp2geo", "API RP 2GEO: peak at 1 % of the diameter, then a residual", _clay_tz),
