@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from jackettwin.caveats import omission_documents, omission_sentences
 from jackettwin.cli.console import FiniteFloat, Reply, answers, numbers_of, say_all, show_table, working
 from jackettwin.cli.modes import rayleigh_option, supported_option
 from jackettwin.errors import InputError, located
-from jackettwin.omissions import omission_documents, omission_sentences
 from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:

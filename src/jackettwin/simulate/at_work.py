@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.caveats import Omission
 from jackettwin.loads import (
     OPERATING_LOG_STD,
     Control,
@@ -23,7 +24,6 @@ from jackettwin.loads import (
     passing_loads,
     turbulent_loads,
 )
-from jackettwin.omissions import Omission
 from jackettwin.simulate.motion.model import Model, TrueMode, asset_model, true_modes, with_aerodynamics
 from jackettwin.simulate.scenario.asset import Asset
 from jackettwin.structure import Structure
