@@ -26,8 +26,10 @@ def test_every_kind_stands_in_the_documentation() -> None:
 @pytest.mark.parametrize("kind", soil_curves.SOIL_CURVES, ids=lambda kind: f"{kind.reaction}-{kind.name}")
 def test_every_kind_is_built_by_its_name(kind: SoilCurve) -> None:
     """Curves pass through zero, push back, and start with their initial stiffness or below it."""
-    soil = Sand(35.0) if kind.reaction.startswith("sand") else Clay((80e3, 80e3))
-    point = Point(10.0, 100e3, 80e3, 80e3, soil)
+    G = 8e7
+    sand = Sand(35.0, relative_density=0.7, shear_modulus_pa=(G, G))
+    soil = sand if kind.reaction.startswith("sand") else Clay((80e3, 80e3), shear_modulus_pa=(G, G))
+    point = Point(10.0, 100e3, 80e3, 80e3, soil, G)
     options = CurveOptions(**{kind.reaction: kind.name})
     curve = options.curve(kind.reaction[-2:], point, Pile(40.0, 2.0, 0.05))
     assert curve.force(0.0) == 0.0

@@ -52,6 +52,7 @@ from .operation.bem import (
     Control as Control,
     OperatingPoint as OperatingPoint,
     operating_point as operating_point,
+    steady_operation as steady_operation,
 )
 from .operation.dynamic_inflow import (
     OPERATING_LOG_STD as OPERATING_LOG_STD,

@@ -1,8 +1,8 @@
 r"""Power production: steady blade element momentum theory.
 
 The inflow angle φ of each annulus solves sin φ/(1 − a) = (V/Ωr) cos φ/(1 + a′) (Ning 2014, Wind Energy
-17:1327), with Prandtl's tip and hub losses and Buhl's (2005) thrust at high induction. The annulus is assumed
-normal to the wind: tilt, cone and yaw affect the loads but not the induction.
+17:1327), with Prandtl's tip and hub losses and Buhl's (2005) thrust at high induction. Of tilt
+and cone the annuli see the wind's component normal to the blades; yaw affects loads, not the induction.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class OperatingPoint(NamedTuple):
 def steady_operation(
     rotor: Rotor, wind_speed: float, *, rotor_speed: float, pitch: float, density: float = AIR_KG_M3
 ) -> OperatingPoint:
-    """Return thrust, torque and induction of a rotor normal to the wind.
+    """Return thrust along the shaft, torque and induction of a rotor that is not yawed.
 
     Raises
     ------
@@ -72,10 +72,16 @@ def steady_operation(
             allowed="> 0",
         )
     r = ring_radius(rotor)
-    wind = np.full(r.size, wind_speed)
+    wind = normal_wind(rotor, wind_speed)
     induced = balanced_wake(rotor, wind, rotor_speed * r, pitch)
     axial, tangential = ring_forces(rotor, wind, rotor_speed * r, pitch, induced, density=density)
-    return OperatingPoint(wind_speed, rotor_speed, pitch, float(axial.sum()), float(r @ tangential), induced)
+    thrust = float(np.cos(rotor.cone) * axial.sum())
+    return OperatingPoint(wind_speed, rotor_speed, pitch, thrust, float(r @ tangential), induced)
+
+
+def normal_wind(rotor: Rotor, wind_speed: float) -> FloatArray:
+    """Return the wind's component normal to the coned, tilted blades at the stations (n,) [m/s]."""
+    return np.full(rotor.blade.z.size, wind_speed * np.cos(rotor.tilt) * np.cos(rotor.cone))
 
 
 def ring_radius(rotor: Rotor) -> FloatArray:

@@ -15,7 +15,13 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.loads.aerodynamics.rotor import AIR_KG_M3, Linearised, Rotor, linearise
-from jackettwin.loads.operation.bem import OperatingPoint, balanced_wake, ring_forces, ring_radius
+from jackettwin.loads.operation.bem import (
+    OperatingPoint,
+    balanced_wake,
+    normal_wind,
+    ring_forces,
+    ring_radius,
+)
 
 OPERATING_LOG_STD = {"fore_aft": 0.15, "side_side": 0.4}
 """How far the rotor's part of the first bending modes' damping may be off, as a standard deviation of its
@@ -114,7 +120,7 @@ def _sections(rotor: Rotor, operation: OperatingPoint, *, density: float) -> Flo
     Forces along the shaft and around it lost with the blade's own velocity along the shaft and around it.
     """
     r = ring_radius(rotor)
-    wind, swirl = np.full(r.size, operation.wind_speed), operation.rotor_speed * r
+    wind, swirl = normal_wind(rotor, operation.wind_speed), operation.rotor_speed * r
 
     def forces(dv: float, du: float, *, balanced: bool) -> FloatArray:
         at = wind + dv, swirl + du

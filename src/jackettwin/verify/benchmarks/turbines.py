@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from math import degrees, pi
+from math import degrees, pi, radians
 
-from jackettwin.loads import AIR_KG_M3, operating_point, read_rotor
+from jackettwin.loads import AIR_KG_M3, operating_point, read_rotor, steady_operation
 from jackettwin.response import build_system, undamped_modes
 from jackettwin.soil import clamped
 from jackettwin.structure import Material, Member, PointMass, Reaction, Section, Structure, assemble
@@ -14,6 +14,9 @@ _WINDS = ("8.422147", "9.780037", "12.84800", "14.77807", "16.92050", "20.02994"
 """Rows of the table of the rotor's performance [m/s]."""
 _OPTIMAL = 8.0
 """Where the rotor turns at its optimal tip-speed ratio [m/s]."""
+_COEFFICIENTS = ((6, 0), (6, 5), (6, 10), (8, 0), (8, 3), (9, 2), (5, 12), (7, -2))
+"""Tip-speed ratios and pitches [°] of the table of coefficients, at its wind of 10.74 m/s."""
+_TABLE_WIND = 10.74
 _RATED = 12.0
 """Above the rated wind speed, where pitch holds the power [m/s]."""
 
@@ -39,6 +42,12 @@ def _iea15() -> Computed:
             found[f"IEA15-pitch-{text}"] = degrees(point.pitch)
         else:
             found[f"IEA15-power-{text}"] = 1e-6 * point.power * control.efficiency
+    for ratio, pitch in _COEFFICIENTS:
+        speed = ratio * _TABLE_WIND / rotor.radius
+        point = steady_operation(rotor, _TABLE_WIND, rotor_speed=speed, pitch=radians(pitch))
+        push = 0.5 * AIR_KG_M3 * pi * rotor.radius**2 * _TABLE_WIND**2
+        found[f"IEA15-C-power-{ratio}-{pitch}"] = point.power / (push * _TABLE_WIND)
+        found[f"IEA15-C-thrust-{ratio}-{pitch}"] = point.thrust / push
     return found
 
 
