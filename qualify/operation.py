@@ -22,7 +22,6 @@ from openfast import (
     Asset,
     ComplexArray,
     FloatArray,
-    _poles_of_decay,
     at_rest,
     execute,
     on_feet,
@@ -38,13 +37,13 @@ from jackettwin.simulate import Asset as StandingAsset, asset_model
 from jackettwin.simulate.motion.model import TrueMode, true_modes, with_aerodynamics
 
 WINDS = (4.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0)
-BENDING = (8.0, 12.0, 20.0)
+BENDING = (12.0,)
 """Winds in which the blades bend and the airflow about them lags, too."""
 DURATION_S, OFFSET_M, STEP_S = 45.0, 0.3, 0.02
-STARTED_S = {"fore-aft": 4.0, "side-side": 4.0}
-LASTS_S = {"fore-aft": 35.0, "side-side": 41.0}
-"""Of the decays: fore-aft nothing is left after seven periods."""
-STEADY = {"fore-aft": "YawBrTAxp", "side-side": "YawBrTAyp"}
+NEAR_HZ, LIGHT = (0.1, 0.25), 0.03
+"""Where the first pair lies, and the damping ratio that parts side-side from fore-aft."""
+STARTED_S, EVERY_S, ORDER = 3.0, 0.2, 24
+CHANNELS = ("YawBrTDxp", "YawBrTDyp")
 LABELS = {"fore-aft": "fore_aft_1", "side-side": "side_side_1"}
 RIGID = {"TwrPotent": "0", "TwrShadow": "0", "TwrAero": "False", "UA_Mod": "0", "DBEMT_Mod": "2"}
 UNSTEADY = RIGID | {"UA_Mod": "3"}
@@ -156,22 +155,35 @@ def decayed(
     )
     execute(program, ready(folder, asset, run))
     found = read_text(folder / "case.out")
-    poles = {
-        side: _first(found.times_s, found.data[found.names.index(name)], side)
-        for side, name in STEADY.items()
-    }
+    started = found.times_s >= STARTED_S
+    every = round(EVERY_S / STEP_S)
+    moved = np.array([found.data[found.names.index(name)][started][::every] for name in CHANNELS])
+    poles = first_pair(moved)
     thrust = found.data[found.names.index("RtFldFxh")]
     return Decay(poles, float(thrust[found.times_s > 0.6 * DURATION_S].mean()))
 
 
-def _first(t: FloatArray, x: FloatArray, side: str) -> complex:
-    """Return the pole of a decay that is the first mode's: the nearest to 0.17 Hz that is damped."""
-    inside = (t >= STARTED_S[side]) & (t <= LASTS_S[side] + STARTED_S[side])
-    every = round(0.2 / float(t[1] - t[0]))
-    signal = x[inside][::every]
-    poles: ComplexArray = _poles_of_decay(signal - signal.mean(), 0.2, order=14, rows=signal.size // 3)
-    damped = poles[-poles.real > 1e-4]
-    return complex(damped[np.argmin(np.abs(np.abs(damped) - 2.0 * np.pi * 0.17))])
+def first_pair(moved: FloatArray) -> dict[str, complex]:
+    """Return the poles of the first pair from the tower top's decay (2, n_times), along and across the wind.
+
+    By one subspace of both directions, which holds the mean, the wake's answer and the blades' passing, too;
+    of the poles near the pair the one with the largest part of its direction.
+    """
+    rows = moved.shape[1] // 3
+    hankel = np.vstack([np.lib.stride_tricks.sliding_window_view(x, x.size - rows + 1) for x in moved])
+    basis = np.linalg.svd(hankel, full_matrices=False)[0][:, :ORDER]
+    before = np.vstack([basis[: rows - 1], basis[rows : 2 * rows - 1]])
+    after = np.vstack([basis[1:rows], basis[rows + 1 :]])
+    advance = np.linalg.lstsq(before, after, rcond=None)[0]
+    poles: ComplexArray = np.log(np.linalg.eigvals(advance).astype(np.complex128)) / EVERY_S
+    modes = np.exp(np.outer(EVERY_S * np.arange(moved.shape[1]), poles))
+    part = np.abs(np.linalg.lstsq(modes, moved.T.astype(np.complex128), rcond=None)[0])
+    f, zeta = np.abs(poles) / (2.0 * np.pi), -poles.real / np.abs(poles)
+    near = (poles.imag > 0.0) & (f > NEAR_HZ[0]) & (f < NEAR_HZ[1]) & (zeta > 0.0)
+    found = {}
+    for k, (side, wanted) in enumerate((("fore-aft", zeta > LIGHT), ("side-side", zeta <= LIGHT))):
+        found[side] = complex(poles[np.argmax(np.where(near & wanted, part[:, k], -1.0))])
+    return found
 
 
 if __name__ == "__main__":
