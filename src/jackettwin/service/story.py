@@ -155,7 +155,8 @@ def _observation(
         "air_temperature_c": round(weather.air_c, 2),
         "water_level_m": round(weather.level_m, 3),
     }
-    recognised = tuple(Recognised(model.labels.index(label) + 1, label, 1.0) for label in modes)
+    # no shape was measured: whatever record has one shows its mode more clearly
+    recognised = tuple(Recognised(model.labels.index(label) + 1, label, 0.0) for label in modes)
     return Observation(
         record_id=digest(["story", of.isoformat(), [log(m.frequency_hz) for m in modes.values()]]),
         model_hash=model.model_hash,
