@@ -18,7 +18,7 @@ from tests.service.servers import free_port
 
 from jackettwin.service.context import Service
 from jackettwin.service.web import pages
-from jackettwin.service.web.app import create_app
+from jackettwin.service.web.app import EXAMPLES, create_app
 from jackettwin.store import journal, people, results, writing
 
 AXE = Path(__file__).parents[2] / "app" / "node_modules" / "axe-core" / "axe.min.js"
@@ -33,6 +33,7 @@ PAGES = (
     "/assets/wtg/timeline",
     "/assets/wtg/structure",
     "/assets/wtg/explore",
+    "/assets/wtg/life",
     "/assets/wtg/records",
     "/assets/wtg/records/ID",
     "/assets/wtg/alarms",
@@ -307,6 +308,23 @@ def test_the_structure_moves_and_stops(opened: Open) -> None:
     assert picture.screenshot() == before
     page.get_by_role("button", name="Show in dark colours").click()
     assert picture.screenshot() != before
+    page.context.close()
+
+
+def test_life_is_told_weld_by_weld(opened: Open, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The answer's own example; nothing of it is wider than a phone, nor serious to axe."""
+    weld = {name: value for name, value in EXAMPLES["LifeOut"].items() if name != "model_version"}
+    monkeypatch.setattr(results, "find_life", lambda *_: [weld, {**weld, "side": "brace"}])
+    with writing(opened.service.database) as connection:
+        journal.tell(connection, "state", "wtg", {}, opened.service.now())
+    page = opened.page("/assets/wtg/life")
+    expect(page.get_by_text("The first weld has 130 years left (31 to 540).")).to_be_visible()
+    page.get_by_role("link", name="leg_1_3, brace_1_2_1, brace").click()
+    expect(page.get_by_role("heading", name="leg_1_3, brace_1_2_1, brace")).to_be_visible()
+    assert "weld=" in page.url
+    assert serious(page) == []
+    page.set_viewport_size({"width": 390, "height": 900})
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
     page.context.close()
 
 

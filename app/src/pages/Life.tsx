@@ -1,0 +1,199 @@
+// What life is left: the welds that records damage most, and how sure that is.
+import { useAnswer } from "../api/answer";
+import { api, type Schemas, told } from "../api/client";
+import { Card, Light } from "../parts/Bits";
+import { Empty, Shown } from "../parts/Shown";
+import { type Column, Table } from "../parts/Table";
+import type { PageProps } from "../shell/App";
+import { asked, keep } from "../shell/place";
+import { count, percent, scientific } from "../words/numbers";
+import { day } from "../words/time";
+
+type Weld = Schemas["LifeOut"];
+const LONG_YEARS = 1000;
+const YEAR_S = 365.25 * 86_400;
+
+/** Years without digits that nobody knows. */
+export const years = (value: number | null): string =>
+  value === null || !Number.isFinite(value) || value > LONG_YEARS
+    ? "over 1000"
+    : String(Number(value.toPrecision(value < 10 ? 1 : 2)));
+const key = (w: Weld): string => `${w.joint} ${w.brace} ${w.side}`;
+const named = (w: Weld): string => `${w.joint}, ${w.brace}, ${w.side}`;
+const state = (w: Weld): string => (w.over_budget || w.departed ? "alarm" : "ok");
+const largest = (shares: Record<string, number>): string =>
+  Object.entries(shares)
+    .toSorted(([, a], [, b]) => b - a)
+    .map(([name, share]) => `${name} ${Math.round(100 * share)} %`)
+    .join(", ");
+
+const COLUMNS: Column<Weld>[] = [
+  { title: "Status", show: (w) => <Light status={state(w)} />, by: state },
+  {
+    title: "Weld",
+    show: (w) => (
+      <a
+        href={`?weld=${encodeURIComponent(key(w))}`}
+        onClick={(event) => {
+          event.preventDefault();
+          keep({ weld: key(w) });
+        }}
+      >
+        {named(w)}
+      </a>
+    ),
+    by: key,
+  },
+  { title: "Height", unit: "m", numeric: true, show: (w) => w.z_m.toFixed(1), by: (w) => w.z_m },
+  {
+    title: "Left",
+    unit: "years, 5 to 95 %",
+    numeric: true,
+    show: (w) =>
+      `${years(w.remaining_years.p50)} (${years(w.remaining_years.p05)} to ${years(w.remaining_years.p95)})`,
+    by: (w) => w.remaining_years.p50,
+  },
+  {
+    title: "Damage a year",
+    unit: "of what is allowed",
+    numeric: true,
+    show: (w) => `${percent(w.rate_per_year / w.budget_per_year, null, 0)} %`,
+    by: (w) => w.rate_per_year / w.budget_per_year,
+  },
+  {
+    title: "Fails in a year",
+    unit: "probability",
+    numeric: true,
+    show: (w) => scientific(w.failure_probability_per_year, 2),
+    by: (w) => w.failure_probability_per_year,
+  },
+];
+
+/** The eight points around a weld, from its crown on; the worst is the one that counts. */
+function Around({ weld }: { weld: Weld }) {
+  const most = Math.max(...weld.damage_by_point, 1e-300);
+  return (
+    <svg class="around" viewBox="-60 -60 120 120" role="img" aria-label={`Damage around ${named(weld)}`}>
+      <circle r="50" />
+      <circle r="25" />
+      {weld.damage_by_point.map((damage, i) => {
+        const angle = (2 * Math.PI * i) / weld.damage_by_point.length;
+        const r = (50 * damage) / most;
+        const [x, y] = [r * Math.sin(angle), -r * Math.cos(angle)];
+        return (
+          <g key={i}>
+            <line x2={x} y2={y} />
+            <path d={`M${x - 3} ${y}a3 3 0 1 0 6 0a3 3 0 1 0 -6 0`}>
+              <title>{`${Math.round((360 * i) / weld.damage_by_point.length)}°: ${scientific(damage, 2)}`}</title>
+            </path>
+          </g>
+        );
+      })}
+    </svg>
+  );
+}
+
+function One({ weld }: { weld: Weld }) {
+  const [low, high] = weld.damage_interval_90;
+  const facts: [string, string][] = [
+    ["Worst point", weld.position],
+    ["Environment", weld.environment],
+    [
+      "Damage so far",
+      `${scientific(weld.damage, 2)} (90 %: ${scientific(low, 2)} to ${scientific(high, 2)})`,
+    ],
+    ["It rests on", `${count(weld.records, "record")}, ${(weld.observed_s / 86_400).toPrecision(2)} days`],
+    [
+      "Life by the design curve",
+      `${years(weld.life_years)} years, of which ${years(weld.age_years)} are gone`,
+    ],
+    ["What leaves it open", largest(weld.variance_shares)],
+    ["By state of operation", largest(weld.damage_by_state)],
+    ...(weld.beyond_validity.length
+      ? [["Beyond the range of its factors", weld.beyond_validity.join(", ")] as [string, string]]
+      : []),
+    ...(weld.over_budget ? [["Over its budget since", day(weld.over_budget.since)] as [string, string]] : []),
+    ...(weld.departed
+      ? [["Departed from its past since", day(weld.departed.since)] as [string, string]]
+      : []),
+  ];
+  return (
+    <div class="weld">
+      <Around weld={weld} />
+      <dl class="facts">
+        {facts.map(([name, value]) => (
+          <div key={name}>
+            <dt>{name}</dt>
+            <dd>{value}</dd>
+          </div>
+        ))}
+      </dl>
+    </div>
+  );
+}
+
+export default function Life({ asset }: PageProps) {
+  const life = useAnswer(asset, `life ${asset}`, () =>
+    told(api.GET("/api/v1/assets/{asset}/life", { params: { path: { asset } } })),
+  );
+  const wanted = asked("weld");
+  return (
+    <>
+      <div class="head">
+        <h1>Life</h1>
+        {life.data?.items[0] && <p class="said">{headline(life.data.items)}</p>}
+      </div>
+      <Shown of={life} lines={8} empty={(data) => (data.items.length ? null : <Nothing />)}>
+        {(data) => {
+          const weld = data.items.find((w) => key(w) === wanted) ?? data.items[0];
+          return (
+            <div class="grid">
+              <Card
+                title="Welds, the shortest life first"
+                wide
+                note="As if the years were like the records; the interval is what records, curves and factors leave open."
+              >
+                <Table
+                  label="Welds"
+                  columns={COLUMNS}
+                  rows={data.items}
+                  id={key}
+                  mark={(w) => (w === weld ? "here" : "")}
+                />
+              </Card>
+              {weld && (
+                <Card
+                  title={named(weld)}
+                  wide
+                  note="Damage at eight points around the weld; the worst is at the rim."
+                >
+                  <One weld={weld} />
+                </Card>
+              )}
+            </div>
+          );
+        }}
+      </Shown>
+    </>
+  );
+}
+
+function headline(welds: readonly Weld[]): string {
+  const worst = welds[0];
+  if (!worst) return "";
+  const over = welds.filter((w) => w.over_budget).length;
+  const months = (worst.observed_s / YEAR_S) * 12;
+  const rests = months < 3 ? " It rests on little: less than three months of records." : "";
+  const left = `The first weld has ${years(worst.remaining_years.p50)} years left (${years(worst.remaining_years.p05)} to ${years(worst.remaining_years.p95)}).`;
+  return `${over ? `${count(over, "weld")} beyond what a year is allowed. ` : ""}${left}${rests}`;
+}
+
+const Nothing = () => (
+  <Empty title="No life yet">
+    <p>
+      Life is counted from records, weld by weld, once the twin file says <code>life: {"{}"}</code> and the
+      server has the extra package <code>fatigue</code>.
+    </p>
+    <pre>pip install 'jackettwin[service,fatigue]'</pre>
+  </Empty>
+);
