@@ -3,6 +3,7 @@
 Usage: python qualify/watching.py [quiet turbines a kind of seasons] [turbines a change]
        [of a kind without conditions] [folder of pieces]
        python qualify/watching.py speed
+       python qualify/watching.py kinds [turbines a kind of seasons] [folder of pieces]
 
 Each turbine is a piece that is kept in a file; a run that was stopped goes on where it was. Pieces of other
 source code are not used.
@@ -14,7 +15,7 @@ import hashlib
 import json
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -121,6 +122,7 @@ def untold(h: History) -> History:
 
 
 def false_alarms(pieces: dict[str, Any]) -> list[str]:
+    """Return the section on turbines of which nothing changes; the last rows are of all kinds."""
     number = len(_of(pieces, f"quiet/{next(iter(KINDS))}/"))
     lines = [
         "## False alarms",
@@ -139,6 +141,8 @@ def false_alarms(pieces: dict[str, Any]) -> list[str]:
     lines += _counted(f"**slow and benign** ({', '.join(SLOW)})", slow)
     lines += _counted("**all**", _of(pieces, "quiet/"))
     without = _of(pieces, "untold/quiet/")
+    if not without:
+        return [*lines, ""]
     lines += _counted(f"**conditions not told** ({len(without)} turbines of all kinds)", without)
     found = [d for d in _of(pieces, "untold/scour/") if d is not None and d >= 0.0]
     number = len(_of(pieces, "untold/scour/"))
@@ -511,26 +515,37 @@ def source(*, named: bool) -> str:
     return hashlib.sha256(b"".join([f.read_bytes() for f in files] + [bets.encode()])).hexdigest()[:12]
 
 
-def main() -> None:
-    if sys.argv[1:] == ["speed"]:
-        sys.stdout.write("\n".join(speed()))
-        return
-    kinds, number, without = (int(x) for x in (*sys.argv[1:4], *("15", "20", "7")[len(sys.argv) - 1 :]))
-    folder = Path(sys.argv[4] if len(sys.argv) > 4 else "out/qualify")
+def computed(pieces: Iterable[tuple[str, Callable[[], Any]]], folder: Path) -> dict[str, Any]:
+    """Return the pieces by name; what the folder has of the same source is not computed again."""
     folder.mkdir(parents=True, exist_ok=True)
     kept = folder / "watching.jsonl"
     made = dict(map(json.loads, kept.read_text().splitlines())) if kept.exists() else {}
     identity = {named: source(named=named) for named in (False, True)}
-    pieces = {}
+    out = {}
     with kept.open("a") as file:
-        for name, compute in pieces_of(kinds, number, without):
+        for name, compute in pieces:
             key = f"{name} {identity[name.startswith('changed')]}"
             if key not in made:
                 made[key] = compute()
                 file.write(json.dumps([key, made[key]]) + "\n")
                 file.flush()
                 sys.stderr.write(f"{name}\n")
-            pieces[name] = made[key]
+            out[name] = made[key]
+    return out
+
+
+def main() -> None:
+    if sys.argv[1:] == ["speed"]:
+        sys.stdout.write("\n".join(speed()))
+        return
+    if sys.argv[1:2] == ["kinds"]:
+        folder = Path(sys.argv[3] if len(sys.argv) > 3 else "out/qualify")
+        pieces = computed(pieces_of(int(sys.argv[2]), 0, 0), folder)
+        sys.stdout.write("\n".join([*scours(pieces), *false_alarms(pieces)]))
+        return
+    kinds, number, without = (int(x) for x in (*sys.argv[1:4], *("15", "20", "7")[len(sys.argv) - 1 :]))
+    folder = Path(sys.argv[4] if len(sys.argv) > 4 else "out/qualify")
+    pieces = computed(pieces_of(kinds, number, without), folder)
     head = [
         "# Watching",
         "",
