@@ -89,6 +89,17 @@ def test_pascals_taken_for_megapascals_are_refused(tmp_path: Path) -> None:
     assert "--unit" in found.stderr
 
 
+def test_megapascals_taken_for_pascals_are_doubted(stress: Path) -> None:
+    found = answer("stress", str(stress), "--column", "leg", "--unit", "Pa")
+    assert "--unit" in found["warnings"][0]
+
+
+def test_an_unknown_first_word_is_no_twin() -> None:
+    found = run("strss", "leg.csv", "--column", "leg")
+    assert found.exit_code == 2
+    assert "did you mean 'stress'?" in found.stderr and "Traceback" not in found.stderr
+
+
 def test_a_joint_has_the_keys_of_the_contract(tmp_path: Path) -> None:
     brace = {"diameter_m": 0.6, "thickness_m": 0.02, "angle_deg": 45.0}
     said = {"chord_diameter_m": 1.2, "chord_thickness_m": 0.04, "chord_length_m": 9.0, "fixity": 0.7}
@@ -103,6 +114,27 @@ def test_a_joint_has_the_keys_of_the_contract(tmp_path: Path) -> None:
     assert found["warnings"] == []
     assert set(found["braces"][0]["axial"]) == set(found["braces"][0]["out_of_plane"]) == {"chord", "brace"}
     assert "stress concentration" in run("scf", str(path)).stdout
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"chord_thickness_m": -0.04}, "chord_thickness_m"),
+        ({"chord_diameter_m": 0.5}, "diameter_m"),
+        ({"class": "kt"}, "class"),
+        ({"chord_diameter_m": 1200.0, "chord_thickness_m": 40.0}, "unit"),
+    ],
+)
+def test_a_joint_that_cannot_be_is_refused(changed: dict[str, object], said: str, tmp_path: Path) -> None:
+    joint = {
+        "class": "y", "chord_diameter_m": 1.2, "chord_thickness_m": 0.04, "chord_length_m": 9.0,
+        "braces": [{"diameter_m": 0.6, "thickness_m": 0.02, "angle_deg": 45.0}],
+    }  # fmt: skip
+    path = tmp_path / "joint.json"
+    path.write_text(json.dumps(joint | changed))
+    found = run("scf", str(path))
+    assert found.exit_code == 2
+    assert said in found.stderr and "Traceback" not in found.stderr
 
 
 def test_a_scenario_tells_the_life_of_every_weld(tmp_path: Path) -> None:

@@ -59,3 +59,20 @@ def test_the_gradient_is_that_of_the_likelihood(rng: np.random.Generator) -> Non
     slope = (by_force * way_S).sum() + (by_noise * way_r).sum()
     assert slope == pytest.approx((ahead - behind) / (2.0 * h), rel=1e-5)
     assert np.isfinite(value)
+
+
+def test_other_levels_scatter_as_the_evidence_curves_and_never_against_it(rng: np.random.Generator) -> None:
+    """Beside levels the record shows, a third far below its noise, known to a factor of e^1.5 beforehand."""
+    y, H, which, forces = planted(rng)
+    hidden = LatentForce("c", np.zeros(1), np.zeros((1, 12)), "gust", 0.7, 1e-3, 1.5, 0.05)
+    H = np.concatenate([H, H[:, :, :1]], axis=2)
+    found = find_levels(y, STEP_S, H, which, (*forces, hidden), (0, 0), draws=40, seed=2)
+    logs = np.log([[f.level for f in one] for one in found.others]) - np.log([f.level for f in found.forces])
+    assert (np.abs(logs[0::2] + logs[1::2])[:, :2] < 0.5).all()
+    shown, unseen = logs[:, :2].std(axis=0), logs[:, 2].std()
+    # √(1/2n) of n coefficients at best; the misfit takes some of what they tell
+    least = np.sqrt(0.5 / which.size)
+    assert (shown > 0.5 * least).all() and (shown < 20.0 * least).all()
+    assert 0.7 < unseen < 2.2
+    # what would be as strong as what the record shows is not drawn
+    assert logs[:, 2].max() + np.log(found.forces[2].level) < np.log(2.0)

@@ -72,8 +72,17 @@ def test_errors_are_as_large_as_said(rng: np.random.Generator) -> None:
     x, y = s.draw(20_000, rng)
     ratio = (s.smooth(y)[0] - x).var(axis=0) / np.diag(s.smoothed)
     assert (np.abs(ratio - 1.0) < 0.1).all()
-    ratio = (s.filtered(y) - x).var(axis=0) / np.diag(s.smoothed)
-    assert (ratio > 1.01).any()
+
+
+def test_the_filter_knows_what_the_smoother_does_of_the_last_sample(rng: np.random.Generator) -> None:
+    """Of which both have read everything; and its errors are as large as P less what a reading tells."""
+    F, Q, C, R = model(rng)
+    s = steady_smoother(F, Q, C, R)
+    x, y = s.draw(20_000, rng)
+    found = s.filtered(y)
+    assert_allclose(found[-1], s.smooth(y)[0][-1], rtol=1e-9)
+    known = s.P - s.gain @ C @ s.P
+    assert_allclose((found - x).var(axis=0) / np.diag(known), 1.0, atol=0.1)
 
 
 def test_a_discrete_step_of_an_oscillator(rng: np.random.Generator) -> None:

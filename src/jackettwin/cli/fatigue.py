@@ -21,7 +21,7 @@ from jackettwin.cli.console import (
     show_table,
     working,
 )
-from jackettwin.errors import InputError, look_up, require
+from jackettwin.errors import InputError, did_you_mean, look_up, require
 from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 _UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "N/mm^2": 1e6, "ksi": 6.894757293168e6}
 _STRONGEST_PA = 2e9
 """Stress range above which the unit must be wrong."""
+_WEAKEST_PA = 1e4
+"""Stress range below which the unit is probably wrong."""
 _N_EQ = 1e7
 _SHOWN = 10
 _OF_WELDS = (
@@ -51,9 +53,19 @@ class _Fatigue(CommandGroup):
     """A group that treats arguments TWIN and RECORD as those of its command ``record``."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse arguments; if the first is not a command, it is a twin."""
+        """Parse arguments; if the first is a file or a shipped twin, it is TWIN."""
+        from jackettwin.twin import shipped_twins
+
         named = next((a for a in args if not a.startswith("-")), None)
         if named is not None and named not in self.commands:
+            known = (*self.commands, *shipped_twins())
+            if not (Path(named).suffix or Path(named).exists() or named in known or args[0] != named):
+                remedy = did_you_mean(named, known) or "jackettwin fatigue --help lists the commands"
+                problem = InputError(
+                    "is no command, no file and no shipped twin", field="fatigue", value=named,
+                    allowed=", ".join(known), remedy=remedy,
+                )  # fmt: skip
+                raise click.UsageError(str(problem), ctx)
             args = ["record", *args]
         return super().parse_args(ctx, args)
 
@@ -119,6 +131,8 @@ def stress(
         value=f"in {taken}",
         remedy="state the unit with --unit",
     )
+    if 0.0 < widest < _WEAKEST_PA:
+        warnings.append(f"no range is larger than {widest:.3g} Pa: is the stress in {taken}? (--unit)")
     thickness = None if thickness_mm is None else 1e-3 * thickness_mm
     damage = scale * chosen.damage(cycles.ranges, cycles.numbers, thickness_m=thickness)
     document = {

@@ -322,6 +322,7 @@ def read_joint(path: Path) -> tuple[JointClass, TubularJoint]:
         braces = []
         for i, one in enumerate(said.braces):
             with located(field=f"braces.{i}"):
+                require_between("diameter_m", one.diameter_m, 0.0, said.chord_diameter_m)
                 braces.append(BraceTube(one.diameter_m, one.thickness_m, radians(one.angle_deg)))
         D, T, L = said.chord_diameter_m, said.chord_thickness_m, said.chord_length_m
         return said.class_, TubularJoint(D, T, L, tuple(braces), said.fixity, said.gap_m)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -110,6 +110,33 @@ def moved(model: MotionModel, readings: SensorReadings, *, draws: int = 0) -> Mo
     seen = model.transfer(readings.rows, readings.tilt, readings.derivative, omega)
     levels = find_levels(readings.y, h, seen, which, model.forces, readings.groups, draws=draws)
     return under(model.with_forces(levels.forces), readings, levels)
+
+
+def likely_motions(
+    systems: Sequence[System],
+    readings: SensorReadings,
+    weather: Weather,
+    *,
+    damped: Callable[[MotionModel], MotionModel] = lambda model: model,
+) -> tuple[MotionEstimate, ...]:
+    """Return the motion of each of some structures that are as likely as the first.
+
+    Levels of the forces are those that the evidence finds on the first; each other structure has others that
+    are as probable.
+
+    Parameters
+    ----------
+    damped : what is known besides of the damping of a model's modes
+    """
+    first, *others = systems
+    estimate = moved(damped(sensed_model(first, weather)), readings, draws=len(others))
+    return (
+        estimate,
+        *(
+            under(damped(motion_model(system, forces, below_hz=BAND_HZ)), readings, estimate.levels)
+            for system, forces in zip(others, estimate.levels.others, strict=True)
+        ),
+    )
 
 
 def under(model: MotionModel, readings: SensorReadings, levels: Levels) -> MotionEstimate:

@@ -49,6 +49,7 @@ from .model_error.directions import (
     Tolerance as Tolerance,
     ToleranceDirections as ToleranceDirections,
     moved_along as moved_along,
+    on_unlike_feet as on_unlike_feet,
 )
 from .model_error.error_model import ErrorModel as ErrorModel
 from .model_error.influence import Influence as Influence, influences as influences

@@ -28,7 +28,7 @@ from jackettwin.response import (
 from jackettwin.soil import Family, Law, Parameter
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating.band import condensed_for, numbered_modes
-from jackettwin.updating.model_error.directions import ToleranceDirections
+from jackettwin.updating.model_error.directions import ToleranceDirections, moved_along, on_unlike_feet
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.tie_groups import TieGroups
 
@@ -206,13 +206,23 @@ class SupportModel:
         found = numbered_poles(self.condensed, self.points(theta[None]).undamped(), modes)
         return np.asarray(np.abs(found.poles[0]) / (2.0 * pi))
 
-    def system(self, theta: FloatArray) -> System:
-        """Return the full model at ``theta``."""
+    def system(self, theta: FloatArray, errors: FloatArray | None = None) -> System:
+        """Return the full model at ``theta``.
+
+        Parameters
+        ----------
+        errors : (n_directions,), optional
+            By how much the structure differs along ``directions``, in their standard deviations.
+        """
         extra = self._split(theta)[1]
         mass, spread = self.nuisance.effects(extra)
+        assembly, support = self.assembly, self.tie_groups.support(self.laws(theta))
+        if errors is not None and self.directions is not None:
+            assembly, shares = moved_along(assembly, self.directions.each, errors)
+            support = on_unlike_feet(support, assembly.structure, shares)
         return build_system(
-            self.assembly if mass is None else replace(self.assembly, mass=self.assembly.mass + mass),
-            self.tie_groups.support(self.laws(theta)),
+            assembly if mass is None else replace(assembly, mass=assembly.mass + mass),
+            support,
             rayleigh=self.nuisance.steel(self.rayleigh, extra),
             dashpots=self.nuisance.springs(self.assembly.structure.top_node, extra),
             spread=spread,

@@ -23,13 +23,12 @@ from jackettwin.sensing import (
     MotionEstimate,
     SensorReadings,
     Weather,
-    moved,
+    likely_motions,
     readings_of,
-    sensed_model,
 )
 from jackettwin.structure import Assembly, assemble
 from jackettwin.study.life.updated_system import updated_systems
-from jackettwin.twin import TwinConfig, WeldMap, twin_model, weld_map
+from jackettwin.twin import TwinConfig, twin_model, weld_map
 from jackettwin.twin.calibration import calibrated
 from jackettwin.updating import Update
 
@@ -121,7 +120,7 @@ def record_life(
 
     Parameters
     ----------
-    systems : the structure on its most probable supports, then on draws of the posterior
+    systems : the most probable structure, then draws of the posterior
     draws : number of motions on each
 
     Raises
@@ -129,12 +128,14 @@ def record_life(
     InputError
         If no brace is welded to a chord, or no tube reaches below the water level.
     """
-    of_systems = [
-        _cycles(system, readings, weather, dry, draws, seed + k) for k, system in enumerate(systems)
+    estimates = likely_motions(systems, readings, weather)
+    charts = [weld_map(system, e.model, dry) for system, e in zip(systems, estimates, strict=True)]
+    estimate, welds = estimates[0], [weld for joint in charts[0].joints for weld in joint.welds]
+    every = [
+        chart.cycles(motion)
+        for k, (chart, own) in enumerate(zip(charts, estimates, strict=True))
+        for motion in own.draws(draws, seed=seed + k)
     ]
-    chart, estimate, _ = of_systems[0]
-    welds = [weld for joint in chart.joints for weld in joint.welds]
-    every = [one for _, _, motions in of_systems for one in motions]
     duration = readings.y.shape[1] * readings.step_s
     structure = estimate.model.assembly.structure
     curves = [models(structure.nodes[w.node][2] - structure.sea_level_z_m)[1].curve for w in welds]
@@ -160,14 +161,6 @@ def record_life(
     return RecordLife(lives, estimate, duration)
 
 
-def _cycles(
-    system: System, readings: SensorReadings, weather: Weather, dry: Assembly, draws: int, seed: int
-) -> tuple[WeldMap, MotionEstimate, list[list[list[list[Cycles]]]]]:
-    estimate = moved(sensed_model(system, weather), readings)
-    chart = weld_map(system, estimate.model, dry)
-    return chart, estimate, [chart.cycles(motion) for motion in estimate.draws(draws, seed=seed)]
-
-
 def _all_of(cycles: list[Cycles]) -> Cycles:
     return Cycles(np.concatenate([c.full for c in cycles]), np.concatenate([c.half for c in cycles]))
 
@@ -180,4 +173,4 @@ def _variances(damage: FloatArray) -> dict[str, FloatArray]:
     means = np.log(np.maximum(damage.mean(axis=1), 1e-300))
     between = means.var(axis=0, ddof=1) if len(means) > 1 else np.zeros(means.shape[1:])
     beyond = np.maximum(between - within / damage.shape[1], 0.0)
-    return {"what sensors do not see": within, "supports": beyond}
+    return {"what sensors do not see": within, "structure and force levels": beyond}

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import require
 from jackettwin.files import NOT_KEPT, Keep
 from jackettwin.progress import SILENT, Progress
@@ -40,16 +41,25 @@ def updated(config: TwinConfig, *, progress: Progress = SILENT, keep: Keep = NOT
 
 
 def updated_systems(update: Update, *, draws: int = 0, seed: int = 0) -> tuple[System, ...]:
-    """Return the structure on its most probable supports, then on ``draws`` of any posterior."""
+    """Return the structure on its most probable supports, then ``draws`` of any posterior.
+
+    The draws differ in their supports and in what the tolerances leave open of the structure, as the data
+    leave both probable together.
+    """
     known = update.uncertainty
     best = np.log(update.best.theta) if known is None else np.log(known.median)
     others = np.empty((0, best.size))
     if known is not None and draws:
         rows = np.random.default_rng(seed).choice(len(known.log_theta), min(draws, _MOST_DRAWS))
         others = known.log_theta[rows]
-    state = update.problem.states[0]
-    vectors = update.problem.vectors(np.vstack([best[None], others]), state)
-    return tuple(update.model.system(theta) for theta in vectors)
+    first, *vectors = update.problem.vectors(np.vstack([best[None], others]), update.problem.states[0])
+    errors: list[FloatArray | None] = [None] * len(others)
+    if len(others) and update.problem.error_model is not None:
+        drawn = update.problem.drawn_errors(others, np.random.default_rng(seed)).errors
+        n = len(update.problem.error_model.tolerances)
+        errors = [row[:n] if np.isfinite(row).all() else None for row in drawn]
+    pairs = zip(vectors, errors, strict=True)
+    return (update.model.system(first), *(update.model.system(theta, error) for theta, error in pairs))
 
 
 def with_record(config: TwinConfig, record: Path) -> TwinConfig:

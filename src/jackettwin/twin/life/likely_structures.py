@@ -24,7 +24,7 @@ from jackettwin.sensing import MotionModel
 from jackettwin.soil import Prony, Spring, Support, standing
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.twin.life.settings import LifeSettings
-from jackettwin.updating import Direction, moved_along
+from jackettwin.updating import Direction, moved_along, on_unlike_feet
 
 _STEPS = 3
 _LONGEST_STEP = 1.5
@@ -74,11 +74,11 @@ class StressModel:
         structure = self.assembly.structure
         assembly, shares = moved_along(self.assembly, self.directions, phi)
         springs = tuple(
-            Spring(node, pattern * np.diag(np.exp(own)), Prony(k0=float(np.exp(k))))
+            Spring(node, pattern, Prony(k0=float(np.exp(k))))
             for k, pattern in zip(ways, _WAYS, strict=False)
-            for node, own in zip(structure.reaction_nodes, shares, strict=True)
+            for node in structure.reaction_nodes
         )
-        support = Support(springs) if springs else standing(structure)
+        support = on_unlike_feet(Support(springs), structure, shares) if springs else standing(structure)
         return build_system(assembly, support, rayleigh=self.rayleigh)
 
     def slopes(self, system: System, shapes: FloatArray, omega: FloatArray) -> FloatArray:

@@ -8,16 +8,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.fatigue import POSITIONS, SIDES, HotSpot, LifeModel, ModelsAtHeight, count
-from jackettwin.sensing import (
-    BAND_HZ,
-    MotionEstimate,
-    SensorReadings,
-    Weather,
-    motion_model,
-    moved,
-    sensed_model,
-    under,
-)
+from jackettwin.sensing import MotionEstimate, SensorReadings, Weather, likely_motions
 from jackettwin.structure import Structure
 from jackettwin.twin.life.likely_structures import LikelyStructures
 from jackettwin.twin.life.weld_map import WeldMap, weld_map
@@ -84,16 +75,12 @@ def sensed_damage(
     NumericalError
         If the filter does not come to rest.
     """
-    first, *others = likely.systems(structures)
-    motion = likely.damped(sensed_model(first, weather))
-    estimate = moved(motion, readings, draws=len(others))
-    charts, estimates = [weld_map(first, estimate.model, likely.model.dry)], [estimate]
-    for system, forces in zip(others, estimate.levels.others, strict=True):
-        model = likely.damped(motion_model(system, forces, below_hz=BAND_HZ))
-        estimates.append(under(model, readings, estimate.levels))
-        charts.append(weld_map(system, model, likely.model.dry))
+    systems = likely.systems(structures)
+    estimates = likely_motions(systems, readings, weather, damped=likely.damped)
+    pairs = zip(systems, estimates, strict=True)
+    charts = [weld_map(system, one.model, likely.model.dry) for system, one in pairs]
     curves = _Curves.of(likely.model.assembly.structure, charts[0], likely.model.settings.models)
-    sides, guessed, largest_left = curves.worst(charts[0], estimate)
+    sides, guessed, largest_left = curves.worst(charts[0], estimates[0])
     damage = np.array(
         [
             [curves.damage(chart, motion, sides) for motion in one.draws(draws, seed=k)]

@@ -20,8 +20,8 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.response import Condensed, Matrix, NumberedModes
-from jackettwin.soil import law_slope, law_stiffness
-from jackettwin.structure import Assembly
+from jackettwin.soil import Support, law_slope, law_stiffness
+from jackettwin.structure import Assembly, Structure
 
 _SPLIT = 0.5
 """Regularisation near the resonance of a mass on springs: its effect is x(1 − x)/((1 − x)² + 0.5²), x =
@@ -104,6 +104,16 @@ def moved_along(
         stiffness = stiffness if one.stiffness is None else stiffness + amount * one.stiffness
         shares += 0.0 if one.feet is None else amount * one.feet
     return replace(assembly, mass=mass, stiffness=stiffness), shares
+
+
+def on_unlike_feet(support: Support, structure: Structure, shares: FloatArray) -> Support:
+    """Return a support whose feet are stiffer by these shares (n_feet, 6) of their logarithms."""
+    factors = {
+        node: np.exp(0.5 * (own[:, None] + own))
+        for node, own in zip(structure.reaction_nodes, shares, strict=True)
+    }
+    springs = tuple(replace(s, matrix=s.matrix * factors.get(s.node, 1.0)) for s in support.springs)
+    return replace(support, springs=springs)
 
 
 @dataclass(frozen=True, eq=False)
