@@ -38,7 +38,7 @@ LEFT_OUT = tuple(
         "the controller's own pitch and torque: they are held, and a real one changes fore-aft damping",
         "blades that bend, unsteady aerodynamics and dynamic stall: within the interval",
         "rotor speed that follows gusts; unequal blades, which shake at the rotor's own frequency",
-        "yaw error, wakes of neighbours",
+        "yaw error, the skewed wake of tilt, wakes of neighbours",
     )
 )
 
