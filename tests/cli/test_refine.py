@@ -101,7 +101,7 @@ def test_a_part_without_density_is_refused_and_what_it_has_is_named(tmp_path: Pa
     said = CliRunner().invoke(main, ["refine", str(tmp_path / "r.yaml")])
     assert said.exit_code == 2
     words = " ".join(said.stderr.split())
-    assert "stages.0.free.0.property: changes nothing" in words
+    assert "stages.0.free.0.property: has no effect" in words
     assert "allowed: youngs_modulus, wall_thickness, added_mass_kg" in words
 
 

@@ -304,7 +304,7 @@ def test_records_of_noise_are_told_from_those_of_another_structure(tmp_path: Pat
     whole = read_record(config.records[0])
     noise = np.random.default_rng(3).normal(size=(len(whole.channels), 30_000))
     write_record(replace(whole, data=noise, name="noise"), file)
-    with pytest.raises(InputError, match="this is noise, or the record is too short.*connected"):
+    with pytest.raises(InputError, match="the record is noise, or it is too short.*connected"):
         run_twin(replace(config, records=(file,)))
     stated = config.identification.model_copy(update={"lowest_frequency_hz": 0.1})
     with pytest.raises(InputError, match="no mode was identified in any record.*spectra"):
