@@ -50,6 +50,7 @@ from .model_error.directions import (
     ToleranceDirections as ToleranceDirections,
     moved_along as moved_along,
     on_unlike_feet as on_unlike_feet,
+    possible as possible,
 )
 from .model_error.error_model import ErrorModel as ErrorModel
 from .model_error.influence import Influence as Influence, influences as influences

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from jackettwin.arrays import FloatArray
 from jackettwin.errors import require
 from jackettwin.files import NOT_KEPT, Keep
 from jackettwin.progress import SILENT, Progress
 from jackettwin.response import System
 from jackettwin.study.run import run_twin
 from jackettwin.twin import TwinConfig
-from jackettwin.updating import Update, likely
+from jackettwin.updating import Update, likely, possible
 
 _MOST_DRAWS = 100
 
@@ -53,13 +53,13 @@ def updated_systems(update: Update, *, draws: int = 0, seed: int = 0) -> tuple[S
         rows = np.random.default_rng(seed).choice(len(known.log_theta), min(draws, _MOST_DRAWS))
         others = known.log_theta[rows]
     first, *vectors = update.problem.vectors(np.vstack([best[None], others]), update.problem.states[0])
-    errors: list[FloatArray | None] = [None] * len(others)
-    if len(others) and update.problem.error_model is not None:
-        drawn = update.problem.drawn_errors(others, np.random.default_rng(seed)).errors
-        n = len(update.problem.error_model.tolerances)
-        errors = [row[:n] if np.isfinite(row).all() else None for row in drawn]
-    pairs = zip(vectors, errors, strict=True)
-    return (update.model.system(first), *(update.model.system(theta, error) for theta, error in pairs))
+    system, model = update.model.system, update.problem.error_model
+    if not len(others) or model is None:
+        return (system(first), *(system(theta) for theta in vectors))
+    drawn = update.problem.drawn_errors(others, np.random.default_rng(seed)).errors
+    amounts = np.nan_to_num(drawn[:, : len(model.tolerances)])
+    pairs = zip(vectors, amounts, strict=True)
+    return (system(first), *(possible(partial(system, theta), own) for theta, own in pairs))
 
 
 def with_record(config: TwinConfig, record: Path) -> TwinConfig:

@@ -24,7 +24,7 @@ from jackettwin.sensing import MotionModel
 from jackettwin.soil import Prony, Spring, Support, standing
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.twin.life.settings import LifeSettings
-from jackettwin.updating import Direction, moved_along, on_unlike_feet
+from jackettwin.updating import Direction, moved_along, on_unlike_feet, possible
 
 _STEPS = 3
 _LONGEST_STEP = 1.5
@@ -126,7 +126,9 @@ class LikelyStructures:
         while len(found) < number:
             away = root @ rng.standard_normal(values.size)
             found += [self.mean + away, self.mean - away]
-        return tuple(self.model.system(theta) for theta in found[:number])
+        return tuple(
+            possible(lambda d: self.model.system(self.mean + d), t - self.mean) for t in found[:number]
+        )
 
     def damped(self, motion: MotionModel) -> MotionModel:
         """Return a model of the motion with the record's damping ratios, and a usual one of other modes."""

@@ -11,7 +11,7 @@ structure.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
@@ -19,10 +19,13 @@ from math import pi
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
-from jackettwin.response import Condensed, Matrix, NumberedModes
+from jackettwin.errors import InputError, NumericalError
+from jackettwin.response import Condensed, Matrix, NumberedModes, System, undamped_modes
 from jackettwin.soil import Support, law_slope, law_stiffness
 from jackettwin.structure import Assembly, Structure
 
+_CHECKED = 30
+"""Number of modes that a drawn structure must have."""
 _SPLIT = 0.5
 """Regularisation near the resonance of a mass on springs: its effect is x(1 − x)/((1 − x)² + 0.5²), x =
 (ω/ω_b)², instead of x/(1 − x), which is unbounded there."""
@@ -104,6 +107,21 @@ def moved_along(
         stiffness = stiffness if one.stiffness is None else stiffness + amount * one.stiffness
         shares += 0.0 if one.feet is None else amount * one.feet
     return replace(assembly, mass=mass, stiffness=stiffness), shares
+
+
+def possible(make: Callable[[FloatArray], System], amounts: FloatArray) -> System:
+    """Return the structure at drawn amounts, or at half of them, until it has modes.
+
+    Drawn to first order, growth that is not there may take more mass from a thin brace than it has.
+    """
+    for share in (1.0, 0.5, 0.25):
+        system = make(share * amounts)
+        try:
+            undamped_modes(system, min(_CHECKED, system.free.size))
+        except (InputError, NumericalError):
+            continue
+        return system
+    return make(0.0 * amounts)
 
 
 def on_unlike_feet(support: Support, structure: Structure, shares: FloatArray) -> Support:
