@@ -153,7 +153,9 @@ def test_the_unit_file_serves_and_every_kind_of_work_is_done(store: Path) -> Non
                 assert client.get("/health").json() == {"status": "ok", "version": "0.1.0", "problems": []}
             _heard(system, b"WATCHDOG=1", process, float(settings["WatchdogSec"]))
             process.send_signal(getattr(signal, settings["KillSignal"]))  # unshare and the shell became it
-            assert process.wait(float(settings["TimeoutStopSec"])) == 0, (store.parent / "log").read_text()
+            assert process.wait(float(settings["TimeoutStopSec"])) == int(settings["SuccessExitStatus"]), (
+                store.parent / "log"
+            ).read_text()
         finally:
             with suppress(ProcessLookupError):
                 process.kill()

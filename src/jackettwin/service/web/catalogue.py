@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING
 
 from sqlalchemy import Connection
 
+from jackettwin.caveats import TOLERANCES
 from jackettwin.errors import InputError
+from jackettwin.files import parse_yaml, with_key
 from jackettwin.service import workers
 from jackettwin.service.intake.examination import examined
+from jackettwin.service.web.problems import ApiError
 from jackettwin.service.web.schemas import AssetOut, VersionOut
 from jackettwin.service.work.consequences import ask_known
 from jackettwin.store import assets, journal, people, reading, records, results, rights, work, writing
@@ -63,6 +66,39 @@ def add_version(
     with writing(service.database) as connection:
         if_fit(connection)
         return _add(connection, service, name, contents, found, by, comment)
+
+
+def close_tolerance(
+    service: Place,
+    asset: str,
+    key: str,
+    comment: str,
+    by: str,
+    *,
+    if_fit: Callable[[Connection], None] = lambda connection: None,
+) -> assets.Version:
+    """Add a version of the adopted twin in which an open tolerance is closed.
+
+    Raises
+    ------
+    ApiError
+        404 if no such tolerance is open.
+    """
+    with reading(service.database) as connection:
+        version = assets.found_version(connection, asset)
+        found = results.find_drawn(connection, asset, version.version, "assumptions")
+        contents = assets.unpack(assets.bundle_of(connection, asset, version.version))
+    still_open = [one["key"] for one in found if one["confirmed"] is False]
+    if key not in still_open:
+        raise ApiError(
+            404, "no such assumption is open", field="key", value=key, allowed=", ".join(still_open)
+        )
+    file = workers.engine.TWIN_FILE
+    text = contents[file].decode()
+    given = parse_yaml(text, file).get("tolerances") or {}
+    settled = {**given, key.removeprefix(TOLERANCES): {"weighed": True}}
+    contents[file] = with_key(text, "tolerances", settled).encode()
+    return add_version(service, asset, contents, by, f"{key} confirmed: {comment}", if_fit=if_fit)
 
 
 def _check_names(contents: Mapping[str, bytes]) -> None:
