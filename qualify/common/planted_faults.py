@@ -183,4 +183,21 @@ FAULTS = (
         ("two servers fold an asset's days at once", ".where(tables.assets.c.name == asset).with_for_update())", ".where(tables.assets.c.name == asset))"),
         ("a gap of one sample is bridged", "np.diff(times) > 1.5", "np.diff(times) > 2.5"),
     )),
+    *_of("service/alerts", "tests/service/test_alerts.py", rows=(
+        ("the signature leaves out the time", "f\"{message_id}.{stamp}.\".encode() + body", "f\"{message_id}.\".encode() + body"),
+        ("a rule takes what is below its severity", "SEVERITIES.index(finding[\"severity\"]) >= SEVERITIES.index(self.severity)", "SEVERITIES.index(finding[\"severity\"]) <= SEVERITIES.index(self.severity)"),
+        ("a digest is due when its interval begins", "timedelta(seconds=-((_EPOCH - now).total_seconds() // period) * period)", "timedelta(seconds=((now - _EPOCH).total_seconds() // period) * period)"),
+        ("quiet hours end a day early", "timedelta(days=1 if over_night and late else 0)", "timedelta(days=0)"),
+        ("what was acknowledged is told", "if stands[alert.id].answered or not alerts.still_found(connection, alert)", "if not alerts.still_found(connection, alert)"),
+        ("a message is sent once more than is allowed", "if alert.tries + 1 >= MOST_TRIES", "if alert.tries >= MOST_TRIES"),
+        ("minutes of an escalation are seconds", "due = now + timedelta(minutes=after)", "due = now + timedelta(seconds=after)"),
+    )),
+    *_of("updating/search", "tests/updating/test_prony.py", "tests/updating/test_solutions.py", rows=(
+        ("a branch that the data need is left out", "return bool((path.problem.costs(points, path.last) <= ceiling).all())", "return True"),
+        ("branches of any stiffness count as nothing", "there = np.log(k / row[K0]) > 0.5 * _NOTHING", "there = np.log(k / row[K0]) > 0.0"),
+    )),
+    *_of("identification/decays", "tests/identification/decays/test_modes_of_decay.py", "tests/identification/decays/test_relaxations.py", rows=(
+        ("close pairs of a decay are one mode", "if 1.0 - max(gains) < HALVED * (1.0 - alone) else []", "if False else []"),
+        ("a relaxation beyond the tested rates is told", "if pole is not None and not rates[0] <= pole.rate_rad_s <= rates[-1]:", "if False:"),
+    )),
 )  # fmt: skip
