@@ -72,6 +72,7 @@ def test_a_mode_that_is_met_worse_than_before_is_named(tmp_path: Path) -> None:
     [
         ("jacket, property", "jaket, property", "stages.0.free.0.part: no such part (got 'jaket')"),
         ("property: density", "property: weight", "stages.0.free.0.property"),
+        ("property: density", "property: mass", "{body: …, property: mass}"),
         ("[0.5, 2.0]", "[2.0, 0.5]", "stages.0.free.0.bounds: bounds are reversed"),
         ("frequency_hz", "frequency", "did you mean 'frequency_hz'"),
         ("{1: 0.898, 2: 0.909, 3: 1.093, 4: 1.165}", "{}", "stages.0.frequency_hz"),

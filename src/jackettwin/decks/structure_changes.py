@@ -48,7 +48,10 @@ class AdjustedPlace(Schema):
             allowed="one of them",
             remedy="e.g. {part: jacket, property: density}",
         )
-        look_up(PROPERTIES[given[0][0]], self.what, "property", field="property")
+        # the mass of a part is what people write who mean that of the nacelle
+        others = [of for of in kinds if self.what in PROPERTIES[of]]
+        remedy = f"it is one of a {others[0]}: {{{others[0]}: …, property: {self.what}}}" if others else None
+        look_up(PROPERTIES[given[0][0]], self.what, "property", field="property", remedy=remedy)
         return given[0]
 
 
