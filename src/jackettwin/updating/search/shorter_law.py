@@ -18,8 +18,8 @@ from jackettwin.updating.search.path import Path, held_minimum, minimum
 
 _NOTHING = -23.0
 """Logarithm of a negligible relative stiffness: 1e-10, a hundredth of the relative error of poles."""
-_ROUGH = 1e-3
-"""Relative accuracy of the cost when branches are omitted."""
+_LAST = 1e-6
+"""Share of the cost to which the others are refitted: weak branches are known poorly, and are compared."""
 _FAR = 100.0
 """Ratio to the allowed cost above which a surrogate's prediction rejects an omission."""
 _BETWEEN = np.linspace(0.0, 1.0, 10)[1:-1]
@@ -90,7 +90,7 @@ def _without(path: Path, z: FloatArray, j: int, gone: tuple[int, ...], ceiling: 
     there, promised = held_minimum(path.problem, near, start, held, ceiling)
     if promised > _FAR * ceiling:
         return None
-    there, _ = minimum(path, there, held=held, tolerance=_ROUGH)
+    there, _ = minimum(path, there, held=held, tolerance=_LAST)
     if path.total(there) > ceiling:
         return None
     way = z + _BETWEEN[:, None] * (there - z)
