@@ -65,6 +65,35 @@ def test_slow_motion_meets_steady_thrust(turbine) -> None:
         assert abs(slow / frozen - 1.0) > 0.05
 
 
+def test_slow_roll_about_the_shaft_meets_the_slope_of_steady_torque(turbine) -> None:
+    """A hub at the tower top, shaft locked: rolling adds to the rotor's speed, and loses −dQ/dΩ."""
+    rotor, control = turbine
+    rotor = replace(rotor, tilt=0.0, cone=0.0, overhang=0.0, hub_height=0.0)
+    at = operating_point(rotor, control, 12.0)
+    h = 1e-3
+    up, down = (
+        steady_operation(rotor, 12.0, rotor_speed=at.rotor_speed + dp, pitch=at.pitch).torque
+        for dp in (h, -h)
+    )
+    slow = operating_damping(rotor, at, omega=1e-9).damping[3, 3]
+    assert slow == pytest.approx(-(up - down) / (2.0 * h), rel=0.03)
+
+
+def test_six_tenths_of_the_wake_answer_past_the_first_lag(turbine) -> None:
+    """H → 0.6/(1 + iωτ₂) for ωτ₁ ≫ 1 (Øye), τ₂/τ₁ = 0.39 − 0.26 (r/R)²."""
+    rotor, control = turbine
+    at = operating_point(rotor, control, 10.0)
+    fast = np.abs(wake_share(rotor, at, 100.0))
+    ratio = fast[-1] / fast[0]
+    edge = ring_radius(rotor)[[0, -1]] / rotor.radius
+    tau = 0.39 - 0.26 * edge**2
+    assert ratio == pytest.approx(tau[0] / tau[1], rel=1e-3)
+    area = ring_radius(rotor) * rotor.blade.weight
+    a = area @ at.induced[:, 0] / area.sum() / 10.0
+    first = 1.1 / (1.0 - 1.3 * a) * rotor.radius / 10.0
+    np.testing.assert_allclose(fast[[0, -1]] * 100.0 * first * tau, 0.6, rtol=1e-3)
+
+
 def test_the_wake_hardly_answers_a_tower(turbine) -> None:
     """Øye's lags against a first mode of 0.17 Hz: what is left of the wake's answer is a few percent."""
     rotor, control = turbine
