@@ -47,6 +47,17 @@ def percent(value: float | None, std: float | None = None, *, decimals: int = 2)
     return _with_std(value, std, 100.0, decimals)
 
 
+def rounded_percent(share: float) -> str:
+    """Return a share in per cent with two significant digits, and never with an exponent.
+
+    Examples
+    --------
+    >>> rounded_percent(0.0123), rounded_percent(1.234)
+    ('1.2 %', '120 %')
+    """
+    return f"{float(f'{100.0 * share:.2g}'):g} %"
+
+
 def _with_std(value: float | None, std: float | None, scale: float, decimals: int) -> str:
     if value is None or not math.isfinite(value):
         return UNKNOWN

@@ -8,7 +8,7 @@ from math import expm1, log
 
 from jackettwin.answers import Answers, GroundAnswer, ModeAnswer, Span
 from jackettwin.answers.result import Clearance, NextStep
-from jackettwin.report.tables.numbers import UNKNOWN, between, count, factor, listed, words
+from jackettwin.report.tables.numbers import UNKNOWN, between, count, factor, listed, rounded_percent, words
 from jackettwin.report.tables.sentences_fit import fit_sentence, mend, misfit_headline, value_words
 from jackettwin.report.tables.sentences_model import (
     condition_headline,
@@ -526,7 +526,7 @@ def _if_off(a: Answers) -> list[str]:
 
 def _percent(log_change: float) -> str:
     """Return a change of a logarithm in per cent; large ones, as of poor fits, are not given in numbers."""
-    return f"{100.0 * expm1(log_change):.2g} %" if log_change < log(WIDE) else "more than tenfold"
+    return rounded_percent(expm1(log_change)) if log_change < log(WIDE) else "more than tenfold"
 
 
 def _next(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:

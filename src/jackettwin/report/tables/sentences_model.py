@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from math import degrees, expm1
 
 from jackettwin.answers import Answers, GroundAnswer
-from jackettwin.report.tables.numbers import listed, words
+from jackettwin.report.tables.numbers import listed, rounded_percent, words
 from jackettwin.soil import parameter_words
 from jackettwin.updating import DatumCheck, OrderCheck, ShapeCheck, Tolerance, Unseen
 
@@ -43,8 +43,8 @@ def size_words(tolerance: Tolerance, size: float) -> str:
 def moved_words(tolerance: Tolerance, effect: float) -> str:
     """Return the effect of a step of a tolerance on a parameter, ``each 10 mm raises it by 6 %``."""
     size, text = step(tolerance)
-    change = 100.0 * expm1(effect * size / tolerance.std)
-    return f"each {text} {'raises' if change > 0.0 else 'lowers'} it by {abs(change):.2g} %"
+    change = expm1(effect * size / tolerance.std)
+    return f"each {text} {'raises' if change > 0.0 else 'lowers'} it by {rounded_percent(abs(change))}"
 
 
 def objected(a: Answers) -> list[DatumCheck]:
@@ -169,7 +169,7 @@ def _moved_most(a: Answers, one: Unseen) -> str:
     most, effect, name = max(felt, default=(0.0, 0.0, ""))
     if most < _FELT:
         return ""
-    change = f"{100.0 * abs(expm1(effect)):.2g} % {'more' if effect > 0.0 else 'less'}"
+    change = f"{rounded_percent(abs(expm1(effect)))} {'more' if effect > 0.0 else 'less'}"
     return f", with which {parameter_words(name)} would be {change} than stated"
 
 
