@@ -89,10 +89,13 @@ HEAVY = {"numpy", "scipy", "numba", "pyarrow", "pandas", "plotly", "dask", "dist
 
 
 def test_importing_the_application_loads_no_numerics() -> None:
-    """Counted in modules, which do not depend on the machine: 0.8 CPU seconds where it once took 4.7."""
+    """Counted in modules, which do not depend on the machine: 1.4 CPU seconds where it once took 4.7.
+
+    Beside its own room and the store it loads errors, findings and the edge of files only.
+    """
     script = "import sys, jackettwin.service.web.app; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     loaded = set(done.stdout.split())
     assert not loaded & HEAVY
-    assert not {name for name in loaded if name.startswith(("jackettwin.twin.", "jackettwin.records."))}
-    assert sum(name.startswith("jackettwin.") for name in loaded) < 60
+    ours = {name.split(".")[1] for name in loaded if name.startswith("jackettwin.")}
+    assert ours <= {"service", "store", "files", "errors", "findings", "caveats", "version"}
