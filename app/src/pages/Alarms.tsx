@@ -5,7 +5,7 @@ import { AlarmList } from "../parts/AlarmList";
 import { Card, Choice, Light, Time } from "../parts/Bits";
 import { Handling, History, standing } from "../parts/Handling";
 import { Empty, Shown } from "../parts/Shown";
-import type { PageProps } from "../shell/App";
+import type { PageProps } from "../shell/place";
 import { asked, assetUrl, keep } from "../shell/place";
 
 const KINDS = [

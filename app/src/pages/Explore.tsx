@@ -9,7 +9,7 @@ import type { Mark, PlotData, Range, Series } from "../parts/plot/series";
 import { Empty, Shown } from "../parts/Shown";
 import { Surface } from "../parts/Surface";
 import { Table } from "../parts/Table";
-import type { PageProps } from "../shell/App";
+import type { PageProps } from "../shell/place";
 import { asked, keep } from "../shell/place";
 import { fixed, frequency, percent, quantity, words } from "../words/numbers";
 

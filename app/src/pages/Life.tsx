@@ -4,7 +4,7 @@ import { api, type Schemas, told } from "../api/client";
 import { Card, Light } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import { type Column, Table } from "../parts/Table";
-import type { PageProps } from "../shell/App";
+import type { PageProps } from "../shell/place";
 import { asked, keep } from "../shell/place";
 import { count, percent, scientific } from "../words/numbers";
 import { day } from "../words/time";

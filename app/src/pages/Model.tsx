@@ -6,7 +6,7 @@ import { may, useDeed } from "../api/do";
 import { Card, Time } from "../parts/Bits";
 import { Shown } from "../parts/Shown";
 import { Table } from "../parts/Table";
-import type { PageProps } from "../shell/App";
+import type { PageProps } from "../shell/place";
 import { asked, keep } from "../shell/place";
 import { scientific, words } from "../words/numbers";
 

@@ -8,7 +8,7 @@ import type { Mark, PlotData, Range } from "../parts/plot/series";
 import { Shown, Trouble } from "../parts/Shown";
 import { Stabilisation } from "../parts/Stabilisation";
 import { ModeTable } from "../parts/ModeTable";
-import type { PageProps } from "../shell/App";
+import type { PageProps } from "../shell/place";
 import { asked } from "../shell/place";
 import { keepRange } from "../parts/Stiffness";
 import { words } from "../words/numbers";

@@ -7,7 +7,7 @@ import { Card, Choice, Light, Time } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import { type Column, Table } from "../parts/Table";
 import { Upload } from "../parts/Upload";
-import type { PageProps } from "../shell/App";
+import type { PageProps } from "../shell/place";
 import { asked, assetUrl, keep } from "../shell/place";
 
 type Status = RecordOut["status"];

@@ -4,7 +4,7 @@ import { api, told } from "../api/client";
 import type { Knowledge } from "../api/shapes";
 import { Card } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
-import type { PageProps } from "../shell/App";
+import type { PageProps } from "../shell/place";
 import { count } from "../words/numbers";
 
 const TABLES = ["modes", "findings", "records", "states", "conditions"];

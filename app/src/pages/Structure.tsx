@@ -6,7 +6,7 @@ import { useAnswer } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
 import { Card } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
-import type { PageProps } from "../shell/App";
+import type { PageProps } from "../shell/place";
 import { asked, keep } from "../shell/place";
 import { theme } from "../shell/theme";
 import { day } from "../words/time";

@@ -8,7 +8,7 @@ import { Plot } from "../parts/plot/Plot";
 import type { Mark, PlotData, Range } from "../parts/plot/series";
 import { Empty, Shown } from "../parts/Shown";
 import { keepRange } from "../parts/Stiffness";
-import type { PageProps } from "../shell/App";
+import type { PageProps } from "../shell/place";
 import { asked, assetUrl, go, keep } from "../shell/place";
 import { words } from "../words/numbers";
 import { day, seconds } from "../words/time";

@@ -11,7 +11,7 @@ import { Empty, Shown, Trouble } from "../parts/Shown";
 import { ModeTable } from "../parts/ModeTable";
 import { Table } from "../parts/Table";
 import { later } from "../parts/later";
-import type { PageProps } from "../shell/App";
+import type { PageProps } from "../shell/place";
 import { assetUrl } from "../shell/place";
 import { between, count, frequency, percent, quantity, words } from "../words/numbers";
 

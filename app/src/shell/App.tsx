@@ -10,13 +10,8 @@ import { Login } from "../pages/Login";
 import { Turbine } from "../pages/Turbine";
 import { later } from "../parts/later";
 import { Empty } from "../parts/Shown";
-import { assetUrl, go, place, route } from "./place";
+import { assetUrl, go, place, route, type PageProps } from "./place";
 import { switchTheme, theme } from "./theme";
-
-export interface PageProps {
-  asset: string;
-  id: string;
-}
 
 /** Pages with plots come when they are first asked for. */
 const PAGES: Record<string, ComponentType<PageProps>> = {

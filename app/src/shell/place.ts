@@ -1,6 +1,12 @@
 // Where the reader is: path and query, so that a link holds all that a page shows.
 import { computed, signal } from "@preact/signals";
 
+/** What the address tells a page. */
+export interface PageProps {
+  asset: string;
+  id: string;
+}
+
 const here = () => ({ path: location.pathname, query: new URLSearchParams(location.search) });
 export const place = signal(here());
 
