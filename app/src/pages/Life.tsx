@@ -1,7 +1,7 @@
 // What life is left: the welds that records damage most, and how sure that is.
 import { useAnswer } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
-import { Card, Light } from "../parts/Bits";
+import { Card, Facts, Light } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import { type Column, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
@@ -120,14 +120,7 @@ function One({ weld }: { weld: Weld }) {
   return (
     <div class="weld">
       <Around weld={weld} />
-      <dl class="facts">
-        {facts.map(([name, value]) => (
-          <div key={name}>
-            <dt>{name}</dt>
-            <dd>{value}</dd>
-          </div>
-        ))}
-      </dl>
+      <Facts facts={facts} />
     </div>
   );
 }

@@ -2,7 +2,7 @@
 import { useMemo, useState } from "preact/hooks";
 import { useAnswer } from "../api/answer";
 import { api, type Mode, type RecordOut, type Schemas, told } from "../api/client";
-import { Card, Light, Time } from "../parts/Bits";
+import { Card, Facts, Light, Time } from "../parts/Bits";
 import { Plot } from "../parts/plot/Plot";
 import type { Mark, PlotData, Range } from "../parts/plot/series";
 import { Shown, Trouble } from "../parts/Shown";
@@ -147,7 +147,7 @@ function Spectrum({ record, modes }: { record: RecordOut; modes: readonly Mode[]
   );
 }
 
-function Facts({ record }: { record: RecordOut }) {
+function About({ record }: { record: RecordOut }) {
   const facts: [string, string][] = [
     ["Length", `${record.duration_s.toFixed(0)} s at ${Number(record.sample_rate_hz.toPrecision(4))} Hz`],
     ["Source", record.source_name],
@@ -156,16 +156,7 @@ function Facts({ record }: { record: RecordOut }) {
       String(value),
     ]),
   ];
-  return (
-    <dl class="facts">
-      {facts.map(([name, value]) => (
-        <div key={name}>
-          <dt>{name}</dt>
-          <dd>{value}</dd>
-        </div>
-      ))}
-    </dl>
-  );
+  return <Facts facts={facts} />;
 }
 
 export default function Record({ asset, id }: PageProps) {
@@ -210,7 +201,7 @@ export default function Record({ asset, id }: PageProps) {
           </Shown>
         </Card>
         <Card title="What it is">
-          <Facts record={data} />
+          <About record={data} />
         </Card>
         {data.raw_kept ? (
           <>

@@ -2,7 +2,7 @@
 import { useAnswer } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
 import { useDeed } from "../api/do";
-import { Card, Time } from "../parts/Bits";
+import { Card, FormEnd, Time } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import { Table } from "../parts/Table";
 
@@ -52,16 +52,7 @@ function Add({ again }: { again: () => void }) {
         Turbines it may see, by comma; none for all
         <input name="assets" />
       </label>
-      {deed.problem && (
-        <p class="error" role="alert">
-          {deed.problem.message}
-        </p>
-      )}
-      <span>
-        <button class="main" disabled={deed.busy}>
-          Add
-        </button>
-      </span>
+      <FormEnd deed={deed} words="Add" />
     </form>
   );
 }

@@ -4,7 +4,7 @@ import { useAnswer } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
 import { may, useDeed } from "../api/do";
 import { assetUrl } from "../shell/place";
-import { Card } from "./Bits";
+import { Card, FormEnd } from "./Bits";
 import { Empty, Shown } from "./Shown";
 
 type Assumption = Schemas["AssumptionOut"];
@@ -42,19 +42,7 @@ function Confirm({ asset, one, done }: { asset: string; one: Assumption; done: (
         How it was settled
         <textarea name="comment" required maxLength={2000} placeholder={one.settled_by ?? ""} />
       </label>
-      {deed.problem && (
-        <p class="error" role="alert">
-          {deed.problem.message}
-        </p>
-      )}
-      <span>
-        <button class="main" disabled={deed.busy}>
-          Confirm
-        </button>{" "}
-        <button type="button" onClick={() => setOpen(false)}>
-          Not now
-        </button>
-      </span>
+      <FormEnd deed={deed} words="Confirm" onLeave={() => setOpen(false)} />
     </form>
   );
 }

@@ -1,5 +1,6 @@
 // Small parts that every page uses.
 import type { ComponentChildren } from "preact";
+import type { Deed } from "../api/do";
 import { ago, local, utc } from "../words/time";
 
 const SAID: Record<string, string> = {
@@ -75,5 +76,48 @@ export function Choice({ label, value, options, onChoose }: ChoiceProps) {
         </button>
       ))}
     </span>
+  );
+}
+
+/** Names and values, a row each. */
+export function Facts({ facts }: { facts: readonly (readonly [string, string])[] }) {
+  return (
+    <dl class="facts">
+      {facts.map(([name, value]) => (
+        <div key={name}>
+          <dt>{name}</dt>
+          <dd>{value}</dd>
+        </div>
+      ))}
+    </dl>
+  );
+}
+
+interface FormEndProps {
+  deed: Deed;
+  words: string;
+  onLeave?: () => void;
+}
+
+/** The end of a form: why it failed, its button, and a way out of it. */
+export function FormEnd({ deed, words, onLeave }: FormEndProps) {
+  return (
+    <>
+      {deed.problem && (
+        <p class="error" role="alert">
+          {deed.problem.message}
+        </p>
+      )}
+      <span>
+        <button class="main" disabled={deed.busy}>
+          {words}
+        </button>{" "}
+        {onLeave && (
+          <button type="button" onClick={onLeave}>
+            Not now
+          </button>
+        )}
+      </span>
+    </>
   );
 }

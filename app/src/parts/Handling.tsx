@@ -3,7 +3,7 @@ import { useState } from "preact/hooks";
 import { useAnswer } from "../api/answer";
 import { api, type Finding, told } from "../api/client";
 import { may, useDeed } from "../api/do";
-import { Time } from "./Bits";
+import { FormEnd, Time } from "./Bits";
 
 type Act = "acknowledge" | "assign" | "comment" | "mute" | "close" | "reopen";
 const DAY_MS = 86_400_000;
@@ -136,19 +136,7 @@ export function Handling({ finding, again }: HandlingProps) {
         {ASKED[act]}
         <textarea name="comment" required={must} maxLength={2000} />
       </label>
-      {deed.problem && (
-        <p class="error" role="alert">
-          {deed.problem.message}
-        </p>
-      )}
-      <span>
-        <button class="main" disabled={deed.busy}>
-          {NAMED[act]}
-        </button>{" "}
-        <button type="button" onClick={() => setAct(null)}>
-          Not now
-        </button>
-      </span>
+      <FormEnd deed={deed} words={NAMED[act]} onLeave={() => setAct(null)} />
     </form>
   );
 }
