@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 from jackettwin.cli import main
-from jackettwin.cli.identify import _print_findings
+from jackettwin.cli.identify_tables import _print_findings
 
 RECORDS = Path(str(files("jackettwin") / "data" / "records"))
 
