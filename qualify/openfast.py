@@ -363,7 +363,7 @@ def subdyn(program: str, folder: Path) -> list[str]:
         *lines,
         "",
         "Feet on springs of 2.5e9 N/m; frequencies of the exported foundation, free at its top, by SubDyn's",
-        "own finite elements (its summary file) and by ours on the deck read back.",
+        "own finite elements (its summary file) and by those of jackettwin on the deck read back.",
         "",
     ]
 

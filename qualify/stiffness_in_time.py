@@ -162,16 +162,16 @@ def main() -> None:
 
 ABOUT = """\
 histories of three years, a record of ten minutes on nine days of ten,
-ground of 1 to 5 GN/m that is known to ± 25 %. Temperature that the steel follows late, tide, wind and what no
-condition explains are harmonics, moving means and Weibull draws, none of them a process of the product; noise
-of Student's t, a wild value in 250, stated standard deviations 15 % wrong. In a third of the histories no
-condition is told. 90 % intervals of k(t)/k(first day): as they were on the day, and as they are by the end;
-then those days alone on which the stiffness is another than on the first day. While it is the same the ratio
-is one, which an interval that allows for no change at all always holds: such days cannot be held at 90 %.
-Then k(t) itself by the end, with what all records together leave open. Beside them the mean of all records so
-far, which `follow` had before; its level is given to it.
+ground of 1 to 5 GN/m that is known to ± 25 %. Temperature with a delayed effect on the steel, tide, wind and unexplained
+variation are harmonics, moving means and Weibull draws, none of them a process of the product; the noise
+is Student's t, one value in 250 is an outlier, and stated standard deviations are 15 % wrong. In a third of the histories no
+condition is given. The table has the coverage of 90 % intervals of k(t)/k(first day): estimated on the day (column *covered on the day*), and at the end (*covered at the end*);
+then on those days alone on which the stiffness differs from the first day's. While it is the same the ratio
+is one, which an interval that allows no change always contains: for such days a coverage of 90 % is not possible.
+Then follow k(t) itself at the end, with the uncertainty that all records together leave, and the mean of all records so
+far, the earlier method of `follow`, which is given the true level.
 
-| history | conditions | held on the day | held by now | changed days | k(t) itself | mean of all | width | \
+| history | conditions | covered on the day | covered at the end | changed days | k(t) itself | mean of all | width | \
 records to follow −15 % |
 |---|---|---|---|---|---|---|---|---|
 """
@@ -189,7 +189,7 @@ def page(found: list[Scored]) -> list[str]:
     lines = ["# Stiffness in time", "", *head.splitlines()]
     for s in found:
         cells = (
-            s.kind, "told" if s.told else "not told", f"{100 * s.then:.0f} %", f"{100 * s.by_now:.0f} %",
+            s.kind, "given" if s.told else "not given", f"{100 * s.then:.0f} %", f"{100 * s.by_now:.0f} %",
             "" if s.changed is None else f"{100 * s.changed:.0f} %", f"{100 * s.itself:.0f} %",
             f"{100 * s.pooled:.0f} %", f"{100 * s.width:.1f} %", "" if s.records is None else str(s.records),
         )  # fmt: skip
@@ -199,10 +199,10 @@ def page(found: list[Scored]) -> list[str]:
     mean = [f"**{100.0 * np.mean(one):.1f} %**" for one in values]
     last = f"| **all** | | {' | '.join(mean)} | | at most **{max(steps, default=0)}** |"
     cost = (
-        f"A day among others costs {first:.0f}, {second:.0f} and {third:.0f} ms of one core in the years.",
-        f"A day alone, gone on to from a file and back into it: {1e3 * np.median(usual):.0f} ms (at most "
+        f"A day in a run of many takes {first:.0f}, {second:.0f} and {third:.0f} ms of one core in the three years.",
+        f"One day alone, with the state read from a file and written back: {1e3 * np.median(usual):.0f} ms (at most "
         f"{1e3 * max(usual):.0f} ms) on {len(usual)}",
-        f"days between the {ALONE[1]}th and the {ALONE[-1]}th; where conditions are learnt anew "
+        f"days between the {ALONE[1]}th and the {ALONE[-1]}th; where the effects of conditions are learnt again, "
         + ", ".join(f"{1e3 * spent:.0f} ms on day {n}" for n, spent in anew.items())
         + ".",
     )
