@@ -161,18 +161,19 @@ def main() -> None:
 
 
 ABOUT = """\
-histories of three years, a record of ten minutes on nine days of ten,
-ground of 1 to 5 GN/m that is known to ± 25 %. Temperature with a delayed effect on the steel, tide, wind and unexplained
-variation are harmonics, moving means and Weibull draws, none of them a process of the product; the noise
-is Student's t, one value in 250 is an outlier, and stated standard deviations are 15 % wrong. In a third of the histories no
-condition is given. The table has the coverage of 90 % intervals of k(t)/k(first day): estimated on the day (column *covered on the day*), and at the end (*covered at the end*);
-then on those days alone on which the stiffness differs from the first day's. While it is the same the ratio
-is one, which an interval that allows no change always contains: for such days a coverage of 90 % is not possible.
-Then follow k(t) itself at the end, with the uncertainty that all records together leave, and the mean of all records so
-far, the earlier method of `follow`, which is given the true level.
+histories of three years, a record of ten minutes on nine days of ten, ground of 1 to 5 GN/m that is known
+to ± 25 %. Temperature with a delayed effect on the steel, tide, wind and unexplained variation are
+harmonics, moving means and Weibull draws, none of them a process of the product; the noise is Student's t,
+one value in 250 is an outlier, and stated standard deviations are 15 % wrong. In a third of the histories
+no condition is given. The table has the coverage of 90 % intervals of k(t)/k(first day): estimated on the
+day (column *covered on the day*), and at the end (*covered at the end*); then on those days alone on which
+the stiffness differs from the first day's. While it is the same the ratio is one, which an interval that
+allows no change always contains: for such days a coverage of 90 % is not possible. Then follow k(t) itself
+at the end, with the uncertainty that all records together leave, and the mean of all records so far, the
+earlier method of `follow`, which is given the true level.
 
-| history | conditions | covered on the day | covered at the end | changed days | k(t) itself | mean of all | width | \
-records to follow −15 % |
+| history | conditions | covered on the day | covered at the end | changed days | k(t) itself | \
+mean of all | width | records to follow −15 % |
 |---|---|---|---|---|---|---|---|---|
 """
 
@@ -199,10 +200,11 @@ def page(found: list[Scored]) -> list[str]:
     mean = [f"**{100.0 * np.mean(one):.1f} %**" for one in values]
     last = f"| **all** | | {' | '.join(mean)} | | at most **{max(steps, default=0)}** |"
     cost = (
-        f"A day in a run of many takes {first:.0f}, {second:.0f} and {third:.0f} ms of one core in the three years.",
-        f"One day alone, with the state read from a file and written back: {1e3 * np.median(usual):.0f} ms (at most "
-        f"{1e3 * max(usual):.0f} ms) on {len(usual)}",
-        f"days between the {ALONE[1]}th and the {ALONE[-1]}th; where the effects of conditions are learnt again, "
+        f"A day in a run of many takes {first:.0f}, {second:.0f} and {third:.0f} ms of one core",
+        "in the three years.",
+        f"One day alone, with the state read from a file and written back: {1e3 * np.median(usual):.0f} ms "
+        f"(at most {1e3 * max(usual):.0f} ms) on {len(usual)}",
+        f"days between the {ALONE[1]}th and the {ALONE[-1]}th; where effects of conditions are learnt again, "
         + ", ".join(f"{1e3 * spent:.0f} ms on day {n}" for n, spent in anew.items())
         + ".",
     )
