@@ -385,7 +385,7 @@ def main() -> None:
         "weather drawn and unknown to the twin but for mean wind and sea; "
         "it updates its feet with the record itself"
         + (
-            f" ({len(every) - len(results)} records told nothing and are left out)."
+            f" ({len(every) - len(results)} records gave no result and are left out)."
             if len(every) > len(results)
             else "."
         ),

@@ -86,7 +86,7 @@ def main() -> None:
         f"kind, {RECORDS} records of ten minutes; 3P and 6P random within 0.8 to 2 % of themselves. Four",
         "modes a tower are to be found. In every column: modes / what is none.",
         "",
-        "| rotor | ok in single records | fused and held for a mode | fused and held for none |",
+        "| rotor | ok in single records | fused and taken as a mode | fused and taken as none |",
         "|---|---|---|---|",
     ]
     for kind in KINDS:

@@ -82,7 +82,7 @@ def introduction() -> list[str]:
         "",
         "`jacket15` on Kelvin–Voigt feet as an ExtPtfm superelement under an ElastoDyn tower with the IEA",
         "15 MW rotor of its public AeroDyn files: OpenFAST 5.0.0, blade element momentum with Øye's dynamic",
-        "wake (`DBEMT_Mod 2`), steady even wind, rotor speed and pitch held at ours, tower drawn aside by",
+        "wake (`DBEMT_Mod 2`), steady even wind, rotor speed and pitch fixed at ours, tower drawn aside by",
         "0.3 m and let go. ζ is the whole mode's. Ours: `operating_damping`, shaft locked as there. Bars:",
         "fore-aft ζ within 10 %, side-side within 15 %.",
         "`OPENFAST=… IEA15=… python qualify/operation.py` writes this page.",

@@ -143,13 +143,13 @@ def false_alarms(pieces: dict[str, Any]) -> list[str]:
     without = _of(pieces, "untold/quiet/")
     if not without:
         return [*lines, ""]
-    lines += _counted(f"**conditions not told** ({len(without)} turbines of all kinds)", without)
+    lines += _counted(f"**conditions not given** ({len(without)} turbines of all kinds)", without)
     found = [d for d in _of(pieces, "untold/scour/") if d is not None and d >= 0.0]
     number = len(_of(pieces, "untold/scour/"))
     return [
         *lines,
         "",
-        f"Conditions not told, scour of −0.2 % is found in {len(found)} of {number} within a year, median",
+        f"Without conditions, scour of −0.2 % is found in {len(found)} of {number} within a year, median",
         f"{np.median(found):.0f} days.",
         "",
     ]
