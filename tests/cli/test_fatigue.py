@@ -143,7 +143,15 @@ def test_a_scenario_tells_the_life_of_every_weld(tmp_path: Path) -> None:
         "structure: jacket15\nfoundation: jacket15\nrotor: {state: parked}\n"
         "wind: {speed_m_s: 12, seed: 1}\ntime: {duration_s: 60, step_s: 0.05}\n"
     )
-    found = answer("scenario", str(scenario))
+    details = tmp_path / "details.yaml"
+    details.write_text("details: [{name: base flange, member: tower_1, position: 0, curve: F, scf: 1.3}]")
+    found = answer("scenario", str(scenario), "--details", str(details))
+    welds = found["welds"]
+    assert {one["kind"] for one in welds} == {"butt weld", "detail"}
+    (flange,) = (one for one in welds if one["kind"] == "detail")
+    assert (flange["weld"], flange["curve"], flange["scf"]) == ("base flange", "F", 1.3)
+    assert flange["damage"] == max(flange["damage_by_point"]) > 0.0
+    assert all(one["scf"] > 1.0 for one in welds)
     joints = found["joints"]
     lives = [row["life_years"] for row in joints if row["life_years"] is not None]
     assert lives == sorted(lives) and len(joints) > 100
@@ -155,6 +163,14 @@ def test_a_scenario_tells_the_life_of_every_weld(tmp_path: Path) -> None:
     assert any("crack growth" in one["what"] for one in found["left_out"])
     stricter = answer("scenario", str(scenario), "--design-factor", "3")
     assert stricter["joints"][0]["life_years"] == pytest.approx(first["life_years"] / 3.0, rel=1e-9)
+
+
+def test_details_that_cannot_be_are_refused_before_anything_is_simulated(tmp_path: Path) -> None:
+    details = tmp_path / "details.yaml"
+    details.write_text("details: [{name: grout, member: leg, position: 0, curve: Q}]")
+    found = run("scenario", "parked", "--details", str(details))
+    assert found.exit_code == 2
+    assert "S-N curve" in found.stderr and "Traceback" not in found.stderr
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from jackettwin.decks import read_structure
-from jackettwin.fatigue import LifeModel, read_curve
+from jackettwin.fatigue import LifeModel, TubeDetails, count, read_curve
+from jackettwin.fatigue.tube_welds import Detail
 from jackettwin.records import Channel, Record
 from jackettwin.response import Sensor, System, build_system, static_displacement
 from jackettwin.sensing import (
@@ -139,7 +140,10 @@ def test_damage_is_neither_too_low_nor_too_high(
     coordinates, readings = truth
     life = LifeModel(read_curve("T", "air"))
     dry = assemble(model.assembly.structure)
-    found = record_life([system], readings, WEATHER, lambda z: ("air", life), dry)
+    base = TubeDetails(
+        lambda z: ("air", life), own=(Detail("base", "tower_1", 0.0, 1.0, lambda z: ("air", life)),)
+    )
+    found = record_life([system], readings, WEATHER, lambda z: ("air", life), dry, details=base)
     exact = weld_map(system, model, dry).cycles(coordinates)
     welds = [w for joint in weld_map(system, model, dry).joints for w in joint.welds]
     true = {
@@ -153,3 +157,10 @@ def test_damage_is_neither_too_low_nor_too_high(
     assert 0.93 < np.median(ratio) < 1.08
     assert (np.abs(ratio - 1.0) < 0.3).mean() > 0.9
     assert "what sensors do not see" in found.welds[0].life.variance_shares
+    (tube,) = (one for one in found.tubes if one.weld.name == "base")
+    series = tube.weld.stress(section_rows(model)) @ coordinates.T
+    thickness = tube.weld.section.thickness_m
+    cycles = [count(one) for one in series]
+    worst = max(life.curve.damage(c.ranges, c.numbers, thickness_m=thickness) for c in cycles)
+    assert 0.93 < (tube.life.damage / worst) ** 0.2 < 1.08
+    assert "what sensors do not see" in tube.life.variance_shares

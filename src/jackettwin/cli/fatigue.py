@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,7 +27,7 @@ from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
     from jackettwin.arrays import FloatArray
-    from jackettwin.fatigue import Cycles, Environment, WeldLife
+    from jackettwin.fatigue import Cycles, Environment, TubeLife, WeldLife
 
 _UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "N/mm^2": 1e6, "ksi": 6.894757293168e6}
 _STRONGEST_PA = 2e9
@@ -36,7 +37,9 @@ _WEAKEST_PA = 1e4
 _N_EQ = 1e7
 _SHOWN = 10
 _OF_WELDS = (
-    Omission("cans, butt welds, flanges, grout and piles"),
+    Omission("cans: butt welds stand at nodes, where the model changes a wall"),
+    Omission("cones between tubes, seams within a member, piles in the ground"),
+    Omission("flanges, grout and castings that --details does not name"),
     Omission("joints in several planes: each plane is assessed separately"),
     Omission("crack growth"),
 )
@@ -246,6 +249,12 @@ def scf(file: Path) -> Reply:
     return Reply(document, show)
 
 
+def _details_option(command: Any) -> Any:
+    """Add the option that names the file of details of tubes."""
+    said = "File (YAML or JSON) of butt_welds, and of details of tubes with their factors."
+    return click.option("--details", type=click.Path(path_type=Path), help=said)(command)
+
+
 @fatigue_command.command("scenario")
 @click.argument("scenario")
 @click.option("--curve", default="T", show_default=True, help="S-N curve of tubular joints.")
@@ -253,30 +262,34 @@ def scf(file: Path) -> Reply:
     "--design-factor", default=1.0, show_default=True, type=FiniteFloat(min=1.0, max=10.0),
     help="Design fatigue factor.",
 )  # fmt: skip
+@_details_option
 @curve_options
 @answers
-def scenario_(scenario: str, curve: str, design_factor: float, edition: str | None) -> Reply:
-    """Compute the life of every tubular joint, assuming that all time is like SCENARIO.
+def scenario_(
+    scenario: str, curve: str, design_factor: float, details: Path | None, edition: str | None
+) -> Reply:
+    """Compute the life of joints and butt welds of tubes, assuming that all time is like SCENARIO.
 
-    Joints are in air above the splash zone, corrode freely in it, and are cathodically protected below it.
+    They are in air above the splash zone, corrode freely in it, and are cathodically protected below it.
     """
-    from jackettwin.fatigue import models_at_height
+    from jackettwin.fatigue import models_at_height, read_details
     from jackettwin.simulate import read_scenario, scenario_life
 
     read = read_scenario(scenario)
-    model = models_at_height(curve, design_factor=design_factor, edition=edition)
+    models = partial(models_at_height, design_factor=design_factor, edition=edition)
+    model, tubes = models(curve), read_details(details, models)
     with working("stresses at the welds"):
-        welds = scenario_life(read, model)
-    rows = [_weld(one) for one in welds]
-    outside = [row for row in rows if row["beyond_validity"]]
+        found = scenario_life(read, model, tubes)
+    rows = [_weld(one) for one in found.joints]
     document = {
         "scenario": read.name,
         "edition": model(np.inf)[1].curve.edition,
         "curve": curve,
         "design_factor": design_factor,
-        "duration_s": welds[0].life.duration_s,
+        "duration_s": found.duration_s,
         "joints": rows,
-        "warnings": _warnings(rows, outside),
+        "welds": [_tube(one) for one in found.tubes],
+        "warnings": [*_warnings(rows), *_tube_warnings(found.tubes, found.apart)],
         "left_out": omission_documents(
             [
                 Omission("other seas, winds and states: all time is assumed to be like this scenario"),
@@ -307,6 +320,7 @@ def scenario_(scenario: str, curve: str, design_factor: float, edition: str | No
     "--feel-gravity", is_flag=True, help="Accelerometers measure constant acceleration, and so tilt."
 )
 @click.option("--fresh", is_flag=True, help="Ignore stored identifications and fits of earlier runs.")
+@_details_option
 @curve_options
 @answers
 def record_(
@@ -318,25 +332,29 @@ def record_(
     supports: int,
     feel_gravity: bool,
     fresh: bool,
+    details: Path | None,
     edition: str | None,
 ) -> Reply:
-    """Compute the life of every tubular joint from the sensors of RECORD, assuming that all time is like it.
+    """Compute the life of joints and butt welds from the sensors of RECORD.
 
-    The supports of TWIN are updated first, by its records or targets, otherwise by RECORD.
+    All time is assumed to be like it. The supports of TWIN are updated first, by its records or targets,
+    otherwise by RECORD.
     """
-    from jackettwin.fatigue import models_at_height
+    from jackettwin.fatigue import models_at_height, read_details
     from jackettwin.study import count_steps, life_of_record, sensed, updated, with_record
     from jackettwin.twin import read_twin
 
-    model = models_at_height(curve, design_factor=design_factor, edition=edition)
+    models = partial(models_at_height, design_factor=design_factor, edition=edition)
+    model, tubes = models(curve), read_details(details, models)
     config = with_record(read_twin(twin), record)
     readings, weather = sensed(config, record, feel_gravity=feel_gravity)
     with progress(count_steps(config), config.name) as step:
         update = updated(config, progress=step, keep=keeping(fresh=fresh))
     with working("stresses at the welds"):
-        found = life_of_record(config, update, readings, weather, model, draws=draws, supports=supports)
+        found = life_of_record(
+            config, update, readings, weather, model, draws=draws, supports=supports, details=tubes
+        )
     rows = [_weld(one) for one in found.welds]
-    outside = [row for row in rows if row["beyond_validity"]]
     document = {
         "twin": config.name,
         "record": record.name,
@@ -351,14 +369,15 @@ def record_(
         ],
         "noise": np.sqrt(found.estimate.levels.noise),
         "joints": rows,
-        "warnings": [*_warnings(rows, outside), _TOO_NARROW],
+        "welds": [_tube(one) for one in found.tubes],
+        "warnings": [*_warnings(rows), *_tube_warnings(found.tubes, found.apart), _TOO_NARROW],
         "left_out": omission_documents([*_OF_RECORDS, *_OF_WELDS]),
     }
     return Reply(document, lambda: _show_welds(document, record.name))
 
 
 def _weld(one: WeldLife) -> dict[str, Any]:
-    life, weld = one.life, one.weld
+    weld = one.weld
     return {
         "joint": weld.node,
         "chord": weld.chord,
@@ -368,19 +387,58 @@ def _weld(one: WeldLife) -> dict[str, Any]:
         "z_m": one.z_m,
         "environment": one.environment,
         "scf": weld.scf,
+        **_life(one),
+    }
+
+
+def _tube(one: TubeLife) -> dict[str, Any]:
+    weld = one.weld
+    return {
+        "weld": weld.name,
+        "kind": weld.kind,
+        "member": weld.member,
+        "member_position": weld.position,
+        "position": one.position,
+        "z_m": weld.z_m,
+        "outer_diameter_m": weld.section.outer_diameter_m,
+        "thickness_m": weld.section.thickness_m,
+        "environment": one.environment,
+        "curve": one.curve,
+        "scf": weld.scf,
+        **_life(one),
+    }
+
+
+def _life(one: WeldLife | TubeLife) -> dict[str, Any]:
+    life = one.life
+    return {
         "largest_range_mpa": 1e-6 * one.largest_range_pa,
         "damage": life.damage,
         "damage_by_point": one.damage_by_point,
         "damage_interval_90": list(life.damage_interval_90),
         "life_years": life.life_years if np.isfinite(life.life_years) else None,
         "variance_shares": life.variance_shares,
-        "beyond_validity": list(weld.warnings),
+        "beyond_validity": list(one.weld.warnings),
     }
 
 
-def _warnings(rows: list[dict[str, Any]], outside: list[dict[str, Any]]) -> list[str]:
+def _tube_warnings(tubes: tuple[TubeLife, ...], apart: tuple[str, ...]) -> list[str]:
     from jackettwin.structure import few
 
+    said = [f"{one.weld.name}: {text}" for one in tubes for text in one.weld.warnings]
+    found = [f"{len(said)} butt welds are beyond the range of their factors: {few(said)}"] if said else []
+    if apart:
+        found.append(
+            "no butt weld where the walls of tubes in line do not meet, as of a stepped taper: "
+            f"{few(list(apart))} (--details can name them)"
+        )
+    return found
+
+
+def _warnings(rows: list[dict[str, Any]]) -> list[str]:
+    from jackettwin.structure import few
+
+    outside = [row for row in rows if row["beyond_validity"]]
     if not outside:
         return []
     named = few(list(dict.fromkeys(f"{row['brace']} at {row['joint']}" for row in outside)))
@@ -405,10 +463,28 @@ _COLUMNS = (
     TableColumn("within ranges", lambda row: "no" if row["beyond_validity"] else "yes"),
 )
 
+_TUBE_COLUMNS = (
+    TableColumn("weld", "weld"),
+    TableColumn("kind", "kind"),
+    TableColumn("point", "position"),
+    TableColumn("environment", "environment"),
+    TableColumn("curve", "curve"),
+    TableColumn("factor", "scf", ".2f"),
+    TableColumn("largest range [MPa]", "largest_range_mpa", ".1f"),
+    TableColumn("life [years]", "life_years", ".3g"),
+)
+
 
 def _show_welds(document: dict[str, Any], like: str) -> None:
-    show_table(Table(f"life if all time is like {like}", _COLUMNS, document["joints"][:_SHOWN]))
-    if len(document["joints"]) > _SHOWN:
-        say(f"and {len(document['joints']) - _SHOWN} more welds; --json has all of them")
+    shown = (
+        ("joints", f"life if all time is like {like}", _COLUMNS),
+        ("welds", "butt welds and details of tubes", _TUBE_COLUMNS),
+    )
+    for key, title, columns in shown:
+        rows = document[key]
+        if rows:
+            show_table(Table(title, columns, rows[:_SHOWN]))
+        if len(rows) > _SHOWN:
+            say(f"and {len(rows) - _SHOWN} more welds; --json has all of them")
     for warning in document["warnings"]:
         messages.print(f"warning: {warning}")

@@ -21,4 +21,11 @@ from .joint_life import HotSpot as HotSpot, JointStresses as JointStresses, join
 from .life import YEAR_S as YEAR_S, LifeModel as LifeModel, SpotLife as SpotLife
 from .remaining import RemainingLife as RemainingLife
 from .spectral import dirlik as dirlik, tovo_benasciutti as tovo_benasciutti
+from .tube_life import TubeLife as TubeLife, read_details as read_details, tube_lives as tube_lives
+from .tube_welds import (
+    TubeDetails as TubeDetails,
+    TubeWeld as TubeWeld,
+    butt_weld_factor as butt_weld_factor,
+    tube_welds as tube_welds,
+)
 from .weld_life import ModelsAtHeight as ModelsAtHeight, WeldLife as WeldLife, weld_lives as weld_lives

@@ -74,14 +74,32 @@ def weld_lives(
             beside = [
                 {} if others is None else {n: float(v[k, p]) for n, v in others[i].items()} for p in range(8)
             ]
-            lives = [
-                model.life(c, duration_s, thickness, times=times, others=more)
-                for c, more in zip(points, beside, strict=True)
-            ]
-            worst = int(np.argmax([life.damage for life in lives]))
-            damage = np.array([life.damage for life in lives])
-            largest = float(points[worst].ranges.max(initial=0.0))
-            found.append(
-                WeldLife(weld, side, POSITIONS[worst], z, environment, damage, largest, lives[worst])
+            worst, damage, largest, life = worst_point(
+                model, points, duration_s, thickness, beside, times=times
             )
+            found.append(WeldLife(weld, side, POSITIONS[worst], z, environment, damage, largest, life))
     return tuple(sorted(found, key=lambda one: one.life.life_years))
+
+
+def worst_point(
+    model: LifeModel,
+    points: Sequence[Cycles],
+    duration_s: float,
+    thickness_m: float,
+    others: Sequence[dict[str, float]],
+    *,
+    times: int = 1,
+) -> tuple[int, FloatArray, float, SpotLife]:
+    """Return the point with most damage, the damage of all, its largest range [Pa] and its life.
+
+    Parameters
+    ----------
+    others : for every point, {source: variance of ln D}
+    """
+    lives = [
+        model.life(c, duration_s, thickness_m, times=times, others=more)
+        for c, more in zip(points, others, strict=True)
+    ]
+    damage = np.array([life.damage for life in lives])
+    worst = int(np.argmax(damage))
+    return worst, damage, float(points[worst].ranges.max(initial=0.0)), lives[worst]

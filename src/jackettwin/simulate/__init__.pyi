@@ -15,4 +15,4 @@ from .scenario.files import read_scenario as read_scenario, shipped_scenarios as
 from .scenario.scenario import Scenario as Scenario
 from .scenario.sets import read_set as read_set, shipped_sets as shipped_sets
 from .section_series import force_series as force_series, write_force_series as write_force_series
-from .weld_life import scenario_life as scenario_life
+from .weld_life import ScenarioLife as ScenarioLife, scenario_life as scenario_life

@@ -14,7 +14,12 @@ from jackettwin.fatigue import (
     SIDES,
     Cycles,
     ModelsAtHeight,
+    TubeDetails,
+    TubeLife,
     WeldLife,
+    count,
+    tube_lives,
+    tube_welds,
     weld_lives,
 )
 from jackettwin.records import assess, read_record, repair, to_global_axes
@@ -25,6 +30,7 @@ from jackettwin.sensing import (
     Weather,
     likely_motions,
     readings_of,
+    section_rows,
 )
 from jackettwin.structure import Assembly, assemble
 from jackettwin.study.life.updated_system import updated_systems
@@ -43,11 +49,16 @@ class RecordLife:
     Attributes
     ----------
     welds : tuple of WeldLife
+    tubes : tuple of TubeLife
+        Welds around tubes.
+    apart : nodes in line where walls do not meet, so that no butt weld can join them
     estimate : MotionEstimate
     duration_s : float
     """
 
     welds: tuple[WeldLife, ...]
+    tubes: tuple[TubeLife, ...]
+    apart: tuple[str, ...]
     estimate: MotionEstimate
     duration_s: float
 
@@ -85,6 +96,7 @@ def life_of_record(
     *,
     draws: int = DRAWS,
     supports: int = 1,
+    details: TubeDetails | None = None,
 ) -> RecordLife:
     """Return the life of a twin's welds from a record, on its updated supports.
 
@@ -92,6 +104,7 @@ def life_of_record(
     ----------
     draws : number of motions on each of the supports
     supports : number of the posterior's supports, the most probable first
+    details : what is assessed of the tubes beside joints; nothing without it
     """
     dry = assemble(
         config.structure,
@@ -100,7 +113,7 @@ def life_of_record(
         subdivide=config.subdivide,
     )
     systems = updated_systems(update, draws=supports - 1)
-    return record_life(systems, readings, weather, models, dry, draws=draws)
+    return record_life(systems, readings, weather, models, dry, draws=draws, details=details)
 
 
 def record_life(
@@ -112,6 +125,7 @@ def record_life(
     *,
     draws: int = DRAWS,
     seed: int = 0,
+    details: TubeDetails | None = None,
 ) -> RecordLife:
     """Return damage and life of every weld from sensor readings.
 
@@ -122,6 +136,7 @@ def record_life(
     ----------
     systems : the most probable structure, then draws of the posterior
     draws : number of motions on each
+    details : what is assessed of the tubes beside joints; nothing without it
 
     Raises
     ------
@@ -131,11 +146,8 @@ def record_life(
     estimates = likely_motions(systems, readings, weather)
     charts = [weld_map(system, e.model, dry) for system, e in zip(systems, estimates, strict=True)]
     estimate, welds = estimates[0], [weld for joint in charts[0].joints for weld in joint.welds]
-    every = [
-        chart.cycles(motion)
-        for k, (chart, own) in enumerate(zip(charts, estimates, strict=True))
-        for motion in own.draws(draws, seed=seed + k)
-    ]
+    motions = [list(own.draws(draws, seed=seed + k)) for k, own in enumerate(estimates)]
+    every = [chart.cycles(motion) for chart, own in zip(charts, motions, strict=True) for motion in own]
     duration = readings.y.shape[1] * readings.step_s
     structure = estimate.model.assembly.structure
     curves = [models(structure.nodes[w.node][2] - structure.sea_level_z_m)[1].curve for w in welds]
@@ -158,7 +170,34 @@ def record_life(
         for i in range(len(welds))
     ]
     lives = weld_lives(structure, welds, cycles, duration, models, times=len(every), others=others)
-    return RecordLife(lives, estimate, duration)
+    tubes, apart = _tubes(estimates, motions, details, duration)
+    return RecordLife(lives, tubes, apart, estimate, duration)
+
+
+def _tubes(
+    estimates: Sequence[MotionEstimate],
+    motions: Sequence[Sequence[FloatArray]],
+    details: TubeDetails | None,
+    duration_s: float,
+) -> tuple[tuple[TubeLife, ...], tuple[str, ...]]:
+    """Return the life of the welds around tubes in motions of every structure."""
+    if details is None:
+        return (), ()
+    every: list[list[list[Cycles]]] = []
+    for estimate, own in zip(estimates, motions, strict=True):
+        welds, apart = tube_welds(estimate.model.assembly, details)
+        moving = section_rows(estimate.model)
+        rows = [weld.stress(moving) for weld in welds]
+        every += [[[count(series) for series in row @ motion.T] for row in rows] for motion in own]
+    structure = estimates[0].model.assembly.structure
+    curves = [weld.models(weld.z_m - structure.sea_level_z_m)[1].curve for weld in welds]
+    others, cycles = [], []
+    for i, (weld, curve) in enumerate(zip(welds, curves, strict=True)):
+        t = weld.section.thickness_m
+        damages = [[curve.damage(c.ranges, c.numbers, thickness_m=t) for c in one[i]] for one in every]
+        others.append(_variances(np.array(damages).reshape(len(estimates), -1, len(POSITIONS))))
+        cycles.append([_all_of([one[i][p] for one in every]) for p in range(len(POSITIONS))])
+    return tube_lives(structure, welds, cycles, duration_s, times=len(every), others=others), apart
 
 
 def _all_of(cycles: list[Cycles]) -> Cycles:
@@ -166,7 +205,7 @@ def _all_of(cycles: list[Cycles]) -> Cycles:
 
 
 def _variances(damage: FloatArray) -> dict[str, FloatArray]:
-    """Return the variance of ln D (2, 8) by source, from damages (n_systems, n_draws, 2, 8)."""
+    """Return the variance of ln D (…, 8) by source, from damages (n_systems, n_draws, …, 8)."""
     with np.errstate(divide="ignore"):
         logs = np.log(np.maximum(damage, 1e-300))
     within = logs.var(axis=1, ddof=1).mean(axis=0) if logs.shape[1] > 1 else np.zeros(logs.shape[2:])
