@@ -132,3 +132,20 @@ def test_modes_are_laid_beside_a_structure(tmp_path: Path) -> None:
     assert {"side_side_1", "fore_aft_1"} <= best
     code, _, message = run(record, "--quick", "--model", "no_such_structure")
     assert code == 2 and "no_such_structure" in message
+
+
+def test_setups_are_joined_before_the_identification(tmp_path: Path) -> None:
+    whole = str(RECORDS / "pile_U12_s301.parquet")
+    other = str(RECORDS / "pile_U12_s308.parquet")
+    code, out, err = run(whole, other, "--merge", "preger", "--json")
+    assert code == 0, err
+    document = json.loads(out)
+    assert document["merge"] == "preger"
+    assert document["records"] == ["pile_U12_s301", "pile_U12_s308"]
+    assert document["modes"][0]["method"] == "preger"
+    assert document["modes"][0]["frequency_std_hz"] is None
+    assert min(abs(mode["frequency_hz"] - 0.174) for mode in document["modes"]) < 0.004
+    for arguments in ((whole,), (whole, other, "--compare"), (whole, other, "--method", "plscf")):
+        code, _, err = run(*arguments, "--merge", "preger")
+        assert code == 2
+        assert "Traceback" not in err

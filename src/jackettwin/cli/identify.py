@@ -66,6 +66,12 @@ class _Method(click.types.StringParamType):
 @click.option("--band", help="LOW,HIGH in Hz: band of the modes; default from the lowest clear peak.")
 @click.option("--quick", is_flag=True, help="Omit uncertainty, refinement and further checks.")
 @click.option("--model", help="Structure whose mode shapes are compared by MAC at the sensors.")
+@click.option(
+    "--merge",
+    type=click.Choice(["poser", "preger"]),
+    default="poser",
+    help="Whether setups with moved sensors are merged after (poser) or before (preger) the identification.",
+)
 @click.option("--compare", is_flag=True, help="Identify one record by every method, for comparison.")
 @click.option("--real-poles", is_flag=True, help="Also identify relaxations: poles that do not oscillate.")
 @click.option(
@@ -101,6 +107,7 @@ def identify_command(
     band: str | None,
     quick: bool,
     model: str | None,
+    merge: str,
     compare: bool,
     real_poles: bool,
     picks_file: str | None,
@@ -118,7 +125,7 @@ def identify_command(
 
     Several records are fused: over all of them and by wind speed, yaw and state.
     """
-    asked = (method, band, quick, compare, real_poles, sample_rate, unit, gain, zone, whole)
+    asked = (method, band, quick, merge, compare, real_poles, sample_rate, unit, gain, zone, whole)
     place = partial(_place, records, (settings_file, picks_file), asked, out)
     known = None if fresh or report is not None else cache.kept_document(place())
     if known is not None:
@@ -135,14 +142,18 @@ def identify_command(
     if compare and len(files) > 1:
         n = f"{len(files)} records"
         raise InputError("takes one record", field="--compare", value=n, remedy="run it for each record")
+    if merge == "preger":
+        _refuse_preger(len(files), {"--compare": compare, "--report": report, "--picks": picks_file})
     how: dict[str, Any] = {"picks": picks, "unsaid": _unsaid(sample_rate, unit, gain, zone)}
     for path in (out, report):
         if path is not None:
             check_room(path)
     with tempfile.TemporaryDirectory(prefix="jackettwin-") as passing:
-        if not whole:
+        if not whole and merge == "poser":
             files = _without_long(files, Path(passing) / "pieces", how["unsaid"])
-        if len(files) == 1:
+        if merge == "preger":
+            document, show = _setups(files, settings, how["unsaid"]), show_one
+        elif len(files) == 1:
             how["keep"] = cache.keeping(fresh=fresh)
             document, show = _one(files[0], settings, how, compare, report), show_one
         else:
@@ -255,6 +266,28 @@ def _one(
     if report is not None:
         messages.print(f"wrote {report}")
     return document
+
+
+def _setups(files: Sequence[Path], settings: IdentificationSettings, unsaid: Unsaid) -> dict[str, Any]:
+    from jackettwin.identification import preger_document
+
+    with progress(len(files) + 1, "identify") as step:
+        return preger_document(files, settings, unsaid, step)
+
+
+def _refuse_preger(n_files: int, options: Mapping[str, object]) -> None:
+    """Raise an error on one record, or on options that need the identification of single records."""
+    if n_files < 2:
+        raise InputError(
+            "takes several setups", field="--merge preger", value=f"{n_files} record", remedy="name them all"
+        )
+    given = [name for name, value in options.items() if value]
+    if given:
+        raise InputError(
+            "does not go with --merge preger",
+            field=given[0],
+            remedy="omit one of both, or take --merge poser",
+        )
 
 
 def _limits(seen: Examination, settings: IdentificationSettings, step: Progress) -> dict[str, Any]:

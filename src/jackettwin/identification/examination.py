@@ -129,11 +129,45 @@ def examine(
         If no channel carries a signal, or the record cannot be identified.
     """
     source = with_conditions(record)
+    ready, quality, findings, doubts = made_ready(source, places, thorough=not settings.quick)
+    in_axes = knows_yaw(source) or source.metadata.get("axes") == "rotor"
+
+    def compute() -> Identified:
+        found = _beside_orders(identify(ready, settings, picks=picks), findings)
+        found = doubted(found, doubts)
+        found = along_axes(found) if in_axes else found
+        warnings = (str(f) for f in findings if f.severity != "info")
+        notes = (str(f) for f in findings if f.severity == "info")
+        found = replace(found, warnings=(*warnings, *found.warnings), notes=(*found.notes, *notes))
+        compared = compare_methods(ready, found, settings) if compare and found.modes else None
+        return Identified.of(found, compared)
+
+    key = identified_key(ready, settings, picks, findings, compare=compare, in_rotor_axes=in_axes)
+    made = kept(keep, IDENTIFIED, key, compute)
+    return Examination(ready, quality, made.found, findings, made.comparison)
+
+
+def made_ready(
+    source: Record, places: Sequence[Channel] = (), *, thorough: bool = True
+) -> tuple[Record, Quality, Findings, Findings]:
+    """Choose, assess and repair the channels of a record with its conditions, and turn them into rotor axes.
+
+    Returns
+    -------
+    record, quality, findings, doubts
+        Quality is that of the chosen channels before repair; doubts are the findings that make every mode
+        of the record doubtful.
+
+    Raises
+    ------
+    InputError
+        If no channel carries a signal.
+    """
     chosen, absent = placed(source, places) if places else (moving_channels(source), ())
     chosen, repeated = each_sample_once(chosen)
     chosen, stepped = zeros_in_line(chosen)
     chosen, crossed = axes_in_line(chosen)
-    quality = assess(chosen, thorough=not settings.quick)
+    quality = assess(chosen, thorough=thorough)
     alarms = (f for f in (*repeated, *stepped, *too_short(chosen)) if f.severity == "alarm")
     doubts = (*alarms, *(f for f in quality.findings if f.code in UNFIT and not f.repaired))
     steps: tuple[Step, ...] = (
@@ -152,21 +186,7 @@ def examine(
         *unplaced(chosen),
         *(() if places else (*unclear(source), *set_aside(source, chosen))),
     )
-    in_axes = knows_yaw(source) or source.metadata.get("axes") == "rotor"
-
-    def compute() -> Identified:
-        found = _beside_orders(identify(ready, settings, picks=picks), findings)
-        found = doubted(found, doubts)
-        found = along_axes(found) if in_axes else found
-        warnings = (str(f) for f in findings if f.severity != "info")
-        notes = (str(f) for f in findings if f.severity == "info")
-        found = replace(found, warnings=(*warnings, *found.warnings), notes=(*found.notes, *notes))
-        compared = compare_methods(ready, found, settings) if compare and found.modes else None
-        return Identified.of(found, compared)
-
-    key = identified_key(ready, settings, picks, findings, compare=compare, in_rotor_axes=in_axes)
-    made = kept(keep, IDENTIFIED, key, compute)
-    return Examination(ready, quality, made.found, findings, made.comparison)
+    return ready, quality, findings, doubts
 
 
 @dataclass(frozen=True)

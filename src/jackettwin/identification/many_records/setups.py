@@ -27,7 +27,6 @@ from jackettwin.identification.mode_shapes import normalised
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from jackettwin.identification.estimate import Identification
     from jackettwin.records import Channel
 
 
@@ -89,7 +88,7 @@ class ShapeSum:
         return shape
 
 
-def add_channels(known: dict[str, Channel], result: Identification) -> None:
+def add_channels(known: dict[str, Channel], channels: Sequence[Channel], record: str) -> None:
     """Add the channels of a record to the known ones, in the order in which they appear.
 
     Raises
@@ -97,12 +96,12 @@ def add_channels(known: dict[str, Channel], result: Identification) -> None:
     InputError
         If one name is used for sensors of different kind, position or direction.
     """
-    for channel in result.channels:
+    for channel in channels:
         before = known.setdefault(channel.name, channel)
         if _differ(before, channel):
             raise InputError(
                 "one name is used for different sensors",
-                file=result.records[0],
+                file=record,
                 field=f"channels.{channel.name}",
                 value=_description(channel),
                 allowed=_description(before),

@@ -174,7 +174,7 @@ def follow(identifications: Iterable[tuple[Identification, Hashable]]) -> Tracke
     tracks: list[Track] = []
     active: list[Track] = []
     for number, (found, key) in enumerate(identifications):
-        add_channels(known, found)
+        add_channels(known, found.channels, found.records[0])
         order = list(known)
         own = tuple(c.name for c in found.channels)
         channels = np.array([order.index(name) for name in own], dtype=np.int64)

@@ -1,0 +1,295 @@
+"""Modes of all setups in one identification (PreGER): some sensors are moved between records."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.errors import InputError, located
+from jackettwin.findings import Finding
+from jackettwin.identification.document import identification_document
+from jackettwin.identification.estimate import Identification, Spectrum
+from jackettwin.identification.examination import doubted, made_ready
+from jackettwin.identification.many_records.setups import WEAK_CONNECTION, add_channels, tie
+from jackettwin.identification.preparation.prepared import prepare
+from jackettwin.identification.preparation.resolve import guarded_band_hz
+from jackettwin.identification.selection.candidates import beside_tones, candidates
+from jackettwin.identification.selection.clustering import clusters
+from jackettwin.identification.selection.peaks import contrast
+from jackettwin.identification.selection.screening import MIN_CONTRAST, MIN_CONTRAST_ELSEWHERE, MIN_SENSORS
+from jackettwin.identification.settings import IdentificationSettings
+from jackettwin.identification.status import ModeStatus
+from jackettwin.identification.subspace.covariances import covariances
+from jackettwin.identification.subspace.joined_setups import joined_hankel
+from jackettwin.identification.subspace.ssi_cov import balanced_subspace, order_poles
+from jackettwin.identification.subspace.stabilisation import stabilisation
+from jackettwin.identification.tones.sinusoid import transform
+from jackettwin.processes import on_one_blas_thread
+from jackettwin.progress import SILENT, Progress
+from jackettwin.records import Channel, Record, Unsaid, read_record, with_conditions
+
+if TYPE_CHECKING:
+    from jackettwin.identification.estimate import ModalEstimate, ResolvedSettings, Stabilisation
+    from jackettwin.identification.preparation.prepared import Prepared
+
+MIN_PERSISTENCE = 0.8
+"""Share of the model orders in which a mode must appear: there is no uncertainty to tell modes from noise."""
+
+
+@dataclass(frozen=True)
+class _Setups:
+    """Prepared setups in one unit of each channel.
+
+    Attributes
+    ----------
+    ready : for each setup
+        ``y`` in units of ``scale`` and of the setup's own level of excitation.
+    channels : tuple of Channel
+        All channels, in the order of their first appearance.
+    scale : (n_channels,)
+    references : tuple of str
+        Channels of all setups that serve as references.
+    """
+
+    ready: tuple[Prepared, ...]
+    channels: tuple[Channel, ...]
+    scale: FloatArray
+    references: tuple[str, ...]
+
+    @property
+    def settings(self) -> ResolvedSettings:
+        """Settings of the setup with the most model orders; band, rate and lag window are those of all."""
+        return max((one.settings for one in self.ready), key=lambda own: own.orders[-1])
+
+
+def preger_document(
+    files: Sequence[Path],
+    settings: IdentificationSettings,
+    unsaid: Unsaid | None = None,
+    progress: Progress = SILENT,
+) -> dict[str, Any]:
+    """Return the result document of setups that are identified together.
+
+    Each is read, assessed and repaired as a single record is.
+
+    Raises
+    ------
+    InputError
+        As ``identify_setups``; or if a file cannot be read.
+    """
+    records, told, warnings = [], [], []
+    doubts: list[Finding] = []
+    for path in files:
+        progress(f"read {path.name}")
+        with located(file=path):
+            source = with_conditions(read_record(path, unsaid))
+            ready, quality, findings, against = made_ready(source, thorough=not settings.quick)
+        records.append(ready)
+        doubts += against
+        told += [{"record": ready.name, **finding.document} for finding in quality.findings]
+        warnings += [f"{ready.name}: {f}" for f in findings if f.severity != "info"]
+    progress("identify all setups together")
+    found = doubted(identify_setups(records, settings), tuple(doubts))
+    found = replace(found, warnings=(*warnings, *found.warnings))
+    return {**identification_document(found, {"findings": told}, {}), "merge": "preger"}
+
+
+@on_one_blas_thread
+def identify_setups(
+    records: Sequence[Record], settings: IdentificationSettings | None = None
+) -> Identification:
+    """Identify the modes of all setups at once: one frequency, damping ratio and whole shape a mode.
+
+    The moving sensors' parts of the Hankel matrix are re-scaled to a common excitation by the channels
+    that all setups share (``subspace/joined_setups.py``); then follow SSI-cov, clustering and the hard
+    criteria. There is no uncertainty and no refinement.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        Of one sample rate. A sensor that was moved has another name in each record.
+    settings : IdentificationSettings, optional
+        ``reference_channels`` must be in all records; default all that are.
+
+    Raises
+    ------
+    InputError
+        If the setups share no reference channel, differ in sample rate, one name is used for different
+        sensors, or the settings ask for another method.
+    """
+    settings = settings or IdentificationSettings()
+    _refuse_method(settings)
+    setups = _setups(records, settings)
+    poles, resolved = _poles(setups, settings), setups.settings
+    duration_s = sum(one.duration_s for one in setups.ready)
+    share = max(settings.min_order_share, MIN_PERSISTENCE)
+    judged = candidates(
+        poles,
+        clusters(poles, distance=settings.cluster_distance, orders=resolved.orders, scale=setups.scale),
+        (),
+        settings.model_copy(update={"min_order_share": share}),
+        duration_s=duration_s,
+        n_orders=len(resolved.orders),
+    )
+    low, high = resolved.lowest_frequency_hz, resolved.highest_frequency_hz
+    inside = [c for c in judged if low < c.mode.frequency_hz < high]
+    chosen = [c for c in inside if c.objection is None]
+    tones = [(f, f) for one in setups.ready for f in one.tones_hz]
+    tones += [tone.swept_hz for one in setups.ready for tone in one.drifting]
+    modes = tuple(_checked(replace(beside_tones(c.mode, tones), method="preger"), setups) for c in chosen)
+    label = poles.cluster.copy()
+    for number, candidate in enumerate(chosen):
+        label[candidate.cluster.poles] = number
+    n_channels = len(setups.channels)
+    return Identification(
+        records=tuple(record.name for record in records),
+        channels=setups.channels,
+        modes=modes,
+        rejected=tuple(c.rejected for c in inside if c.objection is not None),
+        stabilisation=replace(poles, cluster=label),
+        spectrum=Spectrum(np.empty(0), np.empty((n_channels, 0)), np.empty((n_channels, 0))),
+        settings=resolved,
+        duration_s=duration_s,
+        warnings=(*(text for one in setups.ready for text in one.warnings), *_loose(setups, modes)),
+        notes=(
+            f"setups were joined before the identification by {', '.join(setups.references)}; without "
+            "uncertainty, of the checks on modes only those on stable poles and a clear peak are made",
+        ),
+    )
+
+
+def _checked(mode: ModalEstimate, setups: _Setups) -> ModalEstimate:
+    """Return a mode, doubtful if through the filter of its shape no setup shows a clear peak."""
+    seen = dict(zip([c.name for c in setups.channels], mode.mode_shape / setups.scale, strict=True))
+    found = []
+    for one in setups.ready:
+        shape = np.array([seen[c.name] for c in one.channels])
+        least = MIN_CONTRAST if len(shape) >= MIN_SENSORS else MIN_CONTRAST_ELSEWHERE
+        ratio, _ = contrast(transform(one.y), one.duration_s, mode, shape)
+        found.append((ratio / least, ratio))
+    share, ratio = max(found)
+    if share >= 1.0:
+        return mode
+    return mode.flagged(ModeStatus.DOUBTFUL, Finding("no_peak", params={"ratio": ratio}))
+
+
+def _poles(setups: _Setups, settings: IdentificationSettings) -> Stabilisation:
+    """Return the poles of the Hankel matrix of all setups."""
+    resolved, order = setups.settings, [channel.name for channel in setups.channels]
+    lags, rows = [], []
+    for one in setups.ready:
+        own = [channel.name for channel in one.channels]
+        at = [own.index(name) for name in setups.references]
+        lags.append(covariances(one.y, 2 * resolved.block_rows)[:, :, at])
+        rows.append(np.array([order.index(name) for name in own], dtype=np.int64))
+    h = joined_hankel(lags, rows, resolved.block_rows, resolved.orders[-1])
+    subspace = balanced_subspace(h, len(order), resolved.orders[-1], factors=False)
+    return stabilisation(
+        order_poles(subspace, subspace.orders(resolved.orders)),
+        settings,
+        sample_rate_hz=resolved.sample_rate_hz,
+        band_hz=guarded_band_hz(resolved),
+        scale=setups.scale,
+    )
+
+
+def _setups(records: Sequence[Record], settings: IdentificationSettings) -> _Setups:
+    """Prepare all setups with one band, rate and lag window, and relate them to their common level."""
+    ready = _alike(records, settings)
+    known: dict[str, Channel] = {}
+    for record, one in zip(records, ready, strict=True):
+        add_channels(known, one.channels, record.name)
+    references = _references(ready, records, settings)
+    scale: dict[str, float] = {}
+    related = []
+    for one in ready:
+        own = [c.name for c in one.channels]
+        level = np.exp(np.mean([np.log(one.scale[own.index(name)]) for name in references]))
+        relative = one.scale / level
+        for name, value in zip(own, relative, strict=True):
+            scale.setdefault(name, float(value))
+        in_units = relative / [scale[name] for name in own]
+        related.append(replace(one, y=one.y * in_units[:, None]))
+    return _Setups(
+        tuple(related), tuple(known.values()), np.array([scale[name] for name in known]), references
+    )
+
+
+def _alike(records: Sequence[Record], settings: IdentificationSettings) -> list[Prepared]:
+    """Prepare the setups with one band, in which the lowest mode of each lies, and one lag window."""
+    ready = [prepare(record, settings) for record in records]
+    bands = {(one.settings.lowest_frequency_hz, one.settings.highest_frequency_hz) for one in ready}
+    if len(bands) > 1:
+        low, high = (min(edge) for edge in zip(*bands, strict=True))
+        settings = settings.model_copy(update={"lowest_frequency_hz": low, "highest_frequency_hz": high})
+        ready = [prepare(record, settings) for record in records]
+    if len({one.settings.block_rows for one in ready}) > 1:
+        rows = max(one.settings.block_rows for one in ready)
+        settings = settings.model_copy(update={"block_rows": rows})
+        ready = [prepare(record, settings) for record in records]
+    rates = [one.settings.sample_rate_hz for one in ready]
+    if len(set(rates)) > 1:
+        raise InputError(
+            "setups differ in sample rate",
+            field="sample_rate_hz",
+            value=sorted(set(rates)),
+            allowed="one rate after decimation",
+            remedy="resample the records to one rate",
+        )
+    return ready
+
+
+def _references(
+    ready: Sequence[Prepared], records: Sequence[Record], settings: IdentificationSettings
+) -> tuple[str, ...]:
+    """Return the references: those chosen, or all channels that every setup has."""
+    common = [
+        c.name for c in ready[0].channels if all(c.name in [o.name for o in one.channels] for one in ready)
+    ]
+    if not common:
+        raise InputError(
+            "the setups share no reference channel",
+            field="RECORD",
+            value=[record.name for record in records],
+            allowed="at least one channel that every setup has",
+            remedy="take --merge poser, for which neighbours in a chain of setups may share channels",
+        )
+    strange = [name for name in settings.reference_channels or () if name not in common]
+    if strange:
+        raise InputError(
+            "a reference is not in every setup",
+            field="reference_channels",
+            value=strange,
+            allowed=", ".join(common),
+            remedy="choose among the channels that every setup has",
+        )
+    return tuple(settings.reference_channels or common)
+
+
+def _loose(setups: _Setups, modes: Sequence[ModalEstimate]) -> tuple[str, ...]:
+    """Warn of the modes in which the references hardly move."""
+    at = np.array(
+        [[c.name for c in setups.channels].index(name) for name in setups.references], dtype=np.int64
+    )
+    return tuple(
+        f"{mode.frequency_hz:.4g} Hz: the references hardly move; parts of the shape may not be consistent"
+        for mode in modes
+        if tie(mode.mode_shape, at) < WEAK_CONNECTION
+    )
+
+
+def _refuse_method(settings: IdentificationSettings) -> None:
+    variant = (settings.method, settings.weighting, settings.state_matrix)
+    if variant != ("ssi-cov", "br", "shift") or settings.real_poles:
+        raise InputError(
+            "joining setups before the identification takes covariance-driven SSI with unit weights",
+            field="--merge preger",
+            value=", ".join((*variant, *(("real_poles",) if settings.real_poles else ()))),
+            allowed="ssi-cov, br, shift, without real_poles",
+            remedy="leave these settings at their defaults, or take --merge poser",
+        )
