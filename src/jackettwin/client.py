@@ -197,6 +197,10 @@ class Client:
         chosen = query if label is None else {**query, "label": label}
         return self._pages(f"/assets/{asset}/modes", **chosen)
 
+    def mode_bins(self, asset: str, **query: Any) -> list[Answer]:
+        """Return extremes and medians of modes in bins: ``label``, ``from``, ``to``, ``points``."""
+        return list(self._pages(f"/assets/{asset}/modes/bins", **query))
+
     def twin(self, asset: str, at: str | None = None, **query: Any) -> Answer:
         """Return what the twin knows, now or at a time (ISO 8601 with zone); of a ``version``."""
         chosen = query if at is None else {**query, "at": at}

@@ -242,6 +242,27 @@ class ModeOut(BaseModel):
     model_version: int
 
 
+class ExtremesOut(BaseModel):
+    """Least value, median and greatest value of each bin; null where no record has one."""
+
+    min: list[float | None]
+    median: list[float | None]
+    max: list[float | None]
+
+
+class ModeBinsOut(BaseModel):
+    """One mode through time in bins of equal length; bins without a record are left out."""
+
+    label: str
+    start_utc: datetime
+    bin_s: float
+    time_s: list[float] = Field(description="Start of each bin after start_utc.")
+    count: list[int] = Field(description="Number of records in each bin.")
+    frequency_hz: ExtremesOut
+    damping_ratio: ExtremesOut
+    simulated: int = Field(description="Number of records of all bins that nobody measured.")
+
+
 class FindingOut(BaseModel):
     """Something worth saying, and how it stands; its sentence is made of code and params."""
 

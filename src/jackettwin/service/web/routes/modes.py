@@ -28,6 +28,7 @@ from jackettwin.service.web.schemas import (
     ComparisonOut,
     ExploredOut,
     LifeOut,
+    ModeBinsOut,
     ModeOut,
     Page,
     SensitivityOut,
@@ -36,6 +37,7 @@ from jackettwin.service.web.schemas import (
     TwinOut,
 )
 from jackettwin.store import Exported, exported, people, results, writing
+from jackettwin.store.mode_bins import modes_in_bins
 
 router = APIRouter(tags=["answers"], route_class=Route)
 
@@ -59,6 +61,22 @@ def modes(
     version = known_asset(connection, asset)
     window = (signals.with_zone(since, "from"), signals.with_zone(until, "to"))
     return said.modes(connection, version, label, *window, cursor, limit)
+
+
+@router.get("/assets/{asset}/modes/bins", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def mode_bins(
+    asset: AssetName,
+    connection: Told,
+    label: Annotated[str | None, Query(max_length=64)] = None,
+    since: Annotated[datetime | None, Query(alias="from")] = None,
+    until: Annotated[datetime | None, Query(alias="to")] = None,
+    points: Annotated[int, Query(ge=1, le=10_000)] = 1000,
+) -> Page[ModeBinsOut]:
+    """Return extremes and medians of each mode in at most so many bins of equal length of time."""
+    version = known_asset(connection, asset)
+    window = {"since": signals.with_zone(since, "from"), "until": signals.with_zone(until, "to")}
+    found = modes_in_bins(connection, asset, version.model_hash, points, label=label, **window)
+    return Page(items=[ModeBinsOut.model_validate(one, from_attributes=True) for one in found])
 
 
 @router.get("/assets/{asset}/twin", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
