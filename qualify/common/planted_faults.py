@@ -65,6 +65,8 @@ FAULTS = (
     )),
     *_of("fatigue", rows=(
         ("the second slope begins at ten times the range", "many = S < 1e-6 * self.knee_pa", "many = S < 1e-5 * self.knee_pa"),
+        ("bending about z stresses the other side of a tube", "-np.cos(angle) / modulus", "np.cos(angle) / modulus"),
+        ("thicker walls leave more of a butt weld's eccentricity", "+ float((T_m / t_m) **", "+ float((t_m / T_m) **"),
         ("thick plates are stronger", "** self.thickness_exponent", "** -self.thickness_exponent"),
         ("half cycles count whole", "np.full(self.half.size, 0.5)", "np.full(self.half.size, 1.0)"),
         ("the last closed cycles are taken twice", "self._taken = first.size", "self._taken = max(first.size - 1, 0)"),

@@ -193,12 +193,15 @@ def motion(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (("simulated", "{motion}"), "acc_x"),
         (("simulated", "{motion}", "--curve", "Q"), "S-N curve"),
         (("simulated", "{motion}", "--draws", "0"), "draws"),
+        (("simulated", "{motion}", "--details", "{details}"), "details.0.member"),
         (("record", "simulated"), "RECORD"),
     ],
 )
 def test_a_record_that_does_not_fit_is_refused_before_anything_is_updated(
-    arguments: tuple[str, ...], said: str, motion: Path
+    arguments: tuple[str, ...], said: str, motion: Path, tmp_path: Path
 ) -> None:
-    found = run(*(text.format(motion=motion) for text in arguments))
+    details = tmp_path / "details.yaml"
+    details.write_text("details: [{name: flange, member: twer_1, position: 0, curve: F}]")
+    found = run(*(text.format(motion=motion, details=details) for text in arguments))
     assert found.exit_code == 2
     assert said in found.stderr and "Traceback" not in found.stderr

@@ -125,4 +125,4 @@ def read_details(path: Path | None, models: Callable[[str], ModelsAtHeight]) -> 
             field="details",
             value=", ".join(names),
         )
-    return TubeDetails(butt, said.butt_welds.misalignment_m, tuple(own))
+    return TubeDetails(butt, said.butt_welds.misalignment_m, tuple(own), path)

@@ -15,11 +15,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations
 from math import exp, log10, sqrt
+from pathlib import Path
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import did_you_mean, located, require, require_between
+from jackettwin.errors import did_you_mean, require, require_between
 from jackettwin.fatigue.weld_life import ModelsAtHeight
 from jackettwin.structure import Assembly, Member, Section, SectionForces, Structure
 
@@ -64,11 +65,29 @@ class TubeDetails:
     misalignment_m : float
         δ_m − δ_0: what the walls of butt welds are out of line beyond the tests of the curve.
     own : details of the user's own
+    file : where they are named
     """
 
     models: ModelsAtHeight
     misalignment_m: float = 0.0
     own: tuple[Detail, ...] = ()
+    file: Path | None = None
+
+    def require_members(self, structure: Structure) -> None:
+        """Refuse details of tubes that a structure does not have.
+
+        Raises
+        ------
+        InputError
+            Names the file, the detail and the member that is likely meant.
+        """
+        names = [member.name for member in structure.members]
+        for i, one in enumerate(self.own):
+            require(
+                one.member in names, "is no member of the structure", file=self.file,
+                field=f"details.{i}.member", value=one.member,
+                remedy=did_you_mean(one.member, names) or "name one of its tubes",
+            )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -151,6 +170,7 @@ def tube_welds(assembly: Assembly, details: TubeDetails) -> tuple[tuple[TubeWeld
         If a detail names no member.
     """
     structure = assembly.structure
+    details.require_members(structure)
     found, apart = [], []
     for node, pair in _changes(structure):
         (thin, at), (thick, other) = sorted(pair, key=lambda end: _wall(*end))
@@ -164,14 +184,9 @@ def tube_welds(assembly: Assembly, details: TubeDetails) -> tuple[tuple[TubeWeld
         beyond = tuple(_beyond(t, T, offset))
         name = f"{thin.name} to {thick.name}"
         found.append(_weld(assembly, name, BUTT_WELD, thin, at, factor, details.models, beyond))
-    names = [member.name for member in structure.members]
-    for i, one in enumerate(details.own):
-        with located(field=f"details.{i}"):
-            require(
-                one.member in names, "is no member of the structure", field="member", value=one.member,
-                remedy=did_you_mean(one.member, names) or "name one of its tubes",
-            )  # fmt: skip
-        member = structure.members[names.index(one.member)]
+    members = {member.name: member for member in structure.members}
+    for one in details.own:
+        member = members[one.member]
         found.append(_weld(assembly, one.name, "detail", member, one.position, one.scf, one.models))
     return tuple(found), tuple(apart)
 
