@@ -143,7 +143,7 @@ def identify_command(
         n = f"{len(files)} records"
         raise InputError("takes one record", field="--compare", value=n, remedy="run it for each record")
     if merge == "preger":
-        _refuse_preger(len(files), {"--compare": compare, "--report": report, "--picks": picks_file})
+        _refuse_preger(len(files), {"--report": report, "--picks": picks_file})
     how: dict[str, Any] = {"picks": picks, "unsaid": _unsaid(sample_rate, unit, gain, zone)}
     for path in (out, report):
         if path is not None:

@@ -12,6 +12,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, located
 from jackettwin.findings import Finding
+from jackettwin.identification.automatic import MIN_PERSISTENCE
 from jackettwin.identification.document import identification_document
 from jackettwin.identification.estimate import Identification, Spectrum
 from jackettwin.identification.examination import doubted, made_ready
@@ -36,9 +37,6 @@ from jackettwin.records import Channel, Record, Unsaid, read_record, with_condit
 if TYPE_CHECKING:
     from jackettwin.identification.estimate import ModalEstimate, ResolvedSettings, Stabilisation
     from jackettwin.identification.preparation.prepared import Prepared
-
-MIN_PERSISTENCE = 0.8
-"""Share of the model orders in which a mode must appear: there is no uncertainty to tell modes from noise."""
 
 
 @dataclass(frozen=True)
