@@ -1,4 +1,5 @@
 import { describe, expect, test } from "vitest";
+import { binPlot } from "../src/parts/modes";
 import { csvOf, extentOf, type PlotData, spanOf, ticksOf } from "../src/parts/plot/series";
 import { svgOf } from "../src/parts/plot/svg";
 
@@ -57,5 +58,32 @@ describe("a plot", () => {
   test("has ticks in steps of 1, 2 or 5", () => {
     expect(ticksOf([0, 1], 5)).toEqual([0, 0.2, 0.4, 0.6, 0.8, 1]);
     expect(ticksOf([0.2, 30], 5, true)).toEqual([0.2, 0.5, 1, 2, 5, 10, 20]);
+  });
+});
+
+describe("many modes", () => {
+  const extremes = { min: [0.01, null], median: [0.02, null], max: [0.03, null] };
+  const bins = {
+    label: "fore_aft_1",
+    start_utc: "1970-01-01T00:01:00Z",
+    bin_s: 20,
+    time_s: [0, 40],
+    count: [3, 1],
+    frequency_hz: { min: [0.3, 0.4], median: [0.31, 0.4], max: [0.33, 0.4] },
+    damping_ratio: extremes,
+    simulated: 0,
+  };
+  test("are drawn as extremes and medians in the middle of their bins", () => {
+    const [band, median] = binPlot(bins, "frequency", []).series;
+    expect(band).toMatchObject({ kind: "band", x: [70, 110], low: [0.3, 0.4], high: [0.33, 0.4] });
+    expect(median).toMatchObject({ kind: "points", y: [0.31, 0.4] });
+  });
+  test("have damping in percent, and none where no record has one", () => {
+    const [band, median] = binPlot(bins, "damping", []).series;
+    expect([band?.low, median?.y, band?.high]).toEqual([
+      [1, null],
+      [2, null],
+      [3, null],
+    ]);
   });
 });

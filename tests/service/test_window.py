@@ -20,6 +20,7 @@ from jackettwin.service.context import Service
 from jackettwin.service.web import pages
 from jackettwin.service.web.app import EXAMPLES, create_app
 from jackettwin.store import journal, people, results, writing
+from jackettwin.store.tables import modes
 
 AXE = Path(__file__).parents[2] / "app" / "node_modules" / "axe-core" / "axe.min.js"
 CHROMIUM = next((p for p in ("chromium", "chromium-browser", "google-chrome") if shutil.which(p)), "")
@@ -286,11 +287,42 @@ def test_a_place_is_in_its_address(opened: Open) -> None:
     page.get_by_role("button", name="Frequency").click()
     page.get_by_role("button", name="30 days").click()
     assert "mode=mode_1" in page.url and "from=" in page.url and "show" not in page.url
-    with page.expect_download() as download:
-        page.get_by_role("button", name="CSV").click()
-    lines = download.value.path().read_text().splitlines()
+    lines = saved(page)
     assert len(lines) >= 5 and lines[0].startswith("series,time_utc,")
     page.context.close()
+
+
+def test_many_modes_are_drawn_in_bins_until_they_are_few(
+    tmp_path: Path, browser: Browser, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of 21,000 rows the extremes are drawn, of those of a month each row, and none is lost."""
+    for service in make_service(tmp_path, None, monkeypatch):
+        for url in served(service):
+            model = httpx.get(f"{url}/api/v1/assets/wtg").json()["model_hash"]
+            row = {"asset": "wtg", "model_hash": model, "model_version": 1, "status": "ok"}
+            with writing(service.database) as connection:
+                told = [
+                    {**row, "record_id": f"{k:08x}", "time_utc": NOON + timedelta(hours=k), "label": "mode_1"}
+                    | {"frequency_hz": 0.3 + k * 1e-6, "damping_ratio": 0.01}
+                    for k in range(21_000)
+                ]
+                connection.execute(modes.insert(), told)
+            page = Open(url, service, browser).page("/assets/wtg/timeline")
+            expect(page.get_by_text("Bins of time")).to_be_visible()
+            assert len(saved(page)) == 1 + 2 * 1000
+            page.get_by_role("button", name="30 days").click()
+            expect(page.get_by_text("Bins of time")).to_have_count(0)
+            assert len(saved(page)) == 1 + 30 * 24 + 1
+            page.locator("figure.plot [role=img]").press("0")
+            expect(page.get_by_text("Bins of time")).to_be_visible()
+            page.context.close()
+
+
+def saved(page: Page) -> list[str]:
+    """Return the lines of the first plot's CSV."""
+    with page.expect_download() as download:
+        page.get_by_role("button", name="CSV").first.click()
+    return download.value.path().read_text().splitlines()
 
 
 def test_the_structure_moves_and_stops(opened: Open) -> None:

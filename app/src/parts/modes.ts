@@ -1,5 +1,10 @@
-// How modes look: the colour by kind, as in the report.
-import type { Mode } from "../api/client";
+// How modes look: the colour by kind, as in the report, and their plots through time.
+import type { Mode, Schemas } from "../api/client";
+import { words } from "../words/numbers";
+import { seconds } from "../words/time";
+import type { Mark, PlotData } from "./plot/series";
+
+export type Bins = Schemas["ModeBinsOut"];
 
 const KINDS: Record<string, string> = {
   fore_aft: "blue",
@@ -14,7 +19,7 @@ export function modeColour(label: string): string {
   return KINDS[kind] ?? OTHERS[Number(number) % OTHERS.length] ?? "grey";
 }
 
-/** Modes through time by label, labels in the order of their frequencies. */
+/** Modes through time by label. */
 export function byLabel(modes: readonly Mode[]): Map<string, Mode[]> {
   const found = new Map<string, Mode[]>();
   for (const mode of modes) {
@@ -23,6 +28,57 @@ export function byLabel(modes: readonly Mode[]): Map<string, Mode[]> {
     else if (mode.label) found.set(mode.label, [mode]);
   }
   for (const rows of found.values()) rows.sort((a, b) => a.time_utc.localeCompare(b.time_utc));
-  const middle = (rows: Mode[]): number => rows[Math.floor(rows.length / 2)]?.frequency_hz ?? 0;
-  return new Map([...found].sort(([, a], [, b]) => middle(a) - middle(b)));
+  return found;
+}
+
+export function modePlot(label: string, modes: readonly Mode[], what: string, marks: Mark[]): PlotData {
+  const damping = what === "damping";
+  const value = (m: Mode): number | null =>
+    damping ? m.damping_ratio && 100 * m.damping_ratio : m.frequency_hz;
+  const end = (m: Mode, i: 0 | 1): number | null => {
+    if (damping) return m.damping_ratio_interval_95 && 100 * (m.damping_ratio_interval_95[i] ?? NaN);
+    return m.frequency_std_hz === null ? null : m.frequency_hz + (i ? 1.96 : -1.96) * m.frequency_std_hz;
+  };
+  return {
+    title: words(label),
+    time: true,
+    xName: "UTC",
+    yName: damping ? "damping ratio [%], 95 % intervals" : "frequency [Hz], 95 % intervals",
+    log: damping,
+    series: [
+      {
+        name: words(label),
+        colour: modeColour(label),
+        kind: "points",
+        x: modes.map((m) => seconds(m.time_utc)),
+        y: modes.map(value),
+        low: modes.map((m) => end(m, 0)),
+        high: modes.map((m) => end(m, 1)),
+      },
+    ],
+    marks,
+  };
+}
+
+/** Of more rows than can be drawn: the extremes and the median of each bin of time. */
+export function binPlot(bins: Bins, what: string, marks: Mark[]): PlotData {
+  const damping = what === "damping";
+  const { min, median, max } = damping ? bins.damping_ratio : bins.frequency_hz;
+  const shown = (values: (number | null)[]): (number | null)[] =>
+    damping ? values.map((v) => v && 100 * v) : values;
+  const start = seconds(bins.start_utc);
+  const x = bins.time_s.map((t) => start + t + bins.bin_s / 2);
+  const same = { colour: modeColour(bins.label), x };
+  return {
+    title: words(bins.label),
+    time: true,
+    xName: "UTC",
+    yName: damping ? "damping ratio [%]" : "frequency [Hz]",
+    log: damping,
+    series: [
+      { ...same, name: "least to greatest", kind: "band", y: [], low: shown(min), high: shown(max) },
+      { ...same, name: "median", kind: "points", y: shown(median) },
+    ],
+    marks,
+  };
 }
