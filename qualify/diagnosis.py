@@ -219,7 +219,7 @@ DRAWN = (
     "changes are known to 0.03 % and 2 %: a month before and after in the seasons of",
     "[watching](watching.md). Through the whole chain: [here](diagnosis_chain.md).",
     "The model's feet are fitted to the frequencies before; its frequencies miss by 0.5 %. Members and feet",
-    "are called as in their models: brace_… and foot_… in the first two jackets, numbers in the OC4 jacket.",
+    "have the names of their models: brace_… and foot_… in the first two jackets, numbers in the OC4 jacket.",
     "",
     "## A month after the change",
     "",
@@ -227,7 +227,7 @@ DRAWN = (
 EARLY = (
     "## On the day of the alarm",
     "",
-    "The same changes, known no better than suffices for the alarm.",
+    "The same changes, with data just sufficient for the alarm.",
     "",
 )
 

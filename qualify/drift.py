@@ -68,9 +68,9 @@ def main() -> None:
         f"`python qualify/drift.py {number}`: {number} twins, k 1e9 to 1e10 N/m, loss factor 0.03 to 0.3,",
         f"the model's frequencies {100 * MODEL_ERROR:g} % off, the same every day; f and ζ of modes",
         f"{', '.join(map(str, MODES))} on {DAYS} days, as precise as a day of",
-        "records can tell. Alarm: the 95 % interval of the slope leaves out zero.",
+        "records allows. Alarm: the 95 % interval of the slope excludes zero.",
         "",
-        "| change of k in all | alarms | 95 % limits | 90 % intervals that hold the slope |",
+        "| change of k in all | alarms | 95 % limits | 90 % intervals that contain the slope |",
         "|---|---|---|---|",
     ]
     for change in CHANGES:

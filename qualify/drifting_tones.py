@@ -77,13 +77,13 @@ def main() -> None:
     records = parser.parse_args().records
     results = cases("drifting_tones", records * len(KINDS), run, whole=True)
     lines = [
-        "# Tones that drift beside a mode",
+        "# Tones that drift close to a mode",
         "",
-        f"`python qualify/drifting_tones.py --records {records}`: {records} random systems a drift and",
-        "strength, no channel that measures the speed, the tone within two bandwidths of a mode.",
+        f"`python qualify/drifting_tones.py --records {records}`: {records} random systems for each",
+        "drift and strength, without a channel of the speed; the tone is within two bandwidths of a mode.",
         "",
-        "| tone | records | tone taken out | modes called ok | of these no mode | f inside [%] "
-        "| ζ inside [%] | the mode beside it: ok / flagged / not reported | findable modes lost |",
+        "| tone | records | tone subtracted | modes called ok | of these false | f inside [%] "
+        "| ζ inside [%] | the mode close to it: ok / flagged / not reported | findable modes lost |",
         "|---" * 9 + "|",
         row("all", results),
     ]

@@ -80,11 +80,11 @@ def main() -> None:
     parser.add_argument("--turbines", type=int, default=2)
     number = parser.parse_args().turbines
     lines = [
-        "# A rotor whose speed no channel tells",
+        "# A rotor whose speed is not measured",
         "",
         f"`python qualify/hidden_speed.py --turbines {number}`: {number} towers of two close pairs of each",
         f"kind, {RECORDS} records of ten minutes; 3P and 6P random within 0.8 to 2 % of themselves. Four",
-        "modes a tower are to be found. In every column: modes / what is none.",
+        "modes a tower are to be found. In every column: true modes / false modes.",
         "",
         "| rotor | ok in single records | fused and taken as a mode | fused and taken as none |",
         "|---|---|---|---|",

@@ -85,13 +85,13 @@ def feet(program: str) -> list[str]:
 
 def introduction() -> list[str]:
     return [
-        "# Wave loads beside HydroDyn",
+        "# Wave loads compared with HydroDyn",
         "",
         "The OC4 jacket of OpenFAST's tests in a regular Airy wave, by HydroDyn of OpenFAST 5.0.0 (its",
-        f"members in pieces of {PIECE_M} m, of 0.25 m in the short wave) and by ours: the range of",
+        f"members in pieces of {PIECE_M} m, of 0.25 m in the short wave) and jackettwin: range of",
         "force [MN] and moment at the origin [MN·m], and the largest difference at any instant over",
         "the largest value. C_D = C_a = C_p = 1; with growth of 0.1 m and axial coefficients of 1",
-        "where nothing else is said; without buoyancy.",
+        "unless stated otherwise; without buoyancy.",
         "`HYDRODYN=/path/hydrodyn_driver make qualify` writes this page.",
         "",
         f"| wave | {' | '.join(ROWS)} |",

@@ -24,9 +24,9 @@ IN_TURBULENCE = 0.855
 DIRECTIONS = ("side_side", "fore_aft")
 EXPLANATION = f"""\
 Ten minutes each, made with OpenFAST (an independent program): turbulent wind on the parked rotor, rigid
-blades. The truth is linearised in steady wind. Side-side, its aerodynamic part (what grows with the wind,
-from zero) counts {IN_TURBULENCE:g}-fold, as the mean damping in turbulence is lower: the estimate is an
-effective damping of the ten minutes. Fore-aft and side-side are told apart by the shape, close pairs turned
+blades. The truth is linearised in steady wind. Side-side, its aerodynamic part (which grows with the wind
+from zero) is multiplied by {IN_TURBULENCE:g}, as the mean damping in turbulence is lower: the estimate is an
+effective damping of the ten minutes. Fore-aft and side-side differ by their shape; close pairs are rotated
 to the rotor's axes, which are known. Intervals are 95 %; ✗ misses the truth.
 """
 

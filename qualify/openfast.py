@@ -80,15 +80,15 @@ def main() -> None:
 
 def introduction() -> list[str]:
     return [
-        "# OpenFAST reads and runs what we write",
+        "# OpenFAST with exported foundations",
         "",
         "`jacket15`, and a jacket of three legs that is turned or leans (`qualify/decks/three_legs.yaml`),",
         "as ExtPtfm superelements (24 coordinates, `--layout openfast5`, gravity) under an ElastoDyn tower",
         "with the IEA 15 MW rotor, parked and feathered, the steel undamped: OpenFAST 5.0.0, linearised at",
-        "rest and in free decay at steps of 0.01 s, beside `modes --gravity` of the whole.",
+        "rest and in free decay at steps of 0.01 s, compared with `modes --gravity` of the whole.",
         "`ModCoupling` is 3: with 1 that version writes beyond its arrays, whatever the superelement.",
-        "ElastoDyn's tower has two shapes in each direction, its blades three: what is left is mostly",
-        "theirs. `OPENFAST=/path make qualify` writes this page.",
+        "ElastoDyn's tower has two shapes in each direction, its blades three: these cause most of the",
+        "differences. `OPENFAST=/path make qualify` writes this page.",
         "",
     ]
 

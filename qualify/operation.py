@@ -78,13 +78,13 @@ def main() -> None:
 
 def introduction() -> list[str]:
     return [
-        "# The rotor at work, against OpenFAST",
+        "# The operating rotor compared with OpenFAST",
         "",
         "`jacket15` on Kelvin–Voigt feet as an ExtPtfm superelement under an ElastoDyn tower with the IEA",
         "15 MW rotor of its public AeroDyn files: OpenFAST 5.0.0, blade element momentum with Øye's dynamic",
-        "wake (`DBEMT_Mod 2`), steady even wind, rotor speed and pitch fixed at ours, tower drawn aside by",
-        "0.3 m and let go. ζ is the whole mode's. Ours: `operating_damping`, shaft locked as there. Bars:",
-        "fore-aft ζ within 10 %, side-side within 15 %.",
+        "wake (`DBEMT_Mod 2`), steady uniform wind, rotor speed and pitch fixed at the values of",
+        "jackettwin, tower displaced by 0.3 m and released. ζ is the whole mode's. *Ours*:",
+        "`operating_damping`, the shaft locked in both. Bars: fore-aft ζ within 10 %, side-side within 15 %.",
         "`OPENFAST=… IEA15=… python qualify/operation.py` writes this page.",
         "",
     ]

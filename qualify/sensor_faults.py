@@ -68,7 +68,7 @@ def main(n: int) -> None:
     write_page(
         "sensor_faults",
         [
-            "# Swapped signs and wrong units",
+            "# Wrong signs and units",
             "",
             f"`python qualify/sensor_faults.py {n}`: {n} random structures a row, forces white to $f^{{-3}}$",
             "in power, waves in 40 %, noise of 0.1 to 20 % of every channel, 15 to 3,600 cycles of mode 1.",

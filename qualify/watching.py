@@ -551,12 +551,12 @@ def main() -> None:
         "",
         f"`python qualify/watching.py {kinds} {number} {without}`: four modes in two close pairs, their",
         "frequencies, damping and directions, about 3,400 ten-minute records a year in clusters while the",
-        "rotor is parked; tide, a temperature that the steel follows hours later, wind and waves, 0.1 % that",
+        "rotor is parked; tide, a temperature that acts hours later, wind and waves, a scatter of 0.1 % that",
         "no condition explains, stated standard deviations wrong by 15 %, 0.4 % outliers",
         "(`qualify/common/seasons.py`, which shares no code with the detector). Directions turn as",
-        "couplings of the same size and memory mix the modes of a pair, and are stated as the twin does it:",
-        "of the closer pair in a fifth of the records. As `jackettwin watch` does, it tests a twin's",
-        "causes besides general directions, by their effect on bending pairs of the reference jacket.",
+        "couplings of the same size and correlation time mix the modes of a pair, and are given as by a",
+        "twin: for the closer pair in a fifth of the records. Like `jackettwin watch`, it tests a twin's",
+        "causes in addition to general directions, by their effect on bending pairs of the reference jacket.",
         "",
     ]
     parts = [*changes(pieces), *information(pieces), *charts(pieces), *speed()]
