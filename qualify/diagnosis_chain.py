@@ -37,7 +37,7 @@ NOISE = 1.0
 CHAINED = (
     "# Diagnosis through the whole chain",
     "",
-    "`python qualify/diagnosis_chain.py`: three jackets, feet of their own stiffness.",
+    "`python qualify/diagnosis_chain.py`: three jackets, each with a different stiffness of its feet.",
     "{number} records of ten minutes under waves and wind before and after each of twelve causes at three",
     "sizes, of the same seeds, are simulated, identified and recognised as the twin does it. Their modes",
     "with their stated standard deviations fill the seasons of [watching](watching.md), two rows each time",

@@ -215,7 +215,7 @@ def fused_sets(results: list[Identification], system: ModalSystem, n_sets: int) 
     return [
         f"{len(both)} sets of {size} records fused: rms error of ζ over the limit of a set "
         + ", ".join(f"{x:.2f}" for x in rms)
-        + f"; {100 * np.nanmean(inside):.1f} % of their intervals hold the truth.",
+        + f"; {100 * np.nanmean(inside):.1f} % of their intervals contain the truth.",
         "",
     ]
 

@@ -251,7 +251,7 @@ def main() -> None:
             "|---|---|---|---|---|---|---|---|---|",
             *told(rows(n)),
             "",
-            f"One evaluation of modes {MODES} beside that with the turbine {UNSYMMETRIC_M:g} m off, in µs;",
+            f"One evaluation of modes {MODES} and with the turbine {UNSYMMETRIC_M:g} m off, in µs;",
             "`jackettwin update` of two parameters from four targets in CPU-seconds of a machine whose dense",
             "800 × 800 `eig` takes 0.8; the first two modes' names with and without weight, on two meshes.",
             "",

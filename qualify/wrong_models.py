@@ -435,7 +435,11 @@ def bars(found: list[Result]) -> list[tuple[str, bool, str]]:
     objected = sum(r["product"]["objects"] for r in failed)
     said = sum(map(told, failed))
     return [
-        ("intervals hold 87 to 95 % over all kinds", 0.87 <= hits / of <= 0.95, share(hits, of)),
+        (
+            "intervals contain the truth in 87 to 95 % over all kinds",
+            0.87 <= hits / of <= 0.95,
+            share(hits, of),
+        ),
         (
             "80 % or more in each kind that tolerances cover",
             worst >= 0.8,
@@ -450,7 +454,7 @@ def bars(found: list[Result]) -> list[tuple[str, bool, str]]:
         (
             "typical width 2.5 × the oracle's or less, as factors",
             ours <= 2.5 * best,
-            f"×{ours:.2f} beside ×{best:.2f}",
+            f"×{ours:.2f} compared with ×{best:.2f}",
         ),
         (
             "outside the tolerances 90 % of failures objected to",
@@ -499,7 +503,7 @@ def page(found: list[Result]) -> list[str]:
         "squares, are of a normal around the best fit. Of assets with nothing wrong",
         f"{sum(r['product']['objects'] for r in true)} of {len(true)} were objected to.",
         "",
-        "| kind | twins | hold | before | plain | width | oracle's | some fail | objected | said unseen |",
+        "| kind | twins | hold | before | plain | width | oracle's | some fail | objected | said invisible |",
         "|---|---|---|---|---|---|---|---|---|---|",
         *(kind_row(found, kind) for kind in KINDS),
         "",
