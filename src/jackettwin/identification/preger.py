@@ -17,6 +17,7 @@ from jackettwin.identification.document import identification_document
 from jackettwin.identification.estimate import Identification, Spectrum
 from jackettwin.identification.examination import doubted, made_ready
 from jackettwin.identification.many_records.setups import WEAK_CONNECTION, add_channels, tie
+from jackettwin.identification.mode_shapes import mac
 from jackettwin.identification.preparation.prepared import prepare
 from jackettwin.identification.preparation.resolve import guarded_band_hz
 from jackettwin.identification.selection.candidates import beside_tones, candidates
@@ -37,6 +38,11 @@ from jackettwin.records import Channel, Record, Unsaid, read_record, with_condit
 if TYPE_CHECKING:
     from jackettwin.identification.estimate import ModalEstimate, ResolvedSettings, Stabilisation
     from jackettwin.identification.preparation.prepared import Prepared
+
+
+TWICE_HALF_BANDWIDTHS, TWICE_MAC = 1.5, 0.5
+"""Distance in half bandwidths and MAC within which a broad pole is taken for a second one of a narrower
+mode's peak: two directions of a tower, of which one is damped by the rotor, move in different shapes."""
 
 
 @dataclass(frozen=True)
@@ -140,6 +146,7 @@ def identify_setups(
     tones = [(f, f) for one in setups.ready for f in one.tones_hz]
     tones += [tone.swept_hz for one in setups.ready for tone in one.drifting]
     modes = tuple(_checked(replace(beside_tones(c.mode, tones), method="preger"), setups) for c in chosen)
+    modes = tuple(_once(mode, modes, setups.scale) for mode in modes)
     label = poles.cluster.copy()
     for number, candidate in enumerate(chosen):
         label[candidate.cluster.poles] = number
@@ -174,6 +181,19 @@ def _checked(mode: ModalEstimate, setups: _Setups) -> ModalEstimate:
     if share >= 1.0:
         return mode
     return mode.flagged(ModeStatus.DOUBTFUL, Finding("no_peak", params={"ratio": ratio}))
+
+
+def _once(mode: ModalEstimate, modes: Sequence[ModalEstimate], scale: FloatArray) -> ModalEstimate:
+    """Return a mode, doubtful if its peak is that of a mode of less than half its damping."""
+    reach = TWICE_HALF_BANDWIDTHS * mode.damping_ratio * mode.frequency_hz
+    twins = (
+        other
+        for other in modes
+        if 2.0 * other.damping_ratio < mode.damping_ratio
+        and abs(other.frequency_hz - mode.frequency_hz) < reach
+        and mac(mode.mode_shape / scale, other.mode_shape / scale) > TWICE_MAC
+    )
+    return mode if next(twins, None) is None else mode.flagged(ModeStatus.DOUBTFUL, Finding("shape_twice"))
 
 
 def _poles(setups: _Setups, settings: IdentificationSettings) -> Stabilisation:
