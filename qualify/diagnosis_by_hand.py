@@ -252,7 +252,7 @@ def page(found: list[Case], draws: int) -> list[str]:
         "# Diagnosis of changes to the drawing",
         "",
         f"`python qualify/diagnosis_by_hand.py {draws}`: jackets whose feet and members all differ from the",
-        "model's, changed in the drawing: braces cut, walls thinned, masses added; scour from soil curves.",
+        "model's, changed on the drawing: braces cut, walls thinned, masses added; scour by soil curves.",
         "The truth does not use `jackettwin.change`. Five modes, changes known to 0.03 % and 2 % of",
         "frequency and damping; the model's feet are fitted to the frequencies before. Changes too small for",
         "an alarm are left out.",

@@ -39,13 +39,13 @@ CHAINED = (
     "",
     "`python qualify/diagnosis_chain.py`: three jackets, each with a different stiffness of its feet.",
     "{number} records of ten minutes under waves and wind before and after each of twelve causes at three",
-    "sizes, of the same seeds, are simulated, identified and recognised as the twin does it. Their modes",
+    "sizes, with the same seeds, are simulated, identified and recognised as by a twin. Their modes",
     "with their stated standard deviations fill the seasons of [watching](watching.md), two rows each time",
     f"that the rotor is parked: a year of baseline, then day by day until the alarm, {LONGEST:.0f} days at",
-    f"most, in {SEASONS} turbines' seasons for each. What raised no alarm by then is not judged and not",
+    f"most, in {SEASONS} turbines' seasons for each. Changes without an alarm by then are not",
     "counted. The friction of the loose connection is damping in proportion to mass, by what the cause",
     "states for the first mode; modes that may mix with members' own are left out of the causes. Members and",
-    "feet are called as in their models: numbers are those of the OC4 jacket.",
+    "feet have the names of their models: numbers are those of the OC4 jacket.",
     "",
 )
 

@@ -83,7 +83,7 @@ def main() -> None:
         f"`python qualify/directions.py {number}`: effect of causes on frequencies, in jackets whose legs,",
         "braces, tower and masses differ from the model's, group by group, and whose feet differ from each",
         "other, compared with the model after its fit to their frequencies. Missed: rms error over modes,",
-        "as a share of the direction's length, whatever the size. Error: the model's error of frequencies",
+        "as a share of the direction's length, independent of the size. Error: the model's frequency error",
         "that the watch assumes (residual of the fit, with a prior of 1 % worth one mode). Medians.",
         "",
         "| jacket | groups differ by | error | missed | missed over error |",

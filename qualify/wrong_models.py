@@ -510,7 +510,7 @@ def page(found: list[Result]) -> list[str]:
         *chance_lines(found),
         "",
         "`some fail` counts twins in which an interval misses its truth: with two to four intervals of 90 %",
-        "that is one in five or more by chance alone. Modes 3 or 5, where they",
+        "this happens in one in five or more by chance alone. Modes 3 or 5, where they",
         f"were not fitted: the 90 % prediction intervals contain the asset's frequency in {ours};",
         f"those of least squares in {plain}.",
     ]
