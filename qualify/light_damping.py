@@ -25,7 +25,7 @@ DURATION_S, RATE_HZ = 600.0, 10.0
 OUT = Path("docs/verification/light_damping.md")
 EXPLANATION = f"""\
 A shear frame of four storeys, first mode {FIRST_HZ:g} Hz, the others damped {100 * OTHER_DAMPING:g} %, sensor
-noise {100 * NOISE:g} %, records of {DURATION_S:g} s, each a piece of its own time. ζfT is the half
+noise {100 * NOISE:g} %, records of {DURATION_S:g} s, each of a different time. ζfT is the half
 bandwidth of the first mode in lines of a record: below 1 its decay lasts longer than a sixth of it. *Held*:
 95 % intervals of ζ, as printed, that contain the true value; then those above and below it; *statuses*: ok /
 damping unknown / doubtful / not found. Modes of every status are included.
