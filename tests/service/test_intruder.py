@@ -275,7 +275,7 @@ BOMB = "a: &a [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n" + "".join(
 @pytest.mark.parametrize(
     ("twin", "said"),
     [
-        ("structure: jacket15\nsubdivide: 100\n", "freedoms"),
+        ("structure: jacket15\nsubdivide: 100\n", "degrees of freedom"),
         (BOMB + "structure: jacket15\n", "aliases"),
         ("structure: jacket15\nsensors: &a [*a]\n", "aliases"),
     ],
