@@ -152,7 +152,7 @@ def test_a_broker_is_told_by_tls_and_password(folder: Path, broker: int) -> None
         assert sent(password_file="right", ca="ca.pem") is None
         topic, qos, retained, payload = came.get(timeout=30.0)
         assert (topic, qos, retained) == ("alarms/none/info", 1, False)
-        assert b"this is a try" in payload
+        assert b"this is a test message" in payload
         assert "certificate" in str(sent(password_file="right")).lower()
         assert sent(password_file="wrong", ca="ca.pem") is not None
         assert came.empty()

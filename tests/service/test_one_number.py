@@ -226,4 +226,4 @@ def test_what_no_source_explains_is_said_drawn_and_told(outlets: Outlets) -> Non
         assert sum(parts) + m["unexplained"] == pytest.approx(m["measured"]["value"])
     told = {m["label"]: m["unexplained"] for m in outlets.document["answers"]["modes"]}
     assert told == pytest.approx({m["label"]: m["unexplained"] for m in outlets.known["budget"]})
-    assert ("unexplained" in outlets.page) == bool(beyond)
+    assert bool(re.search(r"unexplained [\d.]+ %", outlets.page)) == bool(beyond)

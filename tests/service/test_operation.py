@@ -86,7 +86,9 @@ def test_a_request_is_a_span_of_the_trace_it_came_with(client: TestClient) -> No
 def test_health_says_what_is_lacking(
     client: TestClient, service: Service, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert client.get("/api/v1/health").json() == {"status": "ok", "version": "0.1.0", "problems": []}
+    assert client.get("/api/v1/health").json() == {
+        "status": "ok", "version": "0.1.0", "problems": [], "openid": False,
+    }  # fmt: skip
     service.broker_connected = lambda: False
     monkeypatch.setattr(Here, "reachable", False)
     said = client.get("/api/v1/health")

@@ -28,6 +28,7 @@ from jackettwin.store.tables import metadata
 OTHERS = "secret_farm"
 """The asset that the customer must not even learn the name of."""
 NOTHING = {
+    "key": "tolerances.rna_mass",
     "asset": "none",
     "record_id": "0123456789abcdef",
     "job_id": 987_654,
@@ -91,6 +92,7 @@ def owned(service: Service, asset: str) -> dict[str, str]:
         "alarm_id": number["findings"],
         "finding_id": number["findings"],
         "version": 1,
+        "key": "tolerances.rna_mass",
     }
 
 

@@ -86,4 +86,4 @@ def test_pieces_stand_in_the_place_of_the_record(tmp_path: Path) -> None:
     files = without_long((short, long, short), tmp_path / "pieces", Unsaid(), said.append)
     assert [file.stem for file in files] == ["short", *(f"long_{i:04d}" for i in range(1, 10)), "short"]
     assert read_record(files[3]).data.shape == (CHANNELS, 6000)
-    assert said == ["cut long.csv into pieces of 600 s"]
+    assert said == ["divide long.csv into pieces of 600 s"]

@@ -101,7 +101,7 @@ def result(tmp_path_factory: pytest.TempPathFactory) -> TwinResult:
 def test_the_update_meets_what_it_can(result: TwinResult) -> None:
     """Supports of k/c = 3.29 1/s relax at 3.3 to 3.8."""
     (update,) = result.updates
-    assert update.law == "kelvin-voigt" and "springpot: left out" in result.warnings[0]
+    assert update.law == "kelvin-voigt" and "springpot: omitted" in result.warnings[0]
     assert update.problem.data_names == ["f1", "ζ1", "f4", "a1", "a2"]
     assert update.best.rates.shape == (2,)
     assert any("a1 (relaxation at 3.5 rad/s)" in one.value for one in result.assumptions)

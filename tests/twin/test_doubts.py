@@ -65,6 +65,9 @@ def test_zeros_that_step_together(sound: Record) -> None:
 
 
 def test_of_channels_of_two_days_every_mode_is_doubted(sound: Record) -> None:
+    """Their directions must be known: halves of a record that share nothing may point across one another."""
+    along = tuple(replace(channel, direction=(1.0, 0.0, 0.0)) for channel in sound.channels)
+    sound = replace(sound, channels=along)
     other = simulate(SYSTEM, np.random.default_rng(8), duration_s=600.0, sample_rate_hz=10.0)
     mixed = replace(sound, data=np.vstack([sound.data[:2], other.data[2:]]))
     found = codes(mixed)

@@ -105,8 +105,8 @@ def _left_out(f: Field[Any], value: Any) -> bool:
     """Tell whether a field holds its default, and that says nothing."""
     if value is None:
         return f.default is None
-    if isinstance(value, tuple) and not value:
-        return f.default == () and f.default is not MISSING
+    if isinstance(value, tuple) and (not value or hasattr(value, "_fields")):
+        return f.default is not MISSING and value == f.default
     return isinstance(value, Mapping) and not value and f.default_factory is not MISSING
 
 

@@ -134,4 +134,4 @@ def test_a_pair_half_left_out_is_hinted_at(tower, rng):
     half = dict(list(enumerate(result.modes))[1:])
     hints = _hidden(judged, _sorted(judged, half, (), result.settings, settings, ()))
     assert [hint.code for hint in hints] == ["hidden_mode"]
-    assert f"beside {result.modes[1].frequency_hz:.4g} Hz" in hints[0].text
+    assert f"near {result.modes[1].frequency_hz:.4g} Hz" in hints[0].text
