@@ -72,7 +72,7 @@ def serve_command(
     scheduler = options["scheduler"]
     workers = f"{options['workers']} workers" if scheduler is None else f"work at {scheduler}"
     messages.print(f"starting {workers} and the server …")
-    from jackettwin.service import Service, demonstrate, read_settings, serve, start_logging
+    from jackettwin.service import Service, read_settings, serve, start_logging
 
     start_logging(log_level, as_json=log_json)
 
@@ -85,7 +85,9 @@ def serve_command(
         if as_json:
             print_json({"store": str(store), "url": f"{scheme}://{options['host']}:{options['port']}/"})
             sys.stdout.flush()
-        if demo:
+        if demo:  # it loads numerics, which compile: not before the service has said where to keep that
+            from jackettwin.service import demonstrate
+
             demonstrate(service)
 
     given = {name: value for name, value in options.items() if value not in (None, (), False)}
