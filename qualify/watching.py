@@ -36,7 +36,7 @@ from jackettwin.watching.block import Block, begin, no_begins, watched as column
 from jackettwin.watching.design import Design, design_of, fresh, regressors, with_slow_processes
 from jackettwin.watching.directions import SHARES, Directions, directions_of
 from jackettwin.watching.learning import OCTAVES, learn
-from jackettwin.watching.state import Begins
+from jackettwin.watching.state import PossibleOnsets
 from jackettwin.watching.watch import KINDS as KINDS_OF_QUANTITIES
 
 LABELS = ("bending_1", "bending_2", "bending_3", "bending_4")
@@ -319,7 +319,7 @@ def informed(seed: int) -> dict[str, Any]:
     def delay(told: tuple[Block, ...]) -> float | None:
         none = np.zeros((0, sum(len(block.kept) for block in told), 3))
         watch = Watch(
-            LABELS, design, lagged, told, Begins(*np.zeros((3, 0)), none),
+            LABELS, design, lagged, told, PossibleOnsets(*np.zeros((3, 0)), none),
             last, float(np.floor(last)), last, 10.0,
         )  # fmt: skip
         # nothing is staked on what is left out: what the watch adds for its share is taken off

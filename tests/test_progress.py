@@ -8,7 +8,7 @@ import pytest
 
 import jackettwin
 from jackettwin.decks import read_structure
-from jackettwin.progress import Cancelled, Told
+from jackettwin.progress import CallbackProgress, Cancelled
 from jackettwin.soil import family
 from jackettwin.structure import Rayleigh, assemble
 from jackettwin.updating import Problem, Residuals, Target, single, support_model, update
@@ -51,7 +51,7 @@ def problem() -> Problem:
     return single(model, Residuals((Target(1, f, 1e-3 * f, 0.01, 0.001),), relative=False))
 
 
-def counting(most: int) -> tuple[list[str], Told]:
+def counting(most: int) -> tuple[list[str], CallbackProgress]:
     """Return what is told, and a progress that ends the work after so many words."""
     heard: list[str] = []
 
@@ -60,7 +60,7 @@ def counting(most: int) -> tuple[list[str], Told]:
         if len(heard) >= most:
             raise Cancelled("not wanted any more")
 
-    return heard, Told(hear, hear)
+    return heard, CallbackProgress(hear, hear)
 
 
 def test_a_search_that_is_not_wanted_ends_at_its_next_start(problem: Problem) -> None:
@@ -80,7 +80,9 @@ def test_a_posterior_that_is_not_wanted_ends_within_its_ladder(problem: Problem)
 
 def test_who_listens_changes_nothing(problem: Problem) -> None:
     heard: list[str] = []
-    told = update(problem, starts=4, particles=20, sampled=False, progress=Told(inside=heard.append))
+    told = update(
+        problem, starts=4, particles=20, sampled=False, progress=CallbackProgress(inside=heard.append)
+    )
     silent = update(problem, starts=4, particles=20, sampled=False)
     np.testing.assert_array_equal(told.best.theta, silent.best.theta)
     assert any("starts" in words for words in heard)

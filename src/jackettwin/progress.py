@@ -31,7 +31,7 @@ class Progress(Protocol):
 
 
 @dataclass(frozen=True)
-class Told:
+class CallbackProgress:
     """A progress that calls functions.
 
     Attributes
@@ -51,12 +51,12 @@ class Told:
         """Say how far the present step is."""
         self.inside(what)
 
-    def about(self, subject: str) -> Told:
+    def about(self, subject: str) -> CallbackProgress:
         """Return a progress whose steps are within the present one, each with its subject before it."""
-        return Told(
+        return CallbackProgress(
             lambda what: self.inside(f"{subject}: {what}"), lambda what: self.inside(f"{subject}: {what}")
         )
 
 
-SILENT = Told()
+SILENT = CallbackProgress()
 """Tells nobody and never ends the work."""

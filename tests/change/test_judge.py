@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from observations import BEGUN, seen
 
-from jackettwin.change.judge import JUDGED, Days, Judged, judge
+from jackettwin.change.judge import JUDGED, Days, StoredMonitoring, judge
 from jackettwin.twin import Observation, TwinModel, TwinState, advance_all
 from jackettwin.twin.config import WatchSettings
 
@@ -27,7 +27,7 @@ def days_of(observations: list[Observation]) -> Days:
 
 
 @pytest.fixture(scope="module")
-def judged() -> Judged:
+def judged() -> StoredMonitoring:
     return judge(MODEL, days_of(CHANGED), settings=SIXTY)[0]
 
 
@@ -42,7 +42,7 @@ def test_nothing_is_said_before_a_baseline_is_whole() -> None:
     assert "24 of 60 days" in str(finding)
 
 
-def test_a_change_is_an_alarm_and_quiet_days_are_none(judged: Judged) -> None:
+def test_a_change_is_an_alarm_and_quiet_days_are_none(judged: StoredMonitoring) -> None:
     (alarm,) = judged.alarms
     assert alarm["kind"] == "frequency" and alarm["size"] == pytest.approx(-0.008, abs=0.002)
     low, high = alarm["began_interval_90"]
@@ -60,8 +60,8 @@ def test_an_alarm_is_said_once_and_says_what_changed() -> None:
     assert judge(MODEL, days_of(CHANGED), kept, settings=SIXTY)[1] == ()
 
 
-def test_order_pieces_and_the_disk_make_no_difference(judged: Judged) -> None:
-    kept: Judged | None = None
+def test_order_pieces_and_the_disk_make_no_difference(judged: StoredMonitoring) -> None:
+    kept: StoredMonitoring | None = None
     some = list(CHANGED)
     np.random.default_rng(3).shuffle(some)
     late = some[:7]
@@ -94,7 +94,7 @@ def test_a_quiet_day_asks_for_that_day_alone() -> None:
     assert json.dumps(JUDGED.dump(resumed)) == json.dumps(JUDGED.dump(judge(MODEL, days, None, SIXTY)[0]))
 
 
-def test_a_baseline_is_learnt_anew_on_a_persons_word(judged: Judged) -> None:
+def test_a_baseline_is_learnt_anew_on_a_persons_word(judged: StoredMonitoring) -> None:
     """From the day of the change on what changed is the baseline: nothing changes after it."""
     anew = WatchSettings(baseline_days=30, relearn=date(2025, 1, 2) + timedelta(days=BEGUN))
     days = days_of(seen(130, step=-0.008))

@@ -10,7 +10,7 @@ from observations import seen
 from tests.change.test_judge import CHANGED, MODEL, SIXTY, days_of
 
 from jackettwin.change import corrections
-from jackettwin.change.judge import JUDGED, Judged, judge
+from jackettwin.change.judge import JUDGED, StoredMonitoring, judge
 from jackettwin.change.watch_document import corrected_sentence, with_later_look
 
 
@@ -65,7 +65,7 @@ def test_looks_end_after_a_month_and_what_is_kept_is_small_again() -> None:
 
 @pytest.mark.parametrize("last", [-30, -8])
 def test_looks_go_on_from_what_was_stored(last: int) -> None:
-    first: Judged | None = judge(MODEL, days_of(CHANGED[:last]), settings=SIXTY)[0]
+    first: StoredMonitoring | None = judge(MODEL, days_of(CHANGED[:last]), settings=SIXTY)[0]
     stored = JUDGED.load(json.loads(json.dumps(JUDGED.dump(first))))
     resumed, _ = judge(MODEL, days_of(CHANGED), stored, SIXTY)
     whole, _ = judge(MODEL, days_of(CHANGED), None, SIXTY)

@@ -11,7 +11,7 @@ from click.testing import CliRunner, Result
 
 from jackettwin import study
 from jackettwin.cli import main
-from jackettwin.study.follow_result import Followed, Known
+from jackettwin.study.follow_result import DayEstimate, Followed
 from jackettwin.twin import TwinState
 from jackettwin.updating.drift import Drift
 
@@ -22,7 +22,7 @@ def found(n_days: int = 3) -> Followed:
     for i in range(n_days):
         k, eta = 3e9 * 0.99**i, 0.1
         days.append(
-            Known(
+            DayEstimate(
                 f"2025-01-0{1 + i}",
                 datetime(2025, 1, 1 + i, 12, 30, tzinfo=UTC),
                 2,

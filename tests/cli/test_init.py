@@ -46,7 +46,7 @@ def test_a_german_logger_becomes_a_twin_that_reads(tmp_path: Path) -> None:
     config = read_twin(out)
     assert [sensor.channel for sensor in config.sensors] == ["ACC_088m_E", "ACC_088m_N", "TT_FA"]
     assert config.records[0].resolve() == record
-    assert config.unsaid.timezone == "Europe/Berlin"
+    assert config.defaults.timezone == "Europe/Berlin"
     written_text = out.read_text()
     assert "from 2025-06-01T12:00:00Z" in written_text
     assert "# - {channel: ACC_leg_a" in written_text
@@ -110,7 +110,7 @@ def test_units_come_by_option_or_are_refused(tmp_path: Path) -> None:
     assert not out.exists()
     assert run(str(record), "--out", str(out), "--unit", "mg")[0] == 0
     assert "logger: {unit: mg}" in out.read_text()
-    assert read_twin(out).unsaid.unit == "mg"
+    assert read_twin(out).defaults.unit == "mg"
 
 
 def test_more_records_than_are_read_are_listed_all_the_same(tmp_path: Path) -> None:

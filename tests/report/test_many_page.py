@@ -15,7 +15,7 @@ from jackettwin.identification.many_records.fusion import FusedMode
 from jackettwin.identification.selection.candidates import with_covariance
 from jackettwin.report.figures.tracks import MOST_POINTS, tracks
 from jackettwin.report.pages.many_records import build_many_page
-from jackettwin.study.many_records.summary import Together
+from jackettwin.study.many_records.summary import FusedBatch
 from jackettwin.twin.observe_files import Failed
 
 
@@ -49,7 +49,7 @@ def test_a_year_is_drawn_as_medians_that_still_show_the_swing() -> None:
 
 def test_page_names_modes_failures_and_warnings(identifications, tmp_path: Path) -> None:
     fused = fuse(identifications)
-    together = Together(fused, (), ("beware",), fused.duration_s)
+    together = FusedBatch(fused, (), ("beware",), fused.duration_s)
     path = build_many_page(together, (Failed("r9.csv", "no such file"),), tmp_path / "many.html")
     text = path.read_text(encoding="utf-8")
     for said in ("mode 1", "beware", "r9.csv", "no such file", f"{fused.modes[0].frequency_hz:.4f}"):
@@ -57,5 +57,7 @@ def test_page_names_modes_failures_and_warnings(identifications, tmp_path: Path)
 
 
 def test_records_that_cannot_be_fused_still_have_a_page(tmp_path: Path) -> None:
-    path = build_many_page(Together(None, (), ("not fused: other sensors",), 600.0), (), tmp_path / "m.html")
+    path = build_many_page(
+        FusedBatch(None, (), ("not fused: other sensors",), 600.0), (), tmp_path / "m.html"
+    )
     assert "other sensors" in path.read_text(encoding="utf-8")

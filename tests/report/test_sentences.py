@@ -11,7 +11,7 @@ from jackettwin.answers.result import Clearance, FitAnswer, GroundAnswer, LawAns
 from jackettwin.report.tables.answers import ground_table
 from jackettwin.report.tables.sentences import _model, percent_words, sentences, span_words
 from jackettwin.study.scrutiny import Scrutiny
-from jackettwin.updating import DatumCheck, Objection, OrderCheck, ShapeCheck, Tolerance, Unseen
+from jackettwin.updating import DatumCheck, Objection, OrderCheck, ShapeCheck, Tolerance, UndetectedError
 
 MODE = ModeAnswer(
     "fore_aft_1", Span(0.2, 0.199, 0.201), Span(0.012, 0.01, 0.014), True, True, Span(0.201, 0.195, 0.204),
@@ -253,7 +253,10 @@ def test_what_these_data_would_not_show_is_said_with_its_size() -> None:
         8.0,
         8,
         0.4,
-        unseen=(Unseen(SOFT, 0.95, np.array([-0.1, 0.0])), Unseen(nothing, np.inf, np.zeros(2))),
+        unseen=(
+            UndetectedError(SOFT, 0.95, np.array([-0.1, 0.0])),
+            UndetectedError(nothing, np.inf, np.zeros(2)),
+        ),
     )
     shorts = sentences(replace(ANSWERS, scrutiny=Scrutiny(found))).questions[0].short
     assert (
@@ -265,7 +268,7 @@ def test_what_these_data_would_not_show_is_said_with_its_size() -> None:
 
 def test_another_law_that_is_not_revealed_is_spoken_of_by_powers_of_frequency() -> None:
     law = replace(SOFT, name="law", words="loss that grows otherwise", std=1.0, unit="power")
-    found = Objection((), 8.0, 8, 0.4, unseen=(Unseen(law, 1.1, np.array([0.0, -0.2])),))
+    found = Objection((), 8.0, 8, 0.4, unseen=(UndetectedError(law, 1.1, np.array([0.0, -0.2])),))
     shorts = sentences(replace(ANSWERS, scrutiny=Scrutiny(found))).questions[0].short
     assert (
         "These data would not reveal loss that grows otherwise (ω^1, with which loss factor would be 18 % "

@@ -261,7 +261,7 @@ def upload(
 def turn(service: Service, times: int = 3) -> None:
     """Start a dispatcher, as after a death of the server, and let it do what is due."""
     with writing(service.database) as connection:
-        work.bury(connection, service.server_id)
+        work.remove_server(connection, service.server_id)
     dispatcher = Dispatcher(service)
     for _ in range(times):
         dispatcher._turn()

@@ -151,7 +151,7 @@ def test_a_result_that_comes_after_the_lease_was_lost_changes_nothing(anywhere: 
     slow = another(anywhere, "slow")
     late = leased(slow)
     with writing(anywhere.database) as connection:
-        work.bury(connection, "slow")
+        work.remove_server(connection, "slow")
     turn(anywhere)
     before = hashes(anywhere)
     keep(slow, late)
@@ -166,7 +166,7 @@ def test_a_result_that_comes_while_another_server_holds_the_lease_changes_nothin
     slow, quick = another(anywhere, "slow"), another(anywhere, "quick")
     late = leased(slow)
     with writing(anywhere.database) as connection:
-        work.bury(connection, "slow")
+        work.remove_server(connection, "slow")
     current = leased(quick)
     keep(slow, late)
     with reading(anywhere.database) as connection:

@@ -17,7 +17,7 @@ from jackettwin.service import adopt_version, rebuild
 from jackettwin.service.answer_cache import Answer, AnswerCache, has_tag
 from jackettwin.service.context import Service
 from jackettwin.service.web.app import create_app
-from jackettwin.service.web.dependencies import Told
+from jackettwin.service.web.dependencies import ReadsAtVersion
 from jackettwin.service.web.routes import assets, assumptions, findings, modes, records
 from jackettwin.service.work.housekeeping import Housekeeping, end_mutes, prune
 from jackettwin.store import journal, results, writing
@@ -54,7 +54,7 @@ def told() -> list[str]:
         route for module in (assets, assumptions, findings, modes, records) for route in module.router.routes
     ]
     hints = [(r.path, get_type_hints(inspect.unwrap(r.endpoint), include_extras=True)) for r in routes]
-    return [path for path, found in hints if Told in found.values()]
+    return [path for path, found in hints if ReadsAtVersion in found.values()]
 
 
 def test_every_answer_about_assets_has_a_version() -> None:

@@ -71,8 +71,8 @@ def test_a_result_counts_only_while_the_lease_is_held(database: Engine) -> None:
         work.join(c, "one", {}, NOW)
         job = work.lease(c, "one", 1, NOW)[0]
     with writing(database) as c:
-        assert work.bury(c, "one", at_beat=7) == []  # it beat meanwhile
-        assert list(work.bury(c, "one", at_beat=0)) == [job.id]
+        assert work.remove_server(c, "one", at_beat=7) == []  # it beat meanwhile
+        assert list(work.remove_server(c, "one", at_beat=0)) == [job.id]
     with writing(database) as c:
         assert not work.finish(c, job, "one", "done", NOW)
         again = work.lease(c, "two", 1, NOW)[0]
@@ -89,7 +89,7 @@ def test_a_server_whose_lease_another_one_took_over_ends_nothing(database: Engin
         asked(c, "a")
         work.join(c, "late", {}, NOW)
         late = work.lease(c, "late", 1, NOW)[0]
-        work.bury(c, "late")
+        work.remove_server(c, "late")
     with writing(database) as c:
         current = work.lease(c, "next", 1, NOW)[0]
     with writing(database) as c:
@@ -164,7 +164,7 @@ def test_one_server_has_a_post_until_it_leaves_or_is_dead(database: Engine) -> N
             assert not work.hold_post(c, "intake", "two")
             assert work.hold_post(c, "other", "two")
     with writing(database) as c:
-        work.bury(c, "one")
+        work.remove_server(c, "one")
         assert work.hold_post(c, "intake", "two")
         work.join(c, "one", {}, NOW)  # it was not dead after all
         assert not work.hold_post(c, "intake", "one")

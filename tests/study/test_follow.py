@@ -15,8 +15,8 @@ from jackettwin.change import Days
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.files import write_json
 from jackettwin.identification import ModalEstimate, RealPole
-from jackettwin.progress import Progress, Told
-from jackettwin.records.readers.channels import Unsaid
+from jackettwin.progress import CallbackProgress, Progress
+from jackettwin.records.readers.channels import FileDefaults
 from jackettwin.report.figures.follow import parameters_through_time
 from jackettwin.report.pages.follow import build_follow_page
 from jackettwin.response.sensors import Sensor
@@ -131,7 +131,9 @@ def test_a_late_record_renews_its_day_and_those_after(
 ) -> None:
     without = follow_observations(config, model, [*records[:3], *records[4:]])
     steps: list[str] = []
-    late = follow_observations(config, model, records[3:4], prior=without, progress=Told(steps.append))
+    late = follow_observations(
+        config, model, records[3:4], prior=without, progress=CallbackProgress(steps.append)
+    )
     assert steps == ["update after 2025-01-02", "update after 2025-01-03"]
     assert late.state == followed.state and late.days == followed.days
     assert any("older than 1 days" in line for line in late.warnings)
@@ -232,7 +234,7 @@ def test_what_cannot_be_followed(
         patch.setattr(
             import_module("jackettwin.twin.observe_files"), "observe", None
         )  # nothing is identified in it
-        follow(replace(config, records=(undated,), unsaid=Unsaid(sample_rate_hz=10.0)))
+        follow(replace(config, records=(undated,), defaults=FileDefaults(sample_rate_hz=10.0)))
     relative = replace(config, update=config.update.model_copy(update={"weighting": "relative"}))
     with pytest.raises(InputError, match="needs a standard deviation"):
         follow_observations(relative, model, records)

@@ -16,7 +16,7 @@ from jackettwin.errors import InputError
 from jackettwin.files import KeptInFolder, json_pieces
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.synthetic import ModalSystem, simulate
-from jackettwin.progress import Told
+from jackettwin.progress import CallbackProgress
 from jackettwin.records import Record, read_record, write_record
 from jackettwin.records.readers import record_files
 from jackettwin.study.many_records.document import many_document
@@ -110,7 +110,7 @@ def test_what_was_done_before_an_interruption_is_not_done_again(
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        observe_many(files, MODEL, keep=keep, workers=1, progress=Told(interrupt))
+        observe_many(files, MODEL, keep=keep, workers=1, progress=CallbackProgress(interrupt))
     again = observe_many(files, MODEL, keep=keep, workers=1)
     assert started == ["r0", "r1", "r2", "r3"]
     # to the last digit and letter

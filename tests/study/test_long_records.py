@@ -13,17 +13,17 @@ import pyarrow.parquet as pq
 import pytest
 
 from jackettwin.records import read_record
-from jackettwin.records.readers.channels import Unsaid
+from jackettwin.records.readers.channels import FileDefaults
 from jackettwin.study.many_records.long_records import without_long
 
 CHANNELS = 6
 CHILD = """
 import sys
 from pathlib import Path
-from jackettwin.records.readers.channels import Unsaid
+from jackettwin.records.readers.channels import FileDefaults
 from jackettwin.study.many_records.long_records import without_long
 
-files = without_long([Path(sys.argv[1])], Path(sys.argv[2]), Unsaid())
+files = without_long([Path(sys.argv[1])], Path(sys.argv[2]), FileDefaults())
 # not ru_maxrss: that begins with the memory of the parent
 print(len(files), open("/proc/self/status").read().split("VmHWM:")[1].split()[0])
 """
@@ -77,13 +77,13 @@ def test_short_records_and_unreadable_ones_stay_as_they_are(tmp_path: Path) -> N
     broken.write_bytes(b"no parquet" * 100_000)
     missing = tmp_path / "missing.csv"
     files = (short, broken, missing)
-    assert without_long(files, tmp_path / "pieces", Unsaid()) == files
+    assert without_long(files, tmp_path / "pieces", FileDefaults()) == files
 
 
 def test_pieces_stand_in_the_place_of_the_record(tmp_path: Path) -> None:
     long, short = csv(tmp_path / "long.csv", 1.5), csv(tmp_path / "short.csv", 0.5)
     said: list[str] = []
-    files = without_long((short, long, short), tmp_path / "pieces", Unsaid(), said.append)
+    files = without_long((short, long, short), tmp_path / "pieces", FileDefaults(), said.append)
     assert [file.stem for file in files] == ["short", *(f"long_{i:04d}" for i in range(1, 10)), "short"]
     assert read_record(files[3]).data.shape == (CHANNELS, 6000)
     assert said == ["divide long.csv into pieces of 600 s"]

@@ -46,7 +46,7 @@ def test_a_record_of_another_turbine_is_measured_and_counts_nowhere(
 ) -> None:
     """The shipped record played 1.7 times as fast: shapes of the twin, at frequencies that are not."""
     other = tmp_path / "other.parquet"
-    own = read_record(config.records[0], config.unsaid)
+    own = read_record(config.records[0], config.defaults)
     write_record(replace(own, sample_rate_hz=1.7 * own.sample_rate_hz, metadata={}), other)
     both = measured(replace(config, records=(config.records[0], other)))
     assert [seen.name for seen in both.observations] == [config.records[0].stem]

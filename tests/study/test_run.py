@@ -13,7 +13,7 @@ from observations import estimate, observation
 from jackettwin.errors import InputError
 from jackettwin.files.json import null_for_nan
 from jackettwin.identification import ModalEstimate
-from jackettwin.progress import Told
+from jackettwin.progress import CallbackProgress
 from jackettwin.records import read_record, write_record
 from jackettwin.response.modes.labels import mode_kinds, mode_labels
 from jackettwin.study import TwinResult, count_steps, run_document, run_twin
@@ -47,7 +47,7 @@ def quick(name: str) -> TwinConfig:
 
 @pytest.fixture(scope="module")
 def pile(steps: list[str]) -> TwinResult:
-    return run_twin(quick("openfast_pile"), progress=Told(steps.append))
+    return run_twin(quick("openfast_pile"), progress=CallbackProgress(steps.append))
 
 
 @pytest.fixture(scope="module")

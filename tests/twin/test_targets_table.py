@@ -122,8 +122,8 @@ def test_a_twin_takes_the_table_and_names_among_its_targets(tmp_path: Path) -> N
 def test_a_logger_is_told_once_for_all_records(tmp_path: Path) -> None:
     head = "structure: jacket15\nrecords: [a.csv]\nlogger: "
     (tmp_path / "twin.yaml").write_text(head + "{unit: mg, clock: +02:00, sample_rate_hz: 25}\n")
-    unsaid = read_twin(tmp_path / "twin.yaml").unsaid
-    assert (unsaid.unit, unsaid.timezone, unsaid.sample_rate_hz) == ("mg", "+02:00", 25.0)
+    defaults = read_twin(tmp_path / "twin.yaml").defaults
+    assert (defaults.unit, defaults.timezone, defaults.sample_rate_hz) == ("mg", "+02:00", 25.0)
     (tmp_path / "twin.yaml").write_text(head + "{clock: here}\n")
     with pytest.raises(InputError, match="is not a time zone") as refused:
         read_twin(tmp_path / "twin.yaml")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.progress import Told
+from jackettwin.progress import CallbackProgress
 from jackettwin.soil import family
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating import (
@@ -137,13 +137,13 @@ def test_a_search_that_does_not_settle_stops_and_says_so(
 ) -> None:
     """One start finds every solution once: it would double for ever, and is allowed one evaluation."""
     problem, told = single(models["kelvin-voigt"], frequencies_alone), list[str]()
-    stopped = search(problem, starts=1, most_evaluations=1, progress=Told(inside=told.append))
+    stopped = search(problem, starts=1, most_evaluations=1, progress=CallbackProgress(inside=told.append))
     assert stopped.starts == 1 and stopped.spent is not None and stopped.spent > 1
     assert stopped.statement.startswith(f"Not complete after {stopped.spent} evaluations: 1 starts")
     assert told[0] == "1 of 1 starts, 0 distinct solutions from earlier ones"
     assert all(text.startswith("search") for text in told[1:])
     told.clear()
-    settled = search(problem, starts=1, progress=Told(inside=told.append))
+    settled = search(problem, starts=1, progress=CallbackProgress(inside=told.append))
     assert settled.spent is None and settled.starts > 1
     assert len([text for text in told if " starts" in text]) == settled.starts
     assert "Not complete" not in settled.statement
@@ -200,7 +200,11 @@ def test_interrupting_a_search_ends_it(models: dict[str, SupportModel], frequenc
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        search(single(models["kelvin-voigt"], frequencies_alone), starts=1, progress=Told(inside=interrupt))
+        search(
+            single(models["kelvin-voigt"], frequencies_alone),
+            starts=1,
+            progress=CallbackProgress(inside=interrupt),
+        )
 
 
 def test_unknown_method(models: dict[str, SupportModel], table_6_1: Residuals) -> None:

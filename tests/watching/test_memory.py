@@ -7,7 +7,7 @@ import pytest
 
 from jackettwin.watching.design import RegressionPrior
 from jackettwin.watching.hours import Hours
-from jackettwin.watching.learning import LARGER, OCTAVES, Learnt, _larger, _pooled, learn
+from jackettwin.watching.learning import LARGER, OCTAVES, LearntModels, _larger, _pooled, learn
 
 PRIOR = RegressionPrior(np.zeros((2, 1)), np.full((2, 1), 5.0))
 
@@ -27,7 +27,7 @@ def series(rng: np.random.Generator, days: tuple[float, ...]) -> Hours:
     return Hours(t, np.ones((n, 1)), y, np.full((n, 2), 0.5), none, none)
 
 
-def slow_share(learnt: Learnt) -> float:
+def slow_share(learnt: LearntModels) -> float:
     """Return the share of the variance that lasts longer than ten days, by all models."""
     weight = np.exp(learnt.log_weights)
     return float(weight @ [memory.shares[memory.days > 10.0].sum() for memory in learnt.memories])

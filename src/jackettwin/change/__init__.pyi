@@ -4,7 +4,7 @@ from .judge import (
     JUDGED as JUDGED,
     Columns as Columns,
     Days as Days,
-    Judged as Judged,
+    StoredMonitoring as StoredMonitoring,
     corrections as corrections,
     finding_of as finding_of,
     history_of as history_of,
@@ -15,7 +15,7 @@ from .smallest_changes import (
     smallest_documents as smallest_documents,
     smallest_sentence as smallest_sentence,
 )
-from .table_monitoring import Alarm as Alarm, Watched as Watched
+from .table_monitoring import Alarm as Alarm, MonitoredTable as MonitoredTable
 from .watch_document import (
     alarm_document as alarm_document,
     alike_sentence as alike_sentence,

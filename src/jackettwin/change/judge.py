@@ -41,7 +41,7 @@ _USUAL = WatchSettings()
 
 
 @dataclass(frozen=True)
-class Judged:
+class StoredMonitoring:
     """Stored monitoring results from one call to the next.
 
     Attributes
@@ -75,7 +75,7 @@ class Judged:
         return self.baseline_days, self.arl_years, self.relearn
 
 
-JUDGED = StoredSchema("twin_judged", Judged)
+JUDGED = StoredSchema("twin_judged", StoredMonitoring)
 """Stored form of judgements."""
 
 
@@ -119,10 +119,10 @@ class _Identities(Mapping[str, str]):
 def judge(
     model: TwinModel,
     every: Days,
-    kept: Judged | None = None,
+    kept: StoredMonitoring | None = None,
     settings: WatchSettings = _USUAL,
     ground: Ground = UNDESCRIBED,
-) -> tuple[Judged, tuple[Finding, ...]]:
+) -> tuple[StoredMonitoring, tuple[Finding, ...]]:
     """Return the judgement of the days of a state, and new findings.
 
     The last day is omitted until a later one has begun, since it may be incomplete.
@@ -134,7 +134,7 @@ def judge(
     ground : what is known of it, for the causes of a change
     """
     first = settings.relearn.isoformat() if settings.relearn else UNDATED
-    fresh = Judged(settings.baseline_days, settings.arl_years, relearn=first)
+    fresh = StoredMonitoring(settings.baseline_days, settings.arl_years, relearn=first)
     kept = kept or fresh
     dates = [d for d in every.identities if d != UNDATED and d >= first][:-1]
     if not dates:
@@ -166,7 +166,9 @@ def judge(
     return known, tuple(findings)
 
 
-def _known(kept: Judged, fresh: Judged, every: Days, before: Sequence[str], after: Sequence[str]) -> Judged:
+def _known(
+    kept: StoredMonitoring, fresh: StoredMonitoring, every: Days, before: Sequence[str], after: Sequence[str]
+) -> StoredMonitoring:
     """Return the stored results that are still valid."""
     if kept.promise != fresh.promise:
         return fresh
@@ -188,12 +190,12 @@ def _causes(model: TwinModel, baseline: History, ground: Ground) -> ModelCauses 
 
 
 def _day(
-    known: Judged,
+    known: StoredMonitoring,
     baseline: Callable[[], History],
     day: History,
     name: str,
     causes: Callable[[], ModelCauses | None],
-) -> Judged:
+) -> StoredMonitoring:
     """Return the results after one more day."""
     if known.watch is None or not day.days.size:
         return replace(known, through=name)
@@ -229,7 +231,7 @@ def finding_of(alarm: Mapping[str, Any]) -> Finding:
     return Finding("sensor_changed" if sensor else turned, ", ".join(alarm["quantities"]), params)
 
 
-def sight_of(judged: Judged) -> Finding | None:
+def sight_of(judged: StoredMonitoring) -> Finding | None:
     """Return the finding on the smallest changes that would be found, if they are known."""
     said = smallest_sentence([dict(one) for one in judged.smallest])
     return Finding("watch_sees", None, {"said": said}) if said else None

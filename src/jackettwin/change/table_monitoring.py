@@ -68,7 +68,7 @@ class Alarm:
 
 
 @dataclass(frozen=True)
-class Watched:
+class MonitoredTable:
     """A monitored table of modes.
 
     Attributes
@@ -105,7 +105,7 @@ def watch_table(
     gravity: bool = True,
     ground: Ground = UNDESCRIBED,
     progress: Callable[[str], None] = lambda _: None,
-) -> Watched:
+) -> MonitoredTable:
     """Monitor a table of modes; no row is used before its day.
 
     Parameters
@@ -165,7 +165,7 @@ def watch_table(
             pending = look.pending
     found = [one for block in watch.blocks for one in slopes(block, watch.design)]
     per_unit: dict[tuple[str, int], dict[str, float]] = dict(zip(watch.quantities, found, strict=True))
-    return Watched(
+    return MonitoredTable(
         table,
         (first, end),
         watch,

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from jackettwin.change.smallest_changes import smallest_documents
-from jackettwin.change.table_monitoring import Alarm, Watched
+from jackettwin.change.table_monitoring import Alarm, MonitoredTable
 from jackettwin.watching import CauseVerdict, Watch
 
 _Z90 = 1.645
@@ -19,7 +19,7 @@ _NAMED, _LIKELY = 3, 0.001
 """Number of causes in a sentence if none is clear, and the smallest probability of a listed cause."""
 
 
-def watched_document(watched: Watched) -> dict[str, Any]:
+def watched_document(watched: MonitoredTable) -> dict[str, Any]:
     """Return a judged table as plain data; sizes are relative changes, times UTC."""
     table = watched.table
     first, end = watched.baseline_days
@@ -187,7 +187,7 @@ def _likeliest(alarm: Alarm) -> str:
     return f"most likely {named[0]}" if clear else f"cause not clear: {', '.join(named)}"
 
 
-def statement(watched: Watched) -> str:
+def statement(watched: MonitoredTable) -> str:
     """Return the outcome in a sentence."""
     table = watched.table
     if not watched.looks:

@@ -22,7 +22,7 @@ from rich.console import Console
 from jackettwin.cli.interrupts import insisting
 from jackettwin.cli.plain_progress import EVERY_S, plain_progress
 from jackettwin.errors import InputError, JackettwinError
-from jackettwin.progress import Told
+from jackettwin.progress import CallbackProgress
 
 if TYPE_CHECKING:
     from jackettwin.report import Table
@@ -204,7 +204,7 @@ def plain(text: str) -> str:
 
 
 @contextmanager
-def progress(total: int, title: str) -> Iterator[Told]:
+def progress(total: int, title: str) -> Iterator[CallbackProgress]:
     """Yield the function that reports the next of ``total`` steps, by a bar on a terminal, else by lines."""
     if not messages.is_terminal:
         with plain_progress(total, lambda line: messages.print(line, soft_wrap=True, markup=False)) as told:
@@ -216,7 +216,7 @@ def progress(total: int, title: str) -> Iterator[Told]:
     with Progress(*columns, console=messages) as bar:
         task = bar.add_task(title, total=total)
         steps = count()
-        yield Told(
+        yield CallbackProgress(
             lambda what: bar.update(task, description=what, completed=next(steps)),
             lambda what: bar.update(task, description=what),
         )

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from jackettwin.files import KeptInFolder
     from jackettwin.identification import Examination, IdentificationSettings, Pick
     from jackettwin.progress import Progress
-    from jackettwin.records import Unsaid
+    from jackettwin.records import FileDefaults
 
 
 class _Method(click.types.StringParamType):
@@ -144,15 +144,15 @@ def identify_command(
         raise InputError("takes one record", field="--compare", value=n, remedy="run it for each record")
     if merge == "preger":
         _refuse_preger(len(files), {"--report": report, "--picks": picks_file})
-    how: dict[str, Any] = {"picks": picks, "unsaid": _unsaid(sample_rate, unit, gain, zone)}
+    how: dict[str, Any] = {"picks": picks, "defaults": _unsaid(sample_rate, unit, gain, zone)}
     for path in (out, report):
         if path is not None:
             check_room(path)
     with tempfile.TemporaryDirectory(prefix="jackettwin-") as passing:
         if not whole and merge == "poser":
-            files = _without_long(files, Path(passing) / "pieces", how["unsaid"])
+            files = _without_long(files, Path(passing) / "pieces", how["defaults"])
         if merge == "preger":
-            document, show = _setups(files, settings, how["unsaid"]), show_one
+            document, show = _setups(files, settings, how["defaults"]), show_one
         elif len(files) == 1:
             how["keep"] = cache.keeping(fresh=fresh)
             document, show = _one(files[0], settings, how, compare, report), show_one
@@ -186,13 +186,13 @@ def _keep(out: Path | None, n_records: int, *, fresh: bool) -> KeptInFolder | No
     return None if folder is None else cache.kept_in(folder, fresh=fresh)
 
 
-def _without_long(files: tuple[Path, ...], folder: Path, unsaid: Unsaid) -> tuple[Path, ...]:
+def _without_long(files: tuple[Path, ...], folder: Path, defaults: FileDefaults) -> tuple[Path, ...]:
     """Return the files, with records longer than an hour replaced by ten-minute pieces."""
     from jackettwin.study import LONG, PIECE_S
     from jackettwin.study.many_records.long_records import without_long
 
     with progress(len(files), "read") as step:
-        cut = without_long(files, folder, unsaid, step)
+        cut = without_long(files, folder, defaults, step)
     if len(cut) > len(files):
         messages.print(
             f"records longer than {LONG * PIECE_S / 3600:g} h are identified in pieces of {PIECE_S:g} s on "
@@ -268,11 +268,13 @@ def _one(
     return document
 
 
-def _setups(files: Sequence[Path], settings: IdentificationSettings, unsaid: Unsaid) -> dict[str, Any]:
+def _setups(
+    files: Sequence[Path], settings: IdentificationSettings, defaults: FileDefaults
+) -> dict[str, Any]:
     from jackettwin.identification import preger_document
 
     with progress(len(files) + 1, "identify") as step:
-        return preger_document(files, settings, unsaid, step)
+        return preger_document(files, settings, defaults, step)
 
 
 def _refuse_preger(n_files: int, options: Mapping[str, object]) -> None:
@@ -316,7 +318,9 @@ def _many(
 
     model = TwinModel("identify", identification=settings, picks=how["picks"])
     with progress(len(files), "identify") as step:
-        batch = observe_many(files, model, keep=keep, unsaid=how["unsaid"], workers=workers, progress=step)
+        batch = observe_many(
+            files, model, keep=keep, defaults=how["defaults"], workers=workers, progress=step
+        )
     if not len(batch):
         raise InputError(
             f"none of {len(batch.failed)} records could be identified; the first: {batch.failed[0].problem}",
@@ -372,15 +376,17 @@ def _band(text: str | None) -> dict[str, float]:
     return {"lowest_frequency_hz": low, "highest_frequency_hz": high}
 
 
-def _unsaid(sample_rate: float | None, unit: str | None, gain: float | None, zone: str | None) -> Unsaid:
+def _unsaid(
+    sample_rate: float | None, unit: str | None, gain: float | None, zone: str | None
+) -> FileDefaults:
     from jackettwin.quantities import plain_unit, vibration_of
-    from jackettwin.records import Unsaid, read_zone
+    from jackettwin.records import FileDefaults, read_zone
 
     if unit is not None:
         vibration_of(plain_unit(unit), field="--unit")
     if zone is not None:
         read_zone(zone, field="--timezone")
-    return Unsaid(sample_rate, unit, gain, zone)
+    return FileDefaults(sample_rate, unit, gain, zone)
 
 
 def _picks(path: str | None, files: Sequence[Path]) -> tuple[Pick, ...]:

@@ -15,7 +15,7 @@ from jackettwin.cli.console import FiniteFloat, Reply, answers, messages, progre
 from jackettwin.errors import InputError, located
 
 if TYPE_CHECKING:
-    from jackettwin.records import Record, Unsaid
+    from jackettwin.records import FileDefaults, Record
     from jackettwin.study.draft import Draft
 
 
@@ -26,7 +26,7 @@ _QUESTIONS = {
     "sample_rate_hz": ("sample_rate_hz", "Sample rate of the files [Hz]", float),
     "gain": ("gain", "Value of one count in the unit", float),
 }
-"""Missing property → its name in ``Unsaid``, the prompt, and its type."""
+"""Missing property → its name in ``FileDefaults``, the prompt, and its type."""
 
 
 @click.command("init")
@@ -66,7 +66,7 @@ def init_command(
     """
     from jackettwin.decks import read_structure
     from jackettwin.files import atomic_path, check_room
-    from jackettwin.records import Unsaid, read_zone, record_files
+    from jackettwin.records import FileDefaults, read_zone, record_files
     from jackettwin.structure import assemble
     from jackettwin.study.draft import draft_twin
     from jackettwin.twin import model_of_records, read_twin
@@ -88,11 +88,11 @@ def init_command(
             rotary_inertia=stated.get("rotary_inertia"),
             subdivide=stated.get("subdivide"),
         )
-        read, left_out, unsaid = [], [], Unsaid(sample_rate, unit, gain, zone)
+        read, left_out, defaults = [], [], FileDefaults(sample_rate, unit, gain, zone)
         for file in files[:_MOST_READ]:
             step(f"read {file.name}")
             try:
-                record, unsaid = _read(file, unsaid)
+                record, defaults = _read(file, defaults)
             except InputError as error:
                 if str(file) in records:
                     raise
@@ -104,7 +104,7 @@ def init_command(
             raise left_out[0]
         step("write and check")
         further = [_beside(file, out) for file in files[_MOST_READ:]]
-        draft = draft_twin(_structure_name(structure, out), assembly, read, unsaid, further)
+        draft = draft_twin(_structure_name(structure, out), assembly, read, defaults, further)
         with atomic_path(out) as temporary:
             temporary.write_text(draft.text, encoding="utf-8")
         if draft.complete:
@@ -119,7 +119,7 @@ def init_command(
     return Reply({**_document(draft, out, [str(file) for file in files]), "notes": notes}, show)
 
 
-def _read(file: Path, unsaid: Unsaid) -> tuple[Record, Unsaid]:
+def _read(file: Path, defaults: FileDefaults) -> tuple[Record, FileDefaults]:
     """Return a record, and the properties the user was asked for to read it."""
     from jackettwin.identification import moving_channels
     from jackettwin.records import read_record, read_zone
@@ -127,7 +127,7 @@ def _read(file: Path, unsaid: Unsaid) -> tuple[Record, Unsaid]:
 
     while True:
         try:
-            record = read_record(file, unsaid)
+            record = read_record(file, defaults)
             with located(file=file):
                 moving_channels(record)
         except InputError as error:
@@ -135,15 +135,15 @@ def _read(file: Path, unsaid: Unsaid) -> tuple[Record, Unsaid]:
             if lacking not in _QUESTIONS or "missing" not in error.problem and lacking != "gain":
                 raise
             key, question, kind = _QUESTIONS[lacking]
-            if getattr(unsaid, key) is not None or not sys.stdin.isatty():
+            if getattr(defaults, key) is not None or not sys.stdin.isatty():
                 raise
-            unsaid = replace(unsaid, **{key: click.prompt(question, type=kind, err=True)})
+            defaults = replace(defaults, **{key: click.prompt(question, type=kind, err=True)})
             continue
         if UNSAID not in record.metadata.get("remarks", ()) or not sys.stdin.isatty():
-            return record, unsaid
+            return record, defaults
         answer = click.prompt("Zone of the logger's clock", default="UTC", err=True)
         read_zone(answer)
-        unsaid = replace(unsaid, timezone=answer)
+        defaults = replace(defaults, timezone=answer)
 
 
 def _structure_name(source: str, out: Path) -> str:

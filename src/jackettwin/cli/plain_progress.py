@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from jackettwin.progress import Told
+from jackettwin.progress import CallbackProgress
 
 EVERY_S = 1.4
 """Least time between two lines, so that a thousand records do not print a thousand lines; with delays on a
@@ -54,7 +54,7 @@ class PlainProgress:
 
 
 @contextmanager
-def plain_progress(total: int, say: Callable[[str], None]) -> Iterator[Told]:
+def plain_progress(total: int, say: Callable[[str], None]) -> Iterator[CallbackProgress]:
     """Yield a progress reporter that prints lines, with a thread that repeats them in long steps."""
     progress, done = PlainProgress(total, say), threading.Event()
 
@@ -65,7 +65,7 @@ def plain_progress(total: int, say: Callable[[str], None]) -> Iterator[Told]:
     thread = threading.Thread(target=remind, daemon=True)
     thread.start()
     try:
-        yield Told(progress.announce, progress.within)
+        yield CallbackProgress(progress.announce, progress.within)
     finally:
         done.set()
         thread.join()

@@ -34,8 +34,8 @@ from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.identification.status import ModeStatus
 from jackettwin.records import (
     Channel,
+    FileDefaults,
     Record,
-    Unsaid,
     assess,
     knows_yaw,
     read_record,
@@ -84,18 +84,18 @@ def examine_file(
     *,
     places: Sequence[Channel] = (),
     picks: tuple[Pick, ...] = (),
-    unsaid: Unsaid | None = None,
+    defaults: FileDefaults | None = None,
     compare: bool = False,
     keep: Keep = NOT_KEPT,
 ) -> Examination:
-    """Read and examine one record; ``unsaid`` gives rate and unit of a file that lacks them.
+    """Read and examine one record; ``defaults`` gives rate and unit of a file that lacks them.
 
     Raises
     ------
     InputError
         If the record cannot be read, no channel carries a signal, or the record cannot be identified.
     """
-    record = read_record(path, unsaid)
+    record = read_record(path, defaults)
     with located(file=path):
         return examine(record, settings, places=places, picks=picks, compare=compare, keep=keep)
 

@@ -33,7 +33,7 @@ from jackettwin.identification.subspace.stabilisation import stabilisation
 from jackettwin.identification.tones.sinusoid import transform
 from jackettwin.processes import on_one_blas_thread
 from jackettwin.progress import SILENT, Progress
-from jackettwin.records import Channel, Record, Unsaid, read_record, with_conditions
+from jackettwin.records import Channel, FileDefaults, Record, read_record, with_conditions
 
 if TYPE_CHECKING:
     from jackettwin.identification.estimate import ModalEstimate, ResolvedSettings, Stabilisation
@@ -74,7 +74,7 @@ class _Setups:
 def preger_document(
     files: Sequence[Path],
     settings: IdentificationSettings,
-    unsaid: Unsaid | None = None,
+    defaults: FileDefaults | None = None,
     progress: Progress = SILENT,
 ) -> dict[str, Any]:
     """Return the result document of setups that are identified together.
@@ -91,7 +91,7 @@ def preger_document(
     for path in files:
         progress(f"read {path.name}")
         with located(file=path):
-            source = with_conditions(read_record(path, unsaid))
+            source = with_conditions(read_record(path, defaults))
             ready, quality, findings, against = made_ready(source, thorough=not settings.quick)
         records.append(ready)
         doubts += against

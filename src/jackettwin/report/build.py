@@ -15,7 +15,7 @@ from jackettwin.report.sections.structure import the_structure
 from jackettwin.report.table import Table
 from jackettwin.report.tables import answers as tables
 from jackettwin.report.tables.numbers import fixed
-from jackettwin.report.tables.sentences import Said, sentences
+from jackettwin.report.tables.sentences import FirstPageWords, sentences
 from jackettwin.report.tables.updating import true_parameters_table, truth_table
 from jackettwin.study import TwinResult, true_parameters
 from jackettwin.study.truth import true_modes
@@ -90,18 +90,18 @@ def _subtitle(result: TwinResult, provenance: Rows) -> str:
     )
 
 
-def _more(said: Said, title: str) -> list[Block]:
+def _more(said: FirstPageWords, title: str) -> list[Block]:
     texts = next(q.more for q in said.questions if q.title == title)
     return [Text(texts)] if texts else []
 
 
-def _modes(result: TwinResult, *, a: Answers, said: Said) -> list[Block]:
+def _modes(result: TwinResult, *, a: Answers, said: FirstPageWords) -> list[Block]:
     blocks: list[Block] = [*_more(said, first.MODEL), tables.modes_table(a, result), *first.shapes(result)]
     known = true_modes(result)
     return [*blocks, truth_table(result, a, known)] if known else blocks
 
 
-def _ground(result: TwinResult, *, a: Answers, said: Said) -> list[Block]:
+def _ground(result: TwinResult, *, a: Answers, said: FirstPageWords) -> list[Block]:
     if not a.ground:
         return []
     blocks: list[Block] = [
@@ -114,11 +114,11 @@ def _ground(result: TwinResult, *, a: Answers, said: Said) -> list[Block]:
     return [*blocks, true_parameters_table(parameters)] if parameters else blocks
 
 
-def _damping(result: TwinResult, *, a: Answers, said: Said) -> list[Block]:
+def _damping(result: TwinResult, *, a: Answers, said: FirstPageWords) -> list[Block]:
     return [*_more(said, first.DAMPING), tables.budget_table(a)] if a.law else []
 
 
-def _next(result: TwinResult, *, a: Answers, said: Said) -> list[Block]:
+def _next(result: TwinResult, *, a: Answers, said: FirstPageWords) -> list[Block]:
     return [*_more(said, first.NEXT), *([tables.next_table(a)] if a.next_steps else [])]
 
 

@@ -22,7 +22,7 @@ Hashes = tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True)
-class DaysTold:
+class SummedDays:
     """Summary of a turbine's days, their number, and the identity of their states."""
 
     sums: workers.engine.Sums
@@ -43,7 +43,7 @@ class DayCache:
         version: assets.Version,
         model: workers.engine.TwinProfile,
         day: str | None = None,
-    ) -> DaysTold:
+    ) -> SummedDays:
         """Return the summary of all days, or those up to one; only new or changed days are read."""
         key = (version.asset, version.model_hash)
         by_day = results.state_hashes(connection, *key, day)
@@ -60,7 +60,7 @@ class DayCache:
             self._keep(key, known, sums)
         for state in states[-1:]:
             sums = workers.engine.with_day(sums, state.day, state.document)
-        return DaysTold(sums, len(hashes), results.identity_of(by_day))
+        return SummedDays(sums, len(hashes), results.identity_of(by_day))
 
     def _keep(self, key: tuple[str, str], known: Hashes, sums: workers.engine.Sums) -> None:
         with self._lock:

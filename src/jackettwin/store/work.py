@@ -280,7 +280,7 @@ def beats(connection: Connection) -> dict[str, tuple[int, dict[str, Any]]]:
     return {server: (count, about) for server, count, about in rows}
 
 
-def bury(connection: Connection, server: str, at_beat: int | None = None) -> Sequence[int]:
+def remove_server(connection: Connection, server: str, at_beat: int | None = None) -> Sequence[int]:
     """Remove a dead server and release its leases, unless its heartbeat has changed meanwhile."""
     where = [servers.c.id == server]
     if at_beat is not None:

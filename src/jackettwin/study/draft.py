@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from jackettwin.errors import InputError
 from jackettwin.identification import moving_channels
-from jackettwin.records import Channel, Record, Unsaid, with_conditions
+from jackettwin.records import Channel, FileDefaults, Record, with_conditions
 from jackettwin.records.readers.channel_names import read_name
 from jackettwin.response import Sensor, observation_matrix
 from jackettwin.structure import Assembly, Structure
@@ -79,7 +79,7 @@ def draft_twin(
     source: str,
     assembly: Assembly,
     records: Sequence[tuple[str, Record]],
-    unsaid: Unsaid,
+    defaults: FileDefaults,
     further: Sequence[str] = (),
 ) -> Draft:
     """Return a commented twin file.
@@ -92,7 +92,7 @@ def draft_twin(
         The structure's, with its geometric stiffness.
     records : sequence of (path as written into the file, record)
         At least one; the sensors are those of the first.
-    unsaid : Unsaid
+    defaults : FileDefaults
         Properties of the logger that the user gave.
     further : sequence of str
         Records that are listed but not read.
@@ -110,7 +110,7 @@ def draft_twin(
         "   # of the steel alone: CHECK",
         *_water(assembly.structure),
         "support: {tie: all}                 # or horizontal-vertical, per-leg",
-        *_logger(unsaid),
+        *_logger(defaults),
         "sensors:                            # place above mean sea level, direction in global axes: CHECK",
         *[_sensor_line(place) for place in places],
         "records:",
@@ -213,13 +213,13 @@ def _water(structure: Structure) -> list[str]:
     ]
 
 
-def _logger(unsaid: Unsaid) -> list[str]:
+def _logger(defaults: FileDefaults) -> list[str]:
     """Return the line of the logger's properties that the user gave."""
     said = {
-        "unit": unsaid.unit and _text(unsaid.unit),
-        "gain": unsaid.gain,
-        "clock": unsaid.timezone and json.dumps(unsaid.timezone),
-        "sample_rate_hz": unsaid.sample_rate_hz,
+        "unit": defaults.unit and _text(defaults.unit),
+        "gain": defaults.gain,
+        "clock": defaults.timezone and json.dumps(defaults.timezone),
+        "sample_rate_hz": defaults.sample_rate_hz,
     }
     given = ", ".join(f"{key}: {value}" for key, value in said.items() if value is not None)
     return [f"logger: {{{given}}}   # for files that do not state it"] if given else []

@@ -197,7 +197,7 @@ def _observed(
     results = observe_files(
         config.records,
         model,
-        unsaid=config.unsaid,
+        defaults=config.defaults,
         known=known,
         dated=True,
         workers=workers,

@@ -31,7 +31,7 @@ _BLIND = 100.0
 
 
 @dataclass(frozen=True)
-class Known:
+class DayEstimate:
     """Estimate of the parameters after a day: stiffness on that day, others over all days so far.
 
     Attributes
@@ -63,13 +63,13 @@ class Known:
 
 
 @dataclass(frozen=True)
-class Pooled:
+class PooledEstimate:
     """Estimate from all records up to the end of a day, made when their number has grown by a third.
 
     Attributes
     ----------
     records : number of records
-    median, interval_90, status : of every parameter, as of :class:`Known`
+    median, interval_90, status : of every parameter, as of :class:`DayEstimate`
     about : sensitivity of frequencies to the stiffness there, or None if no mode can be followed
     reference : draws of the stiffness
     """
@@ -100,7 +100,7 @@ class Followed:
     state : TwinState
         Of all records.
     warnings : sentences
-    pooled : {date: Pooled}
+    pooled : {date: PooledEstimate}
         On the days after which all records were evaluated together.
     track : Tracked or None
         State from which the tracking of the stiffness continues.
@@ -115,11 +115,11 @@ class Followed:
     reference_hz: float
     wind_m_s: float | None
     units: Mapping[str, str]
-    days: tuple[Known, ...]
+    days: tuple[DayEstimate, ...]
     drift: Drift | None
     state: TwinState
     warnings: tuple[str, ...] = field(default=())
-    pooled: Mapping[str, Pooled] = field(default_factory=dict)
+    pooled: Mapping[str, PooledEstimate] = field(default_factory=dict)
     track: Tracked | None = None
     smoothed: Mapping[str, StiffnessLevel] = field(default_factory=dict)
     ahead: Mapping[int, StiffnessLevel] = field(default_factory=dict)

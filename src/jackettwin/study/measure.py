@@ -26,7 +26,7 @@ from jackettwin.twin import (
 )
 from jackettwin.twin.exact_sums import ModeTotal
 from jackettwin.twin.observe import observed
-from jackettwin.twin.observe_files import Seen
+from jackettwin.twin.observe_files import FileResult
 from jackettwin.updating import Target
 
 
@@ -86,20 +86,20 @@ def measure(
         field.
     """
     shown: Examination | None = None
-    results: list[tuple[int, Seen | Exception]] = []
+    results: list[tuple[int, FileResult | Exception]] = []
     for i, path in enumerate(config.records):
         progress(f"identify {path.name}")
         try:
-            record = read_record(path, config.unsaid)
+            record = read_record(path, config.defaults)
             with located(file=path):
                 shown = examined(record, model, compare=compare, keep=keep)
-                results.append((i, Seen("", observed(record, shown, model))))
+                results.append((i, FileResult("", observed(record, shown, model))))
             break
         except Exception as error:  # one record that fails must not stop the others
             results.append((i, error))
     n = len(results)
     others = observe_files(
-        config.records[n:], model, unsaid=config.unsaid, workers=workers, progress=progress, keep=keep
+        config.records[n:], model, defaults=config.defaults, workers=workers, progress=progress, keep=keep
     )
     results += [(n + i, seen) for i, seen in others]
     observations, failed = sorted_out(config.records, results)

@@ -14,7 +14,7 @@ from pydantic import Field
 from jackettwin.errors import require
 from jackettwin.files import Schema
 from jackettwin.identification import IdentificationSettings, Pick
-from jackettwin.records import Unsaid
+from jackettwin.records import FileDefaults
 from jackettwin.response import Sensor
 from jackettwin.soil import DEFAULT_LAWS
 from jackettwin.structure import Assembly, Rayleigh, Structure, assemble
@@ -233,7 +233,7 @@ class TwinConfig:
     picks: tuple[Pick, ...]
     """Poles to take instead of the automatic selection, for the records they name."""
     update: UpdateSettings
-    unsaid: Unsaid = Unsaid()
+    defaults: FileDefaults = FileDefaults()
     """Properties of records whose files do not state them."""
     calibrations: Calibrations = ()
     """Calibrations of the sensors, each for a period."""

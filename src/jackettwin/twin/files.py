@@ -157,7 +157,7 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
     with located(field="support"):
         _check_ties(support, schema.update)
     with located(field="logger"):
-        unsaid = schema.logger.build()
+        defaults = schema.logger.build()
     low, high = schema.rotor_speed_rpm or (0.0, 0.0)
     require(
         low <= high,
@@ -199,7 +199,7 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         watch=schema.watch,
         life=_life(schema.life),
         records=tuple(folder / record for record in schema.records),
-        unsaid=unsaid,
+        defaults=defaults,
         targets=targets,
         shapes=_shapes(schema, targets),
         relaxations=relaxations,

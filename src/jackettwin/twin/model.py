@@ -139,7 +139,7 @@ class TwinModel:
             self.structure, tuple(by_channel[c.name] for c in seen.identification.channels)
         )
 
-    def likest_feet(self, seen: Examination) -> Feet | None:
+    def most_likely_feet(self, seen: Examination) -> Feet | None:
         """Return the feet on which the model is most similar to a record's modes; the stiffest of equals.
 
         Raises

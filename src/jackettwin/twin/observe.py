@@ -76,9 +76,9 @@ def observed(record: Record, seen: Examination, model: TwinModel) -> Observation
         If a sensor sits where the structure has no place.
     """
     found = seen.identification
-    feet = model.likest_feet(seen)
+    feet = model.most_likely_feet(seen)
     known = _known(seen, model, feet)
-    damage, unsaid = _damage(seen, model, known, feet)
+    damage, defaults = _damage(seen, model, known, feet)
     if model.identification.refine and known.held and feet is not None:
         sea = sea_share(found.modes, model.structure, model.sees(seen), feet)
         found = unlike_model(found, known.held, sea)
@@ -105,7 +105,7 @@ def observed(record: Record, seen: Examination, model: TwinModel) -> Observation
             *known.findings,
             *uncalibrated(model.calibrations, record.start_utc),
             *_unsaid(model, seen.record),
-            *unsaid,
+            *defaults,
         ),
         damage=damage,
         truth={key: value for key, value in record.metadata.items() if key in TRUTH},

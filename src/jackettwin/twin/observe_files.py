@@ -16,7 +16,7 @@ from jackettwin.errors import InputError, JackettwinError, NumericalError, locat
 from jackettwin.files import NOT_KEPT, Keep, digest
 from jackettwin.processes import in_processes
 from jackettwin.progress import SILENT, Progress
-from jackettwin.records import Record, Unsaid, read_record, record_content, record_id
+from jackettwin.records import FileDefaults, Record, read_record, record_content, record_id
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.observation import OBSERVATION, Observation
 from jackettwin.twin.observe import observe
@@ -36,7 +36,7 @@ class Failed:
 
 
 @dataclass(frozen=True)
-class Seen:
+class FileResult:
     """Result of a file.
 
     Attributes
@@ -56,18 +56,18 @@ class _Work:
     """Processing of each file."""
 
     model: TwinModel
-    unsaid: Unsaid | None
+    defaults: FileDefaults | None
     keep: Keep
     known: Collection[str]
     dated: bool
 
-    def see(self, file: Path, *, make: bool = True) -> Seen | None:
+    def see(self, file: Path, *, make: bool = True) -> FileResult | None:
         """Return the result of a file; without ``make`` only a stored one, or None."""
-        record = read_record(file, self.unsaid)
+        record = read_record(file, self.defaults)
         if self.dated and record.start_utc is None:
             raise undated(file)
         if record_id(record) in self.known:
-            return Seen("", None)
+            return FileResult("", None)
         key = observation_key(record, self.model)
         seen = self.keep.get(OBSERVATION, key)
         if seen is None and not make:
@@ -76,25 +76,25 @@ class _Work:
             with located(file=file):
                 seen = observe(record, self.model)
             self.keep.put(OBSERVATION, key, seen)
-        return Seen(key, seen)
+        return FileResult(key, seen)
 
 
 def observe_files(
     files: Sequence[Path],
     model: TwinModel,
     *,
-    unsaid: Unsaid | None = None,
+    defaults: FileDefaults | None = None,
     known: Collection[str] = (),
     dated: bool = False,
     workers: int | None = None,
     progress: Progress = SILENT,
     keep: Keep = NOT_KEPT,
-) -> Iterator[tuple[int, Seen | Exception]]:
+) -> Iterator[tuple[int, FileResult | Exception]]:
     """Yield the index of every file with its result or error, in order of completion.
 
     Parameters
     ----------
-    unsaid : Unsaid, optional
+    defaults : FileDefaults, optional
         Rate and unit for files that do not state them.
     known : collection of str
         Identities of records that are not observed again.
@@ -107,7 +107,7 @@ def observe_files(
     keep : Keep
         Stores observations for later runs.
     """
-    work = _Work(model, unsaid, keep, frozenset(known), dated)
+    work = _Work(model, defaults, keep, frozenset(known), dated)
     left: list[int] = []
     for i, file in enumerate(files):
         left = list(range(i, len(files)))
@@ -129,7 +129,7 @@ def observe_files(
         yield left[k], NumericalError(f"{files[left[k]]}: {DIED}") if result is None else result
 
 
-def _one(work: _Work, file: Path) -> Seen | Exception | None:
+def _one(work: _Work, file: Path) -> FileResult | Exception | None:
     """Return the result of one file, or the error, which the calling process raises or lists."""
     try:
         return work.see(file)
@@ -154,7 +154,7 @@ def observation_key(record: Record, model: TwinModel) -> str:
 
 
 def sorted_out(
-    files: Sequence[Path], results: Iterable[tuple[int, Seen | Exception]]
+    files: Sequence[Path], results: Iterable[tuple[int, FileResult | Exception]]
 ) -> tuple[tuple[Observation, ...], tuple[Failed, ...]]:
     """Return the observations in the order of their files, and the failed files.
 
@@ -169,7 +169,7 @@ def sorted_out(
         if not files[i].exists() or len(errors) == len(found):
             raise error
     failed = tuple(failure(files[i], error) for i, error in errors.items())
-    seen = (result for _, result in sorted(found.items()) if isinstance(result, Seen))
+    seen = (result for _, result in sorted(found.items()) if isinstance(result, FileResult))
     return tuple(one.observation for one in seen if one.observation is not None), failed
 
 

@@ -14,7 +14,7 @@ from jackettwin.errors import InputError, require
 from jackettwin.files import Schema, one_of
 from jackettwin.loads import WaterSchema
 from jackettwin.quantities import plain_unit, vibration_of
-from jackettwin.records import Unsaid, read_zone
+from jackettwin.records import FileDefaults, read_zone
 from jackettwin.response import Sensor, sensor_kinds
 from jackettwin.structure import RayleighSchema
 from jackettwin.twin.calibration import Calibration, Calibrations
@@ -131,7 +131,7 @@ class LoggerSchema(Schema):
     clock: str | None = None
     sample_rate_hz: Positive | None = None
 
-    def build(self) -> Unsaid:
+    def build(self) -> FileDefaults:
         """Return the properties in the form of the readers.
 
         Raises
@@ -143,7 +143,7 @@ class LoggerSchema(Schema):
             vibration_of(plain_unit(self.unit))
         if self.clock is not None:
             read_zone(self.clock)
-        return Unsaid(self.sample_rate_hz, self.unit, self.gain, self.clock)
+        return FileDefaults(self.sample_rate_hz, self.unit, self.gain, self.clock)
 
 
 class TargetSchema(Schema):

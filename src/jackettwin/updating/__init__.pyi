@@ -41,7 +41,7 @@ from .model import SupportModel as SupportModel
 from .model_error.checks import (
     DatumCheck as DatumCheck,
     Objection as Objection,
-    Unseen as Unseen,
+    UndetectedError as UndetectedError,
     objection as objection,
 )
 from .model_error.directions import (

@@ -72,7 +72,7 @@ class Block:
 
 
 @dataclass(frozen=True)
-class Spoken:
+class DayResult:
     """Result of one day for one kind of quantity.
 
     Attributes
@@ -262,7 +262,7 @@ def _rejected_by_others(apart: BoolArray, values: FloatArray) -> FloatArray:
     return np.where(enough, apart.sum(axis=0), 0).astype(np.float64)
 
 
-def with_hours(block: Block, hours: Hours, apart: FloatArray, last_day: float) -> tuple[Block, Spoken]:
+def with_hours(block: Block, hours: Hours, apart: FloatArray, last_day: float) -> tuple[Block, DayResult]:
     """Return the block after some hours, with one more possible onset, and their result."""
     beliefs, banks, likelihoods, spoken = [], [], [], None
     for memory, belief, bank in zip(block.memories, block.beliefs, block.banks, strict=True):
@@ -279,7 +279,7 @@ def with_hours(block: Block, hours: Hours, apart: FloatArray, last_day: float) -
     return replace(block, beliefs=tuple(beliefs), banks=tuple(banks), log_weights=weights), spoken
 
 
-def _spoken(block: Block, hours: Hours, apart: FloatArray, done: Filtered) -> Spoken:
+def _spoken(block: Block, hours: Hours, apart: FloatArray, done: Filtered) -> DayResult:
     memory = block.memories[0]
     rest = hours.values - hours.rows @ block.reference.T
     noise = hours.noise * memory.scale**2
@@ -297,7 +297,7 @@ def _spoken(block: Block, hours: Hours, apart: FloatArray, done: Filtered) -> Sp
     chi2 = hours.chi2.sum(axis=0) / memory.scale**2 + np.sum(pull * (nu - shared) ** 2, axis=0)
     total_share = np.maximum(share.sum(axis=0), 1e-300)
     freedom = hours.freedom.sum(axis=0) + total_share - np.sum(share**2, axis=0) / total_share
-    return Spoken(mean, std, *_with_outliers(chi2, freedom, apart), z)
+    return DayResult(mean, std, *_with_outliers(chi2, freedom, apart), z)
 
 
 def with_weights_reset(block: Block, share: float) -> Block:
@@ -319,7 +319,7 @@ def log_evidence(block: Block) -> FloatArray:
     return np.asarray(np.logaddexp.reduce(each + np.array([w for w, _ in live])[:, None, None], axis=0))
 
 
-def log_scatter(block: Block, spoken: Spoken) -> FloatArray:
+def log_scatter(block: Block, spoken: DayResult) -> FloatArray:
     """Return ln of the likelihood ratios of increased noise, (m, n_factors)."""
     return log_ratios(spoken.chi2, spoken.freedom, block.steadiness)
 

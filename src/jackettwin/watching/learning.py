@@ -72,7 +72,7 @@ _FIRST_STEPS, _MORE_STEPS = 40, 16
 
 
 @dataclass(frozen=True)
-class Learnt:
+class LearntModels:
     """Models, the most likely first, and the state of each at the end of the baseline.
 
     Attributes
@@ -97,7 +97,7 @@ def _power_law(slope: float) -> Spectrum:
 
 def learn(
     hours: Hours, prior: RegressionPrior, *, told: tuple[Spectrum, ...] = (), hidden: bool = False
-) -> Learnt:
+) -> LearntModels:
     """Return the most likely models of a baseline.
 
     Under every spectrum, which is common to all quantities, the noise scale and the size of the slow
@@ -138,7 +138,7 @@ def learn(
     return _weighed(bases[:MOST_TRIED], hours, prior, hidden)
 
 
-def _weighed(bases: list[Memory], hours: Hours, prior: RegressionPrior, hidden: bool) -> Learnt:
+def _weighed(bases: list[Memory], hours: Hours, prior: RegressionPrior, hidden: bool) -> LearntModels:
     """Return models with the correlation between quantities, weighted by all quantities together."""
     m = len(prior.std)
     fast, slow = _correlations(hours, bases[0], prior, hidden)
@@ -166,7 +166,7 @@ def _weighed(bases: list[Memory], hours: Hours, prior: RegressionPrior, hidden: 
     weights = np.exp([score - kept[0][0] for score, _ in kept])
     weights = weights / weights.sum() * (1.0 - one * len(apart)) * larger[0]
     beliefs = tuple(_end(memory, prior, hours).belief for memory in memories)
-    return Learnt(
+    return LearntModels(
         tuple(memories), beliefs, np.log([*weights, *larger[1:], *[one * larger[0] for _ in apart]])
     )
 

@@ -13,7 +13,7 @@ from jackettwin.watching.history import Kind
 
 
 @dataclass(frozen=True)
-class Begins:
+class PossibleOnsets:
     """Possible onsets of a change.
 
     Attributes
@@ -52,7 +52,7 @@ class Watch:
     design: Design
     lagged: Lagged
     blocks: tuple[Block, ...]
-    begins: Begins
+    begins: PossibleOnsets
     last_day: float
     accounted: float
     considered: float

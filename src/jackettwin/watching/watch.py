@@ -20,7 +20,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.watching.block import (
-    Spoken,
+    DayResult,
     begin,
     cleared,
     hours_of,
@@ -49,7 +49,7 @@ from jackettwin.watching.directions import SHARES, Pattern, directions_of
 from jackettwin.watching.history import History, Kind, typical
 from jackettwin.watching.hours import ENOUGH
 from jackettwin.watching.scatter import STRONGER
-from jackettwin.watching.state import Begins, Watch
+from jackettwin.watching.state import PossibleOnsets, Watch
 
 MOST_BEGINS = 26
 """Largest number of onsets; the work per day grows with it."""
@@ -93,7 +93,7 @@ class Look:
     rest_std: FloatArray
     log_r: float
     change: Change | None = None
-    spoken: tuple[Spoken, ...] = field(default=(), repr=False)
+    spoken: tuple[DayResult, ...] = field(default=(), repr=False)
     pending: PendingChange | None = field(default=None, repr=False)
 
 
@@ -171,8 +171,8 @@ def start(
     )
 
 
-def _no_begins(m: int) -> Begins:
-    return Begins(np.zeros(0), np.zeros(0), np.zeros(0), np.zeros((0, m, len(STRONGER))))
+def _no_begins(m: int) -> PossibleOnsets:
+    return PossibleOnsets(np.zeros(0), np.zeros(0), np.zeros(0), np.zeros((0, m, len(STRONGER))))
 
 
 def step(watch: Watch, day: History) -> tuple[Watch, Look]:
@@ -247,7 +247,7 @@ def _log_r(watch: Watch, worth: FloatArray) -> float:
     return float(np.logaddexp.reduce((watch.begins.log_stake[:, None] + worth)[old].ravel(), initial=-np.inf))
 
 
-def _with_day(watch: Watch, day: History) -> tuple[Watch, tuple[Spoken, ...]]:
+def _with_day(watch: Watch, day: History) -> tuple[Watch, tuple[DayResult, ...]]:
     """Return the state after a day's records, and their results (of the last part if the day is divided).
 
     Possible onsets are the first record of the day and the record that divides it. As the latter is chosen
@@ -265,7 +265,7 @@ def _with_day(watch: Watch, day: History) -> tuple[Watch, tuple[Spoken, ...]]:
             (slice(first), *whole[1:]),
             (slice(first, None), float(day.days[first]), stake + np.log(INSIDE / places)),
         ]
-    spoken: tuple[Spoken, ...] = ()
+    spoken: tuple[DayResult, ...] = ()
     for part, onset, log_stake in parts:
         chosen = np.arange(day.days.size)[part]
         records = day if cut is None else day.rows(np.isin(np.arange(day.days.size), chosen))
@@ -284,7 +284,7 @@ def _cut(watch: Watch, day: History, rows: FloatArray) -> tuple[int, int] | None
 
 def _with_records(
     watch: Watch, records: History, rows: FloatArray, begin: float, log_stake: float
-) -> tuple[Watch, tuple[Spoken, ...]]:
+) -> tuple[Watch, tuple[DayResult, ...]]:
     """Return the state after some records of a day, with an onset before the first of them."""
     blocks, spoken = [], []
     for block in watch.blocks:
@@ -294,7 +294,7 @@ def _with_records(
         spoken.append(said)
     scatter = np.concatenate([log_scatter(b, s) for b, s in zip(blocks, spoken, strict=True)])
     old = watch.begins
-    begins = Begins(
+    begins = PossibleOnsets(
         np.append(old.days, begin),
         np.append(old.since, watch.last_day),
         np.append(old.log_stake, log_stake),
@@ -338,7 +338,9 @@ def _merged(watch: Watch, worth: FloatArray) -> Watch:
 def _thinned(watch: Watch, keep: BoolArray) -> Watch:
     """Return the state with only some of its onsets."""
     begins = watch.begins
-    kept = Begins(begins.days[keep], begins.since[keep], begins.log_stake[keep], begins.log_scatter[keep])
+    kept = PossibleOnsets(
+        begins.days[keep], begins.since[keep], begins.log_stake[keep], begins.log_scatter[keep]
+    )
     return replace(watch, begins=kept, blocks=tuple(thinned(block, keep) for block in watch.blocks))
 
 

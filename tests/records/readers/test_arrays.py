@@ -13,7 +13,7 @@ from scipy import io
 from jackettwin.errors import InputError, MissingExtra
 from jackettwin.records import assess, read_record
 from jackettwin.records.readers import hdf5
-from jackettwin.records.readers.channels import Unsaid
+from jackettwin.records.readers.channels import FileDefaults
 
 ENTRY = '{"quantity": "acceleration", "unit": "g"}'
 BESIDE = f'{{"channels": {{"a": {ENTRY}, "b": {ENTRY}}}}}'
@@ -170,13 +170,13 @@ def test_units_that_do_not_fit_the_matrix_are_refused(tmp_path: Path) -> None:
 def test_vectors_that_all_differ_in_length_are_refused_by_name(tmp_path: Path) -> None:
     save_mat(tmp_path / "r.mat", acc_x=np.zeros(60), acc_y=np.zeros(59), fs=10.0)
     with pytest.raises(InputError, match=r"vectors differ in length.*acc_x \(60\), acc_y \(59\)"):
-        read_record(tmp_path / "r.mat", Unsaid(unit="g"))
+        read_record(tmp_path / "r.mat", FileDefaults(unit="g"))
 
 
 def test_vectors_of_another_length_are_left_out_with_a_remark(tmp_path: Path) -> None:
     noise = np.random.default_rng(1).normal(size=(3, 60))
     save_mat(tmp_path / "r.mat", acc_x=noise[0], acc_y=noise[1], wind=noise[2, :6], fs=10.0)
-    record = read_record(tmp_path / "r.mat", Unsaid(unit="g"))
+    record = read_record(tmp_path / "r.mat", FileDefaults(unit="g"))
     assert record.channel_names == ("acc_x", "acc_y")
     assert record.metadata["remarks"] == ["vectors of another length than 60 are left out: wind (6)"]
     assert [f.text for f in assess(record).findings if f.code == "file"] == record.metadata["remarks"]
@@ -185,4 +185,4 @@ def test_vectors_of_another_length_are_left_out_with_a_remark(tmp_path: Path) ->
 def test_times_of_another_length_are_refused(tmp_path: Path) -> None:
     save_npz(tmp_path / "r.npz", acc_x=np.zeros(60), acc_y=np.zeros(60), time=np.arange(59.0))
     with pytest.raises(InputError, match=r"times and channels differ in length.*59.*60"):
-        read_record(tmp_path / "r.npz", Unsaid(unit="g"))
+        read_record(tmp_path / "r.npz", FileDefaults(unit="g"))

@@ -12,9 +12,9 @@ from numpy.testing import assert_allclose
 from jackettwin.errors import InputError
 from jackettwin.quantities import G0
 from jackettwin.records import read_record
-from jackettwin.records.readers.channels import Unsaid
+from jackettwin.records.readers.channels import FileDefaults
 
-RATE = Unsaid(sample_rate_hz=10.0)
+RATE = FileDefaults(sample_rate_hz=10.0)
 
 
 def table(path: Path, header: str, *rows: str) -> Path:
@@ -48,7 +48,7 @@ def test_counts_need_a_gain(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="stored unscaled") as refused:
         read_record(path, RATE)
     assert refused.value.field == "channels.acc_x.gain"
-    by_option = read_record(path, Unsaid(10.0, unit="mg", gain=0.5))
+    by_option = read_record(path, FileDefaults(10.0, unit="mg", gain=0.5))
     assert_allclose(by_option.data[0, :2], [50e-3 * G0, 100e-3 * G0])
     path.with_suffix(".json").write_text('{"channels": {"acc_x": {"unit": "g", "gain": 1e-3}}}')
     assert_allclose(read_record(path, RATE).data[0, :2], [0.1 * G0, 0.2 * G0])
@@ -56,7 +56,7 @@ def test_counts_need_a_gain(tmp_path: Path) -> None:
 
 def test_a_gain_without_a_unit_leads_to_si(tmp_path: Path) -> None:
     path = table(tmp_path / "a.csv", "acc_x [V],WindSpeed [V]", "1,4", "2,5")
-    record = read_record(path, Unsaid(10.0, gain=3.0))
+    record = read_record(path, FileDefaults(10.0, gain=3.0))
     assert_allclose(record.data[0, :2], [3.0, 6.0])
     assert record.channels[0].unit == "m/s^2"
     assert_allclose(record.data[1, :2], [4.0, 5.0])  # a wind speed is no vibration: the gain is not for it
@@ -93,12 +93,12 @@ def test_one_unit_beside_vectors_is_that_of_the_vibrations(tmp_path: Path) -> No
 def test_single_arrays(tmp_path: Path) -> None:
     y = np.arange(12.0).reshape(6, 2)
     np.save(tmp_path / "a.npy", y)
-    record = read_record(tmp_path / "a.npy", Unsaid(5.0, "g"))
+    record = read_record(tmp_path / "a.npy", FileDefaults(5.0, "g"))
     assert record.channel_names == ("channel_1", "channel_2")
     assert_allclose(record.data, G0 * y.T)
     fields = np.array([(0.1, 1.0), (0.2, 2.0)], dtype=[("acc_x", float), ("acc_y", float)])
     np.save(tmp_path / "b.npy", fields)
-    assert read_record(tmp_path / "b.npy", Unsaid(5.0, "g")).channel_names == ("acc_x", "acc_y")
+    assert read_record(tmp_path / "b.npy", FileDefaults(5.0, "g")).channel_names == ("acc_x", "acc_y")
     np.save(tmp_path / "c.npy", np.array([{}], dtype=object), allow_pickle=True)
     with pytest.raises(InputError, match="not readable as NumPy array"):
         read_record(tmp_path / "c.npy")

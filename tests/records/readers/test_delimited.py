@@ -7,7 +7,7 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.records import Record, read_record
-from jackettwin.records.readers.channels import Unsaid
+from jackettwin.records.readers.channels import FileDefaults
 
 
 def read_text(text: str, tmp_path: Path, encoding: str = "utf-8") -> Record:
@@ -210,13 +210,13 @@ def test_a_column_of_words_is_left_out_and_named(tmp_path: Path) -> None:
 def test_columns_without_names_are_numbered(tmp_path: Path) -> None:
     path = tmp_path / "bare.txt"
     path.write_text("1.5e0 2\n-1 3\n0.5 1\n")
-    record = read_record(path, Unsaid(sample_rate_hz=20.0, unit="g"))
+    record = read_record(path, FileDefaults(sample_rate_hz=20.0, unit="g"))
     assert record.channel_names == ("column_1", "column_2")
     assert {c.quantity for c in record.channels} == {"acceleration"}
     np.testing.assert_allclose(record.data[0], np.array([1.5, -1.0, 0.5]) * 9.80665, rtol=1e-15)
     assert record.sample_rate_hz == 20.0
     path.write_text("0.0 2\n0.1 3\n0.2 1\n")
-    timed = read_record(path, Unsaid(unit="mm/s"))
+    timed = read_record(path, FileDefaults(unit="mm/s"))
     assert (timed.channel_names, timed.sample_rate_hz) == (("column_2",), 10.0)
     assert timed.channels[0].quantity == "velocity"
 
@@ -224,7 +224,7 @@ def test_columns_without_names_are_numbered(tmp_path: Path) -> None:
 def test_what_a_file_says_wins_over_what_is_assumed(tmp_path: Path) -> None:
     path = tmp_path / "r.csv"
     path.write_text("# fs: 5\nacc_x [g],ch2,wind\n1,2,3\n2,3,4\n")
-    record = read_record(path, Unsaid(sample_rate_hz=20.0, unit="mm/s"))
+    record = read_record(path, FileDefaults(sample_rate_hz=20.0, unit="mm/s"))
     assert record.sample_rate_hz == 5.0
     assert [c.quantity for c in record.channels] == ["acceleration", "velocity", "other"]
 

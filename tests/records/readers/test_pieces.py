@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose
 from jackettwin.errors import InputError
 from jackettwin.records import Channel, Record, read_record, write_record
 from jackettwin.records.readers import delimited, hdf5, parquet, read_record_pieces
-from jackettwin.records.readers.channels import Unsaid
+from jackettwin.records.readers.channels import FileDefaults
 
 START = datetime(2025, 6, 1, 12, 3, 20, tzinfo=UTC)
 RATE = 10.0
@@ -84,7 +84,7 @@ def test_a_rate_is_asked_for_once_and_faults_name_the_line(
     with pytest.raises(InputError, match="sample rate is missing"):
         next(read_record_pieces(path))
     with pytest.raises(InputError, match="line 253, channel acc_y") as refused:
-        list(read_record_pieces(path, 10.0, Unsaid(10.0)))
+        list(read_record_pieces(path, 10.0, FileDefaults(10.0)))
     assert refused.value.file == path
 
 
@@ -92,6 +92,6 @@ def test_a_channel_empty_for_a_while_stays_one(tmp_path: Path, monkeypatch: pyte
     monkeypatch.setattr(delimited, "ROWS", 100)
     path = tmp_path / "a.csv"
     path.write_text("acc_x,acc_y\ng,g\n" + "0.1,0.2\n" * 100 + "0.1,\n" * 100 + "0.1,0.2\n" * 100)
-    pieces = list(read_record_pieces(path, 10.0, Unsaid(10.0)))
+    pieces = list(read_record_pieces(path, 10.0, FileDefaults(10.0)))
     assert [piece.channel_names for piece in pieces] == 3 * [("acc_x", "acc_y")]
     assert np.isnan(pieces[1].data[1]).all()

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from jackettwin.records import Unsaid, read_record
+from jackettwin.records import FileDefaults, read_record
 
 RATE_HZ = 20.0
 
@@ -26,7 +26,7 @@ def test_a_speed_is_a_velocity_however_its_unit_is_said(said: str, tmp_path: Pat
     if said == "json":
         channels = {name: {"unit": "m/s"} for name in ("laser_1", "ref_y")}
         path.with_suffix(".json").write_text(json.dumps({"channels": channels}))
-    record = read_record(path, Unsaid(unit="m/s") if said == "option" else None)
+    record = read_record(path, FileDefaults(unit="m/s") if said == "option" else None)
     assert [(c.quantity, c.unit) for c in record.channels] == [("velocity", "m/s")] * 2
 
 

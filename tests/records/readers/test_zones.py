@@ -14,7 +14,7 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.records import read_record
 from jackettwin.records.readers import read_record_pieces
-from jackettwin.records.readers.channels import Unsaid
+from jackettwin.records.readers.channels import FileDefaults
 from jackettwin.records.readers.stamps import TWICE, in_utc, read_zone
 
 LOCAL = datetime(2025, 6, 1, 14, 0, 0)
@@ -44,7 +44,7 @@ def test_a_clock_without_zone_is_said_or_told(tmp_path: Path) -> None:
     silent = read_record(path)
     assert silent.start_utc == LOCAL.replace(tzinfo=UTC)
     assert any("does not say its zone" in text for text in silent.metadata["remarks"])
-    told = read_record(path, Unsaid(timezone="Europe/Berlin"))
+    told = read_record(path, FileDefaults(timezone="Europe/Berlin"))
     assert told.start_utc == TWELVE
     assert "remarks" not in told.metadata
     path.with_suffix(".json").write_text(json.dumps({"clock": "UTC+2"}))
@@ -59,7 +59,7 @@ def test_a_clock_without_zone_is_said_or_told(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("ending", ["Z", "+02:00"])
 def test_a_clock_with_zone_needs_no_telling(ending: str, tmp_path: Path) -> None:
-    record = read_record(written(tmp_path / "a.csv", ending), Unsaid(timezone="+05:00"))
+    record = read_record(written(tmp_path / "a.csv", ending), FileDefaults(timezone="+05:00"))
     assert record.start_utc == (TWELVE if ending != "Z" else LOCAL.replace(tzinfo=UTC))
     assert "remarks" not in record.metadata
 
@@ -71,19 +71,19 @@ def test_stamps_of_parquet_say_their_zone_or_not(tmp_path: Path) -> None:
         pq.write_table(
             pa.table({"time": pa.array(stamps).cast(kind), "acc_x": y}), tmp_path / f"{name}.parquet"
         )
-    unsaid = Unsaid(unit="g", timezone="+02:00")
-    assert read_record(tmp_path / "naive.parquet", unsaid).start_utc == TWELVE
-    assert read_record(tmp_path / "utc.parquet", unsaid).start_utc == LOCAL.replace(tzinfo=UTC)
+    defaults = FileDefaults(unit="g", timezone="+02:00")
+    assert read_record(tmp_path / "naive.parquet", defaults).start_utc == TWELVE
+    assert read_record(tmp_path / "utc.parquet", defaults).start_utc == LOCAL.replace(tzinfo=UTC)
 
 
 def test_an_hour_that_is_there_twice_is_said(tmp_path: Path) -> None:
     """Clocks went back at three on the 26th of October 2025: 02:15 was 00:15 and 01:15 UTC."""
     path = written(tmp_path / "a.csv")
     path.write_text(path.read_text().replace("2025-06-01 14", "2025-10-26 02"))
-    record = read_record(path, Unsaid(timezone="Europe/Berlin"))
+    record = read_record(path, FileDefaults(timezone="Europe/Berlin"))
     assert record.start_utc == datetime(2025, 10, 26, 0, tzinfo=UTC)
     assert TWICE in record.metadata["remarks"]
-    assert TWICE not in read_record(path, Unsaid(timezone="+02:00")).metadata.get("remarks", ())
+    assert TWICE not in read_record(path, FileDefaults(timezone="+02:00")).metadata.get("remarks", ())
 
 
 def test_the_statistics_of_stamps_stay_metadata(tmp_path: Path) -> None:

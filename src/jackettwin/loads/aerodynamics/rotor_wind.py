@@ -26,7 +26,7 @@ PIECE_M = 10.0
 """Largest length of a segment of blade or tower with one wind speed [m]."""
 
 
-class SeenWind(NamedTuple):
+class WindAtPoints(NamedTuple):
     """Wind at points (n_times, n_places, 3) [m/s], and shares at blade elements (n_elements, n_places)."""
 
     wind: FloatArray
@@ -73,7 +73,7 @@ class RotorWind:
         wind, shares = self.seen(rotor, azimuth, yaw=yaw)
         return _spread(wind, shares)
 
-    def seen(self, rotor: Rotor, azimuth: FloatArray, *, yaw: float | FloatArray = 0.0) -> SeenWind:
+    def seen(self, rotor: Rotor, azimuth: FloatArray, *, yaw: float | FloatArray = 0.0) -> WindAtPoints:
         """Return the wind in the nacelle's axes at its points, and their weights at the blade elements.
 
         Parameters
@@ -93,7 +93,7 @@ class RotorWind:
             places = np.empty((self.n_times, self.rotor.shape[1] + 1, 3))
             places[:, :-1], places[:, -1] = self.rotor, [1.0, 0.0, 0.0]
             shares = np.hstack([self.shares, self.wind.mean(height)[:, None]])
-            return SeenWind(places @ turn if np.any(yaw) else places, shares)
+            return WindAtPoints(places @ turn if np.any(yaw) else places, shares)
         knots = np.array([0.0, *RINGS])
         share_of_radius = r / self.radius
         ring = np.clip(np.searchsorted(knots, share_of_radius, side="right") - 1, 0, len(RINGS) - 1)
@@ -102,7 +102,7 @@ class RotorWind:
         samples = self.rotor + self._mean(_disc(self.wind.hub_height_m, self.radius)[:, 1])
         turned = np.ascontiguousarray(samples @ turn)
         on_blades = wind_on_blades(turned, azimuth, spoke, np.tile(ring, n), np.tile(share, n), SPOKES)
-        return SeenWind(np.asarray(on_blades), np.eye(n * r.size))
+        return WindAtPoints(np.asarray(on_blades), np.eye(n * r.size))
 
     def at_heights(self, z: FloatArray) -> FloatArray:
         """Return the wind on the tower's axis at heights ``z`` (n,) [m], (n_times, n, 3)."""

@@ -38,7 +38,7 @@ STANDING_FOR_RAW = "m/s^2"
 
 
 @dataclass(frozen=True)
-class Unsaid:
+class FileDefaults:
     """Properties of a file that neither it nor the JSON beside it states.
 
     Attributes
@@ -60,7 +60,7 @@ class Unsaid:
 
 
 @dataclass(frozen=True)
-class Described:
+class DescribedChannel:
     """A channel, the factor from its stored numbers to SI, and what was taken from its name."""
 
     channel: Channel
@@ -76,7 +76,7 @@ def merged(own: ChannelEntry | None, given: ChannelEntry | None) -> dict[str, An
     return own_entry | (given or ChannelEntry()).model_dump(exclude_unset=True)
 
 
-def described_channel(name: str, entry: Mapping[str, Any], unsaid: Unsaid) -> Described:
+def described_channel(name: str, entry: Mapping[str, Any], defaults: FileDefaults) -> DescribedChannel:
     """Return the channel in SI units, placed and directed by its entry, else by its name.
 
     Raises
@@ -85,7 +85,7 @@ def described_channel(name: str, entry: Mapping[str, Any], unsaid: Unsaid) -> De
         If the unit is missing or wrong, a gain is missing, or the direction is none; names the channel.
     """
     try:
-        kind, unit, gain = _measures(name, entry, unsaid)
+        kind, unit, gain = _measures(name, entry, defaults)
         named = unit_in_name(name, kind) if kind in VIBRATIONS and not unit else ""
         factor, si_unit = _factor(kind, unit or named)
         read = replace(_from_name(name, entry, kind), unit=named)
@@ -102,17 +102,17 @@ def described_channel(name: str, entry: Mapping[str, Any], unsaid: Unsaid) -> De
         direction=direction,
         frame=entry.get("frame") or "global",
     )
-    said = entry.get("quantity") or unsaid.unit or guess_quantity(name, "") == kind
-    return Described(channel, factor * gain, read, by_unit=kind == "velocity" and not said)
+    said = entry.get("quantity") or defaults.unit or guess_quantity(name, "") == kind
+    return DescribedChannel(channel, factor * gain, read, by_unit=kind == "velocity" and not said)
 
 
-def _measures(name: str, entry: Mapping[str, Any], unsaid: Unsaid) -> tuple[str, str, float]:
+def _measures(name: str, entry: Mapping[str, Any], defaults: FileDefaults) -> tuple[str, str, float]:
     """Return quantity, unit, and the gain from the stored numbers to this unit."""
     unit, gain = plain_unit(entry.get("unit") or ""), entry.get("gain")
     raw = unit.lower() in RAW_UNITS
     kind = entry.get("quantity") or guess_quantity(name, "" if raw else unit)
     could_vibrate = kind in (*VIBRATIONS, "other") and not names_other(name)
-    gain = unsaid.gain if gain is None and could_vibrate and (raw or not unit) else gain
+    gain = defaults.gain if gain is None and could_vibrate and (raw or not unit) else gain
     if raw and gain is None and kind in VIBRATIONS:
         raise InputError(
             "is stored unscaled, and nothing says what one unit is worth",
@@ -130,9 +130,9 @@ def _measures(name: str, entry: Mapping[str, Any], unsaid: Unsaid) -> tuple[str,
             allowed="any number but zero",
             remedy="give what one stored number is worth in the channel's unit",
         )
-    if could_vibrate and (not unit or raw) and (unsaid.unit is not None or gain is not None):
-        if unsaid.unit is not None or raw:
-            unit = plain_unit(unsaid.unit or STANDING_FOR_RAW)
+    if could_vibrate and (not unit or raw) and (defaults.unit is not None or gain is not None):
+        if defaults.unit is not None or raw:
+            unit = plain_unit(defaults.unit or STANDING_FOR_RAW)
         if unit:
             kind = vibration_of(unit) if kind == "other" else kind
     return kind, unit, 1.0 if gain is None else float(gain)
@@ -190,8 +190,8 @@ stays where it is, and wind of such turbulence is not measured."""
 
 
 def without_flows(
-    described: tuple[Described, ...], data: FloatArray
-) -> tuple[tuple[Described, ...], tuple[str, ...]]:
+    described: tuple[DescribedChannel, ...], data: FloatArray
+) -> tuple[tuple[DescribedChannel, ...], tuple[str, ...]]:
     """Return the channels, those no velocities that stand for a flow, and a remark on each of them.
 
     Only channels are judged that are velocities for their unit alone.

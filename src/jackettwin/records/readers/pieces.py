@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.records.readers.channels import Unsaid
+from jackettwin.records.readers.channels import FileDefaults
 from jackettwin.records.readers.description import Description
 from jackettwin.records.readers.registry import described_by, reading, tables_of
 from jackettwin.records.readers.table import ReadTable, known_rate, stated_rate, to_record
@@ -31,7 +31,9 @@ SHORTEST = 0.5
 """A first or last piece shorter than this share of the others is left out."""
 
 
-def read_record_pieces(path: Path, seconds: float = 600.0, unsaid: Unsaid | None = None) -> Iterator[Record]:
+def read_record_pieces(
+    path: Path, seconds: float = 600.0, defaults: FileDefaults | None = None
+) -> Iterator[Record]:
     """Yield a record's pieces in the order of time, each as ``read_record`` would read it.
 
     Pieces are called like the file and their start (``A1_20250601T141000``, or ``A1_0001``).
@@ -40,7 +42,7 @@ def read_record_pieces(path: Path, seconds: float = 600.0, unsaid: Unsaid | None
     ----------
     seconds : float
         Length of a piece.
-    unsaid : Unsaid, optional
+    defaults : FileDefaults, optional
         Rate, unit and zone, for a file that does not say them.
 
     Raises
@@ -48,15 +50,15 @@ def read_record_pieces(path: Path, seconds: float = 600.0, unsaid: Unsaid | None
     InputError
         As ``read_record``; some pieces may have been yielded before.
     """
-    beside, unsaid = described_by(path), unsaid or Unsaid()
+    beside, defaults = described_by(path), defaults or FileDefaults()
     with reading(path):
         tables = tables_of(path)
         first = next(tables)
         said = beside or first.description or Description()
-        for number, piece in enumerate(_split(chain([first], tables), said, unsaid, seconds), start=1):
+        for number, piece in enumerate(_split(chain([first], tables), said, defaults, seconds), start=1):
             if said.start_utc is not None:
                 piece = replace(piece, zone_said=True)
-            record = to_record(piece, replace(said, start_utc=None), path, unsaid)
+            record = to_record(piece, replace(said, start_utc=None), path, defaults)
             start = record.start_utc
             stamp = f"{number:04d}" if start is None else f"{_nearest_second(start):%Y%m%dT%H%M%S}"
             yield replace(record, name=f"{path.stem}_{stamp}")
@@ -82,13 +84,13 @@ class _Timed:
 
 
 def _split(
-    tables: Iterable[ReadTable], said: Description, unsaid: Unsaid, seconds: float
+    tables: Iterable[ReadTable], said: Description, defaults: FileDefaults, seconds: float
 ) -> Iterator[ReadTable]:
     """Yield tables cut at the boundaries, each with the start of its first row."""
     held: _Timed | None = None
     origin: datetime | None = None
     end = seconds
-    for chunk in _timed(tables, said, unsaid):
+    for chunk in _timed(tables, said, defaults):
         if held is None:
             origin = said.start_utc or chunk.table.start_utc
             held, end = chunk, _first_boundary(origin, seconds)
@@ -102,7 +104,7 @@ def _split(
         yield from _long_enough(held, origin, seconds)
 
 
-def _timed(tables: Iterable[ReadTable], said: Description, unsaid: Unsaid) -> Iterator[_Timed]:
+def _timed(tables: Iterable[ReadTable], said: Description, defaults: FileDefaults) -> Iterator[_Timed]:
     """Yield tables with their times since the first sample, all with the columns of the first."""
     first: ReadTable | None = None
     count, latest, zero = 0, 0.0, 0.0
@@ -113,7 +115,7 @@ def _timed(tables: Iterable[ReadTable], said: Description, unsaid: Unsaid) -> It
         data = _columns_of(first, table)
         n = data.shape[1]
         if first.times_s is None or table.times_s is None:
-            rate = stated_rate(first, said) or unsaid.sample_rate_hz
+            rate = stated_rate(first, said) or defaults.sample_rate_hz
             t = (count + np.arange(n)) / known_rate(first, rate, "the JSON")
         else:
             since = 0.0

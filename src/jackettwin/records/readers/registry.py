@@ -12,7 +12,7 @@ from jackettwin.errors import InputError, JackettwinError, did_you_mean
 from jackettwin.files import atomic_path
 from jackettwin.plugins import plugins_of_type
 from jackettwin.records.readers import arrays, delimited, hdf5, matlab, openfast, parquet, tdms, uff
-from jackettwin.records.readers.channels import Unsaid
+from jackettwin.records.readers.channels import FileDefaults
 from jackettwin.records.readers.description import Description, description_text, read_description
 from jackettwin.records.readers.table import ReadTable, to_record
 from jackettwin.records.record import Record
@@ -67,7 +67,7 @@ def formats() -> tuple[Format, ...]:
     return (*FORMATS, *plugins_of_type(PLUGINS, Format).values())
 
 
-def read_record(path: Path | str, unsaid: Unsaid | None = None) -> Record:
+def read_record(path: Path | str, defaults: FileDefaults | None = None) -> Record:
     """Read a record in any known format, with the JSON that describes it if there is one.
 
     That is ``NAME.json`` beside it, else ``records.json`` in its folder, for all records there. The JSON
@@ -77,7 +77,7 @@ def read_record(path: Path | str, unsaid: Unsaid | None = None) -> Record:
 
     Parameters
     ----------
-    unsaid : Unsaid, optional
+    defaults : FileDefaults, optional
         Rate and unit, for a file that does not say them.
 
     Raises
@@ -88,7 +88,7 @@ def read_record(path: Path | str, unsaid: Unsaid | None = None) -> Record:
     path = Path(path)
     described = described_by(path)
     with reading(path):
-        return to_record(_format_of(path).read(path), described, path, unsaid)
+        return to_record(_format_of(path).read(path), described, path, defaults)
 
 
 def read_table(path: Path) -> ReadTable:

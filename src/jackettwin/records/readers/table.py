@@ -17,8 +17,8 @@ from jackettwin.quantities import guess_quantity, names_other
 from jackettwin.records.clocks import between_ticks, regularise
 from jackettwin.records.readers.channel_names import Reading, read_name, told
 from jackettwin.records.readers.channels import (
-    Described,
-    Unsaid,
+    DescribedChannel,
+    FileDefaults,
     described_channel,
     merged,
     without_flows,
@@ -63,7 +63,7 @@ class ReadTable:
     description : Description, optional
         A complete description stored inside the file.
     unit : str, optional
-        Of the channels without one in ``channels``, as ``Unsaid.unit``.
+        Of the channels without one in ``channels``, as ``FileDefaults.unit``.
     ambiguous : tuple of str and str, optional
         Column and cell of a date that was not read because its day or its month may come first.
     remarks : tuple of str
@@ -229,7 +229,7 @@ def seconds(stamps: npt.NDArray[Any], unit: str | None = None) -> tuple[FloatArr
 
 
 def to_record(
-    table: ReadTable, beside: Description | None, path: Path, unsaid: Unsaid | None = None
+    table: ReadTable, beside: Description | None, path: Path, defaults: FileDefaults | None = None
 ) -> Record:
     """Return the record: columns chosen and described by the JSON, in SI units, on a regular grid.
 
@@ -239,7 +239,7 @@ def to_record(
         If the two contradict each other or something needed is in neither.
     """
     _refuse_twins(table.names)
-    said, unsaid = beside or table.description or Description(), unsaid or Unsaid()
+    said, defaults = beside or table.description or Description(), defaults or FileDefaults()
     names = tuple(said.channels) if said.channels else table.names
     data = table.data[[_row_of(name, table) for name in names]]
     stated = stated_rate(table, said)
@@ -262,11 +262,11 @@ def to_record(
         if spread is not None:
             metadata["remarks"] = [*metadata.get("remarks", ()), f"{COARSE} {stated:g} Hz"]
         metadata["clock"] = asdict(clock)
-    stated = stated or unsaid.sample_rate_hz
+    stated = stated or defaults.sample_rate_hz
     stated = known_rate(table, stated, path.with_suffix(".json").name)
-    start_utc, unzoned = _start(table, said, unsaid)
+    start_utc, unzoned = _start(table, said, defaults)
     metadata["remarks"] = [*metadata.get("remarks", ()), *unzoned]
-    described = _described(names, table, said, unsaid)
+    described = _described(names, table, said, defaults)
     with np.errstate(over="ignore"):  # what overflows is as unreadable as infinity: missing
         data = data * np.array([one.factor for one in described])[:, None]
     data = np.where(np.abs(data) <= LARGEST, data, np.nan)
@@ -286,11 +286,13 @@ def to_record(
     )
 
 
-def _start(table: ReadTable, said: Description, unsaid: Unsaid) -> tuple[datetime | None, tuple[str, ...]]:
+def _start(
+    table: ReadTable, said: Description, defaults: FileDefaults
+) -> tuple[datetime | None, tuple[str, ...]]:
     """Return the start in UTC, and the remark that the clock's zone is not known."""
     if said.start_utc is not None or table.start_utc is None or table.zone_said:
         return said.start_utc or table.start_utc, ()
-    zone = said.clock or unsaid.timezone
+    zone = said.clock or defaults.timezone
     if zone is None:
         return table.start_utc, (UNSAID,)
     start = in_utc(table.start_utc, read_zone(zone, field="clock" if said.clock else "--timezone"))
@@ -298,13 +300,13 @@ def _start(table: ReadTable, said: Description, unsaid: Unsaid) -> tuple[datetim
 
 
 def _described(
-    names: Sequence[str], table: ReadTable, said: Description, unsaid: Unsaid
-) -> tuple[Described, ...]:
-    if unsaid.unit is None and table.unit is not None:
-        unsaid = replace(unsaid, unit=table.unit)
+    names: Sequence[str], table: ReadTable, said: Description, defaults: FileDefaults
+) -> tuple[DescribedChannel, ...]:
+    if defaults.unit is None and table.unit is not None:
+        defaults = replace(defaults, unit=table.unit)
     given = said.channels or {}
     return tuple(
-        described_channel(name, merged(table.channels.get(name), given.get(name)), unsaid) for name in names
+        described_channel(name, merged(table.channels.get(name), given.get(name)), defaults) for name in names
     )
 
 

@@ -17,7 +17,7 @@ from jackettwin.structure import Assembly
 from jackettwin.study import MeasuredMode, TwinResult, sensors_of
 from jackettwin.updating import Update
 
-Seen = tuple[tuple[Sensor, ...], ComplexArray]
+SeenShape = tuple[tuple[Sensor, ...], ComplexArray]
 
 _WIDTH, _HEIGHT, _HEAD = 160.0, 330.0, 40.0
 _SWAY = 0.11
@@ -35,14 +35,14 @@ def shape_drawings(result: TwinResult, u: Update) -> list[Markup]:
     return drawn
 
 
-def _seen(result: TwinResult, m: MeasuredMode) -> Seen | None:
+def _seen(result: TwinResult, m: MeasuredMode) -> SeenShape | None:
     """Return the sensors of a mode's measured shape, with the shape there; None without a shape."""
     at = sensors_of(m, result.observations)
     return None if at is None or m.estimate is None else (at[0], m.estimate.mode_shape[at[1]])
 
 
 def _drawing(
-    result: TwinResult, m: MeasuredMode, shape: ComplexArray, seen: Seen | None, model_hz: float
+    result: TwinResult, m: MeasuredMode, shape: ComplexArray, seen: SeenShape | None, model_hz: float
 ) -> Markup:
     assembly = result.assembly
     points = assembly.mesh.coordinates - [0.0, 0.0, assembly.structure.sea_level_z_m]
@@ -90,7 +90,7 @@ def _strokes(at: FloatArray, start: npt.NDArray[np.intp], end: npt.NDArray[np.in
 
 
 def _arrows(
-    c: Canvas, assembly: Assembly, seen: Seen, shape: ComplexArray, axes: list[int], sway: float,
+    c: Canvas, assembly: Assembly, seen: SeenShape, shape: ComplexArray, axes: list[int], sway: float,
     place: Callable[[FloatArray], FloatArray],
 ) -> None:  # fmt: skip
     """Draw the measured motion at the sensors, scaled and rotated to the model's by least squares."""

@@ -9,7 +9,7 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from jackettwin.change import Alarm, Watched
+from jackettwin.change import Alarm, MonitoredTable
 from jackettwin.report.figures import style
 from jackettwin.report.tables.numbers import words
 from jackettwin.watching import CauseVerdict
@@ -23,7 +23,7 @@ _SYMBOLS = ("diamond-open", "square-open", "triangle-up-open")
 _COLOURS = (style.BLUE, style.GREEN, style.ORANGE)
 
 
-def leading(watched: Watched) -> int:
+def leading(watched: MonitoredTable) -> int:
     """Return the index of the quantity in which the first alarm is clearest, or of the first quantity."""
     if not watched.alarms:
         return 0
@@ -31,13 +31,13 @@ def leading(watched: Watched) -> int:
     return int(np.argmax(np.where(change.members, change.by_mode, -1.0)))
 
 
-def frequencies(watched: Watched) -> tuple[int, ...]:
+def frequencies(watched: MonitoredTable) -> tuple[int, ...]:
     """Return the indices of frequencies and directions, or all if there are none."""
     chosen = tuple(i for i, (kind, _) in enumerate(watched.watch.quantities) if kind != "damping")
     return chosen or tuple(range(len(watched.watch.quantities)))
 
 
-def unexplained_through_time(watched: Watched, chosen: Sequence[int]) -> go.Figure:
+def unexplained_through_time(watched: MonitoredTable, chosen: Sequence[int]) -> go.Figure:
     """Draw daily residuals of some quantities after the effects of conditions, with band and alarms."""
     figure = make_subplots(rows=len(chosen), cols=1, shared_xaxes=True, vertical_spacing=0.03)
     for row, i in enumerate(chosen, start=1):
@@ -52,7 +52,7 @@ def unexplained_through_time(watched: Watched, chosen: Sequence[int]) -> go.Figu
     return style.finish(figure, height=max(340, 150 * len(chosen) + 80))
 
 
-def _named(watched: Watched, i: int) -> str:
+def _named(watched: MonitoredTable, i: int) -> str:
     """Return the label of a quantity in figures."""
     kind, mode = watched.watch.quantities[i]
     return (
@@ -61,7 +61,7 @@ def _named(watched: Watched, i: int) -> str:
     )
 
 
-def _line(figure: go.Figure, watched: Watched, i: int, row: int) -> None:
+def _line(figure: go.Figure, watched: MonitoredTable, i: int, row: int) -> None:
     times = [watched.table.time(look.day) for look in watched.looks]
     scale = _SHOWN_IN[watched.watch.quantities[i][0]][0]
     rest = scale * np.array([look.rest[i] for look in watched.looks])
@@ -80,7 +80,7 @@ def _line(figure: go.Figure, watched: Watched, i: int, row: int) -> None:
     )  # fmt: skip
 
 
-def _mark(figure: go.Figure, watched: Watched, alarm: Alarm, i: int, row: int, *, named: bool) -> None:
+def _mark(figure: go.Figure, watched: MonitoredTable, alarm: Alarm, i: int, row: int, *, named: bool) -> None:
     change, table = alarm.change, watched.table
     low, high = (table.time(day) for day in change.began_interval_90)
     at = table.time(alarm.day)
@@ -109,7 +109,7 @@ def _cause(best: CauseVerdict) -> str:
     return "<br>".join(wrap(text, _CAUSE_WIDTH))
 
 
-def evidence_through_time(watched: Watched) -> go.Figure:
+def evidence_through_time(watched: MonitoredTable) -> go.Figure:
     """Draw ln R over time and the threshold."""
     times = [watched.table.time(look.day) for look in watched.looks]
     figure = go.Figure()
@@ -122,7 +122,7 @@ def evidence_through_time(watched: Watched) -> go.Figure:
     return style.finish(figure, height=320)
 
 
-def explained_shares(watched: Watched) -> go.Figure:
+def explained_shares(watched: MonitoredTable) -> go.Figure:
     """Draw the shares of each quantity's variance over the baseline by condition."""
     keys = watched.watch.quantities
     labels = [_named(watched, i) for i in range(len(keys))]
@@ -136,7 +136,7 @@ def explained_shares(watched: Watched) -> go.Figure:
     return style.finish(figure, height=max(300, 34 * len(keys) + 130))
 
 
-def change_pattern(watched: Watched, alarm: Alarm) -> go.Figure:
+def change_pattern(watched: MonitoredTable, alarm: Alarm) -> go.Figure:
     """Draw the change of each quantity with its 90 % interval, and the predictions of likely causes."""
     keys = watched.watch.quantities
     change = alarm.change

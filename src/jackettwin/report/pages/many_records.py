@@ -11,14 +11,14 @@ from jackettwin.report.pages.page import Block, PageSection, Plot, Text, write_p
 from jackettwin.report.table import Table
 from jackettwin.report.tables.numbers import UNKNOWN, count, fixed, frequency, interval, percent, words
 from jackettwin.study.many_records.groups import RecordGroup
-from jackettwin.study.many_records.summary import Together
+from jackettwin.study.many_records.summary import FusedBatch
 from jackettwin.twin import Failed
 from jackettwin.version import __version__
 
 _SHOWN_FAILURES = 50
 
 
-def build_many_page(together: Together, failed: tuple[Failed, ...], path: Path) -> Path:
+def build_many_page(together: FusedBatch, failed: tuple[Failed, ...], path: Path) -> Path:
     """Write one self-contained HTML file on fused records; return its path.
 
     Raises

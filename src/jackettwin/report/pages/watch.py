@@ -7,7 +7,7 @@ from typing import Any
 
 from jackettwin.change import (
     Alarm,
-    Watched,
+    MonitoredTable,
     alarm_document,
     alike_sentence,
     corrected_sentence,
@@ -36,7 +36,7 @@ _PATTERN = (
 )
 
 
-def build_watch_page(watched: Watched, path: Path) -> Path:
+def build_watch_page(watched: MonitoredTable, path: Path) -> Path:
     """Write one self-contained HTML file on modes monitored through time; return its path.
 
     Raises
@@ -95,7 +95,7 @@ def build_watch_page(watched: Watched, path: Path) -> Path:
     )
 
 
-def _alarm(watched: Watched, alarm: Alarm, number: int) -> list[Block]:
+def _alarm(watched: MonitoredTable, alarm: Alarm, number: int) -> list[Block]:
     document = alarm_document(watched.watch, watched.table.time, alarm)
     shown = [cause for cause in document["causes"] if cause["probability"] >= _LISTED]
     rows = [(c["cause"], f"{100.0 * c['probability']:.0f}", *_size(c)) for c in shown]

@@ -8,7 +8,7 @@ from jackettwin.report.figures.drawings_shapes import shape_drawings
 from jackettwin.report.figures.tornado import tornado
 from jackettwin.report.pages.page import Block, Drawing, FirstPage
 from jackettwin.report.tables.light import light
-from jackettwin.report.tables.sentences import MARGIN, Said
+from jackettwin.report.tables.sentences import MARGIN, FirstPageWords
 from jackettwin.soil import parameter_words
 from jackettwin.study import TwinResult
 from jackettwin.updating import recommended
@@ -22,7 +22,7 @@ MODEL, GROUND, DAMPING, NEXT = (
 """Titles of the questions that continue in the engineer's part."""
 
 
-def first_page(a: Answers, said: Said) -> FirstPage:
+def first_page(a: Answers, said: FirstPageWords) -> FirstPage:
     """Return the first page."""
     drawings = []
     speeds = campbell(a)

@@ -62,16 +62,16 @@ class AnsweredQuestion:
 
 
 @dataclass(frozen=True)
-class Said:
+class FirstPageWords:
     """The first page in words."""
 
     headline: tuple[str, ...]
     questions: tuple[AnsweredQuestion, ...]
 
 
-def sentences(a: Answers) -> Said:
+def sentences(a: Answers) -> FirstPageWords:
     """Return the first page in words."""
-    return Said(
+    return FirstPageWords(
         tuple(filter(None, _headline(a))),
         (
             AnsweredQuestion("Is the model right?", *_model(a)),

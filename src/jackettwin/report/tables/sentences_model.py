@@ -8,7 +8,7 @@ from math import degrees, expm1
 from jackettwin.answers import Answers, GroundAnswer
 from jackettwin.report.tables.numbers import listed, rounded_percent, words
 from jackettwin.soil import parameter_words
-from jackettwin.updating import DatumCheck, OrderCheck, ShapeCheck, Tolerance, Unseen
+from jackettwin.updating import DatumCheck, OrderCheck, ShapeCheck, Tolerance, UndetectedError
 
 _NAMED = 3
 """Largest number of values and tolerances in a sentence; the table has all."""
@@ -155,7 +155,7 @@ def unseen_sentence(a: Answers) -> str:
     return f"These data would not reveal {listed(said)}." if said else ""
 
 
-def _unseen(a: Answers, one: Unseen) -> str:
+def _unseen(a: Answers, one: UndetectedError) -> str:
     """Return a suspected error with its size, its effect on the ground and the size the data would reveal."""
     t = one.tolerance
     size = size_words(t, t.std).lstrip("+")
@@ -163,7 +163,7 @@ def _unseen(a: Answers, one: Unseen) -> str:
     return f"{t.words} ({size}{moved}; {_seen_from(t, one.seen_from)})"
 
 
-def _moved_most(a: Answers, one: Unseen) -> str:
+def _moved_most(a: Answers, one: UndetectedError) -> str:
     """Return the ground parameter that an unrevealed error changes most, and by how much."""
     felt = [(abs(float(e)), float(e), g.name) for e, g in zip(one.effect, a.ground, strict=False)]
     most, effect, name = max(felt, default=(0.0, 0.0, ""))

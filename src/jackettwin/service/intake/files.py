@@ -154,9 +154,9 @@ def take_file(
     """
     settings = place.settings
     with reading(place.database) as connection:
-        unsaid = profile(connection, place, asset).unsaid
+        defaults = profile(connection, place, asset).defaults
     limits = (settings.samples_limit, settings.worker_memory_bytes, place.now() + AHEAD)
-    parsed = parse(File(str(path), asset, str(settings.store), *limits, unsaid))
+    parsed = parse(File(str(path), asset, str(settings.store), *limits, defaults))
     if parsed[0].problem is not None:
         return Accepted(parsed[0].record_id, None, False, parsed[0].problem)
     with writing(place.database) as connection:

@@ -105,7 +105,7 @@ def read_version(request: Request, service: Parts, connection: Reads) -> Connect
     return connection
 
 
-Told = Annotated[Connection, Depends(read_version, scope="function")]
+ReadsAtVersion = Annotated[Connection, Depends(read_version, scope="function")]
 
 
 class Route(APIRoute):

@@ -104,7 +104,7 @@ class Dispatcher(Thread):
             self.join(timeout=10.0)
         try:
             with writing(self.service.database) as connection:
-                work.bury(connection, self.service.server_id)
+                work.remove_server(connection, self.service.server_id)
         except SQLAlchemyError:
             log.warning("could not leave the list of servers; others will notice the missing heartbeat")
 
@@ -129,7 +129,7 @@ class Dispatcher(Thread):
                 work.join(connection, me, about, now)
             beats = work.beats(connection)
             for server in [name for name in beats if name != me and self._dead(name, *beats[name])]:
-                freed = work.bury(connection, server, beats[server][0])
+                freed = work.remove_server(connection, server, beats[server][0])
                 log.warning("server %s is dead, %d pieces of work go back to the queue", server, len(freed))
             work.take_back_orphans(connection, me, self._running)
             self.service.has_intake = work.hold_post(connection, "intake", me)

@@ -17,7 +17,7 @@ from jackettwin.errors import require
 from jackettwin.files import StoredSchema, atomic_path, digest
 from jackettwin.findings import Finding
 from jackettwin.identification import Pick
-from jackettwin.records import Channel, Unsaid
+from jackettwin.records import Channel, FileDefaults
 from jackettwin.store import read_waveform
 from jackettwin.twin import (
     ALL,
@@ -74,7 +74,7 @@ class TwinProfile:
     model_hash, by_wind, with_shapes : of the states of its observations
     labels : of its modes
     channels : {name: channel}, as stated in the twin file
-    unsaid : properties of files that do not state them
+    defaults : properties of files that do not state them
     """
 
     identity: str
@@ -84,7 +84,7 @@ class TwinProfile:
     with_shapes: bool
     labels: tuple[str, ...]
     channels: dict[str, Channel]
-    unsaid: Unsaid
+    defaults: FileDefaults
 
 
 PROFILE = StoredSchema("twin_profile", TwinProfile)
@@ -101,7 +101,7 @@ def profile_of(twin: Twin) -> TwinProfile:
     }
     keeps = (model.by_wind, model.with_shapes, tuple(model.labels))
     identity = digest([model.model_hash, settings])
-    return TwinProfile(identity, settings, model.model_hash, *keeps, named, twin.config.unsaid)
+    return TwinProfile(identity, settings, model.model_hash, *keeps, named, twin.config.defaults)
 
 
 def examine(folder: Path, most_freedoms: int) -> TwinProfile:

@@ -14,7 +14,7 @@ from jackettwin.service.workers.failures import problem_of
 from jackettwin.service.workers.question import Question
 
 if TYPE_CHECKING:
-    from jackettwin.records import Record, Unsaid
+    from jackettwin.records import FileDefaults, Record
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class File:
     samples_limit : largest number of samples over all channels
     memory_bytes : memory limit of the process that reads it
     latest_utc : latest time at which a record may begin
-    unsaid : properties of files that do not state them, from the twin
+    defaults : properties of files that do not state them, from the twin
     """
 
     path: str
@@ -66,7 +66,7 @@ class File:
     samples_limit: int
     memory_bytes: int
     latest_utc: datetime
-    unsaid: Unsaid | None = None
+    defaults: FileDefaults | None = None
 
 
 EARLIEST = datetime(2001, 1, 1, tzinfo=UTC)
@@ -113,10 +113,10 @@ def read_file(file: File) -> tuple[Parsed, ...]:
     source = Path(file.path)
     try:
         with at_most(file.memory_bytes):
-            record = read_waveform(source) if is_waveform(source) else read_record(source, file.unsaid)
+            record = read_waveform(source) if is_waveform(source) else read_record(source, file.defaults)
             _check(record, file)
             long = record.duration_s > LONG * PIECE_S
-            records = list(read_record_pieces(source, PIECE_S, file.unsaid)) if long else [record]
+            records = list(read_record_pieces(source, PIECE_S, file.defaults)) if long else [record]
         return tuple(stored(record, file.asset, Path(file.store)) for record in records)
     except InputError as error:
         return (Parsed("", problem=problem_of(error)),)

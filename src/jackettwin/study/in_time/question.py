@@ -15,7 +15,7 @@ from jackettwin.errors import InputError
 from jackettwin.files import digest
 from jackettwin.progress import SILENT, Progress
 from jackettwin.study.fit_data import recorded_modes, residuals
-from jackettwin.study.follow_result import STIFFNESS, Followed, Known, Pooled
+from jackettwin.study.follow_result import STIFFNESS, DayEstimate, Followed, PooledEstimate
 from jackettwin.study.in_time.stiffness import Reference, StiffnessLevel, sensitivity
 from jackettwin.study.in_time.track import StiffnessTrack, resumed
 from jackettwin.study.problem import UpdateEvidence, law_model, model_problem
@@ -88,15 +88,15 @@ class InTime:
     """Estimates up to a day: the stiffness track, the estimate of each day, and those of all records."""
 
     track: StiffnessTrack
-    days: tuple[Known, ...] = ()
-    pooled: Mapping[str, Pooled] = field(default_factory=dict)
+    days: tuple[DayEstimate, ...] = ()
+    pooled: Mapping[str, PooledEstimate] = field(default_factory=dict)
 
     @property
-    def last(self) -> Pooled | None:
+    def last(self) -> PooledEstimate | None:
         """The latest estimate from all records together."""
         return next(reversed(dict(self.pooled).values()), None)
 
-    def with_day(self, date_: str, pooled: Pooled, *, asked: bool) -> InTime:
+    def with_day(self, date_: str, pooled: PooledEstimate, *, asked: bool) -> InTime:
         """Return the estimates after one more day; ``asked`` if all records were evaluated after it."""
         every = {**self.pooled, date_: pooled} if asked else self.pooled
         if pooled.about is None:
@@ -105,11 +105,11 @@ class InTime:
         track = track.with_changes(pooled.reference).moved(pooled.reference)
         return replace(self, track=track, pooled=every)
 
-    def with_known(self, known: Known) -> InTime:
+    def with_known(self, known: DayEstimate) -> InTime:
         """Return it with the estimate after the last day."""
         return replace(self, days=(*self.days, known))
 
-    def again(self, date_: str, known: Known | None, pooled: Pooled | None) -> InTime:
+    def again(self, date_: str, known: DayEstimate | None, pooled: PooledEstimate | None) -> InTime:
         """Return the estimates with a day that an earlier run evaluated already."""
         of = pooled or self.last
         if known is None or of is None:
@@ -235,10 +235,12 @@ class FollowQuestion:
         if time is None or not day.operations or ALL not in running.totals or not running.totals[ALL].modes:
             return found
         progress(f"update after {date_}")
-        return self._moment(found, date_, running, Known(date_, time, len(day.records), "", {}, {}), progress)
+        return self._moment(
+            found, date_, running, DayEstimate(date_, time, len(day.records), "", {}, {}), progress
+        )
 
     def _moment(
-        self, found: InTime, date_: str, running: TwinState, moment: Known, progress: Progress
+        self, found: InTime, date_: str, running: TwinState, moment: DayEstimate, progress: Progress
     ) -> InTime:
         number, last = running.totals[ALL].conditions.records, found.last
         new = None if last is not None and number < GROWN * last.records else self.pooled(running, progress)
@@ -253,7 +255,7 @@ class FollowQuestion:
         level = None if pooled.about is None else found.track.level(pooled.reference)
         return found.with_known(self._on_the_day(known, level))
 
-    def _on_the_day(self, known: Known, level: StiffnessLevel | None) -> Known:
+    def _on_the_day(self, known: DayEstimate, level: StiffnessLevel | None) -> DayEstimate:
         """Return the estimate with the stiffness of the day."""
         if level is None:
             return known
@@ -281,11 +283,11 @@ class FollowQuestion:
                 before = found.track
             found = replace(found, track=replace(before, every=Days.of(state)))
             progress(f"update after {seen.name}")
-            known = Known(time.isoformat(), time, 1, "", {}, {})
+            known = DayEstimate(time.isoformat(), time, 1, "", {}, {})
             found = self._moment(found, date_, state, known, progress)
         return found
 
-    def pooled(self, state: TwinState, progress: Progress = SILENT) -> Pooled:
+    def pooled(self, state: TwinState, progress: Progress = SILENT) -> PooledEstimate:
         """Return the estimate from some records together."""
         evidence = _evidence(self.config, self.model, self.rotor, self.wind, state)
         highest = max(mode for data, _ in evidence.states.values() for mode in data.modes)
@@ -300,7 +302,7 @@ class FollowQuestion:
             )
         )
         about = sensitivity(problem, np.log(median), stiff, modes) if stiff and modes else None
-        return Pooled(
+        return PooledEstimate(
             state.totals[ALL].conditions.records,
             dict(zip(names, median.tolist(), strict=True)),
             dict(zip(names, zip(low.tolist(), high.tolist(), strict=True), strict=True)),

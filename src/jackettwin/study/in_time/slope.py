@@ -8,7 +8,7 @@ from datetime import date, datetime
 
 import numpy as np
 
-from jackettwin.study.follow_result import FEWEST_DAYS, STIFFNESS, Known, since_first
+from jackettwin.study.follow_result import FEWEST_DAYS, STIFFNESS, DayEstimate, since_first
 from jackettwin.study.in_time.question import FollowQuestion, data_of
 from jackettwin.study.problem import tied_problem
 from jackettwin.study.rotor import States
@@ -21,7 +21,7 @@ MOST_SPANS = 10
 """Largest number of spans of days that a drift is fitted to, so that its cost stays that of ten days."""
 
 
-def slope(question: FollowQuestion, state: TwinState, days: Sequence[Known]) -> Drift | None:
+def slope(question: FollowQuestion, state: TwinState, days: Sequence[DayEstimate]) -> Drift | None:
     """Return the common slope of all stiffness, fitted to frequencies and damping of spans of days."""
     if len(days) < FEWEST_DAYS:
         return None

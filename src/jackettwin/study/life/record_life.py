@@ -75,7 +75,7 @@ def sensed(config: TwinConfig, path: Path, *, feel_gravity: bool = False) -> tup
     InputError
         If the record cannot be read, measures no motion, or its sensors do not fit the structure.
     """
-    record = calibrated(read_record(path, config.unsaid), config.calibrations)
+    record = calibrated(read_record(path, config.defaults), config.calibrations)
     record = repair(record, assess(record))
     if record.metadata.get("axes") == "rotor" or any(c.frame == "nacelle" for c in record.channels):
         record = to_global_axes(record)

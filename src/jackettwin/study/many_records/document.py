@@ -18,10 +18,10 @@ from jackettwin.identification.picks import plain_picks
 from jackettwin.study.document import MODAL
 from jackettwin.study.many_records.groups import RecordGroup
 from jackettwin.study.many_records.identify import Batch
-from jackettwin.study.many_records.summary import Together
+from jackettwin.study.many_records.summary import FusedBatch
 
 
-def many_document(batch: Batch, together: Together) -> dict[str, Any]:
+def many_document(batch: Batch, together: FusedBatch) -> dict[str, Any]:
     """Return the document of ``jackettwin identify`` for several records: fused, by group, and each record.
 
     ``records``, ``rejected``, ``quality`` and ``picks`` are ``Streamed``.

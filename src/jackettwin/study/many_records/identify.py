@@ -14,7 +14,7 @@ from pathlib import Path
 from jackettwin.files import KeptInFolder
 from jackettwin.findings import Finding
 from jackettwin.progress import SILENT, Progress
-from jackettwin.records import Unsaid
+from jackettwin.records import FileDefaults
 from jackettwin.twin import OBSERVATION, Failed, Observation, TwinModel, observe_files
 from jackettwin.twin.observe_files import failure
 
@@ -49,7 +49,7 @@ def observe_many(
     model: TwinModel,
     *,
     keep: KeptInFolder,
-    unsaid: Unsaid | None = None,
+    defaults: FileDefaults | None = None,
     workers: int | None = None,
     progress: Progress = SILENT,
 ) -> Batch:
@@ -61,7 +61,7 @@ def observe_many(
         Without a structure, modes are identified but not labelled.
     keep : KeptInFolder
         Stored observations are reused; each new one is stored at once.
-    unsaid : Unsaid, optional
+    defaults : FileDefaults, optional
         Rate and unit for files that do not state them.
     workers : int, optional
         Number of processes, by default one for each core. With 1, this process does the work.
@@ -71,7 +71,9 @@ def observe_many(
     results: dict[int, Path] = {}
     failed: dict[int, Failed] = {}
     own: dict[int, str] = {}
-    for i, seen in observe_files(files, model, unsaid=unsaid, workers=workers, progress=progress, keep=keep):
+    for i, seen in observe_files(
+        files, model, defaults=defaults, workers=workers, progress=progress, keep=keep
+    ):
         if isinstance(seen, Exception):
             failed[i] = failure(files[i], seen)
         elif seen.observation is not None:

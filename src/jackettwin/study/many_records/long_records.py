@@ -7,7 +7,7 @@ from itertools import chain, islice
 from pathlib import Path
 
 from jackettwin.errors import InputError
-from jackettwin.records import Unsaid, read_record_pieces, write_record
+from jackettwin.records import FileDefaults, read_record_pieces, write_record
 
 PIECE_S = 600.0
 """Length of a piece [s], over which conditions are about steady; turbine loggers use the same length."""
@@ -20,22 +20,22 @@ WORTH_A_LOOK_BYTES = 500_000
 def without_long(
     files: Sequence[Path],
     folder: Path,
-    unsaid: Unsaid,
+    defaults: FileDefaults,
     step: Callable[[str], None] = lambda _: None,
 ) -> tuple[Path, ...]:
     """Return the files, each long one replaced by its pieces, which are written into ``folder``.
 
     A file that cannot be read stays in the list, after any pieces before its fault, and is refused later.
     """
-    return tuple(chain.from_iterable(_cut(file, folder, unsaid, step) for file in files))
+    return tuple(chain.from_iterable(_cut(file, folder, defaults, step) for file in files))
 
 
-def _cut(file: Path, folder: Path, unsaid: Unsaid, step: Callable[[str], None]) -> Iterator[Path]:
+def _cut(file: Path, folder: Path, defaults: FileDefaults, step: Callable[[str], None]) -> Iterator[Path]:
     if not file.is_file() or file.stat().st_size < WORTH_A_LOOK_BYTES:
         yield file
         return
     try:
-        pieces = read_record_pieces(file, PIECE_S, unsaid)
+        pieces = read_record_pieces(file, PIECE_S, defaults)
         first = list(islice(pieces, LONG + 1))
         if len(first) <= LONG:
             yield file

@@ -12,7 +12,7 @@ from jackettwin.study.many_records.identify import Batch
 
 
 @dataclass(frozen=True)
-class Together:
+class FusedBatch:
     """Records of a batch, fused.
 
     Attributes
@@ -29,12 +29,12 @@ class Together:
     duration_s: float
 
 
-def fuse_batch(batch: Batch) -> Together:
+def fuse_batch(batch: Batch) -> FusedBatch:
     """Return the fused modes of a batch's records; each record is read once."""
     try:
         followed = follow((one.identification, group_key(one.conditions)) for one in batch)
     except InputError as error:
         alone = sum(one.identification.duration_s for one in batch)
-        return Together(None, (), (f"not fused: {error}",), alone)
+        return FusedBatch(None, (), (f"not fused: {error}",), alone)
     fused = fused_records(followed)
-    return Together(fused, grouped(followed), fused.warnings, fused.duration_s)
+    return FusedBatch(fused, grouped(followed), fused.warnings, fused.duration_s)

@@ -91,7 +91,7 @@ class Explanation:
 
 
 @dataclass(frozen=True, eq=False)
-class Unseen:
+class UndetectedError:
     """A suspected error that the data would reveal with a probability below 0.9.
 
     Attributes
@@ -121,7 +121,7 @@ class Objection:
         χ² of all fitted values and of the frequencies and directions that are not fitted.
     explanations : tuple of Explanation
         The best first; empty if there is nothing to explain.
-    unseen : tuple of Unseen
+    unseen : tuple of UndetectedError
     suspected : tuple of Tolerance
         Suspects whose effect is in the data, beyond chance.
     shapes : tuple of ShapeCheck
@@ -135,7 +135,7 @@ class Objection:
     freedom: int
     probability: float
     explanations: tuple[Explanation, ...] = ()
-    unseen: tuple[Unseen, ...] = ()
+    unseen: tuple[UndetectedError, ...] = ()
     suspected: tuple[Tolerance, ...] = ()
     shapes: tuple[ShapeCheck, ...] = ()
     orders: tuple[OrderCheck, ...] = ()
@@ -205,9 +205,9 @@ def _left(rows: CheckedData, precision: FloatArray, without: str = "") -> tuple[
 
 def _suspects(
     rows: CheckedData, precision: FloatArray, limit: float
-) -> tuple[tuple[Unseen, ...], tuple[Tolerance, ...]]:
+) -> tuple[tuple[UndetectedError, ...], tuple[Tolerance, ...]]:
     """Return the suspected errors that would not be revealed at any place, and those to be explained."""
-    unseen: dict[str, Unseen] = {}
+    unseen: dict[str, UndetectedError] = {}
     suspected: dict[str, Tolerance] = {}
     _, moved = _left(rows, precision)
     for direction, gamma in rows.asked:
@@ -219,7 +219,7 @@ def _suspects(
         size = tolerance.std * ((limit + _SURELY) / sqrt(power) if power > 0.0 else np.inf)
         known = unseen.get(tolerance.name)
         if size > tolerance.std and (known is None or size > known.seen_from):
-            unseen[tolerance.name] = Unseen(tolerance, size, moved @ gamma)
+            unseen[tolerance.name] = UndetectedError(tolerance, size, moved @ gamma)
     return tuple(unseen.values()), tuple(suspected.values())
 
 

@@ -72,7 +72,7 @@ class Solution:
 
 
 @dataclass(frozen=True)
-class Begun:
+class GivenSearch:
     """A search from a given point.
 
     Attributes
@@ -109,7 +109,7 @@ class Search:
     stalled : int
         Number of searches of both kinds that ended above every solution: stalled, on a shoulder, or on a
         plateau far from the data.
-    begun : tuple of Begun
+    begun : tuple of GivenSearch
         Ends of the searches from given points.
     """
 
@@ -119,7 +119,7 @@ class Search:
     missed_share_95: float | None
     spent: int | None = None
     stalled: int = 0
-    begun: tuple[Begun, ...] = ()
+    begun: tuple[GivenSearch, ...] = ()
 
     @property
     def statement(self) -> str:
@@ -265,7 +265,8 @@ def _from_points(
         progress.within(f"given point {i} of {len(points)}")
     clusters, compared = gather(problem, [(end, 1) for end in ends if end.settled])
     begun = tuple(
-        Begun(np.exp(z), np.exp(end.z), end.cost, end.settled) for z, end in zip(points, ends, strict=True)
+        GivenSearch(np.exp(z), np.exp(end.z), end.cost, end.settled)
+        for z, end in zip(points, ends, strict=True)
     )
     spent, kept = None if compared else sum(end.evaluations for end in ends), _kept(problem, clusters)
     stalled = _stalled(problem, ends, kept)

@@ -14,8 +14,8 @@ from jackettwin.service.web.dependencies import (
     Asker,
     AssetName,
     Parts,
+    ReadsAtVersion,
     Route,
-    Told,
     Writes,
     known_asset,
     known_version,
@@ -38,7 +38,7 @@ router = APIRouter(tags=["assets"], route_class=Route)
 
 
 @router.get("/assets", dependencies=[auth.VIEWER], responses=answers(401, 422))
-def list_assets(who: Asker, connection: Told, archived: bool = False) -> Page[AssetOut]:
+def list_assets(who: Asker, connection: ReadsAtVersion, archived: bool = False) -> Page[AssetOut]:
     """List the assets, or the archived ones, with status, last data and findings."""
     return Page(items=catalogue.overview(connection, archived=archived, seen=who.assets))
 
@@ -65,7 +65,7 @@ def add_asset(body: NewAsset, who: Asker, parts: Parts) -> AssetOut:
 
 
 @router.get("/assets/{asset}", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def get_asset(asset: AssetName, connection: Told) -> AssetOut:
+def get_asset(asset: AssetName, connection: ReadsAtVersion) -> AssetOut:
     """Return one asset."""
     known_asset(connection, asset)
     return catalogue.one(connection, asset)
@@ -111,7 +111,7 @@ def put_asset(asset: AssetName, body: NewVersion, who: Asker, parts: Parts) -> V
 
 
 @router.get("/assets/{asset}/versions", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def versions(asset: AssetName, connection: Told) -> Page[VersionOut]:
+def versions(asset: AssetName, connection: ReadsAtVersion) -> Page[VersionOut]:
     """List the versions of an asset's twin, oldest first."""
     known_asset(connection, asset)
     return Page(items=catalogue.versions_out(connection, asset))

@@ -14,8 +14,8 @@ from jackettwin.service.web.dependencies import (
     Asker,
     AssetName,
     Parts,
+    ReadsAtVersion,
     Route,
-    Told,
     known_asset,
     known_version,
     living_asset,
@@ -28,7 +28,9 @@ router = APIRouter(tags=["assumptions"], route_class=Route)
 
 
 @router.get("/assets/{asset}/assumptions", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def assumptions(asset: AssetName, connection: Told, version: AnyVersion = None) -> Page[AssumptionOut]:
+def assumptions(
+    asset: AssetName, connection: ReadsAtVersion, version: AnyVersion = None
+) -> Page[AssumptionOut]:
     """List the assumptions of the result; open tolerances are sorted by their effect."""
     asked = known_version(connection, asset, version)
     found = results.find_drawn(connection, asset, asked.version, "assumptions")

@@ -16,8 +16,8 @@ from jackettwin.service.web.dependencies import (
     AssetName,
     Parts,
     Reads,
+    ReadsAtVersion,
     Route,
-    Told,
     Writes,
     known_asset,
 )
@@ -50,7 +50,7 @@ _CONFLICTING: dict[str, Any] = {
 @router.get("/assets/{asset}/findings", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def findings(
     asset: AssetName,
-    connection: Told,
+    connection: ReadsAtVersion,
     severity: Literal["info", "warning", "alarm"] | None = None,
     cursor: Cursor = None,
     limit: Limit = 100,
@@ -60,7 +60,9 @@ def findings(
 
 
 @router.get("/assets/{asset}/alarms", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def alarms(asset: AssetName, connection: Told, cursor: Cursor = None, limit: Limit = 100) -> Page[AlarmOut]:
+def alarms(
+    asset: AssetName, connection: ReadsAtVersion, cursor: Cursor = None, limit: Limit = 100
+) -> Page[AlarmOut]:
     """List the findings that need a person, newest first, with their acknowledgements."""
     return said.findings(connection, known_asset(connection, asset), "alarm", cursor, limit, AlarmOut)
 

@@ -17,8 +17,8 @@ from jackettwin.service.web.dependencies import (
     Asker,
     AssetName,
     Parts,
+    ReadsAtVersion,
     Route,
-    Told,
     known_asset,
     known_version,
 )
@@ -50,7 +50,7 @@ When = Annotated[datetime | None, Query(description="Time of the state; default:
 @router.get("/assets/{asset}/modes", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def modes(
     asset: AssetName,
-    connection: Told,
+    connection: ReadsAtVersion,
     label: Annotated[str | None, Query(max_length=64)] = None,
     since: Annotated[datetime | None, Query(alias="from")] = None,
     until: Annotated[datetime | None, Query(alias="to")] = None,
@@ -66,7 +66,7 @@ def modes(
 @router.get("/assets/{asset}/modes/bins", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def mode_bins(
     asset: AssetName,
-    connection: Told,
+    connection: ReadsAtVersion,
     label: Annotated[str | None, Query(max_length=64)] = None,
     since: Annotated[datetime | None, Query(alias="from")] = None,
     until: Annotated[datetime | None, Query(alias="to")] = None,
@@ -81,7 +81,7 @@ def mode_bins(
 
 @router.get("/assets/{asset}/twin", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def twin(
-    asset: AssetName, parts: Parts, connection: Told, at: When = None, version: AnyVersion = None
+    asset: AssetName, parts: Parts, connection: ReadsAtVersion, at: When = None, version: AnyVersion = None
 ) -> TwinOut:
     """Return the state of the twin at a time: mean modes and parameters with intervals."""
     asked = known_version(connection, asset, version)
@@ -89,7 +89,7 @@ def twin(
 
 
 @router.get("/assets/{asset}/supports", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def supports(asset: AssetName, connection: Told, version: AnyVersion = None) -> SupportsOut:
+def supports(asset: AssetName, connection: ReadsAtVersion, version: AnyVersion = None) -> SupportsOut:
     """Return the stiffness of the supports on each day, filtered and smoothed, with jumps and forecast."""
     return said.supports(connection, known_version(connection, asset, version))
 
@@ -99,7 +99,7 @@ def comparison(
     asset: AssetName,
     version: Annotated[int, Query(ge=1, le=1_000_000)],
     parts: Parts,
-    connection: Told,
+    connection: ReadsAtVersion,
 ) -> ComparisonOut:
     """Return the comparison of another version of the twin with the adopted one on the same records."""
     adopted, other = known_asset(connection, asset), known_version(connection, asset, version)
@@ -108,7 +108,7 @@ def comparison(
 
 @router.get("/assets/{asset}/damping-budget", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def damping_budget(
-    asset: AssetName, parts: Parts, connection: Told, at: When = None, version: AnyVersion = None
+    asset: AssetName, parts: Parts, connection: ReadsAtVersion, at: When = None, version: AnyVersion = None
 ) -> Page[BudgetOut]:
     """Return the damping of each mode by source; empty for past times, for which no update exists."""
     asked = known_version(connection, asset, version)
@@ -118,7 +118,7 @@ def damping_budget(
 
 @router.get("/assets/{asset}/sensitivity", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def sensitivity(
-    asset: AssetName, parts: Parts, connection: Told, version: AnyVersion = None
+    asset: AssetName, parts: Parts, connection: ReadsAtVersion, version: AnyVersion = None
 ) -> Page[SensitivityOut]:
     """Return the sensitivity of each measured mode to every updated parameter at the present medians."""
     asked = known_version(connection, asset, version)
@@ -127,21 +127,21 @@ def sensitivity(
 
 
 @router.get("/assets/{asset}/explore", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def explored(asset: AssetName, connection: Told, version: AnyVersion = None) -> ExploredOut:
+def explored(asset: AssetName, connection: ReadsAtVersion, version: AnyVersion = None) -> ExploredOut:
     """Return cost over two parameters of the law and over each, and root loci along each."""
     asked = known_version(connection, asset, version)
     return ExploredOut(**results.find_drawn(connection, asset, asked.version, "explored"))
 
 
 @router.get("/assets/{asset}/structure", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def structure(asset: AssetName, connection: Told, version: AnyVersion = None) -> StructureOut:
+def structure(asset: AssetName, connection: ReadsAtVersion, version: AnyVersion = None) -> StructureOut:
     """Return the structure for drawing, with its updated complex modes and the measured shape of each."""
     asked = known_version(connection, asset, version)
     return StructureOut(**results.find_drawn(connection, asset, asked.version, "structure"))
 
 
 @router.get("/assets/{asset}/life", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def life(asset: AssetName, connection: Told, version: AnyVersion = None) -> Page[LifeOut]:
+def life(asset: AssetName, connection: ReadsAtVersion, version: AnyVersion = None) -> Page[LifeOut]:
     """Return the life of the welds that records damage most, the shortest first.
 
     Empty before a record told of damage, or if the twin does not ask for it (``life:``).

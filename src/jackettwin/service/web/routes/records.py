@@ -13,9 +13,9 @@ from jackettwin.service.web.dependencies import (
     Asker,
     AssetName,
     Parts,
+    ReadsAtVersion,
     RecordId,
     Route,
-    Told,
     Writes,
     known_asset,
     known_record,
@@ -74,7 +74,7 @@ def add_record(
 @router.get("/assets/{asset}/records", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def list_records(
     asset: AssetName,
-    connection: Told,
+    connection: ReadsAtVersion,
     since: Annotated[datetime | None, Query(alias="from")] = None,
     until: Annotated[datetime | None, Query(alias="to")] = None,
     status: Status | None = None,
@@ -96,7 +96,7 @@ def list_records(
 
 
 @router.get("/records/{record_id}", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def get_record(record_id: RecordId, who: Asker, connection: Told) -> RecordOut:
+def get_record(record_id: RecordId, who: Asker, connection: ReadsAtVersion) -> RecordOut:
     """Return a record with its status."""
     return signals.record_out(known_record(connection, record_id, who))
 
