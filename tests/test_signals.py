@@ -1,5 +1,7 @@
 """The signal-processing functions are those of ``scipy.signal``, to rounding."""
 
+from typing import Literal
+
 import numpy as np
 import pytest
 from scipy import fft, signal
@@ -12,6 +14,7 @@ from jackettwin.signals import (
     next_fast_len,
     prev_fast_len,
     resample,
+    running_median,
     tukey,
 )
 
@@ -60,3 +63,13 @@ def test_fast_lengths() -> None:
         assert next_fast_len(n) == fft.next_fast_len(n)
         assert next_fast_len(n, real=True) == fft.next_fast_len(n, real=True)
         assert prev_fast_len(n) == fft.prev_fast_len(n)
+
+
+@pytest.mark.parametrize("ends", ["nearest", "reflect"])
+def test_running_medians_are_those_of_every_row(ends: Literal["nearest", "reflect"]) -> None:
+    """Against the definition: the median of the values around each, with the ends continued."""
+    x = np.random.default_rng(7).standard_normal((2, 3, 40))
+    pad: Literal["edge", "symmetric"] = "edge" if ends == "nearest" else "symmetric"
+    padded = np.pad(x, [(0, 0), (0, 0), (5, 5)], mode=pad)
+    wanted = np.median(np.lib.stride_tricks.sliding_window_view(padded, 11, axis=-1), axis=-1)
+    np.testing.assert_array_equal(running_median(x, 10, ends=ends), wanted)

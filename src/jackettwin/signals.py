@@ -7,8 +7,10 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import count
+from typing import Literal
 
 import numpy as np
+import scipy  # scipy.ndimage is loaded where it is used
 
 from jackettwin.arrays import FloatArray, IntArray
 
@@ -144,3 +146,24 @@ def _standing_out(values: FloatArray, peaks: IntArray, prominence: float) -> lis
             kept += tops
             low, highest, tops = after, -np.inf, []
     return kept
+
+
+def running_median(
+    x: FloatArray, width: int, *, ends: Literal["nearest", "reflect"] = "nearest"
+) -> FloatArray:
+    """Return the running median along the last axis over an odd number of values.
+
+    Row by row: SciPy's filter along one axis is up to thirty times as fast as that for several.
+
+    Parameters
+    ----------
+    x : (..., n) array
+    width : int
+        Number of values; an even one is increased by one.
+    ends : {"nearest", "reflect"}
+        How values are continued at the ends.
+    """
+    rows = x.reshape(-1, x.shape[-1])
+    return np.asarray([scipy.ndimage.median_filter(row, size=width | 1, mode=ends) for row in rows]).reshape(
+        x.shape
+    )

@@ -19,11 +19,11 @@ from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
 from jackettwin.identification.mode_shapes import aligned, mac, mpc, mpd_rad, normalised
 from jackettwin.identification.preparation.prepared import prepare
-from jackettwin.identification.preparation.spectra import CLEAR_PEAK, running_median, welch
+from jackettwin.identification.preparation.spectra import CLEAR_PEAK, welch
 from jackettwin.identification.preparation.whitening import as_measured
 from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.records import spectral_matrix
-from jackettwin.signals import local_peaks
+from jackettwin.signals import local_peaks, running_median
 
 if TYPE_CHECKING:
     from jackettwin.records import Record
@@ -77,7 +77,7 @@ def principal(matrix: ComplexArray) -> tuple[FloatArray, ComplexArray]:
 
 def peaks(values: FloatArray, inside: BoolArray) -> list[int]:
     """Return the clear peaks of the largest singular value within the band."""
-    level = running_median(values, max(len(values) // 10, 5))
+    level = running_median(values, max(len(values) // 10, 5), ends="reflect")
     found = local_peaks(np.log(values), prominence=np.log(2.0))
     return [int(k) for k in found if inside[k] and values[k] > CLEAR_PEAK * level[k]]
 

@@ -7,9 +7,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy import ndimage
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
+from jackettwin.signals import running_median
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -153,5 +153,5 @@ def _local_median(power: FloatArray, line: IntArray) -> FloatArray:
     step = np.log(line[-1] / line[0]) / n
     width = max(int(MEDIAN_SHARE_OF_BAND / step), 9) | 1
     nearest = np.clip(np.round(grid).astype(int) - line[0], 0, len(line) - 1)
-    smooth = ndimage.median_filter(power[:, nearest], size=(1, width), mode="nearest") / np.log(2.0)
+    smooth = running_median(power[:, nearest], width) / np.log(2.0)
     return np.asarray([np.interp(line, grid, row) for row in smooth])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy import ndimage
 
 from jackettwin.arrays import FloatArray
 from jackettwin.identification.estimate import Spectrum
@@ -60,9 +59,3 @@ def lowest_peak_hz(spectrum: Spectrum) -> float | None:
         if f[k] >= lowest and prominent and s[k] > 1e-4 * s[1:].max():
             return float(f[k])
     return None
-
-
-def running_median(values: FloatArray, width: int) -> FloatArray:
-    """Return the running median along the last axis, odd ``width``, ends reflected."""
-    size = [1] * (values.ndim - 1) + [width | 1]
-    return np.asarray(ndimage.median_filter(values, size=size, mode="reflect"))

@@ -9,11 +9,11 @@ noise.
 from __future__ import annotations
 
 import numpy as np
-import scipy  # scipy.ndimage is loaded where it is used
 
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.records.processing.filters import bridge
 from jackettwin.records.processing.spectra import of_fast_length, welch_densities
+from jackettwin.signals import running_median
 
 SEGMENTS = 16
 """Segments of Welch's estimate, without overlap."""
@@ -74,7 +74,7 @@ def not_filtered(y: FloatArray) -> tuple[BoolArray, FloatArray]:
     edge, beside = ((f > low) & (f < high) for low, high in (EDGE, BESIDE))
     flat = density[:, edge].mean(axis=1) > FALL * np.median(density[:, beside], axis=1)
     width = max(len(f) // AROUND, MIN_AROUND)
-    median = scipy.ndimage.median_filter(density, size=(1, width), mode="nearest")
+    median = running_median(density, width)
     ratio = density / np.where(median > 0.0, median, np.inf)
     peaked = ratio[:, (f > PEAKS[0]) & (f < PEAKS[1])].max(axis=1) > PEAK_RATIO
     return np.asarray(flat & peaked & (share > LEAST_POWER)), np.asarray(share)
