@@ -1,16 +1,20 @@
 """The stiffness through time on years whose seasons are made by other means: coverage, steps, cost.
 
 Usage: python qualify/stiffness_in_time.py [n_histories]
+
+A history that was computed by the same code is not computed again.
 """
 
 from __future__ import annotations
 
 import sys
 import time
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
+from common.cases import Result, cases
 from common.page import write_page
 from common.stiffness_histories import KINDS, MODES, History, history, modes_table
 
@@ -142,8 +146,9 @@ def records_to_follow(h: History, then: np.ndarray) -> int | None:
     return int(np.argmax(ok)) + 1 if ok.any() else len(ok)
 
 
-def main() -> None:
-    number = int(sys.argv[1]) if len(sys.argv) > 1 else 20
+@cache
+def world() -> tuple[TwinModel, SupportModel, tuple[np.ndarray, ...]]:
+    """Return the twin, its model of supports and the frequencies of its modes by stiffness."""
     twin = replace(read_twin("thesis_table_6_1"), targets=())
     model = twin_model(twin)
     supports = support_model(
@@ -151,13 +156,23 @@ def main() -> None:
     )
     near = supports.predict(np.array([4e8, LOSS]), MODES)
     table = modes_table(lambda x: supports.predict(np.array([np.exp(x), LOSS]), MODES, near=near).poles)
-    found = []
-    for i in range(number):
-        told = (i // len(KINDS)) % 3 != 2
-        h = history(FIRST_SEED + i, table, kind=KINDS[i % len(KINDS)], told=told)
-        found.append(scored(h, told, model, supports, i))
-        print(found[-1], flush=True)
-    write_page("stiffness_in_time", page(found))
+    return model, supports, table
+
+
+def case(number: int) -> Result:
+    """Return what came of one history."""
+    begun = time.process_time()
+    model, supports, table = world()
+    told = (number // len(KINDS)) % 3 != 2
+    h = history(FIRST_SEED + number, table, kind=KINDS[number % len(KINDS)], told=told)
+    return asdict(scored(h, told, model, supports, number)) | {"cpu_s": time.process_time() - begun}
+
+
+def main() -> None:
+    number = int(sys.argv[1]) if len(sys.argv) > 1 else 20
+    found = cases("stiffness_in_time", number, case, whole=True)
+    each = [{key: value for key, value in one.items() if key not in ("case", "cpu_s")} for one in found]
+    write_page("stiffness_in_time", page([Scored(**one) for one in each]))
 
 
 ABOUT = """\

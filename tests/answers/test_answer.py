@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from jackettwin.answers import Answers, Span, answer
+from jackettwin.answers.averaged import averaged_ground
 from jackettwin.answers.fit import moved_by
 from jackettwin.answers.next_steps import next_steps, records_for
 from jackettwin.answers.result import NORMAL_90
@@ -232,3 +233,26 @@ def test_a_quantity_has_one_central_value(answers: Answers, result: TwinResult) 
     for g in answers.ground:
         said = document["parameters"][g.name]
         assert said["value"] == said["median"] == pytest.approx(g.value.value, rel=1e-12)
+
+
+def test_laws_of_comparable_probability_give_one_stiffness(result: TwinResult) -> None:
+    """Of a law with a fixed shape k and loss factor are Re D and Im D/Re D at the first pinned frequency."""
+    first, second = result.updates
+    assert first.uncertainty is not None and second.uncertainty is not None
+    both = averaged_ground(result.updates, {first.law: 0.7, second.law: 0.3})
+    assert [one.name for one in both] == ["k", "loss_factor"]
+    assert both[0].laws == (first.law, second.law)
+    omega = 2.0 * np.pi * both[0].frequency_hz
+    k, loss = np.exp(first.uncertainty.log_theta).T
+    static, c = np.exp(second.uncertainty.log_theta).T
+    for one, own, other in zip(both, (k, loss), (static, c * omega / static), strict=True):
+        draws = np.concatenate([np.resize(own, 7000), np.resize(other, 3000)])
+        low, middle, high = np.quantile(draws, [0.05, 0.5, 0.95])
+        # thinned draws: the ends are known to a tenth of their distance
+        slack = 0.1 * np.log(high / low)
+        assert one.value.low is not None and one.value.high is not None
+        np.testing.assert_allclose(
+            np.log([one.value.low, one.value.value, one.value.high]), np.log([low, middle, high]), atol=slack
+        )
+    assert averaged_ground(result.updates, {first.law: 0.95, second.law: 0.05}) == ()
+    assert averaged_ground(result.updates, {}) == ()

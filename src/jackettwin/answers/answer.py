@@ -7,6 +7,7 @@ from typing import Literal
 
 import numpy as np
 
+from jackettwin.answers.averaged import averaged_ground
 from jackettwin.answers.fit import fit_answer
 from jackettwin.answers.next_steps import next_steps, records_for
 from jackettwin.answers.result import (
@@ -61,6 +62,9 @@ def answer(result: TwinResult) -> Answers:
         scrutiny=_scrutiny(result, u),
         usable=USABLE,
         fit=fit,
+        averaged=averaged_ground(
+            result.updates, {law.law: law.probability for law in laws if law.probability is not None}
+        ),
     )
 
 

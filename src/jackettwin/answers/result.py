@@ -98,6 +98,22 @@ class ModeAnswer:
         return beyond if beyond > _TRACE * measured else None
 
     @property
+    def damped_as_measured(self) -> bool | None:
+        """Whether measured and modelled damping overlap, each with its interval; None without intervals."""
+        measured, model = self.measured_damping, self.model_damping
+        if measured is None or model is None or measured.low is None:
+            return None
+        return measured.meets(model)
+
+    @property
+    def excessive(self) -> tuple[str, ...]:
+        """Sources that alone damp the mode more than was measured, with its interval."""
+        if self.measured_damping is None or self.measured_damping.high is None:
+            return ()
+        most = self.measured_damping.high
+        return tuple(name for name, span in self.sources.items() if (span.low or span.value) > most)
+
+    @property
     def as_designed(self) -> bool | None:
         """Whether measured frequency and design overlap, each with its interval; None without either."""
         if self.measured_hz is None or self.design_hz is None:
@@ -171,6 +187,26 @@ class LawAnswer:
 
 
 @dataclass(frozen=True)
+class AveragedGround:
+    """Stiffness or loss of the ground over all laws that the data do not distinguish, by their probability.
+
+    Attributes
+    ----------
+    name : str
+        ``k``, storage stiffness, or ``loss_factor``, with the suffix of its group of feet.
+    frequency_hz : float
+        At which it is compared, for the laws' own parameters differ.
+    laws : names of the laws
+    """
+
+    name: str
+    unit: str
+    frequency_hz: float
+    value: Span
+    laws: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class FitAnswer:
     """How the best fit meets what it was fitted to.
 
@@ -225,6 +261,8 @@ class Answers:
     records, minutes : of measurements
     scrutiny : Scrutiny or None
         What the recommended law's fit does not explain, and what its answers hang on.
+    averaged : tuple of AveragedGround
+        Empty unless two laws are comparably probable.
     records_for : {mode: number}
         Records like these after which the mode's damping ratio is known to ± ``precision`` (90 %).
     """
@@ -245,6 +283,7 @@ class Answers:
     usable: float
     fit: FitAnswer | None = None
     scrutiny: Scrutiny | None = None
+    averaged: tuple[AveragedGround, ...] = ()
 
     @property
     def fits(self) -> bool:

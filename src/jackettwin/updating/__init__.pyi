@@ -30,6 +30,7 @@ from .explore.paths import SearchPath as SearchPath, search_paths as search_path
 from .explore.sensitivity import ModeSensitivity as ModeSensitivity, sensitivity as sensitivity
 from .joint import Growth as Growth, joint as joint, single as single
 from .law_choice import (
+    PREFERRED as PREFERRED,
     LawRank as LawRank,
     approximate_probability as approximate_probability,
     likely as likely,

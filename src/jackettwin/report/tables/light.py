@@ -21,8 +21,8 @@ class Light:
     ----------
     level : {"ok", "look", "act"}
         ``act``: the model cannot reproduce the data, or the rotor may excite a first mode. ``look``: a
-        measured mode is not as designed, or there is no measurement of it. How well the ground is known has
-        no effect.
+        measured mode is not as designed, is damped otherwise than in the model, or was not measured. How
+        well the ground is known has no effect.
     words : str
     """
 
@@ -46,4 +46,7 @@ def light(a: Answers) -> Light:
         return Light("look", f"Look: {listed(off)} {'is' if len(off) == 1 else 'are'} not as designed")
     if objection_sentences(a):
         return Light("look", "Look: part of the measurements is not explained")
+    other = [words(m.label) for m in a.modes if m.damped_as_measured is False]
+    if other:
+        return Light("look", f"Look: the model damps {listed(other)} otherwise than measured")
     return Light("ok", "In order: no measurement contradicts the model")

@@ -257,15 +257,28 @@ def _owner_headline(a: Answers) -> str:
     by_owner: dict[str, list[str]] = {}
     for m in _firsts(a):
         for owner, share in _shares(m).items():
-            if share > 0.5:
-                by_owner.setdefault(owner, []).append(f"{100 * share:.0f} % in {words(m.label)}")
-    if not by_owner:
+            if 0.5 < share <= 1.0 + SMALL:
+                part = "all" if share >= 1.0 else f"{100 * share:.0f} %"
+                by_owner.setdefault(owner, []).append(f"{part} in {words(m.label)}")
+    if not by_owner and not _too_much(a):
         by_owner = _largest(a)
     parts = [
         f"{listed(of)} is unexplained" if owner == _UNEXPLAINED else f"{_SOURCES[owner]} gives {listed(of)}"
         for owner, of in by_owner.items()
     ]
-    return f"Of the damping, {listed(parts)}." if parts else ""
+    return " ".join([*_too_much(a), *([f"Of the damping, {listed(parts)}."] if parts else [])])
+
+
+def _too_much(a: Answers) -> list[str]:
+    """Return a sentence on first bending modes of which one source alone gives more than was measured."""
+    said = [
+        f"{_SOURCES[owner]} alone gives {share:.1f} times the measured damping of {words(m.label)}"
+        for m in _firsts(a)
+        for owner, share in _shares(m).items()
+        if share > 1.0 + SMALL
+    ]
+    text = listed(said)
+    return [f"{text[0].upper()}{text[1:]}: the model damps too much."] if said else []
 
 
 def _largest(a: Answers) -> dict[str, list[str]]:
@@ -424,25 +437,41 @@ def _law(a: Answers) -> list[str]:
     first = "" if more is None else ", the twin's first"
     return [
         f"Recommended law: {law.law} ({why}){first}, {about}{100 * law.probability:.0f} % probable among "
-        f"{count(len(others) + 1, 'law')}{than}; {verdict}."
+        f"{count(len(others) + 1, 'law')}{than}; {verdict}.",
+        *_averaged(a),
+    ]
+
+
+def _averaged(a: Answers) -> list[str]:
+    """Return the ground's stiffness and loss averaged over the laws that the data do not distinguish."""
+    if not a.averaged:
+        return []
+    one = a.averaged[0]
+    said = [f"{parameter_words(g.name)} {span_words(g.value, g.unit)}" for g in a.averaged[:_MOST]]
+    return [
+        f"Averaged over {count(len(one.laws), 'law')} by their probability, at {one.frequency_hz:.3g} Hz: "
+        f"{listed(said)}."
     ]
 
 
 def _owners(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     short = [_budget_words(m) for m in _firsts(a) if m.sources and m.measured_damping is not None]
+    unexplained = set()
     for m in _firsts(a):
         beyond = m.unexplained or 0.0
         if m.measured_damping is not None and beyond > SMALL * m.measured_damping.value:
+            unexplained.add(m.label)
             share = 100.0 * beyond / m.measured_damping.value
             short.append(
                 f"Of the measured damping of {words(m.label)}, {share:.0f} % has no source in the model."
             )
+    short += [_disagreement(m) for m in a.modes if _disagrees(m) and m.label not in unexplained]
     missing = [
         _SOURCES[s] for s in ("rotor", "water") if a.modes and all(s not in m.sources for m in a.modes)
     ]
     if missing and any(m.sources for m in a.modes):
         short.append(f"Not modelled: {listed(missing)}; its damping is attributed to the other sources.")
-    return tuple(short), tuple(_disagreement(m) for m in a.modes if _disagrees(m))
+    return tuple(short), ()
 
 
 def _budget_words(m: ModeAnswer) -> str:
@@ -454,16 +483,19 @@ def _budget_words(m: ModeAnswer) -> str:
     ]
     if m.unexplained is not None:
         parts.append(f"unexplained {percent_words(Span(m.unexplained))}")
-    measured = "" if m.measured_damping is None else percent_words(m.measured_damping)
-    return f"{words(m.label).capitalize()} has a measured damping of {measured}: {', '.join(parts)}."
+    measured, more = "", ""
+    if m.measured_damping is not None:
+        measured, times = percent_words(m.measured_damping), whole / m.measured_damping.value
+        more = f"; together {times:.1f} times the measured value" if times > 1.0 + SMALL else ""
+    return f"{words(m.label).capitalize()} has a measured damping of {measured}: {', '.join(parts)}{more}."
 
 
 def _disagrees(m: ModeAnswer) -> bool:
     """Return whether measured and modelled damping differ by more than their intervals (or by a tenth)."""
+    if m.damped_as_measured is not None:
+        return not m.damped_as_measured
     a, b = m.measured_damping, m.model_damping
-    if a is None or b is None:
-        return False
-    return not a.meets(b) if a.low is not None else abs(b.value / a.value - 1.0) > 0.1
+    return a is not None and b is not None and abs(b.value / a.value - 1.0) > SMALL
 
 
 def _disagreement(m: ModeAnswer) -> str:
@@ -476,9 +508,13 @@ def _disagreement(m: ModeAnswer) -> str:
         else "part of its damping is not explained"
     )
     fitted = "" if m.fits_damping else "; its damping was not fitted"
+    alone = listed(
+        [f"{_SOURCES[s]} alone gives {percent_words(Span(m.sources[s].value))}" for s in m.excessive]
+    )
+    beyond = f". {alone[0].upper()}{alone[1:]}" if alone else ""
     return (
         f"{words(m.label).capitalize()}: {why}: {percent_words(b)} in the model, {percent_words(a)} "
-        f"measured{fitted}."
+        f"measured{fitted}{beyond}."
     )
 
 
