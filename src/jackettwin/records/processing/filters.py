@@ -27,14 +27,15 @@ def remove_line(y: FloatArray) -> FloatArray:
     array([[ 0., nan,  0.,  0.]])
     """
     finite = np.isfinite(y)
-    count = np.maximum(finite.sum(axis=1, keepdims=True), 1)
-    t = np.where(finite, np.linspace(-1.0, 1.0, y.shape[1]), 0.0)
-    t = np.where(finite, t - t.sum(axis=1, keepdims=True) / count, 0.0)
+    weight = finite.astype(float)
+    count = np.maximum(weight.sum(axis=1, keepdims=True), 1.0)
+    t = np.linspace(-1.0, 1.0, y.shape[1])
+    middle = (weight @ t)[:, None] / count
+    power = (weight @ t**2)[:, None] - count * middle**2
     x = np.where(finite, y, 0.0)
-    x = np.where(finite, x - x.sum(axis=1, keepdims=True) / count, np.nan)
-    power = np.sum(t * t, axis=1, keepdims=True)
-    slope = np.sum(t * np.where(finite, x, 0.0), axis=1, keepdims=True) / np.where(power > 0.0, power, 1.0)
-    out: FloatArray = x - slope * t
+    x = np.where(finite, x - x.sum(axis=1, keepdims=True) / count, 0.0)  # far from zero a slope loses digits
+    slope = (x @ t)[:, None] / np.where(power > 0.0, power, 1.0)
+    out: FloatArray = np.where(finite, x - slope * (t - middle), np.nan)
     return out
 
 
@@ -58,7 +59,7 @@ def remove_slow(y: FloatArray, cutoff: float) -> FloatArray:
     finite = np.isfinite(x)
     same = slice(half, half + y.shape[1])
     total = signals.convolve(np.where(finite, x, 0.0), kernel)[:, same]
-    weight = signals.convolve(finite.astype(float), kernel)[:, same]
+    weight = signals.convolve((finite[:1] if finite.all() else finite).astype(float), kernel)[:, same]
     # At a finite sample the weight is at least the kernel's centre, 1.
     slow: FloatArray = total / np.where(finite, weight, 1.0)
     return x - slow

@@ -56,10 +56,11 @@ def quantiser_step(y: FloatArray) -> float:
     0.5
     """
     finite = y[np.isfinite(y)]
-    levels = np.unique(finite)
-    if len(levels) < 2 or len(levels) > min(MAX_LEVELS, len(finite) / MIN_SAMPLES_PER_LEVEL):
+    most = min(MAX_LEVELS, len(finite) / MIN_SAMPLES_PER_LEVEL)
+    if len(np.unique(finite[: 4 * MAX_LEVELS])) > most:
         return 0.0
-    return float(np.min(np.diff(levels)))
+    levels = np.unique(finite)
+    return float(np.min(np.diff(levels))) if 2 <= len(levels) <= most else 0.0
 
 
 def runs(mask: BoolArray) -> Int64Array:
@@ -124,8 +125,11 @@ def _surroundings(departure: FloatArray) -> FloatArray:
 def clipped(y: FloatArray) -> BoolArray:
     """Mark samples at a rail: many equal extremes with few samples at the levels beside them."""
     mask = np.zeros(len(y), dtype=np.bool_)
-    finite = np.isfinite(y)
-    levels, counts = np.unique(y[finite], return_counts=True)
+    values = y[np.isfinite(y)]
+    rails = (values.min(), values.max()) if values.size else ()
+    if all(np.count_nonzero(values == rail) < MIN_AT_RAIL for rail in rails):
+        return mask
+    levels, counts = np.unique(values, return_counts=True)
     if len(levels) < 2 * MIN_AT_RAIL:
         return mask
     for rail, at_rail, beside in (

@@ -67,9 +67,11 @@ def zero_step(y: FloatArray) -> ZeroStep | None:
     at = int(k[np.argmax(gain)])
     by = float(x[at:].mean() - x[:at].mean())
     rest = x - np.where(np.arange(n) >= at, by, 0.0)
-    slow = [float(np.sum(np.abs(np.fft.rfft(of_fast_length(s - s.mean()))[1:SLOW]) ** 2)) for s in (x, rest)]
     rms = float(rest.std())
-    if rms == 0.0 or abs(by) < MIN_STEP_SIZE * rms or slow[1] > (1.0 - EXPLAINED) * slow[0]:
+    if rms == 0.0 or abs(by) < MIN_STEP_SIZE * rms:
+        return None
+    slow = [float(np.sum(np.abs(np.fft.rfft(of_fast_length(s - s.mean()))[1:SLOW]) ** 2)) for s in (x, rest)]
+    if slow[1] > (1.0 - EXPLAINED) * slow[0]:
         return None
     return ZeroStep(at, by, abs(by) / rms)
 
