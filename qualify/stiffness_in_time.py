@@ -22,7 +22,7 @@ from jackettwin.change import Days
 from jackettwin.files import StoredSchema
 from jackettwin.soil import family
 from jackettwin.study.in_time.stiffness import Reference, Sensitivity, sensitivity
-from jackettwin.study.in_time.track import LEARNT_DAYS, StiffnessTrack, Tracked, resumed
+from jackettwin.study.in_time.track import LEARNT_DAYS, STEP_DAYS, StiffnessTrack, Tracked, resumed
 from jackettwin.twin import TwinModel, TwinState, advance, empty_state, read_twin, twin_model
 from jackettwin.updating import Residuals, SupportModel, Target, single, support_model
 
@@ -31,7 +31,7 @@ from tests.support.observations import estimate, observation
 
 FIRST_SEED, LOSS, GROWN = 5000, 0.1, 1.3
 """Seeds below were used while it was written."""
-ALONE = tuple(sorted({*range(20, 961, 20), 48, 64}))
+ALONE = tuple(sorted({14, *LEARNT_DAYS[-3:], *range(30, 961, 70), *range(3 * STEP_DAYS, 961, 5 * STEP_DAYS)}))
 """Days of the first history whose cost alone is measured."""
 KNOWN = 0.15
 """Standard deviation of ln k by all records together, as with a model error of a third of a per cent."""
@@ -197,9 +197,11 @@ def page(found: list[Scored]) -> list[str]:
     steps = [s.records for s in found if s.records is not None]
     first, second, third = (1e3 * np.mean([s.seconds[i] for s in found]) for i in range(3))
     alone = dict(zip(ALONE, found[0].alone, strict=False))
-    # the first one compiles
-    usual = [spent for n, spent in alone.items() if n not in {ALONE[0], *LEARNT_DAYS}]
     anew = {n: spent for n, spent in alone.items() if n in LEARNT_DAYS}
+    moving = [spent for n, spent in alone.items() if n >= 2 * STEP_DAYS and n % STEP_DAYS == 0]
+    # the first one compiles
+    rest = {n for n in alone if n not in anew and (n < 2 * STEP_DAYS or n % STEP_DAYS)} - {ALONE[0]}
+    usual = [alone[n] for n in sorted(rest)]
     number = len(found)
     head = f"`python qualify/stiffness_in_time.py {number}`: {number} {ABOUT}"
     lines = ["# Stiffness in time", "", *head.splitlines()]
@@ -219,7 +221,9 @@ def page(found: list[Scored]) -> list[str]:
         "in the three years.",
         f"One day alone, with the state read from a file and written back: {1e3 * np.median(usual):.0f} ms "
         f"(at most {1e3 * max(usual):.0f} ms) on {len(usual)}",
-        f"days between the {ALONE[1]}th and the {ALONE[-1]}th; where effects of conditions are learnt again, "
+        f"days between the {min(rest)}th and the {max(rest)}th; {1e3 * np.median(moving):.0f} ms (at most",
+        f"{1e3 * max(moving):.0f} ms) on {len(moving)} days on which the window moves, every {STEP_DAYS}th; "
+        "where effects of conditions are learnt again, "
         + ", ".join(f"{1e3 * spent:.0f} ms on day {n}" for n, spent in anew.items())
         + ".",
     )
