@@ -12,7 +12,8 @@ import pytest
 from tests.service.conftest import NOON
 from tests.support.observations import estimate, observation
 
-from jackettwin.service.web.schemas import ExploredOut, LifeOut
+from jackettwin.service.web.schemas.drawings import ExploredOut
+from jackettwin.service.web.schemas.life import LifeOut
 from jackettwin.service.workers import engine, verdict
 from jackettwin.service.workers.question import Question
 from jackettwin.service.workers.tasks import know

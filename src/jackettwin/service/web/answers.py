@@ -13,16 +13,11 @@ from sqlalchemy import Connection
 from jackettwin.errors import InputError
 from jackettwin.service import workers
 from jackettwin.service.intake.examination import profile
-from jackettwin.service.web.schemas import (
-    ActOut,
-    ChangeOut,
-    ComparisonOut,
-    FindingOut,
-    ModeOut,
-    Page,
-    SupportsOut,
-    TwinOut,
-)
+from jackettwin.service.web.schemas.assets import ChangeOut, ComparisonOut
+from jackettwin.service.web.schemas.common import Page
+from jackettwin.service.web.schemas.findings import ActOut, FindingOut
+from jackettwin.service.web.schemas.modes import ModeOut, TwinOut
+from jackettwin.service.web.schemas.supports import SupportsOut
 from jackettwin.store import assets, handling, results
 from jackettwin.store.records import read_cursor, write_cursor
 from jackettwin.version import __version__

@@ -14,7 +14,7 @@ from jackettwin.files import parse_yaml, with_key
 from jackettwin.service import workers
 from jackettwin.service.intake.examination import examined
 from jackettwin.service.web.problems import ApiError
-from jackettwin.service.web.schemas import AssetOut, VersionOut
+from jackettwin.service.web.schemas.assets import AssetOut, VersionOut
 from jackettwin.service.work.consequences import ask_known
 from jackettwin.store import assets, journal, people, reading, records, results, rights, work, writing
 

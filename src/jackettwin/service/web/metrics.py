@@ -16,7 +16,7 @@ from prometheus_client import (
 from sqlalchemy import Connection
 from sqlalchemy.exc import SQLAlchemyError
 
-from jackettwin.service.web.schemas import Ready
+from jackettwin.service.web.schemas.server import Ready
 from jackettwin.service.workers.failures import ROOM_BYTES
 from jackettwin.store import alerts, assets, reading, records, results, rights, work
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from jackettwin.errors import InputError
 from jackettwin.service.web.dependencies import known_record
 from jackettwin.service.web.problems import ApiError
-from jackettwin.service.web.schemas import RecordOut, Signal, Spectra
+from jackettwin.service.web.schemas.records import RecordOut, Signal, Spectra
 from jackettwin.store import reading
 from jackettwin.store.records import StoredRecord
 

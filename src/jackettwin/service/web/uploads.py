@@ -16,7 +16,8 @@ from jackettwin.service.intake.bundles import twin_folder
 from jackettwin.service.intake.files import Accepted, discard, parse_here, spooled, take_file
 from jackettwin.service.web.dependencies import known_record, living_asset
 from jackettwin.service.web.problems import ApiError, disk_full
-from jackettwin.service.web.schemas import PicksIn, StabilisationOut, Taken
+from jackettwin.service.web.schemas.assets import Taken
+from jackettwin.service.web.schemas.records import PicksIn, StabilisationOut
 from jackettwin.service.work.conditions import add_conditions
 from jackettwin.service.workers.failures import ROOM_BYTES
 from jackettwin.service.workers.tasks import read_conditions

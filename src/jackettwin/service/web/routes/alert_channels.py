@@ -12,10 +12,10 @@ from jackettwin.service.alerts.outbox import tried
 from jackettwin.service.alerts.rules import Alerts, ChannelRule
 from jackettwin.service.context import Service
 from jackettwin.service.web import auth
-from jackettwin.service.web.channel_schemas import ChannelOut, Delivery, NewChannel
 from jackettwin.service.web.dependencies import WAITING, Asker, Parts, Reads, Route, Writes
 from jackettwin.service.web.problems import ApiError, answers
-from jackettwin.service.web.schemas import Page
+from jackettwin.service.web.schemas.channels import ChannelOut, Delivery, NewChannel
+from jackettwin.service.web.schemas.common import Page
 from jackettwin.store import people, reading, writing
 
 router = APIRouter(prefix="/alert-channels", tags=["alerts"], route_class=Route)

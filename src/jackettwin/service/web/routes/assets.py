@@ -22,15 +22,15 @@ from jackettwin.service.web.dependencies import (
     living_asset,
 )
 from jackettwin.service.web.problems import ApiError, answers
-from jackettwin.service.web.schemas import (
+from jackettwin.service.web.schemas.assets import (
     AssetOut,
     ConditionsIn,
     NewAsset,
     NewVersion,
-    Page,
     Taken,
     VersionOut,
 )
+from jackettwin.service.web.schemas.common import Page
 from jackettwin.service.work import conditions
 from jackettwin.store import assets, reading
 

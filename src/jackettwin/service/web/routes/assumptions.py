@@ -21,7 +21,9 @@ from jackettwin.service.web.dependencies import (
     living_asset,
 )
 from jackettwin.service.web.problems import answers
-from jackettwin.service.web.schemas import Acknowledgement, AssumptionOut, Page, VersionOut
+from jackettwin.service.web.schemas.assets import AssumptionOut, VersionOut
+from jackettwin.service.web.schemas.common import Page
+from jackettwin.service.web.schemas.findings import Acknowledgement
 from jackettwin.store import reading, results
 
 router = APIRouter(tags=["assumptions"], route_class=Route)

@@ -22,7 +22,8 @@ from jackettwin.service.web.dependencies import (
     known_asset,
 )
 from jackettwin.service.web.problems import ApiError, answers
-from jackettwin.service.web.schemas import (
+from jackettwin.service.web.schemas.common import Page
+from jackettwin.service.web.schemas.findings import (
     Acknowledgement,
     AlarmOut,
     AssignIn,
@@ -30,7 +31,6 @@ from jackettwin.service.web.schemas import (
     FindingOut,
     HandledOut,
     MuteIn,
-    Page,
     ReopenIn,
 )
 from jackettwin.store import handling, journal, people, results, rights

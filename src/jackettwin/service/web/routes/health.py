@@ -14,7 +14,7 @@ from sse_starlette import EventSourceResponse, ServerSentEvent
 from jackettwin.service.web import auth, metrics
 from jackettwin.service.web.dependencies import Asker, Parts, Route
 from jackettwin.service.web.problems import answers
-from jackettwin.service.web.schemas import Health, Ready
+from jackettwin.service.web.schemas.server import Health, Ready
 from jackettwin.version import __version__
 
 _TOLD_S = 600.0

@@ -11,7 +11,8 @@ from jackettwin.service.web import auth
 from jackettwin.service.web.auth import Who
 from jackettwin.service.web.dependencies import Asker, Parts, Reads, Route, Writes
 from jackettwin.service.web.problems import ApiError, answers
-from jackettwin.service.web.schemas import JobOut, Page
+from jackettwin.service.web.schemas.common import Page
+from jackettwin.service.web.schemas.server import JobOut
 from jackettwin.service.work import consequences
 from jackettwin.store import journal, people, records, work
 

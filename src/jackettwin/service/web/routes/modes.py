@@ -23,19 +23,12 @@ from jackettwin.service.web.dependencies import (
     known_version,
 )
 from jackettwin.service.web.problems import answers
-from jackettwin.service.web.schemas import (
-    BudgetOut,
-    ComparisonOut,
-    ExploredOut,
-    LifeOut,
-    ModeBinsOut,
-    ModeOut,
-    Page,
-    SensitivityOut,
-    StructureOut,
-    SupportsOut,
-    TwinOut,
-)
+from jackettwin.service.web.schemas.assets import ComparisonOut
+from jackettwin.service.web.schemas.common import Page
+from jackettwin.service.web.schemas.drawings import ExploredOut, StructureOut
+from jackettwin.service.web.schemas.life import LifeOut
+from jackettwin.service.web.schemas.modes import BudgetOut, ModeBinsOut, ModeOut, SensitivityOut, TwinOut
+from jackettwin.service.web.schemas.supports import SupportsOut
 from jackettwin.store import Exported, exported, people, results, writing
 from jackettwin.store.mode_bins import modes_in_bins
 

@@ -10,7 +10,8 @@ from fastapi import APIRouter, Query, Request, Response
 from jackettwin.service.web import auth
 from jackettwin.service.web.dependencies import CONNECTED, Asker, AssetName, Parts, Reads, Route, Writes
 from jackettwin.service.web.problems import ApiError, answers
-from jackettwin.service.web.schemas import (
+from jackettwin.service.web.schemas.common import Page
+from jackettwin.service.web.schemas.people import (
     AuditOut,
     GroupIn,
     GroupOut,
@@ -19,7 +20,6 @@ from jackettwin.service.web.schemas import (
     NewPassword,
     NewToken,
     NewUser,
-    Page,
     Token,
     UserOut,
 )

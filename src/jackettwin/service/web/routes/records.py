@@ -21,9 +21,9 @@ from jackettwin.service.web.dependencies import (
     known_record,
 )
 from jackettwin.service.web.problems import ApiError, answers
-from jackettwin.service.web.schemas import (
-    Acknowledgement,
-    Page,
+from jackettwin.service.web.schemas.common import Page
+from jackettwin.service.web.schemas.findings import Acknowledgement
+from jackettwin.service.web.schemas.records import (
     PicksIn,
     RecordAccepted,
     RecordOut,

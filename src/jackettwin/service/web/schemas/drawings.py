@@ -1,0 +1,139 @@
+"""Schemas of curves, surfaces and structures to draw."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel, Field
+
+Drawn = list[float | None]
+"""Values of a curve; null for missing ones."""
+
+
+class BranchOut(BaseModel):
+    """Locus of one mode along a parameter; null where it does not oscillate."""
+
+    mode: int
+    label: str
+    pole_real_rad_s: Drawn
+    pole_imag_rad_s: Drawn
+    frequency_hz: Drawn
+    damping_ratio: Drawn
+    most_damped_at: float | None
+    most_damping_ratio: float | None
+
+
+class LocusOut(BaseModel):
+    """The root locus along a parameter; ``origin`` is the index of the explored point among its values."""
+
+    parameter: str
+    unit: str
+    values: list[float]
+    origin: int
+    branches: list[BranchOut]
+
+
+class AxisOut(BaseModel):
+    """Values of a parameter along an axis."""
+
+    parameter: str
+    values: list[float]
+
+
+class SurfaceOut(BaseModel):
+    """The cost over two parameters, a row for each value of y."""
+
+    x: AxisOut
+    y: AxisOut
+    cost: list[Drawn]
+
+
+class CurveOut(BaseModel):
+    """The cost as one parameter is multiplied by factors."""
+
+    parameter: str
+    value: float
+    factor: list[float]
+    cost: Drawn
+
+
+class ExploredValue(BaseModel):
+    """A parameter at the explored point, and its bounds."""
+
+    name: str
+    unit: str
+    value: float
+    low: float
+    high: float
+
+
+class ExploredOut(BaseModel):
+    """Effect of the law's parameters on cost and modes around their medians; empty before an update."""
+
+    law: str | None = None
+    parameters: list[ExploredValue] = []
+    loci: list[LocusOut] = []
+    surface: SurfaceOut | None = None
+    curves: list[CurveOut] = []
+
+
+class PlaceOut(BaseModel):
+    """A sensor's place at rest [m], z above the mean sea level, and the nearest node."""
+
+    at: list[float]
+    node: int
+
+
+class MeasuredShapeOut(BaseModel):
+    """Displacements of the sensors in a mode, x, y, z of each, on the shapes of the motion."""
+
+    places: list[PlaceOut]
+    shapes: list[list[float]]
+
+
+class MotionOut(BaseModel):
+    """A motion: displacements of the nodes (x, y, z of each) by shape times the coordinates of each frame."""
+
+    name: str
+    note: str
+    group: str
+    shapes: list[list[float]]
+    q: list[list[float]]
+    step_s: float
+    start_s: float
+    cyclic: bool
+    largest_m: float | None
+    measured: MeasuredShapeOut | None
+
+
+class ColourOut(BaseModel):
+    """A number for every element to colour by; ``log`` spreads values that span decades."""
+
+    name: str
+    unit: str
+    log: bool
+    from_zero: bool
+    values: list[float | None]
+
+
+class StructureOut(BaseModel):
+    """A structure to draw: nodes (x, y, z of each [m], z above sea level), elements, colours, motions.
+
+    Empty until supports have been updated.
+    """
+
+    title: str = ""
+    nodes: list[float] = []
+    start: list[int] = []
+    end: list[int] = []
+    diameter: list[float] = Field(default=[], description="[m]")
+    growth: list[float] = Field(default=[], description="[m]")
+    flooded: list[int] = []
+    text: list[str] = []
+    quantities: list[ColourOut] = []
+    motions: list[MotionOut] = []
+    sensors: list[dict[str, Any]] = []
+    masses: list[dict[str, Any]] = []
+    others: list[dict[str, Any]] = []
+    dimensions: dict[str, Any] = {}
+    mud_z: float = 0.0

@@ -1,0 +1,95 @@
+"""Schemas of modes through time, and of the state of a twin."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Any
+
+from pydantic import BaseModel, Field
+
+
+class ModeOut(BaseModel):
+    """A mode in one record; 95 % interval on the logarithm of the damping ratio."""
+
+    record_id: str
+    time_utc: datetime
+    label: str
+    frequency_hz: float
+    frequency_std_hz: float | None
+    damping_ratio: float | None
+    damping_ratio_std: float | None
+    damping_ratio_interval_95: tuple[float, float] | None
+    status: str
+    model_version: int
+
+
+class ExtremesOut(BaseModel):
+    """Least value, median and greatest value of each bin; null where no record has one."""
+
+    min: list[float | None]
+    median: list[float | None]
+    max: list[float | None]
+
+
+class ModeBinsOut(BaseModel):
+    """One mode through time in bins of equal length; bins without a record are left out."""
+
+    label: str
+    start_utc: datetime
+    bin_s: float
+    time_s: list[float] = Field(description="Start of each bin after start_utc.")
+    count: list[int] = Field(description="Number of records in each bin.")
+    frequency_hz: ExtremesOut
+    damping_ratio: ExtremesOut
+    simulated: int = Field(description="Number of records of all bins that nobody measured.")
+
+
+class TwinOut(BaseModel):
+    """State of the twin at a time: modes and parameters with intervals, and their records."""
+
+    asset: str
+    version: int
+    model_hash: str
+    code_version: str
+    state_hash: str
+    days: int
+    records: int
+    first_utc: datetime | None
+    last_utc: datetime | None
+    modes: list[dict[str, Any]]
+    parameters: dict[str, Any]
+    status: str
+
+
+class Value(BaseModel):
+    """A number with its 90 % interval; null if unknown."""
+
+    value: float
+    low: float | None
+    high: float | None
+
+
+class BudgetOut(BaseModel):
+    """Damping ratio of a mode by source (structure, soil, rotor, water).
+
+    ``unexplained`` is the measured ratio in excess of their sum; null without a measured one.
+    """
+
+    label: str
+    measured: Value | None
+    sources: dict[str, Value]
+    unexplained: float | None = None
+
+
+class SensitivityOut(BaseModel):
+    """A mode at the medians of the updated parameters, and its sensitivity to each.
+
+    The sensitivities are ∂ ln f/∂ ln θ and ∂ζ/∂ ln θ.
+    """
+
+    mode: int
+    label: str
+    frequency_hz: float
+    damping_ratio: float
+    frequency_sensitivity: dict[str, float]
+    damping_sensitivity: dict[str, float]

@@ -1,0 +1,78 @@
+"""Schemas of records: upload, signals, spectra and manually selected poles."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Any, Literal
+
+from pydantic import BaseModel, Field
+
+
+class RecordAccepted(BaseModel):
+    """A stored record and its job.
+
+    A file longer than an hour is divided into records of ten minutes, of which the last is returned.
+    """
+
+    record_id: str
+    job_id: int | None
+    records: int = 1
+
+
+class RecordOut(BaseModel):
+    """A record with its status."""
+
+    record_id: str
+    asset: str
+    status: Literal["received", "observing", "observed", "refused", "mismatched", "set_aside"]
+    start_utc: datetime
+    duration_s: float
+    sample_rate_hz: float
+    channels: list[dict[str, Any]]
+    conditions: dict[str, Any]
+    source_name: str
+    received_utc: datetime
+    size_bytes: int
+    raw_kept: bool
+    problem: dict[str, Any] | None
+    picks: dict[str, Any] | None
+
+
+class Signal(BaseModel):
+    """Extremes of a channel in equal bins of time."""
+
+    sample_rate_hz: float
+    start_utc: datetime
+    time_s: list[float]
+    channels: dict[str, dict[str, list[float | None]]]
+
+
+class Spectra(BaseModel):
+    """Power spectral densities by Welch's method."""
+
+    frequency_hz: list[float]
+    channels: dict[str, list[float]]
+    units: dict[str, str]
+
+
+class StabilisationOut(BaseModel):
+    """Poles of every model order; ``mode`` is the number of the pole's mode, -1 without one."""
+
+    order: list[int]
+    frequency_hz: list[float]
+    damping_ratio: list[float]
+    stable: list[bool]
+    mode: list[int]
+
+
+class PickIn(BaseModel):
+    """A manually selected pole: the nearest one to this frequency, of this order or any."""
+
+    frequency_hz: float = Field(gt=0.0, le=1e6)
+    order: int | None = Field(default=None, ge=1, le=1000)
+
+
+class PicksIn(BaseModel):
+    """The poles that replace the automatic selection; an empty list restores it."""
+
+    picks: list[PickIn] = Field(max_length=200)
