@@ -102,6 +102,17 @@ class Family(ABC):
         """
         return {}
 
+    def without(self, values: FloatArray, omitted: tuple[int, ...]) -> FloatArray:
+        """Return the parameters (n_parameters,) of the law without some of its parts, those left first.
+
+        Parameters
+        ----------
+        values : (n_parameters,)
+        omitted : tuple of int
+            Some of ``omissible``. Their number of last parts get no stiffness at all, whatever is returned.
+        """
+        return values
+
     def __reduce__(self) -> tuple[Callable[[str], Family], tuple[str]]:
         """A law crosses processes by its name: every process has the same laws."""
         return family, (self.name,)
@@ -241,6 +252,15 @@ class FreeBranches(Family):
         rows[:, BRANCHES::2] = values[:, :1] * values[:, 1::2]
         rows[:, BRANCHES + 1 :: 2] = 1.0 / np.cumprod(faster, axis=1)
         return rows, rows[:, :, None] * _powers(n)
+
+    def without(self, values: FloatArray, omitted: tuple[int, ...]) -> FloatArray:
+        """Return the law without some branches: those left first, with the same times."""
+        g, tau = values[1::2], values[2] / np.cumprod([1.0, *values[4::2]])
+        left = [j for j, stiffness in enumerate(self.omissible) if stiffness not in omitted]
+        times, shorter = tau[left], np.full(values.shape, _APART)
+        shorter[0], shorter[1 : 1 + 2 * len(left) : 2] = values[0], g[left]
+        shorter[2 : 3 + 2 * len(left) : 2][: len(left)] = [*times[:1], *(times[:-1] / times[1:])]
+        return shorter
 
     def priors(self, reference_hz: float) -> Mapping[str, tuple[float, float]]:
         """Return priors about a loss factor of 0.1 that frequency hardly changes."""

@@ -75,10 +75,8 @@ def linked(problem: Problem, low: End, high: End, shorter: ShorterLaws | None = 
     shorter : ShorterLaws, optional
         Shorter laws that were computed already.
     """
-    left = [(shorter or ShorterLaws(problem))(end) for end in (low, high)]
-    if left[0] is not None and left[1] is not None and left[0].shape == left[1].shape:
-        if np.abs(left[0] - left[1]).max() < SAME:
-            return True, 0
+    if (shorter or ShorterLaws(problem)).same(low, high):
+        return True, 0
     return _joined(problem, low, high)
 
 

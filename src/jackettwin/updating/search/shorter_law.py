@@ -3,7 +3,8 @@
 If the data need fewer branches than a law has, the cost has a valley with many arms, since a redundant branch
 may have any relaxation time. Walks along single parameters do not lead from one arm into the next. All arms
 meet where the branch has no stiffness. Hence each end point is moved there, weakest branch first, while the
-cost does not rise, and the remaining parameters are compared.
+cost does not rise. Two end points are one solution if the cost does not rise between what is left of them
+either: weak branches are known poorly, so that their numbers may differ by more than searches resolve.
 """
 
 from __future__ import annotations
@@ -11,19 +12,17 @@ from __future__ import annotations
 import numpy as np
 
 from jackettwin.arrays import FloatArray, IntArray
-from jackettwin.soil import BRANCHES, K0
 from jackettwin.updating.problem import Problem
+from jackettwin.updating.search.damped import Rows
 from jackettwin.updating.search.descent import End
-from jackettwin.updating.search.path import Path, held_minimum, minimum
+from jackettwin.updating.search.path import Path, held_minimum
 
 _NOTHING = -23.0
 """Logarithm of a negligible relative stiffness: 1e-10, a hundredth of the relative error of poles."""
-_LAST = 1e-6
-"""Share of the cost to which the others are refitted: weak branches are known poorly, and are compared."""
-_FAR = 100.0
-"""Ratio to the allowed cost above which a surrogate's prediction rejects an omission."""
+_DEEP = 0.01
+"""Share of the allowed increase of the cost to which the branches that are left are refitted."""
 _BETWEEN = np.linspace(0.0, 1.0, 10)[1:-1]
-"""Points at which the cost is computed on the way to a vanishing branch."""
+"""Points at which the cost is computed on the way to a vanishing branch, and from one law to another."""
 
 
 class ShorterLaws:
@@ -35,42 +34,59 @@ class ShorterLaws:
     """
 
     def __init__(self, problem: Problem) -> None:
-        self._problem = problem
+        self._path = Path(problem)
         self._known: dict[int, tuple[End, FloatArray | None]] = {}
 
     def __call__(self, end: End) -> FloatArray | None:
         """Return the parameters of the shorter law, or None if the data need every branch."""
         if id(end) not in self._known:
-            self._known[id(end)] = (end, shorter_law(self._problem, end))
+            self._known[id(end)] = (end, shorter_law(self._path, end))
         return self._known[id(end)][1]
 
+    def same(self, low: End, high: End) -> bool:
+        """Return whether both reduce to one law: the cost does not rise between what is left of them."""
+        start, end = self(low), self(high)
+        if start is None or end is None or ((start == _NOTHING) != (end == _NOTHING)).any():
+            return False
+        way = start + _BETWEEN[:, None] * (end - start)
+        return _level(self._path, way, high.cost + self._path.problem.allowance(high.cost))
 
-def shorter_law(problem: Problem, end: End) -> FloatArray | None:
+
+def shorter_law(path: Path, end: End) -> FloatArray | None:
     """Return the shorter law of an end point, without its redundant branches.
+
+    Parameters
+    ----------
+    path : Path
+        Whose last modes are those of a point with nearly the same poles, if there is one.
 
     Returns
     -------
-    (n,) logarithms: of each law's static stiffness, then stiffnesses and times of its branches from the
-    slowest on, then the other parameters. None if no branch can go.
+    (d,) ln θ, each law's remaining branches first and the others after them, without stiffness. None if no
+    branch can go.
     """
+    problem, z = path.problem, end.z
     omissible = problem.model.family.omissible
     if not omissible or problem.model.tie_groups.one_loss:
         return None  # the law shares parameters between several stiffnesses
-    path, z = Path(problem), end.z
+    near = path.surrogate(z)
+    if near is None:
+        return None
     gone: tuple[int, ...] = ()
     ceiling = end.cost + problem.allowance(end.cost)
+    enough = end.cost + _DEEP * problem.allowance(end.cost)
     columns = _columns(problem)
     for own in columns:
         branches = [int(j) for j in own[list(omissible)]]
         for _ in branches:
             for j in sorted(set(branches) - set(gone), key=z.__getitem__):
-                without = _without(path, z, j, gone, ceiling)
+                without = _without(path, near, z, j, gone, enough, ceiling)
                 if without is not None:
                     z, gone = without, (*gone, j)
                     break
             else:
                 break
-    return _numbers(problem, z, columns) if gone else None
+    return _in_order(problem, z, columns, gone) if gone else None
 
 
 def _columns(problem: Problem) -> list[IntArray]:
@@ -80,25 +96,31 @@ def _columns(problem: Problem) -> list[IntArray]:
     return list((of_laws == 1.0).argmax(axis=1).reshape(-1, n))
 
 
-def _without(path: Path, z: FloatArray, j: int, gone: tuple[int, ...], ceiling: float) -> FloatArray | None:
-    """Return the point without one more branch, the others refitted; None if the cost rises on the way."""
-    near, start, held = path.surrogate(z), z.copy(), (j, *gone)
+def _without(
+    path: Path,
+    near: Rows,
+    z: FloatArray,
+    j: int,
+    gone: tuple[int, ...],
+    enough: float,
+    ceiling: float,
+) -> FloatArray | None:
+    """Return the point without one more branch, the others refitted; None if the cost rises on the way.
+
+    Poles, and so the laws' stiffness there, hardly change in such a valley: the point is sought with the
+    surrogate at the end point, and the model confirms it and the way.
+    """
+    start, held = z.copy(), (j, *gone)
     start[j] = _NOTHING
-    if near is None:
-        return None
-    # poles, and so the laws' stiffness there, hardly change: if the surrogate cannot fit, the model cannot
-    there, promised = held_minimum(path.problem, near, start, held, ceiling)
-    if promised > _FAR * ceiling:
-        return None
-    there, _ = minimum(path, there, held=held, tolerance=_LAST)
-    if path.total(there) > ceiling:
+    there, cost = held_minimum(path.problem, near, start, held, enough)
+    if cost > ceiling:
         return None
     way = z + _BETWEEN[:, None] * (there - z)
     # a branch counts by its stiffness, not by the logarithm of it
     way[:, j] = np.log(np.exp(z[j]) + _BETWEEN * (np.exp(there[j]) - np.exp(z[j])))
-    if not _level(path, way, ceiling):
-        refitted = [held_minimum(path.problem, near, point, held, ceiling)[0] for point in way]
-        if not _level(path, np.array(refitted), ceiling):
+    if not _level(path, np.array([*way, there]), ceiling):
+        way = np.array([held_minimum(path.problem, near, point, held, ceiling)[0] for point in way])
+        if not _level(path, np.array([*way, there]), ceiling):
             return None
     return there
 
@@ -107,11 +129,11 @@ def _level(path: Path, points: FloatArray, ceiling: float) -> bool:
     return bool((path.problem.costs(points, path.last) <= ceiling).all())
 
 
-def _numbers(problem: Problem, z: FloatArray, columns: list[IntArray]) -> FloatArray:
-    rows, _ = problem.model.family.rows(np.exp(z[np.array(columns)]), problem.model.reference_hz)
-    numbers = []
-    for row in rows:
-        k, tau = row[BRANCHES::2], row[BRANCHES + 1 :: 2]
-        there = np.log(k / row[K0]) > 0.5 * _NOTHING
-        numbers += [row[K0], *np.stack([k[there], tau[there]], axis=1).ravel()]
-    return np.concatenate([np.log(numbers), np.delete(z, np.concatenate(columns))])
+def _in_order(problem: Problem, z: FloatArray, columns: list[IntArray], gone: tuple[int, ...]) -> FloatArray:
+    """Return the same laws with the branches that are gone last, so that equal laws have equal numbers."""
+    family, z = problem.model.family, z.copy()
+    for own in columns:
+        omitted = tuple(i for i in family.omissible if own[i] in gone)
+        z[own] = np.log(family.without(np.exp(z[own]), omitted))
+        z[own[list(family.omissible[len(family.omissible) - len(omitted) :])]] = _NOTHING
+    return z
