@@ -9,9 +9,10 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.loads import read_rotor
+from jackettwin.loads.aerodynamics.rotor import rotor_loads
 from jackettwin.loads.aerodynamics.wind import TOWER_DRAG
 from jackettwin.simulate import loads_document, read_scenario, simulate
-from jackettwin.simulate.scenario.air import lowest_tip, rotor_notes
+from jackettwin.simulate.scenario.air import likely_factor, lowest_tip, rotor_notes
 
 WIND = "structure: jacket15\nsupport: pinned\nwind: {speed_m_s: 12, turbulence: none, shear: 0.0}\n"
 BRIEF = "time: {duration_s: 10, step_s: 0.05}\n"
@@ -82,6 +83,43 @@ def test_wind_on_the_tower_alone(written: Callable[[str], Path]) -> None:
 def test_a_rotor_nobody_chose_is_named(written: Callable[[str], Path]) -> None:
     assert "the wind blows on iea15, parked" in loads_document(read_scenario(written("")))["warnings"][0]
     assert loads_document(read_scenario(written("rotor: {data: iea15}\n")))["warnings"] == []
+
+
+@pytest.mark.parametrize(("mass_kg", "radius_m", "rtol"), [(350e3, 63.0, 0.005), (674e3, 89.2, 0.09)])
+def test_a_rotor_nobody_chose_fits_the_mass_on_the_tower(
+    mass_kg: float, radius_m: float, rtol: float
+) -> None:
+    """NREL 5 MW (Jonkman et al. 2009, NREL/TP-500-38060) and DTU 10 MW (Bak et al. 2013, DTU I-0092)."""
+    rotor, control = read_rotor("iea15")
+    factor = likely_factor(mass_kg)
+    assert rotor.scaled(factor).radius == pytest.approx(radius_m, rel=rtol)
+    tip_speed = rotor.radius * control.highest_speed_rad_s
+    assert rotor.scaled(factor).radius * control.scaled(factor).highest_speed_rad_s == pytest.approx(
+        tip_speed
+    )
+    assert likely_factor(809e3) == likely_factor(0.0) == 1.0
+
+
+def test_loads_of_a_scaled_rotor_are_those_of_a_similar_one() -> None:
+    """Forces grow with the area, moments with the volume; a shaft at the same tip speed turns slower."""
+    rotor, _ = read_rotor("iea15")
+    own = {"wind": np.array([9.0, 3.0, 0.5]), "pitch": 0.3, "azimuth": 0.4}
+    large = rotor_loads(rotor, **own, rotor_speed=0.6)
+    small = rotor_loads(rotor.scaled(0.5), **own, rotor_speed=1.2)
+    np.testing.assert_allclose(small, large * np.repeat([0.25, 0.125], 3), rtol=1e-12)
+
+
+@pytest.mark.parametrize("state", ["parked", "idling"])
+def test_a_small_structure_gets_a_small_rotor_and_says_so(written: Callable[[str], Path], state: str) -> None:
+    path = written(f"rotor: {{state: {state}}}\n")
+    path.with_name("low.yaml").write_text(
+        LOW + "rna: {mass_kg: 350000.0, cg_offset_m: [-2, 0, 2]}\n", encoding="utf-8"
+    )
+    path.write_text(path.read_text().replace("jacket15", "low.yaml"), encoding="utf-8")
+    scenario = read_scenario(path)
+    (note,) = loads_document(scenario)["warnings"]
+    assert f"iea15 × 0.52, {state}, scaled by (mass of rotor and nacelle / 948 t)^0.65, radius 63.0 m" in note
+    assert scenario.turbine is not None and scenario.turbine.rotor.radius == pytest.approx(63.0, rel=0.005)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ the plane of the section matters.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -50,6 +50,13 @@ class Rotor:
         """Distance of the tip from the shaft [m]."""
         z, x = self.hub_radius + self.blade.z[-1], self.blade.prebend[-1]
         return float(z * np.cos(self.cone) + x * np.sin(self.cone))
+
+    def scaled(self, factor: float) -> Rotor:
+        """Return the similar rotor whose lengths are multiplied by a factor."""
+        lengths = ("z", "prebend", "chord", "weight")
+        blade = replace(self.blade, **{name: factor * getattr(self.blade, name) for name in lengths})
+        own = ("hub_radius", "overhang", "hub_height")
+        return replace(self, blade=blade, **{name: factor * getattr(self, name) for name in own})
 
 
 class Elements(NamedTuple):

@@ -7,7 +7,7 @@ and cone the annuli see the wind's component normal to the blades; yaw affects l
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -33,6 +33,19 @@ class Control:
     """Cut-in and cut-out; None if not known."""
     schedule: Schedule | None = None
     """Speed and pitch by wind speed; None holds the tip-speed ratio, then the power."""
+
+    def scaled(self, factor: float) -> Control:
+        """Return the control of the similar rotor at the same tip speeds: power grows with the swept area."""
+        schedule = self.schedule
+        if schedule is not None:
+            schedule = schedule._replace(rotor_speed=schedule.rotor_speed / factor)
+        return replace(
+            self,
+            rated_power_w=self.rated_power_w * factor**2,
+            lowest_speed_rad_s=self.lowest_speed_rad_s / factor,
+            highest_speed_rad_s=self.highest_speed_rad_s / factor,
+            schedule=schedule,
+        )
 
 
 class OperatingPoint(NamedTuple):

@@ -27,6 +27,13 @@ from jackettwin.loads import (
 
 GRID_M = 19.1
 """Between the nodes of the wind field that the OpenFAST records were made in [m]."""
+_OWN_MASS_KG = 948e3
+"""Rotor and nacelle of the IEA 15 MW turbine."""
+_SIMILAR = 0.25
+"""Relative difference of that mass up to which its rotor is assumed as it is."""
+_BY_MASS = 0.65
+"""Exponent of the radius over that mass, from the NREL 5 MW turbine (350 t, 63.0 m) to the IEA 15 MW one
+(120.4 m); the DTU 10 MW turbine (674 t, 89.2 m) is met within 8 %."""
 _HEADINGS = 9
 """Number of headings over which the rotor's mean stiffness is averaged."""
 _REMEDY = "give your windIO file as rotor: {data: FILE}, or rotor: {data: none} for the tower alone"
@@ -101,12 +108,19 @@ class Turbine:
     pitch: float = 0.5 * pi
     azimuth: float = 0.0
     name: str = ""
-    assumed: bool = False
-    """Whether nobody chose the rotor."""
+    assumed: float | None = None
+    """Factor on the lengths of a rotor that nobody chose; None if somebody did."""
 
 
-def build_turbine(rotor: RotorSchema | None, wind: WindSchema | None, folder: Path) -> Turbine | None:
+def build_turbine(
+    rotor: RotorSchema | None, wind: WindSchema | None, folder: Path, *, nacelle_kg: float
+) -> Turbine | None:
     """Return the turbine that ``rotor`` describes, or the usual one in a wind; None without either.
+
+    Parameters
+    ----------
+    nacelle_kg : float
+        Mass of rotor and nacelle on the structure, to which a rotor that nobody chose is scaled.
 
     Raises
     ------
@@ -125,14 +139,27 @@ def build_turbine(rotor: RotorSchema | None, wind: WindSchema | None, folder: Pa
         field="wind",
         remedy="add wind: {speed_m_s: …}",
     )
+    blades, control = read_rotor(chosen.data, folder=folder)
+    factor = None if "data" in chosen.model_fields_set else likely_factor(nacelle_kg)
     return Turbine(
-        *read_rotor(chosen.data, folder=folder),
+        blades if factor is None else blades.scaled(factor),
+        control if factor is None else control.scaled(factor),
         chosen.state,
         radians(chosen.pitch_deg),
         radians(chosen.azimuth_deg),
-        name=chosen.data,
-        assumed=rotor is None,
+        name=chosen.data if factor in (None, 1.0) else f"{chosen.data} × {factor:.2f}",
+        assumed=factor,
     )
+
+
+def likely_factor(nacelle_kg: float) -> float:
+    """Return the likely ratio of a rotor's radius to the IEA 15 MW rotor's, from its mass with nacelle.
+
+    Heavier rotors and nacelles carry longer blades: R ∝ m^0.65. The ratio is 1 for masses within a quarter of
+    that turbine's, and if there is none.
+    """
+    ratio = nacelle_kg / _OWN_MASS_KG
+    return 1.0 if nacelle_kg <= 0.0 or abs(ratio - 1.0) <= _SIMILAR else float(ratio**_BY_MASS)
 
 
 def _refuse_rotor_keys(chosen: RotorSchema) -> None:
@@ -246,15 +273,17 @@ def rotor_notes(air: Air | None, turbine: Turbine | None) -> list[str]:
     """Return what to know of a rotor: nobody chose it, or it would not run in this wind."""
     if air is None or turbine is None:
         return []
+    notes: list[str] = []
     limits, speed = turbine.control.wind_speeds_m_s, air.wind.speed_m_s
     if turbine.state == "operating" and limits is not None and not limits[0] <= speed <= limits[1]:
-        return [
+        notes.append(
             f"{turbine.name} operates in {speed:g} m/s, beyond its cut-in and cut-out of {limits[0]:g} and "
             f"{limits[1]:g} m/s: take rotor.state: idling, or another wind"
-        ]
-    if not turbine.assumed:
-        return []
-    return [
-        f"no rotor is given: the wind blows on {turbine.name}, {turbine.state}, radius "
-        f"{turbine.rotor.radius:.1f} m, hub {air.wind.hub_height_m:.1f} m above still water; {_REMEDY}"
-    ]
+        )
+    if turbine.assumed is not None:
+        scaled = "" if turbine.assumed == 1.0 else ", scaled by (mass of rotor and nacelle / 948 t)^0.65"
+        notes.append(
+            f"no rotor is given: the wind blows on {turbine.name}, {turbine.state}{scaled}, radius "
+            f"{turbine.rotor.radius:.1f} m, hub {air.wind.hub_height_m:.1f} m above still water; {_REMEDY}"
+        )
+    return notes

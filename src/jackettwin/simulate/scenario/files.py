@@ -61,7 +61,8 @@ def scenario_from(data: Any, path: Path) -> Scenario:
     with located(file=path):
         asset = schema.build(path.parent)
         structure, wind = asset.structure, schema.wind
-        turbine = build_turbine(schema.rotor, wind, path.parent)
+        on_top = sum(body.mass_kg for body in structure.masses if body.node == structure.top_node)
+        turbine = build_turbine(schema.rotor, wind, path.parent, nacelle_kg=on_top)
         instruments = tuple(schema.sensors)
         _check_instruments(instruments, structure)
         top_m = structure.nodes[structure.top_node][2] - structure.sea_level_z_m
