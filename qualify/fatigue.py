@@ -1,11 +1,12 @@
 """Does a twin with a few accelerometers know the stress at welds? Simulated jackets whose stresses are known.
 
-Ground, damping, mass of the rotor, marine growth, wind, sea, state and the sensors' noise are drawn, none of
-which the twin is told but the mean wind and the sea's height, period and direction. The twin updates its feet
-with the record itself. The truth is the simulation's own: section forces of its model with waves along the
-members. Beside the smoother on the updated twin stand the same on stiff feet, modal expansion of
-accelerations that are integrated twice, and an augmented Kalman filter with forces on the tower top that walk
-at random, both on the updated twin. Usage: python qualify/fatigue.py [n_records]
+Of every asset feet (each another), damping, mass of the rotor, marine growth, drag and added mass are drawn,
+of every record wind, sea and the sensors' noise; the twin is told the mean wind and the sea's height, period
+and direction. It updates its feet with two records of its own; then four others are judged: parked, idling,
+operating and in a storm. The truth is the simulation's own: section forces of its model with waves along the
+members. Beside the smoother stand modal expansion of accelerations that are integrated twice, the same in
+three bands, and an augmented Kalman filter with forces on the tower top that walk at random, each on the
+updated twin and on feet thirty times stiffer. Usage: python qualify/fatigue.py [n_records]
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from __future__ import annotations
 import sys
 import tempfile
 from dataclasses import replace
+from functools import lru_cache, partial
 from pathlib import Path
 from time import process_time
 from typing import Any
@@ -22,22 +24,27 @@ import yaml
 from common.cases import Result, cases
 from common.page import write_page
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import JackettwinError
 from jackettwin.fatigue import count, equivalent_range
+from jackettwin.intervals import NORMAL_90
 from jackettwin.records import Record, write_record
-from jackettwin.response import System, observation_matrix
+from jackettwin.response import Sensor, System, observation_matrix
 from jackettwin.sensing import (
+    SECTION_REMAINDER,
     LatentForce,
     MotionEstimate,
     MotionModel,
     SensorReadings,
     Weather,
+    likely_motions,
     moved,
     readings_of,
     section_rows,
     sensed_model,
+    stress_remainder,
 )
-from jackettwin.simulate import read_scenario, simulate
+from jackettwin.simulate import Scenario, read_scenario, simulate
 from jackettwin.simulate.members import deflections
 from jackettwin.simulate.motion.motion import simulate_motion
 from jackettwin.structure import Assembly, SectionForces, assemble, section_forces
@@ -49,43 +56,73 @@ STEP_S = 0.05
 DEPTH_M = 72.0
 M = 4.0
 """Inverse slope of damage-equivalent ranges: between the two of curve T."""
-DRAWS, SUPPORTS = 4, 3
+DRAWS, SUPPORTS = 2, 9
+"""Motions of each of the structures that the update leaves likely."""
 SPOTS = 20
 """Hot spots of each record whose intervals are judged: those that are damaged most."""
 HEIGHTS_M = (144.0, 28.0, 77.0, 41.0)
 BANDS = ((-80.0, -40.0), (-40.0, -15.0), (-15.0, 15.0), (15.0, 40.0))
-METHODS = ("smoother", "before updating", "modal expansion", "augmented Kalman", "4 sensors", "1 DC sensor")
-STATES = ("parked", "idling", "operating")
+MOMENTS = ("tower base", "tower top", "mud line")
+METHODS = (
+    "smoother",
+    "4 sensors",
+    "1 DC sensor",
+    "smoother, not updated",
+    "modal expansion",
+    "modal expansion, not updated",
+    "multi-band expansion",
+    "multi-band expansion, not updated",
+    "augmented Kalman",
+    "augmented Kalman, not updated",
+)
+STATES = ("parked", "idling", "operating", "storm, parked")
+"""Of the records of each asset."""
+FEET = {"k": {"median": 1.2e9, "log_std": 1.0}, "c": {"median": 2.5e7, "log_std": 1.0}}
+"""What a pile's design says of its head, to a factor of e."""
+UPDATING = 2
+"""Records that an asset updates itself with."""
 
 
-def drawn(case: int) -> tuple[str, dict[str, Any]]:
-    """Draw a scenario: state of the turbine, and all that the twin is not told."""
-    rng = np.random.default_rng((SEED, case))
-    state = STATES[case % len(STATES)]
-    storm = case % 7 == 3
-    hs = 8.0 if storm else float(rng.uniform(1.0, 5.0))
-    if state == "operating":
-        hs = min(hs, 4.0)
-    wind = float(rng.uniform(6.0, 20.0) if state == "operating" else rng.uniform(6.0, 28.0))
-    k = 10 ** rng.uniform(8.7, 9.4)
-    mass = float(rng.uniform(0.98, 1.02))
-    noise = 10 ** rng.uniform(-4.0, -3.0)
-    scenario = {
-        "structure": "jacket15",
-        "gravity": True,
-        "support": f"kelvin-voigt:k={k:.4g},c={k * 10 ** rng.uniform(-2.0, -1.4):.4g}",
-        "rna": {
-            "mass_kg": 808928.0 * mass,
-            "static_moment_kg_m": [-5897995.0 * mass, 0.0, 3725438.0 * mass],
-            "inertia_about_node_kg_m2": [3.702e8 * mass, 2.472e8 * mass, 2.487e8 * mass, 0.0, 0.0, 0.0],
-        },
+def asset(number: int) -> dict[str, Any]:
+    """Draw what the twin is not told of an asset: its feet, damping, mass, growth and coefficients."""
+    rng = np.random.default_rng((SEED, number))
+    k, mass = 10 ** rng.uniform(8.7, 9.4), float(rng.normal(1.0, 0.015))
+    tau = 10 ** rng.uniform(-2.0, -1.4)
+    feet = [
+        {
+            "nodes": [node],
+            "stiffness": [float(k * np.exp(0.15 * rng.standard_normal()))] * 3,
+            "law": {"type": "kelvin-voigt", "tau_s": float(tau)},
+        }
+        for node in read_structure("jacket15").reaction_nodes
+    ]
+    return {
+        "feet": {"supports": feet},
+        "rna": _rna(mass),
         "damping": {"rayleigh": {"ratio": float(rng.uniform(0.003, 0.01)), "frequency_hz": 0.3}},
         "water": {
             "depth_m": DEPTH_M,
-            "marine_growth": [
-                {"top_z_m": 2.0, "bottom_z_m": -40.0, "thickness_m": float(rng.uniform(0.0, 0.15))}
-            ],
+            "drag": float(rng.uniform(0.65, 1.2)),
+            "added_mass": float(rng.normal(1.0, 0.1)),
+            "marine_growth": [grown(float(np.exp(0.47 * rng.standard_normal())))],
         },
+        "noise": float(10 ** rng.uniform(-4.0, -3.0)),
+    }
+
+
+def weather(case: int) -> tuple[str, dict[str, Any]]:
+    """Draw wind, sea and state of a record; negative cases are those that an asset updates itself with."""
+    rng = np.random.default_rng((SEED, 1000 + case))
+    state = "parked" if case < 0 else STATES[case % len(STATES)]
+    storm = state.startswith("storm")
+    if case < 0:
+        hs, wind = float(rng.uniform(1.0, 2.0)), float(rng.uniform(8.0, 14.0))
+    elif state == "operating":
+        hs, wind = float(rng.uniform(1.0, 4.0)), float(rng.uniform(6.0, 20.0))
+    else:
+        hs = 8.0 if storm else float(rng.uniform(1.0, 5.0))
+        wind = float(rng.uniform(18.0, 28.0) if storm else rng.uniform(6.0, 24.0))
+    return state, {
         "waves": {
             "type": "jonswap",
             "hs_m": hs,
@@ -95,33 +132,75 @@ def drawn(case: int) -> tuple[str, dict[str, Any]]:
             "seed": int(rng.integers(1_000_000)),
         },
         "wind": {"speed_m_s": wind, "turbulence": "B", "seed": int(rng.integers(1_000_000))},
-        "rotor": {"data": "iea15", "state": state},
-        "time": {"duration_s": 600.0, "step_s": STEP_S, "discard_s": 60.0},
+        "rotor": {"data": "iea15", "state": state.split()[-1]},
         "sensor_seed": int(rng.integers(1_000_000)),
-        "sensors": [
-            {"channel": f"acc_{h:.0f}_{axis}", "height_m": h, "direction": d, "noise": float(noise)}
-            for h in HEIGHTS_M
-            for axis, d in (("x", [1, 0, 0]), ("y", [0, 1, 0]))
-        ],
     }
-    return ("storm, " if storm else "") + state, scenario
 
 
-def twin_of(record: Path) -> dict[str, Any]:
-    """Return the twin: the drawings' jacket, pinned until it is updated."""
-    return {
+def write_scenario(folder: Path, case: int) -> Path:
+    """Write the scenario of a record, and the feet that it names."""
+    drawing = asset(abs(case) // 10 if case < 0 else case // len(STATES))
+    (folder / "feet.yaml").write_text(yaml.safe_dump(drawing.pop("feet")))
+    noise = drawing.pop("noise")
+    sensors = [
+        {"channel": f"acc_{h:.0f}_{axis}", "height_m": h, "direction": d, "noise": noise}
+        for h in HEIGHTS_M
+        for axis, d in (("x", [1, 0, 0]), ("y", [0, 1, 0]))
+    ]
+    scenario = {
         "structure": "jacket15",
         "gravity": True,
-        "rna": {
-            "mass_kg": 808928.0,
-            "static_moment_kg_m": [-5897995.0, 0.0, 3725438.0],
-            "inertia_about_node_kg_m2": [3.702e8, 2.472e8, 2.487e8, 0.0, 0.0, 0.0],
-        },
-        "damping": {"rayleigh": {"ratio": 0.0055, "frequency_hz": 0.3}},
-        "support": {"law": "kelvin-voigt", "tie": "all"},
-        "records": [str(record)],
-        "update": {"laws": ["kelvin-voigt"], "modes": [1, 2, 4, 5], "starts": 4, "particles": 50},
+        "support": str(folder / "feet.yaml"),
+        "time": {"duration_s": 600.0, "step_s": STEP_S, "discard_s": 60.0},
+        "sensors": sensors,
+        **drawing,
+        **weather(case)[1],
     }
+    path = folder / f"scenario{case}.yaml"
+    path.write_text(yaml.safe_dump(scenario))
+    return path
+
+
+def grown(factor: float) -> dict[str, float]:
+    """Return growth of so many times the design's thickness."""
+    return {"top_z_m": 2.0, "bottom_z_m": -40.0, "thickness_m": 0.08 * factor}
+
+
+def _rna(mass: float) -> dict[str, Any]:
+    return {
+        "mass_kg": 808928.0 * mass,
+        "static_moment_kg_m": [-5897995.0 * mass, 0.0, 3725438.0 * mass],
+        "inertia_about_node_kg_m2": [3.702e8 * mass, 2.472e8 * mass, 2.487e8 * mass, 0.0, 0.0, 0.0],
+    }
+
+
+def updated_asset(number: int) -> Any:
+    """Return the twin of an asset, updated by records of its own: the drawings' jacket and design growth."""
+    with tempfile.TemporaryDirectory() as name:
+        folder, records = Path(name), []
+        for k in range(UPDATING):
+            scenario = read_scenario(str(write_scenario(folder, -10 * number - k - 1)))
+            write_record(simulate(scenario).record, folder / f"r{k}.parquet")
+            records.append(f"r{k}.parquet")
+        twin = {
+            "structure": "jacket15",
+            "gravity": True,
+            "rna": _rna(1.0),
+            "damping": {"rayleigh": {"ratio": 0.0055, "frequency_hz": 0.3}},
+            "water": {"depth_m": DEPTH_M, "marine_growth": [grown(1.0)]},
+            "support": {"law": "kelvin-voigt", "tie": "all"},
+            "records": records,
+            "update": {
+                "laws": ["kelvin-voigt"],
+                "modes": [1, 2, 4, 5],
+                "starts": 4,
+                "particles": 50,
+                "priors": FEET,
+            },
+        }
+        (folder / "twin.yaml").write_text(yaml.safe_dump(twin))
+        config = read_twin(str(folder / "twin.yaml"))
+        return config, updated(config)
 
 
 def mudline_moment(assembly: Assembly, forces: SectionForces) -> np.ndarray:
@@ -181,10 +260,9 @@ class Judge:
 
 
 def truth_of(
-    path: Path, system_of: Judge
-) -> tuple[Any, np.ndarray, list[tuple[int, int, int, int]], np.ndarray]:
-    """Return scenario, true ranges, the worst point of each weld's sides, and displacements."""
-    scenario = read_scenario(str(path))
+    scenario: Scenario, judge: Judge
+) -> tuple[np.ndarray, list[tuple[int, int, int, int]], np.ndarray]:
+    """Return true ranges, the worst point of each weld's sides, and displacements."""
     motion = simulate_motion(scenario)
     assembly = motion.model.assembly
     blocks, moved_by = [], []
@@ -194,7 +272,7 @@ def truth_of(
     forces = SectionForces(*np.moveaxis(np.concatenate(blocks), -1, 0))
     moments = np.concatenate([dels(one) for one in sections(assembly, forces).values()])
     wanted, ranges = [], []
-    for j, joint in enumerate(system_of.chart.joints):
+    for j, joint in enumerate(judge.chart.joints):
         stress = joint.stress(assembly, forces)
         for b in range(stress.shape[0]):
             for s in range(2):
@@ -202,35 +280,49 @@ def truth_of(
                 p = int(each.argmax())
                 wanted.append((j, b, s, p))
                 ranges.append(each[p])
-    return scenario, np.concatenate([moments, ranges]), wanted, np.concatenate(moved_by)
+    return np.concatenate([moments, ranges]), wanted, np.concatenate(moved_by)
 
 
-def kalman(system: System, seen: SensorReadings, weather: Weather) -> tuple[MotionModel, np.ndarray]:
+def kalman(system: System, seen: SensorReadings, sea: Weather) -> tuple[MotionModel, np.ndarray]:
     """Return the motion by an augmented Kalman filter: top forces that walk at random, no look ahead."""
-    known = sensed_model(system, weather)
-    pick = [i for i, f in enumerate(known.forces) if f.name in ("rotor Fx, slow", "rotor Fy, slow")]
+    known = sensed_model(system, sea)
+    pick = [i for i, f in enumerate(known.forces) if f.name in ("rotor Fx", "rotor Fy")]
     walking: tuple[LatentForce, ...] = tuple(replace(known.forces[i], rate=1e-3) for i in pick)
     model = replace(known, forces=walking, flexibility=known.flexibility[:, pick])
     found = moved(model, seen)
     return found.model, found.smoother.filtered(seen.y.T) @ found.to_coordinates.T
 
 
-def expansion(system: System, seen: SensorReadings, weather: Weather) -> tuple[MotionModel, np.ndarray]:
+def expansion(
+    system: System, seen: SensorReadings, sea: Weather, bands: tuple[tuple[float, float], ...]
+) -> tuple[MotionModel, np.ndarray]:
     """Return the motion by modal expansion: modes fitted to accelerations and integrated twice.
 
-    What is slower than 0.05 Hz is left out, as integration would drown it in noise.
+    In each band [Hz] those modes are fitted that lie in it and that sensors see best, half as many as there
+    are sensors. What is slower than 0.05 Hz is left out, as integration would drown it in noise.
     """
-    model = sensed_model(system, weather)
-    n = seen.y.shape[1]
-    keep = min(5, seen.y.shape[0])
-    spectrum = np.fft.rfft(np.linalg.pinv(seen.rows @ model.shapes[:, :keep]) @ seen.y, axis=1)
+    model = sensed_model(system, sea)
+    n, n_channels = seen.y.shape[1], seen.y.shape[0]
     omega = 2.0 * np.pi * np.fft.rfftfreq(n, seen.step_s)
-    band = omega > 2.0 * np.pi * 0.05
-    spectrum[:, band] /= -(omega[band] ** 2)
-    spectrum[:, ~band] = 0.0
+    spectrum = np.fft.rfft(seen.y, axis=1)
     motion = np.zeros((n, model.n_modes + len(model.forces)))
-    motion[:, :keep] = np.fft.irfft(spectrum, n, axis=1).T
+    for low, high in bands:
+        inside = (model.omega >= 2.0 * np.pi * low) & (model.omega < 2.0 * np.pi * high)
+        strength = np.where(inside, np.linalg.norm(seen.rows @ model.shapes, axis=0), -1.0)
+        modes = np.argsort(-strength)[: min(n_channels // 2, int(inside.sum()))]
+        here = (omega >= 2.0 * np.pi * max(low, 0.05)) & (omega < 2.0 * np.pi * high)
+        fitted = np.zeros((modes.size, omega.size), dtype=complex)
+        to_modes = np.linalg.pinv(seen.rows @ model.shapes[:, modes])
+        fitted[:, here] = -(to_modes @ spectrum[:, here]) / omega[here] ** 2
+        motion[:, modes] = np.fft.irfft(fitted, n, axis=1).T
     return model, motion
+
+
+PEERS = {
+    "modal expansion": partial(expansion, bands=((0.0, 2.2),)),
+    "multi-band expansion": partial(expansion, bands=((0.0, 0.4), (0.4, 1.0), (1.0, 2.2))),
+    "augmented Kalman": kalman,
+}
 
 
 def run(case: int) -> Result:
@@ -239,67 +331,64 @@ def run(case: int) -> Result:
     try:
         return judged(case)
     except JackettwinError as error:
-        return {"state": drawn(case)[0], "cpu_s": process_time() - start, "lost": str(error)}
+        return {"state": weather(case)[0], "cpu_s": process_time() - start, "lost": str(error)}
+
+
+@lru_cache(maxsize=1)
+def known_asset(number: int) -> tuple[Any, Any]:
+    """Return a twin and its update, of the asset that was asked for last."""
+    return updated_asset(number)
 
 
 def judged(case: int) -> Result:
     """Return, for one record, ranges over true ones by every method, and how far off they were said to be."""
-    state, drawing = drawn(case)
+    state, drawing = weather(case)
+    start = process_time()
+    config, update = known_asset(case // len(STATES))
+    update_s = process_time() - start
     with tempfile.TemporaryDirectory() as folder:
-        path, file = Path(folder) / "scenario.yaml", Path(folder) / "record.parquet"
-        path.write_text(yaml.safe_dump(drawing))
-        simulated = simulate(read_scenario(str(path))).record
-        write_record(simulated, file)
-        twin = Path(folder) / "twin.yaml"
-        twin.write_text(yaml.safe_dump(twin_of(file)))
-        config = read_twin(str(twin))
-        about: Result = {
-            "state": state,
-            "hs_m": drawing["waves"]["hs_m"],
-            "wind_m_s": drawing["wind"]["speed_m_s"],
-        }
-        start = process_time()
-        update = updated(config)
-        update_s = process_time() - start
-        systems = updated_systems(update, draws=SUPPORTS - 1)
-        weather = Weather.of(simulated.conditions, DEPTH_M)
-        dry = assemble(config.structure)
-        first = sensed_model(systems[0], weather)
-        scenario, true, wanted, displacement = truth_of(path, Judge(systems[0], first, dry))
+        scenario = read_scenario(str(write_scenario(Path(folder), case)))
+        simulated = simulate(scenario).record
+    systems = updated_systems(update, draws=SUPPORTS - 1)
+    sea = Weather.of(simulated.conditions, DEPTH_M, config.water.coefficients)
+    dry = assemble(config.structure)
+    first = sensed_model(systems[0], sea)
+    true, wanted, displacement = truth_of(scenario, Judge(systems[0], first, dry))
     sensors = tuple(i.sensor for i in scenario.instruments)
     record = Record(
         simulated.data[: len(sensors)], simulated.sample_rate_hz, simulated.channels[: len(sensors)]
     )
     seen = readings_of(record, sensors, systems[0].assembly)
-    estimates: dict[str, np.ndarray] = {}
     start = process_time()
-    every = []
-    for k, system in enumerate(systems):
-        found = moved(sensed_model(system, weather), seen)
-        judge = Judge(system, found.model, dry)
-        every.append([judge.dels(motion, wanted) for motion in found.draws(DRAWS, seed=k)])
+    every, judges = [], []
+    for k, (system, found) in enumerate(zip(systems, likely_motions(systems, seen, sea), strict=True)):
+        judges.append(Judge(system, found.model, dry))
+        every.append([judges[k].dels(motion, wanted) for motion in found.draws(DRAWS, seed=k)])
     smoother_s = process_time() - start
     draws = np.log(np.array(every))
-    estimates["smoother"] = np.exp(draws[0].mean(axis=0))
+    heights = [_height(j, first, judges[0]) for j in range(len(judges[0].chart.joints))]
+    z = [heights[j] for j, _, _, _ in wanted]
+    remainder = np.array([SECTION_REMAINDER] * 6 + [stress_remainder(h) for h in z])
     within = draws.var(axis=1, ddof=1).mean(axis=0)
     between = draws.mean(axis=1).var(axis=0, ddof=1)
-    std = np.sqrt(within + np.maximum(between - within / DRAWS, 0.0))
-    estimates["before updating"] = _mean(update.model.system(_stiffest(update)), seen, weather, dry, wanted)
-    for name, method in (("modal expansion", expansion), ("augmented Kalman", kalman)):
-        model, motion = method(systems[0], seen, weather)
-        estimates[name] = Judge(systems[0], model, dry).dels(motion, wanted)
-    few = readings_of(
-        Record(record.data[:4], record.sample_rate_hz, record.channels[:4]), sensors[:4], systems[0].assembly
-    )
-    estimates["4 sensors"] = _mean(systems[0], few, weather, dry, wanted)
-    estimates["1 DC sensor"] = _mean(
-        systems[0], _felt(record, sensors, displacement, systems[0]), weather, dry, wanted
-    )
-    heights = [_height(j, first, judge) for j in range(len(judge.chart.joints))]
-    z = [heights[j] for j, _, _, _ in wanted]
+    std = np.sqrt(within + np.maximum(between - within / DRAWS, 0.0) + remainder**2)
+    before = update.model.system(_stiffest(update))
+    estimates = {
+        "smoother": np.exp(draws.mean(axis=(0, 1))),
+        "smoother, not updated": _mean(before, seen, sea, dry, wanted),
+        "4 sensors": _mean(systems[0], _of(record, sensors, systems[0], 4), sea, dry, wanted),
+        "1 DC sensor": _mean(systems[0], _felt(record, sensors, displacement, systems[0]), sea, dry, wanted),
+    }
+    for name, method in PEERS.items():
+        for system, told in ((systems[0], name), (before, f"{name}, not updated")):
+            model, motion = method(system, seen, sea)
+            estimates[told] = Judge(system, model, dry).dels(motion, wanted)
     worst = 6 + np.argsort(-true[6:])[:SPOTS]
     score = (np.log(true) - draws.mean(axis=(0, 1))) / std
-    return about | {
+    return {
+        "state": state,
+        "hs_m": drawing["waves"]["hs_m"],
+        "wind_m_s": drawing["wind"]["speed_m_s"],
         "cpu_s": update_s + smoother_s,
         "smoother_s": smoother_s / len(systems),
         "ratio": {name: (values / true).tolist() for name, values in estimates.items()},
@@ -307,7 +396,13 @@ def judged(case: int) -> Result:
         "z_m": z,
         "judged": [0, 1, 4, 5, *map(int, worst)],
         "score": score.tolist(),
+        "std": std.tolist(),
     }
+
+
+def _of(record: Record, sensors: tuple[Sensor, ...], system: System, number: int) -> SensorReadings:
+    few = Record(record.data[:number], record.sample_rate_hz, record.channels[:number])
+    return readings_of(few, sensors[:number], system.assembly)
 
 
 def _height(joint: int, model: MotionModel, judge: Judge) -> float:
@@ -326,11 +421,11 @@ def _stiffest(update: Any) -> np.ndarray:
 def _mean(
     system: System,
     seen: SensorReadings,
-    weather: Weather,
+    sea: Weather,
     dry: Assembly,
     wanted: list[tuple[int, int, int, int]],
 ) -> np.ndarray:
-    found: MotionEstimate = moved(sensed_model(system, weather), seen)
+    found: MotionEstimate = moved(sensed_model(system, sea), seen)
     judge = Judge(system, found.model, dry)
     return np.exp(np.mean([np.log(judge.dels(motion, wanted)) for motion in found.draws(2)], axis=0))
 
@@ -359,8 +454,8 @@ def ratios(results: list[Result], method: str, place: str) -> list[float]:
     found = []
     for one in results:
         values, true = np.array(one["ratio"][method]), np.array(one["true"])
-        if place in ("tower base", "tower top", "mud line"):
-            at = 2 * ("tower base", "tower top", "mud line").index(place)
+        if place in MOMENTS:
+            at = 2 * MOMENTS.index(place)
             found.append(float(values[at + int(true[at + 1] > true[at])]))
         else:
             low, high = map(float, place.split(" to "))
@@ -373,58 +468,86 @@ def ratios(results: list[Result], method: str, place: str) -> list[float]:
 
 
 def main() -> None:
-    n = int(sys.argv[1]) if len(sys.argv) > 1 else 210
+    n = int(sys.argv[1]) if len(sys.argv) > 1 else 48
     every = cases("fatigue", n, run, whole=True)
     results = [one for one in every if "lost" not in one]
-    places = ["tower base", "tower top", "mud line", *(f"{low:g} to {high:g}" for low, high in BANDS)]
-    lines = [
+    lost = len(every) - len(results)
+    write_page("fatigue", [*introduction(n, lost), *errors(results), *coverage(results), *cost(results)])
+
+
+def introduction(n: int, lost: int) -> list[str]:
+    """Return the page's head."""
+    return [
         "# Stress at welds from a few accelerometers",
         "",
-        f"`python qualify/fatigue.py {n}`: {n} simulated ten-minute records of jacket15; ground, damping, "
-        "mass, growth and "
-        "weather drawn and unknown to the twin but for mean wind and sea; "
-        "it updates its feet with the record itself"
-        + (
-            f" ({len(every) - len(results)} records gave no result and are left out)."
-            if len(every) > len(results)
-            else "."
-        ),
-        f"Damage-equivalent range (m = {M:g}) over the true one, less one, in per cent: "
-        "median (5 to 95 % of records), then the "
-        "median size of the error. Moments in the direction that is loaded most; hot spots "
-        "by elevation [m] above the sea, the more damaged half.",
-        "",
-        "| method | place | all | size | " + " | ".join(f"{state} | size" for state in STATES) + " |",
-        "|---|---|---|---|" + "---|---|" * len(STATES),
+        f"`python qualify/fatigue.py {n}`: {n} simulated ten-minute records of {-(-n // len(STATES))} assets "
+        "like jacket15; feet, damping, mass, growth, coefficients of the water and weather are drawn and "
+        "unknown to the twin but for mean wind and sea. It updates its feet with two other records of the "
+        f"asset{f' ({lost} records gave no result and are left out)' if lost else ''}.",
+        f"Damage-equivalent range (m = {M:g}) over the true one, less one, in per cent: median (5 to 95 % of "
+        "records), then the median size of the error. Moments in the direction that is loaded most; hot "
+        "spots by elevation [m] above the sea, the more damaged half of all.",
     ]
+
+
+def errors(results: list[Result]) -> list[str]:
+    """Return the errors of the smoother by state, and of every method in all records."""
+    places = [*MOMENTS, *(f"{low:g} to {high:g}" for low, high in BANDS)]
+    groups = {"all": results} | {s: [r for r in results if r["state"] == s] for s in STATES}
+    lines = ["", "| place | " + " | size | ".join(groups) + " | size |", "|---|" + "---|---|" * len(groups)]
+    for place in places:
+        parts = [quantiles(ratios(group, "smoother", place)) for group in groups.values()]
+        lines.append(f"| {place} | " + " ".join(parts))
+    lines += ["", "| method | " + " | size | ".join(places) + " | size |", "|---|" + "---|---|" * len(places)]
     for method in METHODS:
-        for place in places:
-            parts = [quantiles(ratios(results, method, place))]
-            parts += [
-                quantiles(ratios([r for r in results if r["state"].endswith(s)], method, place))
-                for s in STATES
+        parts = [quantiles(ratios(results, method, place)) for place in places]
+        lines.append(f"| {method} | " + " ".join(parts))
+    return lines
+
+
+def coverage(results: list[Result]) -> list[str]:
+    """Return how many of the true ranges lie in the intervals of 90 %, by state and place."""
+    lines = [
+        "",
+        "| 90 % intervals of the smoother | judged | inside | true above | true below | typical width |",
+        "|---|---|---|---|---|---|",
+    ]
+    rows = {"all": np.concatenate([scored(one, one["judged"]) for one in results])}
+    for state in STATES:
+        own = [scored(one, one["judged"]) for one in results if one["state"] == state]
+        rows |= {state: np.concatenate(own)} if own else {}
+    rows["tower base"] = np.concatenate([scored(one, [0, 1]) for one in results])
+    rows["mud line"] = np.concatenate([scored(one, [4, 5]) for one in results])
+    for low, high in BANDS:
+        rows[f"hot spots {low:g} to {high:g}"] = np.concatenate(
+            [
+                scored(one, [i for i in one["judged"][4:] if low <= one["z_m"][i - 6] < high])
+                for one in results
             ]
-            lines.append(f"| {method} | {place} | " + " ".join(parts))
-    scores = np.concatenate([np.array(one["score"])[one["judged"]] for one in results])
-    lines += [
-        "",
-        "| 90 % intervals of the smoother | judged | inside | true above | true below |",
-        "|---|---|---|---|---|",
-    ]
-    groups = [("all", results), *((s, [r for r in results if r["state"].endswith(s)]) for s in STATES)]
-    groups.append(("storm, Hs 8 m", [r for r in results if r["hs_m"] >= 8.0]))
-    for name, group in groups:
-        if group:
-            scores = np.concatenate([np.array(one["score"])[one["judged"]] for one in group])
-            above, below = (scores > 1.645).mean(), (scores < -1.645).mean()
+        )
+    rows["tower top (not in all)"] = np.concatenate([scored(one, [2, 3]) for one in results])
+    for name, row in rows.items():
+        if len(row):
+            above, below = (row[:, 0] > NORMAL_90).mean(), (row[:, 0] < -NORMAL_90).mean()
             shares = " | ".join(f"{100 * share:.0f} %" for share in (1.0 - above - below, above, below))
-            lines.append(f"| {name} | {scores.size} | {shares} |")
+            width = np.expm1(NORMAL_90 * np.median(row[:, 1]))
+            lines.append(f"| {name} | {len(row)} | {shares} | ±{100 * width:.0f} % |")
+    return lines
+
+
+def scored(one: Result, which: list[int]) -> np.ndarray:
+    """Return scores and standard deviations (n, 2) of some quantities of a record."""
+    return np.array([[one["score"][i], one["std"][i]] for i in which]).reshape(-1, 2)
+
+
+def cost(results: list[Result]) -> list[str]:
+    """Return what the smoother cost."""
     seconds = np.median([one["smoother_s"] for one in results])
-    lines += [
+    return [
         "",
-        f"The smoother with {DRAWS} motions and all welds took {seconds:.2f} CPU-s a record and support.",
+        f"The smoother with {DRAWS} motions and all welds took {seconds:.2f} CPU-s a record and "
+        f"structure, of {SUPPORTS} structures.",
     ]
-    write_page("fatigue", lines)
 
 
 if __name__ == "__main__":

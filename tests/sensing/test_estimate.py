@@ -28,7 +28,7 @@ from jackettwin.study import record_life
 from jackettwin.twin import weld_map
 
 WEATHER = Weather(12.0, 2.5, 8.0, 0.3, 72.0)
-STEP_S = 0.05
+STEP_S = 0.1
 SENSORS = tuple(
     Sensor(f"a{h}{axis}", d, height_m=h)
     for h in (144.0, 77.0, 28.0)
@@ -49,11 +49,11 @@ def model(system: System) -> MotionModel:
 
 def drawn(model: MotionModel, seed: int) -> tuple[np.ndarray, SensorReadings]:
     """Return the coordinates of a motion with known levels, and what sensors read of it."""
-    levels = {"rotor": 2e4, "tower": 0.02, "waves": 0.4}
+    levels = {"rotor": 2e4, "tower": 33.0}
     known = model.with_forces(
         tuple(
             f.with_level(
-                levels[f.name.split()[0]]
+                levels.get(f.name.split()[0], 0.4)
                 * (20.0 if " M" in f.name else 1.0)
                 * (0.1 if "quick" in f.name else 1.0)
             )
@@ -64,7 +64,7 @@ def drawn(model: MotionModel, seed: int) -> tuple[np.ndarray, SensorReadings]:
     seen = readings_of(blank, SENSORS, model.assembly)
     C = known.motion_rows(seen.rows, seen.tilt, seen.derivative)
     s = steady_smoother(*discrete(*known.dynamics(), STEP_S), C, np.full(len(SENSORS), 1e-7))
-    x, y = s.draw(12_000, np.random.default_rng(seed))
+    x, y = s.draw(6_000, np.random.default_rng(seed))
     to = np.vstack([np.eye(known.n_modes, x.shape[1]), known.force_rows()])
     record = Record(y.T, 1.0 / STEP_S, blank.channels)
     return x @ to.T, readings_of(record, SENSORS, model.assembly)

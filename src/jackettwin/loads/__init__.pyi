@@ -19,7 +19,7 @@ from .aerodynamics.wind import (
     tower_drag_damping as tower_drag_damping,
 )
 from .members.coefficients import Coefficients as Coefficients, GrowthBand as GrowthBand
-from .members.drag_damping import sea_drag_damping as sea_drag_damping
+from .members.drag_damping import sea_drag_damping as sea_drag_damping, velocity_std as velocity_std
 from .members.ends import EndCoefficients as EndCoefficients, Ends as Ends, member_ends as member_ends
 from .members.morison import (
     MorisonPoints as MorisonPoints,
@@ -89,7 +89,9 @@ from .sea.waves import (
     SeaState as SeaState,
     Waves as Waves,
     airy_wave as airy_wave,
+    depth_functions as depth_functions,
     irregular_sea as irregular_sea,
+    jonswap as jonswap,
     peak_factor as peak_factor,
     wave_number as wave_number,
 )

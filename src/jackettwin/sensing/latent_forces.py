@@ -15,13 +15,13 @@ equations driven by white noise.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import cos, pi, sin, sqrt
+from math import pi, sqrt
 from typing import Literal
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.loads import Coefficients, loads_along, morison_points, point_forces, wave_number, wetness
+from jackettwin.loads import AIR_KG_M3, TOWER_DRAG, Coefficients, morison_points, point_forces
 from jackettwin.response import nodal_load
 from jackettwin.structure import Assembly
 
@@ -35,14 +35,24 @@ _TAIL = 1.5
 _PASSED = _TAIL**3 * (_TAIL + _BAND) / (_TAIL**2 + 2.0 * _BAND * _TAIL + 1.0) ** 2
 """Share of a band's variance that its tail leaves."""
 _SPACING_M = 4.0
-_USUAL_HEIGHT_M, _USUAL_PERIOD_S = 1.5, 7.0
-_ACROSS = 0.5
-"""Of a sea that spreads as cos² about its mean direction, across it over along it, a little less."""
-_KNOWN, _UNKNOWN = 0.3, 1.5
-"""Of the logarithm of a sea's level, whose height is stated or not."""
 _QUICK = 25.0
 """How much quicker the quick gusts are: two processes make Kaimal's f^(-5/3) within a factor of 1.6."""
-_TOP = {0: "Fx", 1: "Fy", 3: "Mx", 4: "My", 5: "Mz"}
+_QUICK_SHARE, _QUICK_LOG_STD = 0.3, 1.5
+"""Expected of quick gusts over slow ones, and how far its logarithm may lie from that."""
+_TOP = {
+    0: ("rotor Fx", None),
+    1: ("rotor Fy", None),
+    3: ("rotor Mx", "rotor Fy"),
+    4: ("rotor My", "rotor Fx"),
+    5: ("rotor Mz", "rotor Fx"),
+}
+"""Rows of a rotor's load on the tower top, and the force beside which a moment is expected."""
+_FORCE_N = 1e5
+"""To start from; the record decides."""
+_LEVER_M, _LEVER_LOG_STD = 20.0, 1.0
+"""Of a rotor's moments over its forces: gusts across a disc of 150 to 240 m, a sixth of its radius."""
+_TURBULENCE, _GUSTS_LOG_STD = 0.14, 0.7
+"""I_ref of class B (IEC 61400-1 (2019), eq. (10)): drag on a tower varies by 2Uσ in a wind that is stated."""
 _TOWER = "tower"
 
 
@@ -59,6 +69,7 @@ class LatentForce:
     rate : corner a or peak ω_p [rad/s]
     level : standard deviation of the process that multiplies the pattern: what to expect, then what was found
     level_log_std, rate_log_std : how far the logarithms of level and rate may lie from what is expected
+    beside : name of another force, at whose level over its expected one this one's is expected, too
     """
 
     name: str
@@ -69,6 +80,7 @@ class LatentForce:
     level: float = 1.0
     level_log_std: float = 3.0
     rate_log_std: float = 0.2
+    beside: str | None = None
 
     def dynamics(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return A (s, s), the density G Gᵀ (s, s) of the noise that drives it, and h (s,): f = h x."""
@@ -109,16 +121,34 @@ def wind_forces(assembly: Assembly, *, wind_m_s: float | None = None) -> tuple[L
     """Return the wind's forces and moments on the tower top and its drag along the tower.
 
     Each pattern has slow gusts and quick ones, whose levels the record tells apart: together they fall as
-    slowly with frequency as turbulence does, or as fast as what a rotor lets through.
+    slowly with frequency as turbulence does, or as fast as what a rotor lets through. What sensors hardly
+    tell apart is expected in proportion: a moment to its force, quick gusts to slow ones.
     """
     corner, nothing = gust_corner(wind_m_s), np.zeros((assembly.mesh.start.size, 12))
-    patterns = {f"rotor {name}": _on_top(assembly, k) for k, name in _TOP.items()}
-    patterns |= {f"tower {'xy'[k]}": load for k, load in enumerate(_on_tower(assembly))}
-    return tuple(
-        LatentForce(f"{name}, {kind}", load, nothing, "gust", corner * times, _usual(name), 3.0, std)
-        for kind, times, std in (("slow", 1.0, 0.2), ("quick", _QUICK, 1.0))
-        for name, load in patterns.items()
+    speed = _USUAL_WIND_M_S if wind_m_s is None else wind_m_s
+    gusts, known = (
+        2.0 * speed * _TURBULENCE * (0.75 * speed + 5.6),
+        3.0 if wind_m_s is None else _GUSTS_LOG_STD,
     )
+    slow = []
+    for row, (name, of) in _TOP.items():
+        at = (_FORCE_N, 3.0, 0.2) if of is None else (_LEVER_M * _FORCE_N, _LEVER_LOG_STD, 0.2)
+        slow.append(LatentForce(name, _on_top(assembly, row), nothing, "gust", corner, *at, of))
+    for axis, load in zip("xy", _on_tower(assembly), strict=False):
+        slow.append(LatentForce(f"tower {axis}", load, nothing, "gust", corner, gusts, known))
+    quick = [
+        replace(
+            f,
+            name=f"{f.name}, quick",
+            rate=_QUICK * corner,
+            level=_QUICK_SHARE * f.level,
+            level_log_std=_QUICK_LOG_STD,
+            rate_log_std=1.0,
+            beside=f.name,
+        )
+        for f in slow
+    ]
+    return (*slow, *quick)
 
 
 def _on_top(assembly: Assembly, component: int) -> FloatArray:
@@ -130,60 +160,9 @@ def _on_tower(assembly: Assembly) -> tuple[FloatArray, ...]:
     others = tuple({m.part for m in assembly.structure.members} - {_TOWER})
     if all(m.part != _TOWER for m in assembly.structure.members):
         return ()
-    grid = morison_points(assembly, lowest_z=0.0, spacing=_SPACING_M, exclude_parts=others)
+    air = Coefficients(TOWER_DRAG, 0.0, 0.0, density_kg_m3=AIR_KG_M3)
+    grid = morison_points(assembly, lowest_z=0.0, spacing=_SPACING_M, exclude_parts=others, coefficients=air)
     still = np.zeros_like(grid.points)
     return tuple(
         np.asarray(grid.N @ point_forces(grid, still + unit, still).ravel()) for unit in np.eye(3)[:2]
     )
-
-
-def wave_forces(
-    assembly: Assembly,
-    *,
-    height_m: float | None = None,
-    period_s: float | None = None,
-    direction_rad: float = 0.0,
-    depth_m: float | None = None,
-    coefficients: Coefficients | None = None,
-) -> tuple[LatentForce, ...]:
-    """Return a sea's forces: along and across its direction, at crests and between them.
-
-    The inertia force of a regular wave of the peak period and unit acceleration at the surface acts on all
-    members at the phase of their place, so that legs that stand half a wave apart are pushed apart.
-
-    Raises
-    ------
-    InputError
-        If no tube reaches into the water.
-    """
-    structure = assembly.structure
-    depth = depth_m or structure.sea_level_z_m - min(z for _, _, z in structure.nodes.values())
-    grid = morison_points(
-        assembly, highest_z=0.0, lowest_z=-depth, coefficients=coefficients, spacing=_SPACING_M
-    )
-    omega = 2.0 * pi / (period_s or _USUAL_PERIOD_S)
-    # of the water's acceleration at the surface, σ = ω_p² Hs/4
-    level = omega**2 * (height_m or _USUAL_HEIGHT_M) / 4.0
-    k = float(wave_number(omega, depth))
-    wet = wetness(grid, np.zeros(grid.weight.size))
-    z = np.minimum(grid.points[:, 2], 0.0)
-    across, up = np.cosh(k * (z + depth)) / np.sinh(k * depth), np.sinh(k * (z + depth)) / np.sinh(k * depth)
-    spread, found = loads_along(assembly, grid), []
-    for angle, way, share in ((direction_rad, "along", 1.0), (direction_rad + 0.5 * pi, "across", _ACROSS)):
-        d = np.array([cos(angle), sin(angle), 0.0])
-        phase = k * (grid.points @ d)
-        for turn, place in ((0.0, "between crests"), (0.5 * pi, "at crests")):
-            acceleration = np.outer(across * np.cos(phase + turn), d)
-            acceleration[:, 2] = up * np.sin(phase + turn)
-            forces = point_forces(grid, np.zeros_like(acceleration), acceleration, wet=wet)
-            load = np.asarray(grid.N @ forces.ravel())
-            beside = np.asarray(spread @ forces.ravel()).reshape(-1, 12)
-            std = _KNOWN if height_m else _UNKNOWN
-            name = f"waves {way}, {place}"
-            found.append(LatentForce(name, load, beside, "wave", omega, share * level, std))
-    return tuple(found)
-
-
-def _usual(name: str) -> float:
-    """Return a level to start from [N, N·m], or the wind's variance times its mean on a tower [m²/s²]."""
-    return 10.0 if name.startswith(_TOWER) else 1e6 if " M" in name else 1e5

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg as la
+import scipy.sparse as sp
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import require
@@ -63,6 +64,11 @@ class MotionModel:
         damping = np.where(known[:, None] | known, 0.0, self.damping)
         np.fill_diagonal(damping, 2.0 * kept * self.omega)
         return replace(self, damping=damping)
+
+    def with_damping_beyond(self, first: int, factor: float) -> MotionModel:
+        """Return the model with another damping of all modes but the first ones."""
+        root = np.where(np.arange(self.n_modes) < first, 1.0, np.sqrt(factor))
+        return replace(self, damping=root[:, None] * self.damping * root)
 
     def with_forces(self, forces: tuple[LatentForce, ...]) -> MotionModel:
         """Return the model with the same patterns at other levels and rates."""
@@ -127,8 +133,14 @@ class MotionModel:
         return np.asarray(still @ self.shapes @ modal + still @ self.flexibility + moving @ modal)
 
 
-def motion_model(system: System, forces: tuple[LatentForce, ...], *, below_hz: float) -> MotionModel:
+def motion_model(
+    system: System, forces: tuple[LatentForce, ...], *, below_hz: float, drag: sp.csr_array | None = None
+) -> MotionModel:
     """Return the modes of a supported structure below a frequency, and what forces do to it.
+
+    Parameters
+    ----------
+    drag : (n_dof, n_dof) damping of the water besides that of supports and steel
 
     Raises
     ------
@@ -151,7 +163,10 @@ def motion_model(system: System, forces: tuple[LatentForce, ...], *, below_hz: f
     loads = np.column_stack([force.load for force in forces])
     static = np.column_stack([static_displacement(system, force.load) for force in forces])
     flexibility = static - shapes @ ((shapes.T @ loads) / omega[:, None] ** 2)
-    return MotionModel(system.assembly, omega, shapes, _damping(system, omega, shapes), forces, flexibility)
+    damping = _damping(system, omega, shapes)
+    if drag is not None:
+        damping = damping + shapes.T @ (drag @ shapes)
+    return MotionModel(system.assembly, omega, shapes, damping, forces, flexibility)
 
 
 def _damping(system: System, omega: FloatArray, shapes: FloatArray) -> FloatArray:

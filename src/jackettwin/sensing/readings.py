@@ -12,6 +12,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.errors import require
+from jackettwin.loads import Coefficients
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import Record, decimate
 from jackettwin.response import Sensor, observation_matrix
@@ -19,6 +20,8 @@ from jackettwin.structure import Assembly
 
 _DERIVATIVE = {"acceleration": 2, "velocity": 1}
 _MOST_MISSING = 0.02
+RATE_HZ = 10.0
+"""At which motion is followed: of ranges at 1 Hz a sixtieth is lost in the mean."""
 _CALM_M = 0.02
 """Significant height of a sea that is said to be without waves."""
 
@@ -55,6 +58,7 @@ class Weather:
     wave_height_m, wave_period_s : significant height and peak period
     wave_direction_rad : towards which waves run, anticlockwise from x seen from above
     depth_m : of the water; None takes the structure's lowest node for the bed
+    coefficients : drag, added mass and growth of the members; None are those of bare ones
     """
 
     wind_m_s: float | None = None
@@ -62,9 +66,15 @@ class Weather:
     wave_period_s: float | None = None
     wave_direction_rad: float = 0.0
     depth_m: float | None = None
+    coefficients: Coefficients | None = None
 
     @classmethod
-    def of(cls, conditions: Mapping[str, Any], depth_m: float | None = None) -> Weather:
+    def of(
+        cls,
+        conditions: Mapping[str, Any],
+        depth_m: float | None = None,
+        coefficients: Coefficients | None = None,
+    ) -> Weather:
         """Return the wind and sea that a record's conditions state."""
 
         def number(name: str) -> float | None:
@@ -79,6 +89,7 @@ class Weather:
             number("wave_period_s"),
             radians(float(direction)) if isinstance(direction, (int, float)) else 0.0,
             depth_m,
+            coefficients,
         )
 
 
@@ -87,7 +98,7 @@ def readings_of(
     sensors: tuple[Sensor, ...],
     assembly: Assembly,
     *,
-    rate_hz: float = 20.0,
+    rate_hz: float = RATE_HZ,
     feel_gravity: bool = False,
 ) -> SensorReadings:
     """Return the vibrations of a record at a rate not far above ``rate_hz``.

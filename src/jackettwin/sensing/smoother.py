@@ -85,12 +85,17 @@ class SteadySmoother:
         start : (n,) the prediction of the first sample; without it the motion may have begun anyhow
         ahead : how many samples at the end are only looked ahead at; the next piece begins with them
         """
-        if start is None:
-            *_, first = self._passes(y, np.zeros(self.F.shape[0]))
-            start = self.beginning(first)
-        x, after, r, _ = self._passes(y, start)
+        x, after, r, first = self._passes(y, np.zeros(self.F.shape[0]) if start is None else start)
         kept = len(y) - ahead
-        return x[:kept] + r[:kept] @ self.P, (after if ahead == 0 else x[kept])
+        states = x[:kept] + r[:kept] @ self.P
+        if start is None:
+            # what begins otherwise decays by L in the predictions, of which a long record corrects P Λ
+            decay = _forward(
+                np.ascontiguousarray(self.closed_loop.T), self.beginning(first), np.zeros_like(x)
+            )
+            states += decay[:kept] @ (np.eye(len(self.P)) - self.information @ self.P)
+            x, after = x + decay[:-1], after + decay[-1]
+        return states, (after if ahead == 0 else x[kept])
 
     def beginning(self, first: FloatArray) -> FloatArray:
         """Return the state (n,) to begin with, from what the backward pass from rest leaves at the start.

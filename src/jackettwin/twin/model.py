@@ -211,4 +211,5 @@ def _stress_model(config: TwinConfig, assembly: Assembly, numbered: UndampedMode
         numbered,
         directions(config, assembly),
         None if config.water is None else config.water.depth_m,
+        None if config.water is None else config.water.coefficients,
     )

@@ -21,8 +21,6 @@ from jackettwin.twin.sensor_polarity import sensor_polarity
 from jackettwin.updating import STIFFEST_N_M, Counterpart, Feet, counterparts, pair
 from jackettwin.version import __version__
 
-_STRESS_RATE_HZ = 10.0
-"""At which motion is followed for stress: of ranges at 1 Hz, more than most of it, a sixtieth is lost."""
 TRUTH = ("true_modes", "true_support", "model")
 """Metadata keys of records of a known structure."""
 
@@ -134,8 +132,9 @@ def _damage(
     record = seen.record
     try:
         likely = likely_structures(model.stress, modes, min(feet.stiffness_n_m, STIFFEST_N_M))
-        readings = readings_of(record, model.placed(record), model.structure, rate_hz=_STRESS_RATE_HZ)
-        return sensed_damage(likely, readings, Weather.of(record.conditions, model.stress.depth_m)), ()
+        readings = readings_of(record, model.placed(record), model.structure)
+        weather = Weather.of(record.conditions, model.stress.depth_m, model.stress.coefficients)
+        return sensed_damage(likely, readings, weather), ()
     except JackettwinError as error:
         return None, (Finding("life_unknown", params={"reason": str(error)}),)
 

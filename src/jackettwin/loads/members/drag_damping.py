@@ -37,7 +37,7 @@ def velocity_std(grid: MorisonPoints, sea: SeaState, depth: float) -> FloatArray
     heading = np.array([np.cos(sea.direction), np.sin(sea.direction), 0.0])
     along = np.einsum("i,nij,j->n", heading, grid.normal, heading)
     variance = along * (horizontal**2 @ power) + grid.normal[:, 2, 2] * (vertical**2 @ power)
-    return np.asarray(np.sqrt(0.5 * variance))
+    return np.asarray(np.sqrt(0.5 * np.maximum(variance, 0.0)))
 
 
 def sea_drag_damping(grid: MorisonPoints, sea: SeaState, depth: float) -> sp.csr_array:

@@ -14,6 +14,7 @@ from jackettwin.fatigue import (
     SIDES,
     Cycles,
     ModelsAtHeight,
+    SNCurve,
     TubeDetails,
     TubeLife,
     WeldLife,
@@ -31,6 +32,7 @@ from jackettwin.sensing import (
     likely_motions,
     readings_of,
     section_rows,
+    stress_remainder,
 )
 from jackettwin.structure import Assembly, assemble
 from jackettwin.study.life.updated_system import updated_systems
@@ -80,10 +82,11 @@ def sensed(config: TwinConfig, path: Path, *, feel_gravity: bool = False) -> tup
     if record.metadata.get("axes") == "rotor" or any(c.frame == "nacelle" for c in record.channels):
         record = to_global_axes(record)
     model = twin_model(config)
-    depth = None if config.water is None else config.water.depth_m
+    water = config.water
+    sea = (None, None) if water is None else (water.depth_m, water.coefficients)
     return (
         readings_of(record, model.placed(record), model.structure, feel_gravity=feel_gravity),
-        Weather.of(record.conditions, depth),
+        Weather.of(record.conditions, *sea),
     )
 
 
@@ -164,7 +167,11 @@ def record_life(
         ]
     )
     by_system = damages.reshape(len(systems), -1, *damages.shape[1:])
-    others = [_variances(by_system[:, :, i]) for i in range(len(welds))]
+    heights = [structure.nodes[weld.node][2] - structure.sea_level_z_m for weld in welds]
+    others = [
+        _variances(by_system[:, :, i], curve, z)
+        for i, (curve, z) in enumerate(zip(curves, heights, strict=True))
+    ]
     cycles = [
         [[_all_of([one[i][s][p] for one in every]) for p in range(len(POSITIONS))] for s in range(len(SIDES))]
         for i in range(len(welds))
@@ -195,7 +202,8 @@ def _tubes(
     for i, (weld, curve) in enumerate(zip(welds, curves, strict=True)):
         t = weld.section.thickness_m
         damages = [[curve.damage(c.ranges, c.numbers, thickness_m=t) for c in one[i]] for one in every]
-        others.append(_variances(np.array(damages).reshape(len(estimates), -1, len(POSITIONS))))
+        by_system = np.array(damages).reshape(len(estimates), -1, len(POSITIONS))
+        others.append(_variances(by_system, curve, weld.z_m - structure.sea_level_z_m))
         cycles.append([_all_of([one[i][p] for one in every]) for p in range(len(POSITIONS))])
     return tube_lives(structure, welds, cycles, duration_s, times=len(every), others=others), apart
 
@@ -204,7 +212,7 @@ def _all_of(cycles: list[Cycles]) -> Cycles:
     return Cycles(np.concatenate([c.full for c in cycles]), np.concatenate([c.half for c in cycles]))
 
 
-def _variances(damage: FloatArray) -> dict[str, FloatArray]:
+def _variances(damage: FloatArray, curve: SNCurve, height_m: float) -> dict[str, FloatArray]:
     """Return the variance of ln D (…, 8) by source, from damages (n_systems, n_draws, …, 8)."""
     with np.errstate(divide="ignore"):
         logs = np.log(np.maximum(damage, 1e-300))
@@ -212,4 +220,9 @@ def _variances(damage: FloatArray) -> dict[str, FloatArray]:
     means = np.log(np.maximum(damage.mean(axis=1), 1e-300))
     between = means.var(axis=0, ddof=1) if len(means) > 1 else np.zeros(means.shape[1:])
     beyond = np.maximum(between - within / damage.shape[1], 0.0)
-    return {"what sensors do not see": within, "structure and force levels": beyond}
+    left = np.full(within.shape, (float(np.mean(curve.m)) * stress_remainder(height_m)) ** 2)
+    return {
+        "what sensors do not see": within,
+        "structure and force levels": beyond,
+        "simplified waves and modes": left,
+    }

@@ -19,6 +19,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.identification import ModalEstimate
+from jackettwin.loads import Coefficients
 from jackettwin.response import System, UndampedModes, build_system, track_modes, undamped_modes
 from jackettwin.sensing import MotionModel
 from jackettwin.soil import Prony, Spring, Support, standing
@@ -52,6 +53,7 @@ class StressModel:
     numbered : modes on pinned feet
     directions : what tolerances that are open do to the structure
     depth_m : of the water; None takes the lowest node for the bed
+    coefficients : of drag, added mass and growth; None are those of bare members
     """
 
     settings: LifeSettings
@@ -61,6 +63,7 @@ class StressModel:
     numbered: UndampedModes
     directions: tuple[Direction, ...] = ()
     depth_m: float | None = None
+    coefficients: Coefficients | None = None
 
     @cached_property
     def n_ways(self) -> int:
@@ -132,7 +135,9 @@ class LikelyStructures:
 
     def damped(self, motion: MotionModel) -> MotionModel:
         """Return a model of the motion with the record's damping ratios, and a usual one of other modes."""
-        numbered, ratios = self.model.numbered, np.full(motion.n_modes, _USUAL_RATIO)
+        # what the water's drag damps besides, braces most of all, is in the model's own
+        own = np.diag(motion.damping) / (2.0 * motion.omega)
+        numbered, ratios = self.model.numbered, np.maximum(own, _USUAL_RATIO)
         successor = track_modes(self.model.assembly.mass, numbered.omega, numbered.shapes, motion.shapes)
         for mode, ratio in self.ratios.items():
             if mode <= successor.size and successor[mode - 1] >= 0:

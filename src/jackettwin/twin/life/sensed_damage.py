@@ -8,10 +8,10 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.fatigue import POSITIONS, SIDES, HotSpot, LifeModel, ModelsAtHeight, count
-from jackettwin.sensing import MotionEstimate, SensorReadings, Weather, likely_motions
+from jackettwin.sensing import SensorReadings, Weather, likely_motions, stress_remainder
 from jackettwin.structure import Structure
 from jackettwin.twin.life.likely_structures import LikelyStructures
-from jackettwin.twin.life.weld_map import WeldMap, weld_map
+from jackettwin.twin.life.weld_map import WeldMap, planned_joints, weld_map
 
 DAMAGE_UNIT = 1e-11
 """Of damage: a weld that has this of a record lasts a million years."""
@@ -22,7 +22,9 @@ _COUNTED = 24
 STEP = 0.02
 """Of logarithms that are kept: a damage is known to a hundredth."""
 STRUCTURES, DRAWS = 3, 2
-"""Structures that count, and motions of each, in pairs about the likeliest."""
+"""Structures that count, in pairs about the likeliest, and motions of that one."""
+_OF_PAIRS = 0.8
+"""Mean of the standard deviation that a pair about the likeliest shows, over the true one: √(2/π)."""
 
 
 @dataclass(frozen=True)
@@ -77,21 +79,24 @@ def sensed_damage(
     """
     systems = likely.systems(structures)
     estimates = likely_motions(systems, readings, weather, damped=likely.damped)
+    joints = planned_joints(likely.model.assembly)
     pairs = zip(systems, estimates, strict=True)
-    charts = [weld_map(system, one.model, likely.model.dry) for system, one in pairs]
+    charts = [weld_map(system, one.model, likely.model.dry, joints) for system, one in pairs]
     curves = _Curves.of(likely.model.assembly.structure, charts[0], likely.model.settings.models)
-    sides, guessed, largest_left = curves.worst(charts[0], estimates[0])
-    damage = np.array(
-        [
-            [curves.damage(chart, motion, sides) for motion in one.draws(draws, seed=k)]
-            for k, (one, chart) in enumerate(zip(estimates, charts, strict=True))
-        ]
-    )
+    mean = estimates[0].mean()
+    sides, guessed, largest_left = curves.worst(charts[0], mean, estimates[0].covariance)
+    first = curves.damage(charts[0], mean, sides)
+    drawn = [curves.damage(charts[0], one, sides) for one in estimates[0].draws(draws, mean=mean)]
+    # what sensors do not see adds to the damage of every structure as it does to that of the first
+    unseen = np.array(drawn) / np.maximum(first, 1e-300)
+    others = [curves.damage(c, e.mean(), sides) for c, e in zip(charts[1:], estimates[1:], strict=True)]
+    damage = np.array([first, *others])[:, None] * unseen
     worst = damage.mean(axis=(0, 1)).max(axis=1)
-    return _kept(sides, damage, largest_left * float((worst / guessed).max(initial=0.0)))
+    bound = largest_left * float((worst / guessed).max(initial=0.0))
+    return _kept(sides, damage, bound, curves.remainder[sides // len(SIDES)])
 
 
-def _kept(sides: IntArray, damage: FloatArray, bound: float) -> SensedDamage:
+def _kept(sides: IntArray, damage: FloatArray, bound: float, remainder: FloatArray) -> SensedDamage:
     """Return what is kept of damages (n_structures, n_draws, n_sides, 8) of the sides that were counted."""
     mean = damage.mean(axis=(0, 1))
     order = np.argsort(-mean.max(axis=1), kind="stable")
@@ -100,8 +105,8 @@ def _kept(sides: IntArray, damage: FloatArray, bound: float) -> SensedDamage:
     at = mean[kept].argmax(axis=1)
     logs = np.log(np.maximum(damage[:, :, kept, at], DAMAGE_UNIT))
     unseen = logs.std(axis=1, ddof=1).mean(axis=0) if logs.shape[1] > 1 else np.zeros(kept.size)
-    model = logs.mean(axis=1).std(axis=0, ddof=1) if len(logs) > 1 else np.zeros(kept.size)
-    model = np.sqrt(np.maximum(model**2 - unseen**2 / logs.shape[1], 0.0))
+    model = logs.mean(axis=1).std(axis=0, ddof=1) / _OF_PAIRS if len(logs) > 1 else np.zeros(kept.size)
+    model = np.hypot(model, remainder[kept])
     left = max(bound, float(mean[rest].max(initial=0.0)))
     by_chance, shared = (np.rint(std / STEP).astype(np.intp) for std in (unseen, model))
     return SensedDamage(sides[kept], steps_of(mean[kept]), by_chance, shared, int(steps_of(np.array(left))))
@@ -109,24 +114,36 @@ def _kept(sides: IntArray, damage: FloatArray, bound: float) -> SensedDamage:
 
 @dataclass(frozen=True)
 class _Curves:
-    """The curve and thickness of every side of every weld; the joint it is of."""
+    """The curve and thickness of every side of every weld; the joint it is of.
+
+    ``remainder`` (n_welds,) is the standard deviation of ln damage that simplified waves and modes leave.
+    """
 
     models: tuple[LifeModel, ...]
     thickness_m: FloatArray
     joint: IntArray
+    remainder: FloatArray
 
     @classmethod
     def of(cls, structure: Structure, chart: WeldMap, models: ModelsAtHeight) -> _Curves:
         """Return those of a structure's welds."""
         welds = welds_of(chart)
-        at = [models(structure.nodes[w.node][2] - structure.sea_level_z_m)[1] for w in welds]
+        heights = [structure.nodes[w.node][2] - structure.sea_level_z_m for w in welds]
+        at = [models(z)[1] for z in heights]
+        left = [stress_remainder(z) * float(np.mean(m.curve.m)) for z, m in zip(heights, at, strict=True)]
         joint = np.repeat(np.arange(len(chart.joints)), [len(j.welds) for j in chart.joints])
-        return cls(tuple(at), np.array([w.thickness_m for w in welds]), joint)
+        return cls(tuple(at), np.array([w.thickness_m for w in welds]), joint, np.array(left))
 
-    def worst(self, chart: WeldMap, estimate: MotionEstimate) -> tuple[IntArray, FloatArray, float]:
-        """Return the sides that vary most for their curves, what one cycle does to them, and to the next."""
-        motion = estimate.mean()
-        seen = np.cov(motion.T) + estimate.covariance
+    def worst(
+        self, chart: WeldMap, motion: FloatArray, unseen: FloatArray
+    ) -> tuple[IntArray, FloatArray, float]:
+        """Return the sides that vary most for their curves, what one cycle does to them, and to the next.
+
+        Parameters
+        ----------
+        unseen : (n_coordinates, n_coordinates) covariance of what the motion (n, n_coordinates) misses
+        """
+        seen = np.cov(motion.T) + unseen
         size = np.concatenate([_spread(chart, j, seen) for j in range(len(chart.joints))])
         per_cycle = np.array(
             [

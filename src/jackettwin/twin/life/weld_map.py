@@ -50,19 +50,22 @@ def planned_joints(assembly: Assembly) -> tuple[JointStresses, ...]:
     return joint_stresses(assembly.structure, joint_plans(assembly, _YIELD_PA))
 
 
-def weld_map(system: System, model: MotionModel, dry: Assembly) -> WeldMap:
+def weld_map(
+    system: System, model: MotionModel, dry: Assembly, joints: tuple[JointStresses, ...] | None = None
+) -> WeldMap:
     """Return the map from a motion of the model to the stresses of the structure's welds.
 
     Parameters
     ----------
     dry : the assembly with the steel's mass only, whose weight divides forces between K, Y and X joints
+    joints : of the structure, if they are planned already
 
     Raises
     ------
     InputError
         If no brace is welded to a chord.
     """
-    joints = planned_joints(model.assembly)
+    joints = planned_joints(model.assembly) if joints is None else joints
     require(joints, "no brace is welded to a chord", field="structure", remedy="joints of tubes are checked")
     weight = static_displacement(system, self_weight(dry))
     still = section_forces(model.assembly, weight[None], along=element_weight(dry)[None])

@@ -1,0 +1,157 @@
+r"""A sea as latent forces, and the damping of its drag on members that move.
+
+A sea of many periods is three bands, since its waves reach down as far as they are long: long waves bend the
+whole jacket, short ones of the same record push near the surface only. Each band has the forces of a regular
+wave of its own period, at the phase of every member's place (Morison's equation, its drag linearised):
+
+.. math:: f = ρ C_M \tfrac{π}{4} D^2 \dot u_n + ½ ρ C_D D \sqrt{8/π}\, σ_u\, u_n
+
+for water of unit acceleration at the surface. The level expected of a band is the standard deviation of that
+acceleration in it, of a JONSWAP sea. The same drag damps the motion of members, braces most of all.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from math import cos, pi, sin, sqrt
+from typing import NamedTuple
+
+import numpy as np
+import scipy.sparse as sp
+
+from jackettwin.arrays import FloatArray
+from jackettwin.loads import (
+    MorisonPoints,
+    SeaState,
+    depth_functions,
+    jonswap,
+    loads_along,
+    morison_points,
+    point_forces,
+    sea_drag_damping,
+    velocity_std,
+    wave_number,
+    wetness,
+)
+from jackettwin.sensing.latent_forces import LatentForce
+from jackettwin.sensing.readings import Weather
+from jackettwin.structure import Assembly
+
+
+class _Band(NamedTuple):
+    """Waves about a multiple of the peak frequency, and how far their own frequency may lie from it."""
+
+    name: str
+    multiple: float
+    rate_log_std: float
+
+
+_BANDS = (_Band("long", 1.0, 0.1), _Band("middle", 1.7, 0.05), _Band("short", 2.9, 0.05))
+_SHORTEST = 5.0
+"""Multiple of the peak frequency beyond which waves reach no member but at the surface."""
+_SPACING_M = 4.0
+_USUAL_HEIGHT_M, _USUAL_PERIOD_S = 1.5, 7.0
+_ACROSS = 0.5
+"""Of a sea that spreads as cos² about its mean direction, across it over along it, a little less."""
+_KNOWN, _UNKNOWN = 0.3, 1.5
+"""Of the logarithm of a sea's level, whose height is stated or not."""
+
+
+@dataclass(frozen=True)
+class Sea:
+    """A sea on the members of a structure.
+
+    Attributes
+    ----------
+    assembly : Assembly
+    grid : MorisonPoints
+        Below still water.
+    state : SeaState
+    depth_m : float
+    level_log_std : how far the logarithm of its height may lie from what is stated
+    """
+
+    assembly: Assembly
+    grid: MorisonPoints
+    state: SeaState
+    depth_m: float
+    level_log_std: float
+
+    @classmethod
+    def of(cls, assembly: Assembly, weather: Weather) -> Sea:
+        """Return the sea of a record, a usual one where it is not stated.
+
+        Raises
+        ------
+        InputError
+            If no tube reaches into the water.
+        """
+        structure = assembly.structure
+        depth = weather.depth_m or structure.sea_level_z_m - min(z for _, _, z in structure.nodes.values())
+        grid = morison_points(
+            assembly,
+            highest_z=0.0,
+            lowest_z=-depth,
+            coefficients=weather.coefficients,
+            spacing=_SPACING_M,
+        )
+        state = SeaState(
+            weather.wave_height_m or _USUAL_HEIGHT_M,
+            weather.wave_period_s or _USUAL_PERIOD_S,
+            weather.wave_direction_rad,
+        )
+        return cls(assembly, grid, state, depth, _KNOWN if weather.wave_height_m else _UNKNOWN)
+
+    def damping(self) -> sp.csr_array:
+        """Return the linearised drag on the members' own motion, (n_dof, n_dof)."""
+        return sea_drag_damping(self.grid, self.state, self.depth_m)
+
+    def forces(self) -> tuple[LatentForce, ...]:
+        """Return the forces of each band along and across the sea, at its crests and between them."""
+        peak, heading, found = 2.0 * pi / self.state.Tp, self.state.direction, []
+        spread = loads_along(self.assembly, self.grid)
+        ways = (("along", heading, 1.0), ("across", heading + 0.5 * pi, _ACROSS))
+        for band, level in zip(_BANDS, self._levels(), strict=True):
+            omega = band.multiple * peak
+            for way, angle, share in ways:
+                for place, turn in (("between crests", 0.0), ("at crests", 0.5 * pi)):
+                    push = self._push(omega, angle, turn).ravel()
+                    found.append(
+                        LatentForce(
+                            f"{band.name} waves {way}, {place}",
+                            np.asarray(self.grid.N @ push),
+                            np.asarray(spread @ push).reshape(-1, 12),
+                            "wave",
+                            omega,
+                            share * level,
+                            self.level_log_std,
+                            band.rate_log_std,
+                        )
+                    )
+        return tuple(found)
+
+    def _levels(self) -> list[float]:
+        """Return the standard deviation of the surface's acceleration in each band [m/s²]."""
+        ends = [0.0, *(sqrt(a.multiple * b.multiple) for a, b in pairwise(_BANDS)), _SHORTEST]
+        found = []
+        for low, high in pairwise(ends):
+            f = np.linspace(low, high, 200) / self.state.Tp
+            S = jonswap(f, Hs=self.state.Hs, Tp=self.state.Tp)
+            found.append(sqrt(float(np.trapezoid((2.0 * pi * f) ** 4 * S, f))))
+        return found
+
+    def _push(self, omega: float, angle: float, turn: float) -> FloatArray:
+        """Return the forces (n, 3) of a wave of unit acceleration at the surface, at a phase."""
+        grid, d = self.grid, np.array([cos(angle), sin(angle), 0.0])
+        k, z = wave_number(np.array([omega]), self.depth_m), np.minimum(self.grid.points[:, 2], 0.0)
+        across, up = (part[:, 0, None] for part in depth_functions(k, z, self.depth_m))
+        turned = np.exp(1j * (float(k[0]) * (grid.points @ d) + turn))[:, None]
+        water = turned * (across * d - 1j * up * [0.0, 0.0, 1.0])
+        wet = wetness(grid, np.zeros(grid.weight.size))
+        inertia = point_forces(grid, np.zeros(water.shape), water.real, wet=wet)
+        speed = sqrt(8.0 / pi) * velocity_std(grid, self.state, self.depth_m)
+        drag = 0.5 * grid.density_kg_m3 * grid.drag * grid.diameter * speed * grid.weight * wet
+        return np.asarray(
+            inertia + drag[:, None] * np.einsum("nij,nj->ni", grid.normal, (water / (1j * omega)).real)
+        )

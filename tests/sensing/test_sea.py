@@ -1,0 +1,83 @@
+"""A sea as forces in three bands, and the damping of its drag."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from jackettwin.decks import read_structure
+from jackettwin.loads import Coefficients, GrowthBand, SeaState, jonswap, sea_drag_damping, wave_number
+from jackettwin.sensing import Weather
+from jackettwin.sensing.sea import Sea
+from jackettwin.structure import Assembly, assemble, rigid_body_motion
+
+DEPTH_M = 72.0
+
+
+@pytest.fixture(scope="module")
+def assembly() -> Assembly:
+    return assemble(read_structure("jacket15"))
+
+
+def sea(assembly: Assembly, coefficients: Coefficients | None = None, **stated: float) -> Sea:
+    return Sea.of(assembly, Weather(depth_m=DEPTH_M, coefficients=coefficients, **stated))
+
+
+def test_long_waves_push_as_their_inertia_does(assembly: Assembly) -> None:
+    """At a long wave all legs are pushed at once, and what is a quarter of a wave behind is small."""
+    rigid = rigid_body_motion(assembly)
+    still = Coefficients(drag=0.0)
+    period = 20.0
+    between, at_crests = (f.load @ rigid for f in sea(assembly, still, wave_period_s=period).forces()[:2])
+    assert abs(between[0]) > 3.0 * abs(at_crests[0])
+    assert abs(between[1]) < 1e-6 * abs(between[0])
+    assert float(wave_number(2.0 * np.pi / period, DEPTH_M)) < 0.02
+    back = sea(assembly, still, wave_period_s=period, wave_direction_rad=np.pi).forces()[0].load @ rigid
+    assert back[0] == pytest.approx(-between[0], rel=1e-9)
+
+
+def test_short_waves_push_near_the_surface_only(assembly: Assembly) -> None:
+    """Below 30 m a wave of 2.9 times the peak frequency has e^(-k 30) of its surface acceleration."""
+    forces = sea(assembly, Coefficients(drag=0.0), wave_height_m=3.0, wave_period_s=8.0).forces()
+    mesh = assembly.mesh
+    z = mesh.coordinates[:, 2] - assembly.structure.sea_level_z_m
+    deep = np.maximum(z[mesh.start], z[mesh.end]) < -30.0
+    share = {f.name: np.linalg.norm(f.along[deep]) / np.linalg.norm(f.along) for f in forces}
+    names = [f"{band} waves along, between crests" for band in ("long", "middle", "short")]
+    assert all(share[a] > 2.0 * share[b] for a, b in pairwise(names))
+    omega = 2.9 * 2.0 * np.pi / 8.0
+    assert share[names[2]] < 3.0 * np.exp(-30.0 * float(wave_number(omega, DEPTH_M)))
+
+
+def test_expected_levels_are_those_of_the_spectrum(assembly: Assembly) -> None:
+    """All bands together have the acceleration of the sea up to five times its peak frequency."""
+    forces = sea(assembly, wave_height_m=4.0, wave_period_s=9.0).forces()
+    along = [f.level for f in forces if f.name.endswith("along, at crests")]
+    f = np.linspace(1e-4, 5.0 / 9.0, 20000)
+    variance = np.trapezoid((2.0 * np.pi * f) ** 4 * jonswap(f, Hs=4.0, Tp=9.0), f)
+    assert np.sum(np.square(along)) == pytest.approx(variance, rel=1e-3)
+
+
+def test_drag_is_borgmans_and_grows_with_sea_and_growth(assembly: Assembly) -> None:
+    calm, rough = (sea(assembly, wave_height_m=h, wave_period_s=10.0) for h in (1.0, 4.0))
+    known = sea_drag_damping(rough.grid, SeaState(4.0, 10.0), DEPTH_M)
+    assert_allclose(rough.damping().toarray(), known.toarray())
+    assert_allclose(rough.damping().toarray(), 4.0 * calm.damping().toarray(), rtol=1e-9)
+    grown = sea(assembly, Coefficients(growth=(GrowthBand(2.0, -40.0, 0.1),)), wave_height_m=8.0)
+    bare = sea(assembly, wave_height_m=8.0)
+    assert grown.damping().diagonal().sum() > 1.05 * bare.damping().diagonal().sum()
+
+
+def test_drag_of_a_rough_sea_is_in_the_forces_out_of_phase(assembly: Assembly) -> None:
+    """Inertia and drag of one wave are a quarter of it apart, so that their squares add."""
+    rigid = rigid_body_motion(assembly)[:, 0]
+    stated = {"wave_height_m": 10.0, "wave_period_s": 14.0}
+    with_drag, without, no_mass = (
+        np.hypot(*(f.load @ rigid for f in sea(assembly, c, **stated).forces()[:2]))
+        for c in (Coefficients(), Coefficients(drag=0.0), Coefficients(added_mass=0.0, pressure=0.0))
+    )
+    assert without < with_drag < without + no_mass
+    assert with_drag == pytest.approx(np.hypot(without, no_mass), rel=0.05)
