@@ -63,7 +63,7 @@ def drawn(model: MotionModel, seed: int) -> tuple[np.ndarray, SensorReadings]:
     blank = Record(np.ones((len(SENSORS), 8)), 1.0 / STEP_S, tuple(Channel(s.channel) for s in SENSORS))
     seen = readings_of(blank, SENSORS, model.assembly)
     C = known.motion_rows(seen.rows, seen.tilt, seen.derivative)
-    s = steady_smoother(*discrete(*known.dynamics(), STEP_S), C, np.full(len(SENSORS), 1e-7))
+    s = steady_smoother(*discrete(*known.dynamics(), STEP_S), C, np.full(len(SENSORS), 5e-8))
     x, y = s.draw(6_000, np.random.default_rng(seed))
     to = np.vstack([np.eye(known.n_modes, x.shape[1]), known.force_rows()])
     record = Record(y.T, 1.0 / STEP_S, blank.channels)
