@@ -5,8 +5,8 @@ of every record wind, sea and the sensors' noise; the twin is told the mean wind
 and direction. It updates its feet with two records of its own; then four others are judged: parked, idling,
 operating and in a storm. The truth is the simulation's own: section forces of its model with waves along the
 members. Beside the smoother stand modal expansion of accelerations that are integrated twice, the same in
-three bands, and an augmented Kalman filter with forces on the tower top that walk at random, each on the
-updated twin and on feet thirty times stiffer. Usage: python qualify/fatigue.py [n_records]
+three bands, and an augmented Kalman filter with forces on the tower top that walk at random and forget, each
+on the updated twin and on feet thirty times stiffer. Usage: python qualify/fatigue.py [n_records]
 """
 
 from __future__ import annotations
@@ -66,6 +66,9 @@ HEIGHTS_M = (144.0, 28.0, 77.0, 41.0)
 OF_BAND = 8
 """Hot spots of each band of elevation whose errors are told: those that are damaged most."""
 BANDS = ((-80.0, -40.0), (-40.0, -15.0), (-15.0, 15.0), (15.0, 40.0))
+SEEN = 0.4
+"""Motion of sensors in a mode over that in the best seen of a band, from which it is fitted."""
+FORGET_HZ = 0.02
 MOMENTS = ("tower base", "tower top", "mud line")
 METHODS = (
     "smoother",
@@ -325,10 +328,12 @@ def truth_of(
 
 
 def kalman(system: System, seen: SensorReadings, sea: Weather) -> tuple[MotionModel, np.ndarray]:
-    """Return the motion by an augmented Kalman filter: top forces that walk at random, no look ahead."""
+    """Return the motion by an augmented Kalman filter: top forces that walk and forget, no look ahead."""
     known = sensed_model(system, sea)
     pick = [i for i, f in enumerate(known.forces) if f.name in ("rotor Fx", "rotor Fy")]
-    walking: tuple[LatentForce, ...] = tuple(replace(known.forces[i], rate=1e-3) for i in pick)
+    walking: tuple[LatentForce, ...] = tuple(
+        replace(known.forces[i], rate=2.0 * np.pi * FORGET_HZ) for i in pick
+    )
     model = replace(known, forces=walking, flexibility=known.flexibility[:, pick])
     found = moved(model, seen)
     return found.model, found.smoother.filtered(seen.y.T) @ found.to_coordinates.T
@@ -339,8 +344,8 @@ def expansion(
 ) -> tuple[MotionModel, np.ndarray]:
     """Return the motion by modal expansion: modes fitted to accelerations and integrated twice.
 
-    In each band [Hz] those modes are fitted that lie in it and that sensors see best, half as many as there
-    are sensors. What is slower than 0.05 Hz is left out, as integration would drown it in noise.
+    In each band [Hz] those modes are fitted that lie in it and that sensors see well, half as many as there
+    are sensors at most. What is slower than 0.05 Hz is left out, as integration would drown it in noise.
     """
     model = sensed_model(system, sea)
     n, n_channels = seen.y.shape[1], seen.y.shape[0]
@@ -350,7 +355,8 @@ def expansion(
     for low, high in bands:
         inside = (model.omega >= 2.0 * np.pi * low) & (model.omega < 2.0 * np.pi * high)
         strength = np.where(inside, np.linalg.norm(seen.rows @ model.shapes, axis=0), -1.0)
-        modes = np.argsort(-strength)[: min(n_channels // 2, int(inside.sum()))]
+        seen_well = int((strength > SEEN * strength.max()).sum())
+        modes = np.argsort(-strength)[: min(n_channels // 2, seen_well)]
         here = (omega >= 2.0 * np.pi * max(low, 0.05)) & (omega < 2.0 * np.pi * high)
         fitted = np.zeros((modes.size, omega.size), dtype=complex)
         to_modes = np.linalg.pinv(seen.rows @ model.shapes[:, modes])

@@ -9,18 +9,21 @@ deviations of log N below the mean of the tests.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import log10
 from typing import Literal, get_args
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import look_up, require_between
+from jackettwin.errors import located, look_up, require, require_between
 from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
 
 Environment = Literal["air", "cathodic", "free-corrosion"]
 ENVIRONMENTS: tuple[Environment, ...] = get_args(Environment)
 _KIND = "sn_curves"
 _NEWEST = "dnv_rp_c203_2016"
+_JUMP = 0.05
+"""Of log₁₀ N between two slopes, which rounded intercepts leave."""
 
 
 @dataclass(frozen=True)
@@ -129,6 +132,12 @@ def read_curve(name: str, environment: Environment, source: str = _NEWEST) -> SN
     curve = look_up(edition.curves, name, "S-N curve", file=path, field="curves")
     sets = {"air": curve.air, "cathodic": curve.cathodic, "free-corrosion": curve.free_corrosion}
     slopes = look_up(sets, environment, "environment", field="environment")
+    with located(file=path, field=f"curves.{name}"):
+        require_between("thickness_exponent", curve.thickness_exponent, 0.0, 1.0)
+        require_between("reference_thickness_m", curve.reference_thickness_m, 0.001, 0.2, "m")
+        with located(field=environment):
+            _require_curve(slopes)
+    require_between("log_std", edition.log_std, 0.0, 1.0)
     return SNCurve(
         name,
         environment,
@@ -140,3 +149,29 @@ def read_curve(name: str, environment: Environment, source: str = _NEWEST) -> SN
         curve.reference_thickness_m,
         edition.log_std,
     )
+
+
+def _require_curve(slopes: _Slopes) -> None:
+    """Raise an error unless the slopes fall and meet where the second begins."""
+    for m, log_a in zip(slopes.m, slopes.log_a, strict=False):
+        require_between("m", m, 1.0, 15.0)
+        require_between("log_a", log_a, 3.0, 40.0)
+    require(
+        len(slopes.m) == len(slopes.log_a) and (len(slopes.m) == 1) == (slopes.knee_cycles is None),
+        "two slopes have two intercepts and a knee",
+        field="knee_cycles",
+        value=slopes.knee_cycles,
+        remedy="state m and log_a once, or twice with knee_cycles",
+    )
+    if slopes.knee_cycles is not None:
+        require_between("knee_cycles", slopes.knee_cycles, 1e3, 1e10)
+        knee = log10(slopes.knee_cycles)
+        log_range = (slopes.log_a[0] - knee) / slopes.m[0]
+        after = slopes.log_a[-1] - slopes.m[-1] * log_range
+        require(
+            abs(after - knee) < _JUMP,
+            "the slopes do not meet where the second begins",
+            field="log_a",
+            value=f"10^{knee:.3g} and 10^{after:.3g} cycles at {10.0**log_range:.3g} MPa",
+            remedy="correct log_a or knee_cycles",
+        )
