@@ -64,6 +64,17 @@ def test_gaps_are_scaled_and_said(stress: Path, tmp_path: Path) -> None:
     assert "25 % of the samples are missing" in found["warnings"][0]
 
 
+def test_scattered_gaps_lose_no_range(stress: Path, tmp_path: Path) -> None:
+    """Every third sample missing: the ranges are those of the series, not of the pieces between gaps."""
+    t, values = np.loadtxt(stress, delimiter=",", skiprows=1).T
+    values[::3] = np.nan
+    path = tmp_path / "scattered.csv"
+    np.savetxt(path, np.stack([t, values], axis=1), delimiter=",", header="time_s,leg", comments="")
+    found = answer("stress", str(path), "--column", "leg")
+    assert found["largest_range_mpa"] == pytest.approx(100.0, rel=0.01)
+    assert "bridged" in found["warnings"][0]
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

@@ -1,7 +1,10 @@
 """S-N curves: where their slopes meet, hand values, thickness, editions."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+import yaml
 
 from jackettwin.errors import InputError
 from jackettwin.fatigue import ENVIRONMENTS, read_curve, shipped_editions
@@ -69,3 +72,28 @@ def test_sea_water_is_never_better_than_air(name: str) -> None:
     lives = [read_curve(name, environment).cycles_to_failure(S) for environment in ENVIRONMENTS]
     assert (lives[0] >= lives[1] * (1.0 - 5e-3)).all()
     assert (lives[1] >= lives[2] * (1.0 - 5e-3)).all()
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"air": {"m": [-3, 5], "log_a": [12, 15.333], "knee_cycles": 1e7}}, "m: out of range"),
+        ({"air": {"m": [3, 5], "log_a": [12, 25], "knee_cycles": 1e7}}, "do not meet"),
+        ({"air": {"m": [3, 5], "log_a": [12, 15.333]}}, "knee_cycles"),
+        ({"reference_thickness_m": 25}, "reference_thickness_m"),
+        ({"thickness_exponent": -0.2}, "thickness_exponent"),
+    ],
+)
+def test_curves_of_a_users_file_must_fit_themselves(
+    tmp_path: Path, changed: dict[str, object], said: str
+) -> None:
+    two = {"m": [3, 5], "log_a": [12.0, 15.0 + 1.0 / 3.0], "knee_cycles": 1e7}
+    curve = {"thickness_exponent": 0.2, "reference_thickness_m": 0.025, "air": two, "cathodic": two}
+    curve |= {"free_corrosion": {"m": [3], "log_a": [11.7]}}
+    path = tmp_path / "own.yaml"
+    edition = {"edition": "own", "source": "us", "log_std": 0.2}
+    path.write_text(yaml.safe_dump(edition | {"curves": {"X": curve}}))
+    assert read_curve("X", "air", str(path)).knee_pa == pytest.approx(1e6 * 10.0 ** (5.0 / 3.0))
+    path.write_text(yaml.safe_dump(edition | {"curves": {"X": curve | changed}}))
+    with pytest.raises(InputError, match=said):
+        read_curve("X", "air", str(path))

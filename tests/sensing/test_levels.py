@@ -76,3 +76,35 @@ def test_other_levels_scatter_as_the_evidence_curves_and_never_against_it(rng: n
     assert 0.7 < unseen < 2.2
     # what would be as strong as what the record shows is not drawn
     assert logs[:, 2].max() + np.log(found.forces[2].level) < np.log(2.0)
+
+
+def test_a_lightly_damped_mode_does_not_leak_into_slow_forces(rng: np.random.Generator) -> None:
+    """A mode of 0.3 % at 0.17 Hz, whose acceleration is a thousand times that of slow gusts beside it."""
+    n, h = 6000, 0.1
+    long = 4 * n
+    omega = 2.0 * np.pi * np.fft.rfftfreq(long, h)
+    f0 = 2.0 * np.pi * 0.17
+    response = -(omega**2) / (f0**2 - omega**2 + 2j * 0.003 * f0 * omega)
+    forces = tuple(
+        LatentForce(name, np.zeros(1), np.zeros((1, 12)), "gust", rate, level, 3.0, 0.05)
+        for name, rate, level in (("slow", 0.05, 1.0), ("quick", 1.5, 0.3))
+    )
+    S = sum(f.density(omega) for f in forces)
+    z = rng.standard_normal((omega.size, 2)) @ np.array([1.0, 1j]) / np.sqrt(2.0)
+    y = np.fft.irfft(response * np.sqrt(S * long / h) * z, long)[n : 2 * n]
+    y = (y + 1e-3 * rng.standard_normal(n))[None]
+    which = np.arange(1, int(0.5 * n * h))
+    w = 2.0 * np.pi * np.fft.rfftfreq(n, h)[which]
+    H = (-(w**2) / (f0**2 - w**2 + 2j * 0.003 * f0 * w))[:, None, None].repeat(2, axis=2)
+    found = find_levels(y, h, H, which, forces, (0,))
+    assert found.forces[0].level == pytest.approx(1.0, rel=0.35)
+
+
+def test_a_level_beside_another_is_expected_in_proportion(rng: np.random.Generator) -> None:
+    """A force that no sensor sees is found at the lever of that which it stands beside."""
+    y, H, which, forces = planted(rng)
+    start = tuple(force.with_level(0.1) for force in forces)
+    hidden = LatentForce("c", np.zeros(1), np.zeros((1, 12)), "gust", 0.7, 2.0, 1.0, 0.05, "a")
+    H = np.concatenate([H, 1e-9 * H[:, :, :1]], axis=2)
+    a, _, c = find_levels(y, STEP_S, H, which, (*start, hidden), (0, 0)).forces
+    assert c.level / a.level == pytest.approx(20.0, rel=0.05)
