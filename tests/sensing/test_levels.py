@@ -87,7 +87,7 @@ def test_a_lightly_damped_mode_does_not_leak_into_slow_forces(rng: np.random.Gen
     response = -(omega**2) / (f0**2 - omega**2 + 2j * 0.003 * f0 * omega)
     forces = tuple(
         LatentForce(name, np.zeros(1), np.zeros((1, 12)), "gust", rate, level, 3.0, 0.05)
-        for name, rate, level in (("slow", 0.05, 1.0), ("quick", 1.5, 0.3))
+        for name, rate, level in (("slow", 0.05, 0.2), ("quick", 1.5, 0.3))
     )
     S = sum(f.density(omega) for f in forces)
     z = rng.standard_normal((omega.size, 2)) @ np.array([1.0, 1j]) / np.sqrt(2.0)
@@ -97,7 +97,8 @@ def test_a_lightly_damped_mode_does_not_leak_into_slow_forces(rng: np.random.Gen
     w = 2.0 * np.pi * np.fft.rfftfreq(n, h)[which]
     H = (-(w**2) / (f0**2 - w**2 + 2j * 0.003 * f0 * w))[:, None, None].repeat(2, axis=2)
     found = find_levels(y, h, H, which, forces, (0,))
-    assert found.forces[0].level == pytest.approx(1.0, rel=0.35)
+    # with sharp ends it is found four times too strong
+    assert 0.1 < found.forces[0].level < 0.4
 
 
 def test_a_level_beside_another_is_expected_in_proportion(rng: np.random.Generator) -> None:
