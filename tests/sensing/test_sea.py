@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from jackettwin.decks import read_structure
 from jackettwin.loads import Coefficients, GrowthBand, SeaState, jonswap, sea_drag_damping, wave_number
 from jackettwin.sensing import Weather
-from jackettwin.sensing.sea import Sea
+from jackettwin.sensing.sea import SeaOnMembers
 from jackettwin.structure import Assembly, assemble, rigid_body_motion
 
 DEPTH_M = 72.0
@@ -22,8 +22,8 @@ def assembly() -> Assembly:
     return assemble(read_structure("jacket15"))
 
 
-def sea(assembly: Assembly, coefficients: Coefficients | None = None, **stated: float) -> Sea:
-    return Sea.of(assembly, Weather(depth_m=DEPTH_M, coefficients=coefficients, **stated))
+def sea(assembly: Assembly, coefficients: Coefficients | None = None, **stated: float) -> SeaOnMembers:
+    return SeaOnMembers.of(assembly, Weather(depth_m=DEPTH_M, coefficients=coefficients, **stated))
 
 
 def test_long_waves_push_as_their_inertia_does(assembly: Assembly) -> None:

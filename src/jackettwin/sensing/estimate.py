@@ -14,7 +14,7 @@ from jackettwin.sensing.latent_forces import wind_forces
 from jackettwin.sensing.levels import Levels, find_levels
 from jackettwin.sensing.motion_model import MotionModel, motion_model
 from jackettwin.sensing.readings import SensorReadings, Weather, thinned
-from jackettwin.sensing.sea import Sea
+from jackettwin.sensing.sea import SeaOnMembers
 from jackettwin.sensing.smoother import SteadySmoother, discrete, steady_smoother
 from jackettwin.structure import SectionForces, section_forces
 
@@ -100,7 +100,7 @@ def estimate_motion(system: System, readings: SensorReadings, weather: Weather) 
 
 def sensed_model(system: System, weather: Weather) -> MotionModel:
     """Return modes and forces of a structure in a weather: what records in it share."""
-    sea = Sea.of(system.assembly, weather)
+    sea = SeaOnMembers.of(system.assembly, weather)
     forces = (*wind_forces(system.assembly, wind_m_s=weather.wind_m_s), *sea.forces())
     return motion_model(system, forces, below_hz=BAND_HZ, drag=sea.damping())
 
@@ -133,7 +133,7 @@ def likely_motions(
     damped : what is known besides of the damping of a model's modes
     """
     first, *others = systems
-    drag = Sea.of(first.assembly, weather).damping()
+    drag = SeaOnMembers.of(first.assembly, weather).damping()
     estimate = moved(damped(sensed_model(first, weather)), readings, draws=len(others))
     found, rng, away = [estimate], np.random.default_rng(seed), np.zeros(2)
     for k, (system, forces) in enumerate(zip(others, estimate.levels.others, strict=True)):

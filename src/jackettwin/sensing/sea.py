@@ -59,7 +59,7 @@ _KNOWN, _UNKNOWN = 0.3, 1.5
 
 
 @dataclass(frozen=True)
-class Sea:
+class SeaOnMembers:
     """A sea on the members of a structure.
 
     Attributes
@@ -79,7 +79,7 @@ class Sea:
     level_log_std: float
 
     @classmethod
-    def of(cls, assembly: Assembly, weather: Weather) -> Sea:
+    def of(cls, assembly: Assembly, weather: Weather) -> SeaOnMembers:
         """Return the sea of a record, a usual one where it is not stated.
 
         Raises
