@@ -170,8 +170,9 @@ def direction(
     motion = np.zeros((1, 2, assembly.n_dof))
     for axis, dof in enumerate(assembly.dofs(assembly.structure.top_node)[:2]):
         motion[0, axis, dof] = 1.0
-    angle, _ = principal_direction(motion @ shapes[int(np.argmin(f))])
-    return PairDirection((1, 2), angle + rng.normal(0.0, std), std, apart, motion)
+    lower = int(np.argmin(f))
+    angle, _ = principal_direction(motion @ shapes[lower])
+    return PairDirection((1 + lower, 2 - lower), angle + rng.normal(0.0, std), std, apart, motion)
 
 
 def truth(world: World, tie: str) -> FloatArray:
@@ -196,8 +197,9 @@ def twin(case: int) -> Result:
     )
     site = SITES.index(world.site)
     known, z = drawing(site, tie), truth(world, tie)
-    problem = joint(known.model, {"": (data, {})}, error_model=error_model(known.config, known.model))
     pair = direction(data, known.model.assembly, shapes[:2], rng)
+    errors = error_model(known.config, known.model, (pair,))
+    problem = joint(known.model, {"": (data, {})}, error_model=errors)
     bare, shipped = joint(known.model, {"": (data, {})}), joint(known.model, {"": (widened(data), {})})
     oracle = joint(_model(assembly_of(world), tie), {"": (as_built, {})})
     about = {"kind": kind, "site": world.site.name, "tie": tie, "scale": scale, "modes": len(modes)}

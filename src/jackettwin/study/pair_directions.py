@@ -32,7 +32,8 @@ def measured_directions(
         if pair is not None and sums.w:
             f = np.array([m.frequency_hz for m in pair], dtype=np.float64)
             apart, (angle, std) = float(abs(f[1] - f[0]) / f.mean()), sums.mean
-            found.append(PairDirection((pair[0].mode, pair[1].mode), angle, std, apart, motion))
+            other = next(m.mode for m in pair if m.mode != number)
+            found.append(PairDirection((number, other), angle, std, apart, motion))
     return tuple(found)
 
 

@@ -20,6 +20,7 @@ from jackettwin.updating import (
     ErrorModel,
     Growth,
     NuisanceParameters,
+    PairDirection,
     Problem,
     RelaxationTarget,
     Residuals,
@@ -44,6 +45,8 @@ class UpdateEvidence:
     states : {operating state: residuals and factors of the parameters}
     rotor : RotorDamping
     relaxations : tuple of MeasuredRelaxation
+    pairs : tuple of PairDirection
+        Measured directions of bending pairs.
     """
 
     assembly: Assembly
@@ -51,6 +54,7 @@ class UpdateEvidence:
     states: States
     rotor: RotorDamping
     relaxations: tuple[MeasuredRelaxation, ...] = ()
+    pairs: tuple[PairDirection, ...] = ()
 
 
 def law_problem(config: TwinConfig, evidence: UpdateEvidence, law: str) -> Problem:
@@ -80,11 +84,13 @@ def model_problem(config: TwinConfig, evidence: UpdateEvidence, model: SupportMo
         evidence.states,
         shapes=shapes,
         relaxations=relaxations,
-        error_model=error_model(config, model),
+        error_model=error_model(config, model, evidence.pairs),
     )
 
 
-def error_model(config: TwinConfig, model: SupportModel) -> ErrorModel | None:
+def error_model(
+    config: TwinConfig, model: SupportModel, pairs: tuple[PairDirection, ...] = ()
+) -> ErrorModel | None:
     """Return the errors of a twin's model, tolerances and remainders; None if the twin sets all to zero.
 
     ``update.model_error`` replaces the remainder of the modes that it names.
@@ -98,7 +104,7 @@ def error_model(config: TwinConfig, model: SupportModel) -> ErrorModel | None:
     if model.directions is None or not (model.directions.each or stated or any(usual.values())):
         return None
     f, zeta = usual["remainder_frequency"], usual["remainder_damping"]
-    return ErrorModel(model.directions, stated, f, zeta, SCALES)
+    return ErrorModel(model.directions, stated, f, zeta, SCALES, pairs)
 
 
 def tied_problem(

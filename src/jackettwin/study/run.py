@@ -117,8 +117,10 @@ def updated_twin(
         assembly=assembly,
         numbered=numbered,
     )
+    sensors = () if found is None else found.sensors
+    pairs = measured_directions(state, sensors, assembly, measured)
     evidence = UpdateEvidence(
-        assembly, state, states, rotor_damping(config, assembly, numbered, wind), relaxations
+        assembly, state, states, rotor_damping(config, assembly, numbered, wind), relaxations, pairs
     )
     wanted = laws or config.update.laws
     shown, updates, lengths = tuple(m.mode for m in measured), [], []
@@ -143,8 +145,6 @@ def updated_twin(
         updates = _with_one_posterior(config, updates, progress, keep)
     speed, blades = rotor_speed_hz(config)
     others = suspects(config, assembly) if any(u.problem.weighted for u in updates) else ()
-    sensors = () if found is None else found.sensors
-    pairs = measured_directions(state, sensors, assembly, measured)
     seen = () if found is None else found.observations
     checked = tuple(scrutiny(u, measured, others, pairs, seen) for u in updates)
     left_out = tuple(law for law in wanted if law not in [u.law for u in updates])

@@ -55,6 +55,7 @@ from .model_error.directions import (
 )
 from .model_error.error_model import ErrorModel as ErrorModel
 from .model_error.influence import Influence as Influence, influences as influences
+from .model_error.measured_axes import PairDirection as PairDirection
 from .model_error.mode_checks import (
     CheckedShape as CheckedShape,
     OrderCheck as OrderCheck,
@@ -62,7 +63,6 @@ from .model_error.mode_checks import (
     order_checks as order_checks,
     shape_checks as shape_checks,
 )
-from .model_error.pair_directions import PairDirection as PairDirection
 from .model_error.turbines import (
     StackedErrors as StackedErrors,
     shared_errors as shared_errors,

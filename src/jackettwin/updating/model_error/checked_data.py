@@ -10,7 +10,8 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.updating.data.targets import Residuals, Target
 from jackettwin.updating.model_error.directions import Direction
-from jackettwin.updating.model_error.pair_directions import PairDirection, direction_gains, direction_row
+from jackettwin.updating.model_error.measured_axes import PairDirection
+from jackettwin.updating.model_error.pair_directions import direction_gains, direction_row
 from jackettwin.updating.problem import Problem, State
 
 Column = tuple[Direction, FloatArray]

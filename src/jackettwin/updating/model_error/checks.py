@@ -24,8 +24,8 @@ from jackettwin.updating.data.targets import Target
 from jackettwin.updating.model_error.checked_data import CheckedData, Column, checked_data
 from jackettwin.updating.model_error.directions import Direction, Tolerance
 from jackettwin.updating.model_error.marginal import covariance
+from jackettwin.updating.model_error.measured_axes import PairDirection
 from jackettwin.updating.model_error.mode_checks import OrderCheck, ShapeCheck
-from jackettwin.updating.model_error.pair_directions import PairDirection
 from jackettwin.updating.problem import Problem
 
 _MOST = 3

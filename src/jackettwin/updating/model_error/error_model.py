@@ -8,10 +8,11 @@ from functools import cached_property
 
 import numpy as np
 
-from jackettwin.arrays import FloatArray
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.response import Condensed, NumberedModes
 from jackettwin.updating.data.targets import Residuals
 from jackettwin.updating.model_error.directions import Tolerance, ToleranceDirections
+from jackettwin.updating.model_error.measured_axes import PairDirection, on_measured_axes
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +49,8 @@ class ErrorModel:
         Equally likely common factors on all of these standard deviations, which are themselves estimates. The
         posterior and the predictions weight the factors by the data; χ², the search and the objections use
         the stated sizes.
+    pairs : tuple of PairDirection
+        Measured axes of bending pairs, on which the errors of a symmetric structure act.
     """
 
     directions: ToleranceDirections
@@ -55,6 +58,7 @@ class ErrorModel:
     usual_frequency: float = 0.0
     usual_damping: float = 0.0
     scales: tuple[float, ...] = (1.0,)
+    pairs: tuple[PairDirection, ...] = ()
 
     @property
     def tolerances(self) -> tuple[Tolerance, ...]:
@@ -80,7 +84,7 @@ class ErrorModel:
         found : the residuals' modes
         data : names of all data with a remainder, including those of other operating states
         """
-        common = residuals.gains(found.poles, self.directions.slopes(found))
+        common = residuals.gains(found.poles, self._slopes(found))
         own = np.zeros((residuals.count, len(data)))
         for row, name in enumerate(residuals.names):
             own[row, data.index(name)] = self.own(name)
@@ -110,10 +114,14 @@ class ErrorModel:
 
     def shifts(self, found: NumberedModes) -> FloatArray:
         """Return d ln f and d ln ζ of any modes by the tolerances, (2, n_sets, n_modes, n_tolerances)."""
-        pole, slopes = found.poles[..., None], self.directions.slopes(found)
+        pole, slopes = found.poles[..., None], self._slopes(found)
         size = np.abs(pole)
         radial = (np.conj(pole) * slopes).real / size**2
         return np.stack([radial, slopes.real / pole.real - radial])
+
+    def _slopes(self, found: NumberedModes) -> ComplexArray:
+        """Return dλ/dφ (n_sets, n_modes, n_tolerances), of symmetric pairs on their measured axes."""
+        return self.directions.slopes(on_measured_axes(found, self.directions.condensed, self.pairs))
 
     @cached_property
     def names(self) -> tuple[str, ...]:

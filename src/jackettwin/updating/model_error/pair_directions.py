@@ -20,40 +20,14 @@ import numpy as np
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.response import NumberedModes, principal_direction
 from jackettwin.updating.model_error.directions import ToleranceDirections
+from jackettwin.updating.model_error.measured_axes import PairDirection
 from jackettwin.updating.problem import Problem
 
 CLOSE = 0.03
 """Relative difference of frequencies above which modes are no pair, since other modes then rotate them as
-well. Second pairs of jackets differ by 5 to 20 %, first ones by 0.5 to 2 %."""
+well, unless the model is symmetric. Second pairs of jackets differ by 5 to 20 %, first ones by 0.5 to 2 %."""
 _STEP = 0.01
 """Step of ln θ for the derivative of e, which is zero for a symmetric jacket."""
-
-
-@dataclass(frozen=True, eq=False)
-class PairDirection:
-    """A measured direction of the lower mode of a pair.
-
-    Attributes
-    ----------
-    modes : (int, int)
-        Mode numbers in the model, in any order.
-    angle_rad, std_rad : float
-        Angle from x towards y, and its standard deviation.
-    apart : float
-        Difference of the two measured frequencies over their mean.
-    motion : (n_places, 2, assembly.n_dof) horizontal motion of the measured places
-    """
-
-    modes: tuple[int, int]
-    angle_rad: float
-    std_rad: float
-    apart: float
-    motion: FloatArray
-
-    @property
-    def datum(self) -> str:
-        """Name of the datum, ``α1``, by the lower of the two numbers."""
-        return f"α{min(self.modes)}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +60,7 @@ def direction_row(problem: Problem, z: FloatArray, pair: PairDirection) -> Direc
     angle = np.array([_lower(problem, pair, x, y)[0] for x, y in zip(*_ordered(found), strict=True)])
     size = np.sort(np.abs(found.poles), axis=1)
     apart = (size[:, 1] - size[:, 0]) / size.mean(axis=1)
-    if max(pair.apart, apart[0]) > CLOSE:
+    if max(pair.apart, apart[0]) > CLOSE and not pair.chosen_by_disturbance(float(apart[0])):
         return None
     measured = 0.5 * pair.apart * np.sin(2.0 * (pair.angle_rad - angle[0]))
     turned = 0.5 * apart * np.sin(2.0 * (angle - angle[0]))
