@@ -294,6 +294,14 @@ def test_what_the_objections_name_is_not_said_twice() -> None:
     assert any("it was not fitted" in text for text in shorts)
 
 
+def test_nothing_is_known_without_condition_where_the_model_is_contradicted() -> None:
+    """An own jacket with one leg at half was "known", 20 % off, beside "not explained"."""
+    lines = sentences(objected_answers(DatumCheck("f1", -0.012, 0.003, True, True))).headline
+    said = "If the model is right all the same, the ground's stiffness is known: stiffness 1 GN/m ("
+    assert any(line.startswith(said) for line in lines)
+    assert not any(line.startswith("The ground's stiffness is known") for line in lines)
+
+
 def test_what_these_data_would_not_show_is_said_with_its_size() -> None:
     nothing = replace(SOFT, name="weak_leg", words="one foot softer than the others")
     found = Objection(

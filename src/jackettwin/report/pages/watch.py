@@ -70,7 +70,7 @@ def build_watch_page(watched: MonitoredTable, path: Path) -> Path:
         )
         caption = (
             "Evidence for all tested changes, summed over possible onsets. Without a change, the mean time "
-            f"until the dashed line is reached is at least {watched.watch.arl_years:g} years."
+            f"until the dashed line is reached is {watched.watch.arl_years:g} years."
         )
         sections.append(
             PageSection(

@@ -208,12 +208,13 @@ def _ground_headline(a: Answers) -> list[str]:
         return [
             f"The ground is not determined by {data_words(a)}: its values are those of the stated priors."
         ]
-    said = []
+    said, doubted = [], bool(objection_sentences(a))
     for kind in ("stiffness", "damping"):
         of_kind = [g for g in a.ground if g.kind == kind]
         sure = [g for g in of_kind if g.verdict == "identified"]
         if sure:
-            said.append(f"The ground's {kind} is known: {listed([_value(g) for g in sure])}.")
+            whose = "If the model is right all the same, the" if doubted else "The"
+            said.append(f"{whose} ground's {kind} is known: {listed([_value(g) for g in sure])}.")
         elif all(g.verdict == "unidentified" for g in of_kind) and of_kind:
             said.append(f"The ground's {kind} is not determined by {data_words(a)}.")
         elif of_kind:
