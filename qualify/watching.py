@@ -36,6 +36,7 @@ from jackettwin.watching.block import Block, begin, no_begins, watched as column
 from jackettwin.watching.design import Design, design_of, fresh, regressors, with_slow_processes
 from jackettwin.watching.directions import SHARES, Directions, directions_of
 from jackettwin.watching.learning import OCTAVES, learn
+from jackettwin.watching.overshoot import crossing_share
 from jackettwin.watching.state import PossibleOnsets
 from jackettwin.watching.watch import KINDS as KINDS_OF_QUANTITIES
 
@@ -107,10 +108,10 @@ def quiet(kind: str, seed: int, first_seed: int = QUIET_SEEDS) -> dict[str, Any]
     """Return whether and after how many years a quiet turbine crosses each threshold."""
     place = list(KINDS).index(kind)
     h = history(seasons(first_seed + 100 * place + seed, YEARS * 365.0, KINDS[kind]))
-    _, looks = watched(untold(h) if first_seed == UNTOLD_SEEDS else h, ARLS[-1])
+    watch, looks = watched(untold(h) if first_seed == UNTOLD_SEEDS else h, ARLS[-1])
     out = {}
     for arl in ARLS:
-        first = next((k for k in looks if k.log_r >= np.log(365.25 * arl)), None)
+        first = next((k for k in looks if k.log_r >= replace(watch, arl_years=arl).log_threshold), None)
         end = looks[-1].day if first is None else first.day
         out[f"{arl:g}"] = [first is not None, (end - BASELINE) / 365.25]
     return out
@@ -128,11 +129,11 @@ def false_alarms(pieces: dict[str, Any]) -> list[str]:
         "## False alarms",
         "",
         f"{number} turbines of each kind, one year of baseline and {YEARS - 1} of watching; nothing changes.",
-        "Turbines with an alarm, years watched until then, the alarms that the promise allows in that time;",
+        "Turbines with an alarm, years watched until then, the alarms that are promised in that time;",
         "their ratio with its 95 % interval (Garwood), and the chance of as many or more if the promise is",
         "just kept.",
         "",
-        "| seasons | ARL [years] | alarms | years watched | promised at most | ratio | chance |",
+        "| seasons | ARL [years] | alarms | years watched | promised | ratio | chance |",
         "|---|---|---|---|---|---|---|",
     ]
     for kind in KINDS:
@@ -322,6 +323,7 @@ def informed(seed: int) -> dict[str, Any]:
             LABELS, design, lagged, told, PossibleOnsets(*np.zeros((3, 0)), none),
             last, float(np.floor(last)), last, 10.0,
         )  # fmt: skip
+        watch = replace(watch, crossing=crossing_share(watch, baseline))
         # nothing is staked on what is left out: what the watch adds for its share is taken off
         staked, all_staked = (
             SHARES["scatter"] + sum(SHARES[block.kind] for block in some) for some in (told, blocks)

@@ -109,10 +109,9 @@ def sight(watch: Watch, baseline: History, days: float) -> Sight | None:
     last = float(baseline.days[-1])
     if last - float(baseline.days[0]) < _WHOLE * days or days <= watch.patience_days:
         return None
-    records = baseline.rows(baseline.days > last - days)
-    records = replace(records, days=records.days + np.ceil(last) - np.floor(records.days[0]))
+    records = replayed(baseline, days)
     rows, _ = regressors(watch.design, records, watch.lagged)
-    known = [_informed(block, records, rows, watch.last_day) for block in watch.blocks]
+    known = [informed(block, records, rows, watch.last_day) for block in watch.blocks]
     gap = days / np.unique(np.floor(records.days)).size
     staked = SHARES["scatter"] + sum(SHARES[block.kind] for block in watch.blocks)
     needed = watch.log_threshold - np.log(max(gap, 1.0) * (1.0 - INSIDE)) + np.log(staked)
@@ -126,7 +125,14 @@ def sight(watch: Watch, baseline: History, days: float) -> Sight | None:
     )
 
 
-def _informed(
+def replayed(baseline: History, days: float) -> History:
+    """Return the records of a baseline's last days, as if they followed it."""
+    last = float(baseline.days[-1])
+    records = baseline.rows(baseline.days > last - days)
+    return replace(records, days=records.days + np.ceil(last) - np.floor(records.days[0]))
+
+
+def informed(
     block: Block, records: History, rows: FloatArray, last_day: float
 ) -> tuple[FloatArray, FloatArray]:
     """Return, by model, A of a step before some records, and the weight."""

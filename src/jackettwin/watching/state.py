@@ -43,9 +43,10 @@ class Watch:
     last_day : day of the last records
     accounted : day up to which onsets have prior weights
     considered : day on which the models' weights were last reset in part
-    arl_years : guaranteed lower limit of the mean time between false alarms
+    arl_years : mean time between false alarms
     patience_days : time that a change must last
     power : power applied to the evidence
+    crossing : threshold over the mean of the statistic at an alarm, by which the threshold is corrected
     """
 
     labels: tuple[str, ...]
@@ -59,11 +60,12 @@ class Watch:
     arl_years: float
     patience_days: float = 0.0
     power: float = 1.0
+    crossing: float = 1.0
 
     @property
     def log_threshold(self) -> float:
-        """Ln of A, the mean days between false alarms."""
-        return float(np.log(self.arl_years * YEAR_DAYS))
+        """Ln of A, with which false alarms have the promised mean time between them."""
+        return float(np.log(self.arl_years * YEAR_DAYS * self.crossing))
 
     @property
     def quantities(self) -> tuple[tuple[Kind, int], ...]:

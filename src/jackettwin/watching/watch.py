@@ -5,9 +5,10 @@ The statistic is that of Shiryaev and Roberts as an e-detector (Shin, Ramdas & R
 .. math:: R_t = \sum_{τ \le t} w_τ \, BF(τ, t)
 
 with w_τ the days since the previous onset, so that R_t − t is a martingale while nothing changes. The mean
-time to R_t ≥ A is then at least A days, for any choice of tested changes and of times of evaluation. BF is
-the mean over models, directions and sizes. Old onsets are merged: the contribution of one is added to its
-neighbour's, so that R is unchanged.
+time to R_t ≥ A is then the mean of R at the alarm, A or more, for any choice of tested changes and of times
+of evaluation; :mod:`jackettwin.watching.overshoot` makes it the promised one. BF is the mean over models,
+directions and sizes. Old onsets are merged: the contribution of one is added to its neighbour's, so that R is
+unchanged.
 """
 
 from __future__ import annotations
@@ -48,6 +49,7 @@ from jackettwin.watching.design import (
 from jackettwin.watching.directions import SHARES, Pattern, directions_of
 from jackettwin.watching.history import History, Kind, typical
 from jackettwin.watching.hours import ENOUGH
+from jackettwin.watching.overshoot import crossing_share
 from jackettwin.watching.scatter import STRONGER
 from jackettwin.watching.state import PossibleOnsets, Watch
 
@@ -156,7 +158,7 @@ def start(
     total = sum(len(block.kept) for block in blocks)
     last = float(baseline.days[-1])
     span = last - float(baseline.days[0])
-    return Watch(
+    learnt = Watch(
         baseline.labels,
         design,
         lagged,
@@ -169,6 +171,7 @@ def start(
         min(PATIENCE * span, MOST_PATIENCE_DAYS) if design.hidden else 0.0,
         GUARDED if design.hidden and span > WHOLE_YEAR_DAYS else 1.0,
     )
+    return replace(learnt, crossing=crossing_share(learnt, baseline))
 
 
 def _no_begins(m: int) -> PossibleOnsets:
