@@ -135,7 +135,8 @@ FAULTS = (
         ("bias of low damping is added", "np.exp(p.log_zeta[mode] - bias[:, 1])", "np.exp(p.log_zeta[mode] + bias[:, 1])"),
     )),
     *_of("watching", rows=(
-        ("the threshold of alarms is divided by ten", "np.log(self.arl_years * YEAR_DAYS)", "np.log(self.arl_years * YEAR_DAYS / 10.0)"),
+        ("the threshold of alarms is divided by ten", "np.log(self.arl_years * YEAR_DAYS * self.crossing)", "np.log(self.arl_years * YEAR_DAYS * self.crossing / 10.0)"),
+        ("steps exceed the threshold as if a day moved them twice as far", "half = 0.5 * np.maximum(mu, 1e-6)", "half = np.maximum(mu, 1e-6)"),
         ("learning forgets to shrink the covariance", "row[j] -= part * g[j]", "row[j] -= 0.5 * part * g[j]"),
         ("innovations are not divided by their variance", "mean[i] += g[i] * nu / s", "mean[i] += g[i] * nu"),
         ("Bayes factors of steps lack one half", "each[k] = 0.5 * (bent / wide - np.log(wide)) + log_weight[k]", "each[k] = (bent / wide - np.log(wide)) + log_weight[k]"),
@@ -143,6 +144,7 @@ FAULTS = (
         ("processes age with the square root of time", "np.exp(-gaps[r] * rates[k])", "np.exp(-np.sqrt(gaps[r] * rates[k]))"),
     )),
     *_of("updating", rows=(
+        ("a symmetric pair is turned across the measured direction", "across = np.array([-np.sin(angle), np.cos(angle)])", "across = np.array([np.cos(angle), np.sin(angle)])"),
         ("a shape's noise counts all sensors", "expected = (1.0 - k / n) * float(m.std @ m.std) / square", "expected = float(m.std @ m.std) / square"),
         ("what is unseen moves the ground the other way", "np.asarray(inverse - inverse @ rows.J @ moved), np.asarray(-moved)", "np.asarray(inverse - inverse @ rows.J @ moved), np.asarray(moved)"),
         ("a 90 % interval is one of 68 %", "half = NORMAL_90 * self.std_per_day", "half = self.std_per_day"),
