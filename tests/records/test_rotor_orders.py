@@ -78,6 +78,14 @@ def test_a_parked_rotor_has_no_orders() -> None:
     assert rotor_speed(missing) is None
 
 
+@pytest.mark.parametrize(("turns", "has_orders"), [(15.0, False), (25.0, True)])
+def test_a_rotor_has_orders_from_twenty_turns_in_a_record(turns: float, has_orders: bool) -> None:
+    record, _ = operating(0.0)
+    speed = np.full(6000, 2.0 * np.pi * turns / 600.0)
+    slow = replace(record, data=np.vstack([record.data[:3], speed]))
+    assert (rotor_speed(slow) is not None) == has_orders
+
+
 def test_a_ninth_order_of_a_measured_speed_is_no_mode_that_is_ok() -> None:
     record, _ = operating(0.0)
     t = np.arange(record.data.shape[1]) / record.sample_rate_hz
