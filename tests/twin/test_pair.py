@@ -20,7 +20,6 @@ from jackettwin.identification import ModalEstimate
 from jackettwin.identification.many_records.fusion import average as average_of_sightings
 from jackettwin.identification.status import ModeStatus
 from jackettwin.records import Record, read_record
-from jackettwin.records.record import record_id
 from jackettwin.twin import (
     OBSERVATION,
     STATE,
@@ -76,22 +75,6 @@ def model() -> TwinModel:
 @pytest.fixture(scope="module")
 def seen(record: Record, model: TwinModel) -> Observation:
     return observe(record, model)
-
-
-def test_the_same_samples_are_the_same_record(record: Record) -> None:
-    assert record_id(replace(record, name="renamed", metadata={}, conditions={})) == record_id(record)
-    turned = replace(record.channels[0], direction=(-1.0, 0.0, 0.0))
-    other_start = record.start_utc or NOON
-    changed = [
-        replace(record, sample_rate_hz=record.sample_rate_hz * 2.0),
-        replace(record, start_utc=other_start + timedelta(seconds=1)),
-        replace(record, channels=(turned, *record.channels[1:])),
-        replace(record, data=np.where(np.arange(record.data.shape[1]) == 7, 0.1, record.data)),
-    ]
-    assert len({record_id(r) for r in (record, *changed)}) == 5
-    # the same instant in another zone, and a negative zero, are the same
-    zero = replace(record, data=np.zeros_like(record.data))
-    assert record_id(replace(zero, data=-zero.data)) == record_id(zero)
 
 
 def test_an_observation_is_small_and_goes_through_files_and_processes(
