@@ -216,3 +216,33 @@ def test_a_record_that_does_not_fit_is_refused_before_anything_is_updated(
     found = run(*(text.format(motion=motion, details=details) for text in arguments))
     assert found.exit_code == 2
     assert said in found.stderr and "Traceback" not in found.stderr
+
+
+def test_a_site_has_lives_by_bin_and_variant_and_writes_its_basis(tmp_path: Path) -> None:
+    scenario = {
+        "structure": "jacket15",
+        "support": "kelvin-voigt:k=1.2e9,c=2e7",
+        "damping": {"rayleigh": {"ratio": 0.006, "frequency_hz": 0.3}},
+        "water": {"depth_m": 72.0},
+        "wind": {"turbulence": "B"},
+        "rotor": {"data": "iea15"},
+        "time": {"duration_s": 40.0, "step_s": 0.1},
+    }
+    parked = {"share": 0.8, "state": "parked", "speed_m_s": 14.0, "hs_m": 2.0, "tp_s": 7.0, "seeds": 1}
+    site = {"scenario": "s.yaml", "bins": [parked], "variants": {"pinned": {"support": "pinned"}}}
+    (tmp_path / "s.yaml").write_text(json.dumps(scenario))
+    (tmp_path / "site.yaml").write_text(json.dumps(site | {"age_years": 20.0, "years": 25.0}))
+    page = tmp_path / "basis.md"
+    found = answer("site", str(tmp_path / "site.yaml"), "--basis", str(page), "--design-factor", "2")
+    worst = found["joints"][0]
+    assert worst["life_years"] == pytest.approx(0.5 / worst["damage_per_year"])
+    assert worst["life_years_by_variant"]["as stated"] == pytest.approx(worst["life_years"])
+    assert set(worst["life_years_by_variant"]) == {"as stated", "pinned"}
+    assert len(worst["reliability_index_by_year"]) == 6 and worst["damage_by_state"] == {"parked": 1.0}
+    assert sum(worst["variance_shares"].values()) == pytest.approx(1.0)
+    said = " ".join(found["warnings"])
+    assert "80 % of all time" in said and "one simulation" in said
+    assert found["design_basis"]["inputs"][1]["sha256"] in page.read_text()
+    (tmp_path / "site.yaml").write_text(json.dumps(site | {"bins": [parked | {"share": 1.2}]}))
+    refused = run("site", str(tmp_path / "site.yaml"))
+    assert refused.exit_code == 2 and "bins.0.share" in refused.stderr

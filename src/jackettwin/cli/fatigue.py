@@ -22,6 +22,7 @@ from jackettwin.cli.console import (
     show_table,
     working,
 )
+from jackettwin.cli.fatigue_site import site_
 from jackettwin.errors import InputError, did_you_mean, look_up, require
 from jackettwin.report import Table, TableColumn
 
@@ -76,6 +77,9 @@ class _Fatigue(CommandGroup):
 @click.group("fatigue", cls=_Fatigue)
 def fatigue_command() -> None:
     """Count cycles, and compute damage and life of welds."""
+
+
+fatigue_command.add_command(site_)
 
 
 def curve_options(command: Any) -> Any:

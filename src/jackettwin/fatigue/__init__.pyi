@@ -1,3 +1,4 @@
+from .basis import basis_page as basis_page, design_basis as design_basis
 from .curves import (
     ENVIRONMENTS as ENVIRONMENTS,
     Environment as Environment,

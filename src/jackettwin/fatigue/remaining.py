@@ -11,7 +11,7 @@ lognormal about 1/r. Given that it is longer than the age a,
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import exp, inf, log
 
 from scipy.special import log_ndtr, ndtri, ndtri_exp
@@ -62,12 +62,16 @@ class RemainingLife:
         """β of the coming year."""
         return float(-ndtri(max(self.failure_in(1.0), 1e-300)))
 
+    def later(self, years: float) -> RemainingLife:
+        """Return what is left so many years from now, if it has not failed until then."""
+        return replace(self, age_years=self.age_years + years)
+
     def year_of_index(self, target: float, *, at_most: float = 1000.0) -> float | None:
         """Return how many years from now β of a year falls below a target; None if not within ``at_most``."""
         if self.reliability_index < target:
             return 0.0
         for years in range(1, int(at_most) + 1):
-            if RemainingLife(self.rate, self.log_std, self.age_years + years).reliability_index < target:
+            if self.later(years).reliability_index < target:
                 return float(years)
         return None
 

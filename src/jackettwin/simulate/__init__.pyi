@@ -11,7 +11,11 @@ from .record import Simulation as Simulation, simulate as simulate
 from .resultant import loads_document as loads_document
 from .scenario.air import rotor_notes as rotor_notes
 from .scenario.asset import Asset as Asset
-from .scenario.files import read_scenario as read_scenario, shipped_scenarios as shipped_scenarios
+from .scenario.files import (
+    read_scenario as read_scenario,
+    scenario_from as scenario_from,
+    shipped_scenarios as shipped_scenarios,
+)
 from .scenario.scenario import Scenario as Scenario
 from .scenario.sets import read_set as read_set, shipped_sets as shipped_sets
 from .section_series import force_series as force_series, write_force_series as write_force_series

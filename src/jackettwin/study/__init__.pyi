@@ -28,6 +28,8 @@ from .life.record_life import (
     record_life as record_life,
     sensed as sensed,
 )
+from .life.site import Site as Site, read_site as read_site
+from .life.site_life import SiteLife as SiteLife, SiteWeld as SiteWeld, site_life as site_life
 from .life.updated_system import (
     updated as updated,
     updated_systems as updated_systems,
