@@ -180,6 +180,18 @@ class Client:
         """Return the power spectral densities of its channels."""
         return self._asked("GET", f"/records/{record_id}/spectrum")
 
+    def spectrogram(self, record_id: str, **which: Any) -> Answer:
+        """Return the density of a channel through time: ``channel``, ``up_to_hz``, ``segment_s``."""
+        return self._asked("GET", f"/records/{record_id}/spectrogram", params=which)
+
+    def motion(self, record_id: str, duration_s: float = 60.0) -> Answer:
+        """Return its liveliest part as a motion of the structure."""
+        return self._asked("GET", f"/records/{record_id}/motion", params={"duration_s": duration_s})
+
+    def stretches(self, record_id: str) -> Answers:
+        """Yield where its samples are missing or left out."""
+        return self._pages(f"/records/{record_id}/stretches")
+
     def stabilisation(self, record_id: str) -> Answer:
         """Return its poles of every model order."""
         return self._asked("GET", f"/records/{record_id}/stabilisation")
@@ -343,9 +355,16 @@ class Client:
 
     def events(self, last_event_id: int | None = None) -> Answers:
         """Yield what happens, for ever: ``{"id", "event", "data"}``."""
-        headers = {} if last_event_id is None else {"Last-Event-ID": str(last_event_id)}
+        return self._streamed("/events", None if last_event_id is None else str(last_event_id))
+
+    def live(self, asset: str) -> Answers:
+        """Yield the packets of a turbine's stream as they arrive, for ever."""
+        return (one for one in self._streamed(f"/assets/{asset}/live") if one["event"] == "packet")
+
+    def _streamed(self, path: str, last: str | None = None) -> Answers:
+        headers = {} if last is None else {"Last-Event-ID": last}
         while True:  # the server ends each stream after some minutes
-            with self._http.stream("GET", "/events", headers=headers, timeout=None) as answer:
+            with self._http.stream("GET", path, headers=headers, timeout=None) as answer:
                 _refuse(answer)
                 event: dict[str, Any] = {}
                 for line in answer.iter_lines():

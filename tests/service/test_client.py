@@ -110,8 +110,8 @@ def test_the_client_does_all_that_the_api_does(tmp_path: Path, monkeypatch: pyte
 
     def answer(request: httpx.Request) -> httpx.Response:
         asked.append((request.method, request.url.path))
-        if request.url.path.endswith("/events"):
-            return httpx.Response(200, text="event: state\ndata: {}\n\n")
+        if request.url.path.endswith(("/events", "/live")):
+            return httpx.Response(200, text="event: packet\ndata: {}\n\n")
         return httpx.Response(200, json={"items": [], "next_cursor": None, "csrf_token": "x"})
 
     client = Client("http://127.0.0.1:8470")

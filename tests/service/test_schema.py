@@ -30,7 +30,7 @@ CHECKS = (
 SUBJECTS = [import_module(f"{schemas.__name__}.{m.name}") for m in iter_modules(schemas.__path__)]
 EXAMPLES = 12
 """Requests a route: enough for every kind of value that a generator likes to try first."""
-ENDLESS = "/api/v1/events"
+ENDLESS = ("/api/v1/events", "/api/v1/assets/{asset}/live")
 
 
 def test_everything_sent_and_answered_has_an_example_that_holds(client: TestClient) -> None:
@@ -67,7 +67,7 @@ def test_answers_are_declared_and_never_our_fault(
     answered: Counter[int] = Counter()
     for found in schema.get_all_operations():
         operation = found.ok()
-        if operation.path == ENDLESS:
+        if operation.path in ENDLESS:
             continue
 
         @settings(

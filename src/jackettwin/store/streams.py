@@ -120,6 +120,27 @@ def packets_of(connection: Connection, asset: str, window_utc: datetime) -> list
     return [packet for packet in found if packet.end_utc > window_utc]
 
 
+def packets_after(
+    connection: Connection, asset: str, after: int | None, most: int = 1000
+) -> tuple[int, list[Packet]]:
+    """Return the packets that came after a number, and the newest number; none at all before the first call.
+
+    Parameters
+    ----------
+    after : number that an earlier call returned; None asks for the newest number alone
+    """
+    import numpy as np
+
+    own = packets.c.asset == asset
+    if after is None:
+        return connection.scalar(select(func.max(packets.c.id)).where(own)) or 0, []
+    rows = connection.execute(
+        select(packets).where(own, packets.c.id > after).order_by(packets.c.id).limit(most)
+    ).all()
+    found = [Packet(r.asset, r.channel, r.t0_utc, r.rate_hz, np.frombuffer(r.samples, "<f8")) for r in rows]
+    return rows[-1].id if rows else after, found
+
+
 def close_window(connection: Connection, window: OpenWindow, record_id: str | None) -> None:
     """Store the record of a window, and the number of its packets."""
     same = (windows.c.asset == window.asset, windows.c.window_utc == window.window_utc)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from jackettwin.errors import InputError
 from jackettwin.service.web.dependencies import known_record
 from jackettwin.service.web.problems import ApiError
-from jackettwin.service.web.schemas.records import RecordOut, Signal, Spectra
+from jackettwin.service.web.schemas.records import RecordOut, Signal, Spectra, SpectrogramOut
 from jackettwin.store import reading
 from jackettwin.store.records import StoredRecord
 
@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 
 _SEGMENT_S = 60.0
 """Length of a segment of the spectra: a resolution of 1/60 Hz suffices for a mode at 0.2 Hz."""
+
+
+_SINGULAR, _COLUMNS = 3, 300
+"""Largest number of singular values, and of segments of a spectrogram."""
 
 
 def with_zone(time: datetime | None, field: str) -> datetime | None:
@@ -104,14 +108,48 @@ def as_arrow(signal: Signal) -> bytes:
 
 def spectra(record: Record) -> Spectra:
     """Return the power spectral densities of a record by Welch's method, which allows for missing samples."""
-    from jackettwin.records import welch_densities
+    import numpy as np
+
+    from jackettwin.records import spectral_matrix, welch_densities
 
     n = min(int(_SEGMENT_S * record.sample_rate_hz), record.data.shape[1])
     frequency, density = welch_densities(record.data, record.sample_rate_hz, n, less_mean=True)
+    alike = record.data[[c.unit == record.channels[0].unit for c in record.channels]]
+    alike = alike[np.isfinite(alike).any(axis=1)]
+    _, matrix = spectral_matrix(alike - np.nanmean(alike, axis=1, keepdims=True), record.sample_rate_hz, n)
+    # of a positive Hermitian matrix the eigenvalues are the singular values
+    singular = np.abs(np.linalg.eigvalsh(matrix))[:, ::-1].T[:_SINGULAR]
     return Spectra(
         frequency_hz=frequency.tolist(),
         channels={c.name: row.tolist() for c, row in zip(record.channels, density, strict=True)},
         units={c.name: f"({c.unit})^2/Hz" for c in record.channels},
+        singular_values=singular.tolist(),
+    )
+
+
+def spectrogram(record: Record, name: str | None, up_to_hz: float, segment_s: float) -> SpectrogramOut:
+    """Return the densities of a channel in segments that overlap by three quarters."""
+    import numpy as np
+
+    from jackettwin.records import welch_densities
+
+    chosen = record.select([name or record.channels[0].name])
+    n = min(max(int(segment_s * record.sample_rate_hz), 16), chosen.data.shape[1])
+    total = chosen.data.shape[1] - n
+    starts = range(0, total + 1, max(n // 4, total // _COLUMNS, 1))
+    pieces = [
+        welch_densities(chosen.data[:, a : a + n], record.sample_rate_hz, n, less_mean=True) for a in starts
+    ]
+    f = pieces[0][0]
+    shown = (f > 0.0) & (f <= up_to_hz)
+    level = 10.0 * np.log10(np.where((d := np.array([d[0] for _, d in pieces])) > 0.0, d, np.nan))[:, shown]
+    return SpectrogramOut(
+        channel=chosen.channels[0].name,
+        unit=f"({chosen.channels[0].unit})^2/Hz",
+        segment_s=n / record.sample_rate_hz,
+        time_s=[a / record.sample_rate_hz for a in starts],
+        frequency_hz=f[shown].tolist(),
+        level_db=[_listed(np.round(row, 1)) for row in level],
     )
 
 

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 from fastapi import UploadFile
 from sqlalchemy import Connection
 
 from jackettwin.errors import InputError
-from jackettwin.service import workers
 from jackettwin.service.intake.bundles import twin_folder
 from jackettwin.service.intake.files import Accepted, discard, parse_here, spooled, take_file
 from jackettwin.service.web.dependencies import known_record, living_asset
 from jackettwin.service.web.problems import ApiError, disk_full
 from jackettwin.service.web.schemas.assets import Taken
-from jackettwin.service.web.schemas.records import PicksIn, StabilisationOut
+from jackettwin.service.web.schemas.records import PicksIn
 from jackettwin.service.work.conditions import add_conditions
 from jackettwin.service.workers.failures import ROOM_BYTES
 from jackettwin.service.workers.tasks import read_conditions
@@ -116,19 +115,19 @@ def take_conditions(
     return Taken(count=count, observed_again=again)
 
 
-def stabilisation(service: Service, record_id: str, who: Who) -> StabilisationOut:
-    """Return the poles of every model order of a record."""
+def by_worker(service: Service, record_id: str, who: Who, task: Callable[..., Any], *more: Any) -> Any:
+    """Return what a worker finds in a record; the task is given the twin's folder and the samples' file."""
     with reading(service.database) as connection:
         record = known_record(connection, record_id, who)
         if record.waveform is None:
             raise ApiError(404, "the samples of this record were deleted", field="record_id")
         folder = twin_folder(connection, service, record.asset)
     waveform = str(service.settings.store / record.waveform)
-    future = service.cluster.submit(workers.engine.stabilisation, str(folder), waveform, priority=50)
+    future = service.cluster.submit(task, str(folder), waveform, *more, priority=50)
     try:
-        return StabilisationOut(**service.cluster.result(future, service.settings.observe_limit_s))
+        return service.cluster.result(future, service.settings.observe_limit_s)
     except TimeoutError:
-        raise ApiError(503, "the identification takes too long") from None
+        raise ApiError(503, "it takes too long") from None
 
 
 def _limited(stream: BinaryIO, most: int) -> Iterator[bytes]:

@@ -4,23 +4,34 @@ from __future__ import annotations
 
 import asyncio
 import json
+import time
 from collections.abc import AsyncIterator
+from math import isfinite
 from typing import Annotated
 
-from fastapi import APIRouter, Header, Request, Response
+from fastapi import APIRouter, Depends, Header, Request, Response
 from prometheus_client import CONTENT_TYPE_LATEST
 from sse_starlette import EventSourceResponse, ServerSentEvent
 
 from jackettwin.service.web import auth, metrics
-from jackettwin.service.web.dependencies import Asker, Parts, Route
+from jackettwin.service.web.dependencies import Asker, AssetName, Parts, Reads, Route, known_asset
 from jackettwin.service.web.problems import answers
 from jackettwin.service.web.schemas.server import Health, Ready
+from jackettwin.store import reading, streams
 from jackettwin.version import __version__
 
 _TOLD_S = 600.0
 """Duration of one stream of events."""
 
+_LOOK_S = 0.2
+"""Time between looks for packets of a stream."""
+
 router = APIRouter(tags=["operation"], route_class=Route)
+
+
+def _there(asset: AssetName, connection: Reads) -> None:
+    """Refuse an asset that there is not, or not for who asks; the connection is not kept."""
+    known_asset(connection, asset)
 
 
 @router.get(
@@ -91,3 +102,40 @@ async def events(
             await asyncio.sleep(0)
 
     return EventSourceResponse(stream(), ping=15)
+
+
+@router.get(
+    "/assets/{asset}/live",
+    dependencies=[auth.VIEWER],
+    response_class=Response,
+    responses={200: {"content": {"text/event-stream": {}}}, **answers(401, 404, 422)},
+)
+async def live(
+    request: Request, asset: AssetName, parts: Parts, known: Annotated[None, Depends(_there)]
+) -> EventSourceResponse:
+    """Stream the samples of an asset as they arrive from its broker, a ``packet`` for each.
+
+    A packet is ``{channel, t0_utc, rate_hz, samples}``. The stream ends as that of the events does.
+    """
+
+    def after(last: int | None) -> tuple[int, list[streams.Packet]]:
+        with reading(parts.database) as connection:
+            return streams.packets_after(connection, asset, last)
+
+    async def stream() -> AsyncIterator[ServerSentEvent]:
+        last, _ = await asyncio.to_thread(after, None)
+        end = time.monotonic() + _TOLD_S
+        yield ServerSentEvent("", event="open")
+        while time.monotonic() < end and not await request.is_disconnected():
+            last, new = await asyncio.to_thread(after, last)
+            for packet in new:
+                yield ServerSentEvent(_packet(packet), event="packet")
+            await asyncio.sleep(_LOOK_S)
+
+    return EventSourceResponse(stream(), ping=15)
+
+
+def _packet(packet: streams.Packet) -> str:
+    samples = [float(f"{v:.6g}") if isfinite(v) else None for v in packet.samples.tolist()]
+    head = {"channel": packet.channel, "t0_utc": packet.t0_utc.isoformat(), "rate_hz": packet.rate_hz}
+    return json.dumps({**head, "samples": samples})

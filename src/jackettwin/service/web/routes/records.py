@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, File, Form, Header, Query, Response, UploadFile
 
+from jackettwin.service import workers
 from jackettwin.service.web import auth, signals, uploads
 from jackettwin.service.web.dependencies import (
     WAITING,
@@ -22,6 +23,7 @@ from jackettwin.service.web.dependencies import (
 )
 from jackettwin.service.web.problems import ApiError, answers
 from jackettwin.service.web.schemas.common import Page
+from jackettwin.service.web.schemas.drawings import MotionOut
 from jackettwin.service.web.schemas.findings import Acknowledgement
 from jackettwin.service.web.schemas.records import (
     PicksIn,
@@ -29,7 +31,9 @@ from jackettwin.service.web.schemas.records import (
     RecordOut,
     Signal,
     Spectra,
+    SpectrogramOut,
     StabilisationOut,
+    StretchOut,
 )
 from jackettwin.service.work import consequences
 from jackettwin.store import people, records, writing
@@ -144,7 +148,49 @@ def spectrum(record_id: RecordId, who: Asker, parts: Parts) -> Spectra:
 )
 def stabilisation(record_id: RecordId, who: Asker, parts: Parts) -> StabilisationOut:
     """Return the poles of every model order, computed by a worker."""
-    return uploads.stabilisation(parts, record_id, who)
+    return StabilisationOut(**uploads.by_worker(parts, record_id, who, workers.engine.stabilisation))
+
+
+@router.get(
+    "/records/{record_id}/spectrogram",
+    dependencies=[auth.VIEWER, WAITING],
+    responses=answers(401, 404, 422),
+)
+def spectrogram(
+    record_id: RecordId,
+    who: Asker,
+    parts: Parts,
+    channel: Annotated[str | None, Query(max_length=128)] = None,
+    up_to_hz: Annotated[float, Query(gt=0.0, le=1e6)] = 2.0,
+    segment_s: Annotated[float, Query(ge=1.0, le=600.0)] = 60.0,
+) -> SpectrogramOut:
+    """Return the spectral density of a channel through time; default: the first channel."""
+    return signals.spectrogram(signals.samples(parts, record_id, who), channel, up_to_hz, segment_s)
+
+
+@router.get(
+    "/records/{record_id}/motion",
+    dependencies=[auth.VIEWER, WAITING],
+    responses=answers(401, 404, 422, 503),
+)
+def motion(
+    record_id: RecordId,
+    who: Asker,
+    parts: Parts,
+    duration_s: Annotated[float, Query(gt=0.0, le=600.0)] = 60.0,
+) -> MotionOut:
+    """Return the liveliest part of a record as a motion of the structure, computed by a worker."""
+    return MotionOut(**uploads.by_worker(parts, record_id, who, workers.record_views.motion, duration_s))
+
+
+@router.get(
+    "/records/{record_id}/stretches",
+    dependencies=[auth.VIEWER, WAITING],
+    responses=answers(401, 404, 422, 503),
+)
+def stretches(record_id: RecordId, who: Asker, parts: Parts) -> Page[StretchOut]:
+    """Return where in a record samples are missing or left out, and the moments that findings name."""
+    return Page(items=uploads.by_worker(parts, record_id, who, workers.record_views.stretches))
 
 
 @router.put(

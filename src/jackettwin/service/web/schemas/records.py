@@ -48,11 +48,40 @@ class Signal(BaseModel):
 
 
 class Spectra(BaseModel):
-    """Power spectral densities by Welch's method."""
+    """Power spectral densities by Welch's method.
+
+    ``singular_values`` are those of the spectral matrix of the channels that have the first channel's unit,
+    the largest first: a peak of the first alone is one mode, of two at once a pair.
+    """
 
     frequency_hz: list[float]
     channels: dict[str, list[float]]
     units: dict[str, str]
+    singular_values: list[list[float]] = []
+
+
+class SpectrogramOut(BaseModel):
+    """Power spectral density of a channel through time: a row of ``level_db`` for each start of a segment.
+
+    Levels are 10 log₁₀ of the density in ``unit``; null where the segment has no samples.
+    """
+
+    channel: str
+    unit: str
+    segment_s: float
+    time_s: list[float]
+    frequency_hz: list[float]
+    level_db: list[list[float | None]]
+
+
+class StretchOut(BaseModel):
+    """A stretch of a channel that something was found in; seconds after the record's start."""
+
+    channel: str | None
+    from_s: float
+    to_s: float
+    code: str
+    text: str
 
 
 class StabilisationOut(BaseModel):
