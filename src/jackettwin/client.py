@@ -250,6 +250,10 @@ class Client:
         """Return the structure to draw."""
         return self._asked("GET", f"/assets/{asset}/structure", params=query)
 
+    def watch(self, asset: str) -> Answer:
+        """Return what each judged day showed, and the evidence for a change."""
+        return self._asked("GET", f"/assets/{asset}/watch")
+
     def life(self, asset: str) -> Answers:
         """Yield the life at every joint."""
         return self._pages(f"/assets/{asset}/life")

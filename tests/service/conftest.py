@@ -196,7 +196,7 @@ def make_service(
         folder.mkdir(parents=True, exist_ok=True)
     monkeypatch.setattr(engine, "observed", quick)
     monkeypatch.setattr(verdict, "known", known)
-    monkeypatch.setattr(verdict, "watched", lambda twin, days, *_: ({"days": len(days)}, ()))
+    monkeypatch.setattr(verdict, "watched", lambda twin, days, *_: ({"days": len(days)}, (), {}))
     monkeypatch.setattr(verdict, "through_time", lambda *_: (None, None))
     made = Service(settings, open_database(settings.database_url), Here(), "test")  # type: ignore[arg-type]
     add_text_version(made, "wtg", TWIN, {}, "test")

@@ -7,9 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.service.conftest import NOON
+from fastapi.testclient import TestClient
+from tests.service.conftest import NOON, turn, upload
 
 from jackettwin.records import Channel, Record, read_record
+from jackettwin.service.context import Service
+from jackettwin.service.web.answers import coloured_by_life
+from jackettwin.service.web.schemas.drawings import StructureOut
 from jackettwin.service.web.signals import spectra, spectrogram
 from jackettwin.service.workers import engine, record_views
 from jackettwin.store import Packet, open_database, reading, streams, write_waveform, writing
@@ -107,5 +111,38 @@ def test_packets_are_handed_on_once(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("what", ["spectrogram", "motion", "stretches"])
-def test_what_was_deleted_is_not_there(client: object, what: str) -> None:
-    assert client.get(f"/api/v1/records/{'0' * 24}/{what}").status_code == 404  # type: ignore[attr-defined]
+def test_what_was_deleted_is_not_there(client: TestClient, what: str) -> None:
+    assert client.get(f"/api/v1/records/{'0' * 24}/{what}").status_code == 404
+
+
+def test_modes_are_asked_for_by_state_of_operation(client: TestClient, service: Service) -> None:
+    """By the first word of it, in rows and in bins alike; a wildcard of the database is a letter."""
+    for k, state in enumerate(("parked, pitch 90 deg", "idling", "parked")):
+        upload(client, k, conditions={"state": state})
+    turn(service, 3)
+    modes = "/api/v1/assets/wtg/modes"
+
+    def count(state: str) -> tuple[int, int]:
+        rows = client.get(modes, params={"state": state, "label": "mode_1"}).json()["items"]
+        bins = client.get(f"{modes}/bins", params={"state": state, "label": "mode_1"}).json()["items"]
+        return len(rows), sum(sum(one["count"]) for one in bins)
+
+    assert [count(state) for state in ("parked", "idling", "operating", "%")] == [
+        (2, 2),
+        (1, 1),
+        (0, 0),
+        (0, 0),
+    ]
+
+
+def test_members_are_coloured_by_the_worst_weld_of_their_side() -> None:
+    """Of two welds on a leg the faster counts; a member without welds has no colour."""
+    drawn = StructureOut(text=["leg (jacket)<br>D 1 m", "brace (jacket)<br>D 1 m", "tower<br>D 6 m"])
+    left = {"remaining_years": {"p50": 40.0}}
+    welds = [
+        {"chord": "leg", "brace": "brace", "side": "chord", "rate_per_year": 0.01, **left},
+        {"chord": "leg", "brace": "other", "side": "chord", "rate_per_year": 0.02, **left},
+    ]
+    life, damage = coloured_by_life(drawn, welds).quantities
+    assert life.values == [40.0, None, None] and damage.values == [0.02, None, None]
+    assert coloured_by_life(drawn, []) is drawn

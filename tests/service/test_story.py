@@ -10,9 +10,8 @@ import pytest
 from tests.service.conftest import make_service
 
 from jackettwin.service.demonstration import SAID, tell_story
-from jackettwin.service.intake.bundles import bundle
 from jackettwin.service.story import DAYS, SCOUR_M, STORM, story
-from jackettwin.service.web.catalogue import add_version, one
+from jackettwin.service.web.catalogue import one
 from jackettwin.store import reading, records, results
 from jackettwin.twin import read_twin, twin_model
 
@@ -60,9 +59,8 @@ def test_season_and_scour_move_the_modes_as_stated(days: list) -> None:
 def test_the_story_goes_the_way_of_every_record(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Records without samples, modes that say they are simulated, a state for each day, one question."""
     for service in make_service(tmp_path / "store", None, monkeypatch):
-        add_version(service, "demo", bundle(TWIN), "demonstration", SAID)
-        tell_story(service, "demo")
-        tell_story(service, "demo")
+        tell_story(service)
+        tell_story(service)
         with reading(service.database) as connection:
             asset = one(connection, "demo")
             assert asset.records == {"observed": DAYS - 4} and asset.comment == SAID

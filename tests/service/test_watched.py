@@ -5,6 +5,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 from tests.service.conftest import TWIN, turn, upload
@@ -41,14 +42,21 @@ def test_days_that_change_raise_an_alarm_and_days_that_do_not_none(
 ) -> None:
     """Which cause it is, is judged elsewhere, at the price of a thousand eigenvalue problems."""
     monkeypatch.setattr(import_module("jackettwin.change.judge"), "_causes", lambda *_: None)
-    kept, findings = watched(folder, days(95, -0.008), None)
+    kept, findings, shown = watched(folder, days(95, -0.008), None)
     assert [f["code"] for f in findings] == ["watch_begins", "watch_sees", "structure_changed"]
     assert findings[2]["day"] > "2025-03-16"
     assert findings[1]["text"].startswith("Would be found with 95% at this noise and promise: within 30 days")
-    _, again = watched(folder, days(95, -0.008), json.loads(json.dumps(kept)))
-    assert again == findings[1:]
+    _, again, shown_again = watched(folder, days(95, -0.008), json.loads(json.dumps(kept)))
+    assert again == findings[1:] and shown_again == shown
+    # the step of −0.8 % stands in what conditions leave, and the evidence crossed the threshold on its day
+    first = shown["quantities"][0]
+    assert first["kind"] == "frequency" and -0.01 < np.median(first["rest"][-5:]) < -0.006
+    crossed = [
+        d for d, r in zip(shown["days"], shown["ln_evidence"], strict=True) if r >= shown["threshold_ln"]
+    ]
+    assert crossed[0] == findings[2]["day"]
     assert len(json.dumps(kept)) < 5e6
-    _, quiet = watched(folder, days(95, 0.0), None)
+    _, quiet, _ = watched(folder, days(95, 0.0), None)
     assert [f["severity"] for f in quiet] == ["info", "info"]
 
 
@@ -73,7 +81,7 @@ def test_a_worker_that_needs_every_day_asks_for_them(
 
     def needs(twin: Any, identities: Any, documents: Any, kept: Any) -> Any:
         sent.append(len(documents))
-        return {"days": len([documents[day] for day in identities])}, ()
+        return {"days": len([documents[day] for day in identities])}, (), {}
 
     monkeypatch.setattr(verdict, "watched", needs)
     for k in (1, 2, 3):
@@ -83,7 +91,7 @@ def test_a_worker_that_needs_every_day_asks_for_them(
 
 
 def test_before_the_baseline_is_whole_it_is_said_how_much_is_there(folder: Path) -> None:
-    _, (finding,) = watched(folder, days(40, 0.0), None)
+    _, (finding,), _ = watched(folder, days(40, 0.0), None)
     assert finding["code"] == "watch_learning" and "of 60 days" in finding["text"]
 
 
@@ -94,7 +102,7 @@ def test_an_alarm_reaches_the_api_once_and_stays_acknowledged(
         return list(client.get("/api/v1/assets/wtg/alarms").json()["items"])
 
     def record(k: int, *found: dict[str, Any]) -> None:
-        monkeypatch.setattr(verdict, "watched", lambda *_: ({}, found))
+        monkeypatch.setattr(verdict, "watched", lambda *_: ({}, found, {}))
         upload(client, k)
         turn(service)
 

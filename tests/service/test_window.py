@@ -31,6 +31,7 @@ PAGES = (
     "/start",
     "/docs",
     "/assets/wtg",
+    "/assets/wtg/live",
     "/assets/wtg/timeline",
     "/assets/wtg/structure",
     "/assets/wtg/explore",

@@ -1,7 +1,14 @@
 // A question that a page asks, and asks again when something happened.
 import { useEffect, useRef, useState } from "preact/hooks";
-import { Problem } from "./client";
+import type { Readable } from "openapi-typescript-helpers";
+import { api, Problem, told } from "./client";
 import { connection, happened } from "./events";
+import type { paths } from "./schema";
+
+type Got<P> = P extends { get: { responses: { 200: { content: { "application/json": infer A } } } } }
+  ? A
+  : never;
+type OfAsset = keyof { [P in keyof paths as P extends `/api/v1/assets/{asset}${infer S}` ? S : never]: 0 };
 
 export interface Answer<T> {
   /** What was answered last; undefined before the first answer. */
@@ -36,4 +43,16 @@ export function useAnswer<T>(asset: string | null, key: string, ask: () => Promi
   }, [key, events, tries, lost]);
   const current = state.key === key ? state : { data: undefined, problem: undefined };
   return { data: current.data, problem: current.problem, again: () => setTries((n) => n + 1) };
+}
+
+/** Ask what the API says of an asset at an address below it. */
+export function useAsset<S extends OfAsset>(
+  asset: string,
+  below: S,
+  query: object = {},
+): Answer<Readable<Got<paths[`/api/v1/assets/{asset}${S}`]>>> {
+  const path = `/api/v1/assets/{asset}${below}`;
+  return useAnswer(asset, `${path} ${asset} ${JSON.stringify(query)}`, () =>
+    told(api.GET(path as never, { params: { path: { asset }, query } } as never)),
+  );
 }

@@ -1,10 +1,11 @@
 // What asked for a person, what was worth saying, and who looked.
-import { useAnswer } from "../api/answer";
-import { api, told } from "../api/client";
+import { useAsset } from "../api/answer";
 import { AlarmList } from "../parts/AlarmList";
-import { Card, Choice, Light, Time } from "../parts/Bits";
+import { Card, Choice, Light, Time, Head } from "../parts/Bits";
 import { Handling, History, standing } from "../parts/Handling";
 import { Empty, Shown } from "../parts/Shown";
+import Evidence from "../parts/Watched";
+import { day, seconds } from "../words/time";
 import type { PageProps } from "../shell/place";
 import { asked, assetUrl, keep } from "../shell/place";
 
@@ -21,23 +22,20 @@ const STATES = [
 
 export default function Alarms({ asset }: PageProps) {
   const [kind, state] = [asked("severity") ?? "", asked("state") ?? ""];
-  const path = { asset };
-  const alarms = useAnswer(asset, `alarms ${asset}`, () =>
-    told(api.GET("/api/v1/assets/{asset}/alarms", { params: { path } })),
-  );
+  const alarms = useAsset(asset, "/alarms");
   const query = { limit: 200, ...(kind ? { severity: kind as "info" | "warning" } : {}) };
-  const said = useAnswer(asset, `findings ${asset} ${kind}`, () =>
-    told(api.GET("/api/v1/assets/{asset}/findings", { params: { path, query } })),
-  );
+  const said = useAsset(asset, "/findings", query);
+  const marks = (alarms.data?.items ?? []).map((a) => ({
+    x: seconds(a.time_utc),
+    words: `alarm ${day(a.time_utc)}`,
+    colour: "alarm",
+  }));
   return (
     <>
-      <div class="head">
-        <h1>Alarms</h1>
-        <p>
-          A change of the structure, with its causes by probability. Whoever looked says what was seen and
-          what is done.
-        </p>
-      </div>
+      <Head title="Alarms">
+        A change of the structure, with its causes by probability. Whoever looked says what was seen and what
+        is done.
+      </Head>
       <div class="grid">
         <Card
           title="Asks for a person"
@@ -62,6 +60,7 @@ export default function Alarms({ asset }: PageProps) {
             }}
           </Shown>
         </Card>
+        <Evidence asset={asset} marks={marks} />
         <Card
           title="Also said"
           wide

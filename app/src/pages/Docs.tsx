@@ -1,7 +1,7 @@
 // What the API takes and answers, as its own document says it.
 import { useAnswer } from "../api/answer";
 import { Problem } from "../api/client";
-import { Card } from "../parts/Bits";
+import { Card, Head } from "../parts/Bits";
 import { Shown } from "../parts/Shown";
 import { asked, keep } from "../shell/place";
 
@@ -71,17 +71,14 @@ export default function Docs() {
   const text = (asked("find") ?? "").toLowerCase();
   return (
     <>
-      <div class="head">
-        <h1>The API</h1>
-        <p>
-          Everything this window shows and does, for programs: JSON under <code>/api/v1</code>, a token in{" "}
-          <code>Authorization: Bearer</code>, lists by cursor, times in UTC. The{" "}
-          <a href="/api/v1/openapi.json" data-leave>
-            OpenAPI document
-          </a>{" "}
-          has every field and an example of each; <code>jackettwin.client</code> is the same in Python.
-        </p>
-      </div>
+      <Head title="The API">
+        Everything this window shows and does, for programs: JSON under <code>/api/v1</code>, a token in{" "}
+        <code>Authorization: Bearer</code>, lists by cursor, times in UTC. The{" "}
+        <a href="/api/v1/openapi.json" data-leave>
+          OpenAPI document
+        </a>{" "}
+        has every field and an example of each; <code>jackettwin.client</code> is the same in Python.
+      </Head>
       <Shown of={found} lines={12}>
         {(data) => {
           const rows: Row[] = Object.entries(data.paths)

@@ -1,14 +1,14 @@
 // What the ground's parameters do: move one and see every mode follow; how sharply the data decide.
 import { useMemo, useState } from "preact/hooks";
-import { useAnswer } from "../api/answer";
-import { api, type Schemas, told } from "../api/client";
-import { Card } from "../parts/Bits";
-import { modeColour } from "../parts/modes";
+import { useAsset } from "../api/answer";
+import { type Schemas } from "../api/client";
+import { Card, Head } from "../parts/Bits";
+import { modeColour, paintOf } from "../parts/modes";
 import { Plot } from "../parts/plot/Plot";
 import type { Mark, PlotData, Range, Series } from "../parts/plot/series";
 import { Empty, Shown } from "../parts/Shown";
 import { Surface } from "../parts/Surface";
-import { Table } from "../parts/Table";
+import { number, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
 import { asked, keep } from "../shell/place";
 import { fixed, frequency, percent, quantity, words } from "../words/numbers";
@@ -143,13 +143,18 @@ function Along({ locus }: { locus: Locus }) {
           id={(b) => b.label}
           columns={[
             { title: "Mode", show: (b) => words(b.label) },
-            { title: "Frequency", unit: "Hz", numeric: true, show: (b) => frequency(b.frequency_hz[index]) },
-            {
-              title: "Damping ratio",
-              unit: "%",
-              numeric: true,
-              show: (b) => percent(b.damping_ratio[index]),
-            },
+            number<Branch>(
+              "Frequency",
+              "Hz",
+              (b) => b.frequency_hz[index],
+              (v) => frequency(v),
+            ),
+            number<Branch>(
+              "Damping ratio",
+              "%",
+              (b) => b.damping_ratio[index],
+              (v) => percent(v),
+            ),
             {
               title: "Most damping",
               unit: `% at ${locus.parameter}`,
@@ -170,9 +175,7 @@ function Along({ locus }: { locus: Locus }) {
 }
 
 function Sensitivity({ asset }: { asset: string }) {
-  const found = useAnswer(asset, `sensitivity ${asset}`, () =>
-    told(api.GET("/api/v1/assets/{asset}/sensitivity", { params: { path: { asset } } })),
-  );
+  const found = useAsset(asset, "/sensitivity");
   return (
     <Card
       title="Sensitivities"
@@ -205,7 +208,6 @@ function Sensitivity({ asset }: { asset: string }) {
 function Curves({ explored }: { explored: Explored }) {
   const [range, setRange] = useState<Range | null>(null);
   const plot = useMemo((): PlotData => {
-    const colours = ["blue", "vermillion", "green", "purple", "orange", "sky"];
     return {
       title: "Cost along each parameter",
       time: false,
@@ -214,7 +216,7 @@ function Curves({ explored }: { explored: Explored }) {
       log: true,
       series: (explored.curves ?? []).map((c, i) => ({
         name: c.parameter,
-        colour: colours[i % colours.length] ?? "blue",
+        colour: paintOf(i),
         kind: "line",
         x: c.factor,
         y: c.cost,
@@ -266,15 +268,12 @@ function Drawn({ asset, explored }: { asset: string; explored: Explored }) {
 }
 
 export default function Explore({ asset }: PageProps) {
-  const found = useAnswer(asset, `explore ${asset}`, () =>
-    told(api.GET("/api/v1/assets/{asset}/explore", { params: { path: { asset } } })),
-  );
+  const found = useAsset(asset, "/explore");
   return (
     <>
-      <div class="head">
-        <h1>Explore</h1>
-        <p>What each parameter of the ground does to the modes, and how well the records tell it.</p>
-      </div>
+      <Head title="Explore">
+        What each parameter of the ground does to the modes, and how well the records tell it.
+      </Head>
       <Shown
         of={found}
         lines={12}

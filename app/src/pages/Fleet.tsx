@@ -3,7 +3,7 @@ import { useAnswer } from "../api/answer";
 import { api, type Asset, told } from "../api/client";
 import { Ago, Choice, Light } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
-import { type Column, Table } from "../parts/Table";
+import { type Column, number, Table } from "../parts/Table";
 import { asked, assetUrl, keep } from "../shell/place";
 import { count } from "../words/numbers";
 
@@ -19,42 +19,12 @@ const COLUMNS: Column<Asset>[] = [
     show: (a) => (a.last_record_utc ? <Ago at={a.last_record_utc} /> : "none yet"),
     by: (a) => a.last_record_utc,
   },
-  {
-    title: "Observed",
-    unit: "records",
-    numeric: true,
-    show: (a) => some(a, "observed"),
-    by: (a) => some(a, "observed"),
-  },
-  {
-    title: "Waiting",
-    unit: "records",
-    numeric: true,
-    show: (a) => some(a, "received", "observing"),
-    by: (a) => some(a, "received", "observing"),
-  },
-  {
-    title: "Left out",
-    unit: "records",
-    numeric: true,
-    show: (a) => some(a, "refused", "mismatched", "set_aside"),
-    by: (a) => some(a, "refused", "mismatched", "set_aside"),
-  },
-  {
-    title: "Alarms",
-    unit: "in all",
-    numeric: true,
-    show: (a) => a.findings["alarm"] ?? 0,
-    by: (a) => a.findings["alarm"] ?? 0,
-  },
-  {
-    title: "Warnings",
-    unit: "in all",
-    numeric: true,
-    show: (a) => a.findings["warning"] ?? 0,
-    by: (a) => a.findings["warning"] ?? 0,
-  },
-  { title: "Model", unit: "version", numeric: true, show: (a) => a.version, by: (a) => a.version },
+  number("Observed", "records", (a) => some(a, "observed")),
+  number("Waiting", "records", (a) => some(a, "received", "observing")),
+  number("Left out", "records", (a) => some(a, "refused", "mismatched", "set_aside")),
+  number("Alarms", "in all", (a) => a.findings["alarm"] ?? 0),
+  number("Warnings", "in all", (a) => a.findings["warning"] ?? 0),
+  number("Model", "version", (a) => a.version),
 ];
 
 function Nothing() {

@@ -1,9 +1,9 @@
 // What life is left: the welds that records damage most, and how sure that is.
-import { useAnswer } from "../api/answer";
-import { api, type Schemas, told } from "../api/client";
+import { useAsset } from "../api/answer";
+import { type Schemas } from "../api/client";
 import { Card, Facts, Light } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
-import { type Column, Table } from "../parts/Table";
+import { type Column, number, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
 import { asked, keep } from "../shell/place";
 import { count, percent, scientific } from "../words/numbers";
@@ -44,7 +44,12 @@ const COLUMNS: Column<Weld>[] = [
     ),
     by: key,
   },
-  { title: "Height", unit: "m", numeric: true, show: (w) => w.z_m.toFixed(1), by: (w) => w.z_m },
+  number(
+    "Height",
+    "m",
+    (w) => w.z_m,
+    (v) => v.toFixed(1),
+  ),
   {
     title: "Left",
     unit: "years, 5 to 95 %",
@@ -53,20 +58,18 @@ const COLUMNS: Column<Weld>[] = [
       `${years(w.remaining_years.p50)} (${years(w.remaining_years.p05)} to ${years(w.remaining_years.p95)})`,
     by: (w) => w.remaining_years.p50,
   },
-  {
-    title: "Damage a year",
-    unit: "of what is allowed",
-    numeric: true,
-    show: (w) => `${percent(w.rate_per_year / w.budget_per_year, null, 0)} %`,
-    by: (w) => w.rate_per_year / w.budget_per_year,
-  },
-  {
-    title: "Fails in a year",
-    unit: "probability",
-    numeric: true,
-    show: (w) => scientific(w.failure_probability_per_year, 2),
-    by: (w) => w.failure_probability_per_year,
-  },
+  number(
+    "Damage a year",
+    "% of what is allowed",
+    (w) => w.rate_per_year / w.budget_per_year,
+    (v) => percent(v, null, 0),
+  ),
+  number(
+    "Fails in a year",
+    "probability",
+    (w) => w.failure_probability_per_year,
+    (v) => scientific(v, 2),
+  ),
 ];
 
 /** The eight points around a weld, from its crown on; the worst is the one that counts. */
@@ -126,9 +129,7 @@ function One({ weld }: { weld: Weld }) {
 }
 
 export default function Life({ asset }: PageProps) {
-  const life = useAnswer(asset, `life ${asset}`, () =>
-    told(api.GET("/api/v1/assets/{asset}/life", { params: { path: { asset } } })),
-  );
+  const life = useAsset(asset, "/life");
   const wanted = asked("weld");
   return (
     <>

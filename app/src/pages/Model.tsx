@@ -1,11 +1,11 @@
 // Which model speaks for the turbine, and what another one would say of the same records.
 import { useState } from "preact/hooks";
-import { type Answer, useAnswer } from "../api/answer";
+import { type Answer, useAsset } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
 import { may, useDeed } from "../api/do";
-import { Card, Time } from "../parts/Bits";
+import { Card, Time, Head } from "../parts/Bits";
 import { Shown } from "../parts/Shown";
-import { Table } from "../parts/Table";
+import { number, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
 import { asked, keep } from "../shell/place";
 import { scientific, words } from "../words/numbers";
@@ -21,10 +21,7 @@ function spoken(quantity: string): string {
 }
 
 function Comparison({ asset, version }: { asset: string; version: number }) {
-  const params = { path: { asset }, query: { version } };
-  const found = useAnswer(asset, `comparison ${asset} ${version}`, () =>
-    told(api.GET("/api/v1/assets/{asset}/comparison", { params })),
-  );
+  const found = useAsset(asset, "/comparison", { version });
   return (
     <Card
       title={`Version ${version} beside the adopted one`}
@@ -39,20 +36,30 @@ function Comparison({ asset, version }: { asset: string; version: number }) {
             id={(c) => c.quantity}
             columns={[
               { title: "Quantity", show: (c) => spoken(c.quantity) },
-              { title: "Adopted", numeric: true, show: (c) => scientific(c.adopted, 4) },
-              { title: `Version ${version}`, numeric: true, show: (c) => scientific(c.other, 4) },
-              {
-                title: "Difference",
-                numeric: true,
-                show: (c) => scientific(c.difference),
-                by: (c) => Math.abs(c.difference ?? 0),
-              },
-              {
-                title: "In std",
-                numeric: true,
-                show: (c) => scientific(c.in_standard_deviations, 2),
-                by: (c) => Math.abs(c.in_standard_deviations ?? 0),
-              },
+              number<Schemas["ChangeOut"]>(
+                "Adopted",
+                "",
+                (c) => c.adopted,
+                (v) => scientific(v, 4),
+              ),
+              number<Schemas["ChangeOut"]>(
+                `Version ${version}`,
+                "",
+                (c) => c.other,
+                (v) => scientific(v, 4),
+              ),
+              number<Schemas["ChangeOut"]>(
+                "Difference",
+                "",
+                (c) => c.difference,
+                (v) => scientific(v),
+              ),
+              number<Schemas["ChangeOut"]>(
+                "In std",
+                "",
+                (c) => c.in_standard_deviations,
+                (v) => scientific(v, 2),
+              ),
             ]}
           />
         )}
@@ -117,9 +124,7 @@ function NewVersion({ asset, versions }: { asset: string; versions: Answer<Versi
 }
 
 export default function Model({ asset }: PageProps) {
-  const versions = useAnswer(asset, `versions ${asset}`, () =>
-    told(api.GET("/api/v1/assets/{asset}/versions", { params: { path: { asset } } })),
-  );
+  const versions = useAsset(asset, "/versions");
   const deed = useDeed();
   const other = Number(asked("compare") ?? 0);
   const adopt = async (version: number): Promise<void> => {
@@ -129,13 +134,10 @@ export default function Model({ asset }: PageProps) {
   };
   return (
     <>
-      <div class="head">
-        <h1>Model</h1>
-        <p>
-          Every version of the twin stays, with what it knows. One is adopted: its answers count. Adopting an
-          earlier one rolls back.
-        </p>
-      </div>
+      <Head title="Model">
+        Every version of the twin stays, with what it knows. One is adopted: its answers count. Adopting an
+        earlier one rolls back.
+      </Head>
       <div class="grid">
         <Card title="Versions" wide>
           {deed.problem && <p class="error">{deed.problem.message}</p>}

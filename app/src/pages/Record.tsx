@@ -2,20 +2,26 @@
 import { useMemo, useState } from "preact/hooks";
 import { useAnswer } from "../api/answer";
 import { api, type Mode, type RecordOut, type Schemas, told } from "../api/client";
-import { Card, Facts, Light, Time } from "../parts/Bits";
+import { Card, Choice, Facts, Light, Time } from "../parts/Bits";
+import { Heat } from "../parts/Heat";
+import { paintOf } from "../parts/modes";
 import { Plot } from "../parts/plot/Plot";
 import type { Mark, PlotData, Range } from "../parts/plot/series";
 import { Shown, Trouble } from "../parts/Shown";
 import { Stabilisation } from "../parts/Stabilisation";
 import { ModeTable } from "../parts/ModeTable";
 import type { PageProps } from "../shell/place";
-import { asked } from "../shell/place";
+import { asked, keep } from "../shell/place";
 import { keepRange } from "../parts/Stiffness";
 import { words } from "../words/numbers";
 import { seconds } from "../words/time";
 
-const COLOURS = ["blue", "vermillion", "green", "purple", "orange", "sky", "grey", "ink"];
 const POINTS = 1400;
+const SPECTRA = [
+  ["", "Channels"],
+  ["singular", "Singular values"],
+] as const;
+type Stretch = Schemas["StretchOut"];
 const UNITS: readonly (readonly [RegExp, string])[] = [
   [/_m_s$/, " [m/s]"],
   [/_deg$/, " [°]"],
@@ -46,6 +52,12 @@ function Signals({ record }: { record: RecordOut }) {
     const params = { path: { record_id: record.record_id }, query };
     return told(api.GET("/api/v1/records/{record_id}/signal", { params })) as Promise<Schemas["Signal"]>;
   });
+  const stretches = useAnswer(null, `stretches ${record.record_id}`, () =>
+    told(
+      api.GET("/api/v1/records/{record_id}/stretches", { params: { path: { record_id: record.record_id } } }),
+    ),
+  );
+  const faults = stretches.data?.items ?? [];
   const switched = (name: string): void =>
     setChosen((old) =>
       old.includes(name) ? old.filter((n) => n !== name) : names.filter((n) => n === name || old.includes(n)),
@@ -54,7 +66,7 @@ function Signals({ record }: { record: RecordOut }) {
     () =>
       Object.entries(signal.data?.channels ?? {}).map(([name, bins]): PlotData => {
         const unit = record.channels.find((c) => c["name"] === name)?.["unit"];
-        const colour = COLOURS[names.indexOf(name) % COLOURS.length] ?? "blue";
+        const colour = paintOf(names.indexOf(name));
         const x = (signal.data?.time_s ?? []).map((t) => begin + t);
         const [low, high] = [bins["min"] ?? [], bins["max"] ?? []];
         return {
@@ -63,9 +75,10 @@ function Signals({ record }: { record: RecordOut }) {
           xName: "UTC",
           yName: typeof unit === "string" ? unit : "",
           series: [{ name, colour, kind: "band", solid: true, x, y: [], low, high }],
+          marks: faults.filter((f) => (f.channel ?? name) === name).map((f) => mark(f, begin)),
         };
       }),
-    [signal.data],
+    [signal.data, stretches.data],
   );
   return (
     <Card
@@ -98,12 +111,27 @@ function Signals({ record }: { record: RecordOut }) {
           }
         </Shown>
       )}
+      {faults.length > 0 && (
+        <ul class="list">
+          {[...new Set(faults.map((f) => `${f.channel ?? "All channels"}: ${f.text}`))].map((text) => (
+            <li key={text}>{text}</li>
+          ))}
+        </ul>
+      )}
     </Card>
   );
 }
 
+const mark = (f: Stretch, begin: number): Mark => ({
+  x: begin + f.from_s,
+  ...(f.to_s > f.from_s ? { to: begin + f.to_s } : {}),
+  words: f.code.replaceAll("_", " "),
+  colour: "alarm",
+});
+
 function Spectrum({ record, modes }: { record: RecordOut; modes: readonly Mode[] }) {
   const [range, setRange] = useState<Range | null>([0, Math.min(2, record.sample_rate_hz / 2)]);
+  const what = asked("spectrum") ?? "";
   const found = useAnswer(null, `spectrum ${record.record_id}`, () =>
     told(
       api.GET("/api/v1/records/{record_id}/spectrum", { params: { path: { record_id: record.record_id } } }),
@@ -112,36 +140,90 @@ function Spectrum({ record, modes }: { record: RecordOut; modes: readonly Mode[]
   const key = modes.map((m) => m.frequency_hz).join();
   const plot = useMemo((): PlotData | null => {
     if (!found.data) return null;
-    const { frequency_hz, channels, units } = found.data;
+    const { frequency_hz, channels, units, singular_values } = found.data;
     const first = Object.values(units)[0] ?? "";
+    const rows: [string, number[]][] = what
+      ? singular_values.map((row, i) => [["largest", "second", "third"][i] ?? `${i + 1}.`, row])
+      : Object.entries(channels).filter(([name]) => units[name] === first);
+    const series = rows.map(([name, y], i) => ({
+      name,
+      colour: paintOf(i),
+      kind: "line" as const,
+      x: frequency_hz.slice(1),
+      y: y.slice(1).map((v) => (v > 0 ? v : null)),
+    }));
     const marks: Mark[] = modes.map((m) => ({ x: m.frequency_hz, words: words(m.label), colour: "quiet" }));
-    const series = Object.entries(channels)
-      .filter(([name]) => units[name] === first)
-      .map(([name, y], i) => ({
-        name,
-        colour: COLOURS[i % COLOURS.length] ?? "blue",
-        kind: "line" as const,
-        x: frequency_hz.slice(1),
-        y: y.slice(1).map((v) => (v > 0 ? v : null)),
-      }));
-    return {
-      title: "Spectrum",
-      time: false,
-      xName: "frequency [Hz]",
-      yName: first,
-      log: true,
-      series,
-      marks,
-    };
-  }, [found.data, key]);
+    const title = what ? "Singular values" : "Spectrum";
+    return { title, time: false, xName: "frequency [Hz]", yName: first, log: true, series, marks };
+  }, [found.data, key, what]);
   return (
     <Card
       title="Spectral densities"
       wide
-      note="Welch's method, segments of a minute; upright lines are the modes found."
+      note="Welch's method, segments of a minute; upright lines are the modes found. A peak of the largest singular value alone is one mode, of two at once a close pair."
+      more={
+        <Choice
+          label="What"
+          value={what}
+          options={SPECTRA}
+          onChoose={(one) => keep({ spectrum: one || null })}
+        />
+      }
     >
       <Shown of={found} lines={6}>
         {() => plot && <Plot data={plot} height={300} range={range} onRange={setRange} />}
+      </Shown>
+    </Card>
+  );
+}
+
+function Spectrogram({ record }: { record: RecordOut }) {
+  const names = record.channels.map((c) => String(c["name"]));
+  const channel = asked("channel") ?? names[0] ?? "";
+  const found = useAnswer(null, `spectrogram ${record.record_id} ${channel}`, () => {
+    const params = { path: { record_id: record.record_id }, query: { channel } };
+    return told(api.GET("/api/v1/records/{record_id}/spectrogram", { params }));
+  });
+  const cells = useMemo(() => {
+    const rows = found.data?.level_db ?? [];
+    return (found.data?.frequency_hz ?? []).map((_, k) => rows.map((row) => row[k] ?? null));
+  }, [found.data]);
+  return (
+    <Card
+      title="Spectrogram"
+      wide
+      note="Segments of a minute that overlap by three quarters; a mode is a level line, what moves with the rotor is not."
+      more={
+        <select
+          aria-label="Channel"
+          value={channel}
+          onChange={(e) => keep({ channel: e.currentTarget.value })}
+        >
+          {names.map((name) => (
+            <option key={name}>{name}</option>
+          ))}
+        </select>
+      }
+    >
+      <Shown of={found} lines={6}>
+        {({ time_s, frequency_hz, segment_s, unit, level_db }) => (
+          <Heat
+            title={channel}
+            unit={`dB of ${unit}`}
+            cells={cells}
+            width={1200}
+            height={340}
+            x={[(time_s[0] ?? 0) / 60, ((time_s.at(-1) ?? 0) + segment_s) / 60]}
+            y={[0, frequency_hz.at(-1) ?? 1]}
+            xName="minutes after its start"
+            yName="frequency [Hz]"
+            sayX={String}
+            sayY={String}
+            say={(j, i) =>
+              `${((time_s[i] ?? 0) / 60).toFixed(1)} min, ${(frequency_hz[j] ?? 0).toFixed(3)} Hz: ${level_db[i]?.[j]?.toFixed(1) ?? "–"} dB`
+            }
+          />
+        )}
       </Shown>
     </Card>
   );
@@ -207,6 +289,7 @@ export default function Record({ asset, id }: PageProps) {
           <>
             <Signals record={data} />
             <Spectrum record={data} modes={modes.data ?? []} />
+            <Spectrogram record={data} />
             <Stabilisation record={data} modes={modes.data ?? []} again={record.again} />
           </>
         ) : (

@@ -1,11 +1,11 @@
 // Which records are there, and how far did each get?
 import { useState } from "preact/hooks";
-import { useAnswer } from "../api/answer";
-import { api, type RecordOut, told } from "../api/client";
+import { useAsset } from "../api/answer";
+import { type RecordOut } from "../api/client";
 import { may } from "../api/do";
-import { Card, Choice, Light, Time } from "../parts/Bits";
+import { Card, Choice, Light, Time, Head } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
-import { type Column, Table } from "../parts/Table";
+import { type Column, number, Table } from "../parts/Table";
 import { Upload } from "../parts/Upload";
 import type { PageProps } from "../shell/place";
 import { asked, assetUrl, keep } from "../shell/place";
@@ -36,21 +36,19 @@ const COLUMNS: Column<RecordOut>[] = [
     ),
     by: (r) => r.start_utc,
   },
-  {
-    title: "Length",
-    unit: "min",
-    numeric: true,
-    show: (r) => (r.duration_s / 60).toFixed(1),
-    by: (r) => r.duration_s,
-  },
-  {
-    title: "Rate",
-    unit: "Hz",
-    numeric: true,
-    show: (r) => Number(r.sample_rate_hz.toPrecision(4)),
-    by: (r) => r.sample_rate_hz,
-  },
-  { title: "Channels", numeric: true, show: (r) => r.channels.length, by: (r) => r.channels.length },
+  number(
+    "Length",
+    "min",
+    (r) => r.duration_s / 60,
+    (v) => v.toFixed(1),
+  ),
+  number(
+    "Rate",
+    "Hz",
+    (r) => r.sample_rate_hz,
+    (v) => Number(v.toPrecision(4)),
+  ),
+  number("Channels", "", (r) => r.channels.length),
   { title: "Source", show: (r) => r.source_name, by: (r) => r.source_name },
   { title: "Remark", show: (r) => <span class="prose">{detail(r)}</span> },
 ];
@@ -59,16 +57,18 @@ const MORE = 50;
 export default function Records({ asset }: PageProps) {
   const status = asked("status") ?? "";
   const [limit, setLimit] = useState(MORE);
-  const query = { limit, ...(status ? { status: status as Status } : {}) };
-  const found = useAnswer(asset, `records ${asset} ${status} ${limit}`, () =>
-    told(api.GET("/api/v1/assets/{asset}/records", { params: { path: { asset }, query } })),
-  );
+  const [from, to] = [asked("from"), asked("to")];
+  const query = {
+    limit,
+    ...(status ? { status: status as Status } : {}),
+    ...(from && to ? { from, to } : {}),
+  };
+  const found = useAsset(asset, "/records", query);
   return (
     <>
-      <div class="head">
-        <h1>Records</h1>
-        <p>Ten minutes each; every one is observed once, and its modes go into the state of its day.</p>
-      </div>
+      <Head title="Records">
+        Ten minutes each; every one is observed once, and its modes go into the state of its day.
+      </Head>
       {may("engineer") && <Upload asset={asset} />}
       <div class="tools below">
         <Choice
@@ -78,7 +78,17 @@ export default function Records({ asset }: PageProps) {
           onChoose={(s) => keep({ status: s || null })}
         />
       </div>
-      <Card title="Latest first" wide>
+      <Card
+        title={from && to ? `From ${from.slice(0, 10)} to ${to.slice(0, 10)}` : "Latest first"}
+        wide
+        more={
+          from && (
+            <button type="button" onClick={() => keep({ from: null, to: null })}>
+              All
+            </button>
+          )
+        }
+      >
         <Shown of={found} lines={8} empty={(data) => (data.items.length ? null : <Nothing asset={asset} />)}>
           {(data) => (
             <>

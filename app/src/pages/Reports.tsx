@@ -1,6 +1,5 @@
 // The report on all records, to read, print and send; tables to take away.
-import { useAnswer } from "../api/answer";
-import { api, told } from "../api/client";
+import { useAsset } from "../api/answer";
 import type { Knowledge } from "../api/shapes";
 import { Card } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
@@ -10,9 +9,7 @@ import { count } from "../words/numbers";
 const TABLES = ["modes", "findings", "records", "states", "conditions"];
 
 export default function Reports({ asset }: PageProps) {
-  const twin = useAnswer(asset, `twin ${asset}`, () =>
-    told(api.GET("/api/v1/assets/{asset}/twin", { params: { path: { asset } } })),
-  );
+  const twin = useAsset(asset, "/twin");
   return (
     <>
       <div class="head">

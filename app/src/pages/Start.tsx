@@ -2,7 +2,7 @@
 import { useState } from "preact/hooks";
 import { api, told } from "../api/client";
 import { may, useDeed } from "../api/do";
-import { Card } from "../parts/Bits";
+import { Card, Head } from "../parts/Bits";
 import { Empty } from "../parts/Shown";
 import { assetUrl, go } from "../shell/place";
 
@@ -34,13 +34,10 @@ export default function Start() {
   };
   return (
     <>
-      <div class="head">
-        <h1>A new turbine</h1>
-        <p>
-          From a twin file and the files that it names. <code>jackettwin init STRUCTURE RECORD</code> writes a
-          first one from a structure and records, and says what is missing.
-        </p>
-      </div>
+      <Head title="A new turbine">
+        From a twin file and the files that it names. <code>jackettwin init STRUCTURE RECORD</code> writes a
+        first one from a structure and records, and says what is missing.
+      </Head>
       <Card title="Its files">
         <form class="stack" onSubmit={(event) => void send(event)}>
           <label>

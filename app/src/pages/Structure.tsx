@@ -1,46 +1,26 @@
 // How the foundation moves: its updated complex modes in phase, and what was measured of each.
-import { useEffect, useRef } from "preact/hooks";
-import { show, type View } from "../../../src/jackettwin/report/templates/view.js";
-import "../../../src/jackettwin/report/templates/view.css";
-import { useAnswer } from "../api/answer";
-import { api, type Schemas, told } from "../api/client";
+import { useMemo } from "preact/hooks";
+import { useAnswer, useAsset } from "../api/answer";
+import { api, told } from "../api/client";
 import { Card } from "../parts/Bits";
+import { InSpace } from "../parts/InSpace";
 import { Empty, Shown } from "../parts/Shown";
 import type { PageProps } from "../shell/place";
 import { asked, keep } from "../shell/place";
-import { theme } from "../shell/theme";
-import { day } from "../words/time";
-
-type Drawn = Schemas["StructureOut"];
-
-/** Pictures of one page turn together. */
-const open = new Set<View>();
-
-function Picture({ drawn }: { drawn: Drawn }) {
-  const root = useRef<HTMLDivElement>(null);
-  const view = useRef<View | null>(null);
-  const dark = theme.value;
-  useEffect(() => {
-    if (!root.current) return;
-    const made = (view.current = show(root.current, drawn));
-    for (const other of open) {
-      other.link(made);
-      made.link(other);
-    }
-    open.add(made);
-    return () => {
-      open.delete(made);
-      made.gone();
-    };
-  }, [drawn]);
-  useEffect(() => view.current?.repaint(), [dark]);
-  return <div class="in-space" ref={root} />;
-}
+import { day, utc } from "../words/time";
 
 function Version({ asset, version }: { asset: string; version: number | undefined }) {
   const query = version === undefined ? {} : { version };
-  const found = useAnswer(asset, `structure ${asset} ${version ?? ""}`, () =>
-    told(api.GET("/api/v1/assets/{asset}/structure", { params: { path: { asset }, query } })),
+  const found = useAsset(asset, "/structure", query);
+  const record = asked("record");
+  const moved = useAnswer(null, `motion ${record ?? ""}`, async () => {
+    if (!record) return null;
+    return told(api.GET("/api/v1/records/{record_id}/motion", { params: { path: { record_id: record } } }));
+  });
+  const drawn = useMemo(
+    () =>
+      found.data && moved.data ? { ...found.data, motions: [moved.data, ...found.data.motions] } : found.data,
+    [found.data, moved.data],
   );
   return (
     <Card
@@ -49,22 +29,38 @@ function Version({ asset, version }: { asset: string; version: number | undefine
       note="Every part in its own phase: what is heavily damped does not pass through rest together. Green points are what the sensors measured, in the model's amplitude and phase."
     >
       <Shown of={found} lines={12} empty={(data) => (data.nodes?.length ? null : <Nothing />)}>
-        {(data) => <Picture drawn={data} />}
+        {(data) => <InSpace drawn={drawn ?? data} />}
       </Shown>
     </Card>
   );
 }
 
 export default function Structure({ asset }: PageProps) {
-  const versions = useAnswer(asset, `versions ${asset}`, () =>
-    told(api.GET("/api/v1/assets/{asset}/versions", { params: { path: { asset } } })),
-  );
+  const versions = useAsset(asset, "/versions");
   const others = versions.data?.items.filter((v) => !v.adopted) ?? [];
+  const records = useAsset(asset, "/records", { limit: 20, status: "observed" });
+  const kept = records.data?.items.filter((r) => r.raw_kept) ?? [];
   const beside = asked("beside");
   return (
     <>
       <div class="head">
         <h1>Structure</h1>
+        {kept.length > 0 && (
+          <label class="end">
+            Moved as in{" "}
+            <select
+              value={asked("record") ?? ""}
+              onChange={(e) => keep({ record: e.currentTarget.value || null })}
+            >
+              <option value="">its modes</option>
+              {kept.map((r) => (
+                <option key={r.record_id} value={r.record_id}>
+                  {`the record of ${utc(r.start_utc)}`}
+                </option>
+              ))}
+            </select>
+          </label>
+        )}
         {others.length > 0 && (
           <label class="end">
             Beside it{" "}

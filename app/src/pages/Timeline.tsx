@@ -1,13 +1,14 @@
 // How each mode went through time: one graph a mode, one range for all, every point a record.
 import { useMemo } from "preact/hooks";
-import { useAnswer } from "../api/answer";
+import { useAnswer, useAsset } from "../api/answer";
 import { api, type Alarm, everything, type Mode, told } from "../api/client";
-import { Card, Choice } from "../parts/Bits";
+import { Card, Choice, Head } from "../parts/Bits";
 import { binPlot, type Bins, byLabel, modePlot } from "../parts/modes";
 import { Plot } from "../parts/plot/Plot";
 import type { Mark, PlotData, Range } from "../parts/plot/series";
 import { Empty, Shown, Trouble } from "../parts/Shown";
-import { keepRange } from "../parts/Stiffness";
+import Stiffness, { keepRange } from "../parts/Stiffness";
+import { Rests, type Watch } from "../parts/Watched";
 import type { PageProps } from "../shell/place";
 import { asked, assetUrl, go, keep } from "../shell/place";
 import { words } from "../words/numbers";
@@ -16,6 +17,15 @@ import { day, seconds } from "../words/time";
 const QUANTITIES = [
   ["frequency", "Frequency"],
   ["damping", "Damping"],
+  ["left", "Left by conditions"],
+  ["damping-left", "Damping left"],
+  ["ground", "Ground"],
+] as const;
+const STATES = [
+  ["", "Any state"],
+  ["parked", "parked"],
+  ["idling", "idling"],
+  ["operating", "operating"],
 ] as const;
 const SPANS = [
   ["30", "30 days"],
@@ -37,7 +47,7 @@ interface Seen {
 /** What is known of some modes, or all, in a stretch of time. */
 async function look(
   asset: string,
-  times: { from?: string; to?: string },
+  times: { from?: string; to?: string; state?: string },
   labels: string[] = [],
 ): Promise<Seen> {
   const path = { asset };
@@ -64,15 +74,20 @@ async function look(
 const countOf = (bins: readonly Bins[]): number =>
   bins.reduce((n, b) => b.count.reduce((sum, k) => sum + k, n), 0);
 
-const alarmMarks = (alarms: readonly Alarm[]): Mark[] =>
+export const alarmMarks = (alarms: readonly Alarm[]): Mark[] =>
   alarms.map((a) => ({ x: seconds(a.time_utc), words: `alarm ${day(a.time_utc)}`, colour: "alarm" }));
 
 export default function Timeline({ asset }: PageProps) {
-  const path = { asset };
-  const all = useAnswer(asset, `modes ${asset}`, () => look(asset, {}));
-  const alarms = useAnswer(asset, `alarms ${asset}`, () =>
-    told(api.GET("/api/v1/assets/{asset}/alarms", { params: { path } })),
+  const state = asked("state") ?? "";
+  const of = state ? { state } : {};
+  const all = useAnswer(asset, `modes ${asset} ${state}`, () => look(asset, of));
+  const other = asked("beside") ?? "";
+  const assets = useAnswer(null, "assets", () => told(api.GET("/api/v1/assets")));
+  const beside = useAnswer(null, `beside ${other} ${state}`, async () =>
+    other ? (await look(other, of)).bins : [],
   );
+  const watch = useAsset(asset, "/watch");
+  const alarms = useAsset(asset, "/alarms");
   const what = asked("show") ?? "frequency";
   const wanted = asked("mode") ?? "";
   const [from, to] = [asked("from"), asked("to")];
@@ -82,16 +97,49 @@ export default function Timeline({ asset }: PageProps) {
   const close = from && to && labels.length && !all.data?.rows ? { from, to } : null;
   const part = useAnswer(
     asset,
-    `modes ${asset} ${JSON.stringify(close)}`,
-    async () => close && look(asset, close, labels),
+    `modes ${asset} ${state} ${JSON.stringify(close)}`,
+    async () => close && look(asset, { ...close, ...of }, labels),
   );
   return (
     <>
-      <div class="head">
-        <h1>Modes through time</h1>
-        <p>Every point is one record; choose one to open it. Drag to zoom, double-click to see all.</p>
-      </div>
+      <Head title="Modes through time">
+        Every point is one record; choose one to open it. Drag to zoom, double-click to see all.
+      </Head>
       {close && part.problem && <Trouble problem={part.problem} again={part.again} />}
+      <div class="tools">
+        <Choice
+          label="Quantity"
+          value={what}
+          options={QUANTITIES}
+          onChoose={(show) => keep({ show: show === "frequency" ? null : show })}
+        />
+        <Choice
+          label="State"
+          value={state}
+          options={STATES}
+          onChoose={(one) => keep({ state: one || null })}
+        />
+        {(assets.data?.items.length ?? 0) > 1 && (
+          <label>
+            Beside{" "}
+            <select value={other} onChange={(e) => keep({ beside: e.currentTarget.value || null })}>
+              <option value="">no other turbine</option>
+              {assets.data?.items
+                .filter((a) => a.name !== asset)
+                .map((a) => (
+                  <option key={a.name}>{a.name}</option>
+                ))}
+            </select>
+          </label>
+        )}
+        {from && to && (
+          <a
+            href={`${assetUrl(asset, "records")}?from=${encodeURIComponent(from)}&to=${encodeURIComponent(to)}`}
+          >
+            Records of this stretch
+          </a>
+        )}
+      </div>
       <Shown of={all} lines={10} empty={(data) => (data.bins.length ? null : <Nothing />)}>
         {(data) => (
           <Drawn
@@ -101,6 +149,9 @@ export default function Timeline({ asset }: PageProps) {
             what={what}
             wanted={wanted}
             range={range}
+            beside={{ name: other, bins: beside.data ?? [] }}
+            asset={asset}
+            watch={watch.data}
             open={(m) => go(assetUrl(asset, "records", m.record_id))}
           />
         )}
@@ -116,6 +167,9 @@ interface DrawnProps {
   what: string;
   wanted: string;
   range: Range | null;
+  beside: { name: string; bins: Bins[] };
+  asset: string;
+  watch: Watch | undefined;
   open: (mode: Mode) => void;
 }
 
@@ -125,7 +179,7 @@ interface Drawing {
   pick: (index: number) => void;
 }
 
-function Drawn({ all, seen, marks, what, wanted, range, open }: DrawnProps) {
+function Drawn({ all, seen, marks, what, wanted, range, beside, asset, watch, open }: DrawnProps) {
   const key = marks.map((m) => m.words).join();
   const plots = useMemo((): Drawing[] => {
     const groups = seen.rows && byLabel(seen.rows);
@@ -136,30 +190,26 @@ function Drawn({ all, seen, marks, what, wanted, range, open }: DrawnProps) {
         const pick = (index: number): void => {
           if (rows[index]) open(rows[index]);
         };
-        return { label, plot: modePlot(label, rows, what, marks), pick };
+        const plot = withOther(modePlot(label, rows, what, marks), beside, label, what);
+        return { label, plot, pick };
       }
       const bins = seen.bins.find((b) => b.label === label) ?? { ...whole, time_s: [] };
       const pick = (index: number): void => {
         const from = seconds(bins.start_utc) + (bins.time_s[index] ?? 0);
         keepRange([Math.floor(from), Math.ceil(from + bins.bin_s)]);
       };
-      return { label, plot: binPlot(bins, what, marks), pick };
+      return { label, plot: withOther(binPlot(bins, what, marks), beside, label, what), pick };
     });
-  }, [all, seen, what, key]);
+  }, [all, seen, what, key, beside.name, beside.bins]);
   const last = Math.max(...all.map((b) => seconds(b.start_utc) + (b.time_s.at(-1) ?? 0) + b.bin_s));
   const shown = plots.filter((p) => !wanted || p.label === wanted);
   const show = (days: string): void => keepRange(days ? [last - Number(days) * DAY_S, last + DAY_S] : null);
+  const title = what === "left" ? "Frequencies, what conditions leave" : "Damping, what conditions leave";
   const simulated = all.reduce((n, b) => n + b.simulated, 0);
   const span = range ? String(Math.round((range[1] - range[0]) / DAY_S - 1)) : "";
   return (
     <>
       <div class="tools">
-        <Choice
-          label="Quantity"
-          value={what}
-          options={QUANTITIES}
-          onChoose={(show) => keep({ show: show === "frequency" ? null : show })}
-        />
         <Choice label="Range" value={span} options={SPANS} onChoose={show} />
         <label>
           Mode{" "}
@@ -173,28 +223,61 @@ function Drawn({ all, seen, marks, what, wanted, range, open }: DrawnProps) {
           </select>
         </label>
       </div>
-      <Card
-        title={what === "damping" ? "Damping ratios" : "Frequencies"}
-        wide
-        note={
-          simulated > 0 && `${simulated} of ${countOf(all)} points are simulated: nobody measured these days.`
-        }
-      >
-        {!seen.rows && <p class="quiet">Bins of time; choose one, or zoom, to see its records.</p>}
-        {shown.map(({ label, plot, pick }) => (
-          <Plot
-            key={label}
-            data={plot}
-            height={shown.length === 1 ? 460 : 170}
-            range={range}
-            onRange={keepRange}
-            together="timeline"
-            onPick={(_, index) => pick(index)}
-          />
-        ))}
-      </Card>
+      {what === "ground" && <Stiffness asset={asset} />}
+      {what.endsWith("left") && (
+        <Card title={title} wide note="Daily means without what wind, sea, temperature and tide explain.">
+          {watch && (
+            <Rests
+              watch={watch}
+              marks={marks}
+              kind={what === "left" ? "frequency" : "damping"}
+              label={wanted}
+            />
+          )}
+        </Card>
+      )}
+      {PLAIN.has(what) && (
+        <Card
+          title={what === "damping" ? "Damping ratios" : "Frequencies"}
+          wide
+          note={
+            simulated > 0 &&
+            `${simulated} of ${countOf(all)} points are simulated: nobody measured these days.`
+          }
+        >
+          {!seen.rows && <p class="quiet">Bins of time; choose one, or zoom, to see its records.</p>}
+          {shown.map(({ label, plot, pick }) => (
+            <Plot
+              key={label}
+              data={plot}
+              height={shown.length === 1 ? 460 : 170}
+              range={range}
+              onRange={keepRange}
+              together="timeline"
+              onPick={(_, index) => pick(index)}
+            />
+          ))}
+        </Card>
+      )}
     </>
   );
+}
+
+const PLAIN = new Set(["frequency", "damping"]);
+
+/** A mode's plot with the medians of another turbine's mode of the same name. */
+function withOther(
+  plot: PlotData,
+  other: { name: string; bins: Bins[] },
+  label: string,
+  what: string,
+): PlotData {
+  const bins = other.bins.find((b) => b.label === label);
+  if (!bins) return plot;
+  const [median] = binPlot(bins, what, []).series.slice(-1);
+  return median
+    ? { ...plot, series: [...plot.series, { ...median, name: other.name, colour: "grey" }] }
+    : plot;
 }
 
 const Nothing = () => (

@@ -1,7 +1,7 @@
 // One screen: what the foundation does now, what changed and why, and how sure that is.
 import { Suspense } from "preact/compat";
-import { type Answer, useAnswer } from "../api/answer";
-import { api, type Alarm, type Asset, type Schemas, told } from "../api/client";
+import { type Answer, useAsset } from "../api/answer";
+import { type Alarm, type Asset, type Schemas } from "../api/client";
 import type { Knowledge, KnownMode } from "../api/shapes";
 import { AlarmList } from "../parts/AlarmList";
 import { Assumptions } from "../parts/Assumptions";
@@ -136,15 +136,10 @@ function Head({ asset, twin }: { asset: Asset; twin: Twin | undefined }) {
 }
 
 export function Turbine({ asset }: PageProps) {
-  const path = { params: { path: { asset } } };
-  const own = useAnswer(asset, `asset ${asset}`, () => told(api.GET("/api/v1/assets/{asset}", path)));
-  const twin = useAnswer(asset, `twin ${asset}`, () => told(api.GET("/api/v1/assets/{asset}/twin", path)));
-  const alarms = useAnswer(asset, `alarms ${asset}`, () =>
-    told(api.GET("/api/v1/assets/{asset}/alarms", path)),
-  );
-  const budget = useAnswer(asset, `budget ${asset}`, () =>
-    told(api.GET("/api/v1/assets/{asset}/damping-budget", path)),
-  );
+  const own = useAsset(asset, "");
+  const twin = useAsset(asset, "/twin");
+  const alarms = useAsset(asset, "/alarms");
+  const budget = useAsset(asset, "/damping-budget");
   if (own.data === undefined && own.problem) return <Trouble problem={own.problem} again={own.again} />;
   const known = twin.data?.parameters as Knowledge | undefined;
   return (

@@ -2,7 +2,7 @@
 import { useAnswer } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
 import { useDeed } from "../api/do";
-import { Card, FormEnd, Time } from "../parts/Bits";
+import { Card, FormEnd, Time, Head } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import { Table } from "../parts/Table";
 
@@ -64,13 +64,9 @@ export default function Users() {
   );
   return (
     <>
-      <div class="head">
-        <h1>Users</h1>
-        <p>
-          With the first user, everybody needs a login. Until then this server answers to its own machine
-          only.
-        </p>
-      </div>
+      <Head title="Users">
+        With the first user, everybody needs a login. Until then this server answers to its own machine only.
+      </Head>
       <div class="grid">
         <Card title="Who may">
           <Shown of={users} empty={(data) => (data.items.length ? null : <Empty title="No user yet" />)}>

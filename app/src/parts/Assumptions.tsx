@@ -1,6 +1,6 @@
 // What answers take for granted, and the way to say that one has looked.
 import { useState } from "preact/hooks";
-import { useAnswer } from "../api/answer";
+import { useAsset } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
 import { may, useDeed } from "../api/do";
 import { assetUrl } from "../shell/place";
@@ -49,9 +49,7 @@ function Confirm({ asset, one, done }: { asset: string; one: Assumption; done: (
 
 export function Assumptions({ asset }: { asset: string }) {
   const [version, setVersion] = useState<number | null>(null);
-  const found = useAnswer(asset, `assumptions ${asset}`, () =>
-    told(api.GET("/api/v1/assets/{asset}/assumptions", { params: { path: { asset } } })),
-  );
+  const found = useAsset(asset, "/assumptions");
   return (
     <Card
       title="Open assumptions"

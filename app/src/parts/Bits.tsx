@@ -38,6 +38,15 @@ export function Ago({ at }: { at: string }) {
   );
 }
 
+export function Head({ title, children }: { title: string; children: ComponentChildren }) {
+  return (
+    <div class="head">
+      <h1>{title}</h1>
+      <p>{children}</p>
+    </div>
+  );
+}
+
 interface CardProps {
   title: string;
   note?: ComponentChildren;

@@ -25,7 +25,16 @@ function Row({ mode, most }: { mode: Schemas["BudgetOut"]; most: number }) {
         {parts.map((part) => {
           const x = from;
           from += at(part.value);
-          return <rect key={part.name} class={part.name} x={x} y="4" width={at(part.value)} height="10" />;
+          return (
+            <rect
+              key={part.name}
+              x={x}
+              style={{ fill: `var(--${PAINT[part.name] ?? "grey"})` }}
+              y="4"
+              width={at(part.value)}
+              height="10"
+            />
+          );
         })}
         {mode.unexplained ? (
           <rect class="unexplained" x={at(sum)} y="4" width={at(mode.unexplained)} height="10" />
@@ -64,7 +73,7 @@ export function Budget({ modes }: { modes: readonly Schemas["BudgetOut"][] }) {
       <p class="keys">
         {used.map((s) => (
           <span key={s}>
-            <i class={`paint-${PAINT[s] ?? "grey"}`} aria-hidden="true" />
+            <i style={{ background: `var(--${PAINT[s] ?? "grey"})` }} aria-hidden="true" />
             {s}
           </span>
         ))}

@@ -13,30 +13,15 @@ const SPANS: readonly (readonly [number, string])[] = [
   [30, "a month"],
   [365, "a year"],
 ];
-const ASKED: Record<Act, string> = {
-  acknowledge: "What you saw, and what you do about it",
-  assign: "Why to that person",
-  comment: "What is to be said",
-  mute: "Why nobody is to be told",
-  close: "Why it needs nobody any more",
-  reopen: "Why it needs somebody after all",
-};
-const NAMED: Record<Act, string> = {
-  acknowledge: "Acknowledge",
-  assign: "Assign",
-  comment: "Comment",
-  mute: "Mute",
-  close: "Close",
-  reopen: "Reopen",
-};
-const DID: Record<string, string> = {
-  acknowledge: "acknowledged",
-  assign: "assigned",
-  comment: "said",
-  mute: "muted",
-  unmute: "ended the mute",
-  close: "closed",
-  reopen: "reopened",
+/** Of each act: its button, what is asked, and how it is told afterwards. */
+const ACTS: Record<string, readonly [string, string, string]> = {
+  acknowledge: ["Acknowledge", "What you saw, and what you do about it", "acknowledged"],
+  assign: ["Assign", "Why to that person", "assigned"],
+  comment: ["Comment", "What is to be said", "said"],
+  mute: ["Mute", "Why nobody is to be told", "muted"],
+  unmute: ["", "", "ended the mute"],
+  close: ["Close", "Why it needs nobody any more", "closed"],
+  reopen: ["Reopen", "Why it needs somebody after all", "reopened"],
 };
 
 /** How a finding stands: what its light says. */
@@ -52,33 +37,20 @@ function possible(f: Finding): Act[] {
 async function sent(f: Finding, act: Act, form: FormData): Promise<unknown> {
   const text = (name: string): string => String(form.get(name) ?? "");
   const comment = text("comment");
-  const params = { path: { finding_id: f.id } };
-  switch (act) {
-    case "acknowledge":
-      return told(
-        api.POST("/api/v1/alarms/{alarm_id}/acknowledge", {
-          params: { path: { alarm_id: f.id } },
-          body: { comment },
-        }),
-      );
-    case "assign":
-      return told(
-        api.POST("/api/v1/findings/{finding_id}/assign", {
-          params,
-          body: { to: text("to") || null, comment },
-        }),
-      );
-    case "comment":
-      return told(api.POST("/api/v1/findings/{finding_id}/comment", { params, body: { comment } }));
-    case "mute": {
-      const until_utc = new Date(Date.now() + Number(text("days")) * DAY_MS).toISOString();
-      return told(api.POST("/api/v1/findings/{finding_id}/mute", { params, body: { until_utc, comment } }));
-    }
-    case "close":
-      return told(api.POST("/api/v1/findings/{finding_id}/close", { params, body: { reason: comment } }));
-    case "reopen":
-      return told(api.POST("/api/v1/findings/{finding_id}/reopen", { params, body: { comment } }));
+  if (act === "acknowledge") {
+    const params = { path: { alarm_id: f.id } };
+    return told(api.POST("/api/v1/alarms/{alarm_id}/acknowledge", { params, body: { comment } }));
   }
+  const until_utc = new Date(Date.now() + Number(text("days")) * DAY_MS).toISOString();
+  const body = {
+    assign: { to: text("to") || null, comment },
+    comment: { comment },
+    mute: { until_utc, comment },
+    close: { reason: comment },
+    reopen: { comment },
+  }[act];
+  const params = { path: { finding_id: f.id } };
+  return told(api.POST(`/api/v1/findings/{finding_id}/${act}`, { params, body } as never));
 }
 
 interface HandlingProps {
@@ -99,7 +71,7 @@ export function Handling({ finding, again }: HandlingProps) {
       <p class="acts">
         {possible(finding).map((one) => (
           <button type="button" key={one} onClick={() => setAct(one)}>
-            {NAMED[one]}
+            {ACTS[one]?.[0]}
           </button>
         ))}
       </p>
@@ -133,10 +105,10 @@ export function Handling({ finding, again }: HandlingProps) {
         </label>
       )}
       <label>
-        {ASKED[act]}
+        {ACTS[act]?.[1]}
         <textarea name="comment" required={must} maxLength={2000} />
       </label>
-      <FormEnd deed={deed} words={NAMED[act]} onLeave={() => setAct(null)} />
+      <FormEnd deed={deed} words={ACTS[act]?.[0] ?? act} onLeave={() => setAct(null)} />
     </form>
   );
 }
@@ -153,7 +125,7 @@ export function History({ finding }: { finding: Finding }) {
     <ol class="acts-done">
       {acts.map((one, i) => (
         <li key={i}>
-          <b>{one.by}</b> {DID[one.action] ?? one.action}
+          <b>{one.by}</b> {ACTS[one.action]?.[2] ?? one.action}
           {one.to ? ` to ${one.to}` : ""}
           {one.until_utc && (
             <>

@@ -1,7 +1,7 @@
 // The ground's stiffness of each day over that of the first: known then, known by now, and what to expect.
 import { useMemo } from "preact/hooks";
-import { useAnswer } from "../api/answer";
-import { api, type Schemas, told } from "../api/client";
+import { useAsset } from "../api/answer";
+import { type Schemas } from "../api/client";
 import { asked, keep } from "../shell/place";
 import { day, seconds } from "../words/time";
 import { Card } from "./Bits";
@@ -62,10 +62,7 @@ export function stiffnessPlot(found: Supports): PlotData {
 }
 
 export default function Stiffness({ asset }: { asset: string }) {
-  const path = { params: { path: { asset } } };
-  const found = useAnswer(asset, `supports ${asset}`, () =>
-    told(api.GET("/api/v1/assets/{asset}/supports", path)),
-  );
+  const found = useAsset(asset, "/supports");
   return (
     <Card title="The ground" wide>
       <Shown

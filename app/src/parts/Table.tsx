@@ -11,6 +11,20 @@ export interface Column<T> {
   numeric?: boolean;
 }
 
+/** A column of numbers, by which rows are sorted. */
+export const number = <T,>(
+  title: string,
+  unit: string,
+  by: (row: T) => number | null | undefined,
+  say: (value: number) => ComponentChildren = String,
+): Column<T> => {
+  const show = (row: T): ComponentChildren => {
+    const value = by(row);
+    return typeof value === "number" ? say(value) : "–";
+  };
+  return { title, unit, numeric: true, show, by: (row) => by(row) ?? null };
+};
+
 interface TableProps<T> {
   label: string;
   columns: readonly Column<T>[];

@@ -4,6 +4,7 @@ declare module "*/templates/view.js" {
     focus(): void;
     repaint(): void;
     link(other: View): void;
+    stand(seconds: number): void;
     gone(): void;
   }
   export function show(root: HTMLElement, drawn: unknown, asked?: Map<string, string>): View;

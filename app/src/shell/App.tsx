@@ -20,6 +20,7 @@ const PAGES: Record<string, ComponentType<PageProps>> = {
   timeline: later(() => import("../pages/Timeline")),
   structure: later(() => import("../pages/Structure")),
   explore: later(() => import("../pages/Explore")),
+  live: later(() => import("../pages/Live")),
   life: later(() => import("../pages/Life")),
   records: later(() => import("../pages/Records")),
   record: later(() => import("../pages/Record")),
@@ -33,6 +34,7 @@ const PAGES: Record<string, ComponentType<PageProps>> = {
 };
 const TABS: readonly (readonly [string, string])[] = [
   ["", "Turbine"],
+  ["live", "Live"],
   ["timeline", "Timeline"],
   ["structure", "Structure"],
   ["explore", "Explore"],

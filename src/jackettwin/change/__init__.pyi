@@ -9,6 +9,7 @@ from .judge import (
     finding_of as finding_of,
     history_of as history_of,
     judge as judge,
+    monitoring_document as monitoring_document,
     sight_of as sight_of,
 )
 from .smallest_changes import (

@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from jackettwin.arrays import FloatArray
 from jackettwin.change.causes import ModelCauses, seen_causes
 from jackettwin.change.ground import UNDESCRIBED, Ground
 from jackettwin.change.smallest_changes import (
@@ -27,7 +28,7 @@ from jackettwin.change.smallest_changes import (
 from jackettwin.change.table_monitoring import explained_alarm, structure_causes, watch_after_baseline
 from jackettwin.change.watch_document import alarm_document, sizes_by_mode, with_later_look
 from jackettwin.errors import InputError
-from jackettwin.files import StoredSchema, digest
+from jackettwin.files import StoredSchema, digest, null_for_nan
 from jackettwin.findings import Finding
 from jackettwin.twin import UNDATED, UNIT, Day, TwinModel, TwinState
 from jackettwin.twin.config import WatchSettings
@@ -38,6 +39,24 @@ from jackettwin.watching.watch import FEWEST_DAYS
 
 EPOCH = date(1970, 1, 1)
 _USUAL = WatchSettings()
+
+
+@dataclass(frozen=True)
+class DayLook:
+    """What a judged day showed.
+
+    Attributes
+    ----------
+    date : str
+    ln_evidence : ln of the detection statistic
+    rest, rest_std : (n_quantities,) daily means minus the part explained by conditions, and their standard
+        deviations without a change, to seven decimals; NaN where the day has none
+    """
+
+    date: str
+    ln_evidence: float
+    rest: FloatArray
+    rest_std: FloatArray
 
 
 @dataclass(frozen=True)
@@ -54,6 +73,7 @@ class StoredMonitoring:
     columns : of the baseline
     pending : the last alarm's change, while it is looked at again
     smallest : changes that would be found, as documents
+    looks : what each day showed that was judged
     """
 
     baseline_days: float
@@ -68,6 +88,7 @@ class StoredMonitoring:
     columns: Columns | None = None
     pending: PendingChange | None = None
     smallest: tuple[Mapping[str, Any], ...] = ()
+    looks: tuple[DayLook, ...] = ()
 
     @property
     def promise(self) -> tuple[float, float, str]:
@@ -175,7 +196,8 @@ def _known(
     if kept.learnt is None or kept.baseline != _fingerprint(every, before):
         return fresh
     if kept.judged != _fingerprint(every, [d for d in after if d <= kept.through]):
-        return replace(kept, judged="", through=UNDATED, watch=kept.learnt, alarms=(), pending=None)
+        return replace(kept, judged="", through=UNDATED, watch=kept.learnt, alarms=(), pending=None,
+                       looks=())  # fmt: skip
     return kept
 
 
@@ -213,7 +235,38 @@ def _day(
             alarms = (*alarms[:-1], with_later_look(alarms[-1], told(change)))
     if look.change is not None:
         alarms, pending = (*alarms, told(look.change)), look.pending
-    return replace(known, watch=watch, through=name, alarms=alarms, pending=pending)
+    shown = DayLook(name, round(look.log_r, 4), np.round(look.rest, 7), np.round(look.rest_std, 7))
+    return replace(
+        known, watch=watch, through=name, alarms=alarms, pending=pending, looks=(*known.looks, shown)
+    )
+
+
+def monitoring_document(judged: StoredMonitoring) -> dict[str, Any]:
+    """Return what the judged days showed as plain data, quantity by quantity; empty before the first.
+
+    ``rest`` is what conditions do not explain, ``rest_std`` its standard deviation while nothing changes;
+    ``smallest`` are changes that would be found, and the step of each quantity by them.
+    """
+    if judged.watch is None:
+        return {}
+    rest, std = (np.array([getattr(one, name) for one in judged.looks]) for name in ("rest", "rest_std"))
+    return {
+        "arl_years": judged.arl_years,
+        "threshold_ln": judged.watch.log_threshold,
+        "days": [one.date for one in judged.looks],
+        "ln_evidence": [one.ln_evidence for one in judged.looks],
+        "quantities": [
+            {
+                "label": judged.watch.labels[mode],
+                "kind": kind,
+                "rest": null_for_nan(rest[:, i].tolist()),
+                "rest_std": null_for_nan(std[:, i].tolist()),
+            }
+            for i, (kind, mode) in enumerate(judged.watch.quantities)
+            if judged.looks
+        ],
+        "smallest": [dict(one) for one in judged.smallest],
+    }
 
 
 def finding_of(alarm: Mapping[str, Any]) -> Finding:

@@ -31,6 +31,7 @@ class SmallestChange:
     days : within which it is found
     size : the smallest that is, in ``unit``; None if none is. For a lost brace None
     found, of : number of braces whose loss would be found, and of all; None for what has a size
+    step : change of each monitored quantity by this size: of logarithms, angles [rad]; empty without a size
     """
 
     change: str
@@ -39,6 +40,7 @@ class SmallestChange:
     unit: str
     found: int | None = None
     of: int | None = None
+    step: tuple[float, ...] = ()
 
 
 def smallest_changes(
@@ -80,7 +82,8 @@ def _of_structure(watch: Watch, seen: Sight, causes: ModelCauses) -> Iterator[Sm
             usual = float(np.median(np.abs(cause.sizes)))
             high = min(_RANGE[1] * usual, _LARGEST[cause.name])
             size = seen.smallest(lambda x, c=cause: step(c, x), _RANGE[0] * usual, high)  # type: ignore[misc]
-            yield SmallestChange(cause.name, seen.days, size, cause.unit)
+            moved = () if size is None else tuple(np.round(step(cause, size), 7).tolist())
+            yield SmallestChange(cause.name, seen.days, size, cause.unit, step=moved)
     lost = [c for c in over.causes if c.name.split(" (or ")[0].endswith(_ALL_OR_NONE)]
     number = [1 + len(c.alike) for c in lost]
     found = [n for c, n in zip(lost, number, strict=True) if seen.chance(step(c, 1.0)) >= CHANCE]
@@ -90,7 +93,7 @@ def _of_structure(watch: Watch, seen: Sight, causes: ModelCauses) -> Iterator[Sm
 
 def smallest_documents(found: Sequence[SmallestChange]) -> list[dict[str, Any]]:
     """Return the smallest changes as plain data."""
-    return [asdict(one) for one in found]
+    return [{**asdict(one), "step": list(one.step)} for one in found]
 
 
 def smallest_sentence(found: Sequence[dict[str, Any]]) -> str:

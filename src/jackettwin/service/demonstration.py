@@ -1,14 +1,19 @@
 """A demonstration asset: two years of simulated days, then its records, which arrive in fast motion.
 
-So that a newcomer sees a twin live within a minute, and on every page something that happened.
+So that a newcomer sees a twin live within a minute, and on every page something that happened. What the days
+lead to takes a minute to work out and is always the same: it is shipped (``scripts/write_demonstration.py``),
+used if the days here are those days, and else worked out as for any turbine.
 """
 
 from __future__ import annotations
 
+import base64
+import json
 import logging
+import lzma
 import time
 from dataclasses import replace
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime, time as clock, timedelta
 from importlib.resources import files
 from pathlib import Path
 from threading import Thread
@@ -17,18 +22,19 @@ from typing import TYPE_CHECKING
 from jackettwin.records import read_record
 from jackettwin.service.intake.bundles import bundle, twin_folder
 from jackettwin.service.intake.files import accept
-from jackettwin.service.story import story
+from jackettwin.service.story import UNTIL, story
 from jackettwin.service.web.catalogue import add_version
-from jackettwin.service.work.consequences import keep_observation
+from jackettwin.service.work.consequences import keep_observation, put_known
 from jackettwin.service.workers.engine import TWIN_FILE, load_twin, observed_as
 from jackettwin.service.workers.tasks import Outcome, stored
-from jackettwin.store import assets, reading, records, work, writing
+from jackettwin.store import assets, reading, records, results, work, writing
 from jackettwin.twin import read_twin
+from jackettwin.version import __version__
 
 if TYPE_CHECKING:
     from sqlalchemy import Connection
 
-    from jackettwin.service.context import Service
+    from jackettwin.service.context import Place, Service
     from jackettwin.twin import Observation
 
 log = logging.getLogger(__name__)
@@ -39,13 +45,14 @@ SAID = "The demonstration: its five records are OpenFAST's, the two years of day
 _LOCKED = b"\noperation: {updates: [parked]} # of the days before its records, those with a locked shaft\n"
 """What the demonstration adds to the shipped twin: the rotor's damping is predicted for a rotor at rest."""
 _EVERY_S = 4.0
+SHIPPED = "demonstration.json.xz"
+"""File of the package's data with what the days lead to."""
 
 
 def demonstrate(service: Service) -> Thread:
     """Add the demonstration asset and start a thread in which its records arrive, one every few seconds.
 
-    The shipped records are ten minutes each; they are dated an hour apart, the last one now, so that a
-    demonstration started again later continues.
+    The shipped records are ten minutes each; they are dated an hour apart on the day after the story.
     """
     thread = Thread(target=_arrive, args=(service,), name="demonstration", daemon=True)
     thread.start()
@@ -54,18 +61,11 @@ def demonstrate(service: Service) -> Thread:
 
 def _arrive(service: Service) -> None:
     try:
-        source = Path(str(files("jackettwin.data") / "twins" / f"{TWIN}.yaml"))
-        with reading(service.database) as connection:
-            known = ASSET in assets.asset_names(connection)
-        if not known:
-            contents = bundle(source)
-            contents[TWIN_FILE] += _LOCKED
-            add_version(service, ASSET, contents, "demonstration", SAID)
-            tell_story(service, ASSET)
-        hour = datetime.now(UTC).replace(minute=0, second=0, microsecond=0)
-        paths = read_twin(source).records
-        for i, path in enumerate(paths):
-            record = replace(read_record(path), start_utc=hour - timedelta(hours=len(paths) - i))
+        tell_story(service)
+        service.wake()
+        noon = datetime.combine(UNTIL, clock(12), UTC)
+        for i, path in enumerate(read_twin(_source()).records):
+            record = replace(read_record(path), start_utc=noon + timedelta(hours=i))
             parsed = stored(record, ASSET, service.settings.store)
             with writing(service.database) as connection:
                 accept(service.now(), connection, ASSET, parsed, record.name)
@@ -75,19 +75,66 @@ def _arrive(service: Service) -> None:
         log.exception("the demonstration stopped")
 
 
-def tell_story(service: Service, asset: str) -> None:
-    """Keep two years of simulated days of an asset, as if each had been observed: all or none."""
+def _source() -> Path:
+    return Path(str(files("jackettwin.data") / "twins" / f"{TWIN}.yaml"))
+
+
+def tell_story(service: Place) -> None:
+    """Add the asset with two years of simulated days, as if each had been observed: all or none.
+
+    An asset that is there already stays as it is.
+    """
     with reading(service.database) as connection:
-        version = assets.found_version(connection, asset)
-        twin = load_twin(twin_folder(connection, service, asset, version.version))
-    days = list(story(twin.config, twin.model, service.now().date()))
+        if ASSET in assets.asset_names(connection):
+            return
+    contents = bundle(_source())
+    contents[TWIN_FILE] += _LOCKED
+    add_version(service, ASSET, contents, "demonstration", SAID)
+    with reading(service.database) as connection:
+        version = assets.found_version(connection, ASSET)
+        twin = load_twin(twin_folder(connection, service, ASSET, version.version))
+    days = list(story(twin.config, twin.model))
     with writing(service.database) as connection:
         for seen in days:
             _keep(connection, service, version, seen)
-    service.wake()
+        _know_shipped(connection, service, version)
 
 
-def _keep(connection: Connection, service: Service, version: assets.Version, seen: Observation) -> None:
+def _know_shipped(connection: Connection, service: Place, version: assets.Version) -> None:
+    """Keep what is shipped, of these days by this program, in place of the study that is queued.
+
+    The posterior is sampled again once the records are there.
+    """
+    found = files("jackettwin.data") / SHIPPED
+    if not found.is_file():
+        return
+    kept = json.loads(lzma.decompress(found.read_bytes()))
+    hashes = results.state_hashes(connection, ASSET, version.model_hash)
+    if kept["code_version"] != __version__ or kept["of"] != results.identity_of(hashes):
+        return
+    kept["document"]["together"]["code_version"] = "shipped"
+    outcome = Outcome(
+        json.dumps(kept["document"]), findings=tuple(kept["findings"]), page=base64.b64decode(kept["page"]),
+        of=kept["of"],
+    )  # fmt: skip
+    for job in work.jobs_of(connection, ASSET, ""):
+        work.cancel(connection, job.id, service.now())
+    put_known(connection, service, version, outcome)
+
+
+def shipped(outcome: Outcome) -> bytes:
+    """Return what the days led to, as it is shipped."""
+    content = {
+        "code_version": __version__,
+        "of": outcome.of,
+        "document": json.loads(outcome.document or "{}"),
+        "findings": outcome.findings,
+        "page": base64.b64encode(outcome.page or b"").decode(),
+    }
+    return lzma.compress(json.dumps(content, separators=(",", ":")).encode(), preset=9)
+
+
+def _keep(connection: Connection, service: Place, version: assets.Version, seen: Observation) -> None:
     now = service.now()
     document, modes, findings, problem = observed_as(seen)
     assert seen.start_utc is not None

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, date, datetime, timedelta
-from math import exp, log, pi, sin
+from math import exp, pi, sin
 
 import numpy as np
 
@@ -32,7 +32,8 @@ from jackettwin.soil import Spring, Support
 from jackettwin.twin import Observation, Recognised, TwinConfig, TwinModel
 from jackettwin.version import __version__
 
-DAYS = 730
+DAYS, UNTIL = 730, date(2025, 12, 1)
+"""Length of the story, and the day after it: always the same, so that what it leads to can be shipped."""
 STORM, SCOUR_M = 500, 1.4
 """The day after whose storm the ground is gone, and how deep."""
 _STOP = range(400, 404)
@@ -68,7 +69,7 @@ class DayWeather:
     level_m: float
 
 
-def story(config: TwinConfig, model: TwinModel, until: date, seed: int = 7) -> Iterator[Observation]:
+def story(config: TwinConfig, model: TwinModel, until: date = UNTIL, seed: int = 7) -> Iterator[Observation]:
     """Yield an observation for every day that something was measured on, the last one the day before a date.
 
     Parameters
@@ -87,7 +88,7 @@ def story(config: TwinConfig, model: TwinModel, until: date, seed: int = 7) -> I
             own = common + SCOUR_M * scour[number - 1] * (day > STORM)
             std = np.array([f_std, zeta_std]) / np.sqrt(_RECORDS)
             x, y = rng.standard_normal(2) * np.hypot(std, [_OWN, 0.06])
-            f, zeta = f * exp(own + x), zeta * exp(y)
+            f, zeta = _rounded(f * exp(own + x)), _rounded(zeta * exp(y))
             modes[label] = ModalEstimate(
                 f, zeta, np.ones(1, complex), 1.0, 0.0, 1.0, frequency_std_hz=f * std[0],
                 damping_ratio_std=zeta * std[1], log_covariance=np.diag(std**2),
@@ -95,6 +96,11 @@ def story(config: TwinConfig, model: TwinModel, until: date, seed: int = 7) -> I
             )  # fmt: skip
         if day not in _STOP:
             yield _observation(model, day, until - timedelta(days=DAYS - day), weather, modes)
+
+
+def _rounded(value: float) -> float:
+    """Return a number without the digits in which machines differ."""
+    return float(f"{value:.6g}")
 
 
 def _weather(rng: np.random.Generator, until: date) -> Iterator[DayWeather]:
@@ -158,7 +164,7 @@ def _observation(
     # no shape was measured: whatever record has one shows its mode more clearly
     recognised = tuple(Recognised(model.labels.index(label) + 1, label, 0.0) for label in modes)
     return Observation(
-        record_id=digest(["story", of.isoformat(), [log(m.frequency_hz) for m in modes.values()]]),
+        record_id=digest(["story", of.isoformat(), [m.frequency_hz for m in modes.values()]]),
         model_hash=model.model_hash,
         settings_hash=model.settings_hash(""),
         code_version=__version__,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import Float, Select, cast, extract, func, select
 
-from jackettwin.store.records import between
+from jackettwin.store.records import between, of_state
 from jackettwin.store.tables import modes
 
 if TYPE_CHECKING:
@@ -63,6 +63,7 @@ def modes_in_bins(
     label: str | None = None,
     since: datetime | None = None,
     until: datetime | None = None,
+    state: str | None = None,
 ) -> Iterator[ModeBins]:
     """Yield each mode, or one, in at most ``points`` bins from one time until before another.
 
@@ -72,7 +73,7 @@ def modes_in_bins(
     rows = select(modes).filter_by(asset=asset, model_hash=model_hash)
     if label is not None:
         rows = rows.where(modes.c.label == label)
-    rows = between(rows, modes.c.time_utc, since, until)
+    rows = of_state(between(rows, modes.c.time_utc, since, until), modes.c.record_id, asset, state)
     span = rows.with_only_columns(func.min(modes.c.time_utc), func.max(modes.c.time_utc))
     first, last = (since, until) if since and until else connection.execute(span).one()
     if first is None:

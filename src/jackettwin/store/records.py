@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Column, Connection, Select, Update, func, select, tuple_, update
+from sqlalchemy import Column, ColumnElement, Connection, Select, Update, func, select, tuple_, update
 
 from jackettwin.errors import InputError
 from jackettwin.store.database import insert_new
@@ -107,6 +107,15 @@ def all_with_samples(
     query = query.where(records.c.waveform.is_not(None), records.c.status != "set_aside")
     rows = connection.execute(query.order_by(records.c.start_utc, records.c.record_id))
     return [StoredRecord(**row._mapping) for row in rows]
+
+
+def of_state(query: Select[Any], column: ColumnElement[str], asset: str, state: str | None) -> Select[Any]:
+    """Return a query restricted to records whose state of operation begins with a word, if there is one."""
+    if state is None:
+        return query
+    said = records.c.conditions["state"].as_string()
+    own = select(records.c.record_id).where(records.c.asset == asset, said.startswith(state, autoescape=True))
+    return query.where(column.in_(own))
 
 
 def between(

@@ -12,7 +12,7 @@ from sqlalchemy import ColumnElement, Connection, Delete, Select, Table, delete,
 
 from jackettwin.store import handling
 from jackettwin.store.columns import FORGOTTEN
-from jackettwin.store.records import between
+from jackettwin.store.records import between, of_state
 from jackettwin.store.tables import (
     assets,
     findings,
@@ -224,13 +224,15 @@ def list_modes(
     until: datetime | None = None,
     after: int | None = None,
     limit: int | None = 1000,
+    state: str | None = None,
 ) -> list[Mapping[str, Any]]:
-    """Return modes over time, in the order of their identification."""
+    """Return modes over time, in the order of their identification; of records in a state of operation."""
     query = select(modes).filter_by(asset=asset, model_hash=model_hash).order_by(modes.c.id).limit(limit)
     if label is not None:
         query = query.where(modes.c.label == label)
     if after is not None:
         query = query.where(modes.c.id > after)
+    query = of_state(query, modes.c.record_id, asset, state)
     return _rows(connection, between(query, modes.c.time_utc, since, until))
 
 
@@ -276,10 +278,16 @@ def put_knowledge(
     connection.execute(insert(knowledge).values(**key, document=dict(document), report=report))
 
 
+_ANSWERS = ("known", "supports", "life", "watch")
+"""Parts of what is stored of a version that answer requests; the others only save time."""
+
+
 def find_kept(connection: Connection, asset: str, version: int) -> Mapping[str, Any]:
     """Return the stored intermediate results of estimations, by name."""
     document = connection.scalar(select(knowledge.c.document).where(*_of_version(asset, version))) or {}
-    return {name: value for name, value in document.items() if name not in ("known", "supports", "life")}
+    return {
+        name: value for name, value in document.items() if name not in ("known", "supports", "life", "watch")
+    }
 
 
 def find_supports(connection: Connection, asset: str, version: int) -> dict[str, Any]:
@@ -295,6 +303,11 @@ def find_drawn(connection: Connection, asset: str, version: int, name: str) -> A
 def find_stiffness(connection: Connection, asset: str, version: int) -> dict[str, Any]:
     """Return the stiffness of the supports on each day; empty if there is none yet."""
     return dict(_part(connection, asset, version, "supports"))
+
+
+def find_watch(connection: Connection, asset: str, version: int) -> dict[str, Any]:
+    """Return what the monitoring of a turbine's days showed; empty if there is nothing yet."""
+    return dict(_part(connection, asset, version, "watch"))
 
 
 def find_life(connection: Connection, asset: str, version: int) -> list[dict[str, Any]]:

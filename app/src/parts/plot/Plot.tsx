@@ -267,7 +267,7 @@ export function Plot({ data, height = 220, range = null, onRange, onPick, togeth
           {data.series.length > 1 &&
             data.series.map((s) => (
               <span key={s.name} class={s.kind}>
-                <i class={`paint-${s.colour}`} aria-hidden="true" />
+                <i style={{ background: `var(--${s.colour})` }} aria-hidden="true" />
                 {s.name}
               </span>
             ))}

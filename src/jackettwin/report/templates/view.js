@@ -435,6 +435,14 @@ export function show(root, D, asked = new Map()) {
     lookFrom(other) { Object.assign(eye, other); fit(); },
     /** Turn another picture as this one is turned. */
     link(other) { linked.add(other); },
+    /** Stand where the motion is so many seconds after its first frame: its clock is another's. */
+    stand(seconds) {
+      const mo = state.motion;
+      if (!mo) { return; }
+      state.playing = false;
+      state.frame = Math.max(0, seconds / mo.step_s) % mo.q.length;
+      told(); draw();
+    },
     gone() { state.gone = true; observer.disconnect(); root.replaceChildren(); },
   };
 }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
 from math import log
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -15,6 +15,7 @@ from jackettwin.service import workers
 from jackettwin.service.intake.examination import profile
 from jackettwin.service.web.schemas.assets import ChangeOut, ComparisonOut
 from jackettwin.service.web.schemas.common import Page
+from jackettwin.service.web.schemas.drawings import ColourOut, StructureOut
 from jackettwin.service.web.schemas.findings import ActOut, FindingOut
 from jackettwin.service.web.schemas.modes import ModeOut, TwinOut
 from jackettwin.service.web.schemas.supports import SupportsOut
@@ -48,6 +49,7 @@ def modes(
     until: datetime | None,
     cursor: str | None,
     limit: int,
+    state: str | None,
 ) -> Page[ModeOut]:
     """Return a page of modes through time."""
     chosen: dict[str, Any] = {
@@ -56,9 +58,37 @@ def modes(
         "until": until,
         "after": _row(cursor),
         "limit": limit + 1,
+        "state": state,
     }
     rows = results.list_modes(connection, version.asset, version.model_hash, **chosen)
     return _page(rows, limit, _mode_out)
+
+
+def coloured_by_life(drawn: StructureOut, welds: Sequence[Mapping[str, Any]]) -> StructureOut:
+    """Return a structure with the life and the damage of each member's worst weld; as it is without any.
+
+    A weld belongs to the member on whose side it is: the chord's or the brace's.
+    """
+    worst: dict[str, Mapping[str, Any]] = {}
+    for weld in welds:
+        name = weld[weld["side"]]
+        if name not in worst or weld["rate_per_year"] > worst[name]["rate_per_year"]:
+            worst[name] = weld
+    own = [worst.get(text.partition("<br>")[0].partition(" (")[0]) for text in drawn.text]
+    if not any(own):
+        return drawn
+    shown: dict[tuple[str, str], Callable[[Mapping[str, Any]], float | None]] = {
+        ("life left, worst weld", "years"): lambda weld: weld["remaining_years"]["p50"],
+        ("damage a year, worst weld", "-"): lambda weld: weld["rate_per_year"] or None,
+    }
+    more = [
+        ColourOut(
+            name=name, unit=unit, log=True, from_zero=False,
+            values=[None if weld is None else value(weld) for weld in own],
+        )
+        for (name, unit), value in shown.items()
+    ]  # fmt: skip
+    return drawn.model_copy(update={"quantities": [*drawn.quantities, *more]})
 
 
 def _page(rows: list[Mapping[str, Any]], limit: int, made: Callable[[Mapping[str, Any]], T]) -> Page[T]:

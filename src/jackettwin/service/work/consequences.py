@@ -104,30 +104,34 @@ def _days_known(kept: Mapping[str, Any], identities: Mapping[str, str]) -> str |
 
 def keep_known(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
     """Store the estimates of a turbine's supports and the findings on changes."""
-    now = service.now()
-    if not work.finish(connection, job, service.server_id, "done", now):
-        return
+    if work.finish(connection, job, service.server_id, "done", service.now()):
+        put_known(connection, service, assets.found_version(connection, job.asset, job.version), outcome)
+
+
+def put_known(connection: Connection, service: Place, version: assets.Version, outcome: Outcome) -> None:
+    """Store what is known of a version's supports; ask again if a day changed meanwhile."""
+    now, asset, model_hash = service.now(), version.asset, version.model_hash
     document = json.loads(outcome.document or "{}")
     page = outcome.page
     if outcome.same_page:
-        page = results.find_report(connection, job.asset, job.version)
-    results.put_knowledge(connection, job.asset, job.version, document, page, now)
-    results.drop_findings(connection, job.asset, job.model_hash, origin="work")
-    journal.tell(connection, "state", job.asset, {"known": document["known"]["status"]}, now)
-    if outcome.of != results.identity_of(results.state_hashes(connection, job.asset, job.model_hash)):
-        ask_known(connection, service, assets.found_version(connection, job.asset, job.version))
-    adopted = assets.found_version(connection, job.asset)
-    if job.version != adopted.version and job.model_hash == adopted.model_hash:
+        page = results.find_report(connection, asset, version.version)
+    results.put_knowledge(connection, asset, version.version, document, page, now)
+    results.drop_findings(connection, asset, model_hash, origin="work")
+    journal.tell(connection, "state", asset, {"known": document["known"]["status"]}, now)
+    if outcome.of != results.identity_of(results.state_hashes(connection, asset, model_hash)):
+        ask_known(connection, service, version)
+    adopted = assets.found_version(connection, asset)
+    if version.version != adopted.version and model_hash == adopted.model_hash:
         return  # only the adopted version reports changes
-    key = {"asset": job.asset, "model_hash": job.model_hash, "record_id": ""}
+    key = {"asset": asset, "model_hash": model_hash, "record_id": ""}
     rows = [
         _finding_row(f, key, datetime.fromisoformat(f["time_utc"]), f["day"], "watch")
         for f in outcome.findings
     ]
-    for new in results.put_watched(connection, job.asset, job.model_hash, rows):
+    for new in results.put_watched(connection, asset, model_hash, rows):
         if new["severity"] != "info":
             said = {name: new[name] for name in ("code", "severity", "subject", "params", "text")}
-            journal.tell(connection, "finding", job.asset, said, now)
+            journal.tell(connection, "finding", asset, said, now)
 
 
 def ask_known(connection: Connection, service: Place, version: assets.Version) -> None:
@@ -159,7 +163,7 @@ def keep(connection: Connection, service: Service, job: work.Job, outcome: Outco
 
 
 def keep_observation(
-    connection: Connection, service: Service, job: work.Job, record: records.StoredRecord, outcome: Outcome
+    connection: Connection, service: Place, job: work.Job, record: records.StoredRecord, outcome: Outcome
 ) -> None:
     """Keep what was observed in a record, and advance the state of its day."""
     assert outcome.document is not None

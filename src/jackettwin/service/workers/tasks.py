@@ -210,7 +210,7 @@ def know(question: Question) -> Outcome | None:
         return Outcome(json.dumps(nothing), of=question.of)
     twin = engine.load_twin(Path(question.twin_folder))
     try:
-        judged, findings = verdict.watched(
+        judged, findings, monitoring = verdict.watched(
             twin, question.identities, question.days, question.kept.get("judged")
         )
         followed, gone_on_from = verdict.through_time(twin, question)
@@ -234,7 +234,7 @@ def know(question: Question) -> Outcome | None:
     document = {
         "known": verdict.of_today(together["known"], followed), "supports": verdict.supports(followed),
         "judged": judged, "past": past, "followed": gone_on_from, "together": together, "life": life,
-        "lived": past_life,
+        "lived": past_life, "watch": monitoring,
     }  # fmt: skip
     return Outcome(
         json.dumps(document), findings=(*findings, *of_life), page=page, of=question.of, same_page=not asked

@@ -17,7 +17,16 @@ import numpy as np
 from jackettwin.answers import ModeAnswer, Span, answer
 from jackettwin.arrays import FloatArray
 from jackettwin.caveats import assumption_documents
-from jackettwin.change import JUDGED, Days, Ground, corrections, finding_of, judge, sight_of
+from jackettwin.change import (
+    JUDGED,
+    Days,
+    Ground,
+    corrections,
+    finding_of,
+    judge,
+    monitoring_document,
+    sight_of,
+)
 from jackettwin.errors import JackettwinError
 from jackettwin.files import null_for_nan
 from jackettwin.report import (
@@ -246,8 +255,8 @@ def watched(
     identities: Mapping[str, str],
     documents: Mapping[str, str],
     kept: Mapping[str, Any] | None,
-) -> tuple[dict[str, Any], tuple[dict[str, Any], ...]]:
-    """Return the stored state of monitoring a turbine's days, and all present findings as rows.
+) -> tuple[dict[str, Any], tuple[dict[str, Any], ...], dict[str, Any]]:
+    """Return the stored state of monitoring a turbine's days, all present findings as rows, and what it saw.
 
     Parameters
     ----------
@@ -272,9 +281,8 @@ def watched(
         said.append((f"{min(identities)}T00:00:00+00:00", sees))
     for alarm in judged.alarms:
         said += [(alarm["time_utc"], finding_of(alarm)), *corrections(alarm)]
-    return JUDGED.dump(judged), tuple(
-        engine.finding_row(f) | {"time_utc": at, "day": at[:10]} for at, f in said
-    )
+    rows = tuple(engine.finding_row(f) | {"time_utc": at, "day": at[:10]} for at, f in said)
+    return JUDGED.dump(judged), rows, monitoring_document(judged)
 
 
 def lived(

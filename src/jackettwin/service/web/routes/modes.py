@@ -27,7 +27,14 @@ from jackettwin.service.web.schemas.assets import ComparisonOut
 from jackettwin.service.web.schemas.common import Page
 from jackettwin.service.web.schemas.drawings import ExploredOut, StructureOut
 from jackettwin.service.web.schemas.life import LifeOut
-from jackettwin.service.web.schemas.modes import BudgetOut, ModeBinsOut, ModeOut, SensitivityOut, TwinOut
+from jackettwin.service.web.schemas.modes import (
+    BudgetOut,
+    ModeBinsOut,
+    ModeOut,
+    SensitivityOut,
+    TwinOut,
+    WatchOut,
+)
 from jackettwin.service.web.schemas.supports import SupportsOut
 from jackettwin.store import Exported, exported, people, results, writing
 from jackettwin.store.mode_bins import modes_in_bins
@@ -37,6 +44,9 @@ router = APIRouter(tags=["answers"], route_class=Route)
 Cursor = Annotated[str | None, Query(max_length=500)]
 Limit = Annotated[int, Query(ge=1, le=10_000)]
 _PARQUET, _ARROW = "application/vnd.apache.parquet", "application/vnd.apache.arrow.stream"
+State = Annotated[
+    str | None, Query(max_length=64, description="First word of the records' state of operation.")
+]
 When = Annotated[datetime | None, Query(description="Time of the state; default: now.")]
 
 
@@ -47,13 +57,14 @@ def modes(
     label: Annotated[str | None, Query(max_length=64)] = None,
     since: Annotated[datetime | None, Query(alias="from")] = None,
     until: Annotated[datetime | None, Query(alias="to")] = None,
+    state: State = None,
     cursor: Cursor = None,
     limit: Limit = 1000,
 ) -> Page[ModeOut]:
     """List the modes of every record, in the order in which they were found."""
     version = known_asset(connection, asset)
     window = (signals.with_zone(since, "from"), signals.with_zone(until, "to"))
-    return said.modes(connection, version, label, *window, cursor, limit)
+    return said.modes(connection, version, label, *window, cursor, limit, state)
 
 
 @router.get("/assets/{asset}/modes/bins", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
@@ -63,12 +74,13 @@ def mode_bins(
     label: Annotated[str | None, Query(max_length=64)] = None,
     since: Annotated[datetime | None, Query(alias="from")] = None,
     until: Annotated[datetime | None, Query(alias="to")] = None,
+    state: State = None,
     points: Annotated[int, Query(ge=1, le=10_000)] = 1000,
 ) -> Page[ModeBinsOut]:
     """Return extremes and medians of each mode in at most so many bins of equal length of time."""
     version = known_asset(connection, asset)
     window = {"since": signals.with_zone(since, "from"), "until": signals.with_zone(until, "to")}
-    found = modes_in_bins(connection, asset, version.model_hash, points, label=label, **window)
+    found = modes_in_bins(connection, asset, version.model_hash, points, label=label, **window, state=state)
     return Page(items=[ModeBinsOut.model_validate(one, from_attributes=True) for one in found])
 
 
@@ -128,9 +140,20 @@ def explored(asset: AssetName, connection: ReadsAtVersion, version: AnyVersion =
 
 @router.get("/assets/{asset}/structure", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def structure(asset: AssetName, connection: ReadsAtVersion, version: AnyVersion = None) -> StructureOut:
-    """Return the structure for drawing, with its updated complex modes and the measured shape of each."""
+    """Return the structure for drawing, with its updated complex modes and the measured shape of each.
+
+    Members whose welds records damage are coloured by damage and life too.
+    """
     asked = known_version(connection, asset, version)
-    return StructureOut(**results.find_drawn(connection, asset, asked.version, "structure"))
+    found = StructureOut(**results.find_drawn(connection, asset, asked.version, "structure"))
+    return said.coloured_by_life(found, results.find_life(connection, asset, asked.version))
+
+
+@router.get("/assets/{asset}/watch", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def watch(asset: AssetName, connection: ReadsAtVersion, version: AnyVersion = None) -> WatchOut:
+    """Return what each judged day showed: the part that conditions do not explain, and the evidence."""
+    asked = known_version(connection, asset, version)
+    return WatchOut(**results.find_watch(connection, asset, asked.version))
 
 
 @router.get("/assets/{asset}/life", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from datetime import datetime
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import BaseModel, Field
 
@@ -42,6 +42,45 @@ class ModeBinsOut(BaseModel):
     frequency_hz: ExtremesOut
     damping_ratio: ExtremesOut
     simulated: int = Field(description="Number of records of all bins that nobody measured.")
+
+
+class WatchedQuantity(BaseModel):
+    """A quantity of a mode day by day: what conditions do not explain, and its scatter without a change.
+
+    Frequencies and damping ratios as differences of logarithms, angles in rad.
+    """
+
+    label: str
+    kind: Literal["frequency", "damping", "angle"]
+    rest: list[float | None]
+    rest_std: list[float | None]
+
+
+class SmallestChangeOut(BaseModel):
+    """A change that is found with 95 % within some days; ``step`` is what it does to each quantity."""
+
+    change: str
+    days: float
+    size: float | None
+    unit: str
+    found: int | None = None
+    of: int | None = None
+    step: list[float] = []
+
+
+class WatchOut(BaseModel):
+    """The days that were judged after the baseline, and the evidence for a change (ln R) on each.
+
+    Empty before the baseline is whole. An alarm is raised at the threshold, in the mean not more often than
+    once in ``arl_years`` while nothing changes.
+    """
+
+    arl_years: float | None = None
+    threshold_ln: float | None = None
+    days: list[str] = []
+    ln_evidence: list[float] = []
+    quantities: list[WatchedQuantity] = []
+    smallest: list[SmallestChangeOut] = []
 
 
 class TwinOut(BaseModel):

@@ -1,0 +1,151 @@
+// What happens now: signals roll as they arrive, or as they did in the newest record, and the structure moves.
+import { useEffect, useRef, useState } from "preact/hooks";
+import { type View } from "../../../src/jackettwin/report/templates/view.js";
+import { useAnswer, useAsset } from "../api/answer";
+import { api, type RecordOut, type Schemas, told } from "../api/client";
+import { Card, Time } from "../parts/Bits";
+import { InSpace } from "../parts/InSpace";
+import { Lanes, Roll } from "../parts/Roll";
+import { Empty, Shown } from "../parts/Shown";
+import type { PageProps } from "../shell/place";
+import { seconds } from "../words/time";
+
+const SPANS_S = [10, 30, 120] as const;
+/** Of a record so much is asked for at once. */
+const PIECE_S = 60;
+interface Packet {
+  channel: string;
+  t0_utc: string;
+  rate_hz: number;
+  samples: (number | null)[];
+}
+
+/** Packets as they arrive; true once one did. */
+function useStream(asset: string, roll: Roll): boolean {
+  const [streams, setStreams] = useState(false);
+  useEffect(() => {
+    const source = new EventSource(`/api/v1/assets/${encodeURIComponent(asset)}/live`);
+    source.addEventListener("packet", (event: MessageEvent<string>) => {
+      const { channel, t0_utc, rate_hz, samples } = JSON.parse(event.data) as Packet;
+      if (!roll.streams) roll.begin(seconds(t0_utc) + samples.length / rate_hz, true);
+      roll.add(channel, seconds(t0_utc), 1 / rate_hz, samples);
+      setStreams(true);
+    });
+    return () => source.close();
+  }, [asset, roll]);
+  return streams;
+}
+
+/** The newest record from its start on, again and again, while nothing arrives. */
+function useReplay(record: RecordOut | undefined, roll: Roll): void {
+  useEffect(() => {
+    if (!record) return;
+    roll.begin(0, false);
+    let asked = 0;
+    const more = async (): Promise<void> => {
+      if (roll.streams || roll.now() < asked - PIECE_S / 2) return;
+      const from = asked % record.duration_s;
+      const base = asked - from;
+      const to = Math.min(from + PIECE_S, record.duration_s);
+      asked = base + to;
+      const query = { from, to, points: 10_000 };
+      const params = { path: { record_id: record.record_id }, query };
+      const found = (await told(
+        api.GET("/api/v1/records/{record_id}/signal", { params }),
+      )) as Schemas["Signal"];
+      if (roll.streams) return;
+      const step = (found.time_s[1] ?? 1) - (found.time_s[0] ?? 0);
+      for (const [name, bins] of Object.entries(found.channels))
+        roll.add(name, base + from, step, bins["max"] ?? []);
+    };
+    const again = (): void => void more().catch(() => undefined);
+    again();
+    const timer = setInterval(again, 1000);
+    return () => clearInterval(timer);
+  }, [record?.record_id, roll]);
+}
+
+function Moving({ drawn, record, roll }: { drawn: Schemas["StructureOut"]; record: RecordOut; roll: Roll }) {
+  const view = useRef<View | null>(null);
+  const moved = useAnswer(null, `motion ${record.record_id}`, async () => {
+    const params = { path: { record_id: record.record_id }, query: { duration_s: 600 } };
+    const motion = await told(api.GET("/api/v1/records/{record_id}/motion", { params }));
+    return { ...drawn, motions: [motion] };
+  });
+  useEffect(() => {
+    const timer = setInterval(() => {
+      const start = moved.data?.motions[0]?.start_s ?? 0;
+      view.current?.stand(
+        (((roll.now() - start) % record.duration_s) + record.duration_s) % record.duration_s,
+      );
+    }, 40);
+    return () => clearInterval(timer);
+  }, [moved.data]);
+  return <Shown of={moved}>{(data) => <InSpace drawn={data} view={view} />}</Shown>;
+}
+
+export default function Live({ asset }: PageProps) {
+  const [roll] = useState(() => new Roll());
+  const [span, setSpan] = useState<number>(30);
+  const streams = useStream(asset, roll);
+  const listed = useAsset(asset, "/records", { limit: 100, status: "observed" });
+  const record = listed.data?.items.find((r) => r.raw_kept);
+  useReplay(record, roll);
+  const structure = useAsset(asset, "/structure");
+  return (
+    <>
+      <div class="head">
+        <h1>Live</h1>
+        <p>
+          {streams ? (
+            "Samples as they arrive from the broker."
+          ) : record ? (
+            <>
+              Nothing streams in: the record of <Time at={record.start_utc} /> is played again, at its own
+              pace.
+            </>
+          ) : (
+            "Nothing streams in."
+          )}
+        </p>
+      </div>
+      <Shown of={listed} empty={() => (record || streams ? null : <Nothing />)}>
+        {() => (
+          <div class="grid">
+            <Card
+              title="Signals"
+              wide={!record || streams}
+              more={
+                <select
+                  aria-label="Shown"
+                  value={span}
+                  onChange={(e) => setSpan(Number(e.currentTarget.value))}
+                >
+                  {SPANS_S.map((s) => (
+                    <option key={s} value={s}>{`${s} s`}</option>
+                  ))}
+                </select>
+              }
+            >
+              <Lanes roll={roll} span={span} />
+            </Card>
+            {record && !streams && structure.data?.nodes.length ? (
+              <Card
+                title="Structure"
+                note="Displacements between 0.1 and 1.5 Hz by the modes that the sensors tell apart."
+              >
+                <Moving drawn={structure.data} record={record} roll={roll} />
+              </Card>
+            ) : null}
+          </div>
+        )}
+      </Shown>
+    </>
+  );
+}
+
+const Nothing = () => (
+  <Empty title="Nothing to show yet">
+    <p>Samples are shown as a broker sends them (`--mqtt`), or as the newest record has them.</p>
+  </Empty>
+);

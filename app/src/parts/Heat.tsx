@@ -1,0 +1,93 @@
+// A number for each cell of a grid, as a picture: brighter is more.
+import { useMemo, useState } from "preact/hooks";
+import { ticksOf } from "./plot/series";
+
+const [WIDTH, LEFT, RIGHT, TOP, BOTTOM] = [560, 66, 14, 10, 44];
+/** Cividis (Nuñez, Anderton & Renslow 2018), as the report's. */
+const CIVIDIS = ["#002255", "#123570", "#3b496c", "#575d6d", "#707173", "#8a8678", "#a59c74", "#c3b369", "#e1cc55", "#fee838"]; // prettier-ignore
+
+type Ends = readonly [number, number];
+export interface HeatProps {
+  title: string;
+  unit: string;
+  /** Rows from the lowest y on. */
+  cells: readonly (readonly (number | null)[])[];
+  x: Ends;
+  y: Ends;
+  xName: string;
+  yName: string;
+  xTicks?: readonly number[];
+  yTicks?: readonly number[];
+  sayX: (x: number) => string;
+  sayY: (y: number) => string;
+  say: (row: number, column: number) => string;
+  cross?: Ends | null;
+  height?: number;
+  width?: number;
+}
+
+/** The grid as an image of one pixel a cell. */
+function picture(cells: HeatProps["cells"]): string {
+  const known = cells.flat().filter((v): v is number => v !== null);
+  const low = known.reduce((a, b) => Math.min(a, b), Infinity);
+  const high = known.reduce((a, b) => Math.max(a, b), -Infinity);
+  const sheet = document.createElement("canvas");
+  [sheet.width, sheet.height] = [cells[0]?.length ?? 1, cells.length];
+  const ink = sheet.getContext("2d");
+  cells.forEach((row, j) =>
+    row.forEach((v, i) => {
+      if (!ink || v === null) return;
+      ink.fillStyle = CIVIDIS[Math.round(((v - low) / (high - low || 1)) * (CIVIDIS.length - 1))] ?? "#000";
+      ink.fillRect(i, cells.length - 1 - j, 1, 1);
+    }),
+  );
+  return sheet.toDataURL();
+}
+
+export function Heat(p: HeatProps) {
+  const [read, setRead] = useState("");
+  const href = useMemo(() => picture(p.cells), [p.cells]);
+  const [width, height] = [p.width ?? WIDTH, p.height ?? 400];
+  const [wide, high] = [width - LEFT - RIGHT, height - TOP - BOTTOM];
+  const px = (v: number): number => LEFT + ((v - p.x[0]) / (p.x[1] - p.x[0] || 1)) * wide;
+  const py = (v: number): number => height - BOTTOM - ((v - p.y[0]) / (p.y[1] - p.y[0] || 1)) * high;
+  const point = (event: MouseEvent): void => {
+    const box = (event.currentTarget as Element).getBoundingClientRect();
+    const [across, up] = [(event.clientX - box.left) / box.width, (box.bottom - event.clientY) / box.height];
+    const [row, column] = [Math.floor(up * p.cells.length), Math.floor(across * (p.cells[0]?.length ?? 0))];
+    setRead(p.cells[row]?.[column] === undefined ? "" : p.say(row, column));
+  };
+  return (
+    <figure class="plot">
+      <figcaption>
+        <b>{p.title}</b>
+        <span class="unit">{p.unit}</span>
+        <output>{read}</output>
+      </figcaption>
+      <svg class="surface" viewBox={`0 0 ${width} ${height}`} role="img" aria-label={`${p.title}, ${p.unit}`}>
+        <image
+          {...{ href, x: LEFT, y: TOP, width: wide, height: high, preserveAspectRatio: "none" }}
+          onMouseMove={point}
+          onMouseLeave={() => setRead("")}
+        />
+        {(p.xTicks ?? ticksOf([...p.x], 6)).map((v) => (
+          <text key={v} x={px(v)} y={height - BOTTOM + 18} text-anchor="middle">
+            {p.sayX(v)}
+          </text>
+        ))}
+        {(p.yTicks ?? ticksOf([...p.y], 5)).map((v) => (
+          <text key={v} x={LEFT - 6} y={py(v) + 4} text-anchor="end">
+            {p.sayY(v)}
+          </text>
+        ))}
+        <text x={width - RIGHT} y={height - 6} text-anchor="end">
+          {p.xName} →
+        </text>
+        <text x={LEFT + 6} y={TOP + 14} class="over">
+          ↑ {p.yName}
+        </text>
+        {p.cross && <path class="cross" d={`M${px(p.cross[0]) - 9} ${py(p.cross[1])}h18m-9 -9v18`} />}
+      </svg>
+    </figure>
+  );
+}

@@ -1,0 +1,123 @@
+// Signals that roll: samples by channel, the newest at the right, drawn with every frame of the screen.
+import { useEffect, useRef } from "preact/hooks";
+import { colour, theme } from "../shell/theme";
+import { paintOf } from "./modes";
+
+/** Longest stretch that is kept. */
+const KEPT_S = 240;
+const LANE_PX = [22, 56] as const;
+const NAMES_PX = 92;
+
+interface Piece {
+  from: number;
+  step: number;
+  values: readonly (number | null)[];
+}
+
+/** What arrived of each channel, and the clock that it is shown by. */
+export class Roll {
+  readonly channels = new Map<string, Piece[]>();
+  streams = false;
+  private zero = 0;
+  private started = performance.now();
+
+  /** Begin anew at a moment of the samples' own clock. */
+  begin(at: number, streams: boolean): void {
+    this.channels.clear();
+    [this.zero, this.streams, this.started] = [at, streams, performance.now()];
+  }
+  now(): number {
+    return this.zero + (performance.now() - this.started) / 1000;
+  }
+  add(channel: string, from: number, step: number, values: Piece["values"]): void {
+    const pieces = this.channels.get(channel) ?? [];
+    this.channels.set(channel, pieces);
+    pieces.push({ from, step, values });
+    const end = from + step * values.length;
+    if (this.streams && Math.abs(end - this.now()) > 3) this.zero += end - this.now(); // a clock that jumped
+    while (pieces[0] && pieces[0].from + pieces[0].step * pieces[0].values.length < end - KEPT_S)
+      pieces.shift();
+  }
+}
+
+function lane(
+  ink: CanvasRenderingContext2D,
+  pieces: Piece[],
+  now: number,
+  span: number,
+  box: number[],
+): number {
+  const [left = 0, top = 0, width = 0, height = 0] = box;
+  let most = 1e-12;
+  const shown = pieces.filter((p) => p.from < now && p.from + p.step * p.values.length > now - span);
+  const ends = shown.map((p): [number, number] => [
+    Math.max(0, Math.floor((now - span - p.from) / p.step)),
+    Math.min(p.values.length, Math.ceil((now - p.from) / p.step)),
+  ]);
+  shown.forEach((p, k) => {
+    const [a, b] = ends[k] ?? [0, 0];
+    for (let i = a; i < b; i++) most = Math.max(most, Math.abs(p.values[i] ?? 0));
+  });
+  ink.beginPath();
+  shown.forEach((p, k) => {
+    const [a, b] = ends[k] ?? [0, 0];
+    let pen = false;
+    for (let i = a; i < b; i++) {
+      const v = p.values[i];
+      if (v === null || v === undefined) {
+        pen = false;
+        continue;
+      }
+      const x = left + width * (1 - (now - p.from - i * p.step) / span);
+      const y = top + height * (0.5 - (0.46 * v) / most);
+      if (pen) ink.lineTo(x, y);
+      else ink.moveTo(x, y);
+      pen = true;
+    }
+  });
+  ink.stroke();
+  return most;
+}
+
+export function Lanes({ roll, span }: { roll: Roll; span: number }) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const dark = theme.value;
+  useEffect(() => {
+    const sheet = canvas.current;
+    const ink = sheet?.getContext("2d");
+    if (!sheet || !ink) return;
+    const paints = ["quiet", "line"].map(colour);
+    let frame = 0;
+    let count = 0;
+    const draw = (): void => {
+      const names = [...roll.channels.keys()];
+      const each = Math.max(LANE_PX[0], Math.min(LANE_PX[1], 620 / Math.max(names.length, 1)));
+      const [width, height] = [sheet.clientWidth, Math.max(each * names.length, 120)];
+      const ratio = devicePixelRatio;
+      if (sheet.width !== Math.round(width * ratio) || sheet.height !== Math.round(height * ratio)) {
+        [sheet.width, sheet.height] = [Math.round(width * ratio), Math.round(height * ratio)];
+        sheet.style.height = `${height}px`;
+      }
+      ink.setTransform(ratio, 0, 0, ratio, 0, 0);
+      ink.clearRect(0, 0, width, height);
+      ink.font = "12px system-ui, sans-serif";
+      names.forEach((name, k) => {
+        ink.strokeStyle = colour(paintOf(k));
+        const most = lane(ink, roll.channels.get(name) ?? [], roll.now(), span, [
+          NAMES_PX,
+          k * each,
+          width - NAMES_PX,
+          each,
+        ]);
+        ink.fillStyle = paints[0] ?? "";
+        ink.fillText(name.slice(0, 13), 0, (k + 0.5) * each + 4);
+        if (each > 40) ink.fillText(`±${most.toPrecision(2)}`, 0, (k + 0.5) * each + 18);
+      });
+      sheet.dataset["frames"] = String(++count);
+      frame = requestAnimationFrame(draw);
+    };
+    draw();
+    return () => cancelAnimationFrame(frame);
+  }, [roll, span, dark]);
+  return <canvas class="lanes" ref={canvas} role="img" aria-label={`Signals of the last ${span} s`} />;
+}
