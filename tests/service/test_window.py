@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import threading
 import time
@@ -10,6 +11,7 @@ from datetime import timedelta
 from pathlib import Path
 
 import httpx
+import numpy as np
 import pytest
 import uvicorn
 from playwright.sync_api import Browser, Page, expect, sync_playwright
@@ -19,7 +21,7 @@ from tests.service.servers import free_port
 from jackettwin.service.context import Service
 from jackettwin.service.web import pages
 from jackettwin.service.web.app import EXAMPLES, create_app
-from jackettwin.store import journal, people, results, writing
+from jackettwin.store import Packet, journal, people, results, streams, writing
 from jackettwin.store.tables import modes
 
 AXE = Path(__file__).parents[2] / "app" / "node_modules" / "axe-core" / "axe.min.js"
@@ -283,9 +285,9 @@ def test_poles_are_picked_kept_and_taken_back(opened: Open) -> None:
 
 def test_a_place_is_in_its_address(opened: Open) -> None:
     page = opened.page("/assets/wtg/timeline?show=damping&mode=mode_1")
-    expect(page.get_by_role("button", name="Damping")).to_have_attribute("aria-pressed", "true")
+    expect(page.get_by_role("button", name="Damping", exact=True)).to_have_attribute("aria-pressed", "true")
     expect(page.locator("figure.plot")).to_have_count(1)
-    page.get_by_role("button", name="Frequency").click()
+    page.get_by_role("button", name="Frequency", exact=True).click()
     page.get_by_role("button", name="30 days").click()
     assert "mode=mode_1" in page.url and "from=" in page.url and "show" not in page.url
     lines = saved(page)
@@ -422,3 +424,46 @@ def test_first_load_is_small(opened: Open) -> None:
     asked = [name for name in names if name.startswith("/window/")]
     sent = [int(httpx.get(opened.url + name).headers.get("content-length", 0)) for name in asked]
     assert len(asked) >= 2 and 0 < sum(sent) < 400_000
+
+
+def test_live_signals_roll_and_the_broker_comes_before_the_replay(opened: Open) -> None:
+    """Without packets the newest record is played; with the first packet its channels are shown instead."""
+    page = opened.page("/assets/wtg/live")
+    expect(page.get_by_text("Nothing streams in")).to_be_visible()
+    lanes = page.locator("canvas.lanes")
+    before = lanes.screenshot()
+    page.wait_for_function("Number(document.querySelector('canvas.lanes').dataset.frames) > 5")
+    assert lanes.screenshot() != before
+    now, rate = opened.service.now(), 50.0
+    packets = [
+        Packet("wtg", f"strain_{k}", now, rate, np.sin(np.arange(250) / 10.0) * (k + 1)) for k in range(24)
+    ]
+    with writing(opened.service.database) as connection:
+        streams.add_packets(connection, packets, now)
+    expect(page.get_by_text("as they arrive from the broker")).to_be_visible()
+    assert page.evaluate("document.querySelector('canvas.lanes').clientHeight") == 24 * 620 / 24
+    page.context.close()
+
+
+def test_residuals_evidence_and_a_planted_change_are_drawn(
+    opened: Open, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(results, "find_watch", lambda *_: EXAMPLES["WatchOut"])
+    with writing(opened.service.database) as connection:
+        journal.tell(connection, "state", "wtg", {}, opened.service.now())
+    page = opened.page("/assets/wtg/timeline?show=left")
+    expect(page.get_by_text("90 % if nothing changes")).to_be_visible()
+    opened.goto(page, "/assets/wtg/alarms")
+    expect(page.get_by_text("Evidence, at most one false alarm in 10 years")).to_be_visible()
+    expect(page.get_by_label("Planted change")).to_contain_text("scour at all feet of 0.34 m")
+    assert serious(page) == []
+    page.context.close()
+
+
+def test_a_record_is_drawn_as_spectrogram_and_by_singular_values(opened: Open) -> None:
+    page = opened.page(f"/assets/wtg/records/{newest(opened.url)}")
+    expect(page.locator("svg.surface image")).to_have_attribute("href", re.compile("^data:image/png"))
+    page.get_by_role("button", name="Singular values").click()
+    expect(page.get_by_text("largest", exact=True)).to_be_visible()
+    assert "spectrum=singular" in page.url
+    page.context.close()

@@ -17,8 +17,8 @@ import { day, seconds } from "../words/time";
 const QUANTITIES = [
   ["frequency", "Frequency"],
   ["damping", "Damping"],
-  ["left", "Left by conditions"],
-  ["damping-left", "Damping left"],
+  ["left", "Frequency residual"],
+  ["damping-left", "Damping residual"],
   ["ground", "Ground"],
 ] as const;
 const STATES = [
@@ -204,7 +204,7 @@ function Drawn({ all, seen, marks, what, wanted, range, beside, asset, watch, op
   const last = Math.max(...all.map((b) => seconds(b.start_utc) + (b.time_s.at(-1) ?? 0) + b.bin_s));
   const shown = plots.filter((p) => !wanted || p.label === wanted);
   const show = (days: string): void => keepRange(days ? [last - Number(days) * DAY_S, last + DAY_S] : null);
-  const title = what === "left" ? "Frequencies, what conditions leave" : "Damping, what conditions leave";
+  const title = what === "left" ? "Frequency residuals" : "Damping residuals";
   const simulated = all.reduce((n, b) => n + b.simulated, 0);
   const span = range ? String(Math.round((range[1] - range[0]) / DAY_S - 1)) : "";
   return (
