@@ -64,15 +64,29 @@ class World:
     vertical: np.ndarray
     loss: float
     law: str = "maxwell-3"
+    on_axis: bool = False
 
 
-def drawn(site: Site) -> Structure:
-    """Return the structure as drawn, with a rotor–nacelle assembly."""
+def drawn(site: Site, *, on_axis: bool = False) -> Structure:
+    """Return the structure as drawn, with a rotor–nacelle assembly, on request a symmetric one."""
     structure = read_structure(site.source)
     heaviest = max((body.mass_kg for body in structure.masses), default=0.0)
     if heaviest < 1e4:
         structure = structure.with_masses((replace(RNA, node=structure.top_node),))
+    if on_axis:
+        structure = structure.with_masses(
+            tuple(_on_axis(b) if b.node == structure.top_node else b for b in structure.masses)
+        )
     return structure
+
+
+def _on_axis(body: PointMass) -> PointMass:
+    """Return a body above the tower's axis, with one inertia about all axes."""
+    return replace(
+        body,
+        cg_offset_m=(0.0, 0.0, body.cg_offset_m[2]),
+        inertia_kg_m2=(*(body.inertia_kg_m2[1],) * 3, 0.0, 0.0, 0.0),
+    )
 
 
 def drawn_water(structure: Structure) -> WaterConfig:
@@ -294,7 +308,7 @@ def true_modes(world: World, wanted: tuple[int, ...]) -> tuple[np.ndarray, tuple
     n = world.vertical.size
     plain = replace(
         world,
-        structure=drawn(world.site),
+        structure=drawn(world.site, on_axis=world.on_axis),
         water=drawn_water(drawn(world.site)),
         horizontal=np.full(n, world.horizontal.mean()),
         vertical=np.full(n, world.vertical.mean()),
