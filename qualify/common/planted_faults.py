@@ -131,6 +131,7 @@ FAULTS = (
         ("Student's factor is inverted", "wider = scipy.special.stdtrit(freedom, 0.975) / scipy.special.ndtri(0.975)", "wider = scipy.special.ndtri(0.975) / scipy.special.stdtrit(freedom, 0.975)"),
         ("covariances of one lag more", "length = (n_samples - n_lags) // n_blocks", "length = (n_samples - n_lags - 1) // (2 * n_blocks)"),
         ("real poles have the wrong rate", "a = -np.log(p.eigenvalues.real) * rate", "a = -np.log(p.eigenvalues.real) / rate"),
+        ("neighbours alike span a dimension each", "u[:, s > _DISTINCT]", "u[:, s > 0.0]"),
         ("orders of a rotor lock at the inverse ratio", "- moving.log_f[rows][:, None] - np.log(ratio)", "- moving.log_f[rows][:, None] + np.log(ratio)"),
         ("bias of low damping is added", "np.exp(p.log_zeta[mode] - bias[:, 1])", "np.exp(p.log_zeta[mode] + bias[:, 1])"),
     )),

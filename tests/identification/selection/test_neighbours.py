@@ -67,6 +67,28 @@ def test_of_three_close_modes_in_one_plane_the_least_known_is_told_twice() -> No
     )
 
 
+def test_what_little_a_wave_peak_has_of_second_modes_makes_no_second_mode_its_combination() -> None:
+    """Two horizontal channels at three levels; a jacket whose one soft leg parts its second pair by 8 %.
+
+    The lower mode of the second pair was doubted in both records, with the wave peak above the first pair as
+    a neighbour: that moves like the first mode, and by a twentieth like the second along the same axis.
+    """
+    first, second = np.array([1.0, 0.41, 0.09]), np.array([-0.35, 0.9, 0.5])
+    x, y = np.array([1.0, 0.0]), np.array([0.0, 1.0])
+    wave = np.kron(first + 0.05 * second, x)
+    modes = [
+        estimate(0.291, 0.006, np.kron(first, x + y)),
+        estimate(0.303, 0.006, np.kron(first, x - y)),
+        estimate(0.325, 0.053, wave),
+        estimate(0.972, 0.015, np.kron(second, x + y)),
+        estimate(1.062, 0.015, np.kron(second, x - y)),
+    ]
+    assert combinations_of_neighbours(modes, np.ones(6), 2.0) == []
+    # a peak of the forces between both pairs is still one
+    forced = replace(modes[3], mode_shape=np.kron(first, x) + 0.4 * np.kron(second, x - y) + 0j)
+    assert combinations_of_neighbours([*modes[:3], forced, modes[4]], np.ones(6), 2.0) == [3]
+
+
 def test_in_few_channels_nothing_is_said() -> None:
     shapes = SHAPES[:, :3]
     modes = [

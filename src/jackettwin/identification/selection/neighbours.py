@@ -29,6 +29,10 @@ of 60 modes of random systems none had less than 0.03."""
 PAIR_DISTANCE, AXIS_SHARE = 2.0, 0.95
 """Distance over the sum of half bandwidths within which two modes are a pair, and the least share of its
 energy along one axis that a shape in their plane must have for each axis."""
+_DISTINCT = 0.2
+"""Least singular value, of shapes of unit length, of a dimension of the neighbours' span: two shapes whose
+MAC is above about 0.92 have one. What little else a wave peak has beside a first mode's shape is the
+quasi-static part of the second modes, of which every second mode would then be a combination."""
 MIN_FREE_DIMENSIONS = 2
 """Dimensions outside the neighbours' span that are required; with fewer,
 almost any shape is a combination."""
@@ -110,9 +114,13 @@ def _either_side(modes: Sequence[ModalEstimate], free: Sequence[int], i: int, cl
 
 def _outside(modes: Sequence[ModalEstimate], i: int, beside: Sequence[int], scale: FloatArray) -> float:
     """Return the share of a shape outside the span of others; 1 if there are none or too many of them."""
-    if not beside or len(beside) > len(scale) - MIN_FREE_DIMENSIONS:
+    if not beside:
         return 1.0
-    basis: ComplexArray = np.linalg.qr(np.array([modes[j].mode_shape / scale for j in beside]).T)[0]
+    shapes = np.array([modes[j].mode_shape / scale for j in beside]).T
+    u, s, _ = np.linalg.svd(shapes / np.linalg.norm(shapes, axis=0), full_matrices=False)
+    basis: ComplexArray = u[:, s > _DISTINCT]
+    if basis.shape[1] > len(scale) - MIN_FREE_DIMENSIONS:
+        return 1.0
     shape = modes[i].mode_shape / scale
     inside = float(np.sum(np.abs(basis.conj().T @ shape) ** 2) / np.sum(np.abs(shape) ** 2))
     return 1.0 - inside
