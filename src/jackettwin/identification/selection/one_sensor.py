@@ -27,6 +27,8 @@ systems. Of random planes, four in a hundred contain a unit vector by chance wit
 hundred with five."""
 MIN_OTHER_SENSORS = 2
 """Fewest other sensors that could measure the motion of the same point and direction."""
+_ONE_SHAPE = 1e-6
+"""Singular value below which two shapes of unit length are one, to rounding: one peak told twice."""
 
 
 def of_one_sensor(
@@ -49,7 +51,10 @@ def of_one_sensor(
         if apart(modes[i], modes[j]) >= close:
             continue
         shapes = np.array([modes[k].mode_shape / scale for k in (i, j)])
-        inside = np.sum(np.abs(np.linalg.qr(shapes.T)[0]) ** 2, axis=1)
+        u, size, _ = np.linalg.svd(shapes.T / np.linalg.norm(shapes, axis=1), full_matrices=False)
+        if size[-1] < _ONE_SHAPE:  # one shape spans no plane
+            continue
+        inside = np.sum(np.abs(u) ** 2, axis=1)
         sensor = int(np.argmax(np.where(told, inside, 0.0)))
         if not told[sensor] or inside[sensor] < MIN_IN_PLANE:
             continue
