@@ -211,7 +211,8 @@ def _elastodyn(structure: Structure, turbine: Turbine, run: Run, base: float) ->
     rows += [(r.hub_height - overhang * np.sin(-r.tilt), "Twr2Shft"), (top, "TowerHt"), (base, "TowerBsHt")]
     rows += [(0.0, "PtfmCMxt"), (0.0, "PtfmCMyt"), (base, "PtfmCMzt")]
     rows += [(0.0, "PtfmRefxt"), (0.0, "PtfmRefyt"), (base, "PtfmRefzt"), *_masses(turbine), *_details()]
-    outputs = [f'"{key}"' for key in ("YawBrTDxp", "YawBrTDyp", "YawBrTAxp", "YawBrTAyp")]
+    channels = ("YawBrTDxp", "YawBrTDyp", "YawBrTAxp", "YawBrTAyp", "PtfmSurge", "PtfmSway")
+    outputs = [f'"{key}"' for key in channels]
     return _rows("ELASTODYN INPUT FILE", rows) + "\n".join([*outputs, "END", "----", ""])
 
 

@@ -7,7 +7,7 @@ from jackettwin.errors import InputError
 from jackettwin.loads.aerodynamics.rotor import rotor_loads
 from jackettwin.loads.aerodynamics.turbine_files import read_rotor
 from jackettwin.loads.operation.bem import operating_point, steady_operation
-from jackettwin.loads.operation.dynamic_inflow import operating_damping
+from jackettwin.loads.operation.damping import operating_damping
 
 
 @pytest.fixture(scope="module")

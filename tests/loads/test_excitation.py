@@ -9,7 +9,7 @@ from jackettwin.loads.aerodynamics.rotor import elements, rotation, rotor_loads
 from jackettwin.loads.aerodynamics.turbine_files import read_rotor
 from jackettwin.loads.aerodynamics.wind import Wind
 from jackettwin.loads.operation.bem import operating_point
-from jackettwin.loads.operation.dynamic_inflow import operating_damping
+from jackettwin.loads.operation.damping import operating_damping
 from jackettwin.loads.operation.excitation import TowerOutline, _steady_wind, passing_loads, turbulent_loads
 
 TOWER = TowerOutline(np.array([-129.0, 0.0]), np.array([10.0, 6.5]))

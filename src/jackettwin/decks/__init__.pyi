@@ -1,4 +1,4 @@
-from .blade_files import read_flexible_rotor as read_flexible_rotor
+from .blade_files import read_flexible_rotor as read_flexible_rotor, windio_blade as windio_blade
 from .formats import (
     StructureChoice as StructureChoice,
     read_structure as read_structure,

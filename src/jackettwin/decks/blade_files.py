@@ -40,23 +40,33 @@ def read_flexible_rotor(source: str | Path, *, folder: Path | None = None) -> Fl
 def _windio(content: WindIO) -> FlexibleRotor:
     hub, drivetrain = content.root["components"]["hub"], content.drivetrain
     _require_three(int(content.root["assembly"]["number_of_blades"].number(low=1.0, high=6.0)))
+    return FlexibleRotor(
+        blade=windio_blade(content),
+        hub_radius=0.5 * hub["diameter"].number(low=0.1, high=30.0),
+        overhang=drivetrain["overhang"].number(low=-50.0, high=50.0),
+        hub_height=drivetrain["distance_tt_hub"].number(low=-20.0, high=50.0),
+        tilt=drivetrain["uptilt"].number() * content.angle,
+        cone=hub["cone_angle"].number() * content.angle,
+    )
+
+
+def windio_blade(content: WindIO) -> BladeStructure:
+    """Return what a windIO turbine's blades are made of.
+
+    Raises
+    ------
+    InputError
+        If the file does not say.
+    """
     properties = _properties(content)
     grid, axis = properties.grid, content.axis["z"].curve()
-    blade = BladeStructure(
+    return BladeStructure(
         z=np.interp(grid, *axis) - axis[1][0],
         mass_kg_m=properties.mass,
         flap_n_m2=properties.flap,
         edge_n_m2=properties.edge,
         twist=np.interp(grid, *properties.twist.curve()) * content.angle,
         damping_ratio=DEFAULT_RATIO,
-    )
-    return FlexibleRotor(
-        blade=blade,
-        hub_radius=0.5 * hub["diameter"].number(low=0.1, high=30.0),
-        overhang=drivetrain["overhang"].number(low=-50.0, high=50.0),
-        hub_height=drivetrain["distance_tt_hub"].number(low=-20.0, high=50.0),
-        tilt=drivetrain["uptilt"].number() * content.angle,
-        cone=hub["cone_angle"].number() * content.angle,
     )
 
 

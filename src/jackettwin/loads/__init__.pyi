@@ -54,7 +54,8 @@ from .operation.bem import (
     operating_point as operating_point,
     steady_operation as steady_operation,
 )
-from .operation.dynamic_inflow import (
+from .operation.damping import (
+    OPERATING_LEAST_RATIO as OPERATING_LEAST_RATIO,
     OPERATING_LOG_STD as OPERATING_LOG_STD,
     operating_damping as operating_damping,
 )

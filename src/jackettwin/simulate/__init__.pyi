@@ -1,4 +1,9 @@
-from .at_work import LEFT_OUT as LEFT_OUT, at_work as at_work, work_row as work_row
+from .at_work import (
+    LEFT_OUT as LEFT_OUT,
+    at_work as at_work,
+    modes_at_work as modes_at_work,
+    work_row as work_row,
+)
 from .batch import pending_cases as pending_cases, record_path as record_path, run_set as run_set
 from .combinations import (
     combined_uses as combined_uses,

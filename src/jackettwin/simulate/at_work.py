@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import degrees, exp, pi
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.caveats import Omission
 from jackettwin.loads import (
+    OPERATING_LEAST_RATIO,
     OPERATING_LOG_STD,
     Control,
     Linearised,
@@ -26,19 +27,21 @@ from jackettwin.loads import (
 )
 from jackettwin.simulate.motion.model import Model, TrueMode, asset_model, true_modes, with_aerodynamics
 from jackettwin.simulate.scenario.asset import Asset
-from jackettwin.structure import Structure
+from jackettwin.structure import Structure, without_rotor
 
 _FIRST = {"fore_aft": "fore_aft_1", "side_side": "side_side_1"}
 _BELOW_HZ = 1.5
+_ROUNDS = 3
+"""After which a first mode's pole and the blades' answer at it agree within 1e-3 of its damping."""
 _NORMAL_90 = 1.645
 _LOADS = ("x_n", "y_n", "z_n", "x_nm", "y_nm", "z_nm")
 LEFT_OUT = tuple(
     Omission(what)
     for what in (
         "the controller's own pitch and torque: they are held, and a real one changes fore-aft damping",
-        "blades that bend, unsteady aerodynamics and dynamic stall: within the interval",
+        "blades that twist, dynamic stall: within the interval; bending blades beyond the first two modes",
         "rotor speed that follows gusts; unequal blades, which shake at the rotor's own frequency",
-        "yaw error, the skewed wake of tilt, wakes of neighbours",
+        "yaw error, wakes of neighbours",
     )
 )
 
@@ -73,16 +76,37 @@ def at_work(
 ) -> AtWork:
     """Return an asset in a wind in which its rotor works.
 
-    The wake answers at the first mode's frequency; ``model`` is the asset in still air, if it is known.
+    ``model`` is the asset in still air with a rigid rotor, if it is known.
     """
-    still = model or asset_model(asset)
-    first = min(mode.frequency_hz for mode in true_modes(still, below_hz=_BELOW_HZ))
+    still = model or asset_model(replace(asset, structure=without_rotor(asset.structure)))
     operation = operating_point(rotor, control, wind.speed_m_s)
-    mean = operating_damping(rotor, operation, omega=2.0 * pi * first, shaft=shaft)
+    mean, modes = modes_at_work(still, rotor, operation, shaft=shaft)
     passing = passing_loads(rotor, operation, wind, tower=tower_outline(asset.structure))
     turbulent = None if seed is None else turbulent_loads(rotor, operation, wind, seed=seed)
-    modes = true_modes(with_aerodynamics(still, mean), below_hz=_BELOW_HZ)
     return AtWork(operation, mean, modes, passing, turbulent)
+
+
+def modes_at_work(
+    still: Model, rotor: Rotor, operation: OperatingPoint, *, shaft: str, bending: bool = True
+) -> tuple[Linearised, tuple[TrueMode, ...]]:
+    """Return a rotor about a steady motion at the first frequency, and the modes up to 1.5 Hz with it.
+
+    Bending blades answer each of the first two modes at its own pole; all others see rigid blades.
+    """
+
+    def seen(pole: complex, *, bending: bool) -> tuple[Linearised, tuple[TrueMode, ...]]:
+        mean = operating_damping(rotor, operation, pole=pole, shaft=shaft, bending=bending)
+        return mean, true_modes(with_aerodynamics(still, mean), below_hz=_BELOW_HZ)
+
+    first = min(mode.frequency_hz for mode in true_modes(still, below_hz=_BELOW_HZ))
+    steady = 2j * pi * first
+    modes = {mode.label: mode for mode in seen(steady, bending=False)[1]}
+    for label in _FIRST.values():
+        for _ in range(_ROUNDS if label in modes else 0):
+            near = {mode.label: mode for mode in seen(modes[label].pole, bending=bending)[1]}
+            modes[label] = near.get(label, modes[label])
+    mean = operating_damping(rotor, operation, pole=steady, shaft=shaft, bending=bending)
+    return mean, tuple(modes.values())
 
 
 def tower_outline(structure: Structure) -> TowerOutline | None:
@@ -137,5 +161,8 @@ def _side_row(modes: tuple[TrueMode, ...], side: str) -> dict[str, Any] | None:
         "frequency_hz": mode.frequency_hz,
         "damping_ratio": mode.damping_ratio,
         "rotor_damping_ratio": part,
-        "rotor_damping_ratio_interval_90": sorted((part / width, part * width)),
+        "rotor_damping_ratio_interval_90": [
+            min(part / width, part - OPERATING_LEAST_RATIO),
+            max(part * width, part + OPERATING_LEAST_RATIO),
+        ],
     }

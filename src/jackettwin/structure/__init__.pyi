@@ -5,6 +5,7 @@ from .adjusted import (
     foot_stiffness as foot_stiffness,
 )
 from .assemble import Assembly as Assembly, assemble as assemble
+from .blades import BladeModes as BladeModes, BladeStructure as BladeStructure, blade_modes as blade_modes
 from .check import (
     ModelCheck as ModelCheck,
     check as check,

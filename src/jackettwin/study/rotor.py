@@ -11,6 +11,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import located
 from jackettwin.loads import (
+    OPERATING_LEAST_RATIO,
     OPERATING_LOG_STD,
     linearise,
     operating_damping,
@@ -35,6 +36,7 @@ _BLADES = 3
 _ANY_WIND_M_S = 10.0
 """Where the wind is not known: it scales a parked rotor's damping, and hardly changes the pattern of one at
 work."""
+_ROUNDS = 3
 _SIDES = {"c_fore_aft": (0, 2, 4), "c_side_side": (1, 3, 5)}
 """Degrees of freedom of the tower top that a rotor without yaw error couples with each other."""
 
@@ -96,15 +98,18 @@ def rotor_damping(
     """
     if config.update.rotor is None:
         return RotorDamping({}, {})
-    C = _rotor_matrix(config, numbered, wind or _ANY_WIND_M_S)
-    patterns: dict[str, FloatArray] = {}
-    priors: dict[str, tuple[float, float]] = {}
-    for name in config.update.dashpots:
-        part = _of_side(C, name)
-        c = _dashpot(part, name, assembly, numbered)
-        patterns[name] = part / c
-        if wind is not None:
-            priors[name] = (c, _LOG_STD[config.update.rotor_state][name])
+    seen = wind or _ANY_WIND_M_S
+    if config.update.rotor_state == "operating":
+        found = _dashpots_at_work(config, assembly, numbered, seen)
+    else:
+        C = _parked_matrix(config, seen)
+        found = {}
+        for name in config.update.dashpots:
+            part = _of_side(C, name)
+            found[name] = part, _dashpot(part, name, assembly, numbered)
+    stds = _LOG_STD[config.update.rotor_state]
+    patterns = {name: part / c for name, (part, c) in found.items()}
+    priors = {} if wind is None else {name: (c, stds[name]) for name, (_, c) in found.items()}
     return RotorDamping(patterns, priors)
 
 
@@ -124,25 +129,55 @@ def _dashpot(C: FloatArray, name: str, assembly: Assembly, numbered: UndampedMod
     return float(phi @ C @ phi / phi[axis] ** 2)
 
 
-def _rotor_matrix(config: TwinConfig, numbered: UndampedModes, wind: float) -> FloatArray:
-    """Return the damping (6, 6) of the rotor in a wind: symmetric, averaged over azimuth.
+def _parked_matrix(config: TwinConfig, wind: float) -> FloatArray:
+    """Return the damping (6, 6) of a parked rotor in a wind: symmetric, averaged over azimuth.
 
     The geometry includes cone and prebend, which place the blades upwind of the hub and so double the damping
     of a pitching or yawing tower top compared with straight blades.
     """
     given = config.update
     with located(file=config.path, field="update"):
-        rotor, control = read_rotor(given.rotor or "")
-        if given.rotor_state == "parked":
-            parked = linearise(rotor, _ANY_WIND_M_S, pitch=0.5 * np.pi, shaft=given.shaft or "locked")
-            C = parked.damping * (wind / _ANY_WIND_M_S)
-        else:
-            if given.rotor_schedule is not None:
-                control = replace(control, schedule=read_schedule(Path(given.rotor_schedule)))
-            operation = operating_point(rotor, control, wind)
-            omega = float(numbered.omega[0])
-            C = operating_damping(rotor, operation, omega=omega, shaft=given.shaft or "free").damping
+        rotor, _ = read_rotor(given.rotor or "")
+        parked = linearise(rotor, _ANY_WIND_M_S, pitch=0.5 * np.pi, shaft=given.shaft or "locked")
+    C = parked.damping * (wind / _ANY_WIND_M_S)
     return np.asarray(0.5 * (C + C.T))
+
+
+def _dashpots_at_work(
+    config: TwinConfig, assembly: Assembly, numbered: UndampedModes, wind: float
+) -> dict[str, tuple[FloatArray, float]]:
+    """Return patterns (6, 6), not scaled, and dashpots of a rotor at work.
+
+    What a first mode loses is the real part of its own pole among the first two, which the rotor couples;
+    it is at least the smallest that can be told from nothing.
+    """
+    given = config.update
+    with located(file=config.path, field="update"):
+        rotor, control = read_rotor(given.rotor or "")
+        if given.rotor_schedule is not None:
+            control = replace(control, schedule=read_schedule(Path(given.rotor_schedule)))
+        operation = operating_point(rotor, control, wind)
+    top = numbered.shapes[assembly.dofs(assembly.structure.top_node)][:, :2]
+    omega = numbered.omega[:2]
+    found: dict[str, tuple[FloatArray, float]] = {}
+    for name in given.dashpots:
+        axis = DASHPOTS[name]
+        own = int(np.argmax(np.abs(top[axis])))
+        pole = 1j * omega[own]
+        for _ in range(_ROUNDS):
+            mean = operating_damping(rotor, operation, pole=pole, shaft=given.shaft or "free")
+            C, K = (top.T @ matrix @ top for matrix in (mean.damping, mean.stiffness))
+            state = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.diag(omega**2) - K, -C]])
+            poles, shapes = np.linalg.eig(state)
+            pole = poles[np.argmax(np.where(poles.imag > 0.0, np.abs(shapes[own]), 0.0))]
+        c = max(-2.0 * pole.real, 2.0 * OPERATING_LEAST_RATIO * omega[own]) / top[axis, own] ** 2
+        part = _of_side(0.5 * (mean.damping + mean.damping.T), name)
+        direct = _dashpot(part, name, assembly, numbered)
+        if direct <= 0.0:
+            part, direct = np.zeros((6, 6)), 1.0
+            part[axis, axis] = 1.0
+        found[name] = part * (c / direct), float(c)
+    return found
 
 
 def operating_states(
@@ -196,12 +231,8 @@ def _growth(
     """Return by how much each dashpot is larger in a wind than where it is stated."""
     if config.update.rotor is None or config.update.rotor_state == "parked":
         return dict.fromkeys(config.update.dashpots, wind / stated)
-    here, there = (_rotor_matrix(config, numbered, v) for v in (wind, stated))
-    return {
-        name: _dashpot(_of_side(here, name), name, assembly, numbered)
-        / _dashpot(_of_side(there, name), name, assembly, numbered)
-        for name in config.update.dashpots
-    }
+    here, there = (_dashpots_at_work(config, assembly, numbered, v) for v in (wind, stated))
+    return {name: here[name][1] / there[name][1] for name in config.update.dashpots}
 
 
 def _in_several_winds(mode: int, winds: Mapping[str, tuple[OperationTotal, float | None]]) -> bool:

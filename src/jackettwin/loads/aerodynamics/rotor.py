@@ -18,6 +18,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.errors import require
 from jackettwin.loads.aerodynamics.blades import ALPHA, Blade
 from jackettwin.loads.kernels import blade_elements
+from jackettwin.structure import BladeStructure
 
 AIR_KG_M3 = 1.225
 SHAFTS = ("locked", "free")
@@ -25,7 +26,10 @@ SHAFTS = ("locked", "free")
 
 @dataclass(frozen=True)
 class Rotor:
-    """Blades on a hub: overhang and hub height from the tower top [m], tilt and cone [rad]."""
+    """Blades on a hub: overhang and hub height from the tower top [m], tilt and cone [rad].
+
+    ``bending`` is what the blades are made of, where that is known.
+    """
 
     blade: Blade
     n_blades: int
@@ -34,6 +38,7 @@ class Rotor:
     hub_height: float
     tilt: float
     cone: float
+    bending: BladeStructure | None = None
 
     @property
     def hub(self) -> FloatArray:

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from jackettwin.arrays import FloatArray
+from jackettwin.decks import windio_blade
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import Part, WindIO, find_file, read_yaml, windio
 from jackettwin.loads.aerodynamics.blades import Blade, Polar, blend_polars, stall_delay
@@ -59,7 +60,15 @@ def _rotor(content: WindIO) -> Rotor:
         hub_height=drivetrain["distance_tt_hub"].number(low=-20.0, high=50.0),
         tilt=drivetrain["uptilt"].number(low=-steepest, high=steepest) * content.angle,
         cone=hub["cone_angle"].number(low=-steepest, high=steepest) * content.angle,
+        bending=windio_blade(content) if _says_what_blades_are_made_of(content) else None,
     )
+
+
+def _says_what_blades_are_made_of(content: WindIO) -> bool:
+    blade = content.root["components"]["blade"]
+    if content.newer:
+        return "structure" in blade and "elastic_properties" in blade["structure"]
+    return "elastic_properties_mb" in blade and "six_x_six" in blade["elastic_properties_mb"]
 
 
 def _blade(content: WindIO) -> Blade:

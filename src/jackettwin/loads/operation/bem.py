@@ -105,13 +105,13 @@ def ring_radius(rotor: Rotor) -> FloatArray:
 
 
 def balanced_wake(rotor: Rotor, wind: FloatArray, swirl: FloatArray, pitch: float) -> FloatArray:
-    """Return the induced velocities (n, 2), axial and tangential [m/s], that balance each ring's momentum.
+    """Return the induced velocities (..., n, 2), axial and tangential [m/s], that balance rings' momentum.
 
-    ``wind`` and ``swirl`` (n,) are the air's velocity along the shaft and around it, relative to the blade
-    and without the wake [m/s].
+    ``wind`` and ``swirl`` (..., n) are the air's velocity along the shaft and around it, relative to the
+    blade and without the wake [m/s].
     """
     r = ring_radius(rotor)
-    low, high = np.full(r.size, 1e-6), np.full(r.size, 0.5 * np.pi)
+    low, high = np.full(swirl.shape, 1e-6), np.full(swirl.shape, 0.5 * np.pi)
     for _ in range(50):
         phi = 0.5 * (low + high)
         a, da = _induction(rotor, r, phi, pitch)
@@ -119,7 +119,7 @@ def balanced_wake(rotor: Rotor, wind: FloatArray, swirl: FloatArray, pitch: floa
         low, high = np.where(residual < 0.0, phi, low), np.where(residual < 0.0, high, phi)
     a, da = _induction(rotor, r, 0.5 * (low + high), pitch)
     # swirl rotates opposite to the rotor: it adds to the tangential wind
-    return np.stack([wind * a, swirl * da], axis=1)
+    return np.stack([wind * a, swirl * da], axis=-1)
 
 
 def ring_forces(
@@ -131,9 +131,9 @@ def ring_forces(
     *,
     density: float = AIR_KG_M3,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the forces of all blades (n,) along the shaft, and around it in the sense of rotation [N]."""
+    """Return the forces of all blades (..., n) along the shaft, and around it with the rotation [N]."""
     blade = rotor.blade
-    axial, tangential = wind - induced[:, 0], swirl + induced[:, 1]
+    axial, tangential = wind - induced[..., 0], swirl + induced[..., 1]
     phi = np.arctan2(axial, tangential)
     cl, cd = blade.coefficients(phi - pitch - blade.twist)
     scale = 0.5 * density * (axial**2 + tangential**2) * blade.chord * blade.weight * rotor.n_blades

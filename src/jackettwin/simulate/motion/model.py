@@ -80,6 +80,12 @@ class TrueMode:
     damping_ratio: float
     damping_by_source: dict[str, float] = field(default_factory=dict)
 
+    @property
+    def pole(self) -> complex:
+        """λ of its motion e^{λt} [rad/s]."""
+        zeta = self.damping_ratio
+        return 2.0 * pi * self.frequency_hz * complex(-zeta, (1.0 - zeta**2) ** 0.5)
+
 
 def build_model(scenario: Scenario) -> Model:
     """Return the asset of a scenario in still air, its tower tuned if that is asked."""
