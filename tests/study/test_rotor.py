@@ -123,7 +123,8 @@ def test_a_rotor_at_work_damps_fore_aft_as_computed_in_each_wind(config: TwinCon
     residuals, factors = states["16 m/s"]
     assert [t.mode for t in residuals.targets] == [1, 2]
     assert factors["c_fore_aft"] == pytest.approx(1.0, abs=0.05)
-    assert 1.1 < factors["c_side_side"] < 16.0 / 12.0 + 0.1
+    # `operation jacket15` has 0.18 and 0.44 % across the wind, where parts cancel in light wind
+    assert 2.0 < factors["c_side_side"] < 3.0
     grown = rotor_damping(works, stands["assembly"], stands["numbered"], 16.0).priors
     assert grown["c_side_side"][0] == pytest.approx(factors["c_side_side"] * found_priors["c_side_side"][0])
 

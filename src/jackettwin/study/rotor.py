@@ -36,7 +36,7 @@ _BLADES = 3
 _ANY_WIND_M_S = 10.0
 """Where the wind is not known: it scales a parked rotor's damping, and hardly changes the pattern of one at
 work."""
-_ROUNDS = 3
+_ROUNDS = 2
 _SIDES = {"c_fore_aft": (0, 2, 4), "c_side_side": (1, 3, 5)}
 """Degrees of freedom of the tower top that a rotor without yaw error couples with each other."""
 
@@ -212,6 +212,9 @@ def operating_states(
         Target(t.mode, t.frequency_hz, t.frequency_std_hz) if t.mode in apart else t
         for t in residuals.targets
     )
+    # without a rotor's description dashpots grow as a parked rotor's
+    described = works and config.update.rotor is not None
+    stated = _dashpots_at_work(config, assembly, numbered, wind) if described else {}
     states: States = {"all winds": (Residuals(common, relative=False), {})}
     for name, (total, v) in sorted(winds.items(), key=lambda item: (item[1][1] or 0.0, item[0])):
         targets = [
@@ -220,19 +223,12 @@ def operating_states(
             if mode in total.modes
         ]
         if targets and v is not None:
-            grown = _growth(config, assembly, numbered, v, wind)
+            grown = dict.fromkeys(config.update.dashpots, v / wind)
+            if stated:
+                here = _dashpots_at_work(config, assembly, numbered, v)
+                grown = {name: here[name][1] / c for name, (_, c) in stated.items()}
             states[name] = (Residuals(tuple(targets), relative=False), grown)
     return states
-
-
-def _growth(
-    config: TwinConfig, assembly: Assembly, numbered: UndampedModes, wind: float, stated: float
-) -> dict[str, float]:
-    """Return by how much each dashpot is larger in a wind than where it is stated."""
-    if config.update.rotor is None or config.update.rotor_state == "parked":
-        return dict.fromkeys(config.update.dashpots, wind / stated)
-    here, there = (_dashpots_at_work(config, assembly, numbered, v) for v in (wind, stated))
-    return {name: here[name][1] / there[name][1] for name in config.update.dashpots}
 
 
 def _in_several_winds(mode: int, winds: Mapping[str, tuple[OperationTotal, float | None]]) -> bool:
