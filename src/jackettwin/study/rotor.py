@@ -223,7 +223,7 @@ def operating_states(
             if mode in total.modes
         ]
         if targets and v is not None:
-            grown = dict.fromkeys(config.update.dashpots, v / wind)
+            grown: dict[str, float] = dict.fromkeys(config.update.dashpots, v / wind)
             if stated:
                 here = _dashpots_at_work(config, assembly, numbered, v)
                 grown = {name: here[name][1] / c for name, (_, c) in stated.items()}
