@@ -6,8 +6,10 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
+from distributed import Future
 from distributed.scheduler import KilledWorker
 from tests.service.servers import free_port, wait_for_port
 
@@ -51,6 +53,31 @@ def test_waiting_for_a_worker_is_not_the_tasks_time(compute: WorkerCluster) -> N
     compute.submit(time.sleep, 0.8)
     with pytest.raises(NoWorker):
         compute.result(compute.submit(time.sleep, 0.0), 0.2)
+
+
+class Slow:
+    """A task's future whose result is fetched slowly, as from a worker on a busy machine."""
+
+    def __init__(self, future: Future) -> None:
+        self._future, self._fetched = future, iter((False, True))
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._future, name)
+
+    def result(self, timeout: float) -> Any:
+        """Return the result at the second call, which is after the task's end."""
+        _until(self._future.done)
+        if next(self._fetched):
+            return self._future.result(timeout=60)
+        raise TimeoutError
+
+
+def test_a_result_that_is_fetched_slowly_is_not_a_task_that_takes_too_long(compute: WorkerCluster) -> None:
+    done = compute.submit(os.getpid)
+    assert compute.result(Slow(done), 60.0) == done.result(timeout=60)
+    own = compute.submit(eval, "exec('raise TimeoutError(5)')")
+    with pytest.raises(TimeoutError, match="5"):
+        compute.result(own, 60.0)
 
 
 def test_a_task_that_takes_too_long_ends_its_worker_and_what_waited_there_was_not_tried(

@@ -6,7 +6,7 @@ from .database import (
     sqlite_url as sqlite_url,
     writing as writing,
 )
-from .export import Exported as Exported, exported as exported
+from .export import ADMINS as ADMINS, Exported as Exported, exported as exported
 from .people import note_down as note_down
 from .results import StoredObservation as StoredObservation
 from .streams import Packet as Packet

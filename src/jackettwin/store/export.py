@@ -29,9 +29,23 @@ Exported = Literal[
     "assets",
     "work",
     "handling",
+    "events",
+    "packets",
+    "windows",
+    "alerts",
+    "asset_groups",
+    "audit",
+    "posts",
+    "servers",
+    "settings",
+    "tokens",
+    "users",
 ]
-"""Tables with the asset of each row; the first is requested most."""
+"""Every table of a store; the first is requested most."""
 EXPORTED: tuple[Exported, ...] = get_args(Exported)
+ADMINS: frozenset[Exported] = frozenset(EXPORTED[EXPORTED.index("alerts") :])
+"""Tables of who may and of the servers, which an admin alone may export; the rows of others have an asset."""
+_SECRETS = {"users": ("password_hash",), "tokens": ("hash", "csrf")}
 _ROWS = 5000
 """Number of rows in memory at once, and in a row group of the file."""
 
@@ -41,20 +55,24 @@ def exported(database: Engine, name: Exported, seen: Assets, *, arrow: bool = Fa
 
     Parameters
     ----------
-    name : of the table; times are UTC, nested values JSON, bundles and pages are omitted
+    name : of the table; times are UTC, nested values JSON; secrets and what is no text or number (bundles,
+        pages, samples of packets) are omitted
     arrow : as a stream of Arrow (IPC) instead of a Parquet file
     """
     import pyarrow as pa
     import pyarrow.parquet as pq
 
     table = tables.metadata.tables[name]
-    columns = [c for c in table.columns if not isinstance(c.type, LargeBinary)]
+    omitted = _SECRETS.get(name, ())
+    columns = [c for c in table.columns if c.name not in omitted and not isinstance(c.type, LargeBinary)]
     schema = pa.schema([(c.name, _arrow_type(c)) for c in columns])
     sink = _Pieces()
     make = pa.ipc.new_stream if arrow else pq.ParquetWriter
     with reading(database) as connection, make(sink, schema) as writer:
         order = table.primary_key.columns
-        query = select(*columns).where(among(_asset_of(table), seen)).order_by(*order)
+        query = select(*columns).order_by(*order)
+        if name not in ADMINS:
+            query = query.where(among(_asset_of(table), seen))
         found = connection.execute(query.execution_options(yield_per=_ROWS))
         for part in found.partitions():
             rows = [{k: _plain(v) for k, v in row._mapping.items()} for row in part]

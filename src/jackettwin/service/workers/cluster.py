@@ -261,8 +261,10 @@ class WorkerCluster:
             except Exception as error:
                 if self.forsaken(future):
                     raise NoWorker from None
-                if not isinstance(error, TimeoutError) or future.done():  # the error is the task's own
+                if not isinstance(error, TimeoutError) or future.status == "error":  # it is the task's own
                     raise
+                if future.done():  # its result is on its way
+                    continue
                 left = self._began.get(future.key, asked) + limit_s - time.monotonic()
                 if left > 0.0:
                     continue

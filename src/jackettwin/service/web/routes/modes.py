@@ -36,7 +36,7 @@ from jackettwin.service.web.schemas.modes import (
     WatchOut,
 )
 from jackettwin.service.web.schemas.supports import SupportsOut
-from jackettwin.store import Exported, exported, people, results, writing
+from jackettwin.store import ADMINS, Exported, exported, people, results, writing
 from jackettwin.store.mode_bins import modes_in_bins
 
 router = APIRouter(tags=["answers"], route_class=Route)
@@ -171,10 +171,10 @@ def life(asset: AssetName, connection: ReadsAtVersion, version: AnyVersion = Non
     "/export.parquet",
     dependencies=[auth.VIEWER, WAITING],
     response_class=Response,
-    responses={200: {"content": {_PARQUET: {}}}, **answers(401, 422)},
+    responses={200: {"content": {_PARQUET: {}}}, **answers(401, 403, 422)},
 )
 def export(who: Asker, parts: Parts, table: Exported = "modes") -> StreamingResponse:
-    """Return a whole table of the visible assets as Parquet."""
+    """Return a whole table of the visible assets as Parquet; those of users and servers need an admin."""
     return _exported(who, parts, table, _PARQUET)
 
 
@@ -182,14 +182,16 @@ def export(who: Asker, parts: Parts, table: Exported = "modes") -> StreamingResp
     "/export.arrow",
     dependencies=[auth.VIEWER, WAITING],
     response_class=Response,
-    responses={200: {"content": {_ARROW: {}}}, **answers(401, 422)},
+    responses={200: {"content": {_ARROW: {}}}, **answers(401, 403, 422)},
 )
 def export_arrow(who: Asker, parts: Parts, table: Exported = "modes") -> StreamingResponse:
-    """Return a whole table of the visible assets as an Arrow stream."""
+    """Return a whole table as Parquet's route does, as an Arrow stream."""
     return _exported(who, parts, table, _ARROW)
 
 
 def _exported(who: Who, parts: Service, table: Exported, form: str) -> StreamingResponse:
+    if table in ADMINS and not who.may("admin"):
+        raise auth.too_little(who, "admin")
     with writing(parts.database) as connection:
         people.note_down(connection, who.name, "download", f"table {table}", "ok", parts.now())
     pieces = exported(parts.database, table, who.assets, arrow=form == _ARROW)
