@@ -9,7 +9,7 @@ import pytest
 
 from jackettwin.records import Channel, Record
 from jackettwin.records.record import record_id
-from jackettwin.store import read_waveform, waveform_path, write_waveform
+from jackettwin.store import read_waveform, waveform_path, without_false_digits, write_waveform
 from jackettwin.store.waveforms import packed_samples
 
 START = datetime(2025, 3, 1, 12, tzinfo=UTC)
@@ -62,6 +62,43 @@ def test_a_logger_of_24_bits_takes_at_most_five_bytes(tmp_path: Path) -> None:
     size = write_waveform(record(data), tmp_path / "x.parquet")
     assert size / data.size <= 5.0
     np.testing.assert_array_equal(read_waveform(tmp_path / "x.parquet").data, data)
+
+
+@pytest.mark.parametrize("offset", [0.0, 9.81, -3.0])
+def test_64_bit_floats_lose_what_is_far_below_their_noise_and_take_at_most_five_bytes(
+    tmp_path: Path, offset: float
+) -> None:
+    """The error is at most half a step, 2⁻¹⁵ of the median change, and has no mean."""
+    rng = np.random.default_rng(4)
+    data = offset + 1e-3 * rng.standard_normal((2, 12_000)) + 0.05 * np.sin(0.05 * np.arange(12_000))
+    data[0, 7] = np.nan
+    once = without_false_digits(record(data))
+    change = np.nanmedian(np.abs(np.diff(data)), axis=1, keepdims=True)
+    error = once.data - data
+    assert 0.0 < np.nanmax(np.abs(error / change)) <= 2.0**-15
+    assert np.all(
+        np.abs(np.nanmean(error, axis=1)) < 5e-7 * change[:, 0]
+    )  # three deviations of the mean or more
+    assert record_id(without_false_digits(once)) == record_id(once)
+    size = write_waveform(once, tmp_path / "x.parquet")
+    assert size / data.size <= 5.0
+    assert record_id(read_waveform(tmp_path / "x.parquet")) == record_id(once)
+
+
+@pytest.mark.parametrize(
+    "x",
+    [
+        np.random.default_rng(1).standard_normal(400).astype(np.float32).astype(float) * 9.81,
+        np.round(200 * np.random.default_rng(1).standard_normal(400)) * 0.003,
+        np.r_[np.zeros(300), np.pi * np.arange(100)],
+        np.r_[1e12 * np.pi, np.random.default_rng(1).standard_normal(400)],
+        np.r_[np.inf, np.random.default_rng(1).standard_normal(400)],
+        np.full(9, np.nan),
+    ],
+    ids=["32-bit", "steps", "stands still", "range", "infinite", "missing"],
+)
+def test_what_has_no_false_digits_is_not_rounded(x: np.ndarray) -> None:
+    np.testing.assert_array_equal(without_false_digits(record(x[None])).data[0], x)
 
 
 def test_what_has_no_step_is_kept_as_it_is(tmp_path: Path) -> None:

@@ -14,5 +14,6 @@ from .waveforms import (
     is_waveform as is_waveform,
     read_waveform as read_waveform,
     waveform_path as waveform_path,
+    without_false_digits as without_false_digits,
     write_waveform as write_waveform,
 )

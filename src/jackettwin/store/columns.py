@@ -1,7 +1,7 @@
 """Compression of documents: numbers as a column of 32 bits each, words by a dictionary.
 
-An observation has some hundred numbers, of fewer than seven significant digits, and words that are common to
-all observations. Numbers are rounded to 32-bit floats (:func:`rounded`, at most nine digits); packing of
+An observation has some hundred numbers, of fewer than six significant digits, and words that are common to
+all observations. Numbers are rounded to 18 binary digits (:func:`rounded`), in 32-bit floats; packing of
 rounded documents is lossless.
 """
 
@@ -16,18 +16,23 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from jackettwin.arrays import FloatArray
 
-_PLAIN, _COLUMNS = b"{", b"\x01"
-"""First bytes of a document as text, and of one in columns whose words are those of ``words_1.txt``."""
+_PLAIN, _COLUMNS = b"{", (b"\x01", b"\x02")
+"""First bytes of a document as text, and of one in columns with the words of ``words_1.txt`` or ``_2.txt``.
+
+Documents are packed with the newest words.
+"""
 FORGOTTEN = ""
 """Content of a document that was deleted by the store's policy."""
 _PLACE = "\x02"
 """Placeholder in the text for a number of the column."""
+_HALF_STEP, _KEPT = 0x20, 0xFFFFFFC0
+"""Half of the last binary digit that is stored of a 32-bit float, and a mask of those that are."""
 _SMALL, _LARGE = 1e-30, 1e30
 """Range of magnitudes in the column; other numbers remain in the text, as 32 bits would lose digits."""
 
 
 def rounded(document: str) -> str:
-    """Return a document with numbers rounded to 32 bits; rounding twice changes nothing."""
+    """Return a document with numbers rounded by at most 2⁻¹⁸ of each; rounding twice changes nothing."""
     return json.dumps(json.loads(document, parse_float=_rounded), ensure_ascii=False, separators=(",", ":"))
 
 
@@ -35,7 +40,10 @@ def _rounded(text: str) -> float:
     import numpy as np
 
     exact = float(text)
-    return float(str(np.float32(exact))) if _SMALL < abs(exact) < _LARGE else exact
+    if not _SMALL < abs(exact) < _LARGE:
+        return exact
+    bits = np.float32(exact).view(np.uint32)
+    return float(str(((bits + np.uint32(_HALF_STEP)) & np.uint32(_KEPT)).view(np.float32)))
 
 
 def pack(document: str) -> bytes:
@@ -60,20 +68,20 @@ def pack(document: str) -> bytes:
     if skeleton.count(_PLACE) != column.size or _decimals(column) != [repr(x) for x in numbers]:
         return document.encode()
     words = skeleton.encode()
-    squeezed = zlib.compressobj(9, zlib.DEFLATED, -15, 9, zdict=_words())
+    squeezed = zlib.compressobj(9, zlib.DEFLATED, -15, 9, zdict=_words(_COLUMNS[-1]))
     body = len(words).to_bytes(4, "little") + words + _planes(column)
-    return _COLUMNS + squeezed.compress(body) + squeezed.flush()
+    return _COLUMNS[-1] + squeezed.compress(body) + squeezed.flush()
 
 
 def unpack(packed: bytes) -> str:
     """Return the document of :func:`pack`, or of an older version's text."""
     if packed[:1] == _PLAIN or not packed:
         return packed.decode()
-    if packed[:1] != _COLUMNS:
+    if packed[:1] not in _COLUMNS:
         raise ValueError("packed by a newer version")
     import numpy as np
 
-    body = zlib.decompressobj(-15, zdict=_words()).decompress(packed[1:])
+    body = zlib.decompressobj(-15, zdict=_words(packed[:1])).decompress(packed[1:])
     end = 4 + int.from_bytes(body[:4], "little")
     column = np.frombuffer(body[end:], dtype=np.uint8).reshape(4, -1).T.copy().view("<f4").ravel()
     parts = body[4:end].decode().split(_PLACE)
@@ -93,6 +101,6 @@ def _decimals(column: FloatArray) -> list[str]:
 
 
 @cache
-def _words() -> bytes:
+def _words(first: bytes) -> bytes:
     """Return the words of observations by frequency; never edited, as stored documents depend on them."""
-    return (files("jackettwin.store") / "words_1.txt").read_bytes()
+    return (files("jackettwin.store") / f"words_{first[0]}.txt").read_bytes()

@@ -162,6 +162,7 @@ class Dispatcher(Thread):
                 consequences.observing(connection, self.service, job)
         for job in jobs:
             self._start(job)
+            self._turned = time.monotonic()
 
     def _start(self, job: work.Job, *, every_day: bool = False) -> None:
         """Submit a job to a worker, unless its inputs no longer exist."""
@@ -209,6 +210,7 @@ class Dispatcher(Thread):
         for number, running in list(self._running.items()):
             if running.future.done() or self.service.cluster.forsaken(running.future):
                 enough = self._keep(running)
+                self._turned = time.monotonic()
                 del self._running[number]
                 if not enough:
                     self._start(running.job, every_day=True)

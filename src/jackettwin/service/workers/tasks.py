@@ -160,9 +160,10 @@ def _check(record: Record, file: File) -> None:
 def stored(record: Record, asset: str, store: Path) -> Parsed:
     """Store the samples of a record, by their content."""
     from jackettwin.records import record_id
-    from jackettwin.store import waveform_path, write_waveform
+    from jackettwin.store import waveform_path, without_false_digits, write_waveform
 
     assert record.start_utc is not None
+    record = without_false_digits(record)
     number = record_id(record)
     place = waveform_path(asset, record.start_utc, number)
     size = write_waveform(record, store / place)
