@@ -162,8 +162,8 @@ def stored(record: Record, asset: str, store: Path) -> Parsed:
     from jackettwin.records import record_id
     from jackettwin.store import waveform_path, without_false_digits, write_waveform
 
-    assert record.start_utc is not None
     record = without_false_digits(record)
+    assert record.start_utc is not None
     number = record_id(record)
     place = waveform_path(asset, record.start_utc, number)
     size = write_waveform(record, store / place)
