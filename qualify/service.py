@@ -9,13 +9,11 @@ lost or doubled, and days whose state differs from an undisturbed run.
 from __future__ import annotations
 
 import argparse
-import http.client
 import json
 import os
 import random
 import sys
 import tempfile
-import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -27,7 +25,7 @@ from common.page import write_page
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from common import living
+from common import farm, living
 from tests.service.conftest import description, hour, record_file
 from tests.service.servers import Broker, Database, Relay, Scheduler, Server, opened, publish
 
@@ -114,37 +112,10 @@ def warm(server: Server) -> None:
 
 
 def asked(server: Server, n: int, during: Callable[[], None]) -> Figures:
-    """Have ``n`` readers ask, each once a second, while something happens; return what answers took."""
-    delays: list[float] = []
-    wrong: list[int] = []
-    stop = threading.Event()
-
-    def read(i: int) -> None:
-        rng = random.Random(i)
-        connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=60)
-        stop.wait(rng.random())
-        while not stop.is_set():
-            path = f"/api/v1{rng.choice(living.PATHS).format(k=rng.randrange(100))}"
-            before = time.perf_counter()
-            connection.request("GET", path, headers={"Accept-Encoding": "gzip"})
-            answer = connection.getresponse()
-            answer.read()
-            delays.append(time.perf_counter() - before)
-            wrong.extend([answer.status] * (answer.status != 200))
-            stop.wait(max(1.0 - delays[-1], 0.0))
-        connection.close()
-
-    readers = [threading.Thread(target=read, args=(i,), daemon=True) for i in range(n)]
+    """Have readers ask a server, as :func:`living.asked_at`; return what answers took, and their CPU time."""
     cpu = server.cpu_s()[0]
-    for reader in readers:
-        reader.start()
-    during()
-    stop.set()
-    for reader in readers:
-        reader.join()
-    p50, p95 = np.quantile(delays, [0.5, 0.95]) * 1e3
-    cpu_ms = (server.cpu_s()[0] - cpu) / len(delays) * 1e3
-    return {"answers": len(delays), "p50_ms": p50, "p95_ms": p95, "wrong": len(wrong), "cpu_ms": cpu_ms}
+    told = living.asked_at([server.port], n, 100, during)
+    return {**told, "cpu_ms": (server.cpu_s()[0] - cpu) / max(told["answers"], 1) * 1e3}
 
 
 def spread(memory: list[dict[int, int]], took_s: float) -> Figures:
@@ -388,6 +359,7 @@ SCENES: dict[str, Callable[[Path, argparse.Namespace], Figures]] = {
     "kills": kills,
     "load": load,
     "hour": by_the_clock,
+    "farm": farm.measured,
 }
 
 
@@ -525,6 +497,7 @@ def _queue(pieces: list[Figures]) -> list[str]:
 PAGES: dict[str, Callable[[list[Figures]], list[str]]] = {
     "load": _load,
     "hour": _hour,
+    "farm": farm.page,
     "kills": _faults(
         "Kills",
         "Two servers on one PostgreSQL, a stream through a broker, and kill −9 at moments drawn from a seed: "
@@ -559,6 +532,10 @@ def main() -> None:
     parser.add_argument("--kill-records", type=int, default=60)
     parser.add_argument("--few", type=int, default=24)
     parser.add_argument("--queued", type=int, default=100_000)
+    parser.add_argument("--turbines", type=int, default=1000, help="of the farm")
+    parser.add_argument("--servers", type=int, default=2, help="of the farm")
+    parser.add_argument("--farm-s", type=float, default=120.0, help="for which the farm runs at its own rate")
+    parser.add_argument("--burst", type=int, default=600, help="records that the farm sends at once")
     parser.add_argument("--quiet-s", type=float, default=30.0)
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()

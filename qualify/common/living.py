@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import http.client
 import json
 import random
+import threading
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -11,6 +13,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from sqlalchemy import Engine
 from tests.service.conftest import Here
 from tests.service.servers import opened
@@ -66,6 +69,48 @@ def fill(store: Path, *, turbines: int, days: int = 1) -> None:
                 connection.execute(tables.modes.insert(), [_mode(key, day, i) for i in range(3 * 143)])
                 connection.execute(tables.findings.insert(), [_finding(key, day, i) for i in range(15)])
                 results.put_state(connection, results.StoredState(**key, day=f"{day:%Y-%m-%d}", **state))
+
+
+def asked_at(ports: list[int], n: int, turbines: int, during: Callable[[], None]) -> dict[str, Any]:
+    """Have ``n`` readers ask, each once a second, while something happens; return what answers took."""
+    delays: list[float] = []
+    wrong: list[int] = []
+    stop = threading.Event()
+
+    def read(i: int) -> None:
+        rng = random.Random(i)
+        connection = http.client.HTTPConnection("127.0.0.1", ports[i % len(ports)], timeout=60)
+        stop.wait(rng.random())
+        while not stop.is_set():
+            path = f"/api/v1{rng.choice(PATHS).format(k=rng.randrange(turbines))}"
+            before = time.perf_counter()
+            connection.request("GET", path, headers={"Accept-Encoding": "gzip"})
+            answer = connection.getresponse()
+            answer.read()
+            delays.append(time.perf_counter() - before)
+            wrong.extend([answer.status] * (answer.status != 200))
+            stop.wait(max(1.0 - delays[-1], 0.0))
+        connection.close()
+
+    readers = [threading.Thread(target=read, args=(i,), daemon=True) for i in range(n)]
+    for reader in readers:
+        reader.start()
+    during()
+    stop.set()
+    for reader in readers:
+        reader.join()
+    p50, p95 = np.quantile(delays or [0.0], [0.5, 0.95]) * 1e3
+    return {"answers": len(delays), "p50_ms": p50, "p95_ms": p95, "wrong": len(wrong)}
+
+
+def fill_with_versions(made: Engine, turbines: int) -> None:
+    """Give a store many turbines of the twin of ``wtg`` without records."""
+    with writing(made) as connection:
+        like = assets.found_version(connection, "wtg")
+        contents = assets.unpack(assets.bundle_of(connection, "wtg", 1))
+        hashes = {"model_hash": like.model_hash, "settings_hash": like.settings_hash}
+        for k in range(turbines):
+            assets.add_version(connection, f"wtg_{k:02d}", contents, **hashes, by="fill", now=DAY)
 
 
 def _state_of_a_day(model_hash: str) -> dict[str, Any]:
