@@ -260,7 +260,7 @@ class WorkerCluster:
         while True:
             left = self._began.get(future.key, asked) + limit_s - time.monotonic()
             try:
-                return future.result(timeout=max(min(left, _LOOK_S), 0.0))
+                return future.result(timeout=_LOOK_S if future.done() else max(min(left, _LOOK_S), 0.0))
             except Exception as error:
                 if self.forsaken(future):
                     raise NoWorker from None
