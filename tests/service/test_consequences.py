@@ -14,7 +14,7 @@ from threading import Event
 
 import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
-from sqlalchemy import select
+from sqlalchemy import Connection, select
 from sqlalchemy.exc import OperationalError
 from tests.service.conftest import description, hour, make_service, record_file, turn
 from tests.store.conftest import fresh
@@ -218,6 +218,38 @@ def test_a_record_whose_worker_dies_is_tried_three_times_and_set_aside(service: 
         status = connection.scalar(select(tables.records.c.status))
     assert (job.state, job.tries, status) == ("set_aside", work.MOST_TRIES, "set_aside")
     monkeypatch.undo()
+
+
+@pytest.mark.parametrize("wrong", [{"label": None}, {"label": "x", "frequency_hz": object()}])
+def test_a_result_that_cannot_be_stored_is_its_own_records_fault(
+    service: Service, monkeypatch, wrong
+) -> None:
+    """Otherwise the dispatcher would try it for ever, and everything behind it would wait."""
+    for k in range(3):
+        send(service, k)
+    keep, bad = consequences.keep, []
+
+    def spoiled(connection: Connection, at: Service, job: work.Job, outcome: Outcome) -> None:
+        bad[:] = bad or [job.record_id]
+        mode = {**outcome.modes[0], **wrong}
+        keep(connection, at, job, replace(outcome, modes=(mode,)) if job.record_id in bad else outcome)
+
+    monkeypatch.setattr(consequences, "keep", spoiled)
+    turn(service, 12)
+    with reading(service.database) as connection:
+        statuses = dict(connection.execute(select(tables.records.c.record_id, tables.records.c.status)).all())
+        (tries,) = connection.scalars(select(tables.work.c.tries).where(tables.work.c.record_id == bad[0]))
+    assert (statuses.pop(bad[0]), tries) == ("set_aside", work.MOST_TRIES)
+    assert set(statuses.values()) == {"observed"} and len(statuses) == 2
+
+
+def test_a_channel_named_by_a_stranger_fits_into_a_finding() -> None:
+    """PostgreSQL refuses a NUL and 256 characters, whatever SQLite takes."""
+    finding = {"code": "dead", "severity": "warning", "subject": "a\0" + "x" * 300, "params": {}}
+    finding["text"] = f"{finding['subject']} is dead"
+    row = consequences._finding_row(finding, {}, hour(0), "2025-03-01", "observe")
+    assert len(row["subject"]) == 255 and "\0" not in row["subject"] + row["text"]
+    assert consequences._finding_row({**finding, "subject": None}, {}, hour(0), "", "")["subject"] is None
 
 
 def test_a_record_that_waited_at_a_worker_that_died_was_not_tried(service: Service, monkeypatch) -> None:

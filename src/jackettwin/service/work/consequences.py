@@ -39,6 +39,8 @@ if TYPE_CHECKING:
     from jackettwin.service.context import Place, Service
 
 
+_SUBJECT = 255
+"""Longest subject of a finding in the table, which PostgreSQL enforces."""
 NEWEST = 24
 """Number of newest observations that a turbine's page lists; its results are of all."""
 
@@ -331,4 +333,9 @@ def _end(
 def _finding_row(
     finding: Mapping[str, Any], key: Mapping[str, Any], time: datetime, day: str, origin: str
 ) -> dict[str, Any]:
-    return {**finding, **key, "time_utc": time, "day": day, "origin": origin}
+    """Return the row of a finding, whose words a channel of a stranger's file may have named."""
+    words = {
+        name: finding[name] and str(finding[name]).replace("\0", "\ufffd") for name in ("subject", "text")
+    }
+    subject = words["subject"] and words["subject"][:_SUBJECT]
+    return {**finding, **words, "subject": subject, **key, "time_utc": time, "day": day, "origin": origin}

@@ -9,14 +9,15 @@ import logging
 import os
 import time
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Event, Thread
 from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import Connection
-from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.exc import DataError, IntegrityError, SQLAlchemyError, StatementError
 
 from jackettwin.service.systemd import tell_systemd
 from jackettwin.service.work import consequences
@@ -161,8 +162,24 @@ class Dispatcher(Thread):
             for job in jobs if kind == work.OBSERVE else ():
                 consequences.observing(connection, self.service, job)
         for job in jobs:
-            self._start(job)
+            with self._its_own_fault(job):
+                self._start(job)
             self._turned = time.monotonic()
+
+    @contextmanager
+    def _its_own_fault(self, job: work.Job) -> Iterator[None]:
+        """Count any error but the loss of the database or disk as a try of a job, so that others go on."""
+        try:
+            yield
+        except Exception as error:
+            lost = isinstance(error, SQLAlchemyError | OSError)
+            refused = isinstance(error, DataError | IntegrityError) or type(error) is StatementError
+            if lost and not refused:
+                raise
+            log.exception("job %d cannot be done", job.id)
+            reason = f"the server could not prepare it or store its result ({type(error).__name__})"
+            with writing(self.service.database) as connection:
+                consequences.failed(connection, self.service, job, reason)
 
     def _start(self, job: work.Job, *, every_day: bool = False) -> None:
         """Submit a job to a worker, unless its inputs no longer exist."""
@@ -209,11 +226,14 @@ class Dispatcher(Thread):
     def _collect(self) -> None:
         for number, running in list(self._running.items()):
             if running.future.done() or self.service.cluster.forsaken(running.future):
-                enough = self._keep(running)
+                enough = True
+                with self._its_own_fault(running.job):
+                    enough = self._keep(running)
                 self._turned = time.monotonic()
                 del self._running[number]
                 if not enough:
-                    self._start(running.job, every_day=True)
+                    with self._its_own_fault(running.job):
+                        self._start(running.job, every_day=True)
                 elif running.job.kind == work.KNOW:
                     took = time.monotonic() - running.since
                     self._rest_until = time.monotonic() + _RESTS * took
