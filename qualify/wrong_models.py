@@ -416,6 +416,18 @@ def chance_lines(found: list[Result]) -> list[str]:
     ]
 
 
+def symmetric_lines(found: list[Result]) -> list[str]:
+    """Return how symmetric jackets came out, whose feet alone part their pairs."""
+    if not found:
+        return []
+    within = [r for r in found if r["kind"] in COVERED]
+    objected = sum(r["product"]["objects"] for r in within)
+    return [
+        f"Of {len(found)} symmetric jackets intervals hold in {share(*held(found, 'product'))};",
+        f"of {len(within)} within the tolerances {objected} were objected to.",
+    ]
+
+
 def kind_row(found: list[Result], kind: str) -> str:
     """Return the line of one kind of wrongness."""
     own = [r for r in found if r["kind"] == kind]
@@ -525,6 +537,7 @@ def page(found: list[Result]) -> list[str]:
         "structure, but not the ground's law nor that the feet differ; its intervals, like those of least",
         "squares, are of a normal around the best fit. Of assets with nothing wrong",
         f"{sum(r['product']['objects'] for r in true)} of {len(true)} were objected to.",
+        *symmetric_lines([r for r in found if r["on_axis"]]),
         "",
         "| kind | twins | hold | before | plain | width | oracle's | some fail | objected | said invisible |",
         "|---|---|---|---|---|---|---|---|---|---|",
