@@ -238,6 +238,22 @@ def test_the_explanation_is_what_was_planted(model: SupportModel, errors: ErrorM
     assert best.size == pytest.approx(0.06, rel=0.35)
 
 
+def test_a_one_sided_error_explains_nothing_the_other_way(model: SupportModel, errors: ErrorModel) -> None:
+    """A symmetric jacket was said to have "bending of the blades −0.44 rotors"."""
+    stiff = errors.directions.each[0]
+    only = Direction(replace(tolerance("soft"), one_sided=True), stiffness=-stiff.stiffness)
+    known = ErrorModel(replace(errors.directions, each=()), {}, 0.0005, 0.05)
+    for factor, named in ((1.06, False), (0.94, True)):
+        true = model_of(tower=factor).predict(THETA, MODES).poles
+        problem = problem_of(model, targets(true), known)
+        near = problem.anchor(np.log(THETA))
+        assert near is not None
+        found = objection(problem, bottom(problem, np.log(THETA), near), suspects=(only,))
+        assert found is not None and found.objects
+        assert [e.tolerance.name for e in found.explanations] == (["soft"] if named else [])
+        assert [t.name for t in found.suspected] == (["soft"] if named else [])
+
+
 def test_influences_say_which_way_and_how_far(model: SupportModel, errors: ErrorModel) -> None:
     """A stiffer tower than drawn leaves less to the ground: k falls; a heavier jacket, k rises.
 

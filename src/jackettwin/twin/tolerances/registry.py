@@ -311,19 +311,19 @@ def _table() -> tuple[KnownTolerance, ...]:
             Tolerance("soft_sideways", "feet softer sideways than lengthwise", 0.3, "-",
                       "assumed: heads of jacket piles are two to ten times softer sideways; those of the "
                       "shipped records are by 4.8",
-                      "support.tie: horizontal-vertical"),
+                      "support.tie: horizontal-vertical", one_sided=True),
             _softer_sideways, suspected=True,
         ),
         KnownTolerance(
             Tolerance("weak_leg", "one foot softer than the others", 0.3, "-",
                       "assumed: scour at one leg or a pile that was not driven home",
-                      "compare the directions of bending pairs, put a sensor on each leg"),
+                      "compare the directions of bending pairs, put a sensor on each leg", one_sided=True),
             _softer_foot, suspected=True,
         ),
         KnownTolerance(
             Tolerance("joints", "softness of the brace joints", 0.1, "-",
                       "assumed, from the flexibility of joint cans (Buitrago et al. 1993)",
-                      "model the joints' local flexibility"),
+                      "model the joints' local flexibility", one_sided=True),
             _steel(lambda s, x: with_braces(s, stiffer(1.0 - x))), suspected=True,
         ),
         KnownTolerance(
@@ -335,7 +335,7 @@ def _table() -> tuple[KnownTolerance, ...]:
         KnownTolerance(
             Tolerance("bending_blades", "bending of the blades, lumped in the model", 1.0, "rotors",
                       "the IEA 15 MW rotor's first modes (5 % of the mass, 45 % of the inertia, 0.6 Hz)",
-                      "model the blades (blades:)"),
+                      "model the blades (blades:)", one_sided=True),
             _bending_blades, suspected=True,
         ),
     )  # fmt: skip

@@ -213,8 +213,9 @@ def _suspects(
     for direction, gamma in rows.asked:
         tolerance = direction.tolerance
         W, _ = _left(rows, precision, tolerance.beyond)
-        power = max(float(gamma @ W @ gamma), 0.0)
-        if float(gamma @ W @ rows.r) ** 2 > limit**2 * max(power, _TOLD):
+        power, pull = max(float(gamma @ W @ gamma), 0.0), -float(gamma @ W @ rows.r)
+        possible = pull > 0.0 or not tolerance.one_sided
+        if possible and pull**2 > limit**2 * max(power, _TOLD):
             suspected[tolerance.name] = tolerance
         size = tolerance.std * ((limit + _SURELY) / sqrt(power) if power > 0.0 else np.inf)
         known = unseen.get(tolerance.name)
@@ -265,7 +266,7 @@ def _explanations(columns: list[Column], W: FloatArray, Wr: FloatArray) -> tuple
         if seen < 1e-9:
             continue
         tolerance, size = direction.tolerance, -float(gamma @ Wr) / seen
-        if abs(size) > _LARGEST:
+        if abs(size) > _LARGEST or (tolerance.one_sided and size < 0.0):
             continue
         one = Explanation(tolerance, size * tolerance.std, size, float(gamma @ Wr) ** 2 / seen)
         if one.gain >= max(_WORTH, best[tolerance.name].gain if tolerance.name in best else 0.0):

@@ -52,6 +52,8 @@ class Tolerance:
     beyond : str
         Of a suspect, the tolerance that allows for some of the same: whether the data ask for the suspect, or
         would show it, is judged as if nobody had allowed for it.
+    one_sided : bool
+        Whether only a positive size is possible: blades are not stiffer than rigid.
     """
 
     name: str
@@ -61,6 +63,7 @@ class Tolerance:
     source: str
     settled_by: str
     beyond: str = ""
+    one_sided: bool = False
 
 
 @dataclass(frozen=True)
