@@ -12,7 +12,7 @@ from jackettwin.sensing.latent_forces import LatentForce, wind_forces
 from jackettwin.structure import assemble, rigid_body_motion
 
 
-@pytest.mark.parametrize("kind", ["gust", "wave"])
+@pytest.mark.parametrize("kind", ["gust", "disc", "wave"])
 def test_the_state_space_has_the_density_that_is_said(kind: str) -> None:
     force = LatentForce("f", np.zeros(1), np.zeros((1, 12)), kind, 0.8, 3.0)
     A, Q, h = force.dynamics()
@@ -37,6 +37,18 @@ def test_wind_acts_on_top_and_tower() -> None:
     assert abs(drag[0]) < 1e-9 * drag[1]
     assert forces["rotor Fx, quick"].rate == pytest.approx(25.0 * forces["rotor Fx"].rate)
     assert wind_forces(assembly, wind_m_s=24.0)[0].rate == pytest.approx(2.0 * forces["rotor Fx"].rate)
+
+
+def test_a_disc_averages_forces_and_not_moments() -> None:
+    forces = {f.name: f for f in wind_forces(assemble(read_structure("jacket15")), wind_m_s=12.0)}
+    omega = 2.0 * np.pi * np.array([1e-4, 0.1])
+    for name, steeper in (("rotor Fy", True), ("rotor Mx", False)):
+        slow, fast = forces[name].with_level(1.0).density(omega)
+        corner = forces[name].rate
+        expected = corner**2 / (corner**2 + omega[1] ** 2)
+        if steeper:
+            expected *= (4.0 * corner) ** 2 / ((4.0 * corner) ** 2 + omega[1] ** 2)
+        assert fast / slow == pytest.approx(expected, rel=1e-3)
 
 
 def test_drag_on_the_tower_is_that_of_the_stated_wind() -> None:

@@ -1,8 +1,8 @@
 r"""Forces that nobody measured, as Gaussian processes on patterns of load.
 
 A force is a pattern on the structure times a process of unit variance times a level that the record decides.
-Gusts are an Ornstein–Uhlenbeck process, whose density falls with :math:`f^{-2}` above its corner as a rotor's
-share of turbulence does; waves are a band about their peak that is nothing at rest and falls with
+Gusts are an Ornstein–Uhlenbeck process, whose density falls with :math:`f^{-2}` above its corner; a rotor's
+disc averages them, so that its force falls with f⁻⁴ above U/5D, and not its moments; waves are a band about their peak that is nothing at rest and falls with
 f⁻⁶, as short waves do not reach down:
 
 .. math:: S_{gust}(ω) = \frac{2a}{a^2 + ω^2}, \qquad
@@ -35,6 +35,8 @@ _TAIL = 1.5
 _PASSED = _TAIL**3 * (_TAIL + _BAND) / (_TAIL**2 + 2.0 * _BAND * _TAIL + 1.0) ** 2
 """Share of a band's variance that its tail leaves."""
 _SPACING_M = 4.0
+_DISC = 4.0
+"""Corner of what a disc of 240 m averages, some U/5D, over that of gusts, U/6L."""
 _QUICK = 25.0
 """How much quicker the quick gusts are: two processes make Kaimal's f^(-5/3) within a factor of 1.6."""
 _QUICK_SHARE, _QUICK_LOG_STD = 0.3, 1.5
@@ -65,7 +67,7 @@ class LatentForce:
     name : str
     load : (n_dof,) on the assembly's DOFs per unit of the process
     along : (n_elements, 12) what of it acts along elements, as loads on their ends in local axes
-    kind : "gust" or "wave"
+    kind : "gust", "disc" or "wave"
     rate : corner a or peak ω_p [rad/s]
     level : standard deviation of the process that multiplies the pattern: what to expect, then what was found
     level_log_std, rate_log_std : how far the logarithms of level and rate may lie from what is expected
@@ -75,7 +77,7 @@ class LatentForce:
     name: str
     load: FloatArray
     along: FloatArray
-    kind: Literal["gust", "wave"]
+    kind: Literal["gust", "disc", "wave"]
     rate: float
     level: float = 1.0
     level_log_std: float = 3.0
@@ -87,6 +89,10 @@ class LatentForce:
         a = self.rate
         if self.kind == "gust":
             return np.array([[-a]]), np.array([[2.0 * a]]), np.array([self.level])
+        if self.kind == "disc":
+            b = _DISC * a
+            through = np.array([0.0, self.level * sqrt((a + b) / b)])
+            return np.array([[-a, 0.0], [b, -b]]), np.diag([2.0 * a, 0.0]), through
         b = _TAIL * a
         A = np.zeros((4, 4))
         A[0, 1], A[1, :2] = a, (-a, -2.0 * _BAND * a)
@@ -102,6 +108,9 @@ class LatentForce:
         a, square = self.rate, self.level**2
         if self.kind == "gust":
             return np.asarray(square * 2.0 * a / (a**2 + omega**2))
+        if self.kind == "disc":
+            b = _DISC * a
+            return np.asarray(square * 2.0 * a * b * (a + b) / ((a**2 + omega**2) * (b**2 + omega**2)))
         x = omega / a
         width = 2.0 * _BAND
         band = 2.0 * width * x**2 / ((1.0 - x**2) ** 2 + (width * x) ** 2) / a
@@ -133,13 +142,16 @@ def wind_forces(assembly: Assembly, *, wind_m_s: float | None = None) -> tuple[L
     slow = []
     for row, (name, of) in _TOP.items():
         at = (_FORCE_N, 3.0, 0.2) if of is None else (_LEVER_M * _FORCE_N, _LEVER_LOG_STD, 0.2)
-        slow.append(LatentForce(name, _on_top(assembly, row), nothing, "gust", corner, *at, of))
+        # a disc averages the force, and not the gusts across it that make moments
+        kind: Literal["gust", "disc"] = "disc" if of is None else "gust"
+        slow.append(LatentForce(name, _on_top(assembly, row), nothing, kind, corner, *at, of))
     for axis, load in zip("xy", _on_tower(assembly), strict=False):
         slow.append(LatentForce(f"tower {axis}", load, nothing, "gust", corner, gusts, known))
     quick = [
         replace(
             f,
             name=f"{f.name}, quick",
+            kind="gust",
             rate=_QUICK * corner,
             level=_QUICK_SHARE * f.level,
             level_log_std=_QUICK_LOG_STD,
