@@ -2,8 +2,8 @@ r"""Forces that nobody measured, as Gaussian processes on patterns of load.
 
 A force is a pattern on the structure times a process of unit variance times a level that the record decides.
 Gusts are an Ornstein–Uhlenbeck process, whose density falls with :math:`f^{-2}` above its corner; a rotor's
-disc averages them, so that its force falls with f⁻⁴ above U/5D, and not its moments; waves are a band about their peak that is nothing at rest and falls with
-f⁻⁶, as short waves do not reach down:
+disc averages them, so that its force falls with f⁻⁴ above U/5D, and not its moments. Waves are a band about
+their peak that is nothing at rest and falls with f⁻⁶, as short waves do not reach down:
 
 .. math:: S_{gust}(ω) = \frac{2a}{a^2 + ω^2}, \qquad
           S_{wave}(ω) ∝ \frac{ω^2}{(ω_p^2 - ω^2)^2 + (2ζω_pω)^2} \, \frac{1}{(b^2 + ω^2)^2}
