@@ -18,6 +18,7 @@ from jackettwin.updating.search.shorter_law import ShorterLaws, shorter_law
 from jackettwin.updating.search.solutions import search
 
 OC4 = FilePath(__file__).parents[2] / "qualify" / "decks" / "oc4_jacket.dat"
+EXAMPLE = FilePath(__file__).parents[2] / "examples" / "three_leg_jacket.yaml"
 MODES = (1, 2, 3, 4, 5)
 
 
@@ -151,6 +152,23 @@ def test_two_arms_of_a_valley_are_one_solution_however_poorly_weak_branches_are_
     other = planted(oc4, "prony-2", [2e9, 0.05, 2.0, 0.4, 24.0])
     stiffer = descend(single(model(oc4, "prony-4"), Residuals(other, relative=True)), np.log(slow))
     assert not ShorterLaws(problem).same(ends[0], replace(stiffer, cost=ends[1].cost))
+
+
+@pytest.mark.parametrize("law", ["prony-3", "prony-4"])
+def test_on_an_own_jacket_spare_branches_make_no_solutions_and_no_further_starts(law: str) -> None:
+    """Three symmetric legs on one branch: spare ones end at bounds of g and τ, and all searches are one.
+
+    Minima that miss the data by 5 % each, beside one that meets them, are no solutions.
+    """
+    legs = assemble(read_structure(EXAMPLE))
+    targets = Residuals(planted(legs, "zener", [9e8, 4e7, 4e8]), relative=True)
+    problem = single(model(legs, law), targets)
+    found = search(problem, starts=8)
+    assert found.starts == 8 and len(found.solutions) == 1
+    assert found.solutions[0].cost < problem.negligible
+    # ten relative residuals: of 1 % each beside an exact fit, 10 % each above a poor one at most
+    assert problem.poor(0.0) == pytest.approx(10 * 0.01**2)
+    assert problem.poor(0.5) == pytest.approx(0.5 + 10 * 0.1**2)
 
 
 def test_a_law_without_a_branch_keeps_the_times_of_the_others() -> None:

@@ -137,6 +137,16 @@ class Problem:
         """Cost above the best at which a minimum explains nothing: 50 in χ², or 10 % relative residuals."""
         return self._total_weight * 1e-2 if self.relative else 50.0
 
+    def poor(self, best: float) -> float:
+        """Return the cost above which a minimum fits far worse than the best one.
+
+        It is 50 more in χ²; for relative residuals 1 % each, or ten times the best cost if that is more, but
+        not more than 10 % each above the best.
+        """
+        return best + (
+            min(self.hopeless, max(9.0 * best, 1e-2 * self.hopeless)) if self.relative else self.hopeless
+        )
+
     @property
     def _total_weight(self) -> float:
         """Sum of the weights of the data, or their number without weights."""

@@ -11,9 +11,10 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.problem import Problem
-from jackettwin.updating.search.clusters import linked
+from jackettwin.updating.search.clusters import joined
 from jackettwin.updating.search.descent import End, descend, descend_simplex
 from jackettwin.updating.search.path import Trail
+from jackettwin.updating.search.shorter_law import ShorterLaws
 from jackettwin.updating.search.solutions import SearchMethod, Solution
 
 Fate = Literal["solution", "plateau", "stalled"]
@@ -86,7 +87,8 @@ def _solution(problem: Problem, end: End, solutions: Sequence[Solution]) -> int 
         if np.abs(end.z - z).max() < _NEAR:
             return i
         if abs(end.cost - known.cost) <= problem.allowance(known.cost):
-            level, _ = linked(problem, End(z, known.cost, True), end)
+            low = End(z, known.cost, True)
+            level = ShorterLaws(problem).same(low, end) or joined(problem, low, end)[0]
             if level:
                 return i
     return None

@@ -48,12 +48,14 @@ def gather(
     left = most_steps
     for end, count in sorted([*before, *ends], key=lambda pair: pair[0].cost):
         others = [i for i, (other, _) in enumerate(kept) if not distinct >= {id(end), id(other)}]
-        # a look before any walk: most end points lie on top of another
+        # a look before any walk: most end points lie on top of another, or in another arm of its valley
         place = next((i for i in others if np.abs(end.z - kept[i][0].z).max() < SAME), None)
+        if place is None:
+            place = next((i for i in others if shorter.same(kept[i][0], end)), None)
         for i in others:
             if place is not None or left <= 0:
                 break
-            same, steps = linked(problem, kept[i][0], end, shorter)
+            same, steps = joined(problem, kept[i][0], end)
             left -= steps
             place = i if same else None
         if place is None:
@@ -63,25 +65,12 @@ def gather(
     return kept, left > 0
 
 
-def linked(problem: Problem, low: End, high: End, shorter: ShorterLaws | None = None) -> tuple[bool, int]:
+def joined(problem: Problem, low: End, high: End) -> tuple[bool, int]:
     """Return whether a path of falling cost leads from the higher end point to the lower, and its steps.
 
-    The path is trivial if both reduce to the same shorter law. Otherwise one coordinate is stepped and the
-    others are refitted, starting with the coordinate in which the two differ most. If the cost falls on the
-    way, the higher end point was a shoulder and no minimum.
-
-    Parameters
-    ----------
-    shorter : ShorterLaws, optional
-        Shorter laws that were computed already.
+    One coordinate is stepped and the others are refitted, starting with the coordinate in which the two
+    differ most. If the cost falls on the way, the higher end point was a shoulder and no minimum.
     """
-    if (shorter or ShorterLaws(problem)).same(low, high):
-        return True, 0
-    return _joined(problem, low, high)
-
-
-def _joined(problem: Problem, low: End, high: End) -> tuple[bool, int]:
-    """Return whether a walk along some coordinate leads from the higher end to the lower, and its steps."""
     span = np.abs(high.z - low.z) / (problem.prior.high - problem.prior.low)
     allowance, taken = problem.allowance(high.cost), 0
     for j in np.argsort(-span):

@@ -17,6 +17,8 @@ _POINT = 0.02
 valley of the cost the point moves further, and the regularised one is returned."""
 _ROUGH = 1e-6
 """Relative accuracy of the cost of a point in a valley of a law's branches."""
+_LEVEL = 0.1
+"""Share of a negligible cost, with the regularisation, below which a point in such a valley is its bottom."""
 _EXACT = 1e-8
 """Relative error of the poles of the condensed model."""
 
@@ -63,8 +65,9 @@ def descend(
     else:
         z = creep(path, z, path, tolerance=1e-10)  # away from a plateau
     # in a valley of redundant branches the position hardly matters, as they are omitted to compare end points
-    tolerance = _ROUGH if problem.model.family.omissible else 1e-8
-    z, arrived = minimum(path, z, path.pull(path.total(z)), tolerance=tolerance)
+    valley = bool(problem.model.family.omissible)
+    tolerance, enough = (_ROUGH, _LEVEL * problem.negligible) if valley else (1e-8, 0.0)
+    z, arrived = minimum(path, z, path.pull(path.total(z)), tolerance=tolerance, enough=enough)
     if arrived and _flat(path, z):
         return replace(_judged(problem, z), evaluations=path.evaluations)
     free, _ = minimum(path, z)

@@ -27,6 +27,8 @@ _NEAR = 0.01
 """The search has also converged if a round changes every ln θ by less than this at unchanged cost."""
 _ROUGH = 1e-3
 """Relative accuracy of the cost with one parameter fixed."""
+_FAR = 100.0
+"""Ratio of a surrogate's cost to the one sought above which the model cannot be as low either."""
 _HONEST = 0.25
 """Smallest ratio of the actual to the predicted decrease of the cost for a surrogate to be used further."""
 _STEPS = 200
@@ -150,6 +152,7 @@ def minimum(
     held: tuple[int, ...] = (),
     tolerance: float = 1e-8,
     within: float = np.inf,
+    enough: float = 0.0,
 ) -> tuple[FloatArray, bool]:
     """Return the minimum near a point by surrogates or the full model, and whether it has converged.
 
@@ -162,16 +165,22 @@ def minimum(
         The search ends if a round lowers the cost by less than this share.
     within : float
         The search also ends if a ln θ is farther than this from the start.
+    enough : float
+        The search also ends if the cost, with the regularisation, is not higher than this.
     """
     rows, z = pulled(path), start
     cost = squares(rows(z)[0])
     low, high = path.problem.prior.low, path.problem.prior.high
     for _ in range(_ROUNDS):
+        if cost <= enough:
+            return z, True
         surrogate = path.surrogate(z)
         if surrogate is None:
             break
         near = pulled(surrogate)
-        there = damped_least_squares(near, z, low, high, held=held, tolerance=0.1 * tolerance)
+        there = damped_least_squares(
+            near, z, low, high, held=held, tolerance=0.1 * tolerance, enough=_HONEST * enough
+        )
         promised, gained = cost - squares(near(there)[0]), cost - squares(rows(there)[0])
         moved = np.abs(there - z).max()
         arrived = moved < _STILL or (moved < _NEAR and abs(gained) < tolerance * cost)
@@ -201,14 +210,16 @@ def constrained(
     Parameters
     ----------
     near : optional
-        A surrogate to try first.
+        A surrogate to try first. If even its cost is far above ``enough``, the search ends there.
     enough : float
         Cost at which the search may stop.
     """
     start, held = z.copy(), (parameter,)
     start[parameter] = value
     if near is not None:
-        there, _ = held_minimum(path.problem, near, start, held, enough)
+        there, promised = held_minimum(path.problem, near, start, held, enough)
+        if promised > _FAR * enough:
+            return there, promised
         if path.total(there) <= enough:
             return there, path.total(there)
         if path.total(there) < squares(near(start)[0]):

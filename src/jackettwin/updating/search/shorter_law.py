@@ -4,7 +4,7 @@ If the data need fewer branches than a law has, the cost has a valley with many 
 may have any relaxation time. Walks along single parameters do not lead from one arm into the next. All arms
 meet where the branch has no stiffness. Hence each end point is moved there, weakest branch first, while the
 cost does not rise. Two end points are one solution if the cost does not rise between what is left of them
-either: weak branches are known poorly, so that their numbers may differ by more than searches resolve.
+either: weak branches are known poorly, and their numbers may differ by more than searches resolve.
 """
 
 from __future__ import annotations
@@ -13,14 +13,19 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.updating.problem import Problem
-from jackettwin.updating.search.damped import Rows
+from jackettwin.updating.search.damped import Rows, damped_least_squares
 from jackettwin.updating.search.descent import End
-from jackettwin.updating.search.path import Path, held_minimum
+from jackettwin.updating.search.path import Path, held_minimum, squares
 
 _NOTHING = -23.0
 """Logarithm of a negligible relative stiffness: 1e-10, a hundredth of the relative error of poles."""
 _DEEP = 0.01
-"""Share of the allowed increase of the cost to which the branches that are left are refitted."""
+"""Share of the allowed increase of the cost to which the branches that are left are refitted at each step."""
+_SLOW = 1e-6
+"""Decrease of the cost in one step, relative, below which the branches that are left cannot be refitted."""
+_LAST = 1e-9
+"""Share of the cost to which they are refitted at last: the valley of a weak branch is curved, and the cost
+would rise on the straight way between points only near its bottom."""
 _BETWEEN = np.linspace(0.0, 1.0, 10)[1:-1]
 """Points at which the cost is computed on the way to a vanishing branch, and from one law to another."""
 
@@ -86,7 +91,11 @@ def shorter_law(path: Path, end: End) -> FloatArray | None:
                     break
             else:
                 break
-    return _in_order(problem, z, columns, gone) if gone else None
+    if not gone:
+        return None
+    prior = problem.prior
+    bottom = damped_least_squares(near, z, prior.low, prior.high, held=gone, tolerance=_LAST)
+    return _in_order(problem, bottom if path.total(bottom) <= ceiling else z, columns, gone)
 
 
 def _columns(problem: Problem) -> list[IntArray]:
@@ -112,8 +121,11 @@ def _without(
     """
     start, held = z.copy(), (j, *gone)
     start[j] = _NOTHING
-    there, cost = held_minimum(path.problem, near, start, held, enough)
-    if cost > ceiling:
+    prior = path.problem.prior
+    there = damped_least_squares(
+        near, start, prior.low, prior.high, held=held, tolerance=_SLOW, enough=enough
+    )
+    if squares(near(there)[0]) > ceiling:
         return None
     way = z + _BETWEEN[:, None] * (there - z)
     # a branch counts by its stiffness, not by the logarithm of it

@@ -24,7 +24,7 @@ LOCKED_DAMPER = 0.05
 """Relative difference of undamped and damped frequency above which a damper counts as locked: it carries the
 load instead of the spring."""
 _MOST = 16
-"""Largest factor on the number of starts, which is doubled while some solution has been found only once."""
+"""Largest factor on the number of starts, doubled while some good solution has been found only once."""
 MOST_EVALUATIONS = 40_000
 """Number of evaluations of the model after which starts are no longer doubled: about half a minute."""
 _HOPELESS = 4
@@ -164,8 +164,9 @@ def search(
     """Return the distinct solutions, best first.
 
     Starts are scrambled Sobol points in the logarithms between the bounds, doubled in number while some
-    solution has been found only once. Known solutions are then excluded from further searches. From given
-    points there is one search each and no others, as in the thesis.
+    solution has been found only once. Known solutions are then excluded from further searches. Minima that
+    fit far worse than the best (:meth:`Problem.poor`) are no solutions. From given points there is one search
+    each and no others, as in the thesis.
 
     Parameters
     ----------
@@ -208,7 +209,8 @@ def search(
             tried, spent = tried + 1, spent + end.evaluations
             new += [(end, 1)] if end.settled else []
             progress.within(f"{tried} of {n} starts, {len(clusters)} distinct solutions from earlier ones")
-        clusters, compared = gather(problem, new, known=clusters)
+        best = min((end.cost for end, _ in [*clusters, *new]), default=0.0)
+        clusters, compared = gather(problem, _near(problem, new, best), known=_near(problem, clusters, best))
         enough = all(count > 1 for _, count in clusters) if clusters else n >= _HOPELESS * starts
         if enough or not compared or 2 * n > len(points) or spent >= most_evaluations:
             break
@@ -226,11 +228,16 @@ def search(
     )
 
 
+def _near(problem: Problem, ends: list[tuple[End, int]], best: float) -> list[tuple[End, int]]:
+    """Return the ends that do not fit far worse than the best."""
+    return [v for v in ends if v[0].cost <= problem.poor(best)]
+
+
 def _kept(problem: Problem, clusters: list[tuple[End, int]]) -> list[tuple[End, int]]:
     """Return the clusters that explain the data; raise an error if there is none."""
     if not clusters:
         raise _out_of_reach(problem)
-    return [v for v in clusters if v[0].cost <= clusters[0][0].cost + problem.hopeless]
+    return _near(problem, clusters, clusters[0][0].cost)
 
 
 def _solutions(problem: Problem, kept: list[tuple[End, int]]) -> tuple[Solution, ...]:
@@ -316,7 +323,7 @@ def _deflate(
         progress.within(f"search {i} of {len(points)} with {len(clusters)} known solutions excluded")
         end = descend(problem, point, known=tuple(cluster.z for cluster, _ in clusters))
         ends.append(end)
-        if end.settled:
+        if end.settled and end.cost <= problem.poor(clusters[0][0].cost if clusters else end.cost):
             clusters, _ = gather(problem, [(end, 1)], known=clusters)
     return clusters
 
