@@ -33,7 +33,7 @@ _SHOWN = 4
 )
 @click.option(
     "--arl-years", default=10.0, show_default=True, type=FiniteFloat(min=0.1, max=1e4),
-    help="Least mean time between false alarms.",
+    help="Mean time between false alarms.",
 )  # fmt: skip
 @click.option(
     "--structure",

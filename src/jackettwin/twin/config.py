@@ -196,7 +196,7 @@ class WatchSettings(Schema):
     baseline_days: Annotated[float, Field(ge=30.0, le=3653.0)] = 365.0
     """Length of the baseline from the first record in days; a year includes all seasons."""
     arl_years: Annotated[float, Field(ge=0.1, le=1000.0)] = 10.0
-    """Least mean time in years between false alarms of all quantities together."""
+    """Mean time in years between false alarms of all quantities together."""
     relearn: date | None = None
     """First day of a new baseline that a person requested, as after a repair or a change."""
 

@@ -16,9 +16,9 @@ import numpy as np
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.response import Condensed, NumberedModes
 
-_SYMMETRIC = 0.25
+_SYMMETRIC = 0.1
 """Difference of the model's frequencies over that of the measured ones below which the disturbance, not the
-model, chooses the axes."""
+model, chooses the axes. What the model parts is then taken for as much as it is along the measured axes."""
 
 
 @dataclass(frozen=True, eq=False)
