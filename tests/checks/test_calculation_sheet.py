@@ -5,7 +5,9 @@ from math import pi, sqrt
 
 import pytest
 
-from jackettwin.checks import DesignBasis, calculation_sheet, frame_use
+from jackettwin.checks import DesignBasis, calculation_sheet, frame_use, joint_sheet
+from jackettwin.checks.iso19902_joints import Joint
+from jackettwin.checks.joint_check import BraceUse
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
 from jackettwin.response import build_system, nodal_load, self_weight, static_displacement
@@ -61,3 +63,35 @@ def test_cones_and_pressure_are_refused(checked) -> None:
         calculation_sheet(cone, uses[cone.name], basis)
     with pytest.raises(InputError, match="hydrostatic pressure"):
         calculation_sheet(tube, replace(uses[tube.name], check="hoop"), basis)
+
+
+@pytest.mark.parametrize("conservative", [False, True])
+def test_every_joint_s_sheet_has_the_check_s_utilisation(checked, conservative: bool) -> None:
+    assembly, u = checked
+    uses = frame_use(assembly, u, DesignBasis(conservative_joints=conservative)).joints
+    assert len(uses) > 30
+    for use in uses:
+        lines = {line.symbol: line.value for line in joint_sheet(use, conservative=conservative)}
+        assert lines["U joint"] == pytest.approx(use.utilisation, rel=1e-9), (use.node, use.brace)
+        assert lines["Q_f"] == pytest.approx(use.Q_f, rel=1e-9)
+
+
+def test_a_joint_s_lines_by_hand() -> None:
+    """A Y joint: D 1.2 m, T 40 mm, d 0.6 m, 45°, 345 MPa; P 2 MN, chord with −8 MN and 3 MN·m.
+
+    β 0.5, γ 15; Q_u = 30 · 0.5 = 15 in tension; P_y = 345 · π/4 (1.2² − 1.12²) = 50.29 MN, M_p = 345
+    (1.2³ − 1.12³)/6 = 18.575 MN·m; q_A² = 1.1025 (25 (8/50.29)² + 11 (3/18.575)²) = 1.0138 on the worse side,
+    Q_f = 1 − 0.030 · 1.0138 = 0.9696.
+    P_d = 345 · 0.04² · 15 · 0.9696/(1.05 · 0.7071) = 10.813 MN, U = 0.1850.
+    """
+    joint = Joint(D=1.2, T=0.04, d=0.6, t=0.02, theta=pi / 4, f_y=345e6, f_yb=345e6)
+    use = BraceUse("n", "leg", "brace", joint, 0.185, (0.0, 1.0, 0.0), (2e6, 0.0, 0.0), 15.0, 0.9696,
+                   chord_sides=((-8e6, 3e6), (-7e6, 1e6)))  # fmt: skip
+    found = {line.symbol: line.value for line in joint_sheet(use)}
+    assert found["Q_u Y"] == pytest.approx(15.0)
+    assert found["P_y"] == pytest.approx(50.29e6, rel=1e-3)
+    assert found["M_p"] == pytest.approx(18.575e6, rel=1e-3)
+    assert found["Q_f"] == pytest.approx(0.9696, abs=1e-4)
+    assert found["P_d"] == pytest.approx(10.813e6, rel=1e-3)
+    assert found["U joint"] == pytest.approx(0.1850, abs=2e-4)
+    assert "g" not in found

@@ -183,6 +183,11 @@ def test_the_calculation_of_a_member_is_shown() -> None:
     assert lines[f"U {use['check']}"]["value"] == pytest.approx(use["utilisation"])
     assert lines["f_c"]["clause"].startswith("13.2.3")
     assert "calculation, ISO 19902" in run("jacket15", "--sheet", "leg_1_bay_1").stdout
+    worst = found["joints"][0]
+    name = f"{worst['node']}:{worst['brace']}"
+    sheet = json.loads(run("jacket15", "--sheet", name, "--json").stdout)["sheet"]
+    assert sheet[-1]["symbol"] == "U joint"
+    assert sheet[-1]["value"] == pytest.approx(worst["utilisation"])
     refused = run("jacket15", "--sheet", "leg_1_bay_9")
     assert refused.exit_code == 2
     assert "leg_1_bay" in refused.stderr

@@ -1,4 +1,8 @@
-from .calculation_sheet import SheetLine as SheetLine, calculation_sheet as calculation_sheet
+from .calculation_sheet import (
+    SheetLine as SheetLine,
+    calculation_sheet as calculation_sheet,
+    joint_sheet as joint_sheet,
+)
 from .columns import StraightRun as StraightRun, columns as columns
 from .iso19902 import EDITIONS as EDITIONS
 from .iso19902_joints import IN_PLANE as IN_PLANE, KINDS as KINDS

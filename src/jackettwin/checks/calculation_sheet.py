@@ -1,4 +1,4 @@
-"""How a member's utilisation comes about: every quantity with formula, number and clause."""
+"""How the utilisation of a member or a joint comes about: every quantity with formula, number and clause."""
 
 from __future__ import annotations
 
@@ -7,6 +7,17 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from jackettwin.checks.iso19902 import CHECKS, Stress, Tube, strength, utilisation
+from jackettwin.checks.iso19902_joints import (
+    ALPHA_F,
+    C_1,
+    C_2,
+    C_BENDING,
+    GAMMA_J,
+    GAMMA_Q,
+    gap_factor,
+    strength_factors,
+)
+from jackettwin.checks.joint_check import BraceUse
 from jackettwin.checks.member_check import DesignBasis, MemberUse
 from jackettwin.errors import require
 from jackettwin.structure import Member
@@ -82,6 +93,72 @@ def calculation_sheet(member: Member, use: MemberUse, basis: DesignBasis) -> tup
         ("U stability", "1.18 σ_c/f_c + 1.05 C_m σ_b/(f_b (1 − σ_c/f_e))", U.stability, "", "13.3.3"),
     ]
     return tuple(SheetLine(name, how, float(value), unit, clause) for name, how, value, unit, clause in lines)
+
+
+def joint_sheet(use: BraceUse, *, conservative: bool = False) -> tuple[SheetLine, ...]:
+    """Return the calculation of a brace's joint at its worst instant, line by line.
+
+    The strength of each kind counts by its share, or with ``conservative`` the weakest.
+    """
+    joint, q = use.joint, strength_factors(use.joint)
+    P, M_ip, M_op = use.forces
+    inner = joint.D - 2.0 * joint.T
+    P_y = joint.f_y * 0.25 * np.pi * (joint.D**2 - inner**2)
+    M_p = joint.f_y * (joint.D**3 - inner**3) / 6.0
+    C1, C2 = (max(c) if conservative else float(np.array(c) @ use.shares) for c in (C_1, C_2))
+    sides = np.array(use.chord_sides) / [P_y, M_p]
+    q_A, q_M = (
+        GAMMA_Q * float(np.sqrt((sides**2 @ factors).max())) for factors in ([C1, C2], np.array(C_BENDING))
+    )
+    Q_f = [max(1.0 - a * v**2, 1e-3) for a, v in zip(ALPHA_F, (q_A, q_M, q_M), strict=True)]
+    force = joint.f_y * joint.T**2 / (GAMMA_J * np.sin(joint.theta))
+    P_d = force * use.Q_u * Q_f[0]
+    M_ipd, M_opd = force * joint.d * q.in_plane * Q_f[1], force * joint.d * q.out_of_plane * Q_f[2]
+    parts = abs(P) / P_d, (M_ip / M_ipd) ** 2, abs(M_op) / M_opd
+    kinds = q.tension if P >= 0.0 else q.compression
+    lines: list[tuple[str, str, Any, str, str]] = [
+        ("D", "outer diameter of the chord", joint.D, "m", "14.3.1"),
+        ("T", "wall of the chord", joint.T, "m", "14.3.1"),
+        ("d", "outer diameter of the brace", joint.d, "m", "14.3.1"),
+        ("t", "wall of the brace", joint.t, "m", "14.3.1"),
+        ("θ", "angle between brace and chord", np.degrees(joint.theta), "°", "14.3.1"),
+        ("g", "gap to the brace beside, negative where they overlap", joint.gap, "m", "14.3.1"),
+        ("β", "d/D", joint.beta, "", "14.3.1"),
+        ("γ", "D/(2 T)", joint.gamma, "", "14.3.1"),
+        ("f_y", "yield strength of the chord, at most 0.8 f_u", joint.f_y, "Pa", "14.2.3"),
+        *((f"share {k}", "balance of the braces' axial forces", use.shares[i], "", "14.2.4")
+          for i, k in enumerate("KYX")),
+        ("Q_g", "1.9 − 0.7 √(g/(T γ)) ≥ 1, 0.13 + 0.65 φ √γ overlapping", gap_factor(joint), "", "14.3.3"),
+        *((f"Q_u {k}", "table 14.3-1, tension or compression", kinds[i], "", "14.3.3")
+          for i, k in enumerate("KYX")),
+        ("can", "share of Y's and X's strength that a short can leaves", joint.can_factor, "", "14.3.5"),
+        ("Q_u", "weakest kind" if conservative else "Σ share · Q_u", use.Q_u, "", "14.2.4"),
+        ("Q_u ip", "4.5 β √γ", q.in_plane, "", "14.3.3"),
+        ("Q_u op", "3.2 γ^(β²/2)", q.out_of_plane, "", "14.3.3"),
+        ("P_y", "f_y π/4 (D² − (D − 2 T)²)", P_y, "N", "14.3.4"),
+        ("M_p", "f_y (D³ − (D − 2 T)³)/6", M_p, "N·m", "14.3.4"),
+        *((name, how, value, unit, "14.3.4") for k, (N, M) in enumerate(use.chord_sides, start=1)
+          for name, how, value, unit in (
+              (f"P_C side {k}", "axial force of the chord", N, "N"),
+              (f"M_C side {k}", "resultant moment of the chord", M, "N·m"))),
+        ("q_A", "γ_q √(C_1 (P_C/P_y)² + C_2 (M_C/M_p)²), worse side, γ_q = 1.05", q_A, "", "14.3-10"),
+        ("q_A bending", "the same, C_1 = 25 and C_2 = 43", q_M, "", "14.3-10"),
+        ("Q_f", "1 − 0.030, for K, Y and X, q_A²", Q_f[0], "", "14.3-9"),
+        ("Q_f ip", "1 − 0.045 q_A²", Q_f[1], "", "14.3-9"),
+        ("Q_f op", "1 − 0.021 q_A²", Q_f[2], "", "14.3-9"),
+        ("P_d", "f_y T² Q_u Q_f/(γ_j sin θ), γ_j = 1.05", P_d, "N", "14.3-1, 14.3-3"),
+        ("M_d ip", "f_y T² d Q_u Q_f/(γ_j sin θ)", M_ipd, "N·m", "14.3-2, 14.3-4"),
+        ("M_d op", "f_y T² d Q_u Q_f/(γ_j sin θ)", M_opd, "N·m", "14.3-2, 14.3-4"),
+        ("P", "axial force of the brace, tension positive", P, "N", ""),
+        ("M ip", "in-plane moment of the brace", M_ip, "N·m", ""),
+        ("M op", "out-of-plane moment of the brace", M_op, "N·m", ""),
+        ("U axial", "|P|/P_d", parts[0], "", "14.3-12"),
+        ("U ip", "(M ip/M_d ip)²", parts[1], "", "14.3-12"),
+        ("U op", "|M op|/M_d op", parts[2], "", "14.3-12"),
+        ("U joint", "U axial + U ip + U op", sum(parts), "", "14.3-12"),
+    ]  # fmt: skip
+    kept = [line for line in lines if np.isfinite(line[2])]
+    return tuple(SheetLine(name, how, float(value), unit, clause) for name, how, value, unit, clause in kept)
 
 
 _SECTION = {

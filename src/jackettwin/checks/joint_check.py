@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -79,6 +79,8 @@ class BraceUse:
     """γ_z U_j over the use of the brace's own section there, (14.3-13): at most 1 at a critical joint."""
     case: str = ""
     """The combination of actions it is of."""
+    chord_sides: tuple[tuple[float, float], ...] = ()
+    """Axial force and resultant moment of the chord on every side of the node at that instant [N, N·m]."""
 
     @property
     def kind(self) -> str:
@@ -190,7 +192,10 @@ def joint_uses(
             mine = shares[:, i]
             found = joint_use(joint, own[i], mine, chord_axial, chord_bending, conservative=conservative)
             brace = None if section_use is None else section_use[:, end.element, end.at_end]
-            uses.append(_worst(plan, end, joint, own[i], mine, found, brace))
+            worst = _worst(plan, end, joint, own[i], mine, found, brace)
+            at = int(found.utilisation.argmax())
+            beside = zip(chord_axial[:, at], chord_bending[:, at], strict=True)
+            uses.append(replace(worst, chord_sides=tuple((float(P), float(M)) for P, M in beside)))
     return tuple(uses)
 
 

@@ -73,7 +73,11 @@ if TYPE_CHECKING:
     help="K of braces: 1, or by class, table 13.5-1.",
 )
 @click.option("--tensile-strength", type=FiniteFloat(min=1e6), help="f_u of chords [Pa]: f_y ≤ 0.8 f_u.")
-@click.option("--sheet", metavar="MEMBER", help="The calculation of a member, line by line, for a checker.")
+@click.option(
+    "--sheet",
+    metavar="MEMBER|NODE:BRACE",
+    help="The calculation of a member, or of a brace's joint, line by line, for a checker.",
+)
 @click.option(
     "--pile-resistance",
     default=1.25,
@@ -237,11 +241,15 @@ def _combined(
 def _sheet(
     name: str | None, assembly: Assembly, use: FrameUse, basis: DesignBasis
 ) -> tuple[SheetLine, ...] | None:
-    """Return the calculation of a member; None if none is requested."""
-    from jackettwin.checks import calculation_sheet
+    """Return the calculation of a member or a joint; None if none is requested."""
+    from jackettwin.checks import calculation_sheet, joint_sheet
 
     if name is None:
         return None
+    joints = {f"{one.node}:{one.brace}": one for one in use.joints}
+    if ":" in name:
+        joint = look_up(joints, name, "joint, NODE:BRACE,", field="--sheet")
+        return joint_sheet(joint, conservative=basis.conservative_joints)
     members = {one.name: one for one in assembly.structure.members}
     member = look_up(members, name, "member", field="--sheet")
     return calculation_sheet(member, next(one for one in use.members if one.member == name), basis)

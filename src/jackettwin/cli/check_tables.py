@@ -38,7 +38,7 @@ def show_check(document: dict[str, Any]) -> None:
     if document["vortices"]:
         show_table(Table("vortices, by reduced velocity", _VORTICES, document["vortices"][:_SHOWN]))
     if document["sheet"] is not None:
-        show_table(Table("calculation, ISO 19902 clause 13", _SHEET, document["sheet"]))
+        show_table(Table("calculation, ISO 19902", _SHEET, document["sheet"]))
     say(f"largest von Mises stress {document['largest_von_mises_stress_pa'] / 1e6:.1f} MPa")
     say_all(document["warnings"], "warning")
     say_all(omission_sentences(document["left_out"]), "left out")
