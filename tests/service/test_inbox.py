@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import errno
 import json
+import os
 import shutil
 from pathlib import Path
 
 import pytest
+from sqlalchemy import select
 from tests.service.conftest import TWIN, Done, description, record_file
 
 from jackettwin.service.context import Service
 from jackettwin.service.intake import folder
 from jackettwin.service.intake.files import Accepted
 from jackettwin.service.intake.folder import watch_folders
-from jackettwin.service.server import take_from_inbox
+from jackettwin.service.server import REFUSED, take_from_inbox
 from jackettwin.service.web.catalogue import add_text_version
 from jackettwin.service.workers.failures import NoWorker
-from jackettwin.store import reading
+from jackettwin.store import reading, tables
 from jackettwin.store.records import find_record
 
 
@@ -103,10 +105,42 @@ def test_a_full_disk_or_no_worker_is_not_the_files_fault(
     monkeypatch.undo()
 
 
+def test_a_name_that_is_no_text_is_taken_like_any_other(
+    service: Service, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As a logger with an old code page writes it: the watcher once ended at it, and the health was ok."""
+    latin, inbox = os.fsdecode(b"Br\xfccke.parquet"), service.settings.store / "inbox"
+    good = dropped(service, record_file(1))
+    path = good.rename(good.with_name(latin))
+    good.with_suffix(".json").rename(path.with_suffix(".json"))
+    monkeypatch.setattr(folder, "STILL_S", 0.0)
+    monkeypatch.setattr(folder, "_LOOK_S", 0.0)
+    turns = iter(range(5))
+    watch_folders([inbox], lambda file: take_from_inbox(service, inbox, file), lambda: next(turns) == 4)
+    assert list(path.parent.iterdir()) == []
+    with reading(service.database) as connection:
+        (source,) = connection.scalars(select(tables.records.c.source_name))
+    assert source == "Br_xfccke.parquet"
+
+
+def test_a_link_in_the_inbox_is_not_followed(service: Service, tmp_path: Path) -> None:
+    """Who may write to a shared inbox would have files of the server read, and quoted in the reason."""
+    secret = tmp_path / "secret.csv"
+    secret.write_text("password,hunter2\n", encoding="utf-8")
+    path = service.settings.store / "inbox" / "wtg" / "r.csv"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.symlink_to(secret)
+    assert taken(service, path) is None
+    reason = path.with_name(path.name + REFUSED).read_text(encoding="utf-8")
+    assert "is a link" in reason and "hunter2" not in reason
+    assert secret.exists() and path.is_symlink()
+
+
 def test_what_could_not_be_taken_now_is_taken_later(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As while the database is away: the watcher lives on and comes back to the file."""
     monkeypatch.setattr(folder, "STILL_S", 0.0)
     monkeypatch.setattr(folder, "_LATER_S", 0.0)
+    monkeypatch.setattr(folder, "_LOOK_S", 0.0)
     (tmp_path / "r1.parquet").write_bytes(b"x")
     tried: list[Path] = []
 

@@ -180,7 +180,9 @@ def _watch_inbox(service: Service, stop: Callable[[], bool]) -> None:
             return take_from_inbox(service, folder, path)
         except (SQLAlchemyError, OSError, NoWorker) as error:
             log.warning("%s waits in the inbox: %s", path.name, str(error).partition("\n")[0] or "no worker")
-            return None
+        except Exception:  # of this file; others go on
+            log.exception("%s waits in the inbox", path.name)
+        return None
 
     watch_folders([folder], take, stop)
 
@@ -193,9 +195,13 @@ def take_from_inbox(service: Service, inbox: Path, path: Path) -> Accepted | Non
     asset, reason = path.relative_to(inbox).parts[0], path.with_name(path.name + REFUSED)
     with reading(service.database) as connection:
         known = asset in assets.asset_names(connection, archived=False)
-    if not known:
+    if not known or path.is_symlink():
         if not reason.exists():
-            _leave(path, reason, _OF_NO_ASSET | {"value": None if path.parent == inbox else asset})
+            of_none = _OF_NO_ASSET | {"value": None if path.parent == inbox else asset}
+            _leave(path, reason, of_none if not known else _LINK)
+        return None
+    if not path.name.isprintable():  # also bytes of another code page, which readers cannot open
+        _rename(path)
         return None
     before = _lying(path)
     taken = take_file(service, parse_here(service), asset, path, path.name)
@@ -208,6 +214,13 @@ def take_from_inbox(service: Service, inbox: Path, path: Path) -> Accepted | Non
     else:
         _leave(path, reason, taken.problem)
     return taken
+
+
+def _rename(path: Path) -> None:
+    """Rename a file whose name is no text, and its description, by the bytes that are none."""
+    for file in (path.with_suffix(".json"), path):
+        if file.exists():
+            file.rename(file.with_name(ascii(file.name)[1:-1].replace("\\udc", "_x").replace("\\", "_")))
 
 
 def _lying(path: Path) -> list[tuple[int, int] | None]:
@@ -228,6 +241,11 @@ def _leave(path: Path, reason: Path, problem: dict[str, Any]) -> None:
     reason.write_text(json.dumps(problem, indent=1, ensure_ascii=False), encoding="utf-8")
 
 
+_LINK = {
+    "detail": "the file is a link, which could name any file of the server",
+    "field": "file",
+    "remedy": "put the file itself into the folder",
+}
 _OF_NO_ASSET = {
     "detail": "the file is not in the folder of an asset, or the asset is archived",
     "field": "folder",

@@ -7,12 +7,12 @@ import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from watchfiles import watch
-
 from jackettwin.service.intake.files import Accepted
 
 log = logging.getLogger(__name__)
 
+_LOOK_S = 0.5
+"""Interval at which folders are listed: shared folders report no changes, and names may be no text."""
 STILL_S = 2.0
 """Time without a change of size after which a file is complete."""
 _LATER_S = 10.0
@@ -33,17 +33,11 @@ def record_files(paths: Iterable[Path]) -> list[Path]:
 def watch_folders(
     paths: Iterable[Path], take: Callable[[Path], Accepted | None], stop: Callable[[], bool] = lambda: False
 ) -> None:
-    """Import existing and new files of folders until stopped; if ``take`` returns None, try again later.
-
-    ``watchfiles`` only reports that there was a change; the folders are then listed, so that no event can be
-    lost.
-    """
+    """Import existing and new files of folders until stopped; if ``take`` returns None, try again later."""
     folders = list(paths)
     seen: dict[Path, tuple[int, int]] = {}
     waiting: dict[Path, tuple[tuple[int, int], float]] = {}
-    for _ in watch(*folders, yield_on_timeout=True, rust_timeout=500, raise_interrupt=False, stop_event=None):
-        if stop():
-            return
+    while not stop():
         for file in record_files(folders):
             mark = _mark(file)
             if mark is None or seen.get(file) == mark:
@@ -59,6 +53,7 @@ def watch_folders(
                     del waiting[file]
                     seen[file] = mark
                     log.info("%s: %s", file.name, took.problem["detail"] if took.problem else took.record_id)
+        time.sleep(_LOOK_S)
 
 
 def _left_out(file: Path, *, given: bool) -> bool:
