@@ -140,3 +140,23 @@ def test_the_command_shows_the_envelope_and_refuses_what_does_not_belong(tmp_pat
         refused = run(*arguments)
         assert refused.exit_code == 2, refused.output
         assert message in refused.stderr
+
+
+def test_piles_are_checked_in_every_combination_at_rest(tmp_path: Path) -> None:
+    """Each pile's row is its worst combination's: the forces on the heads are the factored actions'."""
+    actions = {
+        "permanent": {"weight": False, "forces": {"tower_top": [0.0, 0.0, -1e7]}},
+        "environmental": {"push": {"forces": {"tower_top": [2e6, 0.0, 0.0]}}},
+    }
+    combinations = [
+        {"name": "still", "permanent": 1.0},
+        {"name": "extreme", "permanent": 1.1, "environmental": 1.35},
+    ]
+    path = str(written(tmp_path, actions, combinations))
+    arguments = ["check", "jacket15", "--support", "jacket15", "--combinations", path, "--json"]
+    found = json.loads(CliRunner().invoke(main, arguments).stdout)
+    piles = found["piles"]
+    assert {row["combination"] for row in piles} == {"extreme, push"}
+    assert sum(row["head_force"]["z_n"] for row in piles) == pytest.approx(-1.1e7, rel=1e-6)
+    assert sum(row["head_force"]["x_n"] for row in piles) == pytest.approx(2.7e6, rel=1e-6)
+    assert not any("--support FOUNDATION" in one["what"] for one in found["left_out"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -151,7 +152,7 @@ def check_command(
             wind=wind,
             current=current,
         )
-        return _combined(combinations, structure, support, pile_model, subdivide, basis)
+        return _combined(combinations, structure, support, pile_model, subdivide, basis, pile_resistance)
     if (structure is None) == (scenario is None):
         raise InputError(
             "give a structure or --scenario", field="STRUCTURE", remedy="keep exactly one of them"
@@ -215,6 +216,7 @@ def _combined(
     pile_model: PileModel | None,
     subdivide: int | None,
     basis: DesignBasis,
+    resistance: float,
 ) -> Reply:
     """Return the envelope of a file of combinations, with each one's own worst use."""
     from jackettwin.checks import left_out
@@ -232,10 +234,20 @@ def _combined(
         name = stands.name
     with working(f"combinations of {path.name}"):
         found = combined_uses(file, basis, system)
+    piles: dict[str, PileUse] = {}
+    for case, u in found.at_rest.items():
+        assert system is not None
+        with working(f"piles in {case}"):
+            for one in _piles(support, pile_model, system, u, basis, resistance):
+                known = piles.get(one.foot)
+                if known is None or one.worst > known.worst:
+                    piles[one.foot] = replace(one, case=case)
     omissions = () if stands is None else left_out(stands)
     factored = [one for one in omissions if "partial action factors" not in one.what]
-    missing = (*factored, *_flows_left_out(None, None), *_piles_left_out(()))
-    return _reply(name, found.envelope, [], missing, combinations=found.each)
+    missing = (*factored, *_flows_left_out(None, None), *_piles_left_out(tuple(piles.values())))
+    if piles and len(found.at_rest) < len(found.each):
+        missing = (*missing, Omission("piles in combinations of scenarios", "ISO 19902 17"))
+    return _reply(name, found.envelope, [], missing, piles=tuple(piles.values()), combinations=found.each)
 
 
 def _sheet(

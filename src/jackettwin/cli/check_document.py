@@ -132,6 +132,7 @@ def _pile_row(use: PileUse) -> dict[str, Any]:
         "steel_depth_m": use.steel_depth_m,
         "steel_forces": None if steel is None else _forces(steel.worst.forces),
         "head_force": dict(zip(_HEAD, map(float, use.force), strict=True)),
+        "combination": use.case or None,
     }
 
 

@@ -103,10 +103,11 @@ class Combinations:
 
 
 class CombinedUse(NamedTuple):
-    """The worst use over all combinations, and each combination's own by name."""
+    """The worst use over all combinations, each one's own by name, and displacements (n_dof,) at rest."""
 
     envelope: FrameUse
     each: dict[str, FrameUse]
+    at_rest: dict[str, FloatArray]
 
 
 def read_combinations(path: Path) -> Combinations:
@@ -176,10 +177,13 @@ class _Standing:
         """Return a load vector."""
         return nodal_load(self.system.assembly, {node: tuple(f) for node, f in forces.items()})
 
-    def use(self, one: CombinationSchema, environment: Forces, basis: DesignBasis) -> FrameUse:
-        """Return the use in a combination with forces of an environment."""
+    def displacement(self, one: CombinationSchema, environment: Forces) -> FloatArray:
+        """Return the displacement in a combination with forces of an environment."""
         u = one.permanent * self.permanent.u + one.variable * self.variable
-        u = u + one.environmental * static_displacement(self.system, self.forces(environment))
+        return np.asarray(u + one.environmental * static_displacement(self.system, self.forces(environment)))
+
+    def use(self, one: CombinationSchema, u: FloatArray, basis: DesignBasis) -> FrameUse:
+        """Return the use in a combination with its displacement."""
         return frame_use(
             self.system.assembly,
             u,
@@ -275,9 +279,12 @@ def combined_uses(file: Combinations, basis: DesignBasis, system: System | None)
             remedy="name it beside --combinations",
         )
     each: dict[str, FrameUse] = {}
+    at_rest: dict[str, FloatArray] = {}
     members: list[str] | None = None
     envelope = FrameUse()
-    for name, use in _uses(file, basis, system):
+    for name, use, u in _uses(file, basis, system):
+        if u is not None:
+            at_rest[name] = u
         own = [one.member for one in use.members]
         require(
             members is None or own == members,
@@ -289,11 +296,13 @@ def combined_uses(file: Combinations, basis: DesignBasis, system: System | None)
         members = own
         each[name] = use.named(name)
         envelope = envelope.worse(each[name])
-    return CombinedUse(envelope, each)
+    return CombinedUse(envelope, each, at_rest)
 
 
-def _uses(file: Combinations, basis: DesignBasis, system: System | None) -> Iterator[tuple[str, FrameUse]]:
-    """Yield each combination with each of its environmental actions: its name and use."""
+def _uses(
+    file: Combinations, basis: DesignBasis, system: System | None
+) -> Iterator[tuple[str, FrameUse, FloatArray | None]]:
+    """Yield each combination with each of its environmental actions: name, use, displacement at rest."""
     standing = None if system is None or not file.at_rest else _Standing(system, file.actions)
     for environment in (None, *file.actions.environmental):
         wanted = [one for one in file.combinations if environment in file.environments(one)]
@@ -308,10 +317,11 @@ def _uses(file: Combinations, basis: DesignBasis, system: System | None) -> Iter
         for one in wanted:
             name = one.name if environment is None else f"{one.name}, {environment}"
             if moving is not None:
-                yield name, moving.use(one, basis)
+                yield name, moving.use(one, basis), None
             else:
                 assert standing is not None
-                yield name, standing.use(one, action.forces or {}, basis)
+                u = standing.displacement(one, action.forces or {})
+                yield name, standing.use(one, u, basis), u
 
 
 def _beside(path: Path, name: str) -> str:

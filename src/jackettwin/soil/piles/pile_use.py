@@ -44,6 +44,13 @@ class PileUse:
     rotation_rad: float | None = None
     steel: MemberUse | None = None
     steel_depth_m: float | None = None
+    case: str = ""
+    """The combination of actions it is of."""
+
+    @property
+    def worst(self) -> float:
+        """The largest of its uses; infinite where the pile does not stand."""
+        return max(self.axial, self.steel.utilisation if self.steel and self.stands else np.inf)
 
 
 def head_forces(support: Support, displacement: dict[str, FloatArray]) -> dict[str, FloatArray]:
