@@ -12,7 +12,16 @@ from numpy.testing import assert_allclose
 from observations import estimate, observation
 
 from jackettwin.decks import read_structure
-from jackettwin.response import undamped_modes
+from jackettwin.records import Channel, Record
+from jackettwin.response import Sensor, undamped_modes
+from jackettwin.sensing import (
+    Weather,
+    discrete,
+    readings_of,
+    sensed_model,
+    steady_smoother,
+    stress_remainder,
+)
 from jackettwin.structure import Rayleigh, assemble
 from jackettwin.twin import (
     DAMAGE_UNIT,
@@ -23,10 +32,12 @@ from jackettwin.twin import (
     StressModel,
     TwinState,
     advance_all,
+    planned_joints,
+    weld_map,
 )
 from jackettwin.twin.life.damage_sums import weld_sums
 from jackettwin.twin.life.likely_structures import likely_structures
-from jackettwin.twin.life.sensed_damage import STEP, SensedDamage, damage_of, steps_of
+from jackettwin.twin.life.sensed_damage import STEP, SensedDamage, damage_of, sensed_damage, steps_of
 from jackettwin.updating import Direction, Tolerance, numbered_modes
 
 NOON = datetime(2025, 3, 1, 12, tzinfo=UTC)
@@ -136,3 +147,64 @@ def test_likely_structures_come_in_pairs_about_the_likeliest(stress_model: Stres
     found = likely_structures(stress_model, seen, 1e9)
     first, one, other = (undamped_modes(s, 1).frequency_hz[0] for s in found.systems(3, seed=1))
     assert (one - first) * (other - first) < 0.0
+
+
+@pytest.fixture(scope="module")
+def sensed(stress_model: StressModel) -> tuple[SensedDamage, dict[int, np.ndarray]]:
+    """Return what is told of a motion that the model made itself, and its true damage by side."""
+    seen = {1: estimate(0.17, 0.01), 2: estimate(0.175, 0.012)}
+    likely = likely_structures(stress_model, seen, 1e9)
+    weather = Weather(12.0, 2.5, 8.0, 0.3, 72.0)
+    system = likely.systems(1)[0]
+    model = likely.damped(sensed_model(system, weather))
+    sensors = tuple(
+        Sensor(f"a{h:.0f}{axis}", way, height_m=h)
+        for h in (144.0, 77.0, 28.0)
+        for axis, way in (("x", (1.0, 0.0, 0.0)), ("y", (0.0, 1.0, 0.0)))
+    )
+    known = model.with_forces(tuple(f.with_level(2e4 if f.kind == "disc" else f.level) for f in model.forces))
+    blank = Record(np.ones((6, 8)), 10.0, tuple(Channel(s.channel) for s in sensors))
+    empty = readings_of(blank, sensors, system.assembly)
+    C = known.motion_rows(empty.rows, empty.tilt, empty.derivative)
+    smoother = steady_smoother(*discrete(*known.dynamics(), 0.1), C, np.full(6, 5e-8))
+    states, y = smoother.draw(6000, np.random.default_rng(5))
+    to = np.vstack([np.eye(known.n_modes, states.shape[1]), known.force_rows()])
+    readings = readings_of(Record(y.T, 10.0, blank.channels), sensors, system.assembly)
+    damage = sensed_damage(likely, readings, weather)
+    assert damage is not None
+    chart = weld_map(system, known, stress_model.dry)
+    lives, true = stress_model.settings.models, {}
+    welds = [w for joint in chart.joints for w in joint.welds]
+    cycles = chart.cycles(states @ to.T)
+    for side in damage.sides:
+        weld, points = welds[side // 2], cycles[side // 2][side % 2]
+        z = system.assembly.structure.nodes[weld.node][2] - system.assembly.structure.sea_level_z_m
+        curve, t = lives(z)[1].curve, weld.thickness_m[side % 2]
+        true[int(side)] = np.array([curve.damage(c.ranges, c.numbers, thickness_m=t) for c in points])
+    return damage, true
+
+
+def test_sensed_damage_is_that_of_the_motion(
+    sensed: tuple[SensedDamage, dict[int, np.ndarray]],
+) -> None:
+    """At points that matter; what is left uncounted is small at every side."""
+    damage, true = sensed
+    found = DAMAGE_UNIT * damage_of(damage.points)
+    for own, side in zip(found, damage.sides, strict=True):
+        exact = true[int(side)]
+        assert 0.4 < own.max() / exact.max() < 2.5
+        assert own[exact < 0.02 * exact.max()].max(initial=0.0) < 0.2 * own.max()
+
+
+def test_what_a_record_leaves_open_of_damage_has_at_least_its_remainder(
+    sensed: tuple[SensedDamage, dict[int, np.ndarray]], stress_model: StressModel
+) -> None:
+    """The mean slope times the remainder of stress at the elevation, and no more than a factor of ten."""
+    damage, _ = sensed
+    structure = stress_model.assembly.structure
+    welds = [w for joint in planned_joints(stress_model.assembly) for w in joint.welds]
+    for side, steps in zip(damage.sides, damage.model, strict=True):
+        z = structure.nodes[welds[side // 2].node][2] - structure.sea_level_z_m
+        curve = stress_model.settings.models(z)[1].curve
+        assert STEP * steps > np.mean(curve.m) * stress_remainder(z) - STEP
+        assert STEP * steps < np.log(10.0)

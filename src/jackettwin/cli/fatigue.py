@@ -46,7 +46,7 @@ _OF_WELDS = (
 )
 _OF_RECORDS = (
     Omission("other seas, winds and states: all time is assumed to be like this record"),
-    Omission("errors of the model besides its supports: intervals of stress are too narrow, see the docs"),
+    Omission("errors of the model beyond its tolerances: other geometry, other damage, joints that yield"),
     Omission("slow forces that neither a sensor nor the record's stated wind and sea show"),
     Omission("buoyancy and mean thrust in the shares of K, Y and X joints"),
     Omission("bending blades"),
@@ -371,7 +371,7 @@ def record_(
         "noise": np.sqrt(found.estimate.levels.noise),
         "joints": rows,
         "welds": [_tube(one) for one in found.tubes],
-        "warnings": [*_warnings(rows), *_tube_warnings(found.tubes, found.apart), _TOO_NARROW],
+        "warnings": [*_warnings(rows), *_tube_warnings(found.tubes, found.apart), _FROM_SENSORS],
         "left_out": omission_documents([*_OF_RECORDS, *_OF_WELDS]),
     }
     return Reply(document, lambda: _show_welds(document, record.name))
@@ -448,9 +448,10 @@ def _warnings(rows: list[dict[str, Any]]) -> list[str]:
     ]
 
 
-_TOO_NARROW = (
-    "stresses from sensors are low near the sea's surface, and their intervals too short: of simulated "
-    "jackets a third of the true values lay inside (docs/verification/fatigue.md)"
+_FROM_SENSORS = (
+    "stress from sensors rests on simplified waves and modes: what it missed on simulated jackets is in "
+    "docs/verification/fatigue.md; the slow thrust of a working rotor is found too small unless a sensor "
+    "feels it (--feel-gravity, inclination, strain)"
 )
 
 _COLUMNS = (

@@ -161,8 +161,7 @@ def motion_model(
     )
     omega, shapes = modes.omega[keep], modes.shapes[:, keep]
     loads = np.column_stack([force.load for force in forces])
-    static = np.column_stack([static_displacement(system, force.load) for force in forces])
-    flexibility = static - shapes @ ((shapes.T @ loads) / omega[:, None] ** 2)
+    flexibility = static_displacement(system, loads) - shapes @ ((shapes.T @ loads) / omega[:, None] ** 2)
     damping = _damping(system, omega, shapes)
     if drag is not None:
         damping = damping + shapes.T @ (drag @ shapes)
@@ -176,8 +175,5 @@ def _damping(system: System, omega: FloatArray, shapes: FloatArray) -> FloatArra
     between = np.sqrt(np.outer(omega, omega))
     for group in pencil.groups:
         S = x.T @ (group.S @ x)
-        loss = np.array([group.law.stiffness(1j * w).imag / w for w in between.ravel()]).reshape(
-            between.shape
-        )
-        C += loss * S
+        C += group.law.stiffness(1j * between).imag / between * S
     return np.asarray(0.5 * (C + C.T))

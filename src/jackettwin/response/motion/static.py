@@ -16,7 +16,7 @@ from jackettwin.structure import Assembly, rigid_body_motion
 
 
 def static_displacement(system: System, load: FloatArray) -> FloatArray:
-    """Return displacements (assembly.n_dof,) under a load on the assembly's DOFs, supports relaxed.
+    """Return displacements under loads (assembly.n_dof, ...) on the assembly's DOFs, supports relaxed.
 
     Raises
     ------
@@ -27,7 +27,7 @@ def static_displacement(system: System, load: FloatArray) -> FloatArray:
     try:
         u = factorised(K).solve(np.asarray(load)[system.free])
     except RuntimeError:
-        u = np.full(system.free.size, np.nan)
+        u = np.full((system.free.size, *np.shape(load)[1:]), np.nan)
     if not np.isfinite(u).all() or np.abs(u).max(initial=0.0) > 1e6:
         raise InputError(
             "the structure cannot stand on its support", field="support", remedy="fix it in every direction"

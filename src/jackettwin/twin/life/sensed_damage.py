@@ -80,16 +80,20 @@ def sensed_damage(
     systems = likely.systems(structures)
     estimates = likely_motions(systems, readings, weather, damped=likely.damped)
     joints = planned_joints(likely.model.assembly)
-    pairs = zip(systems, estimates, strict=True)
-    charts = [weld_map(system, one.model, likely.model.dry, joints) for system, one in pairs]
+    charts = [
+        weld_map(system, one.model, likely.model.dry, joints)
+        for system, one in zip(systems, estimates, strict=True)
+    ]
     curves = _Curves.of(likely.model.assembly.structure, charts[0], likely.model.settings.models)
     mean = estimates[0].mean()
     sides, guessed, largest_left = curves.worst(charts[0], mean, estimates[0].covariance)
     first = curves.damage(charts[0], mean, sides)
-    drawn = [curves.damage(charts[0], one, sides) for one in estimates[0].draws(draws, mean=mean)]
+    motions = estimates[0].draws(draws, mean=mean)
+    drawn = [curves.damage(charts[0], one, sides, like=first) for one in motions]
     # what sensors do not see adds to the damage of every structure as it does to that of the first
     unseen = np.array(drawn) / np.maximum(first, 1e-300)
-    others = [curves.damage(c, e.mean(), sides) for c, e in zip(charts[1:], estimates[1:], strict=True)]
+    pairs = zip(charts[1:], estimates[1:], strict=True)
+    others = [curves.damage(chart, one.mean(), sides, like=first) for chart, one in pairs]
     damage = np.array([first, *others])[:, None] * unseen
     worst = damage.mean(axis=(0, 1)).max(axis=1)
     bound = largest_left * float((worst / guessed).max(initial=0.0))
@@ -158,8 +162,15 @@ class _Curves:
         chosen, rest = order[:_COUNTED], order[_COUNTED:]
         return chosen, np.maximum(per_cycle[chosen], 1e-300), float(per_cycle[rest].max(initial=0.0))
 
-    def damage(self, chart: WeldMap, motion: FloatArray, sides: IntArray) -> FloatArray:
-        """Return the damage (n_sides, 8) of a motion at the points of some sides."""
+    def damage(
+        self, chart: WeldMap, motion: FloatArray, sides: IntArray, *, like: FloatArray | None = None
+    ) -> FloatArray:
+        """Return the damage (n_sides, 8) of a motion at the points of some sides.
+
+        Parameters
+        ----------
+        like : damage of another motion; points that had little of it follow the side's worst, uncounted
+        """
         welds, found = sides // len(SIDES), np.zeros((sides.size, len(POSITIONS)))
         first = np.concatenate([[0], np.cumsum(np.bincount(self.joint))])
         for joint in np.unique(self.joint[welds]):
@@ -167,12 +178,17 @@ class _Curves:
             for i in np.flatnonzero(self.joint[welds] == joint):
                 w, s = divmod(int(sides[i]), len(SIDES))
                 curve, t = self.models[w].curve, float(self.thickness_m[w, s])
-                for p, series in enumerate(stress[w - first[joint], s]):
-                    cycles = count(series)
+                known = np.ones(len(POSITIONS)) if like is None else like[i] / max(like[i].max(), 1e-300)
+                for p in np.flatnonzero(known >= _MINOR):
+                    cycles = count(stress[w - first[joint], s, p])
                     found[i, p] = curve.damage(cycles.ranges, cycles.numbers, thickness_m=t)
+                minor, worst = known < _MINOR, int(known.argmax())
+                found[i, minor] = known[minor] * found[i, worst]
         return found
 
 
+_MINOR = 0.1
+"""Of the damage at a side's worst point, below which a point is not counted in every motion."""
 _TYPICAL = 3.5
 """Ranges over standard deviations that do most damage: to choose welds with alone."""
 
