@@ -15,6 +15,7 @@ from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.search.clusters import SAME, extent, gather
 from jackettwin.updating.search.descent import End, descend, descend_simplex, settle
+from jackettwin.updating.search.shorter_law import ShorterLaws
 from jackettwin.updating.search.start_points import given_points
 
 SearchMethod = Literal["least-squares", "nelder-mead"]
@@ -164,9 +165,9 @@ def search(
     """Return the distinct solutions, best first.
 
     Starts are scrambled Sobol points in the logarithms between the bounds, doubled in number while some
-    solution has been found only once. Known solutions are then excluded from further searches. Minima that
-    fit far worse than the best (:meth:`Problem.poor`) are no solutions. From given points there is one search
-    each and no others, as in the thesis.
+    solution without redundant branches has been found only once. Known solutions are then excluded from
+    further searches. Minima that fit far worse than the best (:meth:`Problem.poor`) are no solutions. From
+    given points there is one search each and no others, as in the thesis.
 
     Parameters
     ----------
@@ -211,7 +212,7 @@ def search(
             progress.within(f"{tried} of {n} starts, {len(clusters)} distinct solutions from earlier ones")
         best = min((end.cost for end, _ in [*clusters, *new]), default=0.0)
         clusters, compared = gather(problem, _near(problem, new, best), known=_near(problem, clusters, best))
-        enough = all(count > 1 for _, count in clusters) if clusters else n >= _HOPELESS * starts
+        enough = _often(problem, clusters) if clusters else n >= _HOPELESS * starts
         if enough or not compared or 2 * n > len(points) or spent >= most_evaluations:
             break
         n *= 2
@@ -226,6 +227,15 @@ def search(
         spent if not compared or (spent >= most_evaluations and not enough) else None,
         _stalled(problem, ends, kept),
     )
+
+
+def _often(problem: Problem, clusters: list[tuple[End, int]]) -> bool:
+    """Return whether every solution was found more than once, or has branches that the data do not need.
+
+    The valley of redundant branches has as many arms as there are starts.
+    """
+    shorter = ShorterLaws(problem)
+    return all(count > 1 or shorter(end) is not None for end, count in clusters)
 
 
 def _near(problem: Problem, ends: list[tuple[End, int]], best: float) -> list[tuple[End, int]]:
