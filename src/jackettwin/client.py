@@ -250,6 +250,10 @@ class Client:
         """Return the structure to draw."""
         return self._asked("GET", f"/assets/{asset}/structure", params=query)
 
+    def law(self, of: str, low_hz: float = 0.01, high_hz: float = 10.0) -> Answer:
+        """Return storage, loss, creep and relaxation of a support law."""
+        return self._asked("GET", "/law", params={"of": of, "low_hz": low_hz, "high_hz": high_hz})
+
     def watch(self, asset: str) -> Answer:
         """Return what each judged day showed, and the evidence for a change."""
         return self._asked("GET", f"/assets/{asset}/watch")

@@ -19,7 +19,13 @@ export interface Answer<T> {
 }
 
 /** Ask, and ask again when an event of the asset ("" for any) arrives or the question changes. */
-export function useAnswer<T>(asset: string | null, key: string, ask: () => Promise<T>): Answer<T> {
+export function useAnswer<T>(
+  asset: string | null,
+  key: string,
+  ask: () => Promise<T>,
+  /** What the question is about; the last answer stays until this one's comes. */
+  about = "",
+): Answer<T> {
   const [state, setState] = useState<{ key: string; data: T | undefined; problem: Problem | undefined }>({
     key,
     data: undefined,
@@ -40,7 +46,7 @@ export function useAnswer<T>(asset: string | null, key: string, ask: () => Promi
       (error: unknown) =>
         keep(undefined, error instanceof Problem ? error : new Problem("server", String(error))),
     );
-  }, [key, events, tries, lost]);
+  }, [key, about, events, tries, lost]);
   const current = state.key === key ? state : { data: undefined, problem: undefined };
   return { data: current.data, problem: current.problem, again: () => setTries((n) => n + 1) };
 }

@@ -2,11 +2,12 @@
 import { useMemo, useState } from "preact/hooks";
 import { useAsset } from "../api/answer";
 import { type Schemas } from "../api/client";
-import { Card, Head } from "../parts/Bits";
+import { Card, Head, Pick } from "../parts/Bits";
 import { modeColour, paintOf } from "../parts/modes";
 import { Plot } from "../parts/plot/Plot";
 import type { Mark, PlotData, Range, Series } from "../parts/plot/series";
 import { Empty, Shown } from "../parts/Shown";
+import { Laws } from "../parts/Laws";
 import { Surface } from "../parts/Surface";
 import { number, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
@@ -81,26 +82,23 @@ function Along({ locus }: { locus: Locus }) {
   const [region, setRegion] = useState<Range | null>(null);
   const value = locus.values[index] ?? 0;
   const mark: Mark[] = [{ x: value, words: quantity(value, locus.unit), colour: "ink" }];
-  const f = useMemo(
-    () =>
+  const drawn = useMemo(
+    () => [
       along(locus, "Frequencies", "frequency over that at the median [%]", (b, i) => {
         const [here, there] = [b.frequency_hz[i], b.frequency_hz[locus.origin]];
         return here && there ? 100 * (here / there) : null;
       }),
-    [locus],
-  );
-  const zeta = useMemo(
-    () =>
       along(
         locus,
         "Damping ratios",
         "damping ratio [%]",
         (b, i) => 100 * (b.damping_ratio[i] ?? NaN) || null,
       ),
+    ],
     [locus],
   );
   const root = useMemo(() => poles(locus, index), [locus, index]);
-  const plots = useMemo(() => [f, zeta].map((plot) => ({ ...plot, marks: mark })), [f, zeta, value]);
+  const plots = useMemo(() => drawn.map((plot) => ({ ...plot, marks: mark })), [drawn, value]);
   return (
     <>
       <Card
@@ -238,16 +236,12 @@ function Drawn({ asset, explored }: { asset: string; explored: Explored }) {
   return (
     <>
       <div class="tools">
-        <label>
-          Parameter{" "}
-          <select value={locus?.parameter ?? ""} onChange={(e) => keep({ parameter: e.currentTarget.value })}>
-            {loci.map((l) => (
-              <option key={l.parameter} value={l.parameter}>
-                {l.parameter}
-              </option>
-            ))}
-          </select>
-        </label>
+        <Pick
+          label="Parameter"
+          value={locus?.parameter ?? ""}
+          options={loci.map((l) => [l.parameter, l.parameter] as const)}
+          onChoose={(parameter) => keep({ parameter })}
+        />
         <span class="quiet">Law {explored.law}</span>
       </div>
       <div class="grid">
@@ -262,6 +256,7 @@ function Drawn({ asset, explored }: { asset: string; explored: Explored }) {
         )}
         <Curves explored={explored} />
         <Sensitivity asset={asset} />
+        <Laws />
       </div>
     </>
   );
@@ -280,7 +275,7 @@ export default function Explore({ asset }: PageProps) {
         empty={(data) =>
           data.loci?.length ? null : (
             <Empty title="Nothing to explore yet">
-              <p>This comes with the first estimate of the ground, when no record waits.</p>
+              This comes with the first estimate of the ground, when no record waits.
             </Empty>
           )
         }

@@ -3,7 +3,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { type View } from "../../../src/jackettwin/report/templates/view.js";
 import { useAnswer, useAsset } from "../api/answer";
 import { api, type RecordOut, type Schemas, told } from "../api/client";
-import { Card, Time } from "../parts/Bits";
+import { Card, Time, Pick } from "../parts/Bits";
 import { InSpace } from "../parts/InSpace";
 import { Lanes, Roll } from "../parts/Roll";
 import { Empty, Shown } from "../parts/Shown";
@@ -116,15 +116,13 @@ export default function Live({ asset }: PageProps) {
               title="Signals"
               wide={!record || streams}
               more={
-                <select
-                  aria-label="Shown"
-                  value={span}
-                  onChange={(e) => setSpan(Number(e.currentTarget.value))}
-                >
-                  {SPANS_S.map((s) => (
-                    <option key={s} value={s}>{`${s} s`}</option>
-                  ))}
-                </select>
+                <Pick
+                  label="Shown"
+                  bare
+                  value={String(span)}
+                  options={SPANS_S.map((s) => [String(s), `${s} s`] as const)}
+                  onChoose={(s) => setSpan(Number(s))}
+                />
               }
             >
               <Lanes roll={roll} span={span} />
@@ -146,6 +144,6 @@ export default function Live({ asset }: PageProps) {
 
 const Nothing = () => (
   <Empty title="Nothing to show yet">
-    <p>Samples are shown as a broker sends them (`--mqtt`), or as the newest record has them.</p>
+    Samples are shown as a broker sends them (`--mqtt`), or as the newest record has them.
   </Empty>
 );

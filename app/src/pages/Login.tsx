@@ -1,7 +1,8 @@
 // Who are you?
-import { useState } from "preact/hooks";
 import { useAnswer } from "../api/answer";
-import { api, me, Problem, told } from "../api/client";
+import { api, me, told } from "../api/client";
+import { useDeed } from "../api/do";
+import { FormEnd } from "../parts/Bits";
 import { asked, go } from "../shell/place";
 
 /** Only a place of ours: a link from elsewhere cannot send anybody away by it. */
@@ -10,23 +11,18 @@ export function safePlace(next: string | null): string {
 }
 
 export function Login() {
-  const [problem, setProblem] = useState<Problem | null>(null);
-  const [busy, setBusy] = useState(false);
+  const deed = useDeed();
   const health = useAnswer(null, "health", () => told(api.GET("/api/v1/health")));
-  const anew = problem?.field === "new";
+  const anew = deed.problem?.field === "new";
   const send = async (event: SubmitEvent): Promise<void> => {
     event.preventDefault();
     const form = new FormData(event.currentTarget as HTMLFormElement);
     const text = (name: string): string => String(form.get(name) ?? "");
-    setBusy(true);
-    try {
-      const body = { name: text("name"), password: text("password"), new: text("new") || null };
+    const body = { name: text("name"), password: text("password"), new: text("new") || null };
+    await deed.run(async () => {
       me.value = await told(api.POST("/api/v1/login", { body }));
       go(safePlace(asked("next")));
-    } catch (error) {
-      setProblem(error instanceof Problem ? error : null);
-    }
-    setBusy(false);
+    });
   };
   return (
     <main class="narrow" id="main">
@@ -47,14 +43,7 @@ export function Login() {
               <input name="new" type="password" autocomplete="new-password" minLength={12} required />
             </label>
           )}
-          {problem && (
-            <p class="error" role="alert">
-              {problem.message}
-            </p>
-          )}
-          <button class="main" disabled={busy}>
-            {busy ? "Asking" : "Log in"}
-          </button>
+          <FormEnd deed={deed} words={deed.busy ? "Asking" : "Log in"} />
         </form>
         {health.data?.openid && (
           <p class="other-way">

@@ -3,7 +3,7 @@ import { useState } from "preact/hooks";
 import { type Answer, useAsset } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
 import { may, useDeed } from "../api/do";
-import { Card, Time, Head } from "../parts/Bits";
+import { Card, Time, Head, FormEnd } from "../parts/Bits";
 import { Shown } from "../parts/Shown";
 import { number, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
@@ -107,17 +107,8 @@ function NewVersion({ asset, versions }: { asset: string; versions: Answer<Versi
           Why
           <input name="comment" maxLength={1000} required />
         </label>
-        {deed.problem && (
-          <p class="error" role="alert">
-            {deed.problem.message} {deed.problem.remedy}
-          </p>
-        )}
         {said && <p role="status">{said}</p>}
-        <span>
-          <button class="main" disabled={deed.busy}>
-            {deed.busy ? "A worker reads it" : "Add"}
-          </button>
-        </span>
+        <FormEnd deed={deed} words={deed.busy ? "A worker reads it" : "Add"} />
       </form>
     </Card>
   );

@@ -2,7 +2,7 @@
 import { useMemo, useState } from "preact/hooks";
 import { useAnswer } from "../api/answer";
 import { api, type Mode, type RecordOut, type Schemas, told } from "../api/client";
-import { Card, Choice, Facts, Light, Time } from "../parts/Bits";
+import { Card, Choice, Facts, Light, Time, Pick } from "../parts/Bits";
 import { Heat } from "../parts/Heat";
 import { paintOf } from "../parts/modes";
 import { Plot } from "../parts/plot/Plot";
@@ -12,7 +12,7 @@ import { Stabilisation } from "../parts/Stabilisation";
 import { ModeTable } from "../parts/ModeTable";
 import type { PageProps } from "../shell/place";
 import { asked, keep } from "../shell/place";
-import { keepRange } from "../parts/Stiffness";
+import { keepRange, rangeKept } from "../parts/Stiffness";
 import { words } from "../words/numbers";
 import { seconds } from "../words/time";
 
@@ -41,14 +41,13 @@ function Signals({ record }: { record: RecordOut }) {
   const names = record.channels.map((c) => String(c["name"]));
   const [chosen, setChosen] = useState(names.slice(0, 3));
   const begin = seconds(record.start_utc);
-  const [a, b] = [asked("from"), asked("to")];
-  const range: Range | null = a && b ? [seconds(a), seconds(b)] : null;
+  const range = rangeKept();
   const query = {
     channels: chosen,
     points: POINTS,
     ...(range ? { from: Math.max(range[0] - begin, 0), to: Math.max(range[1] - begin, 0.1) } : {}),
   };
-  const signal = useAnswer(null, `signal ${record.record_id} ${chosen.join()} ${a ?? ""} ${b ?? ""}`, () => {
+  const signal = useAnswer(null, `signal ${record.record_id} ${chosen.join()} ${range?.join() ?? ""}`, () => {
     const params = { path: { record_id: record.record_id }, query };
     return told(api.GET("/api/v1/records/{record_id}/signal", { params })) as Promise<Schemas["Signal"]>;
   });
@@ -194,15 +193,13 @@ function Spectrogram({ record }: { record: RecordOut }) {
       wide
       note="Segments of a minute that overlap by three quarters; a mode is a level line, what moves with the rotor is not."
       more={
-        <select
-          aria-label="Channel"
+        <Pick
+          label="Channel"
+          bare
           value={channel}
-          onChange={(e) => keep({ channel: e.currentTarget.value })}
-        >
-          {names.map((name) => (
-            <option key={name}>{name}</option>
-          ))}
-        </select>
+          options={names.map((name) => [name, name] as const)}
+          onChoose={(one) => keep({ channel: one })}
+        />
       }
     >
       <Shown of={found} lines={6}>

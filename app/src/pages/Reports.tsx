@@ -55,8 +55,4 @@ export default function Reports({ asset }: PageProps) {
   );
 }
 
-const Nothing = () => (
-  <Empty title="No report yet">
-    <p>It is written when no record waits.</p>
-  </Empty>
-);
+const Nothing = () => <Empty title="No report yet">It is written when no record waits.</Empty>;

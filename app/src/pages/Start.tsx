@@ -9,12 +9,7 @@ import { assetUrl, go } from "../shell/place";
 export default function Start() {
   const deed = useDeed();
   const [files, setFiles] = useState<File[]>([]);
-  if (!may("engineer"))
-    return (
-      <Empty title="Not allowed">
-        <p>Engineers add turbines.</p>
-      </Empty>
-    );
+  if (!may("engineer")) return <Empty title="Not allowed">Engineers add turbines.</Empty>;
   const twin = files.find((f) => /\.ya?ml$/.test(f.name));
   const send = async (event: SubmitEvent): Promise<void> => {
     event.preventDefault();

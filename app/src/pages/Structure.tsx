@@ -2,7 +2,7 @@
 import { useMemo } from "preact/hooks";
 import { useAnswer, useAsset } from "../api/answer";
 import { api, told } from "../api/client";
-import { Card } from "../parts/Bits";
+import { Card, Pick } from "../parts/Bits";
 import { InSpace } from "../parts/InSpace";
 import { Empty, Shown } from "../parts/Shown";
 import type { PageProps } from "../shell/place";
@@ -46,36 +46,28 @@ export default function Structure({ asset }: PageProps) {
       <div class="head">
         <h1>Structure</h1>
         {kept.length > 0 && (
-          <label class="end">
-            Moved as in{" "}
-            <select
-              value={asked("record") ?? ""}
-              onChange={(e) => keep({ record: e.currentTarget.value || null })}
-            >
-              <option value="">its modes</option>
-              {kept.map((r) => (
-                <option key={r.record_id} value={r.record_id}>
-                  {`the record of ${utc(r.start_utc)}`}
-                </option>
-              ))}
-            </select>
-          </label>
+          <Pick
+            label="Moved as in"
+            value={asked("record") ?? ""}
+            options={[
+              ["", "its modes"],
+              ...kept.map((r) => [r.record_id, `the record of ${utc(r.start_utc)}`] as const),
+            ]}
+            onChoose={(record) => keep({ record: record || null })}
+          />
         )}
         {others.length > 0 && (
-          <label class="end">
-            Beside it{" "}
-            <select
-              value={beside ?? ""}
-              onChange={(event) => keep({ beside: event.currentTarget.value || null })}
-            >
-              <option value="">nothing</option>
-              {others.map((v) => (
-                <option key={v.version} value={String(v.version)}>
-                  {`version ${v.version} of ${day(v.created_utc)}`}
-                </option>
-              ))}
-            </select>
-          </label>
+          <Pick
+            label="Beside it"
+            value={beside ?? ""}
+            options={[
+              ["", "nothing"],
+              ...others.map(
+                (v) => [String(v.version), `version ${v.version} of ${day(v.created_utc)}`] as const,
+              ),
+            ]}
+            onChoose={(one) => keep({ beside: one || null })}
+          />
         )}
       </div>
       <div class="grid">
@@ -88,6 +80,6 @@ export default function Structure({ asset }: PageProps) {
 
 const Nothing = () => (
   <Empty title="Nothing to draw yet">
-    <p>The structure is drawn with its updated modes, once records have been observed and no record waits.</p>
+    The structure is drawn with its updated modes, once records have been observed and no record waits.
   </Empty>
 );

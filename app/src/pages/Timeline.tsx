@@ -2,12 +2,12 @@
 import { useMemo } from "preact/hooks";
 import { useAnswer, useAsset } from "../api/answer";
 import { api, type Alarm, everything, type Mode, told } from "../api/client";
-import { Card, Choice, Head } from "../parts/Bits";
+import { Card, Choice, Head, Pick } from "../parts/Bits";
 import { binPlot, type Bins, byLabel, modePlot } from "../parts/modes";
 import { Plot } from "../parts/plot/Plot";
 import type { Mark, PlotData, Range } from "../parts/plot/series";
 import { Empty, Shown, Trouble } from "../parts/Shown";
-import Stiffness, { keepRange } from "../parts/Stiffness";
+import Stiffness, { keepRange, rangeKept } from "../parts/Stiffness";
 import { Rests, type Watch } from "../parts/Watched";
 import type { PageProps } from "../shell/place";
 import { asked, assetUrl, go, keep } from "../shell/place";
@@ -86,12 +86,12 @@ export default function Timeline({ asset }: PageProps) {
   const beside = useAnswer(null, `beside ${other} ${state}`, async () =>
     other ? (await look(other, of)).bins : [],
   );
+  const others = (assets.data?.items ?? []).filter((a) => a.name !== asset);
   const watch = useAsset(asset, "/watch");
   const alarms = useAsset(asset, "/alarms");
   const what = asked("show") ?? "frequency";
   const wanted = asked("mode") ?? "";
   const [from, to] = [asked("from"), asked("to")];
-  const range: Range | null = from && to ? [seconds(from), seconds(to)] : null;
   const labels = all.data?.bins.map((b) => b.label) ?? [];
   // What is drawn row by row as a whole needs no closer look.
   const close = from && to && labels.length && !all.data?.rows ? { from, to } : null;
@@ -119,18 +119,13 @@ export default function Timeline({ asset }: PageProps) {
           options={STATES}
           onChoose={(one) => keep({ state: one || null })}
         />
-        {(assets.data?.items.length ?? 0) > 1 && (
-          <label>
-            Beside{" "}
-            <select value={other} onChange={(e) => keep({ beside: e.currentTarget.value || null })}>
-              <option value="">no other turbine</option>
-              {assets.data?.items
-                .filter((a) => a.name !== asset)
-                .map((a) => (
-                  <option key={a.name}>{a.name}</option>
-                ))}
-            </select>
-          </label>
+        {others.length > 0 && (
+          <Pick
+            label="Beside"
+            value={other}
+            options={[["", "no other turbine"], ...others.map((a) => [a.name, a.name] as const)]}
+            onChoose={(one) => keep({ beside: one || null })}
+          />
         )}
         {from && to && (
           <a
@@ -148,7 +143,7 @@ export default function Timeline({ asset }: PageProps) {
             marks={alarmMarks(alarms.data?.items ?? [])}
             what={what}
             wanted={wanted}
-            range={range}
+            range={rangeKept()}
             beside={{ name: other, bins: beside.data ?? [] }}
             asset={asset}
             watch={watch.data}
@@ -211,17 +206,12 @@ function Drawn({ all, seen, marks, what, wanted, range, beside, asset, watch, op
     <>
       <div class="tools">
         <Choice label="Range" value={span} options={SPANS} onChoose={show} />
-        <label>
-          Mode{" "}
-          <select value={wanted} onChange={(event) => keep({ mode: event.currentTarget.value || null })}>
-            <option value="">all {plots.length}</option>
-            {plots.map((p) => (
-              <option key={p.label} value={p.label}>
-                {words(p.label)}
-              </option>
-            ))}
-          </select>
-        </label>
+        <Pick
+          label="Mode"
+          value={wanted}
+          options={[["", `all ${plots.length}`], ...plots.map((p) => [p.label, words(p.label)] as const)]}
+          onChoose={(mode) => keep({ mode: mode || null })}
+        />
       </div>
       {what === "ground" && <Stiffness asset={asset} />}
       {what.endsWith("left") && (
@@ -282,9 +272,7 @@ function withOther(
 
 const Nothing = () => (
   <Empty title="No mode yet">
-    <p>
-      Modes are found in records: give one on the page of records, or wait until those that arrived are
-      observed.
-    </p>
+    Modes are found in records: give one on the page of records, or wait until those that arrived are
+    observed.
   </Empty>
 );

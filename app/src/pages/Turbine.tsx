@@ -188,14 +188,12 @@ const mostUrgent = (alarms: readonly Alarm[]): Alarm[] =>
 function Unchanged({ own }: { own: Answer<Asset> }) {
   return (
     <Empty title="No change was found">
-      <p>
-        Changes are watched for once a baseline is whole.{" "}
-        {own.data?.last_record_utc && (
-          <>
-            The last record began <Time at={own.data.last_record_utc} />.
-          </>
-        )}
-      </p>
+      Changes are watched for once a baseline is whole.{" "}
+      {own.data?.last_record_utc && (
+        <>
+          The last record began <Time at={own.data.last_record_utc} />.
+        </>
+      )}
     </Empty>
   );
 }
@@ -208,7 +206,5 @@ const NoRecord = ({ asset }: { asset: string }) => (
 );
 
 const NotYet = () => (
-  <Empty title="Not estimated yet">
-    <p>This is done when no record waits, and takes a minute.</p>
-  </Empty>
+  <Empty title="Not estimated yet">This is done when no record waits, and takes a minute.</Empty>
 );

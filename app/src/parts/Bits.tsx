@@ -88,6 +88,22 @@ export function Choice({ label, value, options, onChoose }: ChoiceProps) {
   );
 }
 
+/** One of many things: a list to open, named beside it or only to who cannot see it. */
+export function Pick({ label, value, options, onChoose, bare }: ChoiceProps & { bare?: boolean }) {
+  return (
+    <label class="pick">
+      {!bare && `${label} `}
+      <select aria-label={label} value={value} onChange={(event) => onChoose(event.currentTarget.value)}>
+        {options.map(([key, words]) => (
+          <option key={key} value={key}>
+            {words}
+          </option>
+        ))}
+      </select>
+    </label>
+  );
+}
+
 /** Names and values, a row each. */
 export function Facts({ facts }: { facts: readonly (readonly [string, string])[] }) {
   return (
@@ -114,7 +130,7 @@ export function FormEnd({ deed, words, onLeave }: FormEndProps) {
     <>
       {deed.problem && (
         <p class="error" role="alert">
-          {deed.problem.message}
+          {deed.problem.message} {deed.problem.remedy}
         </p>
       )}
       <span>

@@ -49,32 +49,23 @@ function lane(
 ): number {
   const [left = 0, top = 0, width = 0, height = 0] = box;
   let most = 1e-12;
-  const shown = pieces.filter((p) => p.from < now && p.from + p.step * p.values.length > now - span);
-  const ends = shown.map((p): [number, number] => [
+  const shown = pieces.map((p): [Piece, number, number] => [
+    p,
     Math.max(0, Math.floor((now - span - p.from) / p.step)),
     Math.min(p.values.length, Math.ceil((now - p.from) / p.step)),
   ]);
-  shown.forEach((p, k) => {
-    const [a, b] = ends[k] ?? [0, 0];
+  for (const [p, a, b] of shown)
     for (let i = a; i < b; i++) most = Math.max(most, Math.abs(p.values[i] ?? 0));
-  });
   ink.beginPath();
-  shown.forEach((p, k) => {
-    const [a, b] = ends[k] ?? [0, 0];
+  for (const [p, a, b] of shown) {
     let pen = false;
     for (let i = a; i < b; i++) {
       const v = p.values[i];
-      if (v === null || v === undefined) {
-        pen = false;
-        continue;
-      }
       const x = left + width * (1 - (now - p.from - i * p.step) / span);
-      const y = top + height * (0.5 - (0.46 * v) / most);
-      if (pen) ink.lineTo(x, y);
-      else ink.moveTo(x, y);
-      pen = true;
+      if (typeof v === "number") ink[pen ? "lineTo" : "moveTo"](x, top + height * (0.5 - (0.46 * v) / most));
+      pen = typeof v === "number";
     }
-  });
+  }
   ink.stroke();
   return most;
 }

@@ -31,7 +31,7 @@ export function Empty({ title, children }: { title: string; children?: Component
   return (
     <div class="state">
       <h3>{title}</h3>
-      {children}
+      {children && <div>{children}</div>}
     </div>
   );
 }

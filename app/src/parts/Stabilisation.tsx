@@ -26,17 +26,14 @@ function sorted(poles: Poles, picks: readonly Pick_[]): Record<(typeof KIND)[num
   return out;
 }
 
-function Chart({
-  poles,
-  picks,
-  onPick,
-  modes,
-}: {
+interface ChartProps {
   poles: Poles;
   picks: Pick_[];
   onPick: (i: number) => void;
   modes: readonly Mode[];
-}) {
+}
+
+function Chart({ poles, picks, onPick, modes }: ChartProps) {
   const [range, setRange] = useState<Range | null>(null);
   const groups = useMemo(() => sorted(poles, picks), [poles, picks]);
   const plot = useMemo((): PlotData => {
@@ -46,23 +43,12 @@ function Chart({
       );
       groups[kind] = own;
       const at = (values: number[]): number[] => own.map((i) => values[i] ?? NaN);
-      return {
-        name: kind,
-        colour: PAINT[kind],
-        kind: "points",
-        x: at(poles.frequency_hz),
-        y: at(poles.order),
-      };
+      const [x, y] = [at(poles.frequency_hz), at(poles.order)];
+      return { name: kind, colour: PAINT[kind], kind: "points", x, y };
     });
     const marks = modes.map((m) => ({ x: m.frequency_hz, words: words(m.label), colour: "quiet" }));
-    return {
-      title: "Stabilisation chart",
-      time: false,
-      xName: "frequency [Hz]",
-      yName: "model order",
-      series,
-      marks,
-    };
+    const names = { title: "Stabilisation chart", xName: "frequency [Hz]", yName: "model order" };
+    return { ...names, time: false, series, marks };
   }, [groups, modes]);
   const chosen = (series: number, index: number): void => {
     const pole = groups[KIND[series] ?? "stable"][index];
@@ -91,15 +77,13 @@ const kept = (record: RecordOut): Pick_[] => {
   return Array.isArray(poles) ? (poles as Pick_[]) : [];
 };
 
-export function Stabilisation({
-  record,
-  modes,
-  again,
-}: {
+interface OfRecord {
   record: RecordOut;
   modes: readonly Mode[];
   again: () => void;
-}) {
+}
+
+export function Stabilisation(of: OfRecord) {
   const [open, setOpen] = useState(false);
   return (
     <Card
@@ -108,7 +92,7 @@ export function Stabilisation({
       note="Poles of every model order. Choose some to take them instead of the automatic choice; the record is identified again."
     >
       {open ? (
-        <Open record={record} modes={modes} again={again} />
+        <Open {...of} />
       ) : (
         <button type="button" onClick={() => setOpen(true)}>
           Compute the stabilisation chart
@@ -118,7 +102,7 @@ export function Stabilisation({
   );
 }
 
-function Open({ record, modes, again }: { record: RecordOut; modes: readonly Mode[]; again: () => void }) {
+function Open({ record, modes, again }: OfRecord) {
   const [picks, setPicks] = useState(kept(record));
   useEffect(() => setPicks(kept(record)), [JSON.stringify(record.picks)]);
   const deed = useDeed();

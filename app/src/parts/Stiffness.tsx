@@ -70,7 +70,7 @@ export default function Stiffness({ asset }: { asset: string }) {
         empty={(data) =>
           data.stiffness_in_time ? null : (
             <Empty title="Not followed yet">
-              <p>The stiffness of each day is followed from the third day on.</p>
+              The stiffness of each day is followed from the third day on.
             </Empty>
           )
         }
@@ -83,14 +83,18 @@ export default function Stiffness({ asset }: { asset: string }) {
 
 function Drawn({ data }: { data: Supports }) {
   const plot = useMemo(() => stiffnessPlot(data), [data]);
-  const [from, to] = [asked("from"), asked("to")];
-  const range: Range | null = from && to ? [seconds(from), seconds(to)] : null;
   return (
     <>
       {data.statement && <p>{data.statement}</p>}
-      <Plot data={plot} height={260} range={range} onRange={keepRange} />
+      <Plot data={plot} height={260} range={rangeKept()} onRange={keepRange} />
     </>
   );
+}
+
+/** The stretch of time that the address holds. */
+export function rangeKept(): Range | null {
+  const [from, to] = [asked("from"), asked("to")];
+  return from && to ? [seconds(from), seconds(to)] : null;
 }
 
 export function keepRange(range: Range | null): void {

@@ -2,15 +2,14 @@
 import { useMemo, useState } from "preact/hooks";
 import { useAsset } from "../api/answer";
 import type { Schemas } from "../api/client";
-import { asked } from "../shell/place";
 import { quantity, words } from "../words/numbers";
 import { seconds } from "../words/time";
-import { Card } from "./Bits";
+import { Card, Pick } from "./Bits";
 import { modeColour } from "./modes";
 import { Plot } from "./plot/Plot";
-import type { Mark, PlotData, Range, Series } from "./plot/series";
+import type { Mark, PlotData, Series } from "./plot/series";
 import { Empty, Shown } from "./Shown";
-import { keepRange } from "./Stiffness";
+import { keepRange, rangeKept } from "./Stiffness";
 
 export type Watch = Schemas["WatchOut"];
 type Smallest = Schemas["SmallestChangeOut"];
@@ -58,11 +57,6 @@ export function restPlot(watch: Watch, index: number, marks: Mark[], planted?: P
   return { title: q ? title(q) : "", time: true, xName: "UTC", yName, series, marks };
 }
 
-const address = (): Range | null => {
-  const [from, to] = [asked("from"), asked("to")];
-  return from && to ? [seconds(from), seconds(to)] : null;
-};
-
 export function Rests({
   watch,
   marks,
@@ -83,11 +77,7 @@ export function Rests({
     [watch, kind, label, key],
   );
   if (!plots.length)
-    return (
-      <Empty title="Not watched yet">
-        <p>Days are judged once the baseline is whole.</p>
-      </Empty>
-    );
+    return <Empty title="Not watched yet">Days are judged once the baseline is whole.</Empty>;
   return (
     <>
       {plots.map((plot) => (
@@ -95,7 +85,7 @@ export function Rests({
           key={plot.title}
           data={plot}
           height={170}
-          range={address()}
+          range={rangeKept()}
           onRange={keepRange}
           together="timeline"
         />
@@ -118,7 +108,7 @@ export default function Evidence({ asset, marks }: { asset: string; marks: Mark[
         empty={(data) =>
           data.days.length ? null : (
             <Empty title="Not watched yet">
-              <p>Days are judged once the baseline is whole, usually after a year.</p>
+              Days are judged once the baseline is whole, usually after a year.
             </Empty>
           )
         }
@@ -155,7 +145,7 @@ function Drawn({ watch, marks }: { watch: Watch; marks: Mark[] }) {
   const possible = watch.smallest.filter((s) => s.step.length && s.size !== null);
   return (
     <>
-      <Plot data={plot} height={220} range={address()} onRange={keepRange} together="evidence" />
+      <Plot data={plot} height={220} range={rangeKept()} onRange={keepRange} together="evidence" />
       {possible.length > 0 && <WouldBe watch={watch} possible={possible} />}
     </>
   );
@@ -189,17 +179,13 @@ function WouldBe({ watch, possible }: { watch: Watch; possible: Smallest[] }) {
         The days as they were, and with a planted change added: the smallest that this watch finds with 95 %.
       </p>
       <div class="tools">
-        <select
-          aria-label="Planted change"
-          value={index}
-          onChange={(e) => setIndex(Number(e.currentTarget.value))}
-        >
-          {possible.map((s, i) => (
-            <option key={i} value={i}>
-              {said(s)}
-            </option>
-          ))}
-        </select>
+        <Pick
+          label="Planted change"
+          bare
+          value={String(index)}
+          options={possible.map((s, i) => [String(i), said(s)] as const)}
+          onChoose={(i) => setIndex(Number(i))}
+        />
         <label>
           planted on {watch.days[at]}{" "}
           <input
@@ -216,7 +202,7 @@ function WouldBe({ watch, possible }: { watch: Watch; possible: Smallest[] }) {
           key={plot.title}
           data={plot}
           height={170}
-          range={address()}
+          range={rangeKept()}
           onRange={keepRange}
           together="evidence"
         />

@@ -167,9 +167,7 @@ export function App() {
               <Page key={`${page} ${asset} ${id}`} asset={asset} id={id} />
             ) : (
               <Empty title="There is no such page">
-                <p>
-                  Go to <a href="/">all turbines</a>.
-                </p>
+                Go to <a href="/">all turbines</a>.
               </Empty>
             )}
           </Suspense>

@@ -77,6 +77,22 @@ class ExploredOut(BaseModel):
     curves: list[CurveOut] = []
 
 
+class LawOut(BaseModel):
+    """A support law over frequency and time: D(2πif) = storage + i·loss, and its answer to steps.
+
+    ``creep`` is null of a law that cannot carry a force.
+    """
+
+    law: str
+    frequency_hz: list[float]
+    storage_n_m: Drawn
+    loss_n_m: Drawn
+    loss_factor: Drawn
+    time_s: list[float]
+    creep_m_n: Drawn
+    relaxation_n_m: Drawn
+
+
 class PlaceOut(BaseModel):
     """A sensor's place at rest [m], z above the mean sea level, and the nearest node."""
 

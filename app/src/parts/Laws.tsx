@@ -1,0 +1,118 @@
+// A support law by slider: what it stores and loses at each frequency, and how it creeps.
+import { useMemo, useState } from "preact/hooks";
+import { useAnswer } from "../api/answer";
+import { api, type Schemas, told } from "../api/client";
+import { quantity } from "../words/numbers";
+import { Card, Choice } from "./Bits";
+import { Plot } from "./plot/Plot";
+import type { PlotData, Range } from "./plot/series";
+import { Shown } from "./Shown";
+
+/** Of each parameter: unit, least, greatest and first value, in decades where it spans some. */
+type Slider = readonly [string, string, number, number, number];
+const K = ["N/m", 7, 11, 9.4] as const;
+const LAWS: Record<string, readonly Slider[]> = {
+  "kelvin-voigt": [
+    ["k", ...K],
+    ["c", "N·s/m", 6, 10, 8.9],
+  ],
+  zener: [
+    ["k0", ...K],
+    ["c", "N·s/m", 6, 10, 8.9],
+    ["k1", "N/m", 7, 12, 10],
+  ],
+  springpot: [
+    ["k", ...K],
+    ["alpha", "", 0.001, 0.5, 0.06],
+    ["f0", "Hz", -2, 1, -0.74],
+  ],
+};
+const numberOf = ([, unit]: Slider, at: number): number => (unit ? 10 ** at : at);
+
+function plotsOf(law: Schemas["LawOut"]): PlotData[] {
+  const one = (
+    title: string,
+    yName: string,
+    time: boolean,
+    log: boolean,
+    y: (number | null)[],
+  ): PlotData => ({
+    title,
+    time: false,
+    xName: time ? "time [s]" : "frequency [Hz]",
+    yName,
+    logX: true,
+    log,
+    series: [{ name: title, colour: "blue", kind: "line", x: time ? law.time_s : law.frequency_hz, y }],
+  });
+  return [
+    one("Storage", "N/m", false, true, law.storage_n_m),
+    one("Loss", "N/m", false, true, law.loss_n_m),
+    one("Loss factor", "–", false, false, law.loss_factor),
+    one("Creep", "m/N", true, true, law.creep_m_n),
+  ];
+}
+
+export function Laws() {
+  const [name, setName] = useState("kelvin-voigt");
+  const [places, setPlaces] = useState<Record<string, number>>({});
+  const [range, setRange] = useState<Range | null>(null);
+  const sliders = LAWS[name] ?? [];
+  const at = (s: Slider): number => places[`${name} ${s[0]}`] ?? s[4];
+  const of = `${name}:${sliders.map((s) => `${s[0]}=${numberOf(s, at(s)).toPrecision(4)}`).join(",")}`;
+  const found = useAnswer(
+    null,
+    "law",
+    async () => told(api.GET("/api/v1/law", { params: { query: { of } } })),
+    of,
+  );
+  const plots = useMemo(() => (found.data ? plotsOf(found.data) : []), [found.data]);
+  return (
+    <Card
+      title="Laws"
+      wide
+      note="What a support does in each law: move a parameter, and see what it stores, loses and how it creeps."
+    >
+      <div class="tools">
+        <Choice
+          label="Law"
+          value={name}
+          options={Object.keys(LAWS).map((n) => [n, n] as const)}
+          onChoose={setName}
+        />
+      </div>
+      {sliders.map((s) => (
+        <label class="slide" key={s[0]}>
+          <span>
+            {s[0]} <b>{quantity(numberOf(s, at(s)), s[1], 3)}</b>
+          </span>
+          <input
+            type="range"
+            min={s[2]}
+            max={s[3]}
+            step="any"
+            value={at(s)}
+            onInput={(event) =>
+              setPlaces({ ...places, [`${name} ${s[0]}`]: Number(event.currentTarget.value) })
+            }
+          />
+        </label>
+      ))}
+      <Shown of={found}>
+        {() => (
+          <div class="pair">
+            {plots.map((plot) => (
+              <Plot
+                key={plot.title}
+                data={plot}
+                height={200}
+                range={plot.title === "Creep" ? null : range}
+                onRange={setRange}
+              />
+            ))}
+          </div>
+        )}
+      </Shown>
+    </Card>
+  );
+}
