@@ -256,7 +256,6 @@ function Drawn({ asset, explored }: { asset: string; explored: Explored }) {
         )}
         <Curves explored={explored} />
         <Sensitivity asset={asset} />
-        <Laws />
       </div>
     </>
   );
@@ -282,6 +281,7 @@ export default function Explore({ asset }: PageProps) {
       >
         {(data) => <Drawn asset={asset} explored={data} />}
       </Shown>
+      <Laws />
     </>
   );
 }

@@ -40,7 +40,7 @@ function useStream(asset: string, roll: Roll): boolean {
 function useReplay(record: RecordOut | undefined, roll: Roll): void {
   useEffect(() => {
     if (!record) return;
-    roll.begin(0, false);
+    roll.begin(SPANS_S[1], false); // a full picture from the first moment on
     let asked = 0;
     const more = async (): Promise<void> => {
       if (roll.streams || roll.now() < asked - PIECE_S / 2) return;
@@ -114,7 +114,7 @@ export default function Live({ asset }: PageProps) {
           <div class="grid">
             <Card
               title="Signals"
-              wide={!record || streams}
+              wide={!record || streams || !structure.data?.nodes.length}
               more={
                 <Pick
                   label="Shown"

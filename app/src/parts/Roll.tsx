@@ -3,7 +3,6 @@ import { useEffect, useRef } from "preact/hooks";
 import { colour, theme } from "../shell/theme";
 import { paintOf } from "./modes";
 
-/** Longest stretch that is kept. */
 const KEPT_S = 240;
 const LANE_PX = [22, 56] as const;
 const NAMES_PX = 92;
@@ -40,34 +39,35 @@ export class Roll {
   }
 }
 
-function lane(
-  ink: CanvasRenderingContext2D,
-  pieces: Piece[],
-  now: number,
-  span: number,
-  box: number[],
-): number {
+type Ink = CanvasRenderingContext2D;
+/** Draw a channel between its extremes, and say these. */
+function lane(ink: Ink, pieces: Piece[], now: number, span: number, box: number[]): string {
   const [left = 0, top = 0, width = 0, height = 0] = box;
-  let most = 1e-12;
+  let [least, most] = [Infinity, -Infinity];
   const shown = pieces.map((p): [Piece, number, number] => [
     p,
     Math.max(0, Math.floor((now - span - p.from) / p.step)),
     Math.min(p.values.length, Math.ceil((now - p.from) / p.step)),
   ]);
   for (const [p, a, b] of shown)
-    for (let i = a; i < b; i++) most = Math.max(most, Math.abs(p.values[i] ?? 0));
+    for (let i = a; i < b; i++) {
+      const v = p.values[i] ?? NaN;
+      if (v < least) least = v;
+      if (v > most) most = v;
+    }
   ink.beginPath();
   for (const [p, a, b] of shown) {
     let pen = false;
     for (let i = a; i < b; i++) {
       const v = p.values[i];
       const x = left + width * (1 - (now - p.from - i * p.step) / span);
-      if (typeof v === "number") ink[pen ? "lineTo" : "moveTo"](x, top + height * (0.5 - (0.46 * v) / most));
+      if (typeof v === "number")
+        ink[pen ? "lineTo" : "moveTo"](x, top + height * (0.95 - (0.9 * (v - least)) / (most - least || 1)));
       pen = typeof v === "number";
     }
   }
   ink.stroke();
-  return most;
+  return least < most ? `${least.toPrecision(2)} to ${most.toPrecision(2)}` : "";
 }
 
 export function Lanes({ roll, span }: { roll: Roll; span: number }) {
@@ -94,7 +94,7 @@ export function Lanes({ roll, span }: { roll: Roll; span: number }) {
       ink.font = "12px system-ui, sans-serif";
       names.forEach((name, k) => {
         ink.strokeStyle = colour(paintOf(k));
-        const most = lane(ink, roll.channels.get(name) ?? [], roll.now(), span, [
+        const said = lane(ink, roll.channels.get(name) ?? [], roll.now(), span, [
           NAMES_PX,
           k * each,
           width - NAMES_PX,
@@ -102,7 +102,7 @@ export function Lanes({ roll, span }: { roll: Roll; span: number }) {
         ]);
         ink.fillStyle = paints[0] ?? "";
         ink.fillText(name.slice(0, 13), 0, (k + 0.5) * each + 4);
-        if (each > 40) ink.fillText(`±${most.toPrecision(2)}`, 0, (k + 0.5) * each + 18);
+        if (each > 40) ink.fillText(said, 0, (k + 0.5) * each + 18);
       });
       sheet.dataset["frames"] = String(++count);
       frame = requestAnimationFrame(draw);

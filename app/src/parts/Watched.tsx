@@ -156,7 +156,7 @@ const said = (s: Smallest): string =>
 
 function WouldBe({ watch, possible }: { watch: Watch; possible: Smallest[] }) {
   const [index, setIndex] = useState(0);
-  const [at, setAt] = useState(Math.floor(watch.days.length / 3));
+  const [at, setAt] = useState(Math.floor(watch.days.length / 10));
   const one = possible[index] ?? possible[0];
   const from = noon(watch.days[at] ?? "1970-01-01");
   const plots = useMemo(() => {
