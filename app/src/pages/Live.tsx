@@ -1,5 +1,5 @@
 // What happens now: signals roll as they arrive, or as they did in the newest record, and the structure moves.
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { type View } from "../../../src/jackettwin/report/templates/view.js";
 import { useAnswer, useAsset } from "../api/answer";
 import { api, type RecordOut, type Schemas, told } from "../api/client";
@@ -11,7 +11,6 @@ import type { PageProps } from "../shell/place";
 import { seconds } from "../words/time";
 
 const SPANS_S = [10, 30, 120] as const;
-/** Of a record so much is asked for at once. */
 const PIECE_S = 60;
 interface Packet {
   channel: string;
@@ -81,7 +80,8 @@ function Moving({ drawn, record, roll }: { drawn: Schemas["StructureOut"]; recor
     }, 40);
     return () => clearInterval(timer);
   }, [moved.data]);
-  return <Shown of={moved}>{(data) => <InSpace drawn={data} view={view} />}</Shown>;
+  const still = useMemo(() => ({ ...drawn, motions: [] }), [drawn]);
+  return <InSpace drawn={moved.data ?? still} view={view} />;
 }
 
 export default function Live({ asset }: PageProps) {
