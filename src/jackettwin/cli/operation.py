@@ -15,7 +15,7 @@ from jackettwin.errors import InputError, located
 from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
-    from jackettwin.loads import Control
+    from jackettwin.loads import Control, Rotor
 
 _SPEEDS = "4,6,8,10,12,14,16,18,20,22,24"
 _NEAR = 0.1
@@ -113,7 +113,7 @@ def operation_command(
         "shaft": shaft,
         "hub_height_m": hub,
         "winds": rows,
-        "warnings": _warnings(rows, control),
+        "warnings": [*_rigid(machine), *_warnings(rows, control)],
         "left_out": omission_documents(LEFT_OUT),
     }
     return Reply(document, lambda: _show(document))
@@ -141,6 +141,13 @@ def _turbulence(text: str) -> str | float:
             "out of range", field="--turbulence", value=text, allowed="0 to 1, A+, A, B, C, none"
         )
     return intensity
+
+
+def _rigid(machine: Rotor) -> list[str]:
+    """Return that the blades are taken as rigid, where their file leaves no choice."""
+    if machine.bending is not None:
+        return []
+    return ["blades are rigid and no gyroscope: the rotor's file has no usable mass and stiffness of them"]
 
 
 def _warnings(rows: list[dict[str, Any]], control: Control) -> list[str]:

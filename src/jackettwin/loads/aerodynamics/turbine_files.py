@@ -16,6 +16,7 @@ from jackettwin.files import Part, WindIO, find_file, read_yaml, windio
 from jackettwin.loads.aerodynamics.blades import Blade, Polar, blend_polars, stall_delay
 from jackettwin.loads.aerodynamics.rotor import Rotor
 from jackettwin.loads.operation.bem import Control
+from jackettwin.structure import BladeStructure
 
 _STEEPEST = radians(30.0)
 """Largest tilt or cone angle [rad]; larger values are degrees given instead of radians."""
@@ -60,15 +61,16 @@ def _rotor(content: WindIO) -> Rotor:
         hub_height=drivetrain["distance_tt_hub"].number(low=-20.0, high=50.0),
         tilt=drivetrain["uptilt"].number(low=-steepest, high=steepest) * content.angle,
         cone=hub["cone_angle"].number(low=-steepest, high=steepest) * content.angle,
-        bending=windio_blade(content) if _says_what_blades_are_made_of(content) else None,
+        bending=_bending(content),
     )
 
 
-def _says_what_blades_are_made_of(content: WindIO) -> bool:
-    blade = content.root["components"]["blade"]
-    if content.newer:
-        return "structure" in blade and "elastic_properties" in blade["structure"]
-    return "elastic_properties_mb" in blade and "six_x_six" in blade["elastic_properties_mb"]
+def _bending(content: WindIO) -> BladeStructure | None:
+    """Return what the blades are made of; None where the file does not say, which most uses do not need."""
+    try:
+        return windio_blade(content)
+    except InputError:
+        return None
 
 
 def _blade(content: WindIO) -> Blade:
