@@ -1,16 +1,12 @@
 """A demonstration asset: two years of simulated days, then its records, which arrive in fast motion.
 
-So that a newcomer sees a twin live within a minute, and on every page something that happened. What the days
-lead to takes a minute to work out and is always the same: it is shipped (``scripts/write_demonstration.py``),
-used if the days here are those days, and else worked out as for any turbine.
+So that a newcomer sees a twin live within a minute, and on every page something that happened. Its dates are
+always the same, so that everybody sees the same.
 """
 
 from __future__ import annotations
 
-import base64
-import json
 import logging
-import lzma
 import time
 from dataclasses import replace
 from datetime import UTC, datetime, time as clock, timedelta
@@ -24,12 +20,11 @@ from jackettwin.service.intake.bundles import bundle, twin_folder
 from jackettwin.service.intake.files import accept
 from jackettwin.service.story import UNTIL, story
 from jackettwin.service.web.catalogue import add_version
-from jackettwin.service.work.consequences import keep_observation, put_known
+from jackettwin.service.work.consequences import keep_observation
 from jackettwin.service.workers.engine import TWIN_FILE, load_twin, observed_as
 from jackettwin.service.workers.tasks import Outcome, stored
-from jackettwin.store import assets, reading, records, results, work, writing
+from jackettwin.store import assets, reading, records, work, writing
 from jackettwin.twin import read_twin
-from jackettwin.version import __version__
 
 if TYPE_CHECKING:
     from sqlalchemy import Connection
@@ -45,8 +40,6 @@ SAID = "The demonstration: its five records are OpenFAST's, the two years of day
 _LOCKED = b"\noperation: {updates: [parked]} # of the days before its records, those with a locked shaft\n"
 """What the demonstration adds to the shipped twin: the rotor's damping is predicted for a rotor at rest."""
 _EVERY_S = 4.0
-SHIPPED = "demonstration.json.xz"
-"""File of the package's data with what the days lead to."""
 
 
 def demonstrate(service: Service) -> Thread:
@@ -97,41 +90,6 @@ def tell_story(service: Place) -> None:
     with writing(service.database) as connection:
         for seen in days:
             _keep(connection, service, version, seen)
-        _know_shipped(connection, service, version)
-
-
-def _know_shipped(connection: Connection, service: Place, version: assets.Version) -> None:
-    """Keep what is shipped, of these days by this program, in place of the study that is queued.
-
-    The posterior is sampled again once the records are there.
-    """
-    found = files("jackettwin.data") / SHIPPED
-    if not found.is_file():
-        return
-    kept = json.loads(lzma.decompress(found.read_bytes()))
-    hashes = results.state_hashes(connection, ASSET, version.model_hash)
-    if kept["code_version"] != __version__ or kept["of"] != results.identity_of(hashes):
-        return
-    kept["document"]["together"]["code_version"] = "shipped"
-    outcome = Outcome(
-        json.dumps(kept["document"]), findings=tuple(kept["findings"]), page=base64.b64decode(kept["page"]),
-        of=kept["of"],
-    )  # fmt: skip
-    for job in work.jobs_of(connection, ASSET, ""):
-        work.cancel(connection, job.id, service.now())
-    put_known(connection, service, version, outcome)
-
-
-def shipped(outcome: Outcome) -> bytes:
-    """Return what the days led to, as it is shipped."""
-    content = {
-        "code_version": __version__,
-        "of": outcome.of,
-        "document": json.loads(outcome.document or "{}"),
-        "findings": outcome.findings,
-        "page": base64.b64encode(outcome.page or b"").decode(),
-    }
-    return lzma.compress(json.dumps(content, separators=(",", ":")).encode(), preset=9)
 
 
 def _keep(connection: Connection, service: Place, version: assets.Version, seen: Observation) -> None:

@@ -33,7 +33,7 @@ from jackettwin.twin import Observation, Recognised, TwinConfig, TwinModel
 from jackettwin.version import __version__
 
 DAYS, UNTIL = 730, date(2025, 12, 1)
-"""Length of the story, and the day after it: always the same, so that what it leads to can be shipped."""
+"""Length of the story, and the day after it: always the same, so that everybody sees the same."""
 STORM, SCOUR_M = 500, 1.4
 """The day after whose storm the ground is gone, and how deep."""
 _STOP = range(400, 404)
