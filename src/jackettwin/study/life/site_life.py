@@ -117,6 +117,8 @@ def site_life(
             lives.append((life.joints, life.duration_s))
         return lives
 
+    for overrides in ({}, *site.variants.values()):  # refuse before the long computation starts
+        scenario_from(site.simulations(0, overrides)[0], site.scenario)
     every = [told(i, {}) for i in range(len(site.bins))]
     variants = {STATED: _lives(site, every)}
     for name, overrides in site.variants.items():
