@@ -12,8 +12,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.decks.openfast import Deck, read_deck, to_float
 from jackettwin.errors import located, require
 from jackettwin.files import Part, WindIO, find_file, read_yaml, windio
-from jackettwin.structure import FlexibleRotor
-from jackettwin.structure.blades import BladeStructure
+from jackettwin.structure import BladeStructure, FlexibleRotor
 
 DEFAULT_RATIO = 0.005
 """Structural damping of a blade whose file says nothing: half a percent, as reference turbines state."""
