@@ -118,7 +118,7 @@ FAULTS = (
         ("yaw turns the other way", "np.cos(yaw), np.sin(yaw)", "np.cos(yaw), -np.sin(yaw)"),
         ("resampling shifts by half a sample", "lead = -(pad * up + half) % down", "lead = -(pad * up + half + 1) % down"),
         ("a lost stretch is given back a window late", "start, stop = max(parting.window - 2, 0) * length", "start, stop = max(parting.window, 0) * length"),
-        ("trends are added", "x - slope * (t - middle), np.nan", "x + slope * (t - middle), np.nan"),
+        ("trends are added", "out: FloatArray = x - slope * t", "out: FloatArray = x + slope * t"),
         ("rotor orders are one too low", "RotorOrder(k, k * low, k * high, 0.0) for k in ORDERS", "RotorOrder(k, (k - 1) * low, (k - 1) * high, 0.0) for k in ORDERS"),
         ("turns are radians", "record.sample_rate_hz / (2.0 * np.pi)", "record.sample_rate_hz / np.pi"),
         ("a record's identity ignores its start", "float(record.sample_rate_hz), start, list", "float(record.sample_rate_hz), list"),

@@ -36,12 +36,13 @@ QUERIES = {
     "/assets/{asset}/damping-budget": 7,
     "/assets/{asset}/sensitivity": 7,
     "/assets/{asset}/explore": 4,
-    "/assets/{asset}/structure": 4,
+    "/assets/{asset}/structure": 5,
     "/assets/{asset}/assumptions": 4,
     "/assets/{asset}/comparison": 12,
     "/assets/{asset}/life": 4,
     "/assets/{asset}/findings": 5,
     "/assets/{asset}/alarms": 5,
+    "/assets/{asset}/watch": 4,
 }
 """The most statements that an answer made anew may cost: who asks, which version, and what is asked for."""
 AGAIN = 2

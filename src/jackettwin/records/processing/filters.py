@@ -27,15 +27,14 @@ def remove_line(y: FloatArray) -> FloatArray:
     array([[ 0., nan,  0.,  0.]])
     """
     finite = np.isfinite(y)
-    weight = finite.astype(float)
-    count = np.maximum(weight.sum(axis=1, keepdims=True), 1.0)
-    t = np.linspace(-1.0, 1.0, y.shape[1])
-    middle = (weight @ t)[:, None] / count
-    power = (weight @ t**2)[:, None] - count * middle**2
+    count = np.maximum(finite.sum(axis=1, keepdims=True), 1)
+    t = np.where(finite, np.linspace(-1.0, 1.0, y.shape[1]), 0.0)
+    t = np.where(finite, t - t.sum(axis=1, keepdims=True) / count, 0.0)
     x = np.where(finite, y, 0.0)
-    x = np.where(finite, x - x.sum(axis=1, keepdims=True) / count, 0.0)  # far from zero a slope loses digits
-    slope = (x @ t)[:, None] / np.where(power > 0.0, power, 1.0)
-    out: FloatArray = np.where(finite, x - slope * (t - middle), np.nan)
+    x = np.where(finite, x - x.sum(axis=1, keepdims=True) / count, np.nan)
+    power = np.sum(t * t, axis=1, keepdims=True)
+    slope = np.sum(t * np.where(finite, x, 0.0), axis=1, keepdims=True) / np.where(power > 0.0, power, 1.0)
+    out: FloatArray = x - slope * t
     return out
 
 
