@@ -58,7 +58,9 @@ window pages:
 	@echo 'Node 20 or newer is not installed: the window is not built; the service says so'
 endif
 
-test: $(VENV)/.dev lint types layers security pages unit ## everything CI checks
+test: $(VENV)/.dev ## everything CI checks
+	@$(MAKE) --no-print-directory --jobs=2 --output-sync=target lint types layers security pages
+	@$(MAKE) --no-print-directory unit
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff check .
