@@ -53,6 +53,22 @@ def test_units_and_thickness(stress: Path) -> None:
     assert pascal["damage"] < 1e-20 * mpa["damage"]
 
 
+def test_the_end_of_a_columns_name_states_its_unit(stress: Path, tmp_path: Path) -> None:
+    """A unit elsewhere in the name does not, and an option that contradicts it is refused."""
+    mpa = answer("stress", str(stress), "--column", "leg")
+    t, values = np.loadtxt(stress, delimiter=",", skiprows=1).T
+    path = tmp_path / "pascals.csv"
+    columns = np.stack([t, 1e6 * values, values], axis=1)
+    np.savetxt(path, columns, delimiter=",", header="time_s,leg_Pa,pa_leg", comments="", fmt="%.9g")
+    found = answer("stress", str(path), "--column", "leg_Pa")
+    assert found["unit"] == "Pa" and found["damage"] == pytest.approx(mpa["damage"], rel=1e-6)
+    assert answer("stress", str(path), "--column", "pa_leg")["unit"] == "MPa"
+    refused = CliRunner().invoke(
+        main, ["fatigue", "stress", str(path), "--column", "leg_Pa", "--unit", "MPa"]
+    )
+    assert refused.exit_code == 2 and "states Pa" in refused.output
+
+
 def test_gaps_are_scaled_and_said(stress: Path, tmp_path: Path) -> None:
     t, values = np.loadtxt(stress, delimiter=",", skiprows=1).T
     values[6000:9000] = np.nan

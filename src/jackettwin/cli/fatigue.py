@@ -101,7 +101,9 @@ def curve_options(command: Any) -> Any:
     type=click.Choice(("air", "cathodic", "free-corrosion")),
 )
 @click.option(
-    "--unit", type=click.Choice(tuple(_UNITS)), help="Unit of the stress; default: the file's, else MPa."
+    "--unit",
+    type=click.Choice(tuple(_UNITS)),
+    help="Unit of the stress; default: the file's, the end of the column's name, else MPa.",
 )
 @click.option(
     "--thickness-mm",
@@ -176,7 +178,8 @@ def _stress_of(file: Path, column: str, unit: str | None) -> tuple[FloatArray, s
     rows = dict(zip(table.names, table.data, strict=True))
     values = look_up(rows, column, "column", file=file, field="--column")
     said = table.channels.get(column)
-    stated = table.unit if said is None or said.unit is None else said.unit
+    named = next((u for u in _UNITS if column.lower().endswith(f"_{u.lower()}")), None)
+    stated = (table.unit if said is None or said.unit is None else said.unit) or named
     if unit is None and stated is not None and stated not in _UNITS:
         raise InputError(
             "is not a unit of stress", file=file, field=column, value=stated, allowed=", ".join(_UNITS),
@@ -185,7 +188,11 @@ def _stress_of(file: Path, column: str, unit: str | None) -> tuple[FloatArray, s
     taken = unit or stated or "MPa"
     if unit and stated in _UNITS and _UNITS[stated] != _UNITS[unit]:
         raise InputError(
-            f"the file states {stated}", file=file, field="--unit", value=unit, remedy="omit the option"
+            f"the file or the column's name states {stated}",
+            file=file,
+            field="--unit",
+            value=unit,
+            remedy="omit the option",
         )
     return np.asarray(values, dtype=float) * _UNITS[taken], taken
 
