@@ -57,6 +57,23 @@ export function restPlot(watch: Watch, index: number, marks: Mark[], planted?: P
   return { title: q ? title(q) : "", time: true, xName: "UTC", yName, series, marks };
 }
 
+function Column({ plots, together }: { plots: PlotData[]; together: string }) {
+  return (
+    <>
+      {plots.map((plot) => (
+        <Plot
+          key={plot.title}
+          data={plot}
+          height={170}
+          range={rangeKept()}
+          onRange={keepRange}
+          together={together}
+        />
+      ))}
+    </>
+  );
+}
+
 export function Rests({
   watch,
   marks,
@@ -78,20 +95,7 @@ export function Rests({
   );
   if (!plots.length)
     return <Empty title="Not watched yet">Days are judged once the baseline is whole.</Empty>;
-  return (
-    <>
-      {plots.map((plot) => (
-        <Plot
-          key={plot.title}
-          data={plot}
-          height={170}
-          range={rangeKept()}
-          onRange={keepRange}
-          together="timeline"
-        />
-      ))}
-    </>
-  );
+  return <Column plots={plots} together="timeline" />;
 }
 
 /** The evidence of each day, and what an alarm would have looked like. */
@@ -197,16 +201,7 @@ function WouldBe({ watch, possible }: { watch: Watch; possible: Smallest[] }) {
           />
         </label>
       </div>
-      {plots.map((plot) => (
-        <Plot
-          key={plot.title}
-          data={plot}
-          height={170}
-          range={rangeKept()}
-          onRange={keepRange}
-          together="evidence"
-        />
-      ))}
+      <Column plots={plots} together="evidence" />
     </>
   );
 }
