@@ -25,6 +25,7 @@ from .forces import (
 from .jacket import jacket as jacket
 from .masses import (
     body_from_static_moments as body_from_static_moments,
+    cross_matrix as cross_matrix,
     rigid_body_mass as rigid_body_mass,
     rigid_transfer as rigid_transfer,
 )

@@ -15,8 +15,12 @@ if TYPE_CHECKING:
 
 
 def cross_matrix(a: Sequence[float] | FloatArray) -> FloatArray:
-    """Return S(a) with S(a)·b = a × b."""
-    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
+    """Return S(a) with S(a)·b = a × b, (..., 3, 3) of a (..., 3)."""
+    v = np.asarray(a, dtype=np.float64)
+    out = np.zeros((*v.shape, 3))
+    for row, column, axis, sign in ((0, 1, 2, -1.0), (0, 2, 1, 1.0), (1, 2, 0, -1.0)):
+        out[..., row, column], out[..., column, row] = sign * v[..., axis], -sign * v[..., axis]
+    return out
 
 
 def rigid_body_mass(body: PointMass) -> FloatArray:

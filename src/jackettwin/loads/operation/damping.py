@@ -32,14 +32,15 @@ from jackettwin.loads.operation.turning import (
     PLACES,
     arms,
     blade_frames,
-    cross_matrix,
     flow_directions,
+    handed_on,
     in_plane,
     motions,
     prebend,
     rates,
     through,
 )
+from jackettwin.structure import cross_matrix
 
 OPERATING_LOG_STD = {"fore_aft": 0.2, "side_side": 0.5}
 """How far the rotor's part of the first bending modes' damping may be off, as a standard deviation of its
@@ -111,11 +112,6 @@ class _Standing:
     flow: FloatArray
     forces: FloatArray
 
-    @property
-    def pushes(self) -> FloatArray:
-        """Directions (places, n, 3, 2) of the forces: normal to the blade, and around with the rotation."""
-        return np.asarray(np.swapaxes(self.directions * np.array([1.0, -1.0])[:, None], -1, -2))
-
 
 def _answering(
     rotor: Rotor,
@@ -136,9 +132,7 @@ def _answering(
     air = blade_air(rotor, operation, pole, standing.flow, _skew(rotor, wind), density=density)
     Z = -_air_forces(rotor, operation, pole, standing, air, bent, shaft=shaft)
     if blades is not None:
-        Z[: 6 if bent is None else None, : 6 if bent is None else None] += _inertia(
-            rotor, operation, pole, blades, bent, shaft=shaft
-        )
+        Z += _inertia(rotor, operation, pole, blades, bent, shaft=shaft)
     locked = motions(rotor, standing.arm, shaft="locked")
     load = np.einsum("pnij,pni->j", locked, standing.forces) / PLACES
     if bent is not None:
@@ -184,8 +178,13 @@ def _bent_by(
     seen = wind - operation.rotor_speed * np.cross(rotor.shaft, arm)
     flow = np.einsum("pnai,pni->pna", directions, seen)
     steady = steady_air(rotor, operation, flow, _skew(rotor, wind), density=density).forces
-    bare = _Standing(wind, arm, slope, directions, flow, np.zeros_like(arm))
-    return _Standing(wind, arm, slope, directions, flow, np.einsum("pnia,pna->pni", bare.pushes, steady))
+    forces = np.einsum("pnia,pna->pni", _pushes(directions), steady)
+    return _Standing(wind, arm, slope, directions, flow, forces)
+
+
+def _pushes(directions: FloatArray) -> FloatArray:
+    """Return directions (places, n, 3, 2) of forces: normal to the blade, and around with the rotation."""
+    return np.asarray(np.swapaxes(directions * np.array([1.0, -1.0])[:, None], -1, -2))
 
 
 def _turned_modes(shapes: FloatArray) -> ComplexArray:
@@ -207,7 +206,7 @@ def _air_forces(
     shaft: str,
 ) -> ComplexArray:
     """Return the air's forces on the tower top's motions and the blades' modes with each of them."""
-    wind, pushes = standing.wind, standing.pushes
+    wind = standing.wind
     tests: ComplexArray = motions(rotor, standing.arm, shaft=shaft).astype(np.complex128)
     # what a tower top that turns sees of the wind
     seen = -pole * tests
@@ -228,10 +227,10 @@ def _air_forces(
     along = rotor.shaft @ wind
     skew = (in_plane(rotor) @ centre - np.outer(_skew(rotor, wind), rotor.shaft @ centre)) / along
     normal = np.einsum("pni,pni->pn", standing.forces, standing.directions[:, :, 0])
-    forces = pushes @ air.answer(flow, skew) + normal[..., None, None] * tilted
+    forces = _pushes(standing.directions) @ air.answer(flow, skew) + normal[..., None, None] * tilted
     found = np.einsum("pnij,pnik->jk", tests.conj(), forces) / PLACES
     if bent is not None:
-        found[3:6, 6:] += _turning_of(rotor, shaft) @ _moments(modes, standing.forces)
+        found[3:6, 6:] += handed_on(rotor, shaft) @ _moments(modes, standing.forces)
     return np.asarray(found)
 
 
@@ -246,11 +245,6 @@ def _turned_normals(rotor: Rotor, slope: FloatArray, bent: BendingBlades) -> Com
 def _moments(modes: ComplexArray, forces: FloatArray) -> ComplexArray:
     """Return moments (3, k) of steady forces (places, n, 3) on places that modes (places, n, 3, k) move."""
     return np.asarray(-np.einsum("pnij,pnjk->ik", cross_matrix(forces), modes) / PLACES)
-
-
-def _turning_of(rotor: Rotor, shaft: str) -> FloatArray:
-    """Return the part of a moment (3, 3) that the shaft hands on."""
-    return np.eye(3) - (np.outer(rotor.shaft, rotor.shaft) if shaft == "free" else 0.0)
 
 
 def _inertia(
@@ -269,7 +263,7 @@ def _inertia(
     speed, arm = operation.rotor_speed, pieces(rotor, blades, operation.pitch)
     fields: ComplexArray = motions(rotor, arm, shaft=shaft).astype(np.complex128)
     accelerations = pole**2 * fields
-    turning = 2.0 * pole * cross_matrix(speed * np.cross(rotor.shaft, arm)) @ _turning_of(rotor, shaft)
+    turning = 2.0 * pole * cross_matrix(speed * np.cross(rotor.shaft, arm)) @ handed_on(rotor, shaft)
     accelerations[..., 3:] -= turning
     if bent is not None:
         modes = _turned_modes(turning_shapes(rotor, bent.shape))
@@ -281,7 +275,7 @@ def _inertia(
     found[:6, :6] -= pole**2 * np.einsum("n,pnij,pnik->jk", blades.mass, rigid, rigid) / PLACES
     if bent is not None:
         pull = centrifugal(rotor, blades, arm, speed)
-        found[3:6, 6:] -= _turning_of(rotor, shaft) @ _moments(modes, pull)
+        found[3:6, 6:] -= handed_on(rotor, shaft) @ _moments(modes, pull)
         of_order = [bent.stiffness + (pole + 1j * m * speed) * bent.damping for m in _BLADE_ORDERS]
         k = bent.stiffness.shape[0]
         for j, matrix in enumerate(of_order):

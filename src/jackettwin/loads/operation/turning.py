@@ -12,6 +12,7 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.loads.aerodynamics.rotor import Rotor
+from jackettwin.structure import cross_matrix
 
 PLACES = 12
 """Azimuths of a revolution: products of three quantities that vary once a revolution are still exact."""
@@ -69,19 +70,15 @@ def motions(rotor: Rotor, arm: FloatArray, *, shaft: str) -> FloatArray:
 
     A free shaft does not turn the blades with the tower.
     """
-    turns = np.eye(3) - (np.outer(rotor.shaft, rotor.shaft) if shaft == "free" else 0.0)
     out = np.empty((*arm.shape, 6))
     out[..., :3] = np.eye(3)
-    out[..., 3:] = -cross_matrix(rotor.hub) - cross_matrix(arm) @ turns
+    out[..., 3:] = -cross_matrix(rotor.hub) - cross_matrix(arm) @ handed_on(rotor, shaft)
     return out
 
 
-def cross_matrix(v: FloatArray) -> FloatArray:
-    """Return [v]× with [v]× w = v × w, (..., 3, 3)."""
-    out = np.zeros((*v.shape, 3))
-    for row, column, axis, sign in ((0, 1, 2, -1), (0, 2, 1, 1), (1, 2, 0, -1)):
-        out[..., row, column], out[..., column, row] = sign * v[..., axis], -sign * v[..., axis]
-    return out
+def handed_on(rotor: Rotor, shaft: str) -> FloatArray:
+    """Return the part (3, 3) of a turn or moment that the shaft hands on: a free one none about itself."""
+    return np.eye(3) - (np.outer(rotor.shaft, rotor.shaft) if shaft == "free" else 0.0)
 
 
 def through(values: FloatArray | ComplexArray, gain: FloatArray | ComplexArray) -> ComplexArray:
