@@ -285,9 +285,7 @@ _ANSWERS = ("known", "supports", "life", "watch")
 def find_kept(connection: Connection, asset: str, version: int) -> Mapping[str, Any]:
     """Return the stored intermediate results of estimations, by name."""
     document = connection.scalar(select(knowledge.c.document).where(*_of_version(asset, version))) or {}
-    return {
-        name: value for name, value in document.items() if name not in ("known", "supports", "life", "watch")
-    }
+    return {name: value for name, value in document.items() if name not in _ANSWERS}
 
 
 def find_supports(connection: Connection, asset: str, version: int) -> dict[str, Any]:

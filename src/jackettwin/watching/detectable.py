@@ -23,7 +23,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.watching.block import WINDOW_DAYS, Block, residuals
 from jackettwin.watching.day_parts import INSIDE
 from jackettwin.watching.design import regressors
-from jackettwin.watching.directions import SHARES, Directions, log_along
+from jackettwin.watching.directions import Directions, log_along
 from jackettwin.watching.history import History
 from jackettwin.watching.hours import by_hour
 from jackettwin.watching.memory import empty_bank, filtered
@@ -113,8 +113,7 @@ def sight(watch: Watch, baseline: History, days: float) -> Sight | None:
     rows, _ = regressors(watch.design, records, watch.lagged)
     known = [informed(block, records, rows, watch.last_day) for block in watch.blocks]
     gap = days / np.unique(np.floor(records.days)).size
-    staked = SHARES["scatter"] + sum(SHARES[block.kind] for block in watch.blocks)
-    needed = watch.log_threshold - np.log(max(gap, 1.0) * (1.0 - INSIDE)) + np.log(staked)
+    needed = watch.log_threshold - np.log(max(gap, 1.0) * (1.0 - INSIDE)) + np.log(watch.staked)
     return Sight(
         days,
         tuple(block.directions for block in watch.blocks),

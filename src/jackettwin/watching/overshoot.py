@@ -56,9 +56,8 @@ def crossing_share(watch: Watch, baseline: History) -> float:
     if looks == 0 or not first.any():
         return 1.0
     parts = ((records.rows(first), rows[first]), (records, rows))
-    staked = SHARES["scatter"] + sum(SHARES[block.kind] for block in watch.blocks)
     found = SHARES["scatter"] + sum(_of_block(block, parts, watch.last_day, looks) for block in watch.blocks)
-    return float(found / staked)
+    return float(found / watch.staked)
 
 
 def _of_block(

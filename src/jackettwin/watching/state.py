@@ -9,6 +9,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.watching.block import Block
 from jackettwin.watching.design import YEAR_DAYS, Design, Lagged
+from jackettwin.watching.directions import SHARES
 from jackettwin.watching.history import Kind
 
 
@@ -61,6 +62,11 @@ class Watch:
     patience_days: float = 0.0
     power: float = 1.0
     crossing: float = 1.0
+
+    @property
+    def staked(self) -> float:
+        """Sum of the prior weights of the kinds of change that are monitored."""
+        return SHARES["scatter"] + sum(SHARES[block.kind] for block in self.blocks)
 
     @property
     def log_threshold(self) -> float:

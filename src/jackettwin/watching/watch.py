@@ -318,8 +318,7 @@ def _worth(watch: Watch) -> FloatArray:
     share = np.log(SHARES["scatter"] / (m * g))
     parts = [watch.power * log_evidence(block) + block.directions.log_weights for block in watch.blocks]
     total = np.concatenate([*parts, watch.power * scatter.reshape(n, m * g) + share], axis=1)
-    staked = SHARES["scatter"] + sum(SHARES[block.kind] for block in watch.blocks)
-    return np.asarray(total - np.log(staked))
+    return np.asarray(total - np.log(watch.staked))
 
 
 def _merged(watch: Watch, worth: FloatArray) -> Watch:
