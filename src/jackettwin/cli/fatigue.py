@@ -23,6 +23,7 @@ from jackettwin.cli.console import (
     working,
 )
 from jackettwin.cli.fatigue_site import site_
+from jackettwin.cli.weld_tables import POINT, SIDE, show_welds
 from jackettwin.errors import InputError, did_you_mean, look_up, require
 from jackettwin.report import Table, TableColumn
 
@@ -36,7 +37,6 @@ _STRONGEST_PA = 2e9
 _WEAKEST_PA = 1e4
 """Stress range below which the unit is probably wrong."""
 _N_EQ = 1e7
-_SHOWN = 10
 _OF_WELDS = (
     Omission("cans: butt welds stand at nodes, where the model changes a wall"),
     Omission("cones between tubes, seams within a member, piles in the ground"),
@@ -462,11 +462,8 @@ _FROM_SENSORS = (
 )
 
 _COLUMNS = (
-    TableColumn("joint", "joint"),
-    TableColumn("brace", "brace"),
-    TableColumn("side", "side"),
-    TableColumn("point", "position"),
-    TableColumn("environment", "environment"),
+    *SIDE,
+    *POINT,
     TableColumn("largest range [MPa]", "largest_range_mpa", ".1f"),
     TableColumn("life [years]", "life_years", ".3g"),
     TableColumn("within ranges", lambda row: "no" if row["beyond_validity"] else "yes"),
@@ -475,8 +472,7 @@ _COLUMNS = (
 _TUBE_COLUMNS = (
     TableColumn("weld", "weld"),
     TableColumn("kind", "kind"),
-    TableColumn("point", "position"),
-    TableColumn("environment", "environment"),
+    *POINT,
     TableColumn("curve", "curve"),
     TableColumn("factor", "scf", ".2f"),
     TableColumn("largest range [MPa]", "largest_range_mpa", ".1f"),
@@ -490,10 +486,7 @@ def _show_welds(document: dict[str, Any], like: str) -> None:
         ("welds", "butt welds and details of tubes", _TUBE_COLUMNS),
     )
     for key, title, columns in shown:
-        rows = document[key]
-        if rows:
-            show_table(Table(title, columns, rows[:_SHOWN]))
-        if len(rows) > _SHOWN:
-            say(f"and {len(rows) - _SHOWN} more welds; --json has all of them")
+        if document[key]:
+            show_welds(title, columns, document[key])
     for warning in document["warnings"]:
         messages.print(f"warning: {warning}")

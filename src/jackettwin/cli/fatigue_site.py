@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +11,8 @@ import numpy as np
 
 from jackettwin.caveats import Omission, omission_documents
 from jackettwin.cli.cache import keeping
-from jackettwin.cli.console import FiniteFloat, Reply, answers, messages, progress, say, show_table
+from jackettwin.cli.console import FiniteFloat, Reply, answers, messages, progress, say
+from jackettwin.cli.weld_tables import POINT, SHOWN, SIDE, show_welds
 from jackettwin.files import atomic_path
 from jackettwin.report import Table, TableColumn
 
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from jackettwin.twin import TwinConfig
     from jackettwin.updating import Update
 
-_SHOWN = 10
 _LEFT_OUT = (
     Omission("weather within a bin beside its turbulence and phases: bins must be narrow"),
     Omission("starts, stops, faults, transport and installation", "IEC 61400-3-1 (2019), 7.4"),
@@ -91,8 +90,8 @@ def site_(
     }
     if page is not None:
         with atomic_path(page) as temporary:
-            body = [tuple(cell(row) for cell in _CELLS.values()) for row in joints[:_SHOWN]]
-            temporary.write_text(basis_page(site.stem, basis, [tuple(_CELLS), *body]), encoding="utf-8")
+            table = Table("", _BASIS, joints[:SHOWN])
+            temporary.write_text(basis_page(site.stem, basis, [table.heads, *table.cells]), encoding="utf-8")
     return Reply(document, lambda: _show(document))
 
 
@@ -111,7 +110,6 @@ def _known(read: Site, fresh: bool) -> tuple[TwinConfig, Update, System] | None:
 
 def _weld(site: Site, life: SiteLife, one: SiteWeld) -> dict[str, Any]:
     w, total = one.one, sum(one.variances.values())
-    side = (w.weld.node, w.weld.brace, w.side)
     low, mid, high = (
         left if np.isfinite(left := one.remaining.quantile(p)) else None for p in (0.05, 0.5, 0.95)
     )
@@ -129,7 +127,7 @@ def _weld(site: Site, life: SiteLife, one: SiteWeld) -> dict[str, Any]:
         "environment": w.environment,
         "damage_per_year": one.rate,
         "life_years": one.life_years,
-        "life_years_by_variant": {name: lives.get(side) for name, lives in life.variants.items()},
+        "life_years_by_variant": {name: lives.get(w.place) for name, lives in life.variants.items()},
         "remaining_years": {"p05": low, "p50": mid, "p95": high},
         "reliability_index": one.remaining.reliability_index,
         "reliability_index_by_year": [one.remaining.later(y).reliability_index for y in years],
@@ -155,34 +153,28 @@ def _warnings(site: Site, life: SiteLife) -> list[str]:
     return found
 
 
+_YEARS = TableColumn("years to target", "year_of_target", ".0f")
 _COLUMNS = (
-    TableColumn("joint", "joint"),
-    TableColumn("brace", "brace"),
-    TableColumn("side", "side"),
-    TableColumn("point", "position"),
-    TableColumn("environment", "environment"),
+    *SIDE,
+    *POINT,
     TableColumn("life [years]", "life_years", ".3g"),
     TableColumn("index now", "reliability_index", ".2f"),
-    TableColumn("years to target", "year_of_target", ".0f"),
+    _YEARS,
 )
-_CELLS: dict[str, Callable[[dict[str, Any]], str]] = {
-    "joint": lambda row: row["joint"],
-    "brace": lambda row: row["brace"],
-    "side": lambda row: row["side"],
-    "environment": lambda row: row["environment"],
-    "damage a year": lambda row: f"{row['damage_per_year']:.3g}",
-    "life [years]": lambda row: f"{row['life_years']:.3g}",
-    "reliability index now": lambda row: f"{row['reliability_index']:.2f}",
-    "years to target": lambda row: "–" if row["year_of_target"] is None else f"{row['year_of_target']:.0f}",
-    "beyond validity": lambda row: "yes" if row["beyond_validity"] else "no",
-}
+_BASIS = (
+    *SIDE,
+    POINT[1],
+    TableColumn("damage a year", "damage_per_year", ".3g"),
+    TableColumn("life [years]", "life_years", ".3g"),
+    TableColumn("reliability index now", "reliability_index", ".2f"),
+    _YEARS,
+    TableColumn("beyond validity", lambda row: "yes" if row["beyond_validity"] else "no"),
+)
 
 
 def _show(document: dict[str, Any]) -> None:
     rows = document["joints"]
-    show_table(Table(f"life over {len(document['bins'])} bins", _COLUMNS, rows[:_SHOWN]))
-    if len(rows) > _SHOWN:
-        say(f"and {len(rows) - _SHOWN} more welds; --json has all of them")
+    show_welds(f"life over {len(document['bins'])} bins", _COLUMNS, rows)
     if rows and len(rows[0]["life_years_by_variant"]) > 1:
         worst = rows[0]
         lives = ", ".join(

@@ -47,6 +47,11 @@ class WeldLife:
     largest_range_pa: float
     life: SpotLife
 
+    @property
+    def place(self) -> tuple[str, str, str]:
+        """Node, brace and side of the weld."""
+        return self.weld.node, self.weld.brace, self.side
+
 
 def weld_lives(
     structure: Structure,

@@ -31,8 +31,6 @@ STATED = "as stated"
 """Name of the variant that is the site's scenario itself."""
 _Side = tuple[str, str, str]
 """Node, brace and side of a weld."""
-
-
 _Told = list[tuple[Sequence[WeldLife], float]]
 
 
@@ -120,10 +118,13 @@ def site_life(
     for overrides in ({}, *site.variants.values()):  # refuse before the long computation starts
         scenario_from(site.simulations(0, overrides)[0], site.scenario)
     every = [told(i, {}) for i in range(len(site.bins))]
-    variants = {STATED: _lives(site, every)}
+    rates = _rates(every)
+    variants = {STATED: _lives(site, every, rates)}
     for name, overrides in site.variants.items():
-        variants[name] = _lives(site, [told(i, overrides) for i in range(len(site.bins))])
-    return SiteLife(_welds(site, every), tuple(len(one) for one in every), variants)
+        other = [told(i, overrides) for i in range(len(site.bins))]
+        variants[name] = _lives(site, other, _rates(other))
+    welds = _welds(site, every, rates, variants[STATED])
+    return SiteLife(welds, tuple(len(one) for one in every), variants)
 
 
 def _rates(every: list[_Told]) -> dict[_Side, list[FloatArray]]:
@@ -132,41 +133,42 @@ def _rates(every: list[_Told]) -> dict[_Side, list[FloatArray]]:
     for i, told in enumerate(every):
         for welds, duration in told:
             for one in welds:
-                rows = found.setdefault((one.weld.node, one.weld.brace, one.side), [])
+                rows = found.setdefault(one.place, [])
                 while len(rows) <= i:
                     rows.append(np.zeros((0, len(POSITIONS))))
                 rows[i] = np.vstack([rows[i], one.damage_by_point * YEAR_S / duration])
     return found
 
 
-def _lives(site: Site, every: list[_Told]) -> dict[_Side, float]:
+def _lives(site: Site, every: list[_Told], rates: Mapping[_Side, list[FloatArray]]) -> dict[_Side, float]:
     """Return the life of each side in years, by the design curve and factor."""
     factor = {
-        (w.weld.node, w.weld.brace, w.side): w.life.life_years * w.life.damage * YEAR_S / w.life.duration_s
+        w.place: w.life.life_years * w.life.damage * YEAR_S / w.life.duration_s
         for w in every[0][0][0]
         if w.life.damage > 0.0
     }
     shares = [one.share for one in site.bins]
     return {
         side: factor.get(side, 1.0) / worst
-        for side, bins in _rates(every).items()
+        for side, bins in rates.items()
         if (worst := float(sum(p * b.mean(axis=0) for p, b in zip(shares, bins, strict=True)).max())) > 0.0
     }
 
 
-def _welds(site: Site, every: list[_Told]) -> tuple[SiteWeld, ...]:
+def _welds(
+    site: Site,
+    every: list[_Told],
+    rates: Mapping[_Side, list[FloatArray]],
+    lives: Mapping[_Side, float],
+) -> tuple[SiteWeld, ...]:
     """Return the sides with damage, shortest life first."""
-    lives, found = _lives(site, every), []
     heaviest: dict[_Side, WeldLife] = {}
     for told in every:
         for welds, _ in told:
             for w in welds:
-                side = (w.weld.node, w.weld.brace, w.side)
-                if side not in heaviest or w.life.damage > heaviest[side].life.damage:
-                    heaviest[side] = w
-    for side, bins in _rates(every).items():
-        if side in lives:
-            found.append(_weld(site, heaviest[side], bins, lives[side]))
+                if w.place not in heaviest or w.life.damage > heaviest[w.place].life.damage:
+                    heaviest[w.place] = w
+    found = [_weld(site, heaviest[side], rates[side], years) for side, years in lives.items()]
     return tuple(sorted(found, key=lambda one: one.life_years))
 
 
