@@ -72,59 +72,70 @@ class SteadyAir(NamedTuple):
     forces: FloatArray
 
 
-def steady_air(
-    rotor: Rotor, operation: OperatingPoint, flow: FloatArray, skew: FloatArray, *, density: float
-) -> SteadyAir:
-    """Return the wake and the forces of a steady ``flow`` (places, n, 2) with the disc's ``skew`` (2,)."""
-    lags = np.stack([wake_share(rotor, operation, 1j * m * operation.rotor_speed) for m in ORDERS])
-    even = through(_balanced(rotor, operation, flow), lags).real
-    wake = _skewed(rotor, even, flow, skew)
-    return SteadyAir(even, wake, _forces(rotor, operation, flow, wake, density)[..., :2])
+@dataclass(frozen=True)
+class BladeElements:
+    """The elements of a turning rotor in air of a density, ``skew`` (2,) of the wind that the disc sees.
 
+    A ``flow`` (places, n, 2) is normal to the blade, and swirl, [m/s]; a wake alike.
+    """
 
-def blade_air(
-    rotor: Rotor,
-    operation: OperatingPoint,
-    pole: complex,
-    flow: FloatArray,
-    skew: FloatArray,
-    *,
-    density: float,
-) -> BladeAir:
-    """Return what small changes with e^{λt} do about a steady ``flow`` (places, n, 2) with ``skew`` (2,)."""
-    even, wake, _ = steady_air(rotor, operation, flow, skew, density=density)
-    of_wake = _gradient(lambda w: _forces(rotor, operation, flow, w, density), wake)
-    of_flow = _gradient(lambda u: _forces(rotor, operation, u, wake, density), flow)
-    towards = _STEP_SKEW * np.eye(2)
-    turned = [_skewed(rotor, even, flow, skew + s) - _skewed(rotor, even, flow, skew - s) for s in towards]
-    seen = np.hypot(flow[..., 0] - wake[..., 0], flow[..., 1] + wake[..., 1]).mean(axis=0)
-    by_order = rates(pole, operation.rotor_speed)
-    return BladeAir(
-        of_flow=of_flow + of_wake @ _gradient(lambda u: _skewed(rotor, even, u, skew), flow),
-        of_wake=of_wake @ _gradient(lambda w: _skewed(rotor, w, flow, skew), even),
-        of_skew=of_wake @ np.stack(turned, axis=-1) / (2.0 * _STEP_SKEW),
-        balance=_gradient(lambda u: _balanced(rotor, operation, u), flow),
-        of_lift=_of_lift(rotor, operation, flow, wake, density),
-        wake_gain=np.stack([wake_share(rotor, operation, complex(s)) for s in by_order]),
-        lift_gain=lift_share(by_order[:, None] * rotor.blade.chord / (2.0 * seen)),
-    )
+    rotor: Rotor
+    operation: OperatingPoint
+    density: float
+    skew: FloatArray
 
+    def steady(self, flow: FloatArray) -> SteadyAir:
+        """Return the wake and the forces of a steady flow."""
+        turn = self.operation.rotor_speed
+        lags = np.stack([wake_share(self.rotor, self.operation, 1j * m * turn) for m in ORDERS])
+        even = through(self._balanced(flow), lags).real
+        wake = self._skewed(even, flow, self.skew)
+        return SteadyAir(even, wake, self._forces(flow, wake)[..., :2])
 
-def _balanced(rotor: Rotor, operation: OperatingPoint, flow: FloatArray) -> FloatArray:
-    return balanced_wake(rotor, flow[..., 0], flow[..., 1], operation.pitch)
+    def changes(self, pole: complex, flow: FloatArray, air: SteadyAir) -> BladeAir:
+        """Return what small changes with e^{λt} do about a steady flow with its ``air``."""
+        even, wake, _ = air
+        of_wake = _gradient(lambda w: self._forces(flow, w), wake)
+        of_flow = _gradient(lambda u: self._forces(u, wake), flow)
+        towards = _STEP_SKEW * np.eye(2)
+        turned = [
+            self._skewed(even, flow, self.skew + s) - self._skewed(even, flow, self.skew - s) for s in towards
+        ]
+        seen = np.hypot(flow[..., 0] - wake[..., 0], flow[..., 1] + wake[..., 1]).mean(axis=0)
+        by_order = rates(pole, self.operation.rotor_speed)
+        return BladeAir(
+            of_flow=of_flow + of_wake @ _gradient(lambda u: self._skewed(even, u, self.skew), flow),
+            of_wake=of_wake @ _gradient(lambda w: self._skewed(w, flow, self.skew), even),
+            of_skew=of_wake @ np.stack(turned, axis=-1) / (2.0 * _STEP_SKEW),
+            balance=_gradient(self._balanced, flow),
+            of_lift=self._of_lift(flow, wake),
+            wake_gain=np.stack([wake_share(self.rotor, self.operation, complex(s)) for s in by_order]),
+            lift_gain=lift_share(by_order[:, None] * self.rotor.blade.chord / (2.0 * seen)),
+        )
 
+    def _balanced(self, flow: FloatArray) -> FloatArray:
+        return balanced_wake(self.rotor, flow[..., 0], flow[..., 1], self.operation.pitch)
 
-def _skewed(rotor: Rotor, even: FloatArray, flow: FloatArray, skew: FloatArray) -> FloatArray:
-    pointing, share = radial(rotor) @ in_plane(rotor).T, ring_radius(rotor) / rotor.radius
-    return redistributed(even, flow[..., 0], skew, pointing=pointing, share=share)
+    def _skewed(self, even: FloatArray, flow: FloatArray, skew: FloatArray) -> FloatArray:
+        rotor = self.rotor
+        pointing, share = radial(rotor) @ in_plane(rotor).T, ring_radius(rotor) / rotor.radius
+        return redistributed(even, flow[..., 0], skew, pointing=pointing, share=share)
 
+    def _forces(self, flow: FloatArray, wake: FloatArray) -> FloatArray:
+        """Return both forces [N] and the inflow angle [rad] of the elements, (places, n, 3)."""
+        both = ring_forces(
+            self.rotor, flow[..., 0], flow[..., 1], self.operation.pitch, wake, density=self.density
+        )
+        return np.stack([*both, _inflow_angle(flow, wake)], axis=-1)
 
-def _forces(
-    rotor: Rotor, operation: OperatingPoint, flow: FloatArray, wake: FloatArray, density: float
-) -> FloatArray:
-    """Return both forces [N] and the inflow angle [rad] of the elements, (places, n, 3)."""
-    both = ring_forces(rotor, flow[..., 0], flow[..., 1], operation.pitch, wake, density=density)
-    return np.stack([*both, _inflow_angle(flow, wake)], axis=-1)
+    def _of_lift(self, flow: FloatArray, wake: FloatArray) -> FloatArray:
+        blade = self.rotor.blade
+        squared = (flow[..., 0] - wake[..., 0]) ** 2 + (flow[..., 1] + wake[..., 1]) ** 2
+        phi, step = _inflow_angle(flow, wake), _STEP_M_S / np.sqrt(squared)
+        alpha = phi - self.operation.pitch - blade.twist
+        slope = (blade.coefficients(alpha + step)[0] - blade.coefficients(alpha - step)[0]) / (2.0 * step)
+        scale = 0.5 * self.density * squared * blade.chord * blade.weight * self.rotor.n_blades * slope
+        return np.stack([scale * np.cos(phi), scale * np.sin(phi)], axis=-1)
 
 
 def _inflow_angle(flow: FloatArray, wake: FloatArray) -> FloatArray:
@@ -135,15 +146,3 @@ def _gradient(function: Callable[[FloatArray], FloatArray], at: FloatArray) -> F
     """Return central differences with the last axis of ``at``, (..., out, in)."""
     steps = _STEP_M_S * np.eye(at.shape[-1])
     return np.stack([(function(at + s) - function(at - s)) / (2.0 * _STEP_M_S) for s in steps], axis=-1)
-
-
-def _of_lift(
-    rotor: Rotor, operation: OperatingPoint, flow: FloatArray, wake: FloatArray, density: float
-) -> FloatArray:
-    blade = rotor.blade
-    squared = (flow[..., 0] - wake[..., 0]) ** 2 + (flow[..., 1] + wake[..., 1]) ** 2
-    phi, step = _inflow_angle(flow, wake), _STEP_M_S / np.sqrt(squared)
-    alpha = phi - operation.pitch - blade.twist
-    slope = (blade.coefficients(alpha + step)[0] - blade.coefficients(alpha - step)[0]) / (2.0 * step)
-    scale = 0.5 * density * squared * blade.chord * blade.weight * rotor.n_blades * slope
-    return np.stack([scale * np.cos(phi), scale * np.sin(phi)], axis=-1)

@@ -18,7 +18,7 @@ import numpy as np
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.loads.aerodynamics.rotor import AIR_KG_M3, Linearised, Rotor, linearise
 from jackettwin.loads.operation.bem import OperatingPoint
-from jackettwin.loads.operation.blade_air import BladeAir, blade_air, steady_air
+from jackettwin.loads.operation.blade_air import BladeElements, SteadyAir
 from jackettwin.loads.operation.blade_bending import (
     BendingBlades,
     bending_blades,
@@ -79,9 +79,8 @@ def operating_damping(
         their mass, too.
     """
     if pole is not None:
-        return _answering(
-            rotor, operation, pole, shaft=shaft, yaw_error=yaw_error, bending=bending, density=density
-        )
+        wind = operation.wind_speed * np.array([np.cos(yaw_error), np.sin(yaw_error), 0.0])
+        return _Moved(rotor, operation, pole, shaft, wind, density).answer(bending=bending)
     still, moving = (
         linearise(
             rotor,
@@ -105,81 +104,146 @@ class _Standing:
     ``forces`` are those of all blades [N], ``directions`` those of the flow, ``slope`` (n,) dx/dz.
     """
 
-    wind: FloatArray
     arm: FloatArray
     slope: FloatArray
     directions: FloatArray
     flow: FloatArray
+    air: SteadyAir
     forces: FloatArray
 
 
-def _answering(
-    rotor: Rotor,
-    operation: OperatingPoint,
-    pole: complex,
-    *,
-    shaft: str,
-    yaw_error: float,
-    bending: bool,
-    density: float,
-) -> Linearised:
-    blades = None
-    if rotor.bending is not None:
-        blades = bending_blades(rotor, pitch=operation.pitch, rotor_speed=operation.rotor_speed)
-    bent = blades if bending else None
-    wind = operation.wind_speed * np.array([np.cos(yaw_error), np.sin(yaw_error), 0.0])
-    standing = _standing(rotor, operation, wind, bent, density=density)
-    air = blade_air(rotor, operation, pole, standing.flow, _skew(rotor, wind), density=density)
-    Z = -_air_forces(rotor, operation, pole, standing, air, bent, shaft=shaft)
-    if blades is not None:
-        Z += _inertia(rotor, operation, pole, blades, bent, shaft=shaft)
-    locked = motions(rotor, standing.arm, shaft="locked")
-    load = np.einsum("pnij,pni->j", locked, standing.forces) / PLACES
-    if bent is not None:
-        Z = Z[:6, :6] - Z[:6, 6:] @ np.linalg.solve(Z[6:, 6:], Z[6:, :6])
-    # the mean load turns with the tower top
-    for at in (slice(0, 3), slice(3, 6)):
-        Z[at, 3:] += cross_matrix(load[at])
-    damping = Z.imag / pole.imag
-    return Linearised(load, damping, Z.real - pole.real * damping)
+@dataclass(frozen=True)
+class _Moved:
+    """A rotor at an operating point in a ``wind`` (3,), its tower top moved with e^{λt}."""
 
+    rotor: Rotor
+    operation: OperatingPoint
+    pole: complex
+    shaft: str
+    wind: FloatArray
+    density: float
 
-def _skew(rotor: Rotor, wind: FloatArray) -> FloatArray:
-    """Return the wind (3, ...) in the disc's plane over that along the shaft, (2, ...)."""
-    return np.asarray(in_plane(rotor) @ wind / (rotor.shaft @ wind))
+    def answer(self, *, bending: bool) -> Linearised:
+        """Return load, damping and stiffness (6, 6) at the tower top."""
+        rotor, pole, blades = self.rotor, self.pole, None
+        if rotor.bending is not None:
+            turn = self.operation.rotor_speed
+            blades = bending_blades(rotor, pitch=self.operation.pitch, rotor_speed=turn)
+        bent = blades if bending else None
+        standing = self._standing(bent)
+        Z = -self._air_forces(standing, bent)
+        if blades is not None:
+            Z += self._inertia(blades, bent)
+        locked = motions(rotor, standing.arm, shaft="locked")
+        load = np.einsum("pnij,pni->j", locked, standing.forces) / PLACES
+        if bent is not None:
+            Z = Z[:6, :6] - Z[:6, 6:] @ np.linalg.solve(Z[6:, 6:], Z[6:, :6])
+        # the mean load turns with the tower top
+        for at in (slice(0, 3), slice(3, 6)):
+            Z[at, 3:] += cross_matrix(load[at])
+        damping = Z.imag / pole.imag
+        return Linearised(load, damping, Z.real - pole.real * damping)
 
+    @property
+    def _elements(self) -> BladeElements:
+        return BladeElements(self.rotor, self.operation, self.density, self._skew)
 
-def _standing(
-    rotor: Rotor, operation: OperatingPoint, wind: FloatArray, bent: BendingBlades | None, *, density: float
-) -> _Standing:
-    """Return the rotor as the wind and its own turning bend the blades."""
-    z, speed = rotor.blade.z, operation.rotor_speed
-    offset = prebend(rotor, z, operation.pitch)
-    if bent is None:
-        return _bent_by(rotor, operation, wind, offset, density=density)
-    shapes = turning_shapes(rotor, bent.aero_shape)
-    pull = centrifugal(rotor, bent, pieces(rotor, bent, operation.pitch), speed)
-    away = np.einsum("pnik,pni->k", turning_shapes(rotor, bent.shape), pull) / PLACES
-    stiffness = bent.stiffness - softening(rotor, bent, speed)
-    found = _bent_by(rotor, operation, wind, offset, density=density)
-    for _ in range(_SETTLED):
-        pushed = np.einsum("pnik,pni->k", shapes, found.forces) / PLACES
-        eta = np.linalg.solve(stiffness, pushed + away)
-        found = _bent_by(rotor, operation, wind, offset + bent.aero_shape @ eta, density=density)
-    return found
+    @property
+    def _skew(self) -> FloatArray:
+        """The wind in the disc's plane over that along the shaft, (2,)."""
+        return np.asarray(in_plane(self.rotor) @ self.wind / (self.rotor.shaft @ self.wind))
 
+    @property
+    def _handed_on(self) -> FloatArray:
+        return handed_on(self.rotor, self.shaft)
 
-def _bent_by(
-    rotor: Rotor, operation: OperatingPoint, wind: FloatArray, offset: FloatArray, *, density: float
-) -> _Standing:
-    z, slope = rotor.blade.z, np.gradient(offset[:, 0], rotor.blade.z)
-    arm = arms(rotor, z, offset)
-    directions = flow_directions(rotor, slope)
-    seen = wind - operation.rotor_speed * np.cross(rotor.shaft, arm)
-    flow = np.einsum("pnai,pni->pna", directions, seen)
-    steady = steady_air(rotor, operation, flow, _skew(rotor, wind), density=density).forces
-    forces = np.einsum("pnia,pna->pni", _pushes(directions), steady)
-    return _Standing(wind, arm, slope, directions, flow, forces)
+    def _standing(self, bent: BendingBlades | None) -> _Standing:
+        """Return the rotor as the wind and its own turning bend the blades."""
+        rotor, speed, pitch = self.rotor, self.operation.rotor_speed, self.operation.pitch
+        offset = prebend(rotor, rotor.blade.z, pitch)
+        found = self._bent_by(offset)
+        if bent is None:
+            return found
+        shapes = turning_shapes(rotor, bent.aero_shape)
+        pull = centrifugal(rotor, bent, pieces(rotor, bent, pitch), speed)
+        away = np.einsum("pnik,pni->k", turning_shapes(rotor, bent.shape), pull) / PLACES
+        stiffness = bent.stiffness - softening(rotor, bent, speed)
+        for _ in range(_SETTLED):
+            pushed = np.einsum("pnik,pni->k", shapes, found.forces) / PLACES
+            eta = np.linalg.solve(stiffness, pushed + away)
+            found = self._bent_by(offset + bent.aero_shape @ eta)
+        return found
+
+    def _bent_by(self, offset: FloatArray) -> _Standing:
+        z, slope = self.rotor.blade.z, np.gradient(offset[:, 0], self.rotor.blade.z)
+        arm = arms(self.rotor, z, offset)
+        directions = flow_directions(self.rotor, slope)
+        flow = np.einsum("pnai,pni->pna", directions, self._passing(arm))
+        air = self._elements.steady(flow)
+        forces = np.einsum("pnia,pna->pni", _pushes(directions), air.forces)
+        return _Standing(arm, slope, directions, flow, air, forces)
+
+    def _passing(self, arm: FloatArray) -> FloatArray:
+        """Return the air's velocity (places, n, 3) that turning elements see without the wake."""
+        return np.asarray(self.wind - self.operation.rotor_speed * np.cross(self.rotor.shaft, arm))
+
+    def _air_forces(self, standing: _Standing, bent: BendingBlades | None) -> ComplexArray:
+        """Return the air's forces on the tower top's motions and the blades' modes with each of them."""
+        rotor, pole, wind = self.rotor, self.pole, self.wind
+        tests: ComplexArray = motions(rotor, standing.arm, shaft=self.shaft).astype(np.complex128)
+        # what a tower top that turns sees of the wind
+        seen = -pole * tests
+        seen[..., 3:] += cross_matrix(wind)
+        flow = standing.directions @ seen
+        tilted = np.zeros_like(seen)
+        if bent is not None:
+            modes = _turned_modes(turning_shapes(rotor, bent.aero_shape))
+            tests = np.concatenate([tests, modes], axis=-1)
+            moved = -through(modes, rates(pole, self.operation.rotor_speed))
+            seen = np.concatenate([seen, moved], axis=-1)
+            turned = _turned_normals(rotor, standing.slope, bent)
+            tilted = np.concatenate([tilted, turned], axis=-1)
+            flow = standing.directions @ seen
+            flow[:, :, 0] += np.einsum("pnik,pni->pnk", tilted, self._passing(standing.arm))
+        centre = seen.mean(axis=(0, 1))
+        along = rotor.shaft @ wind
+        skew = (in_plane(rotor) @ centre - np.outer(self._skew, rotor.shaft @ centre)) / along
+        normal = np.einsum("pni,pni->pn", standing.forces, standing.directions[:, :, 0])
+        air = self._elements.changes(pole, standing.flow, standing.air)
+        forces = _pushes(standing.directions) @ air.answer(flow, skew) + normal[..., None, None] * tilted
+        found = np.einsum("pnij,pnik->jk", tests.conj(), forces) / PLACES
+        if bent is not None:
+            found[3:6, 6:] += self._handed_on @ _moments(modes, standing.forces)
+        return np.asarray(found)
+
+    def _inertia(self, blades: BendingBlades, bent: BendingBlades | None) -> ComplexArray:
+        """Return inertia and stiffness of turning blades without what a rigid rotor at rest has.
+
+        In the frame of the tower top a piece at rest on the rotor has the acceleration T ẍ + 2 θ̇ × (Ω × r).
+        """
+        rotor, pole, speed = self.rotor, self.pole, self.operation.rotor_speed
+        arm = pieces(rotor, blades, self.operation.pitch)
+        fields: ComplexArray = motions(rotor, arm, shaft=self.shaft).astype(np.complex128)
+        accelerations = pole**2 * fields
+        turning = 2.0 * pole * cross_matrix(speed * np.cross(rotor.shaft, arm)) @ self._handed_on
+        accelerations[..., 3:] -= turning
+        if bent is not None:
+            modes = _turned_modes(turning_shapes(rotor, bent.shape))
+            fields = np.concatenate([fields, modes], axis=-1)
+            moved = through(modes, rates(pole, speed) ** 2)
+            accelerations = np.concatenate([accelerations, moved], axis=-1)
+        found = np.einsum("n,pnij,pnik->jk", blades.mass, fields.conj(), accelerations) / PLACES
+        rigid = fields[..., :6].real
+        found[:6, :6] -= pole**2 * np.einsum("n,pnij,pnik->jk", blades.mass, rigid, rigid) / PLACES
+        if bent is not None:
+            pull = centrifugal(rotor, blades, arm, speed)
+            found[3:6, 6:] -= self._handed_on @ _moments(modes, pull)
+            of_order = [bent.stiffness + (pole + 1j * m * speed) * bent.damping for m in _BLADE_ORDERS]
+            k = bent.stiffness.shape[0]
+            for j, matrix in enumerate(of_order):
+                at = slice(6 + j * k, 6 + (j + 1) * k)
+                found[at, at] += matrix
+        return np.asarray(found)
 
 
 def _pushes(directions: FloatArray) -> FloatArray:
@@ -195,45 +259,6 @@ def _turned_modes(shapes: FloatArray) -> ComplexArray:
     )
 
 
-def _air_forces(
-    rotor: Rotor,
-    operation: OperatingPoint,
-    pole: complex,
-    standing: _Standing,
-    air: BladeAir,
-    bent: BendingBlades | None,
-    *,
-    shaft: str,
-) -> ComplexArray:
-    """Return the air's forces on the tower top's motions and the blades' modes with each of them."""
-    wind = standing.wind
-    tests: ComplexArray = motions(rotor, standing.arm, shaft=shaft).astype(np.complex128)
-    # what a tower top that turns sees of the wind
-    seen = -pole * tests
-    seen[..., 3:] += cross_matrix(wind)
-    flow = standing.directions @ seen
-    tilted = np.zeros_like(seen)
-    if bent is not None:
-        modes = _turned_modes(turning_shapes(rotor, bent.aero_shape))
-        tests = np.concatenate([tests, modes], axis=-1)
-        moved = -through(modes, rates(pole, operation.rotor_speed))
-        seen = np.concatenate([seen, moved], axis=-1)
-        turned = _turned_normals(rotor, standing.slope, bent)
-        tilted = np.concatenate([tilted, turned], axis=-1)
-        flow = standing.directions @ seen
-        past = wind - operation.rotor_speed * np.cross(rotor.shaft, standing.arm)
-        flow[:, :, 0] += np.einsum("pnik,pni->pnk", tilted, past)
-    centre = seen.mean(axis=(0, 1))
-    along = rotor.shaft @ wind
-    skew = (in_plane(rotor) @ centre - np.outer(_skew(rotor, wind), rotor.shaft @ centre)) / along
-    normal = np.einsum("pni,pni->pn", standing.forces, standing.directions[:, :, 0])
-    forces = _pushes(standing.directions) @ air.answer(flow, skew) + normal[..., None, None] * tilted
-    found = np.einsum("pnij,pnik->jk", tests.conj(), forces) / PLACES
-    if bent is not None:
-        found[3:6, 6:] += handed_on(rotor, shaft) @ _moments(modes, standing.forces)
-    return np.asarray(found)
-
-
 def _turned_normals(rotor: Rotor, slope: FloatArray, bent: BendingBlades) -> ComplexArray:
     """Return how the blades' modes turn the normals of the elements, (places, n, 3, orders·k)."""
     frames, angle = blade_frames(rotor)[:, None], np.arctan(slope)[:, None]
@@ -245,40 +270,3 @@ def _turned_normals(rotor: Rotor, slope: FloatArray, bent: BendingBlades) -> Com
 def _moments(modes: ComplexArray, forces: FloatArray) -> ComplexArray:
     """Return moments (3, k) of steady forces (places, n, 3) on places that modes (places, n, 3, k) move."""
     return np.asarray(-np.einsum("pnij,pnjk->ik", cross_matrix(forces), modes) / PLACES)
-
-
-def _inertia(
-    rotor: Rotor,
-    operation: OperatingPoint,
-    pole: complex,
-    blades: BendingBlades,
-    bent: BendingBlades | None,
-    *,
-    shaft: str,
-) -> ComplexArray:
-    """Return inertia and stiffness of turning blades without what a rigid rotor at rest has.
-
-    In the frame of the tower top a piece at rest on the rotor has the acceleration T ẍ + 2 θ̇ × (Ω × r).
-    """
-    speed, arm = operation.rotor_speed, pieces(rotor, blades, operation.pitch)
-    fields: ComplexArray = motions(rotor, arm, shaft=shaft).astype(np.complex128)
-    accelerations = pole**2 * fields
-    turning = 2.0 * pole * cross_matrix(speed * np.cross(rotor.shaft, arm)) @ handed_on(rotor, shaft)
-    accelerations[..., 3:] -= turning
-    if bent is not None:
-        modes = _turned_modes(turning_shapes(rotor, bent.shape))
-        fields = np.concatenate([fields, modes], axis=-1)
-        moved = through(modes, rates(pole, speed) ** 2)
-        accelerations = np.concatenate([accelerations, moved], axis=-1)
-    found = np.einsum("n,pnij,pnik->jk", blades.mass, fields.conj(), accelerations) / PLACES
-    rigid = fields[..., :6].real
-    found[:6, :6] -= pole**2 * np.einsum("n,pnij,pnik->jk", blades.mass, rigid, rigid) / PLACES
-    if bent is not None:
-        pull = centrifugal(rotor, blades, arm, speed)
-        found[3:6, 6:] -= handed_on(rotor, shaft) @ _moments(modes, pull)
-        of_order = [bent.stiffness + (pole + 1j * m * speed) * bent.damping for m in _BLADE_ORDERS]
-        k = bent.stiffness.shape[0]
-        for j, matrix in enumerate(of_order):
-            at = slice(6 + j * k, 6 + (j + 1) * k)
-            found[at, at] += matrix
-    return np.asarray(found)
