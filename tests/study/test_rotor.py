@@ -8,11 +8,14 @@ import numpy as np
 import pytest
 from observations import estimate, observation
 
+from jackettwin.loads import operating_point, read_rotor
 from jackettwin.response.condensation.numbered_modes import Status
-from jackettwin.soil import family
+from jackettwin.simulate import Asset, asset_model, modes_at_work
+from jackettwin.soil import Prony, family, on_translations
 from jackettwin.structure import assemble
 from jackettwin.study.measurements import MeasuredMode
-from jackettwin.study.rotor import mean_wind, operating_states, rotor_damping
+from jackettwin.study.problem import UpdateEvidence, law_model
+from jackettwin.study.rotor import RotorDamping, mean_wind, operating_states, rotor_damping
 from jackettwin.twin import TwinState, advance_all, read_twin
 from jackettwin.twin.config import TwinConfig
 from jackettwin.updating import Residuals, Target, numbered_modes, support_model
@@ -109,11 +112,20 @@ def test_the_prior_is_the_known_aerodynamic_damping(config: TwinConfig) -> None:
     assert log_std == 0.4
 
 
-def test_a_rotor_at_work_damps_fore_aft_as_computed_in_each_wind(config: TwinConfig) -> None:
-    """Above rated wind its fore-aft damping hardly changes: no part of it is proportional to the wind."""
+AtWork = tuple[TwinConfig, dict[str, Any], RotorDamping]
+
+
+@pytest.fixture(scope="module")
+def at_work(config: TwinConfig) -> AtWork:
     works = replace(config, update=config.update.model_copy(update={"rotor_state": "operating"}))
     stands = standing(works)
-    found_priors = rotor_damping(works, stands["assembly"], stands["numbered"], 12.0).priors
+    return works, stands, rotor_damping(works, stands["assembly"], stands["numbered"], 12.0)
+
+
+def test_a_rotor_at_work_damps_fore_aft_as_computed_in_each_wind(at_work: AtWork) -> None:
+    """Above rated wind its fore-aft damping hardly changes: no part of it is proportional to the wind."""
+    works, stands, rotor_of = at_work
+    found_priors = rotor_of.priors
     c, log_std = found_priors["c_fore_aft"]
     zeta = c / (2.0 * 1.12e6 * 2.0 * np.pi * 0.183)
     # literature of large turbines at work, aeroelastic and measured: 5 to 10 %; rigid blades give more
@@ -127,6 +139,28 @@ def test_a_rotor_at_work_damps_fore_aft_as_computed_in_each_wind(config: TwinCon
     assert 2.0 < factors["c_side_side"] < 3.0
     grown = rotor_damping(works, stands["assembly"], stands["numbered"], 16.0).priors
     assert grown["c_side_side"][0] == pytest.approx(factors["c_side_side"] * found_priors["c_side_side"][0])
+
+
+def test_a_twin_at_work_has_the_modes_of_the_rotor_at_work(config: TwinConfig, at_work: AtWork) -> None:
+    """jacket15, 12 m/s; f is 7 % more than of rigid blades (qualify/operation.py: OpenFAST within 1.2 %)."""
+    theta = np.array([2.5e9, 7.6e8])
+    support = on_translations(config.structure, Prony(k0=theta[0], c=theta[1]))
+    rotor, control = read_rotor("iea15")
+    still = asset_model(Asset(config.structure, support, gravity=True, rayleigh=config.rayleigh))
+    _, modes = modes_at_work(still, rotor, operating_point(rotor, control, 12.0), shaft="free")
+    true = {m.label: m for m in modes}
+    works, stands, rotor_of = at_work
+    works = replace(works, tie="all", update=works.update.model_copy(update={"priors": {}, "bounds": {}}))
+    evidence = UpdateEvidence(stands["assembly"], None, {"": (RESIDUALS, {})}, rotor_of)
+    model = law_model(works, evidence, "kelvin-voigt")
+    damping = [rotor_of.priors[name][0] for name in works.update.dashpots]
+    poles = model.predict_many(np.array([[*theta, *damping]]), (1, 2)).poles[0]
+    for label, pole in zip(("side_side_1", "fore_aft_1"), poles, strict=True):
+        assert abs(pole) / (2.0 * np.pi) == pytest.approx(true[label].frequency_hz, rel=3e-3)
+        assert -pole.real / abs(pole) == pytest.approx(true[label].damping_ratio, rel=0.05)
+    own = next(d for d in model.directions.each if d.tolerance.name == "rotor_at_work")
+    # computed at the same 12 m/s
+    assert abs(own.stiffness - own.tolerance.std * rotor_of.stiffness).max() < 1e-6 * abs(own.stiffness).max()
 
 
 def test_modes_beside_the_circle_do_not_spoil_the_certificate(config: TwinConfig) -> None:

@@ -8,6 +8,7 @@ from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 from numpy.testing import assert_allclose
 from observations import estimate, observation
 
@@ -129,6 +130,27 @@ def test_a_records_frequencies_tell_the_feet(stress_model: StressModel) -> None:
     std = np.sqrt(np.diag(found.covariance))
     assert (np.abs(found.mean[:2] - true) < 2.0 * std[:2]).all()
     assert std[1] < 0.5 and abs(found.mean[2]) < 1.0
+
+
+def test_a_rotor_at_work_stiffens_no_feet(stress_model: StressModel) -> None:
+    """Fore-aft 8 % up, as the rotor's stiffness makes it: told as the rotor's, within its tolerance."""
+    assembly = stress_model.assembly
+    top = assembly.dofs(assembly.structure.top_node)[0]
+    K = sp.csc_array(([1.5e5], ([top], [top])), shape=assembly.stiffness.shape)
+    third = Direction(Tolerance("rotor_at_work", "", 0.3, "-", "", ""), stiffness=0.3 * K)
+    parked = replace(stress_model, at_work=third)
+    working = parked.working()
+    assert parked.working().at_work is None and stress_model.working() is stress_model
+    true = np.log([1.5e9, 4.0e9])
+    modes = undamped_modes(working.system(np.append(true, [0.0, 0.0])), 5)
+    seen = {m + 1: estimate(float(f), 0.01, 1e-3) for m, f in enumerate(modes.frequency_hz)}
+    off = {}
+    for name, one in (("at work", working), ("parked", parked)):
+        found = likely_structures(one, seen, 1e9)
+        std = np.sqrt(np.diag(found.covariance))[:2]
+        off[name] = np.abs(found.mean[:2] - true)
+    assert (off["at work"] < std).all()
+    assert off["parked"].max() > 3.0 * off["at work"].max()
 
 
 def test_slopes_are_differences_of_frequencies(stress_model: StressModel) -> None:

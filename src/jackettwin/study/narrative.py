@@ -99,6 +99,8 @@ def _beside_law(config: TwinConfig, wind: float | None) -> list[Assumption]:
         where = "" if wind is None else f", stated at a wind of {wind:.3g} m/s and {grows}"
         state = "at work" if works else "parked"
         rotor = f"The rotor is {state}: dashpots {', '.join(config.update.dashpots)} {shape}{where}."
+        if works and config.update.rotor:
+            rotor += " Its stiffness at work is part of the structure (tolerance rotor_at_work)."
         found.append(Assumption("rotor", rotor))
     if config.update.water:
         water = (

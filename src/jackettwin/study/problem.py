@@ -155,9 +155,12 @@ def law_model(config: TwinConfig, evidence: UpdateEvidence, law: str) -> Support
     )
     own = {p.name for p in (*chosen.parameters, *nuisance.parameters)}
     relative = any(residuals.relative for residuals, _ in states.values())
+    stands = evidence.assembly
+    if evidence.rotor.stiffness is not None:
+        stands = replace(stands, stiffness=stands.stiffness + evidence.rotor.stiffness)
     try:
         model = support_model(
-            evidence.assembly,
+            stands,
             family=chosen,
             rayleigh=config.rayleigh,
             tie=config.tie,
@@ -173,7 +176,7 @@ def law_model(config: TwinConfig, evidence: UpdateEvidence, law: str) -> Support
         raise error.at(file=config.path, field=_place(error)) from None
     each = () if relative else directions(config, evidence.assembly)
     n_soil = len(model.tie_groups.suffixes)
-    return replace(model, directions=ToleranceDirections(evidence.assembly, model.condensed, each, n_soil))
+    return replace(model, directions=ToleranceDirections(stands, model.condensed, each, n_soil))
 
 
 def _place(error: InputError) -> str | None:

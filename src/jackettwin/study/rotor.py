@@ -4,26 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import located
-from jackettwin.loads import (
-    OPERATING_LEAST_RATIO,
-    OPERATING_LOG_STD,
-    linearise,
-    operating_damping,
-    operating_point,
-    read_rotor,
-    read_schedule,
-)
-from jackettwin.response import UndampedModes
+from jackettwin.loads import OPERATING_LOG_STD, linearise, read_rotor
+from jackettwin.response import Matrix, UndampedModes
 from jackettwin.structure import Assembly
 from jackettwin.study.measure import mean_target
 from jackettwin.study.measurements import MeasuredMode
 from jackettwin.twin import ALL, OperationTotal, TwinConfig, TwinState
+from jackettwin.twin.rotor_at_work import USUAL_WIND_M_S, of_side, rotor_at_work, stiffness_at_work
 from jackettwin.updating import DASHPOTS, Residuals, Target
 
 _LOG_STD = {
@@ -33,13 +25,6 @@ _LOG_STD = {
 """How far it may be off: blades bend, air lags, turbulence takes 11–18 %; drag is small."""
 _BLADES = 3
 """Number of blades of a rotor without a description."""
-_ANY_WIND_M_S = 10.0
-"""Where the wind is not known: it scales a parked rotor's damping, and hardly changes the pattern of one at
-work."""
-_ROUNDS = 2
-_SIDES = {"c_fore_aft": (0, 2, 4), "c_side_side": (1, 3, 5)}
-"""Degrees of freedom of the tower top that a rotor without yaw error couples with each other."""
-
 States = dict[str, tuple[Residuals, Mapping[str, float]]]
 
 
@@ -67,7 +52,7 @@ def rotor_speed_hz(config: TwinConfig) -> tuple[tuple[float, float] | None, int]
 
 @dataclass(frozen=True)
 class RotorDamping:
-    """Dashpots of the nacelle derived from the rotor's geometry; empty without a rotor.
+    """Dashpots of the nacelle, and stiffness, derived from the rotor's geometry; empty without a rotor.
 
     A dashpot of c N·s/m damps the first bending mode in its direction like a damper c on the tower top's
     translation. Its effect on all other modes follows from the rotor's 6×6 matrix, for in the second bending
@@ -78,16 +63,18 @@ class RotorDamping:
     patterns : {dashpot: (6, 6)}
     priors : {dashpot: median and standard deviation of ln c}
         Known only if the wind speed is known.
+    stiffness : what a rotor at work adds to the structure's, (n_dof, n_dof), or None
     """
 
     patterns: Mapping[str, FloatArray]
     priors: Mapping[str, tuple[float, float]]
+    stiffness: Matrix | None = None
 
 
 def rotor_damping(
     config: TwinConfig, assembly: Assembly, numbered: UndampedModes, wind: float | None
 ) -> RotorDamping:
-    """Return the dashpots' patterns S and priors.
+    """Return the dashpots' patterns S and priors, and the stiffness of a rotor at work.
 
     C = cS with c = φᵀCφ/φ_j², φ the tower top's motion in the first mode of that direction.
 
@@ -98,27 +85,21 @@ def rotor_damping(
     """
     if config.update.rotor is None:
         return RotorDamping({}, {})
-    seen = wind or _ANY_WIND_M_S
+    seen, stiffness = wind or USUAL_WIND_M_S, None
+    names: tuple[str, ...] = config.update.dashpots
     if config.update.rotor_state == "operating":
-        found = _dashpots_at_work(config, assembly, numbered, seen)
+        sides = rotor_at_work(config, assembly, numbered, seen)
+        patterns = {name: sides[name].pattern for name in names}
+        sizes = {name: sides[name].dashpot for name in names}
+        stiffness = stiffness_at_work(sides, assembly)
     else:
         C = _parked_matrix(config, seen)
-        found = {}
-        for name in config.update.dashpots:
-            part = _of_side(C, name)
-            found[name] = part, _dashpot(part, name, assembly, numbered)
+        parts = {name: of_side(C, name) for name in names}
+        sizes = {name: _dashpot(part, name, assembly, numbered) for name, part in parts.items()}
+        patterns = {name: part / sizes[name] for name, part in parts.items()}
     stds = _LOG_STD[config.update.rotor_state]
-    patterns = {name: part / c for name, (part, c) in found.items()}
-    priors = {} if wind is None else {name: (c, stds[name]) for name, (_, c) in found.items()}
-    return RotorDamping(patterns, priors)
-
-
-def _of_side(C: FloatArray, name: str) -> FloatArray:
-    """Return what a rotor's matrix (6, 6) has on the degrees of freedom of one direction."""
-    dofs = np.ix_(_SIDES[name], _SIDES[name])
-    part = np.zeros((6, 6))
-    part[dofs] = C[dofs]
-    return part
+    priors = {} if wind is None else {name: (c, stds[name]) for name, c in sizes.items()}
+    return RotorDamping(patterns, priors, stiffness)
 
 
 def _dashpot(C: FloatArray, name: str, assembly: Assembly, numbered: UndampedModes) -> float:
@@ -130,54 +111,15 @@ def _dashpot(C: FloatArray, name: str, assembly: Assembly, numbered: UndampedMod
 
 
 def _parked_matrix(config: TwinConfig, wind: float) -> FloatArray:
-    """Return the damping (6, 6) of a parked rotor in a wind: symmetric, averaged over azimuth.
+    """Return the damping (6, 6) of a parked rotor in a wind, averaged over azimuth.
 
     The geometry includes cone and prebend, which place the blades upwind of the hub and so double the damping
-    of a pitching or yawing tower top compared with straight blades.
+    of a pitching or yawing tower top compared with straight blades. It is proportional to the wind.
     """
     given = config.update
     with located(file=config.path, field="update"):
         rotor, _ = read_rotor(given.rotor or "")
-        parked = linearise(rotor, _ANY_WIND_M_S, pitch=0.5 * np.pi, shaft=given.shaft or "locked")
-    C = parked.damping * (wind / _ANY_WIND_M_S)
-    return np.asarray(0.5 * (C + C.T))
-
-
-def _dashpots_at_work(
-    config: TwinConfig, assembly: Assembly, numbered: UndampedModes, wind: float
-) -> dict[str, tuple[FloatArray, float]]:
-    """Return patterns (6, 6), not scaled, and dashpots of a rotor at work.
-
-    What a first mode loses is the real part of its own pole among the first two, which the rotor couples;
-    it is at least the smallest that can be told from nothing.
-    """
-    given = config.update
-    with located(file=config.path, field="update"):
-        rotor, control = read_rotor(given.rotor or "")
-        if given.rotor_schedule is not None:
-            control = replace(control, schedule=read_schedule(Path(given.rotor_schedule)))
-        operation = operating_point(rotor, control, wind)
-    top = numbered.shapes[assembly.dofs(assembly.structure.top_node)][:, :2]
-    omega = numbered.omega[:2]
-    found: dict[str, tuple[FloatArray, float]] = {}
-    for name in given.dashpots:
-        axis = DASHPOTS[name]
-        own = int(np.argmax(np.abs(top[axis])))
-        pole = 1j * omega[own]
-        for _ in range(_ROUNDS):
-            mean = operating_damping(rotor, operation, pole=pole, shaft=given.shaft or "free")
-            C, K = (top.T @ matrix @ top for matrix in (mean.damping, mean.stiffness))
-            state = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.diag(omega**2) - K, -C]])
-            poles, shapes = np.linalg.eig(state)
-            pole = poles[np.argmax(np.where(poles.imag > 0.0, np.abs(shapes[own]), 0.0))]
-        c = max(-2.0 * pole.real, 2.0 * OPERATING_LEAST_RATIO * omega[own]) / top[axis, own] ** 2
-        part = _of_side(0.5 * (mean.damping + mean.damping.T), name)
-        direct = _dashpot(part, name, assembly, numbered)
-        if direct <= 0.0:
-            part, direct = np.zeros((6, 6)), 1.0
-            part[axis, axis] = 1.0
-        found[name] = part * (c / direct), float(c)
-    return found
+        return linearise(rotor, wind, pitch=0.5 * np.pi, shaft=given.shaft or "locked").damping
 
 
 def operating_states(
@@ -214,7 +156,7 @@ def operating_states(
     )
     # without a rotor's description dashpots grow as a parked rotor's
     described = works and config.update.rotor is not None
-    stated = _dashpots_at_work(config, assembly, numbered, wind) if described else {}
+    stated = rotor_at_work(config, assembly, numbered, wind) if described else {}
     states: States = {"all winds": (Residuals(common, relative=False), {})}
     for name, (total, v) in sorted(winds.items(), key=lambda item: (item[1][1] or 0.0, item[0])):
         targets = [
@@ -225,8 +167,8 @@ def operating_states(
         if targets and v is not None:
             grown: dict[str, float] = dict.fromkeys(config.update.dashpots, v / wind)
             if stated:
-                here = _dashpots_at_work(config, assembly, numbered, v)
-                grown = {name: here[name][1] / c for name, (_, c) in stated.items()}
+                here = stated if v == wind else rotor_at_work(config, assembly, numbered, v)
+                grown = {name: here[name].dashpot / stated[name].dashpot for name in grown}
             states[name] = (Residuals(tuple(targets), relative=False), grown)
     return states
 

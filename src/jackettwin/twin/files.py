@@ -17,7 +17,7 @@ from jackettwin.loads import SeaState, WaterSchema, depth_of, water_members
 from jackettwin.records.readers import formats
 from jackettwin.response import mode_kinds, mode_labels, read_mode_label
 from jackettwin.soil import DEFAULT_LAWS, MUDLINE, Parameter, family, members, tied_at_mudline
-from jackettwin.structure import RayleighSchema, Structure
+from jackettwin.structure import RayleighSchema, Structure, without_rotor
 from jackettwin.twin.config import (
     PAIRED_MODES,
     USUAL_MODES,
@@ -112,7 +112,9 @@ def _with_numbers(schema: TwinSchema, path: Path) -> TwinSchema:
     unnamed = [i for i, target in enumerate(schema.targets) if target.is_unnamed]
     if not unnamed and not any(isinstance(target.mode, str) for target in schema.targets):
         return schema
-    assembly = assembled(_build(schema.model_copy(update={"targets": [], "update": UpdateSettings()}), path))
+    of_rotor = schema.update.model_dump(include={"rotor", "rotor_state"})
+    update = UpdateSettings.model_validate(of_rotor)
+    assembly = assembled(_build(schema.model_copy(update={"targets": [], "update": update}), path))
     numbered = numbered_modes(assembly, PAIRED_MODES)
     labels = mode_labels(mode_kinds(assembly, numbered.shapes, numbered.frequency_hz))
     targets = []
@@ -177,6 +179,8 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         remedy="omit damping.modes or update.steel_damping: free",
     )
     structure = _structure(schema, folder)
+    if schema.update.rotor is not None and schema.update.rotor_state == "operating":
+        structure = without_rotor(structure)  # the blades bend in what the rotor adds at work
     return TwinConfig(
         name=path.stem,
         path=path,

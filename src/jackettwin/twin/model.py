@@ -17,8 +17,8 @@ from jackettwin.twin.calibration import Calibrations, sensors_at
 from jackettwin.twin.config import PAIRED_MODES, TwinConfig, assembled
 from jackettwin.twin.life.likely_structures import StressModel
 from jackettwin.twin.operation import OperationRule
-from jackettwin.twin.tolerances.registry import directions
-from jackettwin.updating import Feet, modes_by_foot_stiffness, numbered_modes, pairing_score
+from jackettwin.twin.tolerances.registry import AT_WORK, TOLERANCES, directions, stiffer_at_work
+from jackettwin.updating import Direction, Feet, modes_by_foot_stiffness, numbered_modes, pairing_score
 
 
 @dataclass(frozen=True)
@@ -212,4 +212,13 @@ def _stress_model(config: TwinConfig, assembly: Assembly, numbered: UndampedMode
         directions(config, assembly),
         None if config.water is None else config.water.depth_m,
         None if config.water is None else config.water.coefficients,
+        _at_work(config, assembly),
     )
+
+
+def _at_work(config: TwinConfig, assembly: Assembly) -> Direction | None:
+    """Return what the rotor at work does to the structure of its records, if the twin says which rotor."""
+    known = TOLERANCES[AT_WORK].tolerance
+    # a closed tolerance leaves the stiffness itself: it is then known to a thousandth
+    std = max(config.tolerances.std(AT_WORK, known.std), 1e-3)
+    return next(iter(stiffer_at_work(config, assembly, replace(known, std=std))), None)

@@ -16,7 +16,7 @@ from jackettwin.twin.life.sensed_damage import SensedDamage, sensed_damage
 from jackettwin.twin.mode_doubts import sea_share, unlike_model
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.observation import Observation, Recognised
-from jackettwin.twin.operation import UNKNOWN
+from jackettwin.twin.operation import AT_WORK, UNKNOWN
 from jackettwin.twin.sensor_polarity import sensor_polarity
 from jackettwin.updating import STIFFEST_N_M, Counterpart, Feet, counterparts, pair
 from jackettwin.version import __version__
@@ -130,8 +130,10 @@ def _damage(
         if of is not None and mode.status.is_a_mode
     }
     record = seen.record
+    works = model.operation.with_state(record.conditions).get("state") == AT_WORK
+    stress = model.stress.working() if works else model.stress
     try:
-        likely = likely_structures(model.stress, modes, min(feet.stiffness_n_m, STIFFEST_N_M))
+        likely = likely_structures(stress, modes, min(feet.stiffness_n_m, STIFFEST_N_M))
         readings = readings_of(record, model.placed(record), model.structure)
         weather = Weather.of(record.conditions, model.stress.depth_m, model.stress.coefficients)
         return sensed_damage(likely, readings, weather), ()

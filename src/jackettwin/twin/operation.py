@@ -12,6 +12,8 @@ from jackettwin.files import Schema
 
 UNKNOWN = "unknown"
 """The state of operation of a record that meets no rule."""
+AT_WORK = "operating"
+"""The state whose records have a rotor that produces power, as scenarios name it."""
 Condition = tuple[float | None, float | None] | tuple[str, ...]
 """Requirement on a condition: between two numbers, either of which may be open, or one of some words."""
 

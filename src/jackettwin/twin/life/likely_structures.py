@@ -12,7 +12,7 @@ is no update: supports stay springs, and one record's modes tell of them what on
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -54,6 +54,7 @@ class StressModel:
     directions : what tolerances that are open do to the structure
     depth_m : of the water; None takes the lowest node for the bed
     coefficients : of drag, added mass and growth; None are those of bare members
+    at_work : what a standard deviation of the stiffness that the rotor at work adds does to the structure
     """
 
     settings: LifeSettings
@@ -64,6 +65,21 @@ class StressModel:
     directions: tuple[Direction, ...] = ()
     depth_m: float | None = None
     coefficients: Coefficients | None = None
+    at_work: Direction | None = None
+
+    def working(self) -> StressModel:
+        """Return the model with the rotor at work, whose stiffness is left open; as it is without a rotor."""
+        one = self.at_work
+        if one is None or one.stiffness is None:
+            return self
+        stiffness = self.assembly.stiffness + one.stiffness / one.tolerance.std
+        others = tuple(d for d in self.directions if d.tolerance.name != one.tolerance.name)
+        return replace(
+            self,
+            assembly=replace(self.assembly, stiffness=stiffness),
+            directions=(*others, one),
+            at_work=None,
+        )
 
     @cached_property
     def n_ways(self) -> int:
