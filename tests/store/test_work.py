@@ -160,11 +160,11 @@ def test_one_server_has_a_post_until_it_leaves_or_is_dead(database: Engine) -> N
             work.join(c, server, {}, NOW)
     for _ in range(2):  # and keeps it
         with writing(database) as c:
-            assert work.hold_post(c, "intake", "one")
-            assert not work.hold_post(c, "intake", "two")
-            assert work.hold_post(c, "other", "two")
+            assert work.hold_duty(c, "intake", "one")
+            assert not work.hold_duty(c, "intake", "two")
+            assert work.hold_duty(c, "other", "two")
     with writing(database) as c:
         work.remove_server(c, "one")
-        assert work.hold_post(c, "intake", "two")
+        assert work.hold_duty(c, "intake", "two")
         work.join(c, "one", {}, NOW)  # it was not dead after all
-        assert not work.hold_post(c, "intake", "one")
+        assert not work.hold_duty(c, "intake", "one")

@@ -42,7 +42,7 @@ _USUAL = WatchSettings()
 
 
 @dataclass(frozen=True)
-class DayLook:
+class JudgedDay:
     """What a judged day showed.
 
     Attributes
@@ -88,7 +88,7 @@ class StoredMonitoring:
     columns: Columns | None = None
     pending: PendingChange | None = None
     smallest: tuple[Mapping[str, Any], ...] = ()
-    looks: tuple[DayLook, ...] = ()
+    looks: tuple[JudgedDay, ...] = ()
 
     @property
     def promise(self) -> tuple[float, float, str]:
@@ -235,7 +235,7 @@ def _day(
             alarms = (*alarms[:-1], with_later_look(alarms[-1], told(change)))
     if look.change is not None:
         alarms, pending = (*alarms, told(look.change)), look.pending
-    shown = DayLook(name, round(look.log_r, 4), np.round(look.rest, 7), np.round(look.rest_std, 7))
+    shown = JudgedDay(name, round(look.log_r, 4), np.round(look.rest, 7), np.round(look.rest_std, 7))
     return replace(
         known, watch=watch, through=name, alarms=alarms, pending=pending, looks=(*known.looks, shown)
     )

@@ -292,7 +292,7 @@ def remove_server(connection: Connection, server: str, at_beat: int | None = Non
     return held
 
 
-def hold_post(connection: Connection, name: str, server: str) -> bool:
+def hold_duty(connection: Connection, name: str, server: str) -> bool:
     """Take or keep a duty of one server for all; return False while another living server has it."""
     free = (posts.c.server == server) | posts.c.server.not_in(select(servers.c.id))
     taken = update(posts).where(posts.c.name == name, free).values(server=server)

@@ -80,7 +80,7 @@ class Outbox(Thread):
             return
         self._told = told
         with writing(self._service.database) as connection:
-            if not work.hold_post(connection, "alerts", self._service.server_id):
+            if not work.hold_duty(connection, "alerts", self._service.server_id):
                 return
             self._note_silence(connection)
             self._note_new(connection)

@@ -133,7 +133,7 @@ class Dispatcher(Thread):
                 freed = work.remove_server(connection, server, beats[server][0])
                 log.warning("server %s is dead, %d pieces of work go back to the queue", server, len(freed))
             work.take_back_orphans(connection, me, self._running)
-            self.service.has_intake = work.hold_post(connection, "intake", me)
+            self.service.has_intake = work.hold_duty(connection, "intake", me)
         tell_systemd("WATCHDOG=1")
 
     def _dead(self, server: str, count: int, about: Mapping[str, Any]) -> bool:
