@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 import ssl
 from pathlib import Path
+from queue import Empty, SimpleQueue
 from typing import Literal
 
 import paho.mqtt.client as mqtt
 from paho.mqtt.enums import CallbackAPIVersion
+from paho.mqtt.reasoncodes import ReasonCode
 from pydantic import Field
 
 from jackettwin.errors import require
@@ -75,8 +77,9 @@ class Broker(Topic):
         OSError, NotDelivered
             If the broker did not accept all of them.
         """
-        client = mqtt.Client(CallbackAPIVersion.VERSION2)
+        client, answers = mqtt.Client(CallbackAPIVersion.VERSION2), SimpleQueue[ReasonCode]()
         client.connect_timeout = _TIMEOUT_S
+        client.on_connect = lambda _client, _data, _flags, reason, _properties: answers.put(reason)
         if self.user is not None:
             client.username_pw_set(self.user, secret_in(folder, self.password_file, "password_file"))
         if self.tls:
@@ -85,11 +88,16 @@ class Broker(Topic):
         client.connect(self.host, self.port or (8883 if self.tls else 1883))
         client.loop_start()
         try:
+            # a refused client would try again until the time is over
+            if (reason := answers.get(timeout=_TIMEOUT_S)).is_failure:
+                raise NotDelivered(f"the broker refuses the connection: {reason}")
             told = [self._published(client, dict(finding), notice.id) for finding in notice.findings]
             for one in told:
                 one.wait_for_publish(_TIMEOUT_S)
                 if not one.is_published():
                     raise NotDelivered("the broker does not acknowledge the message")
+        except Empty:
+            raise NotDelivered("the broker does not answer") from None
         except (RuntimeError, ValueError) as error:
             raise NotDelivered(f"the broker refuses the message: {error}") from None
         finally:
