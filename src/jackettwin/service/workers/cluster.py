@@ -179,8 +179,8 @@ class WorkerCluster:
             self._cluster.loop.add_callback(self._replace_lost, self._cluster)
 
     def _find_scheduler(self) -> None:
-        same = self.client.scheduler_info(n_workers=0).get("id") == self._scheduler
-        if self.reachable and same:
+        # a lost scheduler would be asked for half a minute
+        if self.reachable and self.client.scheduler_info(n_workers=0).get("id") == self._scheduler:
             return
         gone, place = self.client, urlsplit(str(self._where))
         try:
