@@ -129,6 +129,11 @@ class Client:
         """Bring a turbine back."""
         return self._asked("POST", f"/assets/{asset}/unarchive")
 
+    def place(self, asset: str, latitude_deg: float, longitude_deg: float) -> Answer:
+        """Say where a turbine stands (WGS 84)."""
+        at = {"latitude_deg": latitude_deg, "longitude_deg": longitude_deg}
+        return self._asked("PUT", f"/assets/{asset}/position", json=at)
+
     def send(self, asset: str, record: Path | str, description: Mapping[str, Any] | None = None) -> Answer:
         """Send a record file, and what lies beside it; return ``record_id`` and ``job_id``.
 

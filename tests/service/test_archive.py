@@ -47,6 +47,32 @@ def test_an_archived_turbine_takes_nothing_and_keeps_what_is_known(
     assert said[-4:] == ["record", "archive", "unarchive", "record"]
 
 
+def test_a_turbine_has_a_place_and_the_list_renews_it_alone(
+    client: TestClient, service: Service, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    twin = tmp_path / "other.yaml"
+    twin.write_text("structure: jacket15\n")
+    add_twin(service.database, service.settings.store, "other", twin)
+    assert names(client) == ["other", "wtg"]
+    made, overview = [], catalogue.overview
+    monkeypatch.setattr(
+        catalogue, "overview", lambda *args, **more: made.append(args[1:]) or overview(*args, **more)
+    )
+    said = client.put(
+        "/api/v1/assets/wtg/position", json={"latitude_deg": 55.0, "longitude_deg": -7.5}
+    ).json()
+    assert (said["latitude_deg"], said["longitude_deg"]) == (55.0, -7.5)
+    made.clear()
+    assert client.get("/api/v1/assets").json()["items"][1] == said and made == [("wtg",)]
+    arguments = ["place", "other", "--store", str(service.settings.store), "--", "54.5", "-7.25"]
+    assert CliRunner().invoke(asset_command, arguments).output == "other stands at 54.5, -7.25\n"
+    made.clear()
+    assert client.get("/api/v1/assets").json()["items"][0]["longitude_deg"] == -7.25
+    assert names(client) == ["other", "wtg"] and made == [("other",)]
+    refused = client.put("/api/v1/assets/wtg/position", json={"latitude_deg": 91.0, "longitude_deg": 0.0})
+    assert (refused.status_code, refused.json()["field"]) == (422, "latitude_deg")
+
+
 def test_files_and_the_command_line_are_refused_too(
     client: TestClient, service: Service, tmp_path: Path
 ) -> None:

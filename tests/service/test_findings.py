@@ -47,7 +47,9 @@ class Desk:
         return dict(answer.json())
 
     def status(self) -> str:
-        return str(self.client.get("/api/v1/assets/wtg").json()["status"])
+        (listed,) = self.client.get("/api/v1/assets").json()["items"]
+        assert listed == self.client.get("/api/v1/assets/wtg").json()  # the list renews what changed
+        return str(listed["status"])
 
 
 @pytest.fixture

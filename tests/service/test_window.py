@@ -382,6 +382,38 @@ def test_a_parameter_is_moved_by_keyboard_and_the_modes_follow(opened: Open) -> 
     page.context.close()
 
 
+def test_a_thousand_turbines_are_on_a_map_and_those_that_need_somebody_come_first(opened: Open) -> None:
+    (like,) = httpx.get(f"{opened.url}/api/v1/assets").json()["items"]
+    words = {"alarm": "a change since May", "warning": "records: 1 refused", "ok": ""}
+
+    def turbine(k: int) -> dict[str, object]:
+        status = {7: "alarm", 8: "warning"}.get(k % 100, "ok")
+        own = {
+            "name": f"t{k:03d}",
+            "status": status,
+            "reason": words[status],
+            "open_alarms": int(k % 100 == 7),
+        }
+        at = {"latitude_deg": 55.0 + 0.009 * (k // 32), "longitude_deg": 7.5 + 0.016 * (k % 32)}
+        return {**like, **own, **(at if k < 990 else {})}
+
+    page = opened.page("/jobs")
+    answer = {"items": [turbine(k) for k in range(1000)], "next_cursor": None}
+    page.route("**/api/v1/assets", lambda route: route.fulfill(json=answer))
+    opened.goto(page, "/")
+    expect(page.locator(".map a")).to_have_count(1000)
+    expect(page.locator(".map")).to_contain_text("10 without a position")
+    low, high = (page.locator(f".map a[href$='/t{k}']").bounding_box() for k in ("032", "960"))
+    assert low and high and low["y"] > high["y"]  # north is up
+    rows = page.locator("tbody tr")
+    expect(rows).to_have_count(100)
+    expect(rows.first).to_contain_text("t007")
+    expect(rows.nth(10)).to_contain_text("records: 1 refused")
+    page.get_by_role("button", name="Show all 1000").click()
+    expect(rows).to_have_count(1000)
+    assert serious(page) == [] and opened.said == []
+
+
 def test_what_there_is_not_says_so(opened: Open) -> None:
     opened.said.clear()
     page = opened.page("/")

@@ -3,6 +3,8 @@ import { signal } from "@preact/signals";
 
 const KINDS = ["record", "observation", "state", "finding", "asset", "job"] as const;
 const REST_MS = 800;
+/** A farm tells something every moment; a list of all turbines is asked for again after this time. */
+const REST_ALL_MS = 3000;
 
 export type Connection = "connecting" | "live" | "lost";
 export const connection = signal<Connection>("connecting");
@@ -13,13 +15,18 @@ let source: EventSource | null = null;
 let pending = new Set<string>();
 let timer: ReturnType<typeof setTimeout> | undefined;
 
+let told = 0;
+
 function note(assets: Iterable<string>): void {
-  for (const asset of assets) pending.add(asset);
+  for (const asset of [...assets, ""]) pending.add(asset);
   timer ??= setTimeout(() => {
-    const counts = { ...happened.value };
-    for (const asset of [...pending, ""]) counts[asset] = (counts[asset] ?? 0) + 1;
-    pending = new Set();
     timer = undefined;
+    const all = Date.now() - told >= REST_ALL_MS;
+    const counts = { ...happened.value };
+    for (const asset of pending) if (asset || all) counts[asset] = (counts[asset] ?? 0) + 1;
+    pending = new Set();
+    if (all) told = Date.now();
+    else note([]);
     happened.value = counts;
   }, REST_MS);
 }

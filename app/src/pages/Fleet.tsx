@@ -5,26 +5,43 @@ import { Ago, Choice, Light } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import { type Column, number, Table } from "../parts/Table";
 import { asked, assetUrl, keep } from "../shell/place";
-import { count } from "../words/numbers";
+import { Map_ } from "../parts/Map";
+import { count, quantity } from "../words/numbers";
 
 const URGENT = ["alarm", "warning", "no data", "ok"];
 const some = (asset: Asset, ...statuses: string[]): number =>
   statuses.reduce((sum, status) => sum + (asset.records[status] ?? 0), 0);
 
 const COLUMNS: Column<Asset>[] = [
-  { title: "Status", show: (a) => <Light status={a.status} />, by: (a) => URGENT.indexOf(a.status) },
+  {
+    title: "Status",
+    show: (a) => <Light status={a.status} />,
+    by: (a) => URGENT.indexOf(a.status) - Math.min(a.open_alarms, 999) / 1000,
+  },
   { title: "Turbine", show: (a) => <a href={assetUrl(a.name)}>{a.name}</a>, by: (a) => a.name },
+  {
+    title: "Why",
+    show: (a) =>
+      a.reason && (
+        <a class="prose" href={assetUrl(a.name, a.open_alarms ? "alarms" : "records")}>
+          {a.reason}
+        </a>
+      ),
+  },
+  number("Open", "alarms", (a) => a.open_alarms),
   {
     title: "Last data",
     show: (a) => (a.last_record_utc ? <Ago at={a.last_record_utc} /> : "none yet"),
     by: (a) => a.last_record_utc,
   },
-  number("Observed", "records", (a) => some(a, "observed")),
+  number(
+    "Life",
+    "years",
+    (a) => a.life_years,
+    (years) => (years > 1000 ? "> 1000" : quantity(years, "")),
+  ),
+  number("Records", "observed", (a) => some(a, "observed")),
   number("Waiting", "records", (a) => some(a, "received", "observing")),
-  number("Left out", "records", (a) => some(a, "refused", "mismatched", "set_aside")),
-  number("Alarms", "in all", (a) => a.findings["alarm"] ?? 0),
-  number("Warnings", "in all", (a) => a.findings["warning"] ?? 0),
-  number("Model", "version", (a) => a.version),
 ];
 
 function Nothing() {
@@ -63,6 +80,7 @@ export function Fleet() {
           );
           return (
             <section class="card" aria-label="All turbines">
+              {data.items.length > 1 && <Map_ assets={data.items} />}
               <div class="tools">
                 <Choice
                   label="Status"
@@ -79,7 +97,14 @@ export function Fleet() {
                 />
               </div>
               {rows.length ? (
-                <Table label="Turbines" columns={COLUMNS} rows={rows} id={(a) => a.name} sorted={0} />
+                <Table
+                  label="Turbines"
+                  columns={COLUMNS}
+                  rows={rows}
+                  id={(a) => a.name}
+                  sorted={0}
+                  most={100}
+                />
               ) : (
                 <Empty title="No turbine fits">
                   <button type="button" onClick={() => keep({ status: null, find: null })}>

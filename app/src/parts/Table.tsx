@@ -33,6 +33,8 @@ interface TableProps<T> {
   sorted?: number;
   descending?: boolean;
   mark?: (row: T) => string;
+  /** Rows that are shown until all are asked for. */
+  most?: number;
 }
 
 /** Columns from which on a phone shows each row as a card. */
@@ -46,10 +48,12 @@ function compared(a: string | number | null, b: string | number | null): number 
 
 export function Table<T>(props: TableProps<T>) {
   const [order, setOrder] = useState({ column: props.sorted ?? -1, down: props.descending ?? false });
+  const [most, setMost] = useState(props.most ?? Infinity);
   const by = props.columns[order.column]?.by;
-  const rows = by
+  const sorted = by
     ? props.rows.toSorted((a, b) => compared(by(a), by(b)) * (order.down ? -1 : 1))
     : props.rows;
+  const rows = sorted.slice(0, most);
   const sort = (column: number): void =>
     setOrder((old) => ({ column, down: old.column === column && !old.down }));
   return (
@@ -93,6 +97,11 @@ export function Table<T>(props: TableProps<T>) {
           ))}
         </tbody>
       </table>
+      {rows.length < sorted.length && (
+        <button type="button" onClick={() => setMost(Infinity)}>
+          Show all {sorted.length}
+        </button>
+      )}
     </div>
   );
 }

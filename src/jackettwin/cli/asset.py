@@ -130,6 +130,25 @@ def group(group: str, assets: tuple[str, ...], at: StorePlace) -> Reply:
     return Reply({"group": group, "assets": members}, lambda: say(subject))
 
 
+@asset_command.command("place")
+@click.argument("name")
+@click.argument("latitude_deg", type=click.FloatRange(-90.0, 90.0))
+@click.argument("longitude_deg", type=click.FloatRange(-180.0, 180.0))
+@answers
+@store_options
+def place(name: str, latitude_deg: float, longitude_deg: float, at: StorePlace) -> Reply:
+    """Set where the turbine NAME stands, for the map: LATITUDE_DEG and LONGITUDE_DEG (WGS 84).
+
+    Negative numbers follow a `--`.
+    """
+    engine = at.open()
+    from jackettwin.service import place_asset
+
+    place_asset(engine, at.folder, name, latitude_deg, longitude_deg)
+    said = {"asset": name, "latitude_deg": latitude_deg, "longitude_deg": longitude_deg}
+    return Reply(said, lambda: say(f"{name} stands at {latitude_deg:g}, {longitude_deg:g}"))
+
+
 @asset_command.command("archive")
 @click.argument("name")
 @click.option("--undo", is_flag=True, help="Bring it back.")

@@ -11,6 +11,7 @@ from .store_commands import (
     add_twin as add_twin,
     adopt_version as adopt_version,
     archive_asset as archive_asset,
+    place_asset as place_asset,
     rebuild as rebuild,
     take_here as take_here,
 )

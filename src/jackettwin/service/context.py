@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from sqlalchemy import Engine
 
@@ -17,6 +18,7 @@ from jackettwin.service import workers
 from jackettwin.service.answer_cache import AnswerCache
 from jackettwin.service.day_cache import DayCache
 from jackettwin.service.event_feed import Feed
+from jackettwin.service.fleet_cache import FleetCache
 from jackettwin.service.latency import Latency
 from jackettwin.service.login_attempts import LoginAttempts
 from jackettwin.service.settings import ServiceSettings
@@ -48,6 +50,7 @@ class Service:
     login_attempts: LoginAttempts = field(default_factory=LoginAttempts)
     days: DayCache = field(default_factory=DayCache)
     answers: AnswerCache = field(default_factory=AnswerCache)
+    fleet: FleetCache[Any] = field(default_factory=FleetCache)
     latency: Latency = field(default_factory=Latency)
     periodic: list[Callable[[], None]] = field(default_factory=list)
     wake: Callable[[], None] = lambda: None

@@ -15,8 +15,8 @@ from jackettwin.store import assets, results
 if TYPE_CHECKING:
     pass
 
-_MOST = 256
-"""Number of turbines in the cache, of some kilobytes each."""
+_MOST = 2048
+"""Number of turbines in the cache, of some kilobytes each: more than a farm has."""
 
 Hashes = tuple[tuple[str, str], ...]
 

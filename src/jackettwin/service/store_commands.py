@@ -15,7 +15,8 @@ from jackettwin.service.context import OpenStore
 from jackettwin.service.intake.bundles import bundle
 from jackettwin.service.intake.files import Accepted, take_file
 from jackettwin.service.settings import read_settings
-from jackettwin.service.web.catalogue import add_version, adopt, archive
+from jackettwin.service.web.catalogue import add_version, adopt, archive, place
+from jackettwin.service.web.schemas.assets import Position
 from jackettwin.service.work import consequences
 from jackettwin.service.work.conditions import add_conditions as keep_conditions
 from jackettwin.service.workers.condition_tables import read_table
@@ -72,6 +73,19 @@ def archive_asset(database: Engine, store: Path, name: str, *, undo: bool = Fals
     """
     with writing(database) as connection:
         archive(connection, _opened(database, store), name, "command line", undo=undo)
+
+
+def place_asset(database: Engine, store: Path, name: str, latitude_deg: float, longitude_deg: float) -> None:
+    """Set the position of an asset (WGS 84).
+
+    Raises
+    ------
+    InputError
+        If there is no such asset.
+    """
+    at = Position(latitude_deg=latitude_deg, longitude_deg=longitude_deg)
+    with writing(database) as connection:
+        place(connection, _opened(database, store), name, at, "command line")
 
 
 def take_here(database: Engine, store: Path, asset: str, path: Path) -> Accepted:

@@ -119,6 +119,13 @@ def adopt(connection: Connection, name: str, version: int) -> None:
     connection.execute(update(assets).where(assets.c.name == name).values(adopted_version=version))
 
 
+def place(connection: Connection, name: str, latitude_deg: float, longitude_deg: float) -> None:
+    """Set the position of an asset (WGS 84)."""
+    found_version(connection, name)
+    at = {"latitude_deg": latitude_deg, "longitude_deg": longitude_deg}
+    connection.execute(update(assets).where(assets.c.name == name).values(**at))
+
+
 def archive(connection: Connection, name: str, at: datetime | None) -> None:
     """Archive an asset from a time on; None restores it."""
     found_version(connection, name)
@@ -138,7 +145,7 @@ def asset_names(connection: Connection, *, archived: bool = True) -> list[str]:
 
 @dataclass(frozen=True)
 class Summary:
-    """An asset, its adopted version and the comment on it, its latest record, and the time of archiving."""
+    """An asset, its adopted version and the comment on it, its latest record, archiving and position."""
 
     name: str
     version: int
@@ -147,6 +154,8 @@ class Summary:
     last_record_utc: datetime | None
     archived_utc: datetime | None
     comment: str
+    latitude_deg: float | None
+    longitude_deg: float | None
 
 
 def summaries(connection: Connection, name: str | None = None, *, archived: bool = False) -> list[Summary]:
@@ -163,6 +172,8 @@ def summaries(connection: Connection, name: str | None = None, *, archived: bool
         last.correlate(assets).scalar_subquery().label("last_record_utc"),
         assets.c.archived_utc,
         versions.c.comment,
+        assets.c.latitude_deg,
+        assets.c.longitude_deg,
     ).join(versions, adopted)
     of = assets.c.archived_utc.is_not(None) if archived else assets.c.archived_utc.is_(None)
     query = query.where(of if name is None else assets.c.name == name)

@@ -44,6 +44,11 @@ def events_after(connection: Connection, last: int, limit: int = 500) -> list[Ev
     return [Event(**row._mapping) for row in rows]
 
 
+def assets_after(connection: Connection, last: int) -> set[str]:
+    """Return the assets with events after a number."""
+    return set(connection.scalars(select(events.c.asset).where(events.c.id > last).distinct()))
+
+
 def last_event(connection: Connection, asset: str | None = None) -> int:
     """Return the number of the newest event, of all assets or of one, 0 before the first."""
     query = select(func.max(events.c.id))

@@ -328,17 +328,26 @@ def _of_version(asset: str, version: int) -> tuple[ColumnElement[bool], ...]:
     return knowledge.c.asset == asset, knowledge.c.version == version
 
 
-def open_alarms(connection: Connection, asset: str | None = None) -> dict[str, int]:
-    """Return the number of open alarms of the adopted versions, {asset: number}.
+def open_alarms(connection: Connection, asset: str | None = None) -> dict[str, list[str]]:
+    """Return the sentences of the open alarms of the adopted versions, oldest first, {asset: sentences}.
 
     Muted, acknowledged and closed alarms are not open.
     """
-    columns = (findings.c.asset, findings.c.day, findings.c.code, findings.c.subject)
+    columns = (findings.c.asset, findings.c.day, findings.c.code, findings.c.subject, findings.c.text)
     query = _adopted(select(*columns), asset).where(findings.c.severity == "alarm")
-    handled, counts = handling.handled(connection, asset), dict[str, int]()
-    for row in _rows(connection, query):
-        counts[row["asset"]] = counts.get(row["asset"], 0) + handled.standing(row).open
-    return counts
+    handled, found = handling.handled(connection, asset), dict[str, list[str]]()
+    for row in _rows(connection, query.order_by(findings.c.time_utc, findings.c.id)):
+        found.setdefault(row["asset"], []).extend([row["text"]] * handled.standing(row).open)
+    return found
+
+
+def shortest_lives(connection: Connection, asset: str | None = None) -> dict[str, float]:
+    """Return the median life [years] of the weld that fails first, {asset: years}, where it is known."""
+    years = knowledge.c.document["life"][0]["life_years"]
+    known = (knowledge.c.asset == assets.c.name) & (knowledge.c.version == assets.c.adopted_version)
+    query = select(assets.c.name, years).join(knowledge, known)
+    query = query if asset is None else query.where(assets.c.name == asset)
+    return {name: float(found) for name, found in connection.execute(query) if found is not None}
 
 
 def find_finding(connection: Connection, finding_id: int) -> Mapping[str, Any] | None:

@@ -88,6 +88,8 @@ assets = Table(
     Column("created_utc", Utc, nullable=False),
     Column("adopted_version", Integer, nullable=False),
     Column("archived_utc", Utc, nullable=True),
+    Column("latitude_deg", Float),
+    Column("longitude_deg", Float),
 )
 
 versions = Table(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import Connection
 
@@ -14,12 +14,13 @@ from jackettwin.files import parse_yaml, with_key
 from jackettwin.service import workers
 from jackettwin.service.intake.examination import examined
 from jackettwin.service.web.problems import ApiError
-from jackettwin.service.web.schemas.assets import AssetOut, VersionOut
+from jackettwin.service.web.schemas.assets import AssetOut, Position, VersionOut
 from jackettwin.service.work.consequences import ask_known
 from jackettwin.store import assets, journal, people, reading, records, results, rights, work, writing
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Place
+    from jackettwin.service.fleet_cache import FleetCache
 
 _PART = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,99}")
 """Pattern of a part of a file's path, which keeps paths within their folder."""
@@ -158,6 +159,19 @@ def adopt(connection: Connection, service: Place, name: str, version: int, by: s
     journal.tell(connection, "asset", name, {"version": version, "adopted": True}, service.now())
 
 
+def place(connection: Connection, service: Place, name: str, at: Position, by: str) -> None:
+    """Set the position of an asset.
+
+    Raises
+    ------
+    InputError
+        If there is no such asset.
+    """
+    assets.place(connection, name, **at.model_dump())
+    people.note_down(connection, by, "position", name, "ok", service.now())
+    journal.tell(connection, "asset", name, at.model_dump(), service.now())
+
+
 def archive(connection: Connection, service: Place, name: str, by: str, *, undo: bool = False) -> None:
     """Archive an asset, or undo this. It accepts no more records; its results remain available.
 
@@ -186,12 +200,28 @@ def overview(
     The number of queries does not depend on the number of assets.
     """
     counts, said = records.count_by_status(connection, name), results.count_findings(connection, name)
-    unseen = results.open_alarms(connection, name)
+    unseen, lives = results.open_alarms(connection, name), results.shortest_lives(connection, name)
     return [
-        _asset_out(row, counts.get(row.name, {}), said.get(row.name, {}), unseen.get(row.name, 0))
+        AssetOut(
+            **vars(row),
+            **_status(row, counts.get(row.name, {}), unseen.get(row.name, [])),
+            records=counts.get(row.name, {}),
+            findings=said.get(row.name, {}),
+            life_years=lives.get(row.name),
+        )
         for row in assets.summaries(connection, name, archived=archived)
         if seen is None or row.name in seen
     ]
+
+
+def fleet(connection: Connection, cache: FleetCache[AssetOut], seen: rights.Assets = None) -> list[AssetOut]:
+    """Return the visible living assets as :func:`overview` does, renewing only rows of what changed."""
+
+    def make(name: str | None) -> dict[str, AssetOut]:
+        return {row.name: row for row in overview(connection, name) if row.archived_utc is None}
+
+    rows = cache.rows(connection, make)
+    return [row for row in rows.values() if seen is None or row.name in seen]
 
 
 def one(connection: Connection, name: str) -> AssetOut:
@@ -217,12 +247,14 @@ def version_out(connection: Connection, version: assets.Version) -> VersionOut:
     return next(v for v in versions_out(connection, version.asset) if v.version == version.version)
 
 
-def _asset_out(row: assets.Summary, counts: dict[str, int], said: dict[str, int], unseen: int) -> AssetOut:
-    if row.last_record_utc is None:
-        status = "no data"
-    elif unseen:
-        status = "alarm"
-    else:
-        left_out = any(counts.get(status) for status in ("set_aside", "refused", "mismatched"))
-        status = "warning" if left_out else "ok"
-    return AssetOut(**vars(row), records=counts, findings=said, status=status)  # type: ignore[arg-type]
+_LEFT_OUT = {"refused": "refused", "mismatched": "of another structure", "set_aside": "set aside"}
+"""What is said of records by their status, if there are any."""
+
+
+def _status(row: assets.Summary, counts: dict[str, int], unseen: list[str]) -> dict[str, Any]:
+    """Return what the light of a turbine shows, and why: the newest open alarm, or records left out."""
+    left_out = [f"{counts[status]} {words}" for status, words in _LEFT_OUT.items() if counts.get(status)]
+    status = "alarm" if unseen else "warning" if left_out else "ok"
+    status = "no data" if row.last_record_utc is None else status
+    reasons = {"alarm": unseen[-1:], "warning": [f"records: {', '.join(left_out)}"]}.get(status, [])
+    return {"status": status, "open_alarms": len(unseen), "reason": "".join(reasons)}

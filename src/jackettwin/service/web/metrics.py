@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable
 from datetime import datetime
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from prometheus_client import (
     CollectorRegistry,
@@ -13,18 +13,18 @@ from prometheus_client import (
     disable_created_metrics,
     generate_latest,
 )
-from sqlalchemy import Connection
 from sqlalchemy.exc import SQLAlchemyError
 
+from jackettwin.service.web import catalogue
+from jackettwin.service.web.schemas.assets import AssetOut
 from jackettwin.service.web.schemas.server import Ready
 from jackettwin.service.workers.failures import ROOM_BYTES
-from jackettwin.store import alerts, assets, reading, records, results, rights, work
+from jackettwin.store import alerts, reading, rights, work
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Service
 
 
-T = TypeVar("T")
 LATE_S = 3600.0
 """Waiting time after which records are late; meanwhile each turbine sends six more."""
 
@@ -91,7 +91,9 @@ def exposition(service: Service, seen: rights.Assets = None) -> bytes:
     measures, now = _Measures(), service.now()
     gauge, counter = measures.gauge, measures.counter
     with reading(service.database) as connection:
-        _measure_assets(measures, connection, seen, now)
+        for state, n in work.queue_sizes(connection, seen).items():
+            gauge("work", "Jobs by state", n, state=state)
+        _measure_assets(measures, catalogue.fleet(connection, service.fleet, seen), now)
         oldest = work.oldest_queued(connection)
         alerted = {} if seen is not None else alerts.count(connection)
     waited = 0.0 if oldest is None else max((now - oldest).total_seconds(), 0.0)
@@ -109,24 +111,15 @@ def exposition(service: Service, seen: rights.Assets = None) -> bytes:
     return generate_latest(measures.registry) + generate_latest(service.latency.registry)
 
 
-def _measure_assets(measures: _Measures, connection: Connection, seen: rights.Assets, now: datetime) -> None:
+def _measure_assets(measures: _Measures, fleet: Iterable[AssetOut], now: datetime) -> None:
     gauge = measures.gauge
-    for state, n in work.queue_sizes(connection, seen).items():
-        gauge("work", "Jobs by state", n, state=state)
-    for name, counts in _seen(records.count_by_status(connection), seen):
-        for status, n in counts.items():
+    for asset in fleet:
+        name = asset.name
+        for status, n in asset.records.items():
             gauge("records", "Records by asset and status", n, asset=name, status=status)
-    for name, said in _seen(results.count_findings(connection), seen):
-        for severity, n in said.items():
+        for severity, n in asset.findings.items():
             gauge("findings", "Findings by asset and severity", n, asset=name, severity=severity)
-    for name, n in _seen(results.open_alarms(connection), seen):
-        gauge("alarms_open", "Alarms that nobody acknowledged", n, asset=name)
-    for name, last in _seen({a.name: a.last_record_utc for a in assets.summaries(connection)}, seen):
-        if last is not None:
-            age = (now - last).total_seconds()
+        gauge("alarms_open", "Alarms that nobody acknowledged", asset.open_alarms, asset=name)
+        if asset.last_record_utc is not None:
+            age = (now - asset.last_record_utc).total_seconds()
             gauge("last_record_age_seconds", "Time since the latest record began", age, asset=name)
-
-
-def _seen(of: Mapping[str, T], seen: rights.Assets) -> list[tuple[str, T]]:
-    """Return the entries of the visible assets."""
-    return [(name, value) for name, value in of.items() if seen is None or name in seen]

@@ -6,6 +6,7 @@ from functools import partial
 from typing import Annotated
 
 from fastapi import APIRouter, File, Form, Path, Query, UploadFile
+from fastapi.responses import Response
 from sqlalchemy import Connection
 
 from jackettwin.service.web import auth, catalogue, uploads
@@ -27,6 +28,7 @@ from jackettwin.service.web.schemas.assets import (
     ConditionsIn,
     NewAsset,
     NewVersion,
+    Position,
     Taken,
     VersionOut,
 )
@@ -37,10 +39,20 @@ from jackettwin.store import assets, reading
 router = APIRouter(tags=["assets"], route_class=Route)
 
 
-@router.get("/assets", dependencies=[auth.VIEWER], responses=answers(401, 422))
-def list_assets(who: Asker, connection: ReadsAtVersion, archived: bool = False) -> Page[AssetOut]:
+@router.get(
+    "/assets",
+    response_model=Page[AssetOut],
+    dependencies=[auth.VIEWER],
+    responses=answers(401, 422),
+)
+def list_assets(who: Asker, parts: Parts, connection: ReadsAtVersion, archived: bool = False) -> Response:
     """List the assets, or the archived ones, with status, last data and findings."""
-    return Page(items=catalogue.overview(connection, archived=archived, seen=who.assets))
+    if archived:
+        rows = catalogue.overview(connection, archived=True, seen=who.assets)
+    else:
+        rows = catalogue.fleet(connection, parts.fleet, seen=who.assets)
+    # written here: FastAPI would check a thousand rows once more
+    return Response(Page(items=rows).model_dump_json(), media_type="application/json")
 
 
 @router.post(
@@ -108,6 +120,16 @@ def put_asset(asset: AssetName, body: NewVersion, who: Asker, parts: Parts) -> V
     version = catalogue.add_text_version(parts, asset, *given, if_fit=partial(living_asset, name=asset))
     with reading(parts.database) as connection:
         return catalogue.version_out(connection, version)
+
+
+@router.put(
+    "/assets/{asset}/position", dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 404, 422)
+)
+def put_position(asset: AssetName, body: Position, who: Asker, parts: Parts, connection: Writes) -> AssetOut:
+    """Set where an asset stands, for the map."""
+    known_asset(connection, asset)
+    catalogue.place(connection, parts, asset, body, who.name)
+    return catalogue.one(connection, asset)
 
 
 @router.get("/assets/{asset}/versions", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))

@@ -26,6 +26,18 @@ class AssetOut(BaseModel):
     records: dict[str, int] = Field(description="Number of records by status.")
     findings: dict[str, int] = Field(description="Number of findings by severity.")
     status: Literal["ok", "warning", "alarm", "no data"]
+    open_alarms: int = Field(description="Number of alarms that nobody has acknowledged, muted or closed.")
+    reason: str = Field(description="Why somebody should look; empty if nobody need.")
+    life_years: float | None = Field(description="Median life of the weld that fails first, if known.")
+    latitude_deg: float | None = None
+    longitude_deg: float | None = None
+
+
+class Position(BaseModel):
+    """Where a turbine stands (WGS 84)."""
+
+    latitude_deg: float = Field(ge=-90.0, le=90.0)
+    longitude_deg: float = Field(ge=-180.0, le=180.0)
 
 
 class NewVersion(BaseModel):

@@ -1,4 +1,4 @@
-"""Rights by asset, findings that people deal with, alerts, shared posts of servers, observations in columns."""
+"""Rights by asset, positions, findings that people deal with, alerts, shared posts of servers, observations in columns."""
 
 import hashlib
 
@@ -17,6 +17,8 @@ def upgrade() -> None:
         users.add_column(sa.Column("scope", sa.JSON()))
         users.add_column(sa.Column("expires_utc", sa.DateTime()))
         users.add_column(sa.Column("password_utc", sa.DateTime()))
+    op.add_column("assets", sa.Column("latitude_deg", sa.Float()))
+    op.add_column("assets", sa.Column("longitude_deg", sa.Float()))
     op.create_table(
         "asset_groups",
         sa.Column("name", sa.String(64), primary_key=True),
@@ -99,6 +101,9 @@ def downgrade() -> None:
     with op.batch_alter_table("users") as users:
         for column in ("scope", "expires_utc", "password_utc"):
             users.drop_column(column)
+    with op.batch_alter_table("assets") as assets:
+        assets.drop_column("latitude_deg")
+        assets.drop_column("longitude_deg")
     if op.get_bind().dialect.name == "postgresql":
         op.execute("alter table observations alter document type text using ''")
     else:
