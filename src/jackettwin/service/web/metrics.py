@@ -119,7 +119,7 @@ def _measure_assets(measures: _Measures, fleet: Iterable[AssetOut], now: datetim
             gauge("records", "Records by asset and status", n, asset=name, status=status)
         for severity, n in asset.findings.items():
             gauge("findings", "Findings by asset and severity", n, asset=name, severity=severity)
-        gauge("alarms_open", "Alarms that nobody acknowledged", asset.open_alarms, asset=name)
+        gauge("alarms_open", "Open alarms", asset.open_alarms, asset=name)
         if asset.last_record_utc is not None:
             age = (now - asset.last_record_utc).total_seconds()
             gauge("last_record_age_seconds", "Time since the latest record began", age, asset=name)
