@@ -26,6 +26,7 @@ from .laws.coefficients import (
 )
 from .laws.curves import LawCurves as LawCurves, law_curves as law_curves
 from .laws.families import (
+    ABSENT as ABSENT,
     DEFAULT_LAWS as DEFAULT_LAWS,
     SERIES as SERIES,
     Family as Family,

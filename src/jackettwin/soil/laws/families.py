@@ -10,6 +10,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
+from itertools import product
 from math import pi
 from typing import ClassVar
 
@@ -39,6 +40,8 @@ _K = (1e7, 1e14, "N/m")
 _C = (1e4, 1e14, "N·s/m")
 _APART = 2.0
 """Branches nearer than this factor in time cannot be told apart."""
+ABSENT = 1e-10
+"""Relative stiffness of a branch that is not there: a hundredth of the relative error of poles."""
 
 
 class Family(ABC):
@@ -109,9 +112,19 @@ class Family(ABC):
         ----------
         values : (n_parameters,)
         omitted : tuple of int
-            Some of ``omissible``. Their number of last parts get no stiffness at all, whatever is returned.
+            Some of ``omissible``.
         """
         return values
+
+    def between(self, start: FloatArray, end: FloatArray, shares: FloatArray) -> FloatArray:
+        """Return laws on a way from one to another, (n, n_parameters), on which data hardly change.
+
+        Parameters
+        ----------
+        start, end : (n_parameters,)
+        shares : (n,) between 0 and 1
+        """
+        return np.asarray(start ** (1.0 - shares[:, None]) * end ** shares[:, None])
 
     def __reduce__(self) -> tuple[Callable[[str], Family], tuple[str]]:
         """A law crosses processes by its name: every process has the same laws."""
@@ -255,18 +268,57 @@ class FreeBranches(Family):
 
     def without(self, values: FloatArray, omitted: tuple[int, ...]) -> FloatArray:
         """Return the law without some branches: those left first, with the same times."""
-        g, tau = values[1::2], values[2] / np.cumprod([1.0, *values[4::2]])
         left = [j for j, stiffness in enumerate(self.omissible) if stiffness not in omitted]
-        times, shorter = tau[left], np.full(values.shape, _APART)
-        shorter[0], shorter[1 : 1 + 2 * len(left) : 2] = values[0], g[left]
-        shorter[2 : 3 + 2 * len(left) : 2][: len(left)] = [*times[:1], *(times[:-1] / times[1:])]
-        return shorter
+        tau = values[2] / np.cumprod([1.0, *values[4::2]])
+        return self._series(values[0], values[1::2][left], tau[left])
+
+    def between(self, start: FloatArray, end: FloatArray, shares: FloatArray) -> FloatArray:
+        """Return mixtures of both laws, whose stiffness is linear in the share at every frequency.
+
+        Where both have more branches together than this law, those nearest in time are one whose time moves.
+        """
+        ways = np.array(_paired(_branches(start), _branches(end), len(self.omissible)))
+        mixed = np.stack([1.0 - shares, shares], axis=1)
+        k0 = mixed @ np.array([start[0], end[0]])
+        g, tau = mixed @ ways[:, :, 1].T / k0[:, None], np.exp(mixed @ np.log(ways[:, :, 0]).T)
+        return np.array([self._series(*law) for law in zip(k0, g, tau, strict=True)])
+
+    def _series(self, k0: float, g: FloatArray, tau: FloatArray) -> FloatArray:
+        """Return the parameters of the law with these branches; others come last, without stiffness."""
+        order, n = np.argsort(-tau), len(tau)
+        values = np.full(len(self.parameters), _APART)
+        values[0], values[1::2] = k0, ABSENT
+        values[1 : 1 + 2 * n : 2] = np.maximum(g[order], ABSENT)
+        values[2 : 2 + 2 * n : 2] = [*tau[order[:1]], *(tau[order[:-1]] / tau[order[1:]])]
+        return values
 
     def priors(self, reference_hz: float) -> Mapping[str, tuple[float, float]]:
         """Return priors about a loss factor of 0.1 that frequency hardly changes."""
         times, g = maxwell_3_times(reference_hz), float(np.mean(MAXWELL_3_WEIGHTS))
         about = {"g": (g, 1.0), "tau": (float(times[0]), 1.0), "spacing": (float(times[0] / times[1]), 0.7)}
         return {name: about[name.rstrip("0123456789")] for name in self.names[1:]}
+
+
+def _branches(values: FloatArray) -> list[tuple[float, float]]:
+    """Return the time and stiffness of each branch of a series that has any."""
+    tau = values[2] / np.cumprod([1.0, *values[4::2]])
+    return [(t, values[0] * g) for t, g in zip(tau, values[1::2], strict=True) if g > 2.0 * ABSENT]
+
+
+def _paired(
+    first: list[tuple[float, float]], second: list[tuple[float, float]], most: int
+) -> list[tuple[tuple[float, float], tuple[float, float]]]:
+    """Return each branch at both ends of a way, without stiffness where the other law has none to pair."""
+    pairs = []
+    while first and second:
+        a, b = min(product(first, second), key=lambda pair: abs(np.log(pair[0][0] / pair[1][0])))
+        apart = max(a[0] / b[0], b[0] / a[0]) >= _APART
+        if apart and len(pairs) + len(first) + len(second) <= most:
+            break
+        pairs.append((a, b))
+        first.remove(a)
+        second.remove(b)
+    return [*pairs, *((a, (a[0], 0.0)) for a in first), *(((b[0], 0.0), b) for b in second)]
 
 
 @cache

@@ -3,8 +3,8 @@
 If the data need fewer branches than a law has, the cost has a valley with many arms, since a redundant branch
 may have any relaxation time. Walks along single parameters do not lead from one arm into the next. All arms
 meet where the branch has no stiffness. Hence each end point is moved there, weakest branch first, while the
-cost does not rise. Two end points are one solution if the cost does not rise between what is left of them
-either: weak branches are known poorly, and their numbers may differ by more than searches resolve.
+cost does not rise. Two end points are one solution if the cost does not rise on the way of mixtures between
+what is left of them either: the poles are nearly linear in a law's stiffness, which is linear in the mixture.
 """
 
 from __future__ import annotations
@@ -12,13 +12,13 @@ from __future__ import annotations
 import numpy as np
 
 from jackettwin.arrays import FloatArray, IntArray
+from jackettwin.soil import ABSENT
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.search.damped import Rows, damped_least_squares
 from jackettwin.updating.search.descent import End
-from jackettwin.updating.search.path import Path, held_minimum, squares
+from jackettwin.updating.search.path import Path, held_minimum, minimum, squares
 
-_NOTHING = -23.0
-"""Logarithm of a negligible relative stiffness: 1e-10, a hundredth of the relative error of poles."""
+_NOTHING = float(np.log(ABSENT))
 _DEEP = 0.01
 """Share of the allowed increase of the cost to which the branches that are left are refitted at each step."""
 _SLOW = 1e-6
@@ -49,12 +49,22 @@ class ShorterLaws:
         return self._known[id(end)][1]
 
     def same(self, low: End, high: End) -> bool:
-        """Return whether both reduce to one law: the cost does not rise between what is left of them."""
-        start, end = self(low), self(high)
-        if start is None or end is None or ((start == _NOTHING) != (end == _NOTHING)).any():
+        """Return whether the cost rises nowhere on a way of mixtures between what is left of both."""
+        problem = self._path.problem
+        if not _separate(problem):
             return False
-        way = start + _BETWEEN[:, None] * (end - start)
-        return _level(self._path, way, high.cost + self._path.problem.allowance(high.cost))
+        start, end = (z if (z := self(of)) is not None else of.z for of in (low, high))
+        ceiling = high.cost + problem.allowance(high.cost)
+        way = _mixtures(problem, start, end)
+        return _level(self._path, way, ceiling) or all(self._bottom(z, ceiling) <= ceiling for z in way)
+
+    def _bottom(self, z: FloatArray, ceiling: float) -> float:
+        """Return the least cost with times as they are, or one that is low enough."""
+        problem = self._path.problem
+        stiff = [j for own in _columns(problem) for j in own[[0, *problem.model.family.omissible]]]
+        held = np.setdiff1d(np.arange(z.size), [j for j in stiff if z[j] >= problem.prior.low[j]])
+        there, _ = minimum(self._path, z, held=tuple(held), tolerance=_SLOW, enough=ceiling)
+        return self._path.total(there)
 
 
 def shorter_law(path: Path, end: End) -> FloatArray | None:
@@ -72,8 +82,8 @@ def shorter_law(path: Path, end: End) -> FloatArray | None:
     """
     problem, z = path.problem, end.z
     omissible = problem.model.family.omissible
-    if not omissible or problem.model.tie_groups.one_loss:
-        return None  # the law shares parameters between several stiffnesses
+    if not _separate(problem):
+        return None
     near = path.surrogate(z)
     if near is None:
         return None
@@ -96,6 +106,19 @@ def shorter_law(path: Path, end: End) -> FloatArray | None:
     prior = problem.prior
     bottom = damped_least_squares(near, z, prior.low, prior.high, held=gone, tolerance=_LAST)
     return _in_order(problem, bottom if path.total(bottom) <= ceiling else z, columns, gone)
+
+
+def _separate(problem: Problem) -> bool:
+    """Return whether the law has branches, and no parameters shared between several stiffnesses."""
+    return bool(problem.model.family.omissible) and not problem.model.tie_groups.one_loss
+
+
+def _mixtures(problem: Problem, start: FloatArray, end: FloatArray) -> FloatArray:
+    """Return points (n, d) on the way from one point to another on which the laws are mixtures."""
+    way = start + _BETWEEN[:, None] * (end - start)
+    for own in _columns(problem):
+        way[:, own] = np.log(problem.model.family.between(np.exp(start[own]), np.exp(end[own]), _BETWEEN))
+    return np.asarray(way)
 
 
 def _columns(problem: Problem) -> list[IntArray]:
@@ -147,5 +170,4 @@ def _in_order(problem: Problem, z: FloatArray, columns: list[IntArray], gone: tu
     for own in columns:
         omitted = tuple(i for i in family.omissible if own[i] in gone)
         z[own] = np.log(family.without(np.exp(z[own]), omitted))
-        z[own[list(family.omissible[len(family.omissible) - len(omitted) :])]] = _NOTHING
     return z
