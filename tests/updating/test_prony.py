@@ -213,6 +213,8 @@ def test_laws_between_two_are_their_mixtures(few: bool) -> None:
         np.testing.assert_allclose(half, [3.0, 1.0 / 3.0, 1.0, 0.75, 1.0 / np.sqrt(0.02 * 0.2)])
     else:
         np.testing.assert_allclose(mixed.stiffness(s), means, rtol=1e-9)
+        nothing = law.without(start, law.omissible)
+        np.testing.assert_allclose(law.between(nothing, nothing, np.array([0.5]))[0], nothing)
 
 
 def test_the_law_is_regularised_by_lognormal_priors_where_data_have_deviations(oc4: Assembly) -> None:

@@ -277,7 +277,7 @@ class FreeBranches(Family):
 
         Where both have more branches together than this law, those nearest in time are one whose time moves.
         """
-        ways = np.array(_paired(_branches(start), _branches(end), len(self.omissible)))
+        ways = np.reshape(_paired(_branches(start), _branches(end), len(self.omissible)), (-1, 2, 2))
         mixed = np.stack([1.0 - shares, shares], axis=1)
         k0 = mixed @ np.array([start[0], end[0]])
         g, tau = mixed @ ways[:, :, 1].T / k0[:, None], np.exp(mixed @ np.log(ways[:, :, 0]).T)
@@ -299,17 +299,19 @@ class FreeBranches(Family):
         return {name: about[name.rstrip("0123456789")] for name in self.names[1:]}
 
 
-def _branches(values: FloatArray) -> list[tuple[float, float]]:
-    """Return the time and stiffness of each branch of a series that has any."""
+_Branch = tuple[float, float]
+"""Relaxation time and stiffness."""
+
+
+def _branches(values: FloatArray) -> list[_Branch]:
+    """Return the branches of a series that have any stiffness."""
     tau = values[2] / np.cumprod([1.0, *values[4::2]])
     return [(t, values[0] * g) for t, g in zip(tau, values[1::2], strict=True) if g > 2.0 * ABSENT]
 
 
-def _paired(
-    first: list[tuple[float, float]], second: list[tuple[float, float]], most: int
-) -> list[tuple[tuple[float, float], tuple[float, float]]]:
+def _paired(first: list[_Branch], second: list[_Branch], most: int) -> list[tuple[_Branch, _Branch]]:
     """Return each branch at both ends of a way, without stiffness where the other law has none to pair."""
-    pairs = []
+    pairs: list[tuple[_Branch, _Branch]] = []
     while first and second:
         a, b = min(product(first, second), key=lambda pair: abs(np.log(pair[0][0] / pair[1][0])))
         apart = max(a[0] / b[0], b[0] / a[0]) >= _APART
