@@ -222,7 +222,7 @@ FAULTS = (
     )),
     *_of("updating/search", "tests/updating/test_prony.py", "tests/updating/test_solutions.py", rows=(
         ("a branch that the data need is left out", "return bool((path.problem.costs(points, path.last) <= ceiling).all())", "return True"),
-        ("laws with other branches left count as the same", "return _level(self._path, way, high.cost", "return True or _level(self._path, way, high.cost"),
+        ("laws with other branches left count as the same", "return _level(self._path, way, ceiling) or all(", "return True or all("),
     )),
     *_of("identification/decays", "tests/identification/decays/test_modes_of_decay.py", "tests/identification/decays/test_relaxations.py", rows=(
         ("close pairs of a decay are one mode", "if 1.0 - max(gains) < HALVED * (1.0 - alone) else []", "if False else []"),
