@@ -4,6 +4,12 @@ from .calculation_sheet import (
     joint_sheet as joint_sheet,
 )
 from .columns import StraightRun as StraightRun, columns as columns
+from .grouted import (
+    GroutedConnection as GroutedConnection,
+    GroutUse as GroutUse,
+    grout_uses as grout_uses,
+    read_grouted as read_grouted,
+)
 from .iso19902 import EDITIONS as EDITIONS
 from .iso19902_joints import IN_PLANE as IN_PLANE, KINDS as KINDS
 from .joint_check import (

@@ -15,7 +15,6 @@ _CLAUSES = (
     Omission("members: ring stiffeners", "ISO 19902 13.2.6"),
     Omission("members: junctions of cones", "ISO 19902 13.6"),
     Omission("dented, corroded and grouted members", "ISO 19902 13.7 to 13.9"),
-    Omission("grouted connections", "ISO 19902 15.1"),
     Omission("partial action factors: actions as given; --combinations FILE factors them", "ISO 19902 9"),
     Omission("ice: out of scope", "ISO 19906"),
     Omission("earthquakes: out of scope", "ISO 19901-2"),

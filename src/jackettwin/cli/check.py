@@ -14,11 +14,11 @@ from jackettwin.cli.check_document import check_document
 from jackettwin.cli.check_tables import show_check
 from jackettwin.cli.console import FiniteFloat, Reply, answers, numbers_of, working
 from jackettwin.cli.modes import pile_model_option, supported_option
-from jackettwin.errors import InputError, look_up
+from jackettwin.errors import InputError, look_up, require
 
 if TYPE_CHECKING:
     from jackettwin.arrays import FloatArray
-    from jackettwin.checks import DesignBasis, FrameUse, SheetLine, VortexUse
+    from jackettwin.checks import DesignBasis, FrameUse, GroutUse, SheetLine, VortexUse
     from jackettwin.response import System
     from jackettwin.soil import PileModel, PileUse
     from jackettwin.structure import Assembly
@@ -87,6 +87,11 @@ if TYPE_CHECKING:
     help="Partial factor on the axial capacity of piles: 1.5 under permanent and variable actions.",
 )
 @click.option(
+    "--grout",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="A YAML file of the grouted connections of piles with feet or sleeves, to be checked.",
+)
+@click.option(
     "--wind",
     type=FiniteFloat(0.0, 150.0),
     help="Mean wind speed [m/s] to screen members in air for vortex-induced vibrations.",
@@ -116,6 +121,7 @@ def check_command(
     flooded: tuple[str, ...],
     sheet: str | None,
     pile_resistance: float,
+    grout: Path | None,
     wind: float | None,
     current: float | None,
     subdivide: int | None,
@@ -152,7 +158,9 @@ def check_command(
             wind=wind,
             current=current,
         )
-        return _combined(combinations, structure, support, pile_model, subdivide, basis, pile_resistance)
+        return _combined(
+            combinations, structure, support, pile_model, subdivide, basis, pile_resistance, grout
+        )
     if (structure is None) == (scenario is None):
         raise InputError(
             "give a structure or --scenario", field="STRUCTURE", remedy="keep exactly one of them"
@@ -162,11 +170,16 @@ def check_command(
     if scenario is not None:
         at_rest = "belongs to a structure at rest"
         _refuse(at_rest, "leave it out: a scenario has its own water", still_water=still_water or None)
-        _refuse(at_rest, "name the structure", wind=wind, current=current, sheet=sheet)
+        _refuse(at_rest, "name the structure", wind=wind, current=current, sheet=sheet, grout=grout)
         chosen_scenario = read_scenario(scenario)
         use = scenario_uses(chosen_scenario, basis)
         stands = chosen_scenario.asset.structure
-        missing = (*left_out(stands), *_flows_left_out(None, None), *_piles_left_out(()))
+        missing = (
+            *left_out(stands),
+            *_flows_left_out(None, None),
+            *_piles_left_out(()),
+            *_grout_left_out(None),
+        )
         return _reply(chosen_scenario.name, use, water_notes(chosen_scenario), missing)
     assert structure is not None
     assembly = assemble(read_structure(structure), subdivide=subdivide)
@@ -184,7 +197,12 @@ def check_command(
     u = static_displacement(system, load)
     use = frame_use(assembly, u, basis, along=along, pressure=pressure)
     piles = _piles(support, pile_model, system, u, basis, pile_resistance)
-    missing = (*left_out(assembly.structure), *_flows_left_out(wind, current), *_piles_left_out(piles))
+    missing = (
+        *left_out(assembly.structure),
+        *_flows_left_out(wind, current),
+        *_piles_left_out(piles),
+        *_grout_left_out(grout),
+    )
     vortices: tuple[VortexUse, ...] = ()
     if wind is not None or current is not None:
         lowest = float(undamped_modes(system, 1).frequency_hz[0])
@@ -197,6 +215,7 @@ def check_command(
         [],
         missing,
         piles=piles,
+        grouted=_grouted(grout, system, u),
         vortices=vortices,
         sheet=_sheet(sheet, assembly, use, basis),
     )
@@ -217,6 +236,7 @@ def _combined(
     subdivide: int | None,
     basis: DesignBasis,
     resistance: float,
+    grout: Path | None,
 ) -> Reply:
     """Return the envelope of a file of combinations, with each one's own worst use."""
     from jackettwin.checks import left_out
@@ -235,6 +255,7 @@ def _combined(
     with working(f"combinations of {path.name}"):
         found = combined_uses(file, basis, system)
     piles: dict[str, PileUse] = {}
+    grouted: dict[str, GroutUse] = {}
     for case, u in found.at_rest.items():
         assert system is not None
         with working(f"piles in {case}"):
@@ -242,12 +263,28 @@ def _combined(
                 known = piles.get(one.foot)
                 if known is None or one.worst > known.worst:
                     piles[one.foot] = replace(one, case=case)
+        for use in _grouted(grout, system, u):
+            if use.foot not in grouted or use.utilisation > grouted[use.foot].utilisation:
+                grouted[use.foot] = replace(use, case=case)
     omissions = () if stands is None else left_out(stands)
     factored = [one for one in omissions if "partial action factors" not in one.what]
-    missing = (*factored, *_flows_left_out(None, None), *_piles_left_out(tuple(piles.values())))
-    if piles and len(found.at_rest) < len(found.each):
-        missing = (*missing, Omission("piles in combinations of scenarios", "ISO 19902 17"))
-    return _reply(name, found.envelope, [], missing, piles=tuple(piles.values()), combinations=found.each)
+    missing = (
+        *factored,
+        *_flows_left_out(None, None),
+        *_piles_left_out(tuple(piles.values())),
+        *_grout_left_out(grout),
+    )
+    if (piles or grouted) and len(found.at_rest) < len(found.each):
+        missing = (*missing, Omission("piles and grout in combinations of scenarios", "ISO 19902 17, 15.1"))
+    return _reply(
+        name,
+        found.envelope,
+        [],
+        missing,
+        piles=tuple(piles.values()),
+        grouted=tuple(grouted.values()),
+        combinations=found.each,
+    )
 
 
 def _sheet(
@@ -287,6 +324,36 @@ def _piles(
         pile_use(foot, ground.pile, ground.curves, force, basis=basis, resistance=resistance)
         for foot, force in head_forces(system.support, moved).items()
     )
+
+
+def _grouted(path: Path | None, system: System, u: FloatArray) -> tuple[GroutUse, ...]:
+    """Return the use of the grouted connections of a file; none without one."""
+    from jackettwin.checks import grout_uses, read_grouted
+    from jackettwin.soil import head_forces
+
+    if path is None:
+        return ()
+    assembly = system.assembly
+    moved = {foot: u[assembly.dofs(foot)] for foot in assembly.structure.reaction_nodes}
+    connections = read_grouted(path, tuple(moved))
+    held = {spring.node for spring in system.support.springs}
+    for foot in connections:
+        require(
+            foot in held,
+            "the force of a foot that does not move is not known here",
+            field="--grout",
+            value=foot,
+            remedy="put the feet on springs: --support",
+        )
+    return grout_uses(connections, head_forces(system.support, moved))
+
+
+def _grout_left_out(path: Path | None) -> tuple[Omission, ...]:
+    """Return the omitted parts of the check of grouted connections, and how to include them."""
+    if path is None:
+        return (Omission("grouted connections: give a structure at rest and --grout FILE", "ISO 19902 15.1"),)
+    what = "grouted connections: bending, torsion, fatigue and grout in the early age; piles count as upright"
+    return (Omission(what, "ISO 19902 15.1"),)
 
 
 def _piles_left_out(piles: tuple[PileUse, ...]) -> tuple[Omission, ...]:

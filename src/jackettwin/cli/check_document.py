@@ -11,7 +11,7 @@ from jackettwin.caveats import Omission, omission_documents
 
 if TYPE_CHECKING:
     from jackettwin.arrays import FloatArray
-    from jackettwin.checks import BraceUse, FrameUse, MemberUse, SheetLine, VortexUse
+    from jackettwin.checks import BraceUse, FrameUse, GroutUse, MemberUse, SheetLine, VortexUse
     from jackettwin.soil import PileUse
 
 FORCES_OF_SECTION = ("axial_n", "shear_y_n", "shear_z_n", "torsion_nm", "bending_y_nm", "bending_z_nm")
@@ -25,6 +25,7 @@ def check_document(
     missing: tuple[Omission, ...],
     *,
     piles: tuple[PileUse, ...] = (),
+    grouted: tuple[GroutUse, ...] = (),
     vortices: tuple[VortexUse, ...] = (),
     sheet: tuple[SheetLine, ...] | None = None,
     combinations: Mapping[str, FrameUse] | None = None,
@@ -40,8 +41,15 @@ def check_document(
         "combinations": [_combination_row(case, one) for case, one in (combinations or {}).items()],
         "sheet": None if sheet is None else [line._asdict() for line in sheet],
         "piles": [_pile_row(one) for one in sorted(piles, key=lambda one: -one.axial)],
+        "grouted": [_grout_row(one) for one in sorted(grouted, key=lambda one: -one.utilisation)],
         "vortices": [_vortex_row(one) for one in vortices],
-        "warnings": [*_warnings(use), *_pile_warnings(piles), *_vortex_warnings(vortices), *notes],
+        "warnings": [
+            *_warnings(use),
+            *_pile_warnings(piles),
+            *_grout_warnings(grouted),
+            *_vortex_warnings(vortices),
+            *notes,
+        ],
         "left_out": omission_documents(missing),
     }
 
@@ -143,6 +151,32 @@ def _pile_warnings(uses: tuple[PileUse, ...]) -> list[str]:
     fallen = [use.foot for use in uses if not use.stands]
     found = [f"piles used above 1: {few(over)}"] if over else []
     return found + ([f"the ground cannot carry the piles of {few(fallen)}"] if fallen else [])
+
+
+def _grout_row(use: GroutUse) -> dict[str, Any]:
+    one = use.connection
+    return {
+        "foot": use.foot,
+        "utilisation": use.utilisation,
+        "governs": use.governs,
+        "axial_n": use.axial_n,
+        "stress_pa": use.stress_pa,
+        "sliding_pa": one.sliding_pa,
+        "shear_pa": one.shear_pa,
+        "radial_stiffness": one.radial_stiffness,
+        "effective_length_m": one.effective_length_m,
+        "beyond_validity": list(one.beyond_validity),
+        "combination": use.case or None,
+    }
+
+
+def _grout_warnings(uses: tuple[GroutUse, ...]) -> list[str]:
+    from jackettwin.structure import few
+
+    over = [use.foot for use in uses if use.utilisation > 1.0]
+    beyond = list(dict.fromkeys(why for use in uses for why in use.connection.beyond_validity))
+    found = [f"grout used above 1: {few(over)}"] if over else []
+    return found + ([f"grout beyond the tests of ISO 19902 15.1: {few(beyond)}"] if beyond else [])
 
 
 def _vortex_row(use: VortexUse) -> dict[str, Any]:

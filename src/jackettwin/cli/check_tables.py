@@ -35,6 +35,8 @@ def show_check(document: dict[str, Any]) -> None:
         show_table(
             Table("piles, ISO 19902 17 and 13; forces on their heads in MN", _PILES, document["piles"])
         )
+    if document["grouted"]:
+        show_table(Table("grouted connections, ISO 19902 15.1", _GROUTED, document["grouted"]))
     if document["vortices"]:
         show_table(Table("vortices, by reduced velocity", _VORTICES, document["vortices"][:_SHOWN]))
     if document["sheet"] is not None:
@@ -106,6 +108,17 @@ _SHEET = (
     TableColumn("value", "value", ".5g"),
     TableColumn("unit", "unit"),
     TableColumn("clause", "clause"),
+)
+_GROUTED = (
+    TableColumn("foot", "foot"),
+    TableColumn(
+        "utilisation", lambda row: f"{row['utilisation']:.3f}{'*' if row['beyond_validity'] else ''}"
+    ),
+    TableColumn("governed by", "governs"),
+    TableColumn("N [MN]", "axial_n", ".2f", 1e-6),
+    TableColumn("σ [MPa]", "stress_pa", ".3f", 1e-6),
+    TableColumn("f sliding [MPa]", "sliding_pa", ".3f", 1e-6),
+    TableColumn("f grout [MPa]", "shear_pa", ".3f", 1e-6),
 )
 _PILES = (
     TableColumn("foot", "foot"),

@@ -51,6 +51,7 @@ GROUPS = {
     },
     "To other programs": {
         "superelement": "Reduce the foundation of STRUCTURE to 6 + N coordinates.",
+        "recover": "Recover forces below the interface from its MOTION.",
         "export": "Write the foundation of STRUCTURE as a SubDyn input file.",
     },
 }

@@ -37,6 +37,7 @@ from .modes.tracking import near_degenerate as near_degenerate, track_modes as t
 from .motion.passage import Passage as Passage, wave_passage as wave_passage
 from .motion.playback import Playback as Playback, playback as playback, record_sensors as record_sensors
 from .motion.static import (
+    beyond_basis as beyond_basis,
     nodal_load as nodal_load,
     self_weight as self_weight,
     static_displacement as static_displacement,
@@ -88,6 +89,7 @@ from .superelement.craig_bampton import (
     Superelement as Superelement,
     dissipates as dissipates,
     fixed_interface_frequencies as fixed_interface_frequencies,
+    held_displacement as held_displacement,
     slowed as slowed,
     with_deck_damping as with_deck_damping,
 )

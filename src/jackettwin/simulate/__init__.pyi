@@ -10,9 +10,14 @@ from .combinations import (
     read_combinations as read_combinations,
     water_at_rest as water_at_rest,
 )
+from .interface_motion import (
+    InterfaceMotion as InterfaceMotion,
+    read_interface_motion as read_interface_motion,
+)
 from .members import scenario_uses as scenario_uses, water_notes as water_notes
 from .motion.model import asset_model as asset_model
 from .record import Simulation as Simulation, simulate as simulate
+from .recovery import FORCES_LEFT_OUT as FORCES_LEFT_OUT, recovered as recovered
 from .resultant import loads_document as loads_document
 from .scenario.air import rotor_notes as rotor_notes
 from .scenario.asset import Asset as Asset

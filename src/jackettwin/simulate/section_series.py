@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -49,21 +49,30 @@ def force_series(scenario: Scenario, members: Sequence[str] = ()) -> ForceSeries
     InputError
         If there is no such member, or a part of the scenario does not fit.
     """
-    structure = scenario.asset.structure
-    every = {member.name: member for member in structure.members}
     for name in members:
+        every = {member.name: None for member in scenario.asset.structure.members}
         look_up(every, name, "member", field="--members")
-    held = {*structure.reaction_nodes, *structure.interface_nodes}
-    chosen = tuple(members) or tuple(name for name, m in every.items() if held & {m.start, m.end})
     motion = simulate_motion(scenario)
-    assembly = motion.model.assembly
-    blocks = []
-    for u, along in deflections(scenario, motion):
+    return series_of(motion.model.assembly, deflections(scenario, motion), members, motion.step_s)
+
+
+def series_of(
+    assembly: Assembly, blocks: Iterable[tuple[FloatArray, FloatArray]], members: Sequence[str], step_s: float
+) -> ForceSeries:
+    """Return the series of blocks of displacements (n, n_dof) and loads along the elements.
+
+    Without ``members`` those that stand on the ground or carry the interface.
+    """
+    structure = assembly.structure
+    held = {*structure.reaction_nodes, *structure.interface_nodes}
+    chosen = tuple(members) or tuple(m.name for m in structure.members if held & {m.start, m.end})
+    parts = []
+    for u, along in blocks:
         forces = section_forces(assembly, u, along=along)
-        blocks.append(np.vstack([_ends(assembly, forces, chosen), *_reactions(assembly, forces)]))
+        parts.append(np.vstack([_ends(assembly, forces, chosen), *_reactions(assembly, forces)]))
     names = [f"{name}.{end}.{part}" for name in chosen for end in ("start", "end") for part in _SECTION]
     names += [f"{node}.reaction.{part}" for node in structure.reaction_nodes for part in _REACTION]
-    return ForceSeries(tuple(names), np.hstack(blocks), motion.step_s)
+    return ForceSeries(tuple(names), np.hstack(parts), step_s)
 
 
 def _ends(assembly: Assembly, forces: SectionForces, members: Sequence[str]) -> FloatArray:

@@ -35,6 +35,16 @@ def static_displacement(system: System, load: FloatArray) -> FloatArray:
     return np.asarray(system.expand(u))
 
 
+def beyond_basis(system: System, basis: FloatArray, loads: FloatArray) -> FloatArray:
+    """Return static displacements under loads (assembly.n_dof, k) beyond those in the coordinates of a basis.
+
+    What a reduced model leaves out of a slow load: K⁻¹f − T (TᵀKT)⁻¹ Tᵀf, with T = ``basis`` (n_dof, n).
+    """
+    T = basis[system.free]
+    own = T.T @ (system.pencil.static_stiffness() @ T)
+    return static_displacement(system, loads) - basis @ np.linalg.solve(own, basis.T @ loads)
+
+
 def self_weight(assembly: Assembly) -> FloatArray:
     """Return the weight of everything that has mass, (assembly.n_dof,) [N, N·m]."""
     return np.asarray(-GRAVITY_M_S2 * (assembly.mass @ rigid_body_motion(assembly)[:, 2]))

@@ -184,6 +184,15 @@ def fixed_interface_frequencies(system: System, number: int) -> FloatArray:
     return np.asarray(_fixed_modes(system.pencil, at, number)[0] / (2.0 * pi))
 
 
+def held_displacement(system: System, load: FloatArray) -> FloatArray:
+    """Return displacements (n_dof, ...) under constant loads (n_dof, ...) with the interface held at rest."""
+    at = _interface(system, interface_centroid(system.assembly.structure))
+    K = sp.csc_array(system.pencil.static_stiffness())[at.i][:, at.i]
+    u = np.zeros((system.pencil.n, *np.shape(load)[1:]))
+    u[at.i] = factorised(sp.csc_array(K)).solve(np.asarray(load)[system.free][at.i])
+    return np.asarray(system.expand(u))
+
+
 def slowed(element: Superelement, *, step_s: float, band_hz: float) -> Superelement:
     r"""Return the element with its fast poles slowed so that Runge–Kutta steps of ``step_s`` are stable.
 

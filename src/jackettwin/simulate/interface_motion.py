@@ -1,0 +1,99 @@
+"""The motion of a foundation's interface as another program computed it: OpenFAST's output, or a CSV."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.errors import located, require
+from jackettwin.files import read_text as read_lines
+from jackettwin.quantities import plain_unit
+from jackettwin.records.readers.openfast import read_text
+
+CSV_COLUMNS = ("x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad")
+_OF_PROGRAMS = (
+    # SubDyn's transition piece, in its own frame at rest
+    ("intftdxss", "intftdyss", "intftdzss", "intfrdxss", "intfrdyss", "intfrdzss"),
+    # ElastoDyn's platform reference point
+    ("ptfmsurge", "ptfmsway", "ptfmheave", "ptfmroll", "ptfmpitch", "ptfmyaw"),
+)
+_UNITS = {"m": 1.0, "rad": 1.0, "deg": np.pi / 180.0}
+_EVEN = 1e-3
+"""Of a step: times of a file are printed with few digits."""
+_LARGEST = (50.0, 0.5)
+"""No interface moves further [m, rad]: rotations are small."""
+
+
+@dataclass(frozen=True, eq=False)
+class InterfaceMotion:
+    """Displacements and small rotations (n_times, 6) [m, rad] along and about global axes, in even steps."""
+
+    values: FloatArray
+    step_s: float
+
+
+def read_interface_motion(path: Path) -> InterfaceMotion:
+    """Read OpenFAST's .out or .outb (``PtfmSurge`` …, else SubDyn's ``IntfTDXss`` …), or a CSV.
+
+    A CSV has the columns ``time_s``, ``x_m``, ``y_m``, ``z_m``, ``rx_rad``, ``ry_rad`` and ``rz_rad``.
+
+    Raises
+    ------
+    InputError
+        If columns are missing, units are unknown, or steps are not even.
+    """
+    with located(file=path, field="motion"):
+        require(path.is_file(), "no such file", value=str(path), remedy="check the path")
+        t, values = _of_csv(path) if path.suffix.lower() == ".csv" else _of_openfast(path)
+        require(t.size > 2, "too few rows", value=int(t.size), allowed="three or more")
+        step = float((t[-1] - t[0]) / (t.size - 1))
+        uneven = np.abs(np.diff(t) - step).max() if np.isfinite(step) else np.inf
+        require(
+            step > 0.0 and uneven < max(_EVEN * step, 2e-4),
+            "times must grow in even steps",
+            value=t[:4].tolist(),
+            remedy="write the output at one step",
+        )
+        reach = np.abs(values).reshape(t.size, 2, 3).max(axis=(0, 2))
+        require(
+            bool(np.isfinite(values).all() and (reach <= _LARGEST).all()),
+            "is no small motion",
+            value=reach.tolist(),
+            allowed=f"up to {_LARGEST[0]:g} m and {_LARGEST[1]:g} rad, without gaps",
+        )
+    return InterfaceMotion(values, step)
+
+
+def _of_csv(path: Path) -> tuple[FloatArray, FloatArray]:
+    lines = read_lines(path, what="file of motion").splitlines()
+    header = [name.strip() for name in lines[0].split(",")] if lines else []
+    wanted = ("time_s", *CSV_COLUMNS)
+    missing = [name for name in wanted if name not in header]
+    require(not missing, "columns are missing", value=missing, allowed=", ".join(wanted))
+    table = np.genfromtxt(lines[1:], delimiter=",", ndmin=2, invalid_raise=True)
+    columns = table[:, [header.index(name) for name in wanted]]
+    return columns[:, 0], columns[:, 1:]
+
+
+def _of_openfast(path: Path) -> tuple[FloatArray, FloatArray]:
+    found = read_text(path)
+    assert found.times_s is not None
+    rows = {name.lower(): i for i, name in enumerate(found.names)}
+    channels = next((names for names in _OF_PROGRAMS if all(name in rows for name in names)), None)
+    require(
+        channels is not None,
+        "has no motion of the interface",
+        value=", ".join(found.names[:8]),
+        allowed="PtfmSurge, PtfmSway, PtfmHeave, PtfmRoll, PtfmPitch, PtfmYaw, or IntfTDXss … IntfRDZss",
+        remedy="add them to the OutList of ElastoDyn or SubDyn",
+    )
+    assert channels is not None
+    values = []
+    for name in channels:
+        unit = plain_unit(found.channels[found.names[rows[name]]].unit or "")
+        require(unit in _UNITS, "unknown unit", value=f"{name} ({unit})", allowed=", ".join(_UNITS))
+        values.append(_UNITS[unit] * found.data[rows[name]])
+    return found.times_s, np.stack(values, axis=1)
