@@ -14,8 +14,16 @@ from jackettwin.response import Matrix, UndampedModes
 from jackettwin.structure import Assembly
 from jackettwin.study.measure import mean_target
 from jackettwin.study.measurements import MeasuredMode
-from jackettwin.twin import ALL, OperationTotal, TwinConfig, TwinState
-from jackettwin.twin.rotor_at_work import USUAL_WIND_M_S, of_side, rotor_at_work, stiffness_at_work
+from jackettwin.twin import (
+    ALL,
+    USUAL_WIND_M_S,
+    OperationTotal,
+    TwinConfig,
+    TwinState,
+    of_side,
+    rotor_at_work,
+    stiffness_at_work,
+)
 from jackettwin.updating import DASHPOTS, Residuals, Target
 
 _LOG_STD = {

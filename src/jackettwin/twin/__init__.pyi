@@ -17,6 +17,12 @@ from .observation import (
 from .observe import examined as examined, observe as observe
 from .observe_files import Failed as Failed, observe_files as observe_files, sorted_out as sorted_out
 from .pair_angles import stations as stations
+from .rotor_at_work import (
+    USUAL_WIND_M_S as USUAL_WIND_M_S,
+    of_side as of_side,
+    rotor_at_work as rotor_at_work,
+    stiffness_at_work as stiffness_at_work,
+)
 from .state import (
     ALL as ALL,
     STATE as STATE,
