@@ -45,19 +45,23 @@ def kernel(
     -------
     steady, leaked : (n_omega, n_first, n_second)
     """
-    steady = np.ones((len(omega), len(first), len(second)), dtype=complex)
-    leaked = np.zeros_like(steady)
-    for p in (first, first.conj()):
-        weight = _residue(p)[:, None] * _transfer(-p[:, None], second)
-        at, beside = fejer(omega, variance, duration_s, p)
-        steady += at[:, :, None] * weight
-        leaked += beside[:, :, None] * weight
-    for p in (second, second.conj()):
-        weight = _residue(p) * _transfer(-p, first[:, None])
-        at, beside = fejer(-omega, variance, duration_s, p)
-        steady += at[:, None, :] * weight
-        leaked += beside[:, None, :] * weight
-    return steady, leaked
+    own = _with_poles_of(omega, variance, duration_s, first, second)
+    # the poles of the second set contribute the conjugate transpose with the sets exchanged
+    other = own if first is second else _with_poles_of(omega, variance, duration_s, second, first)
+    steady, leaked = (a + b.conj().transpose(0, 2, 1) for a, b in zip(own, other, strict=True))
+    return np.asarray(1.0 + steady), np.asarray(leaked)
+
+
+def _with_poles_of(
+    omega: FloatArray, variance: FloatArray, duration_s: float, first: ComplexArray, second: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return the parts of the partial fractions that have the poles of the first set."""
+    n = len(first)
+    p = np.concatenate([first, first.conj()])
+    weight = _residue(p)[:, None] * _transfer(-p[:, None], second)
+    parts = (part[:, :, None] * weight for part in fejer(omega, variance, duration_s, p))
+    at, beside = (np.asarray(part[:, :n] + part[:, n:]) for part in parts)
+    return at, beside
 
 
 def fejer(

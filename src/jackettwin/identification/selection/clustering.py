@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from jackettwin.identification.estimate import Stabilisation
 
 
+DIGITS = 9
+"""Decimals of the distance of a pole from the median of its group."""
+
+
 @dataclass(frozen=True)
 class Cluster:
     """Poles of one mode, at most one from each model order."""
@@ -93,7 +97,12 @@ def _one_an_order(poles: Stabilisation, members: Int64Array) -> Int64Array:
 
 
 def _away(poles: Stabilisation, members: Int64Array) -> FloatArray:
-    """Return the distance of each pole from the median of ln f and ln ζ, in standard deviations."""
+    """Return the distance of each pole from the median of ln f and ln ζ, in standard deviations.
+
+    Both of two poles are equally far from their median, so that the last digits are dropped: rounding would
+    decide between them.
+    """
     values = np.log([poles.frequency_hz[members], poles.damping_ratio[members]])
     spread = np.maximum(values.std(axis=1, keepdims=True), 1e-9)
-    return np.asarray(np.linalg.norm((values - np.median(values, axis=1, keepdims=True)) / spread, axis=0))
+    away = np.linalg.norm((values - np.median(values, axis=1, keepdims=True)) / spread, axis=0)
+    return np.asarray(away.round(DIGITS))

@@ -91,8 +91,7 @@ def bands_of(
     outside = np.array([_products(lines[:, a : b + 1]) for a, b in zip(low, high, strict=True)]) - inside
     inside /= n_lines[:, None, None]
     outside /= (n_wide - n_lines)[:, None, None]
-    own = np.eye(len(lines)) * inside
-    both = np.stack([_strongest(inside, outside), _strongest(inside, own)])
+    both = np.stack([_strongest(inside, outside), _principal(inside)])
     variance, values = (np.empty((2, len(first))) for _ in range(2))
     for at, n in _batches(n_lines):
         signals = np.zeros((2, len(at), n), dtype=complex)
@@ -131,3 +130,11 @@ def _strongest(inside: ComplexArray, noise: ComplexArray) -> ComplexArray:
     adjoint = inverse.conj().transpose(0, 2, 1)
     direction = np.linalg.eigh(inverse @ inside @ adjoint)[1][:, :, -1:]
     return np.asarray((adjoint @ direction)[:, :, 0])
+
+
+def _principal(inside: ComplexArray) -> ComplexArray:
+    """Return the principal directions of the channels, each in units of its own rms."""
+    channel = np.arange(inside.shape[-1])
+    scale = 1.0 / np.sqrt(regularised(inside)[:, channel, channel].real)
+    direction = np.linalg.eigh(scale[:, :, None] * inside * scale[:, None, :])[1][:, :, -1]
+    return np.asarray(scale * direction)

@@ -165,11 +165,11 @@ def hold_length(y: FloatArray) -> int:
         return 1
     changes = np.flatnonzero(np.diff(y[finite]) != 0.0)
     steps = np.diff(changes)
-    if len(steps) < 5:
+    if len(steps) < 5 or 2 * np.count_nonzero(steps == 1) > len(steps):
         return 1
     usual = int(np.median(steps))
-    regular = float(np.mean(steps % max(usual, 1) == 0))
-    return usual if usual > 1 and regular > 0.9 else 1
+    regular = float(np.mean(steps % usual == 0))
+    return usual if regular > 0.9 else 1
 
 
 def drift_ratio(slow: FloatArray, fast: FloatArray) -> float:
