@@ -109,9 +109,12 @@ def decimate(record: Record, *, sample_rate_hz: float) -> Record:
 
 def _on_vibrations(record: Record, function: Callable[[FloatArray], FloatArray]) -> Record:
     rows = [i for i, channel in enumerate(record.channels) if channel.quantity in VIBRATIONS]
+    if not rows or not record.data.shape[1]:
+        return record
+    if len(rows) == len(record.channels):
+        return replace(record, data=function(record.data))
     data = record.data.copy()
-    if rows and data.shape[1]:
-        data[rows] = function(data[rows])
+    data[rows] = function(data[rows])
     return replace(record, data=data)
 
 

@@ -87,11 +87,12 @@ def without_step(y: FloatArray, step: ZeroStep, sample_rate_hz: float) -> FloatA
 
 def zeros_in_line(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     """Remove zero steps of accelerations and velocities; steps that most channels share are only reported."""
-    data, findings, at = record.data.copy(), [], []
+    data, findings, at = record.data, [], []
     rows = [i for i, c in enumerate(record.channels) if c.quantity in ("acceleration", "velocity")]
     for i in rows:
         step = zero_step(record.data[i])
         if step is not None:
+            data = record.data.copy() if data is record.data else data
             data[i] = without_step(record.data[i], step, record.sample_rate_hz)
             params = {"size": step.over_rms, "time_s": step.at / record.sample_rate_hz}
             findings.append(Finding("zero_steps", record.channels[i].name, params))
