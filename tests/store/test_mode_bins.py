@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from sqlalchemy import Engine, event
+from sqlalchemy import Engine, event, func, select
 
 from jackettwin.store import mode_bins as module, reading, tables, writing
-from jackettwin.store.mode_bins import Extremes, ModeBins, modes_in_bins
+from jackettwin.store.mode_bins import Extremes, ModeBins, forget_day, keep_days, modes_in_bins
 
 BEGIN = datetime(2015, 3, 1, tzinfo=UTC)
 LABELS = ("fore_aft_1", "side_side_1")
@@ -130,3 +130,32 @@ def test_rows_of_one_time_are_one_bin(filled: Engine) -> None:
         assert [(one.time_s, one.count) for one in found] == [([0.0], [1])]
         (found_alone,) = modes_in_bins(connection, "wtg", "m", 5, label="fore_aft_1", until=until)
         assert (found_alone.time_s, found_alone.count) == ([0.0], [1])
+
+
+def test_kept_days_say_what_their_rows_say(filled: Engine) -> None:
+    """Whole days in each bin: counts and extremes are exact, and the median of a day's bins is its own."""
+    end = BEGIN + timedelta(days=50)
+    bounds = {"since": BEGIN, "until": end}
+    with writing(filled) as connection:
+        before = {n: list(modes_in_bins(connection, "wtg", "m", n, **bounds)) for n in (5, 50)}
+        for _ in range(3):  # a month at once
+            keep_days(connection, "wtg", "m", end)
+        days = connection.execute(tables.mode_days.select()).all()
+        rows = connection.scalar(select(func.count()).select_from(tables.modes))
+        connection.execute(
+            tables.modes.update().where(tables.modes.c.asset == "wtg").values(frequency_hz=5.0)
+        )
+        kept = {n: list(modes_in_bins(connection, "wtg", "m", n, **bounds)) for n in (5, 50)}
+        assert kept[50] == before[50]
+        assert [(b.count, b.frequency_hz.min, b.frequency_hz.max, b.simulated) for b in kept[5]] == [
+            (b.count, b.frequency_hz.min, b.frequency_hz.max, b.simulated) for b in before[5]
+        ]
+        forget_day(connection, "wtg", "m", BEGIN + timedelta(days=3, hours=5))
+        found = list(modes_in_bins(connection, "wtg", "m", 50, **bounds))
+        assert all(
+            b.frequency_hz.max[3] == 5.0 and b.count == a.count for a, b in zip(kept[50], found, strict=True)
+        )
+        assert all(b.frequency_hz.max[4] < 1.0 for b in found)
+        hours = list(modes_in_bins(connection, "wtg", "m", 100, **bounds))  # of less than a day: every row
+        assert all(set(b.frequency_hz.min) == {5.0} for b in hours)
+    assert rows == 2 * N + 2 and sum(day.count for day in days) == 2 * N

@@ -8,6 +8,9 @@ import type { paths } from "./schema";
 type Got<P> = P extends { get: { responses: { 200: { content: { "application/json": infer A } } } } }
   ? A
   : never;
+type OfRecord = keyof {
+  [P in keyof paths as P extends `/api/v1/records/{record_id}${infer S}` ? S : never]: 0;
+};
 type OfAsset = keyof { [P in keyof paths as P extends `/api/v1/assets/{asset}${infer S}` ? S : never]: 0 };
 
 export interface Answer<T> {
@@ -60,5 +63,17 @@ export function useAsset<S extends OfAsset>(
   const path = `/api/v1/assets/{asset}${below}`;
   return useAnswer(asset, `${path} ${asset} ${JSON.stringify(query)}`, () =>
     told(api.GET(path as never, { params: { path: { asset }, query } } as never)),
+  );
+}
+
+/** Ask what the API says of a record at an address below it; it does not change. */
+export function useRecord<S extends OfRecord>(
+  record: string,
+  below: S,
+  query: object = {},
+): Answer<Readable<Got<paths[`/api/v1/records/{record_id}${S}`]>>> {
+  const path = `/api/v1/records/{record_id}${below}`;
+  return useAnswer(null, `${path} ${record} ${JSON.stringify(query)}`, () =>
+    told(api.GET(path as never, { params: { path: { record_id: record }, query } } as never)),
   );
 }

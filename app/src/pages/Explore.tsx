@@ -79,7 +79,6 @@ function poles(locus: Locus, index: number): PlotData {
 function Along({ locus }: { locus: Locus }) {
   const [index, setIndex] = useState(locus.origin);
   const [range, setRange] = useState<Range | null>(null);
-  const [region, setRegion] = useState<Range | null>(null);
   const value = locus.values[index] ?? 0;
   const mark: Mark[] = [{ x: value, words: quantity(value, locus.unit), colour: "ink" }];
   const drawn = useMemo(
@@ -166,7 +165,7 @@ function Along({ locus }: { locus: Locus }) {
         />
       </Card>
       <Card title="Poles" note="Further left is more damped. Black: where the slider stands.">
-        <Plot data={root} height={300} range={region} onRange={setRegion} />
+        <Plot data={root} height={300} />
       </Card>
     </>
   );
@@ -204,7 +203,6 @@ function Sensitivity({ asset }: { asset: string }) {
 }
 
 function Curves({ explored }: { explored: Explored }) {
-  const [range, setRange] = useState<Range | null>(null);
   const plot = useMemo((): PlotData => {
     return {
       title: "Cost along each parameter",
@@ -223,7 +221,7 @@ function Curves({ explored }: { explored: Explored }) {
   }, [explored]);
   return (
     <Card title="How sharply the data decide" note="A flat curve: the data say little of this parameter.">
-      <Plot data={plot} height={300} range={range} onRange={setRange} />
+      <Plot data={plot} height={300} />
     </Card>
   );
 }

@@ -1,18 +1,18 @@
 // What one record holds: signals at any zoom, spectrum, stabilisation chart, and poles picked by hand.
 import { useMemo, useState } from "preact/hooks";
-import { useAnswer } from "../api/answer";
+import { type Answer, useAnswer, useRecord } from "../api/answer";
 import { api, type Mode, type RecordOut, type Schemas, told } from "../api/client";
 import { Card, Choice, Facts, Light, Time, Pick } from "../parts/Bits";
 import { Heat } from "../parts/Heat";
 import { paintOf } from "../parts/modes";
 import { Plot } from "../parts/plot/Plot";
-import type { Mark, PlotData, Range } from "../parts/plot/series";
+import type { Mark, PlotData } from "../parts/plot/series";
 import { Shown, Trouble } from "../parts/Shown";
 import { Stabilisation } from "../parts/Stabilisation";
 import { ModeTable } from "../parts/ModeTable";
 import type { PageProps } from "../shell/place";
 import { asked, keep } from "../shell/place";
-import { keepRange, rangeKept } from "../parts/Stiffness";
+import { InTime, rangeKept } from "../parts/Stiffness";
 import { words } from "../words/numbers";
 import { seconds } from "../words/time";
 
@@ -47,15 +47,8 @@ function Signals({ record }: { record: RecordOut }) {
     points: POINTS,
     ...(range ? { from: Math.max(range[0] - begin, 0), to: Math.max(range[1] - begin, 0.1) } : {}),
   };
-  const signal = useAnswer(null, `signal ${record.record_id} ${chosen.join()} ${range?.join() ?? ""}`, () => {
-    const params = { path: { record_id: record.record_id }, query };
-    return told(api.GET("/api/v1/records/{record_id}/signal", { params })) as Promise<Schemas["Signal"]>;
-  });
-  const stretches = useAnswer(null, `stretches ${record.record_id}`, () =>
-    told(
-      api.GET("/api/v1/records/{record_id}/stretches", { params: { path: { record_id: record.record_id } } }),
-    ),
-  );
+  const signal = useRecord(record.record_id, "/signal", query) as Answer<Schemas["Signal"]>;
+  const stretches = useRecord(record.record_id, "/stretches");
   const faults = stretches.data?.items ?? [];
   const switched = (name: string): void =>
     setChosen((old) =>
@@ -96,18 +89,7 @@ function Signals({ record }: { record: RecordOut }) {
         <p class="quiet">Choose a channel.</p>
       ) : (
         <Shown of={signal} lines={8}>
-          {() =>
-            plots.map((plot) => (
-              <Plot
-                key={plot.title}
-                data={plot}
-                height={120}
-                range={range}
-                onRange={keepRange}
-                together="signal"
-              />
-            ))
-          }
+          {() => plots.map((plot) => <InTime key={plot.title} data={plot} height={120} together="signal" />)}
         </Shown>
       )}
       {faults.length > 0 && (
@@ -129,13 +111,8 @@ const mark = (f: Stretch, begin: number): Mark => ({
 });
 
 function Spectrum({ record, modes }: { record: RecordOut; modes: readonly Mode[] }) {
-  const [range, setRange] = useState<Range | null>([0, Math.min(2, record.sample_rate_hz / 2)]);
   const what = asked("spectrum") ?? "";
-  const found = useAnswer(null, `spectrum ${record.record_id}`, () =>
-    told(
-      api.GET("/api/v1/records/{record_id}/spectrum", { params: { path: { record_id: record.record_id } } }),
-    ),
-  );
+  const found = useRecord(record.record_id, "/spectrum");
   const key = modes.map((m) => m.frequency_hz).join();
   const plot = useMemo((): PlotData | null => {
     if (!found.data) return null;
@@ -170,7 +147,7 @@ function Spectrum({ record, modes }: { record: RecordOut; modes: readonly Mode[]
       }
     >
       <Shown of={found} lines={6}>
-        {() => plot && <Plot data={plot} height={300} range={range} onRange={setRange} />}
+        {() => plot && <Plot data={plot} height={300} range={[0, Math.min(2, record.sample_rate_hz / 2)]} />}
       </Shown>
     </Card>
   );
@@ -179,10 +156,7 @@ function Spectrum({ record, modes }: { record: RecordOut; modes: readonly Mode[]
 function Spectrogram({ record }: { record: RecordOut }) {
   const names = record.channels.map((c) => String(c["name"]));
   const channel = asked("channel") ?? names[0] ?? "";
-  const found = useAnswer(null, `spectrogram ${record.record_id} ${channel}`, () => {
-    const params = { path: { record_id: record.record_id }, query: { channel } };
-    return told(api.GET("/api/v1/records/{record_id}/spectrogram", { params }));
-  });
+  const found = useRecord(record.record_id, "/spectrogram", { channel });
   const cells = useMemo(() => {
     const rows = found.data?.level_db ?? [];
     return (found.data?.frequency_hz ?? []).map((_, k) => rows.map((row) => row[k] ?? null));

@@ -4,10 +4,9 @@ import { useAnswer, useAsset } from "../api/answer";
 import { api, type Alarm, everything, type Mode, told } from "../api/client";
 import { Card, Choice, Head, Pick } from "../parts/Bits";
 import { binPlot, type Bins, byLabel, modePlot } from "../parts/modes";
-import { Plot } from "../parts/plot/Plot";
 import type { Mark, PlotData, Range } from "../parts/plot/series";
 import { Empty, Shown, Trouble } from "../parts/Shown";
-import Stiffness, { keepRange, rangeKept } from "../parts/Stiffness";
+import Stiffness, { InTime, keepRange, rangeKept } from "../parts/Stiffness";
 import { Rests, type Watch } from "../parts/Watched";
 import type { PageProps } from "../shell/place";
 import { asked, assetUrl, go, keep } from "../shell/place";
@@ -237,12 +236,10 @@ function Drawn({ all, seen, marks, what, wanted, range, beside, asset, watch, op
         >
           {!seen.rows && <p class="quiet">Bins of time; choose one, or zoom, to see its records.</p>}
           {shown.map(({ label, plot, pick }) => (
-            <Plot
+            <InTime
               key={label}
               data={plot}
               height={shown.length === 1 ? 460 : 170}
-              range={range}
-              onRange={keepRange}
               together="timeline"
               onPick={(_, index) => pick(index)}
             />

@@ -1,12 +1,12 @@
 // Poles of every model order; they are picked by click or from the list, kept, and taken back.
 import { useEffect, useMemo, useState } from "preact/hooks";
-import { useAnswer } from "../api/answer";
+import { useRecord } from "../api/answer";
 import { api, type Mode, type RecordOut, type Schemas, told } from "../api/client";
 import { may, useDeed } from "../api/do";
 import { percent, words } from "../words/numbers";
 import { Card, Time } from "./Bits";
 import { Plot } from "./plot/Plot";
-import type { PlotData, Range, Series } from "./plot/series";
+import type { PlotData, Series } from "./plot/series";
 import { Shown } from "./Shown";
 
 type Poles = Schemas["StabilisationOut"];
@@ -34,7 +34,6 @@ interface ChartProps {
 }
 
 function Chart({ poles, picks, onPick, modes }: ChartProps) {
-  const [range, setRange] = useState<Range | null>(null);
   const groups = useMemo(() => sorted(poles, picks), [poles, picks]);
   const plot = useMemo((): PlotData => {
     const series = KIND.map((kind): Series => {
@@ -54,7 +53,7 @@ function Chart({ poles, picks, onPick, modes }: ChartProps) {
     const pole = groups[KIND[series] ?? "stable"][index];
     if (pole !== undefined) onPick(pole);
   };
-  return <Plot data={plot} height={340} range={range} onRange={setRange} onPick={chosen} />;
+  return <Plot data={plot} height={340} onPick={chosen} />;
 }
 
 /** Of every mode that poles were gathered to, the stable pole of highest order: what the keyboard picks from. */
@@ -107,9 +106,7 @@ function Open({ record, modes, again }: OfRecord) {
   useEffect(() => setPicks(kept(record)), [JSON.stringify(record.picks)]);
   const deed = useDeed();
   const path = { params: { path: { record_id: record.record_id } } };
-  const poles = useAnswer(null, `poles ${record.record_id}`, () =>
-    told(api.GET("/api/v1/records/{record_id}/stabilisation", path)),
-  );
+  const poles = useRecord(record.record_id, "/stabilisation");
   const switched = (i: number): void => {
     const [f, order] = [poles.data?.frequency_hz[i], poles.data?.order[i]];
     if (f === undefined || order === undefined || !may("engineer")) return;

@@ -1,4 +1,5 @@
 // The ground's stiffness of each day over that of the first: known then, known by now, and what to expect.
+import type { ComponentProps } from "preact";
 import { useMemo } from "preact/hooks";
 import { useAsset } from "../api/answer";
 import { type Schemas } from "../api/client";
@@ -86,10 +87,15 @@ function Drawn({ data }: { data: Supports }) {
   return (
     <>
       {data.statement && <p>{data.statement}</p>}
-      <Plot data={plot} height={260} range={rangeKept()} onRange={keepRange} />
+      <InTime data={plot} height={260} />
     </>
   );
 }
+
+/** A plot through time, of the stretch that all plots of the page show. */
+export const InTime = (props: ComponentProps<typeof Plot>) => (
+  <Plot range={rangeKept()} onRange={keepRange} {...props} />
+);
 
 /** The stretch of time that the address holds. */
 export function rangeKept(): Range | null {

@@ -6,10 +6,9 @@ import { quantity, words } from "../words/numbers";
 import { seconds } from "../words/time";
 import { Card, Pick } from "./Bits";
 import { modeColour } from "./modes";
-import { Plot } from "./plot/Plot";
 import type { Mark, PlotData, Series } from "./plot/series";
 import { Empty, Shown } from "./Shown";
-import { keepRange, rangeKept } from "./Stiffness";
+import { InTime } from "./Stiffness";
 
 export type Watch = Schemas["WatchOut"];
 type Smallest = Schemas["SmallestChangeOut"];
@@ -57,34 +56,22 @@ export function restPlot(watch: Watch, index: number, marks: Mark[], planted?: P
   return { title: q ? title(q) : "", time: true, xName: "UTC", yName, series, marks };
 }
 
-function Column({ plots, together }: { plots: PlotData[]; together: string }) {
-  return (
-    <>
-      {plots.map((plot) => (
-        <Plot
-          key={plot.title}
-          data={plot}
-          height={170}
-          range={rangeKept()}
-          onRange={keepRange}
-          together={together}
-        />
-      ))}
-    </>
-  );
-}
+const Column = ({ plots, together }: { plots: PlotData[]; together: string }) => (
+  <>
+    {plots.map((plot) => (
+      <InTime key={plot.title} data={plot} height={170} together={together} />
+    ))}
+  </>
+);
 
-export function Rests({
-  watch,
-  marks,
-  kind,
-  label,
-}: {
+interface RestsProps {
   watch: Watch;
   marks: Mark[];
   kind: string;
   label: string;
-}) {
+}
+
+export function Rests({ watch, marks, kind, label }: RestsProps) {
   const key = marks.map((m) => m.words).join();
   const plots = useMemo(
     () =>
@@ -149,7 +136,7 @@ function Drawn({ watch, marks }: { watch: Watch; marks: Mark[] }) {
   const possible = watch.smallest.filter((s) => s.step.length && s.size !== null);
   return (
     <>
-      <Plot data={plot} height={220} range={rangeKept()} onRange={keepRange} together="evidence" />
+      <InTime data={plot} height={220} together="evidence" />
       {possible.length > 0 && <WouldBe watch={watch} possible={possible} />}
     </>
   );

@@ -1,24 +1,50 @@
-"""Modes through time in bins: extremes and medians, read in one pass without holding the rows."""
+"""Modes through time in bins: extremes and medians, read in one pass without holding the rows.
+
+Ten years of a turbine are two million rows. Extremes and medians of its past days are therefore kept, and
+bins of a day or longer are made of them; other days, as one to which a record was added, are read by row.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from datetime import datetime
-from itertools import groupby
+from datetime import UTC, datetime, timedelta
+from itertools import groupby, pairwise
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
-from sqlalchemy import Float, Select, cast, extract, func, select
+from sqlalchemy import (
+    ColumnElement,
+    Float,
+    Select,
+    and_,
+    case,
+    cast,
+    delete,
+    extract,
+    func,
+    insert,
+    literal,
+    or_,
+    select,
+    true,
+    union_all,
+)
 
 from jackettwin.store.records import between, of_state
-from jackettwin.store.tables import modes
+from jackettwin.store.tables import mode_days, modes
 
 if TYPE_CHECKING:
     from sqlalchemy import Connection
 
 _BATCH = 5_000
 """Rows that are taken from the database at once."""
+DAY_S = 86_400
+_AT_ONCE = 31
+"""Number of days that are kept in one transaction, as after an upgrade."""
+_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
+
+Stretch = tuple[datetime | None, datetime | None]
 
 
 @dataclass
@@ -29,11 +55,12 @@ class Extremes:
     median: list[float | None] = field(default_factory=list)
     max: list[float | None] = field(default_factory=list)
 
-    def add(self, values: list[float]) -> None:
-        """Append the values of the next bin."""
-        self.min.append(min(values, default=None))
-        self.median.append(median(values) if values else None)
-        self.max.append(max(values, default=None))
+    def add(self, low: Sequence[Any], middle: Sequence[Any], high: Sequence[Any]) -> None:
+        """Append the next bin, from the least values, medians and greatest values of its parts."""
+        known = [value for value in middle if value is not None]
+        self.min.append(min((value for value in low if value is not None), default=None))
+        self.median.append(median(known) if known else None)
+        self.max.append(max((value for value in high if value is not None), default=None))
 
 
 @dataclass
@@ -53,6 +80,15 @@ class ModeBins:
     damping_ratio: Extremes = field(default_factory=Extremes)
     simulated: int = 0
 
+    def add(self, number: float, parts: Iterable[tuple[Any, ...]]) -> None:
+        """Append a bin of rows or days."""
+        _, _, count, simulated, *values = zip(*parts, strict=True)
+        self.time_s.append(number * self.bin_s)
+        self.count.append(sum(count))
+        self.frequency_hz.add(*values[:3])
+        self.damping_ratio.add(*values[3:])
+        self.simulated += sum(simulated)
+
 
 def modes_in_bins(
     connection: Connection,
@@ -67,40 +103,150 @@ def modes_in_bins(
 ) -> Iterator[ModeBins]:
     """Yield each mode, or one, in at most ``points`` bins from one time until before another.
 
-    Without these times the bins extend over all rows. All modes have the same bins. At most two
-    statements are executed, and no more rows than those of a bin and of a batch are held.
+    Without these times the bins extend over all rows. All modes have the same bins. A kept day is in the
+    bin of its noon, and the median of a bin of kept days is that of their medians. No more rows than those of
+    a bin and of a batch are held.
     """
     rows = select(modes).filter_by(asset=asset, model_hash=model_hash)
+    days = select(mode_days).filter_by(asset=asset, model_hash=model_hash)
     if label is not None:
-        rows = rows.where(modes.c.label == label)
-    rows = of_state(between(rows, modes.c.time_utc, since, until), modes.c.record_id, asset, state)
-    span = rows.with_only_columns(func.min(modes.c.time_utc), func.max(modes.c.time_utc))
-    first, last = (since, until) if since and until else connection.execute(span).one()
-    if first is None:
+        rows, days = rows.where(modes.c.label == label), days.where(mode_days.c.label == label)
+    rows = of_state(rows, modes.c.record_id, asset, state)
+    kept = [] if state is not None else _kept_between(connection, days, since, until)
+    first, last = _span(connection, rows, kept, since, until)
+    if first is None or last is None:
         return
-    start = (since or first).replace(microsecond=0)
-    bin_s = ((until or last) - start).total_seconds() / points or 1.0
+    start = first.replace(microsecond=0)
+    bin_s = (last - start).total_seconds() / points or 1.0
+    if bin_s < DAY_S:
+        kept = []
     begin = start.timestamp()
-    for name, own in groupby(_rows(connection, rows), lambda row: row[0]):
+    parts = _parts(connection, rows, days, kept, since, until)
+    for name, own in groupby(parts, lambda part: part[0]):
         bins = ModeBins(name, start, bin_s)
-        for number, inside in groupby(own, lambda row: min((row[1] - begin) // bin_s, points - 1)):
-            _, _, frequency, damping, status = zip(*inside, strict=True)
-            bins.time_s.append(number * bin_s)
-            bins.count.append(len(frequency))
-            bins.frequency_hz.add(list(frequency))
-            bins.damping_ratio.add([value for value in damping if value is not None])
-            bins.simulated += status.count("simulated")
+        for number, inside in groupby(own, lambda part: min((part[1] - begin) // bin_s, points - 1)):
+            bins.add(number, inside)
         yield bins
 
 
-def _rows(connection: Connection, chosen: Select[Any]) -> Iterator[tuple[Any, ...]]:
-    """Yield label, seconds since 1970, frequency [Hz], damping ratio and status, by label and time.
+def keep_days(connection: Connection, asset: str, model_hash: str, before: datetime) -> None:
+    """Keep extremes and medians of the days before that of a time, of at most some of them at once."""
+    today = (before - _EPOCH).days
+    days = select(mode_days).filter_by(asset=asset, model_hash=model_hash)
+    last = connection.scalar(days.with_only_columns(func.max(mode_days.c.day)))
+    if last is not None and last >= today - 1:
+        return
+    rows = select(modes).filter_by(asset=asset, model_hash=model_hash)
+    since = None if last is None else _midnight(last + 1)
+    first = connection.scalar(
+        between(rows, modes.c.time_utc, since, _midnight(today)).with_only_columns(func.min(modes.c.time_utc))
+    )
+    if first is None:
+        return
+    of = (first - _EPOCH).days
+    until = _midnight(min(today, of + _AT_ONCE))
+    parts = _parts(connection, rows, days, [], _midnight(of), until)
+    made = []
+    for (name, day), inside in groupby(parts, lambda part: (part[0], int(part[1] // DAY_S))):
+        one = ModeBins(name, _midnight(day), DAY_S)
+        one.add(0.0, inside)
+        row = {"asset": asset, "model_hash": model_hash, "day": day, "label": name}
+        row |= {"count": one.count[0], "simulated": one.simulated}
+        for what in ("min", "median", "max"):
+            (row[f"frequency_{what}_hz"],) = getattr(one.frequency_hz, what)
+            (row[f"damping_ratio_{what}"],) = getattr(one.damping_ratio, what)
+        made.append(row)
+    connection.execute(insert(mode_days), made)
 
-    The database counts the seconds: to make a time of each row takes longer than all else.
+
+def forget_day(connection: Connection, asset: str, model_hash: str, time: datetime) -> None:
+    """Delete what is kept of the day of a time, whose rows change."""
+    same = {"asset": asset, "model_hash": model_hash, "day": (time - _EPOCH).days}
+    connection.execute(delete(mode_days).where(*(mode_days.c[name] == value for name, value in same.items())))
+
+
+def _midnight(day: int) -> datetime:
+    return _EPOCH + timedelta(days=day)
+
+
+def _kept_between(
+    connection: Connection, days: Select[Any], since: datetime | None, until: datetime | None
+) -> list[int]:
+    """Return the kept days that lie between two times as a whole."""
+    day = mode_days.c.day
+    found = connection.scalars(days.with_only_columns(day).distinct().order_by(day))
+    return [
+        one
+        for one in found
+        if (since is None or _midnight(one) >= since) and (until is None or _midnight(one + 1) <= until)
+    ]
+
+
+def _span(
+    connection: Connection,
+    rows: Select[Any],
+    kept: Sequence[int],
+    since: datetime | None,
+    until: datetime | None,
+) -> Stretch:
+    """Return the first and the last time of rows and kept days, unless they are given."""
+    if since is not None and until is not None:
+        return since, until
+    found = rows.with_only_columns(func.min(modes.c.time_utc), func.max(modes.c.time_utc))
+    ends = list(connection.execute(found.where(_outside(kept, since, until))).one())
+    if kept:
+        ends = [*ends, _midnight(kept[0]), _midnight(kept[-1] + 1)]
+    known = [time for time in ends if time is not None]
+    return since or min(known, default=None), until or max(known, default=None)
+
+
+def _outside(kept: Sequence[int], since: datetime | None, until: datetime | None) -> ColumnElement[bool]:
+    """Return the condition that a row lies between two times and not on a kept day."""
+    time = modes.c.time_utc
+    gaps = [(a + 1, b) for a, b in pairwise(kept) if b > a + 1]
+    stretches: list[Stretch] = [(_midnight(a), _midnight(b)) for a, b in gaps]
+    if kept:
+        stretches = [(since, _midnight(kept[0])), *stretches, (_midnight(kept[-1] + 1), until)]
+    else:
+        stretches = [(since, until)]
+    either = []
+    for low, high in stretches:
+        both = [time >= low] if low is not None else []
+        both += [time < high] if high is not None else []
+        either.append(and_(true(), *both))
+    return or_(*either)
+
+
+def _parts(
+    connection: Connection,
+    rows: Select[Any],
+    days: Select[Any],
+    kept: Sequence[int],
+    since: datetime | None,
+    until: datetime | None,
+) -> Iterator[tuple[Any, ...]]:
+    """Yield rows and kept days by label and time.
+
+    Of each: label, seconds since 1970, number of rows, of those simulated, then least value, median and
+    greatest value of frequency [Hz] and damping ratio. The database counts the seconds: to make a time of
+    each row takes longer than all else.
     """
-    at_s = cast(extract("epoch", modes.c.time_utc), Float)
-    columns = (modes.c.label, at_s, modes.c.frequency_hz, modes.c.damping_ratio, modes.c.status)
-    query = chosen.with_only_columns(*columns).order_by(modes.c.label, modes.c.time_utc)
-    found = connection.execute(query, execution_options={"yield_per": _BATCH})
+    at_s = cast(extract("epoch", modes.c.time_utc), Float).label("at_s")
+    simulated = case((modes.c.status == "simulated", 1), else_=0)
+    f, zeta = modes.c.frequency_hz, modes.c.damping_ratio
+    query: Any = rows.where(_outside(kept, since, until)).with_only_columns(
+        modes.c.label.label("label"), at_s, literal(1), simulated, f, f, f, zeta, zeta, zeta
+    )
+    if kept:
+        c = mode_days.c
+        noon = cast(c.day, Float) * DAY_S + DAY_S / 2
+        of_days = days.where(c.day >= kept[0], c.day <= kept[-1]).with_only_columns(
+            c.label, noon, c.count, c.simulated,
+            c.frequency_min_hz, c.frequency_median_hz, c.frequency_max_hz,
+            c.damping_ratio_min, c.damping_ratio_median, c.damping_ratio_max,
+        )  # fmt: skip
+        query = union_all(query, of_days)
+    order = ("label", "at_s") if kept else (modes.c.label, modes.c.time_utc)
+    found = connection.execute(query.order_by(*order), execution_options={"yield_per": _BATCH})
     for batch in found.partitions():
         yield from map(tuple, batch)

@@ -12,6 +12,7 @@ from sqlalchemy import ColumnElement, Connection, Delete, Select, Table, delete,
 
 from jackettwin.store import handling
 from jackettwin.store.columns import FORGOTTEN
+from jackettwin.store.mode_bins import forget_day
 from jackettwin.store.records import between, of_state
 from jackettwin.store.tables import (
     assets,
@@ -62,6 +63,7 @@ def put_observation(
 ) -> None:
     """Store an observation with modes and findings, replacing an earlier one of the same record."""
     drop_observation(connection, observation.asset, observation.model_hash, observation.record_id)
+    forget_day(connection, observation.asset, observation.model_hash, observation.start_utc)
     connection.execute(insert(observations).values(**vars(observation)))
     if mode_rows := list(mode_rows):
         connection.execute(insert(modes), mode_rows)
@@ -71,6 +73,10 @@ def put_observation(
 
 def drop_observation(connection: Connection, asset: str, model_hash: str, record_id: str) -> None:
     """Delete the observation of a record under a model."""
+    same = {"asset": asset, "model_hash": model_hash, "record_id": record_id}
+    time = connection.scalar(select(func.min(modes.c.time_utc)).filter_by(**same))
+    if time is not None:
+        forget_day(connection, asset, model_hash, time)
     for table in (observations, modes):
         connection.execute(_deleted(table, asset, model_hash, record_id=record_id))
     connection.execute(_deleted(findings, asset, model_hash, record_id=record_id, origin="observe"))

@@ -210,6 +210,25 @@ modes = Table(
     Index("ix_modes_page", "asset", "model_hash", "id"),
 )
 
+mode_days = Table(
+    "mode_days",
+    metadata,
+    Column("asset", ForeignKey("assets.name"), primary_key=True),
+    Column("model_hash", String(64), primary_key=True),
+    Column("day", Integer, primary_key=True, autoincrement=False),
+    Column("label", String(64), primary_key=True),
+    Column("count", Integer, nullable=False),
+    Column("simulated", Integer, nullable=False),
+    Column("frequency_min_hz", Float, nullable=False),
+    Column("frequency_median_hz", Float, nullable=False),
+    Column("frequency_max_hz", Float, nullable=False),
+    Column("damping_ratio_min", Float),
+    Column("damping_ratio_median", Float),
+    Column("damping_ratio_max", Float),
+)
+"""Modes of past days, which are numbered from 1970-01-01: what a plot of years shows of ``modes``. A day that
+is missing is read there."""
+
 states = Table(
     "states",
     metadata,

@@ -12,7 +12,7 @@ import { MANY, under } from "./under";
 interface PlotProps {
   data: PlotData;
   height?: number;
-  /** Shown part of the x axis; null for all. */
+  /** Shown part of the x axis, null for all; without onRange the plot's own, of which it is the first. */
   range?: Range | null;
   onRange?: (range: Range | null) => void;
   /** What to do when a point is chosen by click or Enter. */
@@ -145,7 +145,9 @@ function options(
   };
 }
 
-export function Plot({ data, height = 220, range = null, onRange, onPick, together }: PlotProps) {
+export function Plot({ data, height = 220, onPick, together, ...given }: PlotProps) {
+  const own = useState(given.range ?? null);
+  const [range, onRange] = given.onRange ? [given.range ?? null, given.onRange] : own;
   const root = useRef<HTMLDivElement>(null);
   const chart = useRef<uPlot | null>(null);
   const [read, setRead] = useState("");
@@ -192,7 +194,7 @@ export function Plot({ data, height = 220, range = null, onRange, onPick, togeth
                 self.posToVal(self.select.left + self.select.width, "x"),
               ];
               self.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
-              latest.current.onRange?.([a, b]);
+              latest.current.onRange([a, b]);
             },
           ],
           setCursor: [
@@ -214,7 +216,7 @@ export function Plot({ data, height = 220, range = null, onRange, onPick, togeth
           ],
           ready: [
             (self) => {
-              self.over.addEventListener("dblclick", () => latest.current.onRange?.(null));
+              self.over.addEventListener("dblclick", () => latest.current.onRange(null));
               let down = 0;
               self.over.addEventListener("mousedown", (e) => (down = e.clientX));
               self.over.addEventListener("mouseup", (e) => {
@@ -253,7 +255,7 @@ export function Plot({ data, height = 220, range = null, onRange, onPick, togeth
       "-": [a - width / 3, b + width / 3],
       "0": null,
     };
-    if (!onRange || !(event.key in to)) return;
+    if (!(event.key in to)) return;
     event.preventDefault();
     onRange(to[event.key] ?? null);
   };
@@ -279,7 +281,7 @@ export function Plot({ data, height = 220, range = null, onRange, onPick, togeth
         ref={root}
         tabIndex={0}
         role="img"
-        aria-label={`${data.title}, ${data.yName}. ${onRange ? "Arrow keys move, plus and minus zoom, 0 shows all." : ""} Its numbers are in the CSV.`}
+        aria-label={`${data.title}, ${data.yName}. Arrow keys move, plus and minus zoom, 0 shows all. Its numbers are in the CSV.`}
         onKeyDown={move}
       />
     </figure>

@@ -33,6 +33,7 @@ from jackettwin.store import (
     work,
 )
 from jackettwin.store.columns import FORGOTTEN
+from jackettwin.store.mode_bins import keep_days
 from jackettwin.store.results import StoredState
 
 if TYPE_CHECKING:
@@ -182,6 +183,7 @@ def keep_observation(
         **key,
     )
     day = f"{record.start_utc:%Y-%m-%d}"
+    keep_days(connection, job.asset, job.model_hash, record.start_utc)
     results.put_observation(
         connection,
         observation,

@@ -25,6 +25,17 @@ def upgrade() -> None:
         sa.Column("asset", sa.String(64), sa.ForeignKey("assets.name"), primary_key=True),
     )
     op.create_table(
+        "mode_days",
+        sa.Column("asset", sa.String(64), sa.ForeignKey("assets.name"), primary_key=True),
+        sa.Column("model_hash", sa.String(64), primary_key=True),
+        sa.Column("day", sa.Integer(), primary_key=True, autoincrement=False),
+        sa.Column("label", sa.String(64), primary_key=True),
+        sa.Column("count", sa.Integer(), nullable=False),
+        sa.Column("simulated", sa.Integer(), nullable=False),
+        *(sa.Column(f"frequency_{what}_hz", sa.Float(), nullable=False) for what in ("min", "median", "max")),
+        *(sa.Column(f"damping_ratio_{what}", sa.Float()) for what in ("min", "median", "max")),
+    )
+    op.create_table(
         "posts",
         sa.Column("name", sa.String(32), primary_key=True),
         sa.Column("server", sa.String(64), nullable=False),
@@ -96,7 +107,7 @@ def downgrade() -> None:
         sa.Column("comment", sa.Text(), nullable=False),
     )
     op.drop_index("ix_work_fair", "work")
-    for table in ("alerts", "handling", "posts", "asset_groups"):
+    for table in ("alerts", "handling", "posts", "mode_days", "asset_groups"):
         op.drop_table(table)
     with op.batch_alter_table("users") as users:
         for column in ("scope", "expires_utc", "password_utc"):
