@@ -192,7 +192,7 @@ def page(pieces: list[Figures]) -> list[str]:
         there, fast, told = f["there"], f["fast"], f["there"]["told"]
         lines += [
             f"{f['turbines']} turbines send {f['rate_hz']:.2f} records a second to {f['servers']} servers on "
-            f"one PostgreSQL; {f['workers']} workers each wait the {f['cost_s']:.1f} s that",
+            f"one PostgreSQL, each with {f['workers']} workers, who wait the {f['cost_s']:.1f} s that",
             f"identification takes of nine channels at 100 Hz, a study {STUDY_S:g} s. "
             f"{told['answers']} answers to readers, {told['wrong']} not 200, median {told['p50_ms']:.0f} ms, "
             f"p95 {told['p95_ms']:.0f} ms.",
