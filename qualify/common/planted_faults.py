@@ -82,9 +82,10 @@ FAULTS = (
         ("the smoother goes back by its gain's transpose", "_forward(np.ascontiguousarray(self.closed_loop), np.zeros", "_forward(np.ascontiguousarray(self.closed_loop.T), np.zeros"),
         ("noise of a step is that of its end", "Q = F @ exact[:n, n:]", "Q = exact[:n, n:]"),
         ("a lightly damped mode leaks into slow forces", "taper = tukey(n, _TAPERED)", "taper = tukey(n, 0.0)"),
-        ("short waves reach as deep as long ones", "push = self._push(omega, angle, turn)", "push = self._push(peak, angle, turn)"),
+        ("short waves reach as deep as long ones", "push = self._push(omega, angle, turn, speed)", "push = self._push(peak, angle, turn, speed)"),
         ("drag on members is in phase with their inertia", "(water / (1j * omega)).real", "(water / omega).real"),
-        ("what begins otherwise stays in the predictions only", "(np.eye(len(self.P)) - self.information @ self.P)", "np.eye(len(self.P))"),
+        ("what begins otherwise stays in the predictions only", "(wanted.T - self.information @ (self.P @ wanted.T))", "wanted.T"),
+        ("levels are scored with half their curvature", "4.0 * forces.sum(axis=0)", "2.0 * forces.sum(axis=0)"),
     )),
     *_of("soil", rows=(
         ("a caisson's side push lifts its base's moment the other way", "K[0, 4] = K[4, 0] = 0.4 * d * K_H", "K[0, 4] = K[4, 0] = -0.4 * d * K_H"),

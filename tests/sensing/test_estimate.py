@@ -144,8 +144,9 @@ def test_damage_is_neither_too_low_nor_too_high(
         lambda z: ("air", life), own=(Detail("base", "tower_1", 0.0, 1.0, lambda z: ("air", life)),)
     )
     found = record_life([system], readings, WEATHER, lambda z: ("air", life), dry, details=base)
-    exact = weld_map(system, model, dry).cycles(coordinates)
-    welds = [w for joint in weld_map(system, model, dry).joints for w in joint.welds]
+    chart = weld_map(system, model, dry)
+    exact = chart.cycles(coordinates)
+    welds = [w for joint in chart.joints for w in joint.welds]
     true = {
         (w.node, w.brace, side): max(life.curve.damage(c.ranges, c.numbers, thickness_m=t) for c in points)
         for w, of_weld in zip(welds, exact, strict=True)

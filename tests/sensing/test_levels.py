@@ -1,10 +1,13 @@
 """Levels by evidence: planted ones are found again, and the gradient is that of the cost."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from jackettwin.sensing.latent_forces import LatentForce
-from jackettwin.sensing.levels import _whittle, find_levels
+from jackettwin.sensing.levels import _Evidence, _whittle, find_levels
 
 STEP_S, N = 0.1, 6000
 
@@ -51,14 +54,32 @@ def test_the_gradient_is_that_of_the_likelihood(rng: np.random.Generator) -> Non
     Y = (np.fft.rfft(y, axis=1) * np.sqrt(STEP_S / N))[:, which].T
     S = np.array([f.density(omega) for f in forces])
     r = np.full(Y.shape, 0.05**2 * STEP_S) * rng.uniform(0.5, 2.0, Y.shape)
-    value, by_force, by_noise = _whittle(Y, H, S, r)
-    way_S, way_r = S * rng.standard_normal(S.shape), r * rng.standard_normal(r.shape)
+    value, slopes, *_ = _whittle(Y, H, S, r)
+    way_S, way_r = rng.standard_normal(S.shape), rng.standard_normal(r.shape)
     h = 1e-6
-    ahead = _whittle(Y, H, S + h * way_S, r + h * way_r)[0]
-    behind = _whittle(Y, H, S - h * way_S, r - h * way_r)[0]
-    slope = (by_force * way_S).sum() + (by_noise * way_r).sum()
+    ahead = _whittle(Y, H, S * np.exp(h * way_S), r * np.exp(h * way_r))[0]
+    behind = _whittle(Y, H, S * np.exp(-h * way_S), r * np.exp(-h * way_r))[0]
+    slope = (slopes * np.hstack([way_S.T, way_r])).sum()
     assert slope == pytest.approx((ahead - behind) / (2.0 * h), rel=1e-5)
     assert np.isfinite(value)
+
+
+def test_information_is_the_curvature_of_the_expected_cost(rng: np.random.Generator) -> None:
+    """Of ln det S + tr S⁻¹S₀ about what makes S₀, whose columns stand for spectra."""
+    y, H, which, forces = planted(rng)
+    H, which = H[::50], which[::50]
+    some = _Evidence.of(y, STEP_S, H, which, forces, (0, 1))
+    z, m = some.start, 2
+    S_0 = np.einsum("fik,kf,fjk->fij", H, some.densities(z), H.conj())
+    S_0 += some.noise(z)[1][:, :, None] * np.eye(m)
+    columns = np.sqrt(m) * np.linalg.cholesky(S_0)
+
+    def slope(x: np.ndarray) -> np.ndarray:
+        return np.mean([replace(some, Y=columns[:, :, i]).cost(x)[1] for i in range(m)], axis=0)
+
+    found, step = some.information(z), 1e-4
+    curvature = [(slope(z + d) - slope(z - d)) / (2.0 * step) for d in step * np.eye(z.size)]
+    assert_allclose(np.array(curvature), found, rtol=1e-2, atol=1e-3 * np.abs(found).max())
 
 
 def test_other_levels_scatter_as_the_evidence_curves_and_never_against_it(rng: np.random.Generator) -> None:

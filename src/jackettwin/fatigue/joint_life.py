@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,16 +78,20 @@ class JointStresses:
         own = brace_forces(assembly, self.plan, forces)
         return np.array([w.per_force[:, None] * np.array(f) for w, f in zip(self.welds, own, strict=True)])
 
-    def stress_under(self, nominal: FloatArray) -> FloatArray:
+    def stress_under(self, nominal: FloatArray, braces: Sequence[int] | None = None) -> FloatArray:
         """Return stresses (n_braces, 2 sides, 8 points, n) [Pa] under nominal ones (n_braces, 3, n).
 
         The axial force is shared between K, Y and X at every instant, and each share has its own factors.
+
+        Parameters
+        ----------
+        braces : those whose stresses are returned; all of the joint's without it
         """
         area = np.array([weld.per_force[0] for weld in self.welds])
         shares = joint_shares(self.plan, nominal[:, 0] / area[:, None])
         found = []
-        for i, weld in enumerate(self.welds):
-            parts = (shares[:, i, None] * nominal[i]).reshape(9, -1)
+        for i in range(len(self.welds)) if braces is None else braces:
+            weld, parts = self.welds[i], (shares[:, i, None] * nominal[i]).reshape(9, -1)
             by_part = weld.matrices.transpose(1, 2, 0, 3).reshape(16, 9)
             found.append((by_part @ parts).reshape(2, 8, -1))
         return np.array(found)

@@ -65,8 +65,7 @@ class MotionEstimate:
 
     def mean(self) -> FloatArray:
         """Return the most probable coordinates, (n_samples, n_coordinates)."""
-        states, _ = self.smoother.smooth(self.readings.y.T)
-        return np.asarray(states @ self.to_coordinates.T)
+        return self.smoother.smooth(self.readings.y.T, rows=self.to_coordinates)[0]
 
     def draws(self, number: int, *, seed: int = 0, mean: FloatArray | None = None) -> Iterator[FloatArray]:
         """Yield motions (n_samples, n_coordinates) as probable as the real one, about the mean in pairs.
@@ -75,11 +74,10 @@ class MotionEstimate:
         (Durbin & Koopman 2002): added to the mean and taken from it.
         """
         mean = self.mean() if mean is None else mean
-        rng, s = np.random.default_rng(seed), self.smoother
+        rng, s, T = np.random.default_rng(seed), self.smoother, self.to_coordinates
         for k in range(0, number, 2):
             states, y = s.draw(len(mean), rng)
-            said, _ = s.smooth(y)
-            error = (states - said) @ self.to_coordinates.T
+            error = states @ T.T - s.smooth(y, rows=T)[0]
             yield mean + error
             if k + 1 < number:
                 yield mean - error
@@ -100,7 +98,10 @@ def estimate_motion(system: System, readings: SensorReadings, weather: Weather) 
 
 def sensed_model(system: System, weather: Weather) -> MotionModel:
     """Return modes and forces of a structure in a weather: what records in it share."""
-    sea = SeaOnMembers.of(system.assembly, weather)
+    return _model_in(system, weather, SeaOnMembers.of(system.assembly, weather))
+
+
+def _model_in(system: System, weather: Weather, sea: SeaOnMembers) -> MotionModel:
     forces = (*wind_forces(system.assembly, wind_m_s=weather.wind_m_s), *sea.forces())
     return motion_model(system, forces, below_hz=BAND_HZ, drag=sea.damping())
 
@@ -133,9 +134,10 @@ def likely_motions(
     damped : what is known besides of the damping of a model's modes
     """
     first, *others = systems
-    drag = SeaOnMembers.of(first.assembly, weather).damping()
-    estimate = moved(damped(sensed_model(first, weather)), readings, draws=len(others))
-    found, rng, away = [estimate], np.random.default_rng(seed), np.zeros(2)
+    sea = SeaOnMembers.of(first.assembly, weather)
+    estimate = moved(damped(_model_in(first, weather, sea)), readings, draws=len(others))
+    found, drag = [estimate], sea.damping()
+    rng, away = np.random.default_rng(seed), np.zeros(2)
     for k, (system, forces) in enumerate(zip(others, estimate.levels.others, strict=True)):
         away = rng.standard_normal(2) if k % 2 == 0 else -away
         model = motion_model(system, forces, below_hz=BAND_HZ, drag=np.exp(_DRAG_LOG_STD * away[0]) * drag)

@@ -22,7 +22,7 @@ from jackettwin.response import System, static_displacement, undamped_modes
 from jackettwin.sensing.latent_forces import LatentForce
 from jackettwin.structure import Assembly
 
-_FIRST_GUESS = 30
+_FIRST_GUESS = 20
 
 
 @dataclass(frozen=True)

@@ -112,11 +112,12 @@ class SeaOnMembers:
         peak, heading, found = 2.0 * pi / self.state.Tp, self.state.direction, []
         spread = loads_along(self.assembly, self.grid)
         ways = (("along", heading, 1.0), ("across", heading + 0.5 * pi, _ACROSS))
+        speed = sqrt(8.0 / pi) * velocity_std(self.grid, self.state, self.depth_m)
         for band, level in zip(_BANDS, self._levels(), strict=True):
             omega = band.multiple * peak
             for way, angle, share in ways:
                 for place, turn in (("between crests", 0.0), ("at crests", 0.5 * pi)):
-                    push = self._push(omega, angle, turn).ravel()
+                    push = self._push(omega, angle, turn, speed).ravel()
                     found.append(
                         LatentForce(
                             f"{band.name} waves {way}, {place}",
@@ -141,8 +142,11 @@ class SeaOnMembers:
             found.append(sqrt(float(np.trapezoid((2.0 * pi * f) ** 4 * S, f))))
         return found
 
-    def _push(self, omega: float, angle: float, turn: float) -> FloatArray:
-        """Return the forces (n, 3) of a wave of unit acceleration at the surface, at a phase."""
+    def _push(self, omega: float, angle: float, turn: float, speed: FloatArray) -> FloatArray:
+        """Return the forces (n, 3) of a wave of unit acceleration at the surface, at a phase.
+
+        Drag is linear in the sea's mean ``speed`` (n,) across the members.
+        """
         grid, d = self.grid, np.array([cos(angle), sin(angle), 0.0])
         k, z = wave_number(np.array([omega]), self.depth_m), np.minimum(self.grid.points[:, 2], 0.0)
         across, up = (part[:, 0, None] for part in depth_functions(k, z, self.depth_m))
@@ -150,7 +154,6 @@ class SeaOnMembers:
         water = turned * (across * d - 1j * up * [0.0, 0.0, 1.0])
         wet = wetness(grid, np.zeros(grid.weight.size))
         inertia = point_forces(grid, np.zeros(water.shape), water.real, wet=wet)
-        speed = sqrt(8.0 / pi) * velocity_std(grid, self.state, self.depth_m)
         drag = 0.5 * grid.density_kg_m3 * grid.drag * grid.diameter * speed * grid.weight * wet
         return np.asarray(
             inertia + drag[:, None] * np.einsum("nij,nj->ni", grid.normal, (water / (1j * omega)).real)

@@ -75,7 +75,12 @@ class SteadySmoother:
         return x[:-1], x[-1]
 
     def smooth(
-        self, y: FloatArray, start: FloatArray | None = None, *, ahead: int = 0
+        self,
+        y: FloatArray,
+        start: FloatArray | None = None,
+        *,
+        ahead: int = 0,
+        rows: FloatArray | None = None,
     ) -> tuple[FloatArray, FloatArray]:
         """Return smoothed states (N − ahead, n), and the prediction (n,) from which the next piece goes on.
 
@@ -84,18 +89,20 @@ class SteadySmoother:
         y : (N, m) readings
         start : (n,) the prediction of the first sample; without it the motion may have begun anyhow
         ahead : how many samples at the end are only looked ahead at; the next piece begins with them
+        rows : (k, n) what is returned of the states, (N − ahead, k); all of them without it
         """
+        wanted = np.eye(self.F.shape[0]) if rows is None else rows
         x, after, r, first = self._passes(y, np.zeros(self.F.shape[0]) if start is None else start)
         kept = len(y) - ahead
-        states = x[:kept] + r[:kept] @ self.P
+        seen = x[:kept] @ wanted.T + r[:kept] @ (self.P @ wanted.T)
         if start is None:
             # what begins otherwise decays by L in the predictions, of which a long record corrects P Λ
             decay = _forward(
                 np.ascontiguousarray(self.closed_loop.T), self.beginning(first), np.zeros_like(x)
             )
-            states += decay[:kept] @ (np.eye(len(self.P)) - self.information @ self.P)
+            seen += decay[:kept] @ (wanted.T - self.information @ (self.P @ wanted.T))
             x, after = x + decay[:-1], after + decay[-1]
-        return states, (after if ahead == 0 else x[kept])
+        return seen, (after if ahead == 0 else x[kept])
 
     def beginning(self, first: FloatArray) -> FloatArray:
         """Return the state (n,) to begin with, from what the backward pass from rest leaves at the start.
@@ -219,14 +226,8 @@ def _riccati(F: FloatArray, Q: FloatArray, C: FloatArray, R: FloatArray) -> Floa
 @njit(cache=True)
 def _forward(LT: FloatArray, x0: FloatArray, driven: FloatArray) -> FloatArray:
     """Return x_{k+1} = x_k LT + d_k from x_0, (N + 1, n)."""
-    n = x0.size
-    x = np.empty((driven.shape[0] + 1, n))
+    x = np.empty((driven.shape[0] + 1, x0.size))
     x[0] = x0
     for k in range(driven.shape[0]):
-        for j in range(n):
-            x[k + 1, j] = driven[k, j]
-        for i in range(n):
-            value = x[k, i]
-            for j in range(n):
-                x[k + 1, j] += value * LT[i, j]
+        x[k + 1] = np.dot(x[k], LT) + driven[k]
     return x

@@ -18,6 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.fatigue import JointStresses, ModelsAtHeight
 from jackettwin.identification import ModalEstimate
 from jackettwin.loads import Coefficients
 from jackettwin.response import System, UndampedModes, build_system, track_modes, undamped_modes
@@ -25,6 +26,7 @@ from jackettwin.sensing import MotionModel
 from jackettwin.soil import Prony, Spring, Support, standing
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.twin.life.settings import LifeSettings
+from jackettwin.twin.life.weld_map import planned_joints
 from jackettwin.updating import Direction, moved_along, on_unlike_feet, possible
 
 _STEPS = 3
@@ -86,6 +88,16 @@ class StressModel:
         """How many stiffnesses the feet have; none where pins do not hold the structure up."""
         fixed = standing(self.assembly.structure).fixed
         return len(_WAYS) if fixed and all(len(dofs) == len("xyz") for _, dofs in fixed) else 0
+
+    @cached_property
+    def joints(self) -> tuple[JointStresses, ...]:
+        """Joints of tubes with their welds."""
+        return planned_joints(self.assembly)
+
+    @cached_property
+    def curves(self) -> ModelsAtHeight:
+        """Curves of the welds by elevation."""
+        return self.settings.models
 
     def system(self, theta: FloatArray) -> System:
         """Return the structure with ln k of its feet and tolerances (n_ways + n_directions,)."""

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray, IntArray
-from jackettwin.fatigue import POSITIONS, SIDES, HotSpot, LifeModel, ModelsAtHeight, count
+from jackettwin.fatigue import POSITIONS, SIDES, JointStresses, LifeModel, ModelsAtHeight, count
 from jackettwin.sensing import SensorReadings, Weather, likely_motions, stress_remainder
 from jackettwin.structure import Structure
 from jackettwin.twin.life.likely_structures import LikelyStructures
-from jackettwin.twin.life.weld_map import WeldMap, planned_joints, weld_map
+from jackettwin.twin.life.weld_map import WeldMap, weld_map
 
 DAMAGE_UNIT = 1e-11
 """Of damage: a weld that has this of a record lasts a million years."""
@@ -19,12 +20,14 @@ KEPT = 16
 """Sides of welds that are kept of a record."""
 _COUNTED = 24
 """Sides of welds whose cycles are counted: those whose stress varies most, for its curve."""
+_AGAIN = KEPT + 2
+"""Sides that are counted in other motions, too: those with most damage in the likeliest."""
 STEP = 0.02
 """Of logarithms that are kept: a damage is known to a hundredth."""
-STRUCTURES, DRAWS = 3, 2
-"""Structures that count, in pairs about the likeliest, and motions of that one."""
+STRUCTURES, DRAWS = 2, 2
+"""Structures that count, the likeliest among them, and motions of that one."""
 _OF_PAIRS = 0.8
-"""Mean of the standard deviation that a pair about the likeliest shows, over the true one: √(2/π)."""
+"""Mean of the standard deviation that one structure and its mirror show, over the true one: √(2/π)."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +72,8 @@ def sensed_damage(
     """Return the damage of a record at the worst of a structure's welds; None without welds of tubes.
 
     Levels of the forces are found once, on the likeliest structure; others have those that are as probable.
+    A structure that lies on the other side of the likeliest has its damage mirrored, as ln D is nearly linear
+    in what structures differ by: it need not be smoothed.
 
     Raises
     ------
@@ -79,24 +84,29 @@ def sensed_damage(
     """
     systems = likely.systems(structures)
     estimates = likely_motions(systems, readings, weather, damped=likely.damped)
-    joints = planned_joints(likely.model.assembly)
-    charts = [
-        weld_map(system, one.model, likely.model.dry, joints)
-        for system, one in zip(systems, estimates, strict=True)
-    ]
-    curves = _Curves.of(likely.model.assembly.structure, charts[0], likely.model.settings.models)
+    told = likely.model
+    chart = weld_map(systems[0], estimates[0].model, told.dry, told.joints)
+    curves = _Curves.of(told.assembly.structure, told.joints, told.curves)
     mean = estimates[0].mean()
-    sides, guessed, largest_left = curves.worst(charts[0], mean, estimates[0].covariance)
-    first = curves.damage(charts[0], mean, sides)
+    sides, guessed, largest_left = curves.worst(chart, mean, estimates[0].covariance)
+    first = curves.damage(chart, mean, sides)
+    order = np.argsort(-first.max(axis=1), kind="stable")
+    rest, again = first[order[_AGAIN:]], order[:_AGAIN]
+    sides, first, guessed = sides[again], first[again], guessed[again]
     motions = estimates[0].draws(draws, mean=mean)
-    drawn = [curves.damage(charts[0], one, sides, like=first) for one in motions]
+    drawn = [curves.damage(chart, one, sides, like=first) for one in motions]
     # what sensors do not see adds to the damage of every structure as it does to that of the first
     unseen = np.array(drawn) / np.maximum(first, 1e-300)
-    pairs = zip(charts[1:], estimates[1:], strict=True)
-    others = [curves.damage(chart, one.mean(), sides, like=first) for chart, one in pairs]
-    damage = np.array([first, *others])[:, None] * unseen
+    others, of = [], set(curves.joint[sides // len(SIDES)].tolist())
+    for system, one in zip(systems[1:], estimates[1:], strict=True):
+        chart = weld_map(system, one.model, told.dry, told.joints, of=of)
+        others.append(curves.damage(chart, one.mean(), sides, like=first))
+    mirrored = [first**2 / np.maximum(one, _LEAST * first + 1e-300) for one in others]
+    damage = np.array([first, *others, *mirrored])[:, None] * unseen
     worst = damage.mean(axis=(0, 1)).max(axis=1)
     bound = largest_left * float((worst / guessed).max(initial=0.0))
+    grown = float((worst / np.maximum(first.max(axis=1), 1e-300)).max(initial=0.0))
+    bound = max(bound, grown * float(rest.max(initial=0.0)))
     return _kept(sides, damage, bound, curves.remainder[sides // len(SIDES)])
 
 
@@ -129,13 +139,13 @@ class _Curves:
     remainder: FloatArray
 
     @classmethod
-    def of(cls, structure: Structure, chart: WeldMap, models: ModelsAtHeight) -> _Curves:
+    def of(cls, structure: Structure, joints: Sequence[JointStresses], models: ModelsAtHeight) -> _Curves:
         """Return those of a structure's welds."""
-        welds = welds_of(chart)
+        welds = [weld for joint in joints for weld in joint.welds]
         heights = [structure.nodes[w.node][2] - structure.sea_level_z_m for w in welds]
         at = [models(z)[1] for z in heights]
         left = [stress_remainder(z) * float(np.mean(m.curve.m)) for z, m in zip(heights, at, strict=True)]
-        joint = np.repeat(np.arange(len(chart.joints)), [len(j.welds) for j in chart.joints])
+        joint = np.repeat(np.arange(len(joints)), [len(j.welds) for j in joints])
         return cls(tuple(at), np.array([w.thickness_m for w in welds]), joint, np.array(left))
 
     def worst(
@@ -174,19 +184,23 @@ class _Curves:
         welds, found = sides // len(SIDES), np.zeros((sides.size, len(POSITIONS)))
         first = np.concatenate([[0], np.cumsum(np.bincount(self.joint))])
         for joint in np.unique(self.joint[welds]):
-            stress = chart.stress(int(joint), motion)
-            for i in np.flatnonzero(self.joint[welds] == joint):
+            here = np.flatnonzero(self.joint[welds] == joint)
+            braces = sorted({int(w) - int(first[joint]) for w in welds[here]})
+            stress = dict(zip(braces, chart.stress(int(joint), motion, braces), strict=True))
+            for i in here:
                 w, s = divmod(int(sides[i]), len(SIDES))
                 curve, t = self.models[w].curve, float(self.thickness_m[w, s])
                 known = np.ones(len(POSITIONS)) if like is None else like[i] / max(like[i].max(), 1e-300)
                 for p in np.flatnonzero(known >= _MINOR):
-                    cycles = count(stress[w - first[joint], s, p])
+                    cycles = count(stress[w - int(first[joint])][s, p])
                     found[i, p] = curve.damage(cycles.ranges, cycles.numbers, thickness_m=t)
                 minor, worst = known < _MINOR, int(known.argmax())
                 found[i, minor] = known[minor] * found[i, worst]
         return found
 
 
+_LEAST = 0.1
+"""Of the likeliest structure's damage, below which another's is not mirrored further."""
 _MINOR = 0.1
 """Of the damage at a side's worst point, below which a point is not counted in every motion."""
 _TYPICAL = 3.5
@@ -200,8 +214,3 @@ def _spread(chart: WeldMap, joint: int, covariance: FloatArray) -> FloatArray:
     matrices = np.array([weld.matrices for weld in chart.joints[joint].welds])
     square = np.einsum("wkspi,wij,wkspj->wksp", matrices, between, matrices)
     return np.asarray(np.sqrt(square.max(axis=(1, 3))))
-
-
-def welds_of(chart: WeldMap) -> tuple[HotSpot, ...]:
-    """Return all welds in their order."""
-    return tuple(weld for joint in chart.joints for weld in joint.welds)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.checks import joint_plans
@@ -10,7 +13,7 @@ from jackettwin.errors import require
 from jackettwin.fatigue import Cycles, JointStresses, count, joint_stresses
 from jackettwin.response import System, self_weight, static_displacement
 from jackettwin.sensing import MotionModel, section_rows
-from jackettwin.structure import Assembly, element_weight, section_forces
+from jackettwin.structure import Assembly, SectionForces, element_weight, section_forces
 
 _YIELD_PA = 355e6
 """Yield strength that the design of joints requires and fatigue does not use."""
@@ -23,18 +26,24 @@ class WeldMap:
     Attributes
     ----------
     joints : tuple of JointStresses
-    rows : for every joint, (n_braces, 3, n_coordinates) nominal stress at unit coordinates
-    at_rest : for every joint, (n_braces, 3) nominal stress under the steel's weight
+    rows : for every joint, (n_braces, 3, n_coordinates) nominal stress at unit coordinates; no braces where
+        stresses are not asked
+    at_rest : likewise, (n_braces, 3) nominal stress under the steel's weight
     """
 
     joints: tuple[JointStresses, ...]
     rows: tuple[FloatArray, ...]
     at_rest: tuple[FloatArray, ...]
 
-    def stress(self, joint: int, motion: FloatArray) -> FloatArray:
-        """Return stresses (n_braces, 2, 8, n) [Pa] of a joint in a motion (n, n_coordinates)."""
+    def stress(self, joint: int, motion: FloatArray, braces: Sequence[int] | None = None) -> FloatArray:
+        """Return stresses (n_braces, 2, 8, n) [Pa] of a joint, or of some of its braces.
+
+        Parameters
+        ----------
+        motion : (n, n_coordinates)
+        """
         nominal = self.rows[joint] @ motion.T + self.at_rest[joint][:, :, None]
-        return self.joints[joint].stress_under(nominal)
+        return self.joints[joint].stress_under(nominal, braces)
 
     def cycles(self, motion: FloatArray) -> list[list[list[Cycles]]]:
         """Return the cycles at (welds, 2 sides, 8 points) of a motion."""
@@ -51,7 +60,12 @@ def planned_joints(assembly: Assembly) -> tuple[JointStresses, ...]:
 
 
 def weld_map(
-    system: System, model: MotionModel, dry: Assembly, joints: tuple[JointStresses, ...] | None = None
+    system: System,
+    model: MotionModel,
+    dry: Assembly,
+    joints: tuple[JointStresses, ...] | None = None,
+    *,
+    of: Collection[int] | None = None,
 ) -> WeldMap:
     """Return the map from a motion of the model to the stresses of the structure's welds.
 
@@ -59,6 +73,7 @@ def weld_map(
     ----------
     dry : the assembly with the steel's mass only, whose weight divides forces between K, Y and X joints
     joints : of the structure, if they are planned already
+    of : numbers of the joints whose stresses are asked; of all without it
 
     Raises
     ------
@@ -69,9 +84,10 @@ def weld_map(
     require(joints, "no brace is welded to a chord", field="structure", remedy="joints of tubes are checked")
     weight = static_displacement(system, self_weight(dry))
     still = section_forces(model.assembly, weight[None], along=element_weight(dry)[None])
-    moving = section_rows(model)
-    return WeldMap(
-        joints,
-        tuple(joint.nominal(model.assembly, moving) for joint in joints),
-        tuple(joint.nominal(model.assembly, still)[:, :, 0] for joint in joints),
-    )
+    # at rest is one coordinate more
+    forces = SectionForces(*(np.concatenate(pair) for pair in zip(section_rows(model), still, strict=True)))
+    asked, none = range(len(joints)) if of is None else of, np.zeros((0, 3, 1 + len(forces.axial)))
+    nominal = [
+        joint.nominal(model.assembly, forces) if j in asked else none for j, joint in enumerate(joints)
+    ]
+    return WeldMap(joints, tuple(n[:, :, :-1] for n in nominal), tuple(n[:, :, -1] for n in nominal))
