@@ -62,19 +62,15 @@ from jackettwin.updating import (
     objection,
     support_model,
 )
-from jackettwin.updating.posterior.evidence import Kernels, root_of
 from jackettwin.updating.posterior.identifiability import identifiability
 from jackettwin.updating.posterior.laplace import log_covariance
 from jackettwin.updating.posterior.smc import sample_posterior
-from jackettwin.updating.problem import Found
+from jackettwin.updating.posterior.weighted import weighted_draws
 from jackettwin.updating.search.descent import bottom
 
 MODES = ((1, 2, 3, 4), (1, 2, 3, 4, 5), (1, 2, 4, 5), (1, 2, 3, 4, 5, 6, 7))
 BOUNDS = {"k": (2e7, 5e10), "loss_factor": (0.003, 0.6)}
 PARTICLES = 50
-DRAWS, ENOUGH = 800, 120.0
-WIDTHS = (1.0, 1.5, 2.5)
-"""Of the normals on a best fit, in the standard deviations there."""
 WIDE = 1.5
 SYMMETRIC, PAIR = 5, 5e-3
 """Every fifth jacket has its rotor on the axis; its pairs are as close as this on pinned feet."""
@@ -286,7 +282,7 @@ def _estimated(
     near = problem.anchor(inside)
     best = inside if near is None else bottom(problem, inside, near)
     if sampled:
-        draws, status = _posterior(problem, best, near, case)
+        draws, status = _posterior(problem, best, case)
     else:
         draws, status = laplace_draws(problem, np.exp(best)), "Laplace"
     lowest, low, middle, high, highest = np.quantile(draws, [0.005, 0.05, 0.5, 0.95, 0.995], axis=0)
@@ -313,24 +309,16 @@ def _estimated(
     return result | {"cpu_s": time.process_time() - start}
 
 
-def _posterior(problem: Problem, best: FloatArray, near: Found | None, case: int) -> tuple[FloatArray, str]:
+def _posterior(problem: Problem, best: FloatArray, case: int) -> tuple[FloatArray, str]:
     """Return draws of ln θ from the posterior.
 
     Weighted draws from normals on the best fit and from the prior serve where enough of them count; else the
     sampler of ``jackettwin update`` does.
     """
-    rng = np.random.default_rng((37, case))
-    root = root_of(log_covariance(problem, np.exp(best)))
-    mixture = Kernels(np.array([best] * len(WIDTHS)), np.array([width * root for width in WIDTHS]))
-    z = np.concatenate([mixture.draw(DRAWS, rng), problem.prior.draw(DRAWS // 4, rng)])
-    z = z[np.isfinite(problem.prior.log_density(z))]
-    log_p = problem.prior.log_density(z)
-    log_q = np.logaddexp(mixture.log_density(z) + np.log(0.8), log_p + np.log(0.2))
-    log_w = problem.log_likelihood(z, near)[0] + log_p - log_q
-    w = np.exp(log_w - log_w.max())
-    w /= w.sum()
-    if 1.0 / (w @ w) > ENOUGH:
-        return z[rng.choice(len(z), 1000, p=w)], "weighted"
+    covariance = log_covariance(problem, np.exp(best))
+    draws = weighted_draws(problem, best, covariance, np.random.default_rng((37, case)))
+    if draws is not None:
+        return draws, "weighted"
     try:
         return sample_posterior(problem, particles=PARTICLES, islands=2, seed=case).log_theta, "ok"
     except NumericalError as error:

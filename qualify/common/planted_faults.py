@@ -159,6 +159,7 @@ FAULTS = (
         ("bridge sampling weighs both samples alike", "np.log([independent, at_trial.size])", "np.log([at_trial.size, at_trial.size])"),
         ("the slope's scatter is not squared", "scatter**2 * log_covariance", "scatter * log_covariance"),
         ("χ² has one freedom more", "freedom = residuals.size - fitted", "freedom = residuals.size - fitted + 1"),
+        ("weighted draws are not divided by their own density", "log_w = swarm.log_l + swarm.log_p - log_q", "log_w = swarm.log_l + swarm.log_p"),
         ("a kernel's density lacks its root", "- np.log(np.diag(root)).sum()", "+ np.log(np.diag(root)).sum()"),
     )),
     *_of("simulate", rows=(

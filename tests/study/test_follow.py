@@ -313,6 +313,7 @@ def test_shapes_and_real_poles_are_followed_and_kept(
         return np.tile(np.log(TRUTH), (3, 1)), "ok"
 
     monkeypatch.setattr("jackettwin.study.in_time.question._draws", drawn)
+    monkeypatch.setattr("jackettwin.study.in_time.question._draws_after", lambda *_: None)
     with_shapes = replace(
         config, update=config.update.model_copy(update={"mac_std": 0.02, "model_errors": ()})
     )

@@ -25,6 +25,7 @@ from jackettwin.updating.posterior.convergence import convergence
 from jackettwin.updating.posterior.laplace import log_covariance
 from jackettwin.updating.posterior.nested import sample_nested
 from jackettwin.updating.posterior.smc import Posterior, _evaluate, _moved, gathered, sample_posterior
+from jackettwin.updating.posterior.weighted import weighted_draws
 from jackettwin.updating.prior import BoxPrior
 
 TRUTH = np.array([3e9, 0.15])
@@ -87,6 +88,19 @@ def test_log_evidence_of_valleys(model: SupportModel, data: str) -> None:
     exact = evidence_by_quadrature(problem, posterior.log_theta)
     assert posterior.log_evidence == pytest.approx(exact, abs=0.1)
     assert posterior.log_evidence_std < 0.03
+
+
+def test_more_records_are_weighted_draws_around_fewer(model: SupportModel, posterior: Posterior) -> None:
+    """The posterior of 600 s from that of 450 s is the sampled one; a proposal elsewhere is refused."""
+    problem = single(model, record_of(model, 600.0))
+    fewer = sample_posterior(single(model, record_of(model, 450.0)), particles=100, islands=2).log_theta
+    rng = np.random.default_rng(4)
+    draws = weighted_draws(problem, fewer.mean(axis=0), np.cov(fewer.T), rng)
+    assert draws is not None
+    ours, exact = (np.quantile(z, [0.05, 0.5, 0.95], axis=0) for z in (draws, posterior.log_theta))
+    # three standard deviations of quantiles of 300 effective draws, the ends' density being a quarter of it
+    assert np.abs((ours - exact) / posterior.log_theta.std(axis=0)).max() < 0.35
+    assert weighted_draws(problem, fewer.mean(axis=0) + 3.0, 1e-4 * np.cov(fewer.T), rng, n=100) is None
 
 
 def test_two_hills_hold_their_shares(jacket15: Assembly) -> None:

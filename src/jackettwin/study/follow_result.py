@@ -72,6 +72,7 @@ class PooledEstimate:
     median, interval_90, status : of every parameter, as of :class:`DayEstimate`
     about : sensitivity of frequencies to the stiffness there, or None if no mode can be followed
     reference : draws of the stiffness
+    centre, covariance : (d,), (d, d) of ln θ, from which the next estimate is drawn; empty in older files
     """
 
     records: int
@@ -80,6 +81,8 @@ class PooledEstimate:
     status: str
     about: Sensitivity | None
     reference: Reference
+    centre: FloatArray = field(default_factory=lambda: np.empty(0))
+    covariance: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,7 @@ from jackettwin.updating import (
     SupportModel,
     laplace_draws,
     posterior_or_status,
+    weighted_draws,
 )
 from jackettwin.updating.search.solutions import search
 
@@ -243,7 +244,8 @@ class FollowQuestion:
         self, found: InTime, date_: str, running: TwinState, moment: DayEstimate, progress: Progress
     ) -> InTime:
         number, last = running.totals[ALL].conditions.records, found.last
-        new = None if last is not None and number < GROWN * last.records else self.pooled(running, progress)
+        due = last is None or number >= GROWN * last.records
+        new = self.pooled(running, progress, last) if due else None
         pooled = last if new is None else new
         if pooled is None:
             raise ValueError("nothing is known of all records")
@@ -287,13 +289,17 @@ class FollowQuestion:
             found = self._moment(found, date_, state, known, progress)
         return found
 
-    def pooled(self, state: TwinState, progress: Progress = SILENT) -> PooledEstimate:
-        """Return the estimate from some records together."""
+    def pooled(
+        self, state: TwinState, progress: Progress = SILENT, before: PooledEstimate | None = None
+    ) -> PooledEstimate:
+        """Return the estimate from some records together; that of fewer records shortens the sampling."""
         evidence = _evidence(self.config, self.model, self.rotor, self.wind, state)
         highest = max(mode for data, _ in evidence.states.values() for mode in data.modes)
         problem = model_problem(self.config, evidence, self.support.reaching(highest))
-        log_theta, status = _draws(self.config, problem, progress)
         names = [p.name for p in problem.parameters]
+        log_theta, status = _draws_after(before, problem, self.config.update.seed), "ok"
+        if log_theta is None:
+            log_theta, status = _draws(self.config, problem, progress)
         low, median, high = np.exp(np.quantile(log_theta, [0.05, 0.5, 0.95], axis=0))
         stiff = [i for i, p in enumerate(problem.parameters) if p.unit == STIFFNESS]
         modes = tuple(
@@ -309,11 +315,25 @@ class FollowQuestion:
             status,
             about,
             Reference.of(log_theta, stiff),
+            log_theta.mean(axis=0),
+            np.atleast_2d(np.cov(log_theta.T)),
         )
 
     def _identity(self, state: TwinState) -> str:
         """Return the identity of everything that an estimate depends on."""
         return digest([state.totals, state.clearest, self.wind, self.law])
+
+
+def _draws_after(before: PooledEstimate | None, problem: Problem, seed: int) -> FloatArray | None:
+    """Return draws of ln θ near an earlier estimate; None if it is of other parameters or too far away."""
+    if (
+        before is None
+        or not before.centre.size
+        or list(before.median) != [p.name for p in problem.parameters]
+    ):
+        return None
+    rng = np.random.default_rng((seed, before.records))
+    return weighted_draws(problem, before.centre, before.covariance, rng)
 
 
 def _draws(config: TwinConfig, problem: Problem, progress: Progress) -> tuple[FloatArray, str]:

@@ -48,6 +48,9 @@ _EPOCH = np.datetime64("1970-01-01")
 _MOST_DRAWS = 60
 _HALVINGS = 18
 """Halvings of the interval of six standard deviations in which a quantile is searched: to 4·10⁻⁶ of it."""
+_FINE, _COARSE, _HEAVY = np.linspace(-6.0, 6.0, 49), np.linspace(-6.0, 6.0, 9), 6
+"""Standard deviations from the mean of the heaviest components, and of all, at which the distribution of a
+level is computed. In between it is linear: wrong by 0.002 at most."""
 _LEAST_WEIGHT = 1e-4
 """Least weight of a mixture's component that is used."""
 _FARTHEST = 4.0
@@ -179,19 +182,23 @@ def _quantiles(
     weights, mean, std : (c,), (t, c), (t, c)
     flatter, origin : (t, n), (n,)
     """
-    wanted = np.array([0.05, 0.5, 0.95])
-    ends = np.array([np.min(mean - 6.0 * std, axis=1), np.max(mean + 6.0 * std, axis=1)])
-    inside = np.minimum(bend * ends[..., None] / flatter, -np.expm1(-bend * _FARTHEST))
-    farthest = origin + np.clip(-np.log1p(-inside) / bend, -_FARTHEST, _FARTHEST)
-    low = np.repeat(farthest[0].min(axis=-1)[:, None], 3, axis=1)
-    high = np.repeat(farthest[1].max(axis=-1)[:, None], 3, axis=1)
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        x = np.clip(middle[:, :, None] - origin, -_FARTHEST, _FARTHEST)
-        h = -np.expm1(-bend * x) / bend * flatter[:, None]
-        share = (ndtr((h[..., None] - mean[:, None, None]) / std[:, None, None]) @ weights).mean(axis=-1)
-        low, high = np.where(share < wanted, middle, low), np.where(share < wanted, high, middle)
-    return np.asarray(np.exp(0.5 * (low + high)))
+    wanted, heaviest = np.array([0.05, 0.5, 0.95]), np.argsort(-weights)[:_HEAVY]
+    out = np.empty((len(mean), 3))
+    for t, (m, s, flat) in enumerate(zip(mean, std, flatter, strict=True)):
+        at = [m[heaviest, None] + s[heaviest, None] * _FINE, m[:, None] + s[:, None] * _COARSE]
+        levels = np.unique(np.concatenate([one.ravel() for one in at]))
+        below = ndtr((levels[:, None] - m) / s) @ weights
+        inside = np.minimum(bend * levels[[0, -1], None] / flat, -np.expm1(-bend * _FARTHEST))
+        ends = origin + np.clip(-np.log1p(-inside) / bend, -_FARTHEST, _FARTHEST)
+        low, high = np.full((3, 1), ends[0].min()), np.full((3, 1), ends[1].max())
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            x = np.clip(middle - origin, -_FARTHEST, _FARTHEST)
+            share = np.interp(-np.expm1(-bend * x) / bend * flat, levels, below).mean(axis=1, keepdims=True)
+            less = share < wanted[:, None]
+            low, high = np.where(less, middle, low), np.where(less, high, middle)
+        out[t] = np.exp(0.5 * (low + high))[:, 0]
+    return out
 
 
 def change_of(jump: Jump, reference: Reference, about: Sensitivity) -> Span3:

@@ -97,29 +97,31 @@ class Posterior:
 
 
 @dataclass(frozen=True)
-class _Swarm:
-    """Particles of one island with their modes and likelihoods."""
+class Swarm:
+    """Particles with their modes and likelihoods."""
 
     z: FloatArray
     log_l: FloatArray
     log_p: FloatArray
     found: Found
 
-    def take(self, index: IntArray) -> _Swarm:
-        return _Swarm(
+    def take(self, index: IntArray) -> Swarm:
+        """Return some of the particles."""
+        return Swarm(
             self.z[index],
             self.log_l[index],
             self.log_p[index],
             tuple(modes.some(index) for modes in self.found),
         )
 
-    def where(self, yes: BoolArray, other: _Swarm) -> _Swarm:
+    def where(self, yes: BoolArray, other: Swarm) -> Swarm:
         """Return the swarm with the particles of another where ``yes``."""
         index = np.where(yes, np.arange(yes.size) + yes.size, np.arange(yes.size))
         return self.joined(other).take(index)
 
-    def joined(self, other: _Swarm) -> _Swarm:
-        return _Swarm(
+    def joined(self, other: Swarm) -> Swarm:
+        """Return the particles of both."""
+        return Swarm(
             np.concatenate([self.z, other.z]),
             np.concatenate([self.log_l, other.log_l]),
             np.concatenate([self.log_p, other.log_p]),
@@ -211,20 +213,16 @@ def _by_particle(kept: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:
 
 def _island(
     problem: Problem, n: int, rng: np.random.Generator, place: str, progress: Progress
-) -> list[_Swarm]:
+) -> list[Swarm]:
     """Return the last swarms of one island."""
     prior = problem.prior
-    z = prior.draw(n, rng)
-    swarm = _evaluate(problem, prior, z[:_SCOUTS], problem.anchor(z.mean(axis=0)))
-    if n > _SCOUTS:
-        rest = z[_SCOUTS:]
-        swarm = swarm.joined(_evaluate(problem, prior, rest, _nearest(prior, rest, swarm)))
+    swarm = scouted(problem, prior.draw(n, rng))
     beta, log_q, tops = 0.0, swarm.log_p, None
     while True:
         scattered = swarm
         beta = _next_beta(swarm, log_q, beta, _ESS * n)
         weight = beta * swarm.log_l + swarm.log_p - log_q
-        swarm = swarm.take(_systematic(np.exp(weight - logsumexp(weight)), n, rng))
+        swarm = swarm.take(systematic(np.exp(weight - logsumexp(weight)), n, rng))
         tell = partial(progress.within, f"{place}: {beta:.0%}")
         tell()
         if beta == 1.0:
@@ -233,15 +231,22 @@ def _island(
         swarm, log_q = _renewed(problem, prior, swarm, beta, rng, tops, tell)
 
 
+def scouted(problem: Problem, z: FloatArray) -> Swarm:
+    """Return points (n, d) in random order with their modes: all start from the nearest of the first few."""
+    prior, first, rest = problem.prior, z[:_SCOUTS], z[_SCOUTS:]
+    swarm = _evaluate(problem, prior, first, problem.anchor(z.mean(axis=0)))
+    return swarm.joined(_evaluate(problem, prior, rest, _nearest(prior, rest, swarm))) if len(rest) else swarm
+
+
 def _renewed(
     problem: Problem,
     prior: Prior,
-    swarm: _Swarm,
+    swarm: Swarm,
     beta: float,
     rng: np.random.Generator,
     tops: Kernels,
     tell: Callable[[], None],
-) -> tuple[_Swarm, FloatArray]:
+) -> tuple[Swarm, FloatArray]:
     """Return new particles of the same tempered posterior, and ln of the density from which they are drawn.
 
     Half of them are drawn around the maxima of the posterior. If these fit well, the next step is the last
@@ -259,7 +264,7 @@ def _renewed(
     return moved, beta * moved.log_l + moved.log_p
 
 
-def _hilltops(problem: Problem, scattered: _Swarm) -> Kernels:
+def _hilltops(problem: Problem, scattered: Swarm) -> Kernels:
     """Return normals around the maxima of the posterior that are reached from draws of the prior."""
     centres: list[FloatArray] = []
     roots: list[FloatArray] = []
@@ -273,7 +278,7 @@ def _hilltops(problem: Problem, scattered: _Swarm) -> Kernels:
     return Kernels(np.array(centres), np.array(roots))
 
 
-def _tops(swarm: _Swarm) -> IntArray:
+def _tops(swarm: Swarm) -> IntArray:
     """Return the most likely few of the particles that are more likely than all their neighbours."""
     x = swarm.z / np.ptp(swarm.z, axis=0)
     _, near = KDTree(x).query(x, k=min(2 * x.shape[1] + 1, len(x)))
@@ -284,11 +289,11 @@ def _tops(swarm: _Swarm) -> IntArray:
 def _walk(
     problem: Problem,
     prior: Prior,
-    swarm: _Swarm,
+    swarm: Swarm,
     beta: float,
     rng: np.random.Generator,
     tell: Callable[[], None],
-) -> list[_Swarm]:
+) -> list[Swarm]:
     """Return the states of the swarm after every few moves."""
     kept = []
     for move in range(1, _MOVES + 1):
@@ -300,8 +305,8 @@ def _walk(
 
 
 def _moved(
-    problem: Problem, prior: Prior, swarm: _Swarm, beta: float, rng: np.random.Generator, *, wide: bool
-) -> _Swarm:
+    problem: Problem, prior: Prior, swarm: Swarm, beta: float, rng: np.random.Generator, *, wide: bool
+) -> Swarm:
     """Return the swarm after one move of each half by differences of the other.
 
     The half that provides the differences is not moved, which leaves the joint distribution exactly
@@ -321,19 +326,19 @@ def _moved(
     return still.joined(moving).take(np.argsort(order))
 
 
-def _nearest(prior: Prior, z: FloatArray, known: _Swarm) -> Found:
+def _nearest(prior: Prior, z: FloatArray, known: Swarm) -> Found:
     """Return for each point the modes of the nearest particle (distance relative to the bounds) as start."""
     width = prior.high - prior.low
     _, nearest = KDTree(known.z / width).query(z / width)
     return tuple(modes.some(np.asarray(nearest)) for modes in known.found)
 
 
-def _evaluate(problem: Problem, prior: Prior, z: FloatArray, near: Found | None) -> _Swarm:
+def _evaluate(problem: Problem, prior: Prior, z: FloatArray, near: Found | None) -> Swarm:
     log_l, found = problem.log_likelihood(z, near)
-    return _Swarm(z, log_l, prior.log_density(z), found)
+    return Swarm(z, log_l, prior.log_density(z), found)
 
 
-def _next_beta(swarm: _Swarm, log_q: FloatArray, beta: float, least: float) -> float:
+def _next_beta(swarm: Swarm, log_q: FloatArray, beta: float, least: float) -> float:
     """Return the largest β up to 1 with at least a given share of effective particles, by bisection."""
 
     def enough(at: float) -> bool:
@@ -354,7 +359,8 @@ def _effective(log_weight: FloatArray) -> float:
     return float(w.sum() ** 2 / (w @ w))
 
 
-def _systematic(weight: FloatArray, n: int, rng: np.random.Generator) -> IntArray:
+def systematic(weight: FloatArray, n: int, rng: np.random.Generator) -> IntArray:
+    """Return the indices of n draws with given probabilities by systematic resampling."""
     u = (rng.random() + np.arange(n)) / n
     return np.minimum(np.searchsorted(np.cumsum(weight), u), weight.size - 1)
 
