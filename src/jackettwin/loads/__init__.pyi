@@ -54,6 +54,7 @@ from .operation.bem import (
     operating_point as operating_point,
     steady_operation as steady_operation,
 )
+from .operation.blade_bending import bending_blades as bending_blades
 from .operation.damping import (
     OPERATING_LEAST_RATIO as OPERATING_LEAST_RATIO,
     OPERATING_LOG_STD as OPERATING_LOG_STD,

@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
-from math import degrees, pi, radians
+from dataclasses import replace
+from math import degrees, pi, radians, sqrt
 
-from jackettwin.loads import AIR_KG_M3, operating_point, read_rotor, steady_operation
+import numpy as np
+
+from jackettwin.loads import AIR_KG_M3, bending_blades, operating_point, read_rotor, steady_operation
 from jackettwin.response import build_system, undamped_modes
 from jackettwin.soil import clamped
-from jackettwin.structure import Material, Member, PointMass, Reaction, Section, Structure, assemble
+from jackettwin.structure import (
+    BladeStructure,
+    Material,
+    Member,
+    PointMass,
+    Reaction,
+    Section,
+    Structure,
+    assemble,
+)
 from jackettwin.verify.rows import Computed
 
 _WINDS = ("8.422147", "9.780037", "12.84800", "14.77807", "16.92050", "20.02994", "25")
@@ -17,13 +29,15 @@ _OPTIMAL = 8.0
 _COEFFICIENTS = ((6, 0), (6, 5), (6, 10), (8, 0), (8, 3), (9, 2), (5, 12), (7, -2))
 """Tip-speed ratios and pitches [°] of the table of coefficients, at its wind of 10.74 m/s."""
 _TABLE_WIND = 10.74
+_TURNS = ((1, 1), (2, 1), (6, 1), (6, 2))
+"""Speeds over √(EI/mL⁴), and numbers of the flap modes, of the beam that turns."""
 _RATED = 12.0
 """Above the rated wind speed, where pitch holds the power [m/s]."""
 
 
 def turbine_benchmarks() -> Computed:
-    """Return thrust, pitch and power of the one rotor, frequencies and mass of the other tower."""
-    return {**_iea15(), **_nrel5()}
+    """Return thrust, pitch and power of the one rotor, the other's tower, and a beam that turns."""
+    return {**_iea15(), **_nrel5(), **_turning_beam()}
 
 
 def _iea15() -> Computed:
@@ -48,6 +62,21 @@ def _iea15() -> Computed:
         push = 0.5 * AIR_KG_M3 * pi * rotor.radius**2 * _TABLE_WIND**2
         found[f"IEA15-C-power-{ratio}-{pitch}"] = point.power / (push * _TABLE_WIND)
         found[f"IEA15-C-thrust-{ratio}-{pitch}"] = point.thrust / push
+    return found
+
+
+def _turning_beam() -> Computed:
+    """Return flap frequencies of a uniform beam that turns about its root, over √(EI/mL⁴)."""
+    rotor, _ = read_rotor("iea15")
+    length, even = float(rotor.blade.z[-1]), np.ones(81)
+    beam = BladeStructure(np.linspace(0.0, length, 81), even, 1e10 * even, 4e10 * even, 0.0 * even, 0.0)
+    turning, unit = replace(rotor, bending=beam, hub_radius=0.0, n_blades=1), sqrt(1e10 / length**4)
+    found: Computed = {}
+    for speed, mode in _TURNS:
+        blades = bending_blades(turning, pitch=0.0, rotor_speed=speed * unit)
+        flap = np.abs(blades.shape[:, 0]).max(axis=0) > np.abs(blades.shape[:, 1]).max(axis=0)
+        omega = np.sqrt(np.linalg.eigvalsh(blades.stiffness[np.ix_(flap, flap)]))
+        found[f"turning-beam-{speed}-{mode}"] = float(omega[mode - 1] / unit)
     return found
 
 
