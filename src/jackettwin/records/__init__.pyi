@@ -16,6 +16,7 @@ from .readers import (
     record_files as record_files,
     write_record as write_record,
 )
+from .readers.bladed import read_output as read_output
 from .readers.channels import FileDefaults as FileDefaults
 from .readers.delimited import MISSING as MISSING, text_table as text_table
 from .readers.registry import Format as Format, read_table as read_table

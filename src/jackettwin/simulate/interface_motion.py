@@ -11,7 +11,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.errors import located, require
 from jackettwin.files import read_text as read_lines
 from jackettwin.quantities import plain_unit
-from jackettwin.records.readers.openfast import read_text
+from jackettwin.records import read_output
 
 CSV_COLUMNS = ("x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad")
 _OF_PROGRAMS = (
@@ -79,7 +79,7 @@ def _of_csv(path: Path) -> tuple[FloatArray, FloatArray]:
 
 
 def _of_openfast(path: Path) -> tuple[FloatArray, FloatArray]:
-    found = read_text(path)
+    found = read_output(path)
     assert found.times_s is not None
     rows = {name.lower(): i for i, name in enumerate(found.names)}
     channels = next((names for names in _OF_PROGRAMS if all(name in rows for name in names)), None)

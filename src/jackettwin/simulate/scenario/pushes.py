@@ -14,7 +14,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, located, look_up, require
 from jackettwin.files import Schema, read_text as read_lines
 from jackettwin.quantities import plain_unit, to_si
-from jackettwin.records.readers.openfast import read_text
+from jackettwin.records import read_output
 from jackettwin.structure import Structure
 
 COMPONENTS = ("fx_n", "fy_n", "fz_n", "mx_n_m", "my_n_m", "mz_n_m")
@@ -108,7 +108,7 @@ class Pull:
 
 
 class OutputForcesSchema(Schema):
-    """``forces`` of another program's output: which of its channels act on which node, in the file's units.
+    """``forces`` of OpenFAST's or Bladed's output: which channels act on which node, in the file's units.
 
     Channels are what acts on the structure along its global axes; ``factor`` −1 turns reactions about.
     ``discard_s`` is left out of the file's beginning, whose rest begins with the record.
@@ -126,14 +126,14 @@ class OutputForcesSchema(Schema):
         Raises
         ------
         InputError
-            If the file is no OpenFAST output, or lacks a channel, or its unit is not that of a force.
+            If the file is no output of OpenFAST or Bladed, lacks a channel, or its unit is no force's.
         """
         path = folder / self.file
         with located(field="forces"):
             look_up(structure.nodes, self.node, "node", field="node")
             require(path.is_file(), "no such file", field="file", value=str(path), remedy="check the path")
         with located(file=path, field="forces"):
-            found = read_text(path)
+            found = read_output(path)
             assert found.times_s is not None
             kept = found.times_s >= found.times_s[0] + self.discard_s
             t = found.times_s[kept] - found.times_s[kept][0] if kept.any() else np.empty(0)
