@@ -185,12 +185,12 @@ def directions_of(
 
 
 def truth(world: World, tie: str) -> FloatArray:
-    """Return ln of the parameters that the twin is asked for: of feet that differ, their mean.
+    """Return ln of the parameters that the twin is asked for: of feet that differ, their mean by compliance.
 
     Of feet that are softer sideways than the twin's tie knows, its one stiffness is that along the legs.
     """
     sides = [world.vertical] if tie == "all" else [world.horizontal, world.vertical]
-    return np.log([value for side in sides for value in (side.mean(), world.loss)])
+    return np.log([value for side in sides for value in (1.0 / np.mean(1.0 / side), world.loss)])
 
 
 def twin(case: int) -> Result:

@@ -19,7 +19,15 @@ from jackettwin.answers.result import (
 from jackettwin.report.tables.answers import ground_table
 from jackettwin.report.tables.sentences import _model, percent_words, sentences, span_words
 from jackettwin.study.scrutiny import Scrutiny
-from jackettwin.updating import DatumCheck, Objection, OrderCheck, ShapeCheck, Tolerance, UndetectedError
+from jackettwin.updating import (
+    DatumCheck,
+    Influence,
+    Objection,
+    OrderCheck,
+    ShapeCheck,
+    Tolerance,
+    UndetectedError,
+)
 
 MODE = ModeAnswer(
     "fore_aft_1", Span(0.2, 0.199, 0.201), Span(0.012, 0.01, 0.014), True, True, Span(0.201, 0.195, 0.204),
@@ -320,6 +328,24 @@ def test_what_these_data_would_not_show_is_said_with_its_size() -> None:
         "stiffness would be 9.5 % less than stated; revealed only from 95 %) and one foot softer "
         "than the others (30 %; not revealed at any likely size)." in shorts
     )
+
+
+def test_a_stiffness_says_which_mean_of_the_feet_it_is_and_whether_a_weak_one_would_show() -> None:
+    unlike = Tolerance("feet_unlike", "feet unlike each other", 0.15, "-", "assumed", "look")
+    weak = replace(unlike, name="weak_leg", words="one foot softer than the others", std=0.3)
+
+    moves = (Influence(unlike, 0.0, 1.0, np.zeros(2), np.ones(2), ()),)
+
+    def said(seen_from: float) -> str:
+        found = Objection((), 1.0, 3, 0.8, unseen=(UndetectedError(weak, seen_from, np.zeros(2)),))
+        lines = sentences(replace(ANSWERS, scrutiny=Scrutiny(found, moves))).headline
+        return next(line for line in lines if "mean by compliance" in line)
+
+    assert said(0.55).endswith("; one foot softer than the others is revealed only from 55 %.")
+    # no foot is softer by more than all of it
+    assert said(1.2).endswith("one foot softer than the others is not revealed at any likely size.")
+    alone = Scrutiny(Objection((), 1.0, 3, 0.8))
+    assert not any("compliance" in s for s in sentences(replace(ANSWERS, scrutiny=alone)).headline)
 
 
 def test_another_law_that_is_not_revealed_is_spoken_of_by_powers_of_frequency() -> None:

@@ -324,6 +324,27 @@ def test_one_softer_foot_turns_a_pair_as_a_model_of_unlike_feet_does(model: Supp
     assert direction_row(problem, z, pair_of(legs, theta, (4, 5))) is None
 
 
+def test_unlike_feet_are_seen_as_their_mean_by_compliance(model: SupportModel) -> None:
+    """One foot at half: the first pair's mean flexibility is that of like feet of the harmonic mean.
+
+    Exactly so for three springs under a rigid block that rocks about both axes, Σ 1/K = 2/(r²) · mean(1/k);
+    of four the block sees no warping, and a jacket is between. The arithmetic mean is 9 % stiffer.
+    """
+    legs = support_model(
+        model.assembly, family=model.family, rayleigh=model.rayleigh, tie="per-leg", highest_mode=7
+    )
+    theta = np.tile(THETA, 4)
+    theta[2] *= 0.5
+    arithmetic, harmonic = 3.5 / 4.0, 4.0 / 5.0
+
+    def flexibility(of: SupportModel, at: np.ndarray) -> float:
+        return float(np.sum(np.abs(of.predict(at, (1, 2)).poles) ** -2.0))
+
+    ends = [flexibility(model, THETA * [share, 1.0]) for share in (harmonic, arithmetic)]
+    from_harmonic = (flexibility(legs, theta) - ends[0]) / (ends[1] - ends[0])
+    assert abs(from_harmonic) < 0.45
+
+
 def test_a_turned_pair_objects_and_a_weak_foot_explains_it(model: SupportModel, errors: ErrorModel) -> None:
     """The first pair turned by 20° against a known structure: the direction alone objects, in either sense.
 

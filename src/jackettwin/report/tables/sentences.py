@@ -12,6 +12,7 @@ from jackettwin.report.tables.numbers import UNKNOWN, between, count, factor, li
 from jackettwin.report.tables.sentences_fit import fit_sentence, mend, misfit_headline, value_words
 from jackettwin.report.tables.sentences_model import (
     condition_headline,
+    feet_headline,
     mode_of,
     objected,
     objection_sentences,
@@ -87,7 +88,7 @@ def _headline(a: Answers) -> list[str]:
     """Return the headline; a misfit or an unknown ground comes first."""
     if misfit := misfit_headline(a):
         return [misfit[0], *_stiff_enough(a), *objection_sentences(a)[1:], *misfit[1:]]
-    ground = [*_ground_headline(a), condition_headline(a)]
+    ground = [*_ground_headline(a), feet_headline(a), condition_headline(a)]
     lead = [*objection_sentences(a), *_stiff_enough(a), *ground]
     if a.ground and all(g.verdict == "unidentified" for g in a.ground):
         lead = [*ground, *_stiff_enough(a)]

@@ -112,6 +112,21 @@ def _order(check: OrderCheck, labels: Mapping[int, str]) -> str:
     )
 
 
+def feet_headline(a: Answers) -> str:
+    """Return which mean of unlike feet a stiffness is, and whether one soft foot would show.
+
+    Frequencies see how much the feet yield; so the stiffness is that of like feet which yield as much.
+    """
+    s = a.scrutiny
+    known = any(g.kind == "stiffness" and g.verdict in ("identified", "weak") for g in a.ground)
+    if s is None or not known or all(one.tolerance.name != "feet_unlike" for one in s.influences):
+        return ""
+    hidden = () if s.objection is None else s.objection.unseen
+    said = [_seen_from(one.tolerance, one.seen_from) for one in hidden if one.tolerance.name == "weak_leg"]
+    foot = f"; one foot softer than the others is {said[0]}" if said else ""
+    return f"Stiffness is the feet's mean by compliance (of like feet that yield as much){foot}."
+
+
 def condition_headline(a: Answers) -> str:
     """Return the assumption that the ground's answer depends on most; nothing if no tolerance matters."""
     s = a.scrutiny
@@ -174,6 +189,6 @@ def _moved_most(a: Answers, one: UndetectedError) -> str:
 
 
 def _seen_from(t: Tolerance, size: float) -> str:
-    if size > _ANY * t.std:
+    if size > _ANY * t.std or (t.name == "weak_leg" and size >= 1.0):
         return "not revealed at any likely size"
     return f"revealed only from {size_words(t, size).lstrip('+')}"

@@ -167,9 +167,10 @@ def _softer_sideways(config: TwinConfig, assembly: Assembly, tolerance: Toleranc
 
 
 def _softer_foot(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple[Direction, ...]:
-    """Return the effect of one softer foot, for each foot."""
+    """Return the effect of one foot softer than the others with the mean as stated, for each foot."""
     n = len(config.structure.reaction_nodes)
-    return tuple(Direction(tolerance, feet=np.tile(row[:, None], 6)) for row in -tolerance.std * np.eye(n))
+    shares = -tolerance.std * (np.eye(n) - 1.0 / n)
+    return tuple(Direction(tolerance, feet=np.tile(row[:, None], 6)) for row in shares)
 
 
 def _bending_blades(config: TwinConfig, assembly: Assembly, tolerance: Tolerance) -> tuple[Direction, ...]:
