@@ -10,7 +10,6 @@ import pytest
 from jackettwin.watching import level as module
 from jackettwin.watching.level import (
     FAST_DAYS,
-    SLOW_DAYS,
     Hypotheses,
     Readings,
     after_row,
@@ -21,6 +20,7 @@ from jackettwin.watching.level import (
     smoothed,
 )
 
+SLOW = 20.0
 SLOPES = np.array([0.01, 0.04])
 COEFFICIENTS = np.array([[0.02, 2e-3], [0.02, 1e-3]])
 NOISE = 1.5e-3
@@ -47,7 +47,7 @@ def test_filter_and_smoother_are_the_regression_on_all_data(
     rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of one hypothesis that never jumps: the mean and variance of a joint normal distribution, given all."""
-    monkeypatch.setattr(module, "_GRID", np.array([[4e-4, 3e-3, 1.5]]))
+    monkeypatch.setattr(module, "_GRID", np.array([[4e-4, 3e-3, 1.5, SLOW]]))
     monkeypatch.setattr(module, "JUMPS_A_DAY", 1e-300)
     n = 12
     read = readings(rng, n, np.linspace(0.0, -0.1, n))
@@ -79,7 +79,7 @@ def of_all_data(
     t = read.days
     level = walk**2 * (np.minimum.outer(t, t) - t[0])
     apart = np.abs(np.subtract.outer(t, t))
-    slow = unexplained**2 / 6.0 * (np.exp(-apart / FAST_DAYS) + np.exp(-apart / SLOW_DAYS))
+    slow = unexplained**2 / 6.0 * (np.exp(-apart / FAST_DAYS) + np.exp(-apart / SLOW))
     total = np.zeros((n * m, n * m))
     cross = np.zeros((n, n * m))
     for a in range(m):

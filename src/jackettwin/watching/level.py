@@ -35,14 +35,15 @@ WALKS = (1e-4, 5e-4, 3e-3)
 """Standard deviations of the daily step of the level; they accumulate to 0.2, 1 or 6 % in a year."""
 SCALES = (1.0, 2.5)
 """Factors on stated variances."""
-_GRID = np.array(list(product(UNEXPLAINED, WALKS, SCALES)))
-FAST_DAYS, SLOW_DAYS = 2.0, 30.0
+FAST_DAYS, SLOW_DAYS = 2.0, (8.0, 30.0)
 """Time constants of the unexplained variation. A third of its variance is white, a third fast, a third slow;
-half of the fast and of the slow part is common to all quantities."""
+half of the fast and of the slow part is common to all quantities. The slow part limits what many days say of
+a level, so that its memory is left to the data: weather that lasts a week, or a month."""
+_GRID = np.array(list(product(UNEXPLAINED, WALKS, SCALES, SLOW_DAYS)))
 JUMPS = (0.05, 0.3)
 """Standard deviations of a jump."""
 JUMPS_A_DAY = 1e-3
-_MOST, _YOUNG_ROWS, _OLD_ROWS, _PARENTS = 40, 6, 40, 3
+_MOST, _YOUNG_ROWS, _OLD_ROWS, _PARENTS = len(_GRID), 6, 40, 3
 """Largest number of hypotheses; rows for which a new one is retained regardless of its weight; rows after
 which its jump is merged with others; and number of hypotheses that may branch into a jump on a day."""
 _MOST_ROOTS = 8
@@ -217,9 +218,10 @@ def _process_variance(unexplained: FloatArray) -> FloatArray:
     return np.asarray(unexplained**2 / 6.0)
 
 
-def _decay(gap: float) -> tuple[FloatArray, FloatArray]:
+def _decay(gap: FloatArray, slow_days: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the factor on each process over a gap, and its new variance as a share of the stationary one."""
-    keep = np.exp(-gap / np.array([FAST_DAYS, SLOW_DAYS, FAST_DAYS, SLOW_DAYS]))
+    fast, slow = np.exp(-gap / FAST_DAYS), np.exp(-gap / slow_days)
+    keep = np.stack(np.broadcast_arrays(fast, slow, fast, slow), axis=-1)
     return keep, 1.0 - keep**2
 
 
@@ -229,8 +231,8 @@ def after_row(known: Hypotheses, readings: Readings, r: int) -> tuple[Hypotheses
     p = readings.rows.shape[1]
     gap = 0.0 if known.n_rows == 0 else max(day - known.day, 0.0)
     mean, cov = known.mean.copy(), known.cov.copy()
-    keep, grown = _decay(gap)
     grid = _GRID[known.model]
+    keep, grown = _decay(np.array(gap), grid[:, 3])
     age_all(mean, cov, gap, m, p, keep, grown * _process_variance(grid[:, :1]), grid[:, 1])
     known = replace(known, mean=mean, cov=cov)
     if known.n_rows and np.floor(day) > np.floor(known.day):
@@ -368,23 +370,22 @@ def smoothed(start: Hypotheses, end: Hypotheses, readings: Readings) -> tuple[Mi
     best = np.argsort(-end.log_weight, kind="stable")[:_SMOOTHED]
     weights = end.weights[best] / end.weights[best].sum()
     gaps = np.diff(readings.days, prepend=readings.days[0] if np.isnan(start.day) else start.day)
-    decays = [_decay(max(gap, 0.0)) for gap in gaps]
+    gaps = np.maximum(gaps, 0.0)
     shares, taken = np.empty(gaps.size), start.taken
     for r in range(gaps.size):
         taken, shares[r] = _mean_step(taken, readings, r, start.slopes)
-    keep = np.array([one for one, _ in decays])
     parts, spread = [], []
     for h in best:
-        root, (unexplained, walk, scale) = end.root[h], _GRID[end.model[h]]
+        root, (unexplained, walk, scale, slow_days) = end.root[h], _GRID[end.model[h]]
         jumps = np.zeros(gaps.size)
         for row, size in end.paths[h]:
             jumps[row - start.n_rows] = JUMPS[size] ** 2
-        grown = np.array([new for _, new in decays]) * _process_variance(unexplained)
+        keep, grown = _decay(gaps, slow_days)
         parts.append(
             smooth_one(
                 start.mean[root].copy(), start.cov[root].copy(), readings.rows, readings.values,
-                readings.noise, start.slopes, np.maximum(gaps, 0.0), jumps, shares, readings.copied, keep,
-                grown, walk, scale, unexplained**2 / 3.0,
+                readings.noise, start.slopes, gaps, jumps, shares, readings.copied, keep,
+                grown * _process_variance(unexplained), walk, scale, unexplained**2 / 3.0,
             )
         )  # fmt: skip
         spread.append((end.mean[h, REFERENCE], end.cov[h, REFERENCE, REFERENCE]))

@@ -94,7 +94,7 @@ def _add_h(v, x, q, m, slope, factor):
 def age_all(mean, cov, gap, m, p, keep, grown, walk):
     """Advance all hypotheses by a gap of days, in place."""
     for h in range(mean.shape[0]):
-        _age(mean[h], cov[h], gap, m, p, keep, grown[h], walk[h])
+        _age(mean[h], cov[h], gap, m, p, keep[h], grown[h], walk[h])
 
 
 @compiled

@@ -28,6 +28,11 @@ from jackettwin.updating.model_error.measured_axes import PairDirection
 from jackettwin.updating.model_error.mode_checks import OrderCheck, ShapeCheck
 from jackettwin.updating.problem import Problem
 
+OBJECTED = 0.05
+"""Probability with which the checks of all data and suspects together object to a correct model whose errors
+are as large as the tolerances."""
+_DRAWN = 4000
+"""Draws for the largest of all checks: its limit is then within 0.05 standard deviations."""
 _MOST = 3
 """Largest number of explanations that are named."""
 _LARGEST = 8.0
@@ -174,7 +179,7 @@ def objection(
     chi2 = float(rows.r @ Wr)
     used = int((np.linalg.svd(rows.J * problem.prior.std, compute_uv=False) > 0.5).sum())
     freedom = max(rows.r.size - used, 1)
-    limit = -float(ndtri(0.5 * UNLIKELY / max(len(rows.names) + len(rows.asked), 1)))
+    limit = _limit(rows, W)
     unseen, suspected = _suspects(rows, precision, limit)
     result = Objection(
         _checks(rows, set(problem.data_names), W, Wr, limit),
@@ -201,6 +206,25 @@ def _left(rows: CheckedData, precision: FloatArray, without: str = "") -> tuple[
     information = rows.J.T @ inverse @ rows.J + precision
     moved = np.linalg.solve(information, rows.J.T @ inverse)
     return np.asarray(inverse - inverse @ rows.J @ moved), np.asarray(-moved)
+
+
+def _limit(rows: CheckedData, W: FloatArray) -> float:
+    """Return the standard deviations that the largest check of a correct model exceeds with ``OBJECTED``.
+
+    The checks are correlated, many data being explained by few errors, so that Bonferroni's limit is too
+    high: it is drawn. Suspects of one sense are exceeded in that sense only.
+    """
+    each = [(unit, False) for unit in np.eye(len(rows.names), rows.r.size)]
+    each += [(gamma, direction.tolerance.one_sided) for direction, gamma in rows.asked]
+    values, vectors = np.linalg.eigh(W)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    tests = np.array([test for test, _ in each]) @ root
+    size = np.linalg.norm(tests, axis=1)
+    seen = size > np.sqrt(_TOLD)
+    both = ~np.array([one_sided for _, one_sided in each])[seen]
+    z = (tests[seen] / size[seen, None]) @ np.random.default_rng(0).standard_normal((rows.r.size, _DRAWN))
+    z[both] = np.abs(z[both])
+    return float(np.quantile(z.max(axis=0), 1.0 - OBJECTED)) if seen.any() else np.inf
 
 
 def _suspects(
