@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from jackettwin.errors import InputError
 from jackettwin.identification import IdentificationSettings, identify, mac
 from jackettwin.identification.decays import free_decay
 from jackettwin.identification.decays.free_decay import MIN_EXPLAINED_FIRST, transient
@@ -179,3 +180,25 @@ def test_a_knock_on_what_stands_still_is_identified_from_itself() -> None:
     found = identify(record(noise + knock(200.0)))
     assert found.modes
     assert {mode.method for mode in found.modes} == {"decay"}
+
+
+def short_pull(zeta: float, duration_s: float) -> Record:
+    """Return a release after 3 s in a record that ends while the structure still swings, at 0.5 Hz."""
+    t = np.arange(round(duration_s * RATE)) / RATE
+    later = np.maximum(t - 3.0, 0.0)
+    swing = np.exp(-zeta * np.pi * later) * np.cos(np.pi * later) * (t >= 3.0)
+    noise = np.random.default_rng(3).standard_normal((3, t.size))
+    return record(np.array([1.0, 0.6, 0.3])[:, None] * swing + 0.02 * noise)
+
+
+def test_a_pull_that_still_swings_at_the_end_is_a_decay() -> None:
+    """It falls by 1.7 e-folds; its last tenth, taken as the level that follows, had left one of 0.9."""
+    (mode,) = identify(short_pull(0.02, 30.0)).modes
+    assert (mode.method, mode.status) == ("decay", "ok")
+    assert abs(mode.frequency_hz / 0.5 - 1.0) < 1e-3
+    assert abs(mode.damping_ratio / 0.02 - 1.0) < 0.05
+
+
+def test_a_pull_that_hardly_decays_is_refused_for_its_cycles() -> None:
+    with pytest.raises(InputError, match=r"too few cycles.*12 cycles near 0.5 Hz.*free decay"):
+        identify(short_pull(0.005, 24.0))

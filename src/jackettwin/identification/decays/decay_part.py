@@ -46,12 +46,16 @@ class DecayPart:
         Frequency of the largest power in the part.
     fall : float
         Fall of the amplitude in e-folds.
+    ended : bool
+        Whether the record goes on after the decay. One that falls to its end may be the last swing of random
+        motion instead, unless damped cosines explain it.
     """
 
     first: int
     last: int
     strongest_hz: float
     fall: float
+    ended: bool = True
 
 
 def decay_part(y: FloatArray, sample_rate_hz: float) -> DecayPart | None:
@@ -86,14 +90,15 @@ def decay_part(y: FloatArray, sample_rate_hz: float) -> DecayPart | None:
     after = smooth[first:]
     floor = float(np.quantile(after, FLOOR_QUANTILE))
     below = np.flatnonzero(after <= max(FLOOR_SHARE**2 * floor, after.min()))
-    last = first + int(below[0])
-    fall = 0.5 * float(np.log(smooth[first] / smooth[last]))
-    highest_later = float(smooth[last:].max(initial=0.0))
-    long_enough = (last - first) * strongest / sample_rate_hz >= MIN_CYCLES
-    again = highest_later > np.exp(-2.0 * MIN_LATER_DROP) * smooth[first]
-    if fall < MIN_FALL or again or not long_enough:
-        return None
-    return DecayPart(first, last, strongest, fall)
+    ends = ((first + int(below[0]), True), (len(smooth) - 1, False))
+    for last, ended in ends:
+        fall = 0.5 * float(np.log(smooth[first] / smooth[last]))
+        highest_later = float(smooth[last:].max())
+        long_enough = (last - first) * strongest / sample_rate_hz >= MIN_CYCLES
+        again = highest_later > np.exp(-2.0 * MIN_LATER_DROP) * smooth[first]
+        if fall >= MIN_FALL and long_enough and not again:
+            return DecayPart(first, last, strongest, fall, ended)
+    return None
 
 
 def _cycles_width(y: FloatArray, sample_rate_hz: float) -> int | None:

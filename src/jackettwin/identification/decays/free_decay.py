@@ -143,12 +143,12 @@ def transient(record: Record, settings: IdentificationSettings, *, impacts: bool
     if part is None:
         return None
     rate = level.sample_rate_hz
-    beside = _part_beside_impact(record, part, level)
+    beside = _part_beside_impact(record, part, level) if part.ended else None
     if beside is not None and not impacts:
         return Transient(part.fall, None, beside)
     decay = _free_part(part, level.data, rate)
     if decay is None:
-        return Transient(part.fall, None)
+        return Transient(part.fall, None) if part.ended else None
     part = decay.part
     finding = Finding(
         "free_decay",

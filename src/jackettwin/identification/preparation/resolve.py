@@ -9,7 +9,7 @@ import numpy as np
 
 from jackettwin.errors import InputError
 from jackettwin.identification.estimate import ResolvedSettings
-from jackettwin.identification.preparation.spectra import FEWEST_CYCLES, lowest_peak_hz, welch
+from jackettwin.identification.preparation.spectra import FEWEST_CYCLES, densities, lowest_peak_hz, welch
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import Record, decimate
 from jackettwin.records.quality.repair import without_stuck
@@ -54,6 +54,10 @@ STRONG_RATIO = 0.1
 """Ratio of the largest singular value below the band to that within it above which a warning is given."""
 FEWEST_SAMPLES = 64
 """Fewest samples for a spectrum."""
+REACH_LINES = 4
+"""Spectral lines on either side of the strongest one that belong to its peak under a Hann window."""
+ONE_FREQUENCY = 0.5
+"""Share of the power around the strongest line from which a record moves at one frequency."""
 DEAD_SHARE = 1e-9
 """A channel is dead if it varies by less than this share of its largest value."""
 
@@ -204,13 +208,7 @@ def _band(record: Record, settings: IdentificationSettings) -> tuple[float, floa
     if low is None:
         peak = lowest_peak_hz(welch(record.data, record.sample_rate_hz))
         if peak is None:
-            raise InputError(
-                "no spectral peak is clear: the record is noise, or it is too short",
-                field="lowest_frequency_hz",
-                value=f"a record of {record.duration_s:.0f} s",
-                remedy="check that the sensors are connected and resolve the motion, and measure in more "
-                "wind or for longer; to see the spectra nevertheless, state lowest_frequency_hz",
-            )
+            raise _without_peak(record)
         low = EDGE_BELOW_PEAK * peak
     limit = 2.0 / SAMPLES_PER_CYCLE * nyquist
     high = settings.highest_frequency_hz or min(BAND_RATIO * low, limit)
@@ -223,6 +221,30 @@ def _band(record: Record, settings: IdentificationSettings) -> tuple[float, floa
             remedy="choose a lower band or use a record of higher rate",
         )
     return low, high
+
+
+def _without_peak(record: Record) -> InputError:
+    """Return the error on a record without a clear peak: it moves for too few cycles, or it is noise."""
+    seen = densities(record.data, record.sample_rate_hz, record.data.shape[1])
+    share = np.mean(seen.density / seen.density.sum(axis=1, keepdims=True), axis=0)
+    k = int(np.argmax(share))
+    f = float(seen.frequencies_hz[k])
+    value = f"a record of {record.duration_s:.0f} s"
+    if share[max(k - REACH_LINES, 0) : k + REACH_LINES + 1].sum() > ONE_FREQUENCY and k > REACH_LINES:
+        return InputError(
+            "the record has too few cycles to be identified",
+            field="duration_s",
+            value=f"{k} cycles near {f:.2g} Hz in {value}",
+            allowed=f"≥ {SHORT_RECORD_CYCLES:.0f} cycles, or a free decay by at least a factor of 2.7",
+            remedy="measure for longer, or, after a pull, until the motion has died away",
+        )
+    return InputError(
+        "no spectral peak is clear: the record is noise, or it is too short",
+        field="lowest_frequency_hz",
+        value=value,
+        remedy="check that the sensors are connected and resolve the motion, and measure in more "
+        "wind or for longer; to see the spectra nevertheless, state lowest_frequency_hz",
+    )
 
 
 def _check_samples(record: Record) -> None:
