@@ -18,6 +18,7 @@ def test_a_deck_s_superelement_is_the_structure_s(tmp_path: Path) -> None:
     found = json.loads(result.stdout)
     assert len(found["files"]) == 2
     assert "no damping of the ground" in found["warnings"][0]
+    assert any("tower and turbine" in one["what"] for one in found["left_out"])
     stiffness = []
     for arguments in (["jacket15", "--support", "jacket15"], [str(deck)]):
         result = run(main, ["superelement", *arguments, "--modes", "6", "--out", out, "--json"])

@@ -125,3 +125,16 @@ def test_wrong_damping_by_mode_is_refused(text: str, message: str) -> None:
     result = CliRunner().invoke(main, ["modes", "jacket15", "--mode-damping", text])
     assert result.exit_code == 2, result.output
     assert message in " ".join(result.stderr.split())
+
+
+def test_what_is_left_out_is_said() -> None:
+    """Each option takes its own line away."""
+
+    def left(*options: str) -> str:
+        answer = CliRunner().invoke(main, ["modes", "jacket15", "--number", "1", *options, "--json"])
+        assert answer.exit_code == 0, answer.output
+        return " ".join(one["what"] for one in json.loads(answer.stdout)["left_out"])
+
+    bare, told = left(), left("--gravity", "--rayleigh", "0.01,0.18")
+    assert "P-Δ" in bare and "damping of the steel" in bare
+    assert "P-Δ" not in told and "damping of the steel" not in told and "water" in told

@@ -10,6 +10,7 @@ import click
 from jackettwin.cli.console import Reply, answers, messages, say
 from jackettwin.cli.joints import joint_options, with_joints
 from jackettwin.cli.modes import pile_model_option, supported_option
+from jackettwin.cli.omissions import of_export
 from jackettwin.errors import InputError
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ def export_command(
     for warning in warnings:
         messages.print(f"warning: {warning}")
     return Reply(
-        {"structure": whole.name, "files": files, "warnings": warnings},
+        {"structure": whole.name, "files": files, "warnings": warnings, "left_out": of_export()},
         lambda: say("wrote " + ", ".join(files)),
     )
 

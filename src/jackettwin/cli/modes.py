@@ -14,6 +14,7 @@ import numpy as np
 from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.cli.comparison import comparison_of, show_comparison
 from jackettwin.cli.console import PageFile, Reply, answers, numbers_of, say, say_all, show_table
+from jackettwin.cli.omissions import of_modes
 from jackettwin.errors import InputError, located, require
 from jackettwin.report import Table, TableColumn
 
@@ -127,6 +128,8 @@ def modes_command(
     document["warnings"] = [*document["warnings"], *held.notes]
     document |= comparison_of(system, number, shapes=shapes, against=against, figure=figure)
     document["gravity"] = gravity
+    damped = rayleigh is not None or mode_damping is not None
+    document["left_out"] = of_modes(gravity=gravity, steel=damped)
     document["state"] = None if state is None else _write_state(system, state)
     return Reply(document, lambda: _show(document))
 

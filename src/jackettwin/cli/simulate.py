@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from jackettwin.cli.console import Reply, answers, say, say_all, show_table, working
+from jackettwin.cli.omissions import of_simulation
 from jackettwin.errors import InputError
 from jackettwin.report import Table, TableColumn, cell
 
@@ -76,7 +77,8 @@ def simulate_command(
         say_all(notes, "note")
 
     forces = None if section_forces is None else str(section_forces)
-    return Reply({**done.document(), "record": str(path), "section_forces": forces, "notes": notes}, show)
+    document = {**done.document(), "record": str(path), "section_forces": forces, "notes": notes}
+    return Reply({**document, "left_out": of_simulation(chosen)}, show)
 
 
 def _unusual_shares(done: Simulation, *, loops: bool) -> list[str]:

@@ -12,6 +12,7 @@ import numpy as np
 from jackettwin.cli.console import FiniteFloat, Reply, answers, messages, numbers_of, say, show_table
 from jackettwin.cli.joints import joint_options, with_joints
 from jackettwin.cli.modes import rayleigh_option, support_option
+from jackettwin.cli.omissions import of_superelement
 from jackettwin.errors import InputError
 from jackettwin.report import Table, TableColumn
 from jackettwin.response import DEFAULT, LAYOUTS
@@ -166,6 +167,7 @@ def superelement_command(
         explicit=out.suffix.lower() == ".dat" and layout != DEFAULT,
     )
     document |= {"structure": whole.name, "files": [str(path) for path in files]}
+    document["left_out"] = of_superelement(gravity=gravity, steel=rayleigh is not None or deck_damping)
     return _answer(document)
 
 
@@ -221,6 +223,7 @@ def _rewritten(source: Path, out: Path, layout: Layout) -> dict[str, Any]:
         "files": files,
         "modes": [],
         "warnings": [],
+        "left_out": [],
     }
 
 
