@@ -14,10 +14,8 @@ from statistics import median
 from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import (
-    ColumnElement,
     Float,
     Select,
-    and_,
     case,
     cast,
     delete,
@@ -25,9 +23,7 @@ from sqlalchemy import (
     func,
     insert,
     literal,
-    or_,
     select,
-    true,
     union_all,
 )
 
@@ -40,6 +36,8 @@ if TYPE_CHECKING:
 _BATCH = 5_000
 """Rows that are taken from the database at once."""
 DAY_S = 86_400
+_MOST_GAPS = 200
+"""Number of stretches without kept days above which every row is read; a statement has few hundred parts."""
 _AT_ONCE = 31
 """Number of days that are kept in one transaction, as after an upgrade."""
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
@@ -107,18 +105,19 @@ def modes_in_bins(
     bin of its noon, and the median of a bin of kept days is that of their medians. No more rows than those of
     a bin and of a batch are held.
     """
-    rows = select(modes).filter_by(asset=asset, model_hash=model_hash)
-    days = select(mode_days).filter_by(asset=asset, model_hash=model_hash)
-    if label is not None:
-        rows, days = rows.where(modes.c.label == label), days.where(mode_days.c.label == label)
+    labels = _labels(connection, asset) if label is None else [label]
+    rows = select(modes).filter_by(asset=asset, model_hash=model_hash).where(modes.c.label.in_(labels))
     rows = of_state(rows, modes.c.record_id, asset, state)
+    days = (
+        select(mode_days).filter_by(asset=asset, model_hash=model_hash).where(mode_days.c.label.in_(labels))
+    )
     kept = [] if state is not None else _kept_between(connection, days, since, until)
     first, last = _span(connection, rows, kept, since, until)
     if first is None or last is None:
         return
     start = first.replace(microsecond=0)
     bin_s = (last - start).total_seconds() / points or 1.0
-    if bin_s < DAY_S:
+    if bin_s < DAY_S or len(_between_kept(kept, since, until)) > _MOST_GAPS:
         kept = []
     begin = start.timestamp()
     parts = _parts(connection, rows, days, kept, since, until)
@@ -137,10 +136,9 @@ def keep_days(connection: Connection, asset: str, model_hash: str, before: datet
     if last is not None and last >= today - 1:
         return
     rows = select(modes).filter_by(asset=asset, model_hash=model_hash)
+    rows = rows.where(modes.c.label.in_(_labels(connection, asset)))
     since = None if last is None else _midnight(last + 1)
-    first = connection.scalar(
-        between(rows, modes.c.time_utc, since, _midnight(today)).with_only_columns(func.min(modes.c.time_utc))
-    )
+    first, _ = _ends(connection, rows, since, _midnight(today))
     if first is None:
         return
     of = (first - _EPOCH).days
@@ -182,6 +180,16 @@ def _kept_between(
     ]
 
 
+def _labels(connection: Connection, asset: str) -> list[str]:
+    """Return the labels of an asset's modes, each by one step in the index."""
+    found, next_one = [], select(func.min(modes.c.label)).filter_by(asset=asset)
+    label = connection.scalar(next_one)
+    while label is not None:
+        found.append(label)
+        label = connection.scalar(next_one.where(modes.c.label > label))
+    return found
+
+
 def _span(
     connection: Connection,
     rows: Select[Any],
@@ -192,29 +200,30 @@ def _span(
     """Return the first and the last time of rows and kept days, unless they are given."""
     if since is not None and until is not None:
         return since, until
-    found = rows.with_only_columns(func.min(modes.c.time_utc), func.max(modes.c.time_utc))
-    ends = list(connection.execute(found.where(_outside(kept, since, until))).one())
+    stretches = _between_kept(kept, since, until)
+    first, _ = _ends(connection, rows, *stretches[0])
+    _, last = _ends(connection, rows, *stretches[-1])
     if kept:
-        ends = [*ends, _midnight(kept[0]), _midnight(kept[-1] + 1)]
-    known = [time for time in ends if time is not None]
-    return since or min(known, default=None), until or max(known, default=None)
+        first, last = first or _midnight(kept[0]), last or _midnight(kept[-1] + 1)
+    return since or first, until or last
 
 
-def _outside(kept: Sequence[int], since: datetime | None, until: datetime | None) -> ColumnElement[bool]:
-    """Return the condition that a row lies between two times and not on a kept day."""
+def _ends(
+    connection: Connection, rows: Select[Any], since: datetime | None, until: datetime | None
+) -> Stretch:
+    """Return the times of the first and the last row of a stretch, None without one."""
     time = modes.c.time_utc
-    gaps = [(a + 1, b) for a, b in pairwise(kept) if b > a + 1]
-    stretches: list[Stretch] = [(_midnight(a), _midnight(b)) for a, b in gaps]
-    if kept:
-        stretches = [(since, _midnight(kept[0])), *stretches, (_midnight(kept[-1] + 1), until)]
-    else:
-        stretches = [(since, until)]
-    either = []
-    for low, high in stretches:
-        both = [time >= low] if low is not None else []
-        both += [time < high] if high is not None else []
-        either.append(and_(true(), *both))
-    return or_(*either)
+    found = between(rows, time, since, until).with_only_columns(func.min(time), func.max(time))
+    first, last = connection.execute(found).one()
+    return first, last
+
+
+def _between_kept(kept: Sequence[int], since: datetime | None, until: datetime | None) -> list[Stretch]:
+    """Return the stretches of time between two times without kept days, whose rows are read."""
+    if not kept:
+        return [(since, until)]
+    gaps = [(_midnight(a + 1), _midnight(b)) for a, b in pairwise(kept) if b > a + 1]
+    return [(since, _midnight(kept[0])), *gaps, (_midnight(kept[-1] + 1), until)]
 
 
 def _parts(
@@ -234,9 +243,9 @@ def _parts(
     at_s = cast(extract("epoch", modes.c.time_utc), Float).label("at_s")
     simulated = case((modes.c.status == "simulated", 1), else_=0)
     f, zeta = modes.c.frequency_hz, modes.c.damping_ratio
-    query: Any = rows.where(_outside(kept, since, until)).with_only_columns(
-        modes.c.label.label("label"), at_s, literal(1), simulated, f, f, f, zeta, zeta, zeta
-    )
+    columns = (modes.c.label.label("label"), at_s, literal(1), simulated, f, f, f, zeta, zeta, zeta)
+    stretches = _between_kept(kept, since, until)
+    pieces = [between(rows, modes.c.time_utc, *ends).with_only_columns(*columns) for ends in stretches]
     if kept:
         c = mode_days.c
         noon = cast(c.day, Float) * DAY_S + DAY_S / 2
@@ -245,7 +254,8 @@ def _parts(
             c.frequency_min_hz, c.frequency_median_hz, c.frequency_max_hz,
             c.damping_ratio_min, c.damping_ratio_median, c.damping_ratio_max,
         )  # fmt: skip
-        query = union_all(query, of_days)
+        pieces.append(of_days)
+    query: Any = union_all(*pieces) if kept else pieces[0]
     order = ("label", "at_s") if kept else (modes.c.label, modes.c.time_utc)
     found = connection.execute(query.order_by(*order), execution_options={"yield_per": _BATCH})
     for batch in found.partitions():
