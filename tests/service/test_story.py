@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from datetime import date
+import json
+from datetime import timedelta
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
 import pytest
 from tests.service.conftest import make_service
 
-from jackettwin.service.demonstration import SAID, tell_story
-from jackettwin.service.story import DAYS, SCOUR_M, STORM, story
+from jackettwin.service import demonstration
+from jackettwin.service.demonstration import SAID, SHIPPED, arrive, lay_out, shipped_records, tell_story
+from jackettwin.service.story import DAYS, SCOUR_M, STORM, UNTIL, story
 from jackettwin.service.web.catalogue import one
-from jackettwin.store import reading, records, results
-from jackettwin.twin import read_twin, twin_model
+from jackettwin.store import assets, reading, records, results
+from jackettwin.twin import OBSERVATION, read_twin, twin_model
 
 TWIN = Path(__file__).parents[2] / "src" / "jackettwin" / "data" / "twins" / "openfast_pile.yaml"
-UNTIL = date(2026, 3, 1)
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +29,7 @@ def days() -> list:
 
 def test_days_end_before_the_date_and_leave_out_the_stop(days: list) -> None:
     dates = [seen.start_utc.date() for seen in days]
-    assert dates[-1].isoformat() == "2026-02-28" and dates == sorted(set(dates))
+    assert dates[-1].isoformat() == "2025-11-30" and dates == sorted(set(dates))
     assert (dates[-1] - dates[0]).days + 1 == DAYS and len(dates) == DAYS - 4
     assert all("nobody measured" in seen.conditions["simulated"] for seen in days)
 
@@ -58,16 +60,54 @@ def test_season_and_scour_move_the_modes_as_stated(days: list) -> None:
 
 def test_the_story_goes_the_way_of_every_record(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Records without samples, modes that say they are simulated, a state for each day, one question."""
+    monkeypatch.setattr(demonstration, "story", lambda *given: islice(story(*given), 20))
     for service in make_service(tmp_path / "store", None, monkeypatch):
         tell_story(service)
         tell_story(service)
         with reading(service.database) as connection:
             asset = one(connection, "demo")
-            assert asset.records == {"observed": DAYS - 4} and asset.comment == SAID
+            assert asset.records == {"observed": 20} and asset.comment == SAID
             listed, _ = records.list_records(connection, "demo", limit=1)
-            assert listed[0].waveform is None and listed[0].source_name == f"simulated day {DAYS}"
-            assert len(results.state_hashes(connection, "demo", asset.model_hash)) == DAYS - 4
+            assert listed[0].waveform is None and listed[0].source_name == "simulated day 20"
+            assert len(results.state_hashes(connection, "demo", asset.model_hash)) == 20
             rows = results.list_modes(connection, "demo", asset.model_hash, limit=6)
             assert {row["status"] for row in rows} == {"simulated"}
             assert all(0.0 < row["frequency_std_hz"] < 2e-3 * row["frequency_hz"] for row in rows)
             assert [row["label"] for row in rows[:2]] == ["side_side_1", "fore_aft_1"]
+
+
+def test_the_shipped_demonstration_is_of_this_program(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, days: list
+) -> None:
+    """Of today's twin and model, with the days of the story; its last record is still to come.
+
+    If this fails, run `python scripts/write_demonstration.py` (minutes).
+    """
+    assert SHIPPED.stat().st_size < 2e6
+    for service in make_service(tmp_path / "store", None, monkeypatch):
+        assert lay_out(service), "the shipped demonstration is of another model"
+        with reading(service.database) as connection:
+            asset = one(connection, "demo")
+            assert asset.records == {"observed": DAYS} and asset.open_alarms == 1  # 726 days, 4 records
+            told = days[DAYS - 200]  # after the storm
+            times = (told.start_utc, told.start_utc + timedelta(days=1))
+            (said,) = results.observations_between(connection, "demo", asset.model_hash, *times)
+            kept = OBSERVATION.load(json.loads(said.document))
+            assert results.find_drawn(connection, "demo", 1, "explored")["loci"]
+            assert results.find_watch(connection, "demo", 1)["days"]
+            assert results.find_stiffness(connection, "demo", 1)["stiffness_in_time"]
+        assert [arrive(service, record) for record in shipped_records()] == 4 * [False] + [True]
+    assert told.name == kept.name
+    for (mode, _), (other, _) in zip(told.modes.values(), kept.modes.values(), strict=True):
+        assert other.frequency_hz == pytest.approx(mode.frequency_hz, rel=1e-5)  # six digits are told
+
+
+def test_a_demonstration_of_another_model_is_told_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(demonstration, "_LOCKED", b"\noperation: {updates: [parked, idling]}\n")
+    for service in make_service(tmp_path / "store", None, monkeypatch):
+        assert not lay_out(service)
+        with reading(service.database) as connection:
+            assert "demo" not in assets.asset_names(connection)
+    assert "told anew" in caplog.text

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import logging
 import time
+from collections.abc import Iterator
 from dataclasses import replace
 from datetime import UTC, datetime, time as clock, timedelta
 from importlib.resources import files
@@ -15,15 +16,16 @@ from pathlib import Path
 from threading import Thread
 from typing import TYPE_CHECKING
 
-from jackettwin.records import read_record
+from jackettwin.records import Record, read_record
 from jackettwin.service.intake.bundles import bundle, twin_folder
+from jackettwin.service.intake.examination import examined
 from jackettwin.service.intake.files import accept
 from jackettwin.service.story import UNTIL, story
 from jackettwin.service.web.catalogue import add_version
 from jackettwin.service.work.consequences import keep_observation
 from jackettwin.service.workers.engine import TWIN_FILE, load_twin, observed_as
 from jackettwin.service.workers.tasks import Outcome, stored
-from jackettwin.store import assets, reading, records, work, writing
+from jackettwin.store import asset_copy, assets, journal, reading, records, work, writing
 from jackettwin.twin import read_twin
 
 if TYPE_CHECKING:
@@ -40,12 +42,16 @@ SAID = "The demonstration: its five records are OpenFAST's, the two years of day
 _LOCKED = b"\noperation: {updates: [parked]} # of the days before its records, those with a locked shaft\n"
 """What the demonstration adds to the shipped twin: the rotor's damping is predicted for a rotor at rest."""
 _EVERY_S = 4.0
+SHIPPED = Path(str(files("jackettwin.data") / "demonstration.xz"))
+"""The asset after its story and all records but the last, with what is known of it."""
 
 
 def demonstrate(service: Service) -> Thread:
-    """Add the demonstration asset and start a thread in which its records arrive, one every few seconds.
+    """Add the demonstration asset and start a thread in which its last record arrives.
 
-    The shipped records are ten minutes each; they are dated an hour apart on the day after the story.
+    What is known of the days and records before is shipped, as `scripts/write_demonstration.py` made it:
+    judging two years takes minutes. If the shipped asset is of another model than the program's, the days are
+    told anew and all records arrive, one every few seconds.
     """
     thread = Thread(target=_arrive, args=(service,), name="demonstration", daemon=True)
     thread.start()
@@ -54,18 +60,56 @@ def demonstrate(service: Service) -> Thread:
 
 def _arrive(service: Service) -> None:
     try:
-        tell_story(service)
+        if not lay_out(service):
+            tell_story(service)
         service.wake()
-        noon = datetime.combine(UNTIL, clock(12), UTC)
-        for i, path in enumerate(read_twin(_source()).records):
-            record = replace(read_record(path), start_utc=noon + timedelta(hours=i))
-            parsed = stored(record, ASSET, service.settings.store)
-            with writing(service.database) as connection:
-                accept(service.now(), connection, ASSET, parsed, record.name)
-            service.wake()
-            time.sleep(_EVERY_S)
+        for record in shipped_records():
+            if arrive(service, record):
+                service.wake()
+                time.sleep(_EVERY_S)
     except Exception:
         log.exception("the demonstration stopped")
+
+
+def shipped_records() -> Iterator[Record]:
+    """Yield the records of the demonstration: ten minutes each, an hour apart on the day after the story."""
+    noon = datetime.combine(UNTIL, clock(12), UTC)
+    for i, path in enumerate(read_twin(_source()).records):
+        yield replace(read_record(path), start_utc=noon + timedelta(hours=i))
+
+
+def arrive(service: Place, record: Record) -> bool:
+    """Take a record as if it had been sent; return whether it is new. Of a known one the samples are kept."""
+    parsed = stored(record, ASSET, service.settings.store)
+    with writing(service.database) as connection:
+        return accept(service.now(), connection, ASSET, parsed, record.name).new
+
+
+def lay_out(service: Place) -> bool:
+    """Add the asset as shipped; return whether it is there: not if the program's twin or model is another.
+
+    An asset that is there already stays as it is.
+    """
+    with reading(service.database) as connection:
+        if ASSET in assets.asset_names(connection):
+            return True
+    rows, contents = asset_copy.read_copy(SHIPPED.read_bytes()), _contents()
+    (version,) = rows["versions"]
+    found = examined(service, contents)
+    same = (version["model_hash"], version["settings_hash"]) == (found.identity, found.settings_hash)
+    if not same or assets.unpack(version["bundle"]) != contents:
+        log.warning("the shipped demonstration is of another model; its two years are told anew")
+        return False
+    with writing(service.database) as connection:
+        asset_copy.copy_in(connection, rows)
+        journal.tell(connection, "asset", ASSET, {"version": 1}, service.now())
+    return True
+
+
+def _contents() -> dict[str, bytes]:
+    contents = bundle(_source())
+    contents[TWIN_FILE] += _LOCKED
+    return contents
 
 
 def _source() -> Path:
@@ -80,9 +124,7 @@ def tell_story(service: Place) -> None:
     with reading(service.database) as connection:
         if ASSET in assets.asset_names(connection):
             return
-    contents = bundle(_source())
-    contents[TWIN_FILE] += _LOCKED
-    add_version(service, ASSET, contents, "demonstration", SAID)
+    add_version(service, ASSET, _contents(), "demonstration", SAID)
     with reading(service.database) as connection:
         version = assets.found_version(connection, ASSET)
         twin = load_twin(twin_folder(connection, service, ASSET, version.version))

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 _BATCH = 5_000
 """Rows that are taken from the database at once."""
 DAY_S = 86_400
+_LONG = timedelta(days=100)
+"""Length of time from which bins are not shorter than a day, if days are kept."""
 _MOST_GAPS = 200
 """Number of stretches without kept days above which every row is read; a statement has few hundred parts."""
 _AT_ONCE = 31
@@ -106,17 +108,19 @@ def modes_in_bins(
     a bin and of a batch are held.
     """
     labels = _labels(connection, asset) if label is None else [label]
-    rows = select(modes).filter_by(asset=asset, model_hash=model_hash).where(modes.c.label.in_(labels))
+    rows = select(modes).filter_by(asset=asset, model_hash=model_hash)
     rows = of_state(rows, modes.c.record_id, asset, state)
-    days = (
-        select(mode_days).filter_by(asset=asset, model_hash=model_hash).where(mode_days.c.label.in_(labels))
-    )
+    days = select(mode_days).filter_by(asset=asset, model_hash=model_hash)
+    days = days.where(mode_days.c.label.in_(labels))
     kept = [] if state is not None else _kept_between(connection, days, since, until)
-    first, last = _span(connection, rows, kept, since, until)
+    first, last = _span(connection, rows, labels, kept, since, until)
+    rows = rows.where(modes.c.label.in_(labels))
     if first is None or last is None:
         return
     start = first.replace(microsecond=0)
     bin_s = (last - start).total_seconds() / points or 1.0
+    if kept and last - start >= _LONG:
+        bin_s = max(bin_s, DAY_S)
     if bin_s < DAY_S or len(_between_kept(kept, since, until)) > _MOST_GAPS:
         kept = []
     begin = start.timestamp()
@@ -136,9 +140,9 @@ def keep_days(connection: Connection, asset: str, model_hash: str, before: datet
     if last is not None and last >= today - 1:
         return
     rows = select(modes).filter_by(asset=asset, model_hash=model_hash)
-    rows = rows.where(modes.c.label.in_(_labels(connection, asset)))
-    since = None if last is None else _midnight(last + 1)
-    first, _ = _ends(connection, rows, since, _midnight(today))
+    since, labels = None if last is None else _midnight(last + 1), _labels(connection, asset)
+    first, _ = _ends(connection, rows, labels, since, _midnight(today))
+    rows = rows.where(modes.c.label.in_(labels))
     if first is None:
         return
     of = (first - _EPOCH).days
@@ -193,6 +197,7 @@ def _labels(connection: Connection, asset: str) -> list[str]:
 def _span(
     connection: Connection,
     rows: Select[Any],
+    labels: Sequence[str],
     kept: Sequence[int],
     since: datetime | None,
     until: datetime | None,
@@ -201,21 +206,30 @@ def _span(
     if since is not None and until is not None:
         return since, until
     stretches = _between_kept(kept, since, until)
-    first, _ = _ends(connection, rows, *stretches[0])
-    _, last = _ends(connection, rows, *stretches[-1])
+    first, _ = _ends(connection, rows, labels, *stretches[0])
+    _, last = _ends(connection, rows, labels, *stretches[-1])
     if kept:
         first, last = first or _midnight(kept[0]), last or _midnight(kept[-1] + 1)
     return since or first, until or last
 
 
 def _ends(
-    connection: Connection, rows: Select[Any], since: datetime | None, until: datetime | None
+    connection: Connection,
+    rows: Select[Any],
+    labels: Sequence[str],
+    since: datetime | None,
+    until: datetime | None,
 ) -> Stretch:
-    """Return the times of the first and the last row of a stretch, None without one."""
-    time = modes.c.time_utc
-    found = between(rows, time, since, until).with_only_columns(func.min(time), func.max(time))
-    first, last = connection.execute(found).one()
-    return first, last
+    """Return the times of the first and the last row of a stretch, None without one.
+
+    Of each label these are the ends of the index.
+    """
+    time, found = modes.c.time_utc, []
+    for label in labels:
+        own = between(rows.where(modes.c.label == label), time, since, until).with_only_columns(time).limit(1)
+        found += [connection.scalar(own.order_by(time)), connection.scalar(own.order_by(time.desc()))]
+    known = [one for one in found if one is not None]
+    return min(known, default=None), max(known, default=None)
 
 
 def _between_kept(kept: Sequence[int], since: datetime | None, until: datetime | None) -> list[Stretch]:
