@@ -24,13 +24,13 @@ from jackettwin.store import journal, results, writing
 from jackettwin.store.tables import events
 
 QUERIES = {
-    "/assets": 7,
-    "/assets/{asset}": 8,
+    "/assets": 9,
+    "/assets/{asset}": 9,
     "/assets/{asset}/versions": 6,
     "/assets/{asset}/records": 4,
     "/records/{record_id}": 3,
     "/assets/{asset}/modes": 4,
-    "/assets/{asset}/modes/bins": 5,
+    "/assets/{asset}/modes/bins": 6,
     "/assets/{asset}/twin": 7,
     "/assets/{asset}/supports": 4,
     "/assets/{asset}/damping-budget": 7,
