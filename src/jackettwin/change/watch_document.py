@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from jackettwin.change.reversals import taken_back
 from jackettwin.change.smallest_changes import smallest_documents
 from jackettwin.change.table_monitoring import Alarm, MonitoredTable
 from jackettwin.watching import CauseVerdict, Watch
@@ -28,6 +29,11 @@ def watched_document(watched: MonitoredTable) -> dict[str, Any]:
         "name": table.name,
         "statement": statement(watched),
         "alarms": alarms,
+        "reversals": [
+            {"time_utc": alarms[j]["time_utc"], "takes_back_utc": alarms[i]["time_utc"]}
+            for j, i in enumerate(taken_back([alarm.change for alarm in watched.alarms]))
+            if i is not None
+        ],
         "quantities": {
             quantity_name(watched.watch, key): {
                 "explained_by": dict(watched.explained[key]),
@@ -199,7 +205,8 @@ def statement(watched: MonitoredTable) -> str:
             f"is expected once in {watched.watch.arl_years:g} years or more rarely."
         )
     parts = []
-    for alarm in watched.alarms:
+    earlier = taken_back([alarm.change for alarm in watched.alarms])
+    for alarm, back in zip(watched.alarms, earlier, strict=True):
         change = alarm.change
         doc = alarm_document(watched.watch, table.time, alarm)
         what = "scatter of" if change.kind == "scatter" else "change of"
@@ -207,6 +214,16 @@ def statement(watched: MonitoredTable) -> str:
         parts.append(
             f"{table.time(alarm.day):%Y-%m-%d}: {what} {sizes_by_mode(doc)}, began "
             f"{began[0]:%Y-%m-%d} ({began[1]:%Y-%m-%d} to {began[2]:%Y-%m-%d}); {_likeliest(alarm)}"
-            f"{f'; {corrected}' if (corrected := corrected_sentence(doc)) else ''}."
+            f"{f'; {corrected}' if (corrected := corrected_sentence(doc)) else ''}"
+            f"{'' if back is None else f'; takes back the change of {_alarmed(watched, back)}'}."
+        )
+    times = sum(back is not None for back in earlier)
+    if times > 1:
+        parts.append(
+            f"{times} changes came and went: a mass such as ice, or a state of operation without a column."
         )
     return " ".join(parts)
+
+
+def _alarmed(watched: MonitoredTable, index: int) -> str:
+    return f"{watched.table.time(watched.alarms[index].day):%Y-%m-%d}"
