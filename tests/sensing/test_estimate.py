@@ -1,5 +1,7 @@
 """Motion and stress from sensors of a jacket whose truth the model itself makes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -110,6 +112,28 @@ def test_readings_in_time_and_in_frequency_are_the_same_model(
         driven = np.linalg.solve(1j * w * np.eye(n) - A[:n, :n], A[:n, own])
         direct = (C[:, :n] @ driven + C[:, own]) / scale
         assert_allclose(direct, found[k], rtol=1e-6, atol=1e-12)
+
+
+def test_a_working_rotor_pushes_as_it_damps(system: System, model: MotionModel) -> None:
+    """The dashpot 2ζω/φ² of the fore-aft mode times class B's gusts over the disc; half at 60° from x."""
+    at_work = replace(WEATHER, working=True)
+    found = sensed_model(system, at_work)
+    top = model.assembly.dofs(model.assembly.structure.top_node)[0]
+    most = int(np.abs(model.shapes[top, :2]).argmax())
+    ratio = found.damping / (2.0 * found.omega)
+    assert ratio[most, most] == pytest.approx(model.damping[most, most] / (2.0 * model.omega[most]) + 0.08)
+    assert ratio[1 - most, 1 - most] < 0.02
+    thrust = found.damping[most, most] / found.shapes[top, most] ** 2 * 0.75 * 0.14 * (0.75 * 12.0 + 5.6)
+    level = {force.name: force.level for force in found.forces}
+    usual = {force.name: force.level for force in model.forces}
+    assert level["rotor Fx"] == pytest.approx(thrust, rel=1e-6)
+    assert level["rotor Fy"] == pytest.approx(0.2 * thrust, rel=1e-6)
+    for name, root in (("rotor My", "rotor Fx"), ("rotor Mx, quick", "rotor Fy")):
+        assert level[name] / usual[name] == pytest.approx(level[root] / usual[root])
+    assert level["tower x"] == usual["tower x"]
+    turned = sensed_model(system, replace(at_work, heading_rad=np.pi / 3.0))
+    sideways = {force.name: force.level for force in turned.forces}
+    assert sideways["rotor Fx"] == pytest.approx(sideways["rotor Fy"] / np.sqrt(3.0), rel=1e-6)
 
 
 def test_section_forces_are_found_and_their_errors_are_as_said(

@@ -14,6 +14,7 @@ equations driven by white noise.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import pi, sqrt
 from typing import Literal
@@ -53,6 +54,8 @@ _FORCE_N = 1e5
 """To start from; the record decides."""
 _LEVER_M, _LEVER_LOG_STD = 20.0, 1.0
 """Of a rotor's moments over its forces: gusts across a disc of 150 to 240 m, a sixth of its radius."""
+_THRUST_LOG_STD = 0.5
+"""Of a working rotor's thrust, given how it damps: turbulence is not class B, a controller answers."""
 _TURBULENCE, _GUSTS_LOG_STD = 0.14, 0.7
 """I_ref of class B (IEC 61400-1 (2019), eq. (10)): drag on a tower varies by 2Uσ in a wind that is stated."""
 _TOWER = "tower"
@@ -121,6 +124,34 @@ class LatentForce:
         return replace(self, level=level, rate=self.rate if rate is None else rate)
 
 
+def with_thrust(forces: tuple[LatentForce, ...], level_n: Mapping[str, float]) -> tuple[LatentForce, ...]:
+    """Return forces whose rotor is expected to push by so much; moments and quick gusts go with it.
+
+    Parameters
+    ----------
+    level_n : {"rotor Fx", "rotor Fy"}: standard deviation of its slow gusts
+    """
+    named = {force.name: force for force in forces}
+
+    def expected(force: LatentForce) -> LatentForce:
+        root = force
+        while root.beside is not None:
+            root = named[root.beside]
+        if root.name not in level_n:
+            return force
+        level = force.level * level_n[root.name] / root.level
+        return replace(
+            force, level=level, level_log_std=force.level_log_std if force.beside else _THRUST_LOG_STD
+        )
+
+    return tuple(expected(force) for force in forces)
+
+
+def gusts_std(wind_m_s: float) -> float:
+    """Return the standard deviation of the wind's speed [m/s]: IEC 61400-1 (2019), eq. (10), class B."""
+    return _TURBULENCE * (0.75 * wind_m_s + 5.6)
+
+
 def gust_corner(wind_m_s: float | None) -> float:
     """Return the corner a [rad/s] of gusts in a mean wind: U/6L of Kaimal's spectrum, IEC 61400-1 (C.14)."""
     return 2.0 * pi * (_USUAL_WIND_M_S if wind_m_s is None else wind_m_s) / (6.0 * _INTEGRAL_SCALE_M)
@@ -136,7 +167,7 @@ def wind_forces(assembly: Assembly, *, wind_m_s: float | None = None) -> tuple[L
     corner, nothing = gust_corner(wind_m_s), np.zeros((assembly.mesh.start.size, 12))
     speed = _USUAL_WIND_M_S if wind_m_s is None else wind_m_s
     gusts, known = (
-        2.0 * speed * _TURBULENCE * (0.75 * speed + 5.6),
+        2.0 * speed * gusts_std(speed),
         3.0 if wind_m_s is None else _GUSTS_LOG_STD,
     )
     slow = []

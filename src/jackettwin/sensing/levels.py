@@ -186,10 +186,11 @@ class _Evidence:
         Steps of Newton with the expected curvature come near in few; the rest is searched in its units.
         """
         reach = np.minimum(_REACH, 4.0 * self.std)
+        low, high = self.start - reach, self.start + reach
         z, (value, gradient) = self.start, self.cost(self.start)
         for _ in range(_SCORED):
             step = np.linalg.solve(self.information(z), gradient)
-            tried = np.clip(z - step, self.start - reach, self.start + reach)
+            tried = np.clip(z - step, low, high)
             there = self.cost(tried)
             if not there[0] < value:
                 break
@@ -197,11 +198,11 @@ class _Evidence:
         unit = np.linalg.inv(np.linalg.cholesky(self.information(z)))
 
         def cost(x: FloatArray) -> tuple[float, FloatArray]:
-            here, slope = self.cost(z + x @ unit)
+            here, slope = self.cost(np.clip(z + x @ unit, low, high))
             return here, np.asarray(unit @ slope)
 
         found = minimize(cost, 0.0 * z, jac=True, method="L-BFGS-B", options={"maxiter": 60, "ftol": 3e-6})
-        return z + found.x @ unit, float(found.fun), 1 + _SCORED + int(found.nfev)
+        return np.clip(z + found.x @ unit, low, high), float(found.fun), 1 + _SCORED + int(found.nfev)
 
     def cost(self, z: FloatArray) -> tuple[float, FloatArray]:
         """Return −ln of likelihood and prior, and its gradient."""

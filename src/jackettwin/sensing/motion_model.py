@@ -65,6 +65,24 @@ class MotionModel:
         np.fill_diagonal(damping, 2.0 * kept * self.omega)
         return replace(self, damping=damping)
 
+    def at_top(self, heading_rad: float) -> FloatArray:
+        """Return how the modes move the tower top towards a heading, (n_modes,)."""
+        x, y = self.shapes[self.assembly.dofs(self.assembly.structure.top_node)[:2]]
+        return np.asarray(np.cos(heading_rad) * x + np.sin(heading_rad) * y)
+
+    def with_dashpot(self, ratio: float, heading_rad: float) -> MotionModel:
+        """Return the model with a dashpot at the tower top, of this damping ratio in the first pair."""
+        moved = self.at_top(heading_rad)
+        most = int(np.abs(moved[:2]).argmax())
+        c = 2.0 * ratio * self.omega[most] / moved[most] ** 2
+        return replace(self, damping=self.damping + c * np.outer(moved, moved))
+
+    def dashpot(self, heading_rad: float) -> float:
+        """Return the dashpot at the tower top [N·s/m] that damps the first pair towards a heading so much."""
+        moved = self.at_top(heading_rad)
+        most = int(np.abs(moved[:2]).argmax())
+        return float(self.damping[most, most] / moved[most] ** 2)
+
     def with_damping_beyond(self, first: int, factor: float) -> MotionModel:
         """Return the model with another damping of all modes but the first ones."""
         root = np.where(np.arange(self.n_modes) < first, 1.0, np.sqrt(factor))

@@ -59,6 +59,8 @@ class Weather:
     wave_direction_rad : towards which waves run, anticlockwise from x seen from above
     depth_m : of the water; None takes the structure's lowest node for the bed
     coefficients : drag, added mass and growth of the members; None are those of bare ones
+    working : whether the rotor turns and produces
+    heading_rad : towards which its wind blows, anticlockwise from x seen from above
     """
 
     wind_m_s: float | None = None
@@ -67,6 +69,8 @@ class Weather:
     wave_direction_rad: float = 0.0
     depth_m: float | None = None
     coefficients: Coefficients | None = None
+    working: bool = False
+    heading_rad: float = 0.0
 
     @classmethod
     def of(
@@ -82,7 +86,7 @@ class Weather:
             return float(value) if isinstance(value, (int, float)) and value > 0.0 else None
 
         calm = conditions.get("wave_height_m") == 0.0 or conditions.get("waves") == "none"
-        direction = conditions.get("wave_direction_deg")
+        direction, heading = (conditions.get(name) for name in ("wave_direction_deg", "yaw_deg"))
         return cls(
             number("mean_wind_speed_m_s"),
             _CALM_M if calm else number("wave_height_m"),
@@ -90,6 +94,8 @@ class Weather:
             radians(float(direction)) if isinstance(direction, (int, float)) else 0.0,
             depth_m,
             coefficients,
+            conditions.get("state") == "operating",
+            radians(float(heading)) if isinstance(heading, (int, float)) else 0.0,
         )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.fatigue import POSITIONS, SIDES, JointStresses, LifeModel, ModelsAtHeight, count
-from jackettwin.sensing import SensorReadings, Weather, likely_motions, stress_remainder
+from jackettwin.sensing import MotionEstimate, SensorReadings, Weather, likely_motions, stress_remainder
 from jackettwin.structure import Structure
 from jackettwin.twin.life.likely_structures import LikelyStructures
 from jackettwin.twin.life.weld_map import WeldMap, weld_map
@@ -24,8 +24,10 @@ _AGAIN = KEPT + 2
 """Sides that are counted in other motions, too: those with most damage in the likeliest."""
 STEP = 0.02
 """Of logarithms that are kept: a damage is known to a hundredth."""
-STRUCTURES, DRAWS = 2, 2
-"""Structures that count, the likeliest among them, and motions of that one."""
+STRUCTURES = 2
+"""Structures that count, the likeliest among them."""
+_SEEN = 0.1
+"""Growth of ln damage by a drawn error up to which a motion is as good as known."""
 _OF_PAIRS = 0.8
 """Mean of the standard deviation that one structure and its mirror show, over the true one: √(2/π)."""
 
@@ -67,7 +69,6 @@ def sensed_damage(
     weather: Weather,
     *,
     structures: int = STRUCTURES,
-    draws: int = DRAWS,
 ) -> SensedDamage | None:
     """Return the damage of a record at the worst of a structure's welds; None without welds of tubes.
 
@@ -93,10 +94,8 @@ def sensed_damage(
     order = np.argsort(-first.max(axis=1), kind="stable")
     rest, again = first[order[_AGAIN:]], order[:_AGAIN]
     sides, first, guessed = sides[again], first[again], guessed[again]
-    motions = estimates[0].draws(draws, mean=mean)
-    drawn = [curves.damage(chart, one, sides, like=first) for one in motions]
     # what sensors do not see adds to the damage of every structure as it does to that of the first
-    unseen = np.array(drawn) / np.maximum(first, 1e-300)
+    unseen = np.array(_drawn(curves, chart, estimates[0], mean, sides, first)) / np.maximum(first, 1e-300)
     others, of = [], set(curves.joint[sides // len(SIDES)].tolist())
     for system, one in zip(systems[1:], estimates[1:], strict=True):
         chart = weld_map(system, one.model, told.dry, told.joints, of=of)
@@ -108,6 +107,26 @@ def sensed_damage(
     grown = float((worst / np.maximum(first.max(axis=1), 1e-300)).max(initial=0.0))
     bound = max(bound, grown * float(rest.max(initial=0.0)))
     return _kept(sides, damage, bound, curves.remainder[sides // len(SIDES)])
+
+
+def _drawn(
+    curves: _Curves,
+    chart: WeldMap,
+    estimate: MotionEstimate,
+    mean: FloatArray,
+    sides: IntArray,
+    first: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Return the damage of two motions as probable as the real one, (n_sides, 8) each.
+
+    Where sensors see most of the motion the second is the first mirrored about the mean. Errors that are as
+    large as the motion itself have the same ranges either way, so that they would seem known.
+    """
+    one = next(estimate.draws(1, mean=mean))
+    damage = curves.damage(chart, one, sides, like=first)
+    grown = np.median(np.log(np.maximum(damage.max(axis=1), 1e-300) / np.maximum(first.max(axis=1), 1e-300)))
+    other = 2.0 * mean - one if abs(grown) < _SEEN else next(estimate.draws(1, seed=1, mean=mean))
+    return damage, curves.damage(chart, other, sides, like=first)
 
 
 def _kept(sides: IntArray, damage: FloatArray, bound: float, remainder: FloatArray) -> SensedDamage:
