@@ -106,7 +106,7 @@ def assert_eigenpairs(system: System, modes: DampedModes) -> None:
         assert np.linalg.norm(F @ x) < 1e-9 * np.linalg.norm(abs(F) @ abs(x))
 
 
-@pytest.mark.parametrize("alpha", [0.06, 0.5, 0.8])
+@pytest.mark.parametrize("alpha", [0.06, 0.8])
 def test_springpot_poles_are_all_there(assembly, alpha: float) -> None:
     """As many as the argument principle counts, each at rest under Newton on the determinant."""
     law = Springpot(2.5e9, alpha, 1.15)
@@ -120,21 +120,19 @@ def test_springpot_poles_are_all_there(assembly, alpha: float) -> None:
     assert found.real_poles.size == 0
 
 
-@pytest.mark.parametrize("alpha", [0.03, 0.3, 0.7])
-def test_a_start_of_one_branch_finds_what_many_do(assembly, alpha: float, monkeypatch) -> None:
+@pytest.mark.parametrize(("alpha", "k"), [(0.03, 5e9), (0.3, 3e8), (0.7, 3e8), (0.7, 5e9)])
+def test_a_start_of_one_branch_finds_what_many_do(assembly, alpha: float, k: float, monkeypatch) -> None:
     """Stiff and soft ground, up to the third bending modes: the same poles, and none twice."""
 
     def many(row: np.ndarray, radius: float) -> Prony:
         return prony_fit(law, 1e-4 * radius, 1e3 * radius)
 
-    for k in (3e8, 5e9):
-        law = Springpot(k, alpha, 1.15)
-        pencil = build_system(assembly, on_law(assembly.structure, law), rayleigh=RAYLEIGH).pencil
-        found = [value for value, _ in poles.poles_below(pencil, 2.0 * pi * 1.5)]
-        with monkeypatch.context() as patched:
-            patched.setattr(poles, "one_branch", many)
-            fine = [value for value, _ in poles.poles_below(pencil, 2.0 * pi * 1.5)]
-        np.testing.assert_allclose(found, fine, rtol=1e-7)
+    law = Springpot(k, alpha, 1.15)
+    pencil = build_system(assembly, on_law(assembly.structure, law), rayleigh=RAYLEIGH).pencil
+    found = [value for value, _ in poles.poles_below(pencil, 2.0 * pi * 1.5)]
+    monkeypatch.setattr(poles, "one_branch", many)
+    fine = [value for value, _ in poles.poles_below(pencil, 2.0 * pi * 1.5)]
+    np.testing.assert_allclose(found, fine, rtol=1e-7)
 
 
 @pytest.mark.parametrize("below_hz", [1.5, 3.0])
@@ -184,8 +182,10 @@ def test_springpot_with_exponent_zero_is_a_spring(monopile) -> None:
     np.testing.assert_allclose(a, b, rtol=1e-10)
 
 
-@pytest.mark.parametrize("subdivide", [1, 2])
-@pytest.mark.parametrize("name", ["kelvin-voigt", "kelvin-voigt locked", "maxwell-3", "springpot"])
+@pytest.mark.parametrize(
+    ("name", "subdivide"),
+    [("kelvin-voigt", 1), ("kelvin-voigt locked", 2), ("maxwell-3", 1), ("springpot", 1), ("springpot", 2)],
+)
 def test_double_poles_of_a_symmetric_structure_come_twice(name: str, subdivide: int) -> None:
     """A square jacket without its RNA: fore-aft and side-side are the same to the last digit."""
     structure = read_structure("jacket15").with_masses(())
@@ -200,7 +200,7 @@ def test_double_poles_of_a_symmetric_structure_come_twice(name: str, subdivide: 
     )
     assert found.eigenvalues[1] == pytest.approx(found.eigenvalues[0], rel=1e-9)
     assert abs(found.eigenvalues[2] - found.eigenvalues[1]) > 0.1 * abs(found.eigenvalues[1])
-    if name != "springpot" and subdivide == 1:
+    if subdivide == 1 and name != "springpot":
         values = np.linalg.eigvals(state_matrix(system.pencil))
         values = values[(values.imag > 1e-5 * np.abs(values)) & (np.abs(values) < 2.0 * pi * 1.2)]
         assert found.eigenvalues.size == values.size
