@@ -75,6 +75,25 @@ def test_a_tower_goes_inside_and_leaves_its_top_to_the_turbine(tmp_path: Path) -
     assert "given twice" in refused.stderr
 
 
+def test_a_small_foundation_keeps_all_that_it_has(tmp_path: Path) -> None:
+    """A tripod of three tubes has six degrees of freedom at its top and nine rotations of its pinned feet."""
+    own = tmp_path / "tripod.yaml"
+    own.write_text(TRIPOD)
+    document = json.loads(run(str(own), "--out", str(tmp_path / "t.npz"), "--json").stdout)
+    assert len(document["fixed_interface_frequency_hz"]) == 8
+    refused = run(str(own), "--modes", "9", "--out", str(tmp_path / "t.npz"))
+    assert refused.exit_code == 2 and "(got 9); allowed: 0 to 8" in refused.stderr.replace("\n", " ")
+
+
+TRIPOD = """\
+sections: {leg: {outer_diameter_m: 1.0, thickness_m: 0.03}}
+nodes: {a: [8, 0, 0], b: [-4, 7, 0], c: [-4, -7, 0], top: [0, 0, 20]}
+members: [{nodes: [a, top], section: leg}, {nodes: [b, top], section: leg}, {nodes: [c, top], section: leg}]
+reaction_nodes: [a, b, c]
+interface_nodes: [top]
+"""
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

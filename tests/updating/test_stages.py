@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jackettwin.decks import read_structure
-from jackettwin.structure import assemble, check
+from jackettwin.structure import RigidLink, assemble, check
 from jackettwin.updating import numbered_modes
 from jackettwin.updating.steel import stages
 
@@ -32,3 +32,19 @@ def test_legs_that_only_braces_join_are_no_stage_of_their_own() -> None:
     assert first.name == "legs, jacket"
     np.testing.assert_allclose(first.frequency_hz, stages(whole, 2)[0].frequency_hz, rtol=1e-9)
     assert full.name == "+ tower"
+
+
+def test_a_foot_beside_its_member_stands_in_every_stage() -> None:
+    """As in a SACS deck with member offsets: the member begins at a node that is rigidly linked to the foot."""
+    whole = read_structure("jacket15")
+    foot = whole.reaction_nodes[0]
+    beside = f"{foot}:A"
+    members = tuple(replace(m, start=beside) if m.start == foot else m for m in whole.members)
+    moved = replace(
+        whole,
+        nodes={**whole.nodes, beside: whole.nodes[foot]},
+        members=members,
+        rigid_links=(*whole.rigid_links, RigidLink(foot, beside)),
+    )
+    assert [stage.name for stage in stages(moved, 2)] == ["jacket", "+ transition_piece", "+ tower"]
+    np.testing.assert_allclose(stages(moved, 2)[0].frequency_hz, stages(whole, 2)[0].frequency_hz, rtol=1e-9)

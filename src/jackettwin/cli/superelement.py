@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from jackettwin.response import Layout, ReducedModes, Superelement
     from jackettwin.structure import Assembly, Structure, Vector
 
+_MODES = 24
+
 
 @click.command("superelement")
 @click.argument("structure")
@@ -40,10 +42,8 @@ if TYPE_CHECKING:
 @click.option(
     "--modes",
     "number",
-    default=24,
-    show_default=True,
     type=click.IntRange(0, 500),
-    help="Number N of internal coordinates.",
+    help=f"Number N of internal coordinates; default: {_MODES}, or all that a small foundation has.",
 )
 @click.option(
     "--reference",
@@ -96,7 +96,7 @@ def superelement_command(
     interface: str | None,
     feet: str | None,
     tower_inside: bool,
-    number: int,
+    number: int | None,
     reference: str | None,
     rayleigh: str | None,
     band_hz: float | None,
@@ -125,7 +125,7 @@ def superelement_command(
         with_deck_damping,
         write_superelement,
     )
-    from jackettwin.response.superelement.craig_bampton import superelement
+    from jackettwin.response.superelement.craig_bampton import most_internal, superelement
     from jackettwin.structure import assemble, at_interface
 
     out = out or Path("out") / f"{Path(structure).stem}.npz"
@@ -151,6 +151,8 @@ def superelement_command(
     full, base = (build_system(part, held, rayleigh=steel) for part in (complete, built(foundation)))
     top = None if rest is None else built(rest)
     band = band_hz or default_band_hz(full)
+    if number is None:
+        number = min(_MODES, most_internal(base))
     element = superelement(base, number=number, reference_m=point, band_hz=band)
     if step_s is not None:
         element = slowed(element, step_s=step_s, band_hz=band)

@@ -24,7 +24,7 @@ def only_parts(structure: Structure, parts: tuple[str, ...]) -> Structure:
         require(part in known, "no such part", field="parts", value=part, allowed=", ".join(known))
     members = tuple(member for member in structure.members if member.part in parts)
     beams = tuple(beam for beam in structure.beams if beam.part in parts)
-    used = {node for bar in structure.bars if bar.part in parts for node in (bar.start, bar.end)}
+    used = _nodes_of(structure, parts)
     return replace(
         structure,
         nodes={name: xyz for name, xyz in structure.nodes.items() if name in used},
@@ -35,6 +35,20 @@ def only_parts(structure: Structure, parts: tuple[str, ...]) -> Structure:
         elements=tuple(e for e in structure.elements if {e.start, e.end} <= used),
         interface_nodes=tuple(node for node in structure.interface_nodes if node in used),
     )
+
+
+def _nodes_of(structure: Structure, parts: tuple[str, ...]) -> set[str]:
+    """Return the nodes of the bars of some parts, and those without bars that are joined to them.
+
+    Where members have offsets, a foot is such a node: a rigid link leads from it to the member's end.
+    """
+    ends = {node for bar in structure.bars for node in (bar.start, bar.end)}
+    used = {node for bar in structure.bars if bar.part in parts for node in (bar.start, bar.end)}
+    joints = [{link.leader, link.follower} for link in structure.rigid_links]
+    joints += [{element.start, element.end} for element in structure.elements]
+    while more := {node for pair in joints if pair & used for node in pair - used - ends}:
+        used |= more
+    return used
 
 
 @dataclass(frozen=True)

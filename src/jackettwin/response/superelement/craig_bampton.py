@@ -148,13 +148,13 @@ def superelement(
     NumericalError
         If the foundation cannot stand on its support.
     """
-    if not 0 <= number < system.pencil.n - INTERFACE:
-        raise InputError(
-            "number of internal coordinates",
-            field="modes",
-            value=number,
-            allowed=f"0 to {system.pencil.n - INTERFACE - 1}",
-        )
+    require(
+        0 <= number <= most_internal(system),
+        "more internal coordinates than the foundation has degrees of freedom inside",
+        field="modes",
+        value=number,
+        allowed=f"0 to {most_internal(system)}",
+    )
     require(0.0 < band_hz < np.inf, "must be positive", field="band_hz", value=band_hz, allowed="> 0")
     point = interface_centroid(system.assembly.structure) if reference_m is None else reference_m
     at = _interface(system, point)
@@ -176,6 +176,11 @@ def superelement(
     )
     shapes = system.expand(basis[: pencil.n])
     return Superelement(M, C, K, point, shapes.T @ self_weight(system.assembly), shapes, n_damped)
+
+
+def most_internal(system: System) -> int:
+    """Return the largest number of internal coordinates of a foundation."""
+    return int(system.pencil.n) - INTERFACE - 1
 
 
 def fixed_interface_frequencies(system: System, number: int) -> FloatArray:
