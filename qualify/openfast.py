@@ -2,7 +2,7 @@
 
 Writes docs/verification/openfast.md. jacket15 and a jacket of three legs as ExtPtfm superelements under an
 ElastoDyn tower and the IEA 15 MW rotor, with rigid and with bending blades, linearised and in free decay,
-against ``modes --gravity``; and the frequencies of exported SubDyn decks against our own.
+against ``modes --gravity``. SubDyn decks are compared by ``subdyn.py``.
 """
 
 from __future__ import annotations
@@ -18,26 +18,23 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-import yaml
 from common.openfast_deck import Run, Turbine, write_case
 from common.page import write_page
 
 from jackettwin.decks import read_structure
 from jackettwin.decks.blade_files import read_flexible_rotor
-from jackettwin.decks.subdyn_writer import write_subdyn
 from jackettwin.records.readers.openfast import read_text
-from jackettwin.response.modes.modal import damped_modes, undamped_modes
+from jackettwin.response.modes.modal import damped_modes
 from jackettwin.response.modes.own_damping import own_damping
 from jackettwin.response.motion.static import self_weight, static_displacement
 from jackettwin.response.superelement.craig_bampton import (
     INTERFACE,
     Superelement,
-    interface_centroid,
     superelement,
 )
 from jackettwin.response.superelement.files import write_superelement
 from jackettwin.response.system import System, build_system
-from jackettwin.soil import Support, read_support, with_static_reactions
+from jackettwin.soil import Support, read_support
 from jackettwin.soil.foundation import read_foundation
 from jackettwin.soil.support import Spring
 from jackettwin.structure import Rayleigh, Structure, assemble
@@ -74,7 +71,6 @@ def main() -> None:
             place.mkdir()
             sys.stderr.write(f"{asset.title}, {'bending' if flexible else 'rigid'} blades\n")
             lines += compared(program, place, asset, flexible=flexible)
-        lines += subdyn(program, Path(folder))
     write_page("openfast", lines)
 
 
@@ -334,69 +330,6 @@ def _poles_of_decay(x: FloatArray, step: float, *, order: int = 12, rows: int = 
     advance = np.linalg.lstsq(basis[:-1], basis[1:], rcond=None)[0]
     values = np.log(np.linalg.eigvals(advance).astype(np.complex128)) / step
     return np.asarray(values[values.imag > 0.0])
-
-
-def subdyn(program: str, folder: Path) -> list[str]:
-    """Return how far apart the frequencies of exported decks are, by SubDyn and by us."""
-    machine = turbine()
-    tower = read_structure("jacket15")
-    tower = tower.with_masses((machine.body(tower.top_node),))
-    lines = [
-        "**SubDyn: `export`**",
-        "",
-        "| foundation | modes below 3 Hz | furthest apart [%] |",
-        "|---|---|---|",
-    ]
-    for k, (title, structure) in enumerate(
-        {
-            "jacket15": read_structure("jacket15"),
-            "three legs, turned by 20°": three_legs(turn_deg=20.0),
-            "three legs, leaning by 0.1": three_legs(lean=0.1),
-            "OC4 (its own SubDyn deck)": read_structure(DECKS / "oc4_jacket.dat"),
-        }.items()
-    ):
-        place = folder / f"subdyn{k}"
-        place.mkdir()
-        number, apart = exported(program, place, structure, tower)
-        lines.append(f"| {title} | {number} | {100 * apart:.4f} |")
-    return [
-        *lines,
-        "",
-        "Feet on springs of 2.5e9 N/m; frequencies of the exported foundation, free at its top, by SubDyn's",
-        "own finite elements (its summary file) and by those of jackettwin on the deck read back.",
-        "",
-    ]
-
-
-def exported(program: str, place: Path, structure: Structure, tower: Structure) -> tuple[int, float]:
-    """Return how many frequencies below 3 Hz the exported foundation has, and how far SubDyn's are off.
-
-    A tower stands on it at the height of its interface: SubDyn runs under ElastoDyn, and its own frequencies
-    know nothing of that.
-    """
-    foundation, _ = at_interface(structure)
-    support = read_support("kelvin-voigt:k=2.5e9,c=0", foundation)
-    write_subdyn(with_static_reactions(foundation, support), place / "deck.dat")
-    deck = read_structure(place / "deck.dat")
-    ours = undamped_modes(build_system(assemble(deck), read_support(None, deck)), 60).frequency_hz
-    above = interface_centroid(structure)[2] - structure.sea_level_z_m
-    base = tower.nodes[tower.interface_nodes[0]][2]
-    primary = write_case(
-        place,
-        replace(tower, sea_level_z_m=base - above),
-        turbine(),
-        Run(duration_s=0.1, step_s=0.002, sub=1),
-        foundation="deck.dat",
-        depth_m=structure.sea_level_z_m - min(z for _, _, z in structure.nodes.values()),
-    )
-    execute(program, primary)
-    summary = yaml.safe_load(next(place.glob("*.SD.sum.yaml")).read_text())
-    theirs = np.ravel(
-        summary["Full_frequencies"] if "Full_frequencies" in summary else summary["FEM_frequencies"]
-    )
-    theirs = np.sort(theirs[theirs > 1e-3])
-    wanted = ours[(ours > 1e-3) & (ours < 3.0)]
-    return wanted.size, float(np.abs(wanted / theirs[: wanted.size] - 1.0).max())
 
 
 if __name__ == "__main__":

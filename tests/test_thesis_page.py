@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+import numpy as np
 import pytest
 import yaml
 
@@ -94,6 +95,27 @@ def test_everything_else_that_is_named_is_there() -> None:
             assert re.search(rf"^{code[5:]}:", (ROOT / "Makefile").read_text(), re.MULTILINE), row
         else:
             assert (ROOT / code).exists(), f"row {row}: {code}"
+
+
+def test_the_rows_from_python_on_an_own_structure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What the block computes, beside each other: poles, a planted ground, a pull's decrement."""
+    (tmp_path / "own.yaml").write_text((ROOT / "examples" / "three_leg_jacket.yaml").read_text())
+    (tmp_path / "piles.yaml").write_text((ROOT / "qualify" / "decks" / "piles.yaml").read_text())
+    monkeypatch.chdir(tmp_path)
+    (block,) = re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)
+    done: dict[str, Any] = {}
+    exec(compile(block, str(PAGE), "exec"), done)
+    poles = np.linalg.eigvals(done["A"])
+    lowest = np.sort(np.abs(poles[poles.imag > 0.0]))[: done["true"].eigenvalues.size]
+    np.testing.assert_allclose(lowest, np.abs(done["true"].eigenvalues), rtol=1e-6)
+    # the targets are those of a Kelvin-Voigt ground, which that law and no other has exactly
+    np.testing.assert_allclose(done["fits"][0].best.theta, [1.5e9, 2e7], rtol=1e-4)
+    assert [rank.place for rank in done["ranked"](done["fits"])] == [1, 1, 1]
+    decrement = done["record"].metadata["decrement"]
+    assert decrement["damping_ratio"] == pytest.approx(decrement["pole_damping_ratio"], rel=1e-4)
+    here = done["locus"].poles[done["locus"].origin]
+    np.testing.assert_allclose(np.abs(here[0]), np.abs(done["true"].eigenvalues[0]), rtol=1e-3)
+    assert done["reduced"].M.shape == (18, 18)
 
 
 def test_the_numbers_of_the_open_questions_are_those_that_verify_computes() -> None:

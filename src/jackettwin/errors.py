@@ -174,9 +174,17 @@ def require_between(field: str, value: float, low: float, high: float, unit: str
     require(low <= value <= high, "out of range", field=field, value=value, allowed=allowed, remedy=remedy)
 
 
+_SHORT_WORD = 6
+
+
 def did_you_mean(word: str, known: Iterable[str]) -> str | None:
-    """Return a remedy sentence naming the closest known word, or None."""
-    match = get_close_matches(word, list(known), n=1, cutoff=0.6)
+    """Return a remedy sentence naming the closest known word, or None.
+
+    Half the letters of a short word are easily those of another, but for the first: `name` is no misspelt
+    `frame`.
+    """
+    near = [one for one in known if len(word) >= _SHORT_WORD or one[:1] == word[:1]]
+    match = get_close_matches(word, near, n=1, cutoff=0.6)
     return f"did you mean {match[0]!r}?" if match else None
 
 

@@ -1,6 +1,7 @@
 """``jackettwin refine``: the staged refinement of section 5.4 as a command."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -65,6 +66,21 @@ def test_a_mode_that_is_met_worse_than_before_is_named(tmp_path: Path) -> None:
     words = " ".join(said.stdout.split())
     assert "mode 4 has a larger misfit than before: +0.00 % became +" in words
     assert "mode 1 has a larger misfit" not in words
+
+
+def test_masses_are_said_in_whole_numbers_and_without_deviation_on_a_bound(tmp_path: Path) -> None:
+    """Added mass is not negative: nothing is added where the frequency is to rise."""
+    f = numbered_modes(assemble(read_structure("jacket15")), 1).frequency_hz[0]
+    added = {"part": "tower", "property": "added_mass_kg", "tolerance": 60000}
+    lines = []
+    for change in (0.98, 1.02):
+        stage = {"frequency_hz": {1: float(change * f)}, "free": [added]}
+        (tmp_path / "r.yaml").write_text(
+            yaml.safe_dump({"structure": "jacket15", "gravity": False, "stages": [stage]})
+        )
+        lines.append(" ".join(CliRunner().invoke(main, ["refine", str(tmp_path / "r.yaml")]).stdout.split()))
+    assert re.search(r"tower.added_mass_kg \+\d+(\.\d+)? ± \d+ ", lines[0]), lines[0]
+    assert "tower.added_mass_kg +0 " in lines[1] and "lies on a bound" in lines[1]
 
 
 @pytest.mark.parametrize(

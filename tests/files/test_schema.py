@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 import pytest
 from pydantic import Field
 
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, did_you_mean
 from jackettwin.files import Schema, validate
 
 
@@ -77,6 +77,14 @@ class Home(Schema):
 def test_one_sentence_names_place_value_and_remedy(data: dict, message: str) -> None:
     with pytest.raises(InputError, match="home.yaml: " + message):
         validate(Home, data, file="home.yaml")
+
+
+def test_a_short_word_is_no_misspelt_one_that_begins_with_another_letter() -> None:
+    """Three of the four letters of `name` are in `frame`."""
+    with pytest.raises(InputError, match="allowed: .*; take it out, or use one of these"):
+        validate(Home, {"area_m2": 1, "hooms": {}}, file="home.yaml")
+    assert did_you_mean("name", ["frame", "node"]) is None
+    assert did_you_mean("tau", ["tau_s"]) == "did you mean 'tau_s'?"
 
 
 def test_good_data_pass() -> None:

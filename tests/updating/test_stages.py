@@ -35,7 +35,7 @@ def test_legs_that_only_braces_join_are_no_stage_of_their_own() -> None:
 
 
 def test_a_foot_beside_its_member_stands_in_every_stage() -> None:
-    """As in a SACS deck with member offsets: the member begins at a node that is rigidly linked to the foot."""
+    """As in a SACS deck with member offsets: a rigid link leads from the foot to the member."""
     whole = read_structure("jacket15")
     foot = whole.reaction_nodes[0]
     beside = f"{foot}:A"

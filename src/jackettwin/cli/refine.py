@@ -37,7 +37,7 @@ def refine_command(file: Path) -> Reply:
 def _show(stages: Sequence[RefinementStage], document: Mapping[str, Any]) -> None:
     for stage, entry in zip(stages, document["stages"], strict=True):
         what = " + ".join(stage.parts) or "the whole structure"
-        changes = ", ".join(_change(f, entry["factors"][f.name], entry["std"][f.name]) for f in stage.factors)
+        changes = ", ".join(_change(f, entry) for f in stage.factors)
         show_table(Table(f"{what}: {changes or 'compared only'}", _COLUMNS, entry["modes"]))
         for name in entry["at_bound"]:
             say(f"warning: {name} lies on a bound: widen it if that is possible, or free another property")
@@ -57,9 +57,11 @@ def _show(stages: Sequence[RefinementStage], document: Mapping[str, Any]) -> Non
     output.print(yaml.safe_dump({"structure": block}, sort_keys=False, allow_unicode=True), end="")
 
 
-def _change(factor: Factor, value: float, std: float | None) -> str:
-    """Return the change of a property, with its standard deviation if it has a tolerance."""
-    about = f" ± {std:.2g}" if std is not None and factor.tolerance is not None else ""
+def _change(factor: Factor, entry: Mapping[str, Any]) -> str:
+    """Return the change of a property, with its standard deviation if it has a tolerance and is no bound."""
+    value, std = entry["factors"][factor.name], entry["std"][factor.name]
+    known = std is not None and factor.tolerance is not None and factor.name not in entry["at_bound"]
+    about = f" ± {float(f'{std:.2g}'):g}" if known else ""
     done = f"× {value:.4f}" if factor.is_factor else f"{value:+.6g}"
     return f"{factor.name} {done}{about}"
 

@@ -47,7 +47,8 @@ def verify_command(published: bool) -> Reply:
             Table("", _COLUMNS, rows, marked=frozenset(i for i, row in enumerate(rows) if row.ok is False))
         )
         if published:
-            _say_notes(rows)
+            _say_tolerances(rows)
+        _say_reasons(rows)
         say(_summary_of_others(rows) if published else _summary(rows))
 
     document = {"rows": [row.document() for row in rows]}
@@ -58,7 +59,7 @@ def _summary(rows: tuple[Row, ...]) -> str:
     checked = [row.ok for row in rows if row.ok is not None]
     return (
         f"{sum(checked)} of {len(checked)} checked rows hold; {len(rows) - len(checked)} rows are "
-        "not checked: most need unpublished drawings or data, and --json gives the reason of each"
+        "not checked, for the reasons above"
     )
 
 
@@ -68,11 +69,14 @@ def _verdict(row: Row) -> str:
     return "informs" if row.ok is None else "ok"
 
 
-def _say_notes(rows: tuple[Row, ...]) -> None:
-    """Print the reasons for tolerances and for failed rows."""
+def _say_tolerances(rows: tuple[Row, ...]) -> None:
     tolerances = dict.fromkeys((row.source, row.note) for row in rows if row.note and row.ok is not None)
     for source, note in tolerances:
         say(f"tolerance of {source}: {note}")
+
+
+def _say_reasons(rows: tuple[Row, ...]) -> None:
+    """Print why rows are not checked, or lie outside their tolerances."""
     for row in rows:
         if row.ok is None:
             say(f"informs: {row.quantity}, {row.source}: {row.note}")

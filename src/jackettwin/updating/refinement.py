@@ -95,9 +95,10 @@ def fit_stage(
             problem.residuals, z, jac=problem.jacobian, bounds=tuple(problem.limits), xtol=1e-10, x_scale=1.0
         )
         z = fit.x
+    low_end, high_end = (np.isclose(z, limit, rtol=0.0, atol=1e-6) for limit in (low, high))
+    z, near = np.where(low_end, low, np.where(high_end, high, z)), low_end | high_end
     std = problem.std(z)
     values = [factor.value(place) for factor, place in zip(factors, z, strict=True)]
-    near = np.isclose(z, problem.limits, rtol=0.0, atol=1e-6).any(axis=0) if factors else []
     return StageFit(
         structure=problem.at(z),
         factors={factor.name: value for factor, value in zip(factors, values, strict=True)},

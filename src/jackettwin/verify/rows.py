@@ -21,7 +21,7 @@ class Row:
     ----------
     tolerance : float or None
         Largest allowed relative error; for ``kind="at most"`` the bound itself is ``published``. None marks a
-        row that informs only: it needs drawings or data that were not published.
+        row that informs only, for the reason in its note.
     kind : {"equal", "at most"}
         ``at most`` rows hold a figure that must not exceed the published one (an error of a fit).
     note : str

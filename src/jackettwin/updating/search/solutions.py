@@ -296,16 +296,24 @@ def _out_of_reach(problem: Problem) -> InputError:
     targets = first.residuals.used
     ends = problem.vectors(np.stack([problem.prior.low, problem.prior.high]), first)
     low, high = (problem.model.undamped_hz(theta, first.residuals.modes) for theta in ends)
-    reach = [
-        f"mode {t.mode} {'' if np.isnan(a) else f'from {a:.3g} '}to {b:.3g} Hz"
+    bounds = [
+        (t, float(t.frequency_hz), a, b)
         for t, a, b in zip(targets, low, high, strict=True)
         if t.frequency_hz is not None and not np.isnan(b)
     ]
+    each = all((np.isnan(a) or a <= f) and f <= b for _, f, a, b in bounds)
+    reach = [f"mode {t.mode} {'' if np.isnan(a) else f'from {a:.3g} '}to {b:.3g} Hz" for t, _, a, b in bounds]
+    why = (
+        "supports reach each frequency but not all data together"
+        if each
+        else "no support can reproduce the data"
+    )
     return InputError(
-        "no start of the search ended in a minimum: no support can reproduce the data",
+        f"no start of the search ended in a minimum: {why}",
         value={t.mode: t.frequency_hz and round(float(t.frequency_hz), 5) for t in targets},
         allowed="undamped " + ", ".join(reach) if reach else None,
-        remedy="check mode numbers, frequencies, damping ratios, their standard deviations and update.bounds",
+        remedy="check mode numbers (close modes change places as supports change: jackettwin explore draws "
+        "it), frequencies, damping ratios, their standard deviations and update.bounds",
     )
 
 
