@@ -30,3 +30,7 @@ export function useDeed(): Deed {
 const ROLES = ["viewer", "engineer", "admin"];
 /** Whether who is logged in may do what asks for a role; the server decides, this only hides what would fail. */
 export const may = (role: string): boolean => ROLES.indexOf(me.value?.role ?? "") >= ROLES.indexOf(role);
+
+/** The texts of files by name, as a twin's are sent. */
+export const textsOf = async (files: readonly File[]): Promise<Record<string, string>> =>
+  Object.fromEntries(await Promise.all(files.map(async (f) => [f.name, await f.text()] as const)));

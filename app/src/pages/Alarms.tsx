@@ -6,6 +6,7 @@ import { Handling, History, standing } from "../parts/Handling";
 import { Empty, Shown } from "../parts/Shown";
 import Evidence from "../parts/Watched";
 import { day, seconds } from "../words/time";
+import { sentence } from "../words/numbers";
 import type { PageProps } from "../shell/place";
 import { asked, assetUrl, keep } from "../shell/place";
 
@@ -90,7 +91,7 @@ export default function Alarms({ asset }: PageProps) {
                         <Time at={f.time_utc} />
                         {f.record_id && <a href={assetUrl(asset, "records", f.record_id)}>the record</a>}
                       </p>
-                      <p>{f.text}</p>
+                      <p>{sentence(f.text)}</p>
                       {(f.assigned_to ?? f.muted_until_utc ?? f.closed_by) && <History finding={f} />}
                       {f.severity === "warning" && <Handling finding={f} again={said.again} />}
                     </li>

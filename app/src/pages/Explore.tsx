@@ -18,6 +18,7 @@ type Explored = Schemas["ExploredOut"];
 type Locus = Schemas["LocusOut"];
 type Branch = Schemas["BranchOut"];
 const MOST_DAMPED = 0.3;
+const lively = (b: Branch, i: number): boolean => (b.damping_ratio[i] ?? 1) < MOST_DAMPED;
 
 /** Along the parameter: what a branch shows at each of its values, while it swings. */
 function along(
@@ -26,7 +27,6 @@ function along(
   yName: string,
   of: (b: Branch, i: number) => number | null,
 ): PlotData {
-  const lively = (b: Branch, i: number): boolean => (b.damping_ratio[i] ?? 1) < MOST_DAMPED;
   return {
     title,
     time: false,
@@ -140,18 +140,8 @@ function Along({ locus }: { locus: Locus }) {
           id={(b) => b.label}
           columns={[
             { title: "Mode", show: (b) => words(b.label) },
-            number<Branch>(
-              "Frequency",
-              "Hz",
-              (b) => b.frequency_hz[index],
-              (v) => frequency(v),
-            ),
-            number<Branch>(
-              "Damping ratio",
-              "%",
-              (b) => b.damping_ratio[index],
-              (v) => percent(v),
-            ),
+            number<Branch>("Frequency", "Hz", (b) => b.frequency_hz[index], { say: (v) => frequency(v) }),
+            number<Branch>("Damping ratio", "%", (b) => b.damping_ratio[index], { say: (v) => percent(v) }),
             {
               title: "Most damping",
               unit: `% at ${locus.parameter}`,
@@ -164,7 +154,7 @@ function Along({ locus }: { locus: Locus }) {
           ]}
         />
       </Card>
-      <Card title="Poles" note="Further left is more damped. Black: where the slider stands.">
+      <Card title="Poles" note="Further left is more damped; “here” is where the slider stands.">
         <Plot data={root} height={300} />
       </Card>
     </>

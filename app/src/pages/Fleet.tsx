@@ -6,7 +6,7 @@ import { Empty, Shown } from "../parts/Shown";
 import { type Column, number, Table } from "../parts/Table";
 import { asked, assetUrl, keep } from "../shell/place";
 import { Map_ } from "../parts/Map";
-import { count, quantity } from "../words/numbers";
+import { count, sentence, years } from "../words/numbers";
 
 const URGENT = ["alarm", "warning", "no data", "ok"];
 const some = (asset: Asset, ...statuses: string[]): number =>
@@ -24,7 +24,7 @@ const COLUMNS: Column<Asset>[] = [
     show: (a) =>
       a.reason && (
         <a class="prose" href={assetUrl(a.name, a.open_alarms ? "alarms" : "records")}>
-          {a.reason}
+          {sentence(a.reason)}
         </a>
       ),
   },
@@ -34,12 +34,7 @@ const COLUMNS: Column<Asset>[] = [
     show: (a) => (a.last_record_utc ? <Ago at={a.last_record_utc} /> : "none yet"),
     by: (a) => a.last_record_utc,
   },
-  number(
-    "Life",
-    "years",
-    (a) => a.life_years,
-    (years) => (years > 1000 ? "> 1000" : quantity(years, "")),
-  ),
+  number("Life left", "years", (a) => a.remaining_years, { say: years }),
   number("Records", "observed", (a) => some(a, "observed")),
   number("Waiting", "records", (a) => some(a, "received", "observing")),
 ];

@@ -29,11 +29,7 @@ export default function Jobs() {
   const deed = useDeed();
   const act = async (job: Job, what: "cancel" | "retry"): Promise<void> => {
     const path = { params: { path: { job_id: job.id } } };
-    const asked_ = (): Promise<unknown> =>
-      what === "cancel"
-        ? told(api.POST("/api/v1/jobs/{job_id}/cancel", path))
-        : told(api.POST("/api/v1/jobs/{job_id}/retry", path));
-    if (await deed.run(asked_)) jobs.again();
+    if (await deed.run(() => told(api.POST(`/api/v1/jobs/{job_id}/${what}`, path)))) jobs.again();
   };
   return (
     <>
@@ -75,18 +71,12 @@ export default function Jobs() {
                 {
                   title: "Do",
                   show: (j) => {
-                    if (!may("engineer")) return null;
-                    const what = ["queued", "leased"].includes(j.state)
-                      ? "cancel"
-                      : j.state === "done"
-                        ? null
-                        : "retry";
+                    const what = ["queued", "leased"].includes(j.state) ? "cancel" : "retry";
+                    if (!may("engineer") || j.state === "done") return null;
                     return (
-                      what && (
-                        <button type="button" disabled={deed.busy} onClick={() => void act(j, what)}>
-                          {what === "cancel" ? "Cancel" : "Try again"}
-                        </button>
-                      )
+                      <button type="button" disabled={deed.busy} onClick={() => void act(j, what)}>
+                        {what === "cancel" ? "Cancel" : "Try again"}
+                      </button>
                     );
                   },
                 },

@@ -6,21 +6,16 @@ import { Empty, Shown } from "../parts/Shown";
 import { type Column, number, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
 import { asked, keep } from "../shell/place";
-import { count, percent, scientific } from "../words/numbers";
+import { count, percent, scientific, years } from "../words/numbers";
 import { day } from "../words/time";
 
 type Weld = Schemas["LifeOut"];
-const LONG_YEARS = 1000;
 const YEAR_S = 365.25 * 86_400;
 
-/** Years without digits that nobody knows. */
-export const years = (value: number | null): string =>
-  value === null || !Number.isFinite(value) || value > LONG_YEARS
-    ? "over 1000"
-    : String(Number(value.toPrecision(value < 10 ? 1 : 2)));
 const key = (w: Weld): string => `${w.joint} ${w.brace} ${w.side}`;
 const named = (w: Weld): string => `${w.joint}, ${w.brace}, ${w.side}`;
-const state = (w: Weld): string => (w.over_budget || w.departed ? "alarm" : "ok");
+const state = (w: Weld): string =>
+  w.over_budget || w.departed ? "alarm" : (w.rate_interval_90[0] ?? 0) > w.budget_per_year ? "warning" : "ok";
 const largest = (shares: Record<string, number>): string =>
   Object.entries(shares)
     .toSorted(([, a], [, b]) => b - a)
@@ -44,12 +39,7 @@ const COLUMNS: Column<Weld>[] = [
     ),
     by: key,
   },
-  number(
-    "Height",
-    "m",
-    (w) => w.z_m,
-    (v) => v.toFixed(1),
-  ),
+  number("Height", "m", (w) => w.z_m, { say: (v) => v.toFixed(1) }),
   {
     title: "Left",
     unit: "years, 5 to 95 %",
@@ -58,18 +48,12 @@ const COLUMNS: Column<Weld>[] = [
       `${years(w.remaining_years.p50)} (${years(w.remaining_years.p05)} to ${years(w.remaining_years.p95)})`,
     by: (w) => w.remaining_years.p50,
   },
-  number(
-    "Damage a year",
-    "% of what is allowed",
-    (w) => w.rate_per_year / w.budget_per_year,
-    (v) => percent(v, null, 0),
-  ),
-  number(
-    "Fails in a year",
-    "probability",
-    (w) => w.failure_probability_per_year,
-    (v) => scientific(v, 2),
-  ),
+  number("Damage a year", "% of what is allowed", (w) => w.rate_per_year / w.budget_per_year, {
+    say: (v) => percent(v, null, 0),
+  }),
+  number("Fails in a year", "probability", (w) => w.failure_probability_per_year, {
+    say: (v) => scientific(v, 2),
+  }),
 ];
 
 /** The eight points around a weld, from its crown on; the worst is the one that counts. */

@@ -2,7 +2,7 @@
 import { useState } from "preact/hooks";
 import { type Answer, useAsset } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
-import { may, useDeed } from "../api/do";
+import { may, textsOf, useDeed } from "../api/do";
 import { Card, Time, Head, FormEnd } from "../parts/Bits";
 import { Shown } from "../parts/Shown";
 import { number, Table } from "../parts/Table";
@@ -20,6 +20,9 @@ function spoken(quantity: string): string {
     : `${words(name)} ${what[rest.join(" ")] ?? rest.join(" ")}`;
 }
 
+const column = (title: string, by: (c: Schemas["ChangeOut"]) => number | null | undefined, digits = 3) =>
+  number(title, "", by, { say: (v) => scientific(v, digits) });
+
 function Comparison({ asset, version }: { asset: string; version: number }) {
   const found = useAsset(asset, "/comparison", { version });
   return (
@@ -36,30 +39,10 @@ function Comparison({ asset, version }: { asset: string; version: number }) {
             id={(c) => c.quantity}
             columns={[
               { title: "Quantity", show: (c) => spoken(c.quantity) },
-              number<Schemas["ChangeOut"]>(
-                "Adopted",
-                "",
-                (c) => c.adopted,
-                (v) => scientific(v, 4),
-              ),
-              number<Schemas["ChangeOut"]>(
-                `Version ${version}`,
-                "",
-                (c) => c.other,
-                (v) => scientific(v, 4),
-              ),
-              number<Schemas["ChangeOut"]>(
-                "Difference",
-                "",
-                (c) => c.difference,
-                (v) => scientific(v),
-              ),
-              number<Schemas["ChangeOut"]>(
-                "In std",
-                "",
-                (c) => c.in_standard_deviations,
-                (v) => scientific(v, 2),
-              ),
+              column("Adopted", (c) => c.adopted, 4),
+              column(`Version ${version}`, (c) => c.other, 4),
+              column("Difference", (c) => c.difference),
+              column("In std", (c) => c.in_standard_deviations, 2),
             ]}
           />
         )}
@@ -77,14 +60,8 @@ function NewVersion({ asset, versions }: { asset: string; versions: Answer<Versi
     const chosen = form.getAll("files").filter((f): f is File => f instanceof File && f.size > 0);
     const twin = form.get("twin");
     const done = await deed.run(async () => {
-      const files = Object.fromEntries(
-        await Promise.all(chosen.map(async (f) => [f.name, await f.text()] as const)),
-      );
-      const body = {
-        twin: twin instanceof File ? await twin.text() : "",
-        files,
-        comment: String(form.get("comment") ?? ""),
-      };
+      const text = twin instanceof File ? await twin.text() : "";
+      const body = { twin: text, files: await textsOf(chosen), comment: String(form.get("comment") ?? "") };
       const made = await told(api.PUT("/api/v1/assets/{asset}", { params: { path: { asset } }, body }));
       setSaid(
         `Version ${made.version} is there; records are observed by it too. It counts once it is adopted.`,

@@ -1,8 +1,8 @@
 // A turbine from its twin file and the files that this one names.
 import { useState } from "preact/hooks";
 import { api, told } from "../api/client";
-import { may, useDeed } from "../api/do";
-import { Card, Head } from "../parts/Bits";
+import { may, textsOf, useDeed } from "../api/do";
+import { Card, FormEnd, Head } from "../parts/Bits";
 import { Empty } from "../parts/Shown";
 import { assetUrl, go } from "../shell/place";
 
@@ -15,15 +15,9 @@ export default function Start() {
     event.preventDefault();
     const name = String(new FormData(event.currentTarget as HTMLFormElement).get("name") ?? "");
     const done = await deed.run(async () => {
-      const others = files.filter((f) => f !== twin);
-      const texts = Object.fromEntries(
-        await Promise.all(others.map(async (f) => [f.name, await f.text()] as const)),
-      );
-      await told(
-        api.POST("/api/v1/assets", {
-          body: { name, twin: (await twin?.text()) ?? "", files: texts, comment: "" },
-        }),
-      );
+      const others = await textsOf(files.filter((f) => f !== twin));
+      const body = { name, twin: (await twin?.text()) ?? "", files: others, comment: "" };
+      await told(api.POST("/api/v1/assets", { body }));
     });
     if (done) go(assetUrl(name, "records"));
   };
@@ -61,16 +55,7 @@ export default function Start() {
                 : "None of them is a YAML file: the twin file is missing."}
             </p>
           )}
-          {deed.problem && (
-            <p class="error" role="alert">
-              {deed.problem.message} {deed.problem.remedy}
-            </p>
-          )}
-          <span>
-            <button class="main" disabled={deed.busy || !twin}>
-              {deed.busy ? "A worker reads it" : "Add"}
-            </button>
-          </span>
+          <FormEnd deed={deed} words={deed.busy ? "A worker reads it" : "Add"} />
         </form>
       </Card>
     </>

@@ -196,6 +196,7 @@ function Drawn({ all, seen, marks, what, wanted, range, beside, asset, watch, op
     });
   }, [all, seen, what, key, beside.name, beside.bins]);
   const last = Math.max(...all.map((b) => seconds(b.start_utc) + (b.time_s.at(-1) ?? 0) + b.bin_s));
+  const first = Math.min(...all.map((b) => seconds(b.start_utc) + (b.time_s[0] ?? 0)));
   const shown = plots.filter((p) => !wanted || p.label === wanted);
   const show = (days: string): void => keepRange(days ? [last - Number(days) * DAY_S, last + DAY_S] : null);
   const title = what === "left" ? "Frequency residuals" : "Damping residuals";
@@ -241,6 +242,7 @@ function Drawn({ all, seen, marks, what, wanted, range, beside, asset, watch, op
               data={plot}
               height={shown.length === 1 ? 460 : 170}
               together="timeline"
+              range={range ?? [first, last]}
               onPick={(_, index) => pick(index)}
             />
           ))}

@@ -1,5 +1,6 @@
 // Findings that ask for a person, what is known of each, and the way to say that one has looked.
 import type { Alarm } from "../api/client";
+import { sentence } from "../words/numbers";
 import { assetUrl } from "../shell/place";
 import { Light, Time } from "./Bits";
 import { Handling, History, standing } from "./Handling";
@@ -38,7 +39,7 @@ export function AlarmList({ alarms, again, whole = false }: AlarmListProps) {
             )}
             <a href={evidence(alarm)}>the days around it</a>
           </p>
-          <p>{alarm.text}</p>
+          <p>{sentence(alarm.text)}</p>
           {whole ? (
             <History finding={alarm} />
           ) : (

@@ -4,6 +4,7 @@ import { useAsset } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
 import { may, useDeed } from "../api/do";
 import { assetUrl } from "../shell/place";
+import { count } from "../words/numbers";
 import { Card, FormEnd } from "./Bits";
 import { Empty, Shown } from "./Shown";
 
@@ -47,6 +48,29 @@ function Confirm({ asset, one, done }: { asset: string; one: Assumption; done: (
   );
 }
 
+/** So many are shown at first. */
+const FIRST = 4;
+
+interface ListProps {
+  asset: string;
+  items: Assumption[];
+  done: (version: number) => void;
+}
+
+const List = ({ asset, items, done }: ListProps) => (
+  <ul class="list">
+    {items.map((one) => (
+      <li key={one.key}>
+        <p>{one.value}</p>
+        <p class="quiet">
+          {[moved(one), one.settled_by && `to settle it: ${one.settled_by}`].filter(Boolean).join("; ")}
+        </p>
+        {may("engineer") && <Confirm asset={asset} one={one} done={done} />}
+      </li>
+    ))}
+  </ul>
+);
+
 export function Assumptions({ asset }: { asset: string }) {
   const [version, setVersion] = useState<number | null>(null);
   const found = useAsset(asset, "/assumptions");
@@ -67,23 +91,20 @@ export function Assumptions({ asset }: { asset: string }) {
           data.items.some((one) => one.confirmed === false) ? null : <Empty title="None is open" />
         }
       >
-        {(data) => (
-          <ul class="list">
-            {data.items
-              .filter((one) => one.confirmed === false)
-              .map((one) => (
-                <li key={one.key}>
-                  <p>{one.value}</p>
-                  <p class="quiet">
-                    {[moved(one), one.settled_by && `to settle it: ${one.settled_by}`]
-                      .filter(Boolean)
-                      .join("; ")}
-                  </p>
-                  {may("engineer") && <Confirm asset={asset} one={one} done={setVersion} />}
-                </li>
-              ))}
-          </ul>
-        )}
+        {(data) => {
+          const open = data.items.filter((one) => one.confirmed === false);
+          return (
+            <>
+              <List asset={asset} items={open.slice(0, FIRST)} done={setVersion} />
+              {open.length > FIRST && (
+                <details>
+                  <summary>{count(open.length - FIRST, "lighter one")}</summary>
+                  <List asset={asset} items={open.slice(FIRST)} done={setVersion} />
+                </details>
+              )}
+            </>
+          );
+        }}
       </Shown>
     </Card>
   );

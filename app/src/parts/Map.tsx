@@ -1,6 +1,7 @@
 // Where turbines stand, seen from above: north is up, and no picture of elsewhere lies below.
 import type { Asset } from "../api/client";
 import { asked, assetUrl } from "../shell/place";
+import { sentence } from "../words/numbers";
 
 const [WIDTH, HIGH, EDGE, STEP, NAMED] = [1000, 300, 34, 28, 80];
 const KM_PER_DEGREE = 111.2;
@@ -95,7 +96,7 @@ export function Map_({ assets }: { assets: readonly Asset[] }) {
             class={`light ${asset.status.replaceAll(" ", "-")}`}
             aria-label={`${asset.name}: ${asset.status}`}
           >
-            <title>{[asset.name, asset.reason || asset.status].join(": ")}</title>
+            <title>{[asset.name, sentence(asset.reason) || asset.status].join(": ")}</title>
             <path
               transform={`scale(${size})`}
               d={MARKS[asset.status] ?? MARKS["ok"] ?? ""}

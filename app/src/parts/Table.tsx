@@ -16,7 +16,7 @@ export const number = <T,>(
   title: string,
   unit: string,
   by: (row: T) => number | null | undefined,
-  say: (value: number) => ComponentChildren = String,
+  { say = String }: { say?: (value: number) => ComponentChildren } = {},
 ): Column<T> => {
   const show = (row: T): ComponentChildren => {
     const value = by(row);

@@ -80,3 +80,16 @@ export function between(low: number, high: number, unit: string): string {
 /** side_side_1: side-side 1. */
 export const words = (label: string): string => label.replace(/_(\d+)$/, " $1").replaceAll("_", "-");
 export const count = (n: number, noun: string): string => `${n} ${noun}${n === 1 ? "" : "s"}`;
+
+const LONG_YEARS = 1000;
+/** Years without digits that nobody knows. */
+export const years = (value: number | null): string =>
+  value === null || !Number.isFinite(value) || value > LONG_YEARS
+    ? "over 1000"
+    : String(Number(value.toPrecision(value < 10 ? 1 : 2)));
+/** A sentence of the server with modes and numbers as the pages write them. */
+export const sentence = (text: string): string =>
+  text
+    .replace(/\b(fore_aft|side_side|torsion|heave)_\d+\b/g, words)
+    .replace(/(\d)%/g, "$1 %")
+    .replace(/([ (])-(?=\d)/g, "$1−");

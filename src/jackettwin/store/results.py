@@ -348,8 +348,8 @@ def open_alarms(connection: Connection, asset: str | None = None) -> dict[str, l
 
 
 def shortest_lives(connection: Connection, asset: str | None = None) -> dict[str, float]:
-    """Return the median life [years] of the weld that fails first, {asset: years}, where it is known."""
-    years = knowledge.c.document["life"][0]["life_years"]
+    """Return the median of the years left to the weld that fails first, {asset: years}, where known."""
+    years = knowledge.c.document["life"][0]["remaining_years"]["p50"]
     known = (knowledge.c.asset == assets.c.name) & (knowledge.c.version == assets.c.adopted_version)
     query = select(assets.c.name, years).join(knowledge, known)
     query = query if asset is None else query.where(assets.c.name == asset)

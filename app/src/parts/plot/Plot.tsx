@@ -137,8 +137,10 @@ function options(
         ...axis,
         size: 62,
         space: 24,
-        values: (_u, ticks) =>
-          ticks.map((v) => (v === null || (data.log && !isRound(v)) ? "" : axisNumber(v))),
+        values: (_u, ticks) => {
+          const few = ticks.filter((v) => v !== null && isRound(v)).length < 2;
+          return ticks.map((v) => (v === null || (data.log && !few && !isRound(v)) ? "" : axisNumber(v)));
+        },
       },
     ],
     ...more,

@@ -207,7 +207,7 @@ def overview(
             **_status(row, counts.get(row.name, {}), unseen.get(row.name, [])),
             records=counts.get(row.name, {}),
             findings=said.get(row.name, {}),
-            life_years=lives.get(row.name),
+            remaining_years=lives.get(row.name),
         )
         for row in assets.summaries(connection, name, archived=archived)
         if seen is None or row.name in seen

@@ -28,7 +28,9 @@ class AssetOut(BaseModel):
     status: Literal["ok", "warning", "alarm", "no data"]
     open_alarms: int = Field(description="Number of alarms that nobody has acknowledged, muted or closed.")
     reason: str = Field(description="Why somebody should look; empty if nobody need.")
-    life_years: float | None = Field(description="Median life of the weld that fails first, if known.")
+    remaining_years: float | None = Field(
+        description="Median of the years left to the weld that fails first, if known."
+    )
     latitude_deg: float | None = None
     longitude_deg: float | None = None
 
