@@ -160,7 +160,9 @@ def test_the_command_reads_openfast_and_csv(scenario: Scenario, whole, tmp_path:
             "even steps",
         ),
         ("time_s,x_m,y_m,z_m,rx_rad,ry_rad,rz_rad\n0,0,0,0,0,0,0\n1,0,0,0,0,30,0\n2,0,0,0,0,0,0\n", "small"),
-        ("time_s,x_m,y_m,z_m,rx_rad,ry_rad,rz_rad\n0,0,0,0,0,0,0\n1,0,,0,0,0,0\n2,0,0,0,0,0,0\n", "gaps"),
+        ("time_s,x_m,y_m,z_m,rx_rad,ry_rad,rz_rad\n0,0,0,0,0,0,0\n1,0,,0,0,0,0\n2,0,0,0,0,0,0\n", "a gap"),
+        ("time_s,x_m,y_m,z_m,rx_rad,ry_rad,rz_rad\n0,0,0,0,0,0,0\n1,0\n", "other lengths"),
+        ("time_s,x_m,y_m,z_m,rx_rad,ry_rad,rz_rad\n", "no rows"),
         ("", "columns are missing"),
     ],
 )

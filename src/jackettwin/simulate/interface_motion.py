@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import located, require
+from jackettwin.errors import InputError, located, require
 from jackettwin.files import read_text as read_lines
 from jackettwin.quantities import plain_unit
 from jackettwin.records import read_output
@@ -73,7 +73,17 @@ def _of_csv(path: Path) -> tuple[FloatArray, FloatArray]:
     wanted = ("time_s", *CSV_COLUMNS)
     missing = [name for name in wanted if name not in header]
     require(not missing, "columns are missing", value=missing, allowed=", ".join(wanted))
-    table = np.genfromtxt(lines[1:], delimiter=",", ndmin=2, invalid_raise=True)
+    rows = [line.split(",") for line in lines[1:] if line.strip()]
+    require(
+        bool(rows) and all(len(row) == len(header) for row in rows),
+        "no rows, or rows of other lengths",
+        value=len(rows),
+        allowed=f"rows of {len(header)} numbers",
+    )
+    try:
+        table = np.array(rows, dtype=np.float64)
+    except ValueError as error:
+        raise InputError("not a number, or a gap", value=str(error)) from None
     columns = table[:, [header.index(name) for name in wanted]]
     return columns[:, 0], columns[:, 1:]
 

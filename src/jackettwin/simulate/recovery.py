@@ -34,6 +34,7 @@ from jackettwin.response import (
     first_order_hold,
     held_displacement,
     march,
+    own_damping,
 )
 from jackettwin.response.superelement.craig_bampton import superelement
 from jackettwin.simulate.interface_motion import InterfaceMotion
@@ -98,7 +99,8 @@ def recovered(
     for name in members:
         look_up(every, name, "member below the interface", field="--members")
     asset = scenario.asset
-    system = build_system(assembly, asset.support, rayleigh=asset.rayleigh)
+    own = own_damping(assembly, asset.rayleigh)
+    system = build_system(assembly, asset.support, rayleigh=asset.rayleigh, spread=own)
     number = min(MODES, system.pencil.n - INTERFACE - 1) if number is None else number
     element = superelement(system, number=number, reference_m=reference_m, band_hz=_BAND_HZ)
     t = motion.step_s * np.arange(len(motion.values), dtype=np.float64)
@@ -108,8 +110,8 @@ def recovered(
     rest = held_displacement(system, load)
     along = waves_along(scenario, assembly)
     if along is not None:
-        inner, own = element.basis[:, INTERFACE:], element.K[INTERFACE:, INTERFACE:]
-        followed = inner @ np.linalg.solve(own, inner.T @ along.on_dofs)
+        inner, K = element.basis[:, INTERFACE:], element.K[INTERFACE:, INTERFACE:]
+        followed = inner @ np.linalg.solve(K, inner.T @ along.on_dofs)
         beyond = held_displacement(system, along.on_dofs) - followed
 
     def blocks() -> Iterator[tuple[FloatArray, FloatArray]]:
