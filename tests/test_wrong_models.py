@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.stats import binomtest
-from wrong_models import held, told, twin
+from wrong_models import held, stranger, told, twin
 
 CASES = range(200, 212)
 """Twelve kinds of wrongness."""
@@ -30,3 +30,9 @@ def test_another_law_is_asked_for_and_soft_feet_are_said_to_be_invisible() -> No
     assert viscous["product"]["suspected"] == ["law"] and viscous["product"]["objects"]
     assert not soft["product"]["objects"] and "soft_sideways" in soft["product"]["unseen"]
     assert told(viscous) and told(soft)
+
+
+def test_a_strangers_jacket_is_objected_to_and_its_weak_leg_named() -> None:
+    """Growth, a heavier rotor, a leg at half and another law at once: the interval holds the feet's mean."""
+    found = twin(3, built=stranger)["product"]
+    assert found["objects"] and "weak_leg" in found["suspected"] and all(found["inside"])
