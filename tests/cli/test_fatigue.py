@@ -220,6 +220,7 @@ def motion(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (("simulated", "{motion}"), "acc_x"),
         (("simulated", "{motion}", "--curve", "Q"), "S-N curve"),
         (("simulated", "{motion}", "--draws", "0"), "draws"),
+        (("simulated", "{motion}", "--report", "life.txt"), "life.txt"),
         (("simulated", "{motion}", "--details", "{details}"), "details.0.member"),
         (("record", "simulated"), "RECORD"),
     ],

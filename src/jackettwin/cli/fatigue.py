@@ -14,6 +14,7 @@ from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import (
     CommandGroup,
     FiniteFloat,
+    PageFile,
     Reply,
     answers,
     messages,
@@ -29,7 +30,8 @@ from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
     from jackettwin.arrays import FloatArray
-    from jackettwin.fatigue import Cycles, Environment, TubeLife, WeldLife
+    from jackettwin.fatigue import Cycles, Environment, ModelsAtHeight, TubeLife, WeldLife
+    from jackettwin.study import RecordLife
 
 _UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "N/mm^2": 1e6, "ksi": 6.894757293168e6}
 _STRONGEST_PA = 2e9
@@ -327,6 +329,7 @@ def scenario_(
     "--feel-gravity", is_flag=True, help="Accelerometers measure constant acceleration, and so tilt."
 )
 @click.option("--fresh", is_flag=True, help="Ignore stored identifications and fits of earlier runs.")
+@click.option("--report", type=PageFile(), help="Also write a page, in a folder that exists.")
 @_details_option
 @curve_options
 @answers
@@ -339,6 +342,7 @@ def record_(
     supports: int,
     feel_gravity: bool,
     fresh: bool,
+    report: Path | None,
     details: Path | None,
     edition: str | None,
 ) -> Reply:
@@ -381,7 +385,32 @@ def record_(
         "warnings": [*_warnings(rows), *_tube_warnings(found.tubes, found.apart), _FROM_SENSORS],
         "left_out": omission_documents([*_OF_RECORDS, *_OF_WELDS]),
     }
+    if report is not None:
+        document["report"] = str(_report(found, model, report, config.name, record.name, document))
     return Reply(document, lambda: _show_welds(document, record.name))
+
+
+def _report(
+    found: RecordLife, models: ModelsAtHeight, path: Path, name: str, like: str, document: dict[str, Any]
+) -> Path:
+    """Write the page of a record's life."""
+    from jackettwin.report.pages.life import WORST, write_life_page
+    from jackettwin.study.life.life_detail import candidates, damage_by_band, with_one_more
+
+    worst, assembly = found.welds[:WORST], found.estimate.model.assembly
+    with working("the page"):
+        by_band = [damage_by_band(found.estimate, found.chart, models, one) for one in worst]
+        unseen = with_one_more(found.estimate, found.chart, worst, candidates(assembly.structure))
+        return write_life_page(
+            assembly,
+            found.welds,
+            path,
+            title=f"{name}: life of welds",
+            like=like,
+            by_band=by_band,
+            unseen=unseen,
+            remarks=document["warnings"],
+        )
 
 
 def _weld(one: WeldLife) -> dict[str, Any]:
@@ -457,8 +486,8 @@ def _warnings(rows: list[dict[str, Any]]) -> list[str]:
 
 _FROM_SENSORS = (
     "stress from sensors rests on simplified waves and modes: what it missed on simulated jackets is in "
-    "docs/verification/fatigue.md; the slow thrust of a working rotor is found too small unless a sensor "
-    "feels it (--feel-gravity, inclination, strain)"
+    "docs/verification/fatigue.md; the slow thrust of a working rotor is expected, not measured, unless a "
+    "sensor feels it (--feel-gravity, inclination, strain)"
 )
 
 _COLUMNS = (

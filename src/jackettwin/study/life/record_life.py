@@ -36,7 +36,7 @@ from jackettwin.sensing import (
 )
 from jackettwin.structure import Assembly, assemble
 from jackettwin.study.life.updated_system import updated_systems
-from jackettwin.twin import TwinConfig, twin_model, weld_map
+from jackettwin.twin import TwinConfig, WeldMap, twin_model, weld_map
 from jackettwin.twin.calibration import calibrated
 from jackettwin.updating import Update
 
@@ -55,6 +55,8 @@ class RecordLife:
         Welds around tubes.
     apart : nodes in line where walls do not meet, so that no butt weld can join them
     estimate : MotionEstimate
+    chart : WeldMap
+        From the estimate's motion to stress.
     duration_s : float
     """
 
@@ -62,6 +64,7 @@ class RecordLife:
     tubes: tuple[TubeLife, ...]
     apart: tuple[str, ...]
     estimate: MotionEstimate
+    chart: WeldMap
     duration_s: float
 
 
@@ -178,7 +181,7 @@ def record_life(
     ]
     lives = weld_lives(structure, welds, cycles, duration, models, times=len(every), others=others)
     tubes, apart = _tubes(estimates, motions, details, duration)
-    return RecordLife(lives, tubes, apart, estimate, duration)
+    return RecordLife(lives, tubes, apart, estimate, charts[0], duration)
 
 
 def _tubes(
