@@ -49,6 +49,39 @@ def test_an_x_joint_by_hand() -> None:
     np.testing.assert_allclose([*f[:4], *f[6:]], hand, rtol=1e-12)
 
 
+def test_a_kt_joint_by_hand() -> None:
+    """Three braces of 0.6, 0.48 and 0.6 m at 45°, 90° and 45°, gaps of 0.12 and 0.06 m: ζ 0.1 and 0.05."""
+    braces = tuple(BraceTube(d, 0.02, radians(a)) for d, a in ((0.6, 45.0), (0.48, 90.0), (0.6, 45.0)))
+    found, warnings = concentration(TubularJoint(1.2, 0.04, 9.0, braces, gaps_m=(0.12, 0.06)), "kt")
+    assert warnings == ()
+    s, A, B = sin(radians(45.0)), 0.5, 0.4
+    ratio = (1.0 / s) ** 0.3 * 1.25**0.3
+    outer = 0.5**0.9 * sqrt(15) * (0.67 - A**2 + 1.16 * A) * s * ratio
+    outer *= 1.64 + 0.29 * A**-0.38 * atan(8.0 * (0.1 + 0.05 + B))
+    inner = 0.5**0.9 * sqrt(15) * (0.67 - B**2 + 1.16 * B) * ratio * (1.64 + 0.29 * B**-0.38 * atan(0.8))
+    assert found[0].axial_chord_crown == found[2].axial_chord_saddle == pytest.approx(outer, rel=1e-12)
+    assert found[1].axial_chord_crown == pytest.approx(inner, rel=1e-12)
+    assert found[1].axial_brace_crown == pytest.approx(1 + inner * (1.97 - 1.57 * B**0.25) * 0.5**-0.14)
+    T_A = 15 * 0.5 * A * (1.7 - 1.05 * A**3) * s**1.6
+    T_B = 15 * 0.5 * B * (1.7 - 1.05 * B**3)
+
+    def less(beta: float, x: float) -> float:
+        return 1.0 - 0.08 * sqrt(beta * 15) * exp(-0.8 * x)
+
+    def carried(beta: float, x: float) -> float:
+        return less(beta, x) * 2.05 * sqrt(0.5) * exp(-1.3 * x)
+
+    x_AB, x_AC = 1 + 0.1 * s / A, 1 + 0.55 * s / A
+    first = T_A * less(B, x_AB) * less(A, x_AC) + T_B * carried(A, x_AB) + T_A * carried(A, x_AC)
+    assert found[0].out_of_plane_chord == pytest.approx(first, rel=1e-12)
+    x_1, x_2, power = 1 + 0.1 / B, 1 + 0.05 / B, (A / B) ** 2
+    middle = T_B * less(A, x_1) ** power * less(A, x_2) ** power
+    middle += T_A * (carried(B, x_1) + carried(B, x_2))
+    assert found[1].out_of_plane_chord == pytest.approx(middle, rel=1e-12)
+    with pytest.raises(InputError, match="three braces and two gaps"):
+        concentration(TubularJoint(1.2, 0.04, 9.0, braces, gap_m=0.1), "kt")
+
+
 def test_a_k_joint_by_hand() -> None:
     """Braces of 0.6 and 0.48 m at 45° and 60°, gap 0.12 m: ζ = 0.1."""
     braces = (BraceTube(0.6, 0.02, radians(45.0)), BraceTube(0.48, 0.02, radians(60.0)))

@@ -234,8 +234,8 @@ def _show_stress(document: dict[str, Any]) -> None:
 def scf(file: Path) -> Reply:
     """Compute the stress concentration factors of one tubular joint.
 
-    FILE (YAML or JSON) contains class (y, x or k), chord_diameter_m, chord_thickness_m, chord_length_m,
-    fixity, braces with diameter_m, thickness_m and angle_deg, and gap_m.
+    FILE (YAML or JSON) contains class (y, x, k or kt), chord_diameter_m, chord_thickness_m, chord_length_m,
+    fixity, braces with diameter_m, thickness_m and angle_deg, and gap_m (kt: gaps_m of three braces).
     """
     from jackettwin.fatigue import concentration, factors_document, read_joint
 
@@ -395,7 +395,7 @@ def _report(
 ) -> Path:
     """Write the page of a record's life."""
     from jackettwin.report.pages.life import WORST, write_life_page
-    from jackettwin.study.life.life_detail import candidates, damage_by_band, with_one_more
+    from jackettwin.study import candidates, damage_by_band, with_one_more
 
     worst, assembly = found.welds[:WORST], found.estimate.model.assembly
     with working("the page"):

@@ -1,7 +1,7 @@
 r"""Stress concentration at tubular joints by Efthymiou's equations.
 
 Hot-spot stress over nominal stress of the brace, at the crown and the saddle of chord and brace, as in
-appendix B of DNV-RP-C203 (tables B-1 to B-3; Efthymiou 1988, OTH'88). With chord D, T, L, brace d, t, angle θ
+appendix B of DNV-RP-C203 (tables B-1 to B-4; Efthymiou 1988, OTH'88). With chord D, T, L, brace d, t, angle θ
 and gap g: β = d/D, γ = D/2T, τ = t/T, α = 2L/D, ζ = g/D. Joints beyond the tested ranges get the larger of
 the factors at their own and at the limiting shape, as the recommended practice asks.
 """
@@ -18,7 +18,7 @@ from pydantic import Field
 from jackettwin.errors import InputError, located, require, require_between
 from jackettwin.files import Schema, read_mapping, validate
 
-JointClass = Literal["y", "x", "k"]
+JointClass = Literal["y", "x", "k", "kt"]
 CLASSES: tuple[JointClass, ...] = get_args(JointClass)
 RANGES = {
     "β": (0.2, 1.0),
@@ -31,6 +31,7 @@ RANGES = {
 _SHORT = 12.0
 """Chords with a smaller α are short: their ends stiffen the saddle."""
 _LARGER = "the larger of the factors there and at the limit is taken"
+_OF_KT = 3
 _FIXED = 0.5
 """Chord-end fixity C of a chord whose ends are clamped."""
 
@@ -64,6 +65,8 @@ class TubularJoint:
         C of the chord's ends, 0.5 (fixed) to 1 (pinned).
     gap_m : float or None
         Between the two braces of a K joint along the chord, negative where they overlap.
+    gaps_m : (2,) or None
+        Of a KT joint, before and behind the second of its three braces.
     """
 
     chord_diameter_m: float
@@ -72,6 +75,7 @@ class TubularJoint:
     braces: tuple[BraceTube, ...]
     fixity: float = 0.7
     gap_m: float | None = None
+    gaps_m: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         _require_tube(self.chord_diameter_m, self.chord_thickness_m, "chord_")
@@ -110,7 +114,7 @@ def concentration(
     Raises
     ------
     InputError
-        If a K joint has not two braces and a gap, or the class is unknown.
+        If a K joint has not two braces and a gap, a KT joint not three and two, or the class is unknown.
     """
     if kind not in CLASSES:
         raise InputError("no such class of joint", field="class", value=kind, allowed=", ".join(CLASSES))
@@ -122,14 +126,23 @@ def concentration(
             value=len(joint.braces),
             allowed="2 braces, and gap_m (negative: overlap)",
         )
+    if kind == "kt":
+        require(
+            len(joint.braces) == _OF_KT and joint.gaps_m is not None,
+            "a KT joint has three braces and two gaps",
+            field="gaps_m" if joint.gaps_m is None else "braces",
+            value=len(joint.braces),
+            allowed="3 braces along the chord, and gaps_m between them (negative: overlap)",
+        )
     shapes = tuple(_shape(joint, brace) for brace in joint.braces)
-    zeta = 0.0 if joint.gap_m is None else joint.gap_m / joint.chord_diameter_m
+    gaps = {"k": (joint.gap_m,), "kt": joint.gaps_m or ()}.get(kind, ())
+    zetas = tuple((gap or 0.0) / joint.chord_diameter_m for gap in gaps)
     limited = tuple(_limited(shape) for shape in shapes)
     # of the narrower brace: the gap's range is its own
     deepest = max(-0.6 * s.beta / sin(s.theta) for s in limited)
-    near = min(max(zeta, deepest), 1.0)
-    warnings = _warnings(shapes, zeta if kind == "k" else near, deepest)
-    own = _factors(shapes, kind, joint.fixity, zeta)
+    near = tuple(min(max(zeta, deepest), 1.0) for zeta in zetas)
+    warnings = _warnings(shapes, zetas, deepest)
+    own = _factors(shapes, kind, joint.fixity, zetas)
     if not warnings:
         return own, ()
     at_limit = _factors(limited, kind, joint.fixity, near)
@@ -153,7 +166,7 @@ def _limited(shape: _Shape) -> _Shape:
     return _Shape(*(min(max(value, RANGES[name][0]), RANGES[name][1]) for value, name in values))
 
 
-def _warnings(shapes: tuple[_Shape, ...], zeta: float, deepest: float) -> tuple[str, ...]:
+def _warnings(shapes: tuple[_Shape, ...], zetas: tuple[float, ...], deepest: float) -> tuple[str, ...]:
     found = []
     for i, shape in enumerate(shapes, start=1):
         for value, name in zip(shape, ("β", "γ", "τ", "α", "θ"), strict=True):
@@ -164,16 +177,17 @@ def _warnings(shapes: tuple[_Shape, ...], zeta: float, deepest: float) -> tuple[
                     f"brace {i}: {name} = {scale * value:.3g}{unit} is not {scale * low:g} to "
                     f"{scale * high:g}{unit}: {_LARGER}"
                 )
-    if not deepest - 1e-9 <= zeta <= 1.0 + 1e-9:
-        found.append(f"ζ = {zeta:.3g} is not {deepest:.2g} to 1: {_LARGER}")
+    for zeta in zetas:
+        if not deepest - 1e-9 <= zeta <= 1.0 + 1e-9:
+            found.append(f"ζ = {zeta:.3g} is not {deepest:.2g} to 1: {_LARGER}")
     return tuple(found)
 
 
 def _factors(
-    shapes: tuple[_Shape, ...], kind: JointClass, fixity: float, zeta: float
+    shapes: tuple[_Shape, ...], kind: JointClass, fixity: float, zetas: tuple[float, ...]
 ) -> tuple[ConcentrationFactors, ...]:
-    if kind == "k":
-        return tuple(_k(shapes, i, zeta) for i in range(2))
+    if kind in ("k", "kt"):
+        return tuple(_k(shapes, i, zetas) for i in range(len(shapes)))
     return tuple(_y(s, fixity) if kind == "y" else _x(s, fixity) for s in shapes)
 
 
@@ -211,32 +225,48 @@ def _x(s: _Shape, C: float) -> ConcentrationFactors:
     )
 
 
-def _k(shapes: tuple[_Shape, ...], i: int, zeta: float) -> ConcentrationFactors:
-    """Return table B-3 of one of two braces: balanced axial force, unbalanced out-of-plane moments."""
-    A, B = shapes[i], shapes[1 - i]
-    beta, gamma, tau, _, theta = A
-    sines = sorted(sin(s.theta) for s in shapes)
-    widths = sorted(s.beta for s in shapes)
+def _k(shapes: tuple[_Shape, ...], i: int, zetas: tuple[float, ...]) -> ConcentrationFactors:
+    """Return table B-3 or B-4 of one of two or three braces: balanced axial force, unbalanced moments aside.
+
+    Outer braces of a KT joint balance each other across the middle one, which balances with the farther.
+    """
+    own, middle = shapes[i], len(zetas) == 2 and i == 1
+    to = {j: _between(shapes, zetas, i, j) for j in range(len(shapes)) if j != i}
+    chord, brace = _balanced(own, shapes, max(to.values()))
+    widest, out = max(s.beta for s in shapes), _out_of_plane(own)
+    for j, zeta in to.items():
+        x = 1.0 + zeta * sin(own.theta) / own.beta
+        power = (shapes[j].beta / own.beta) ** 2 if middle else 1.0
+        out *= (1.0 - 0.08 * sqrt(shapes[j].beta * own.gamma) * exp(-0.8 * x)) ** power
+    for j, zeta in to.items():
+        x = 1.0 + zeta * sin(own.theta) / own.beta
+        carried = (1.0 - 0.08 * sqrt(own.beta * own.gamma) * exp(-0.8 * x)) * 2.05 * sqrt(widest)
+        out += _out_of_plane(shapes[j]) * carried * exp(-1.3 * x)
+    out *= _F4(own)
+    return ConcentrationFactors(chord, chord, brace, brace, *_in_plane(own), out, _brace_side(own) * out)
+
+
+def _between(shapes: tuple[_Shape, ...], zetas: tuple[float, ...], i: int, j: int) -> float:
+    """Return ζ between two braces; across the middle one it is both gaps and β of that one."""
+    if abs(i - j) > 1:
+        return sum(zetas) + shapes[1].beta
+    return zetas[min(i, j)]
+
+
+def _balanced(s: _Shape, shapes: tuple[_Shape, ...], zeta: float) -> tuple[float, float]:
+    """Return the factors of chord and brace under axial forces that balance, equations (20) and (21)."""
+    beta, gamma, tau, _, theta = s
+    sines, widths = ([f(one) for one in shapes] for f in (lambda o: sin(o.theta), lambda o: o.beta))
     chord = tau**0.9 * gamma**0.5 * (0.67 - beta**2 + 1.16 * beta) * sin(theta)
-    chord *= (sines[1] / sines[0]) ** 0.30 * (widths[1] / widths[0]) ** 0.30
+    chord *= (max(sines) / min(sines)) ** 0.30 * (max(widths) / min(widths)) ** 0.30
     chord *= 1.64 + 0.29 * beta**-0.38 * atan(8.0 * zeta)
     brace = 1.0 + chord * (1.97 - 1.57 * beta**0.25) * tau**-0.14 * sin(theta) ** 0.7
-    angles = sum(s.theta for s in shapes)
+    angles = max(one.theta for one in shapes) + min(one.theta for one in shapes)
     if zeta < 0.0 and sin(angles) > 0.0:
-        # the through brace's factor for both: which of the two lies above is not said
+        # the through brace's factor for all: which of them lies above is not said
         lap = beta**1.5 * gamma**0.5 * tau**-1.22 * sin(angles) ** 1.8
         brace += lap * (0.131 - 0.084 * atan(14.0 * zeta + 4.2 * beta))
-    x = 1.0 + zeta * sin(theta) / beta
-    out = _out_of_plane(A) * (1.0 - 0.08 * sqrt(B.beta * gamma) * exp(-0.8 * x))
-    out += (
-        _out_of_plane(B)
-        * (1.0 - 0.08 * sqrt(beta * gamma) * exp(-0.8 * x))
-        * 2.05
-        * sqrt(widths[1])
-        * exp(-1.3 * x)
-    )
-    out *= _F4(A)
-    return ConcentrationFactors(chord, chord, brace, brace, *_in_plane(A), out, _brace_side(A) * out)
+    return chord, brace
 
 
 def _in_plane(s: _Shape) -> tuple[float, float]:
@@ -307,6 +337,7 @@ class _JointSchema(Schema):
     fixity: float = 0.7
     braces: list[_BraceSchema] = Field(min_length=1)
     gap_m: float | None = None
+    gaps_m: tuple[float, float] | None = None
 
 
 def read_joint(path: Path) -> tuple[JointClass, TubularJoint]:
@@ -325,12 +356,12 @@ def read_joint(path: Path) -> tuple[JointClass, TubularJoint]:
                 require_between("diameter_m", one.diameter_m, 0.0, said.chord_diameter_m)
                 braces.append(BraceTube(one.diameter_m, one.thickness_m, radians(one.angle_deg)))
         D, T, L = said.chord_diameter_m, said.chord_thickness_m, said.chord_length_m
-        return said.class_, TubularJoint(D, T, L, tuple(braces), said.fixity, said.gap_m)
+        return said.class_, TubularJoint(D, T, L, tuple(braces), said.fixity, said.gap_m, said.gaps_m)
 
 
 def factors_document(f: ConcentrationFactors, kind: JointClass) -> dict[str, dict[str, float]]:
-    """Return the factors of a brace by load and place; of a K joint, saddles and crowns have one."""
-    if kind == "k":
+    """Return the factors of a brace by load and place; of a K or KT joint, saddles and crowns have one."""
+    if kind in ("k", "kt"):
         axial = {"chord": f.axial_chord_crown, "brace": f.axial_brace_crown}
         out = {"chord": f.out_of_plane_chord, "brace": f.out_of_plane_brace}
     else:

@@ -20,6 +20,7 @@ from jackettwin.fatigue.efthymiou import (
 from jackettwin.fatigue.hot_spots import hot_spot_matrix
 from jackettwin.structure import Assembly, SectionForces, Structure
 
+_OF_KT = 3
 _CLASSES: tuple[JointClass, ...] = ("k", "y", "x")
 """In the order in which a joint's forces are shared."""
 
@@ -103,7 +104,8 @@ def joint_stresses(
     """Return the welds of planned joints, with the factors of each class.
 
     A chord is as long as the distance between the middles of the bays on its two sides. The K joint is that
-    with the nearest brace in the same plane on the same side; a brace without one has a Y joint's factors.
+    with the nearest brace in the same plane on the same side, a KT joint where there are two of them; a brace
+    without one has a Y joint's factors.
     """
     return tuple(JointStresses(plan, _welds(structure, plan, fixity)) for plan in plans)
 
@@ -121,18 +123,23 @@ def _weld(plan: JointPlan, i: int, length: float, fixity: float) -> HotSpot:
     end, shape = plan.braces[i], plan.joints[i]
     braces = tuple(BraceTube(j.d, j.t, j.theta) for j in plan.joints)
     alone = TubularJoint(shape.D, shape.T, length, (braces[i],), fixity)
-    beside = _nearest(plan, i)
+    beside, three = _nearest(plan, i), _three(plan, i)
     factors: dict[str, ConcentrationFactors] = {}
     warnings: list[str] = []
     for kind in _CLASSES:
-        joint, by = alone, kind
-        if kind == "k" and beside is not None:
+        joint, by, mine = alone, kind, 0
+        if kind == "k" and three is not None:
+            order, gaps = three
+            of = tuple(braces[j] for j in order)
+            joint = TubularJoint(shape.D, shape.T, length, of, fixity, gaps_m=gaps)
+            by, mine = "kt", order.index(i)
+        elif kind == "k" and beside is not None:
             pair = (braces[i], braces[beside])
             joint = TubularJoint(shape.D, shape.T, length, pair, fixity, float(shape.gap))
         elif kind == "k":
             by = "y"
         found, said = concentration(joint, by)
-        factors[kind] = found[0]
+        factors[kind] = found[mine]
         warnings += said
     D, d = shape.d, shape.d - 2.0 * shape.t
     area, modulus = 0.25 * np.pi * (D**2 - d**2), np.pi * (D**4 - d**4) / (32.0 * D)
@@ -155,3 +162,17 @@ def _nearest(plan: JointPlan, i: int) -> int | None:
         return None
     same = [j for j in beside if plan.joints[j].gap == plan.joints[i].gap]
     return int(same[0] if same else beside[0])
+
+
+def _three(plan: JointPlan, i: int) -> tuple[tuple[int, int, int], tuple[float, float]] | None:
+    """Return three braces in one plane in their order along the chord, and their gaps; None without them."""
+    beside = np.flatnonzero(plan.across @ plan.across[i] > IN_PLANE)
+    if beside.size != _OF_KT:
+        return None
+    line, joints = plan.chord[0].away, plan.joints
+    cosine = np.array([float(end.away @ line) for end in plan.braces])
+    centre = np.array([0.5 * j.D / np.tan(j.theta) for j in joints]) * np.sign(cosine)
+    half = np.array([0.5 * j.d / np.sin(j.theta) for j in joints])
+    a, b, c = (int(j) for j in beside[np.argsort(centre[beside], kind="stable")])
+    first, second = (float(centre[q] - half[q] - centre[p] - half[p]) for p, q in ((a, b), (b, c)))
+    return (a, b, c), (first, second)

@@ -21,6 +21,11 @@ from .follow_result import (
     in_time_document as in_time_document,
 )
 from .life.asset_life import AssetLife as AssetLife, asset_life as asset_life
+from .life.life_detail import (
+    candidates as candidates,
+    damage_by_band as damage_by_band,
+    with_one_more as with_one_more,
+)
 from .life.life_so_far import LIFE_SO_FAR as LIFE_SO_FAR, LifeSoFar as LifeSoFar
 from .life.record_life import (
     RecordLife as RecordLife,
