@@ -236,8 +236,8 @@ def updated_asset(number: int) -> Known:
     )
 
 
-def mudline_moment(assembly: Assembly, forces: SectionForces) -> np.ndarray:
-    """Return the moment (2, n) about the horizontal axes, of all that passes into the feet."""
+def mudline_moment(assembly: Assembly, forces: SectionForces, about_z_m: float = 0.0) -> np.ndarray:
+    """Return the moment (2, n) about horizontal axes at a height, of all that passes into the feet."""
     mesh, structure = assembly.mesh, assembly.structure
     feet = {mesh.node_names.index(node) for node in structure.reaction_nodes}
     total = np.zeros((3, forces.axial.shape[0]))
@@ -245,7 +245,7 @@ def mudline_moment(assembly: Assembly, forces: SectionForces) -> np.ndarray:
         for end, node in ((0, mesh.start[e]), (1, mesh.end[e])):
             if int(node) in feet:
                 sign = 1.0 if end == 0 else -1.0
-                axes, at = mesh.axes[e].T, mesh.coordinates[node]
+                axes, at = mesh.axes[e].T, mesh.coordinates[node] - [0.0, 0.0, about_z_m]
                 force = axes @ np.array(
                     [forces.axial[:, e, end], forces.shear_y[:, e, end], forces.shear_z[:, e, end]]
                 )

@@ -128,7 +128,7 @@ def levels(loads: FloatArray, step: float, band: tuple[float, float]) -> tuple[f
     return float(along), float(across)
 
 
-def write_box(path: Path, box: FloatArray, *, speed: float, hub: float) -> None:
+def write_box(path: Path, box: FloatArray, *, speed: float, hub: float, step_s: float = STEP_S) -> None:
     """Write a periodic wind field (n_times, n_z, n_y, 3) as TurbSim does (TurbSim's manual, appendix D)."""
     low, high = box.min(axis=(0, 1, 2)), box.max(axis=(0, 1, 2))
     slope = 60000.0 / (high - low)
@@ -138,7 +138,7 @@ def write_box(path: Path, box: FloatArray, *, speed: float, hub: float) -> None:
     with path.open("wb") as stream:
         bottom = hub - EACH_SIDE * GRID_M
         stream.write(struct.pack("<h4i", 8, n_z, n_y, 0, n_times))
-        stream.write(struct.pack("<6f", GRID_M, GRID_M, STEP_S, speed, hub, bottom))
+        stream.write(struct.pack("<6f", GRID_M, GRID_M, step_s, speed, hub, bottom))
         for pair in zip(slope, offset, strict=True):
             stream.write(struct.pack("<2f", *pair))
         stream.write(struct.pack("<i", len(title)) + title)

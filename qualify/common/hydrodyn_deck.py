@@ -18,7 +18,9 @@ class Water:
     """A sea and what its members do to it.
 
     ``waves`` is HydroDyn's WaveMod: ``1P0`` a regular wave with its crest at the start, 2 a random sea.
-    ``growth_m`` is thick, 1,325 kg/m³; ``axial`` the coefficients of drag, added mass and pressure on ends.
+    Members thinner than ``slender_m`` are one piece each; ``grid`` are the points of SeaState's box along x,
+    y and z. ``growth_m`` is thick, 1,325 kg/m³; ``axial`` the coefficients of drag, added mass and pressure
+    on ends.
     """
 
     depth_m: float
@@ -34,6 +36,10 @@ class Water:
     duration_s: float = 60.0
     wave_step_s: float = 0.25
     piece_m: float = 0.5
+    direction_deg: float = 0.0
+    seed: int = 123456
+    grid: tuple[int, int, int] = (21, 21, 31)
+    slender_m: float = 0.0
 
 
 def write_water(folder: Path, structure: Structure, water: Water) -> None:
@@ -78,9 +84,7 @@ def _seastate(structure: Structure, water: Water) -> str:
     # a grid that rounding sinks below the bed has no pressure on its lowest level
     rows += [(water.depth_m - 1e-4, "Z_Depth")]
     rows += [
-        (21, "NX"),
-        (21, "NY"),
-        (31, "NZ"),
+        *zip(water.grid, ("NX", "NY", "NZ"), strict=True),
         "WAVES",
         (water.waves, "WaveMod"),
         (water.stretching, "WaveStMod"),
@@ -92,8 +96,13 @@ def _seastate(structure: Structure, water: Water) -> str:
         ('"DEFAULT"', "WavePkShp"),
         (0.0, "WvLowCOff"),
     ]
-    rows += [(25.0 / water.period_s, "WvHiCOff"), (0.0, "WaveDir"), (0, "WaveDirMod"), (1, "WaveDirSpread")]
-    rows += [(1, "WaveNDir"), (90, "WaveDirRange"), (123456, "WaveSeed(1)"), (1011121, "WaveSeed(2)")]
+    rows += [
+        (25.0 / water.period_s, "WvHiCOff"),
+        (water.direction_deg, "WaveDir"),
+        (0, "WaveDirMod"),
+        (1, "WaveDirSpread"),
+    ]
+    rows += [(1, "WaveNDir"), (90, "WaveDirRange"), (water.seed, "WaveSeed(1)"), (1011121, "WaveSeed(2)")]
     rows += [("True", "WaveNDAmp"), ('""', "WvKinFile"), "2ND", ("False", "WvDiffQTF"), ("False", "WvSumQTF")]
     rows += [
         (v, key)
@@ -162,9 +171,9 @@ def _hydrodyn(structure: Structure, water: Water) -> str:
     lines += ["-- MEMBERS", f"{len(members)}  NMembers", "ID J1 J2 P1 P2 Geom Spin Div Coef Hst Pot", "(-)"]
     for k, m in enumerate(members, start=1):
         ends = (size[(s.outer_diameter_m, s.thickness_m)] for s in (m.section_start, m.section_end))
-        lines.append(
-            f"{k} {joint[m.start]} {joint[m.end]} {' '.join(map(str, ends))} 1 0 {water.piece_m} 1 1 False"
-        )
+        whole = m.section_start.outer_diameter_m < water.slender_m
+        piece = 1e3 if whole else water.piece_m
+        lines.append(f"{k} {joint[m.start]} {joint[m.end]} {' '.join(map(str, ends))} 1 0 {piece} 1 1 False")
     lines += ["-- FILLED", "0  NFillGroups", "-", "(-)", "-- GROWTH"]
     bands = [(z, water.growth_m, 1325.0) for z in (2.0, -water.depth_m - 2.0)] if water.growth_m else []
     lines += [f"{len(bands)}  NMGDepths", "z t rho", "(-)", *(" ".join(map(str, band)) for band in bands)]

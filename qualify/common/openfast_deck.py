@@ -88,6 +88,12 @@ class Run:
     """At which the rotor turns, whatever it is blown with."""
     water: bool = False
     """Whether it stands in the sea of seastate.dat, with the members of hydrodyn.dat."""
+    tower_damping_percent: float = 0.0
+    """Of the clamped tower's four shapes, critical damping being 100."""
+    gauges: tuple[int, ...] = ()
+    """Nodes of the tower, from 1 at its bottom to TOWER_NODES, whose local motion can be asked for."""
+    channels: tuple[str, ...] = ("YawBrTDxp", "YawBrTDyp", "YawBrTAxp", "YawBrTAyp", "PtfmSurge", "PtfmSway")
+    """Of ElastoDyn that are written."""
 
 
 def write_case(
@@ -102,7 +108,7 @@ def write_case(
     texts = {
         "case.fst": _primary(run, foundation, depth_m),
         "elastodyn.dat": _elastodyn(structure, turbine, run, base),
-        "tower.dat": _stub() if inside else _tower(structure, turbine),
+        "tower.dat": _stub() if inside else _tower(structure, turbine, run.tower_damping_percent),
         "blade.dat": _blade(turbine.rotor),
     }
     for name, text in texts.items():
@@ -210,9 +216,9 @@ def _elastodyn(structure: Structure, turbine: Turbine, run: Run, base: float) ->
     rows += [(0.0, "NcIMUxn"), (0.0, "NcIMUyn"), (0.0, "NcIMUzn")]
     rows += [(r.hub_height - overhang * np.sin(-r.tilt), "Twr2Shft"), (top, "TowerHt"), (base, "TowerBsHt")]
     rows += [(0.0, "PtfmCMxt"), (0.0, "PtfmCMyt"), (base, "PtfmCMzt")]
-    rows += [(0.0, "PtfmRefxt"), (0.0, "PtfmRefyt"), (base, "PtfmRefzt"), *_masses(turbine), *_details()]
-    channels = ("YawBrTDxp", "YawBrTDyp", "YawBrTAxp", "YawBrTAyp", "PtfmSurge", "PtfmSway")
-    outputs = [f'"{key}"' for key in channels]
+    rows += [(0.0, "PtfmRefxt"), (0.0, "PtfmRefyt"), (base, "PtfmRefzt"), *_masses(turbine)]
+    rows += _details(run.gauges)
+    outputs = [f'"{key}"' for key in run.channels]
     return _rows("ELASTODYN INPUT FILE", rows) + "\n".join([*outputs, "END", "----", ""])
 
 
@@ -226,7 +232,7 @@ def _masses(turbine: Turbine) -> list[Row | str]:
     return rows
 
 
-def _details() -> list[Row | str]:
+def _details(gauges: tuple[int, ...]) -> list[Row | str]:
     teeter = ("TeetMod", "TeetDmpP", "TeetDmp", "TeetCDmp", "TeetSStP", "TeetHStP", "TeetSSSp", "TeetHSSp")
     friction = ("YawFrctMod", "M_CSmax", "M_FCSmax", "M_MCSmax", "M_CD", "M_FCD", "M_MCD")
     rows: list[Row | str] = ["BLADE", (BLADE_NODES, "BldNodes")]
@@ -237,15 +243,16 @@ def _details() -> list[Row | str]:
     rows += ["FURLING", ("False", "Furling"), ('"unused"', "FurlFile")]
     rows += ["TOWER", (TOWER_NODES, "TwrNodes"), ('"tower.dat"', "TwrFile")]
     rows += ["OUTPUT", ("False", "SumPrint"), (1, "OutFile"), ("True", "TabDelim"), ('"ES10.3E2"', "OutFmt")]
-    rows += [(0.0, "TStart"), (1, "DecFact"), (0, "NTwGages"), (1, "TwrGagNd"), (0, "NBlGages")]
+    rows += [(0.0, "TStart"), (1, "DecFact"), (len(gauges), "NTwGages")]
+    rows += [(", ".join(map(str, gauges or (1,))), "TwrGagNd"), (0, "NBlGages")]
     return [*rows, (1, "BldGagNd"), ("", "OutList")]
 
 
-def _tower(structure: Structure, turbine: Turbine) -> str:
-    """Return the tower's file: undamped, its shapes those of the clamped tower under the turbine."""
+def _tower(structure: Structure, turbine: Turbine, damping_percent: float) -> str:
+    """Return the tower's file, its shapes those of the clamped tower under the turbine."""
     fraction, mass, stiffness = _tower_stations(structure)
     rows: list[Row | str] = ["TOWER PARAMETERS", (fraction.size, "NTwInpSt")]
-    rows += [(0.0, f"Twr{side}Dmp({k})") for side in ("FA", "SS") for k in (1, 2)]
+    rows += [(damping_percent, f"Twr{side}Dmp({k})") for side in ("FA", "SS") for k in (1, 2)]
     rows += ["ADJUSTMENT", *((1.0, f"{side}StTunr({k})") for side in ("FA", "SS") for k in (1, 2))]
     rows += [(1.0, "AdjTwMa"), (1.0, "AdjFASt"), (1.0, "AdjSSSt")]
     table = ["-- DISTRIBUTED", "HtFract TMassDen TwFAStif TwSSStif", "(-) (kg/m) (Nm^2) (Nm^2)"]

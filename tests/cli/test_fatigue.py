@@ -148,7 +148,8 @@ def test_a_joint_has_the_keys_of_the_contract(tmp_path: Path) -> None:
     [
         ({"chord_thickness_m": -0.04}, "chord_thickness_m"),
         ({"chord_diameter_m": 0.5}, "diameter_m"),
-        ({"class": "kt"}, "class"),
+        ({"class": "dk"}, "class"),
+        ({"class": "kt"}, "gaps_m"),
         ({"chord_diameter_m": 1200.0, "chord_thickness_m": 40.0}, "unit"),
     ],
 )

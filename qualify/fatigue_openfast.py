@@ -1,0 +1,252 @@
+"""Moments and leg stresses from eight accelerometers against OpenFAST, which knows them.
+
+Writes docs/verification/fatigue_openfast.md from the records in a folder. With ``--make`` those that it lacks
+are run: ``OPENFAST=/path/to/openfast``, and ``IEA15=/path`` to the folder ``OpenFAST`` of the public
+repository IEAWindSystems/IEA-15-240-RWT. The twin is told drawings, turbine and mean wind; it finds its feet
+from the first pair of the first record. Usage: python qualify/fatigue_openfast.py FOLDER [--make]
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+from pathlib import Path
+
+import numpy as np
+from common.openfast_records import (
+    ACCELERATIONS,
+    BAYS,
+    BED,
+    DURATION_S,
+    GAUGES,
+    LEGS,
+    STEP_S,
+    TOWER_BASE,
+    Asset,
+    Weather,
+    kept,
+    leg_channels,
+    made,
+    tower_height_m,
+)
+from common.page import write_page
+from openfast import on_feet
+
+from fatigue import DRAWS, SUPPORTS, M, dels, mudline_moment, quantiles, tower_moments
+from jackettwin.arrays import FloatArray
+from jackettwin.identification import identify
+from jackettwin.intervals import NORMAL_90
+from jackettwin.records import Channel, Record
+from jackettwin.response import Sensor
+from jackettwin.sensing import (
+    SECTION_REMAINDER,
+    MotionModel,
+    Weather as KnownWeather,
+    likely_motions,
+    readings_of,
+    section_rows,
+    stress_remainder,
+)
+from jackettwin.structure import Rayleigh, Structure, assemble
+from jackettwin.twin import LifeSettings, StressModel
+from jackettwin.twin.life.likely_structures import LikelyStructures, likely_structures
+from jackettwin.updating import numbered_modes
+
+ASSET = Asset(1.4e9, 0.9, 1.0, 0.06, 3.0, 72.0)
+CASES = {
+    "parked": Weather("parked", 10.0, 0.0, 6.0, 0.0, 11),
+    "idling": Weather("idling", 13.0, 0.0, 6.0, 0.0, 12),
+    "operating_8": Weather("operating", 8.0, 0.0, 6.0, 0.0, 13),
+    "operating_14": Weather("operating", 14.0, 0.0, 6.0, 0.0, 14),
+    "parked_gale": Weather("parked", 20.0, 0.0, 6.0, 0.0, 15),
+    "operating_11": Weather("operating", 11.0, 0.0, 6.0, 0.0, 16),
+}
+NOISE_M_S2 = 5e-4
+FIRST_PAIR_HZ = (0.13, 0.22)
+DIRECTIONS = np.linspace(0.0, np.pi, 12, endpoint=False)
+"""In which moments are judged: the worst, as the programs' axes are not the same."""
+PLACES = ("tower base", "feet about the sea", *(f"legs, bay {bay}" for bay in BAYS))
+
+
+def make(folder: Path) -> None:
+    """Run those of the cases by OpenFAST that the folder does not hold."""
+    program, decks = os.environ["OPENFAST"], Path(os.environ["IEA15"])
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, weather in CASES.items():
+        if not (folder / f"{name}.npz").exists():
+            result = made(program, decks, folder / name, ASSET, weather)
+            np.savez_compressed(folder / f"{name}.npz", **kept(result))
+            shutil.rmtree(folder / name)
+
+
+def main() -> None:
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path("missing")
+    if "--make" in sys.argv:
+        make(folder)
+    found = {
+        name: dict(np.load(folder / f"{name}.npz")) for name in CASES if (folder / f"{name}.npz").exists()
+    }
+    if not found:
+        sys.stderr.write("no records: nothing is judged (docs/verification/fatigue_openfast.md)\n")
+        return
+    structure = on_feet("the twin's", "kelvin-voigt:k=1e9,c=0").structure
+    first = next(iter(found))
+    likely = known(structure, record(structure, found[first], 0))
+    judged = {
+        name: of_record(likely, structure, name, told, seed)
+        for seed, (name, told) in enumerate(found.items())
+    }
+    write_page("fatigue_openfast", [*introduction(likely, len(found)), *rows(judged)])
+
+
+def record(structure: Structure, told: dict[str, FloatArray], seed: int) -> Record:
+    """Return the accelerations with noise, each channel with its sensor's place."""
+    rng = np.random.default_rng((35, seed))
+    data = np.array([told[name] for name in ACCELERATIONS])
+    data = data + NOISE_M_S2 * rng.standard_normal(data.shape)
+    return Record(data, 1.0 / STEP_S, tuple(Channel(name) for name in ACCELERATIONS))
+
+
+def sensors(structure: Structure) -> tuple[Sensor, ...]:
+    """Return where the accelerometers sit, along the wind and across it."""
+    top = structure.nodes[structure.top_node][2] - structure.sea_level_z_m
+    base = structure.nodes[structure.interface_nodes[0]][2] - structure.sea_level_z_m
+    heights = (top, *(tower_height_m(structure, gauge) for gauge in GAUGES), base)
+    ways = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+    return tuple(Sensor(name, ways[k % 2], height_m=heights[k // 2]) for k, name in enumerate(ACCELERATIONS))
+
+
+def known(structure: Structure, parked: Record) -> LikelyStructures:
+    """Return the structures that the first pair of a record leaves likely."""
+    assembly = assemble(structure, gravity=True)
+    model = StressModel(
+        LifeSettings(),
+        assembly,
+        assemble(structure),
+        Rayleigh.minimum(0.005, 0.3),
+        numbered_modes(assembly, 12),
+        depth_m=ASSET.depth_m,
+    )
+    low, high = FIRST_PAIR_HZ
+    pair = [m for m in identify(parked).modes if m.status.is_a_mode and low < m.frequency_hz < high]
+    return likely_structures(model, {k + 1: mode for k, mode in enumerate(pair[:2])}, 1e9)
+
+
+def of_record(
+    likely: LikelyStructures, structure: Structure, name: str, told: dict[str, FloatArray], seed: int
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return estimated over true ranges, scores of the truth in the interval, and its std (n_places,)."""
+    readings = readings_of(record(structure, told, seed), sensors(structure), likely.model.assembly)
+    weather = KnownWeather.of(
+        {"mean_wind_speed_m_s": CASES[name].wind, "state": CASES[name].state, "waves": "none"}, ASSET.depth_m
+    )
+    draws = []
+    for k, estimate in enumerate(likely_motions(likely.systems(SUPPORTS), readings, weather)):
+        ways = moments_and_legs(estimate.model)
+        draws.append([[worst(way @ motion.T) for way in ways] for motion in estimate.draws(DRAWS, seed=k)])
+    true = np.array([worst(way) for way in true_ways(structure, told)])
+    logs = np.log(np.array(draws))
+    within = logs.var(axis=1, ddof=1).mean(axis=0)
+    between = np.maximum(logs.mean(axis=1).var(axis=0, ddof=1) - within / DRAWS, 0.0)
+    heights = [structure.nodes[start][2] - structure.sea_level_z_m for start in leg_starts(structure)]
+    remainder = np.array([SECTION_REMAINDER] * 2 + [stress_remainder(z) for z in heights])
+    mean = logs.mean(axis=(0, 1))
+    std = np.sqrt(within + between + remainder**2)
+    return np.exp(mean) / true, (np.log(true) - mean) / std, std
+
+
+def leg_starts(structure: Structure) -> list[str]:
+    """Return the lower nodes of the legs, bay by bay."""
+    members = {m.name: m for m in structure.members}
+    return [members[f"leg_{leg}_bay_{bay}"].start for bay in BAYS for leg in LEGS]
+
+
+def moments_and_legs(model: MotionModel) -> list[FloatArray]:
+    """Return rows from coordinates to moments by direction, then to stresses around the legs."""
+    rows, assembly = section_rows(model), model.assembly
+    base = tower_moments(assembly, rows, "tower_1", 0)
+    names = [assembly.structure.members[m].name for m in assembly.mesh.member]
+    found = [turned(base), turned(mudline_moment(assembly, rows, assembly.structure.sea_level_z_m))]
+    for bay in BAYS:
+        for leg in LEGS:
+            e = names.index(f"leg_{leg}_bay_{bay}")
+            parts = [rows.axial[:, e, 0], rows.bending_y[:, e, 0], rows.bending_z[:, e, 0]]
+            found.append(around(assembly.structure, f"leg_{leg}_bay_{bay}", np.array(parts)))
+    return found
+
+
+def true_ways(structure: Structure, told: dict[str, FloatArray]) -> list[FloatArray]:
+    """Return the same of OpenFAST's channels, over time."""
+    kilo = 1e3
+    base = kilo * np.array([told[name] for name in TOWER_BASE])
+    bed = np.array([told[name] for name in BED])
+    found = [turned(base), turned(bed)]
+    for k, name in enumerate(f"leg_{leg}_bay_{bay}" for bay in BAYS for leg in LEGS):
+        found.append(around(structure, name, np.array([told[channel] for channel in leg_channels(k)])))
+    return found
+
+
+def turned(moments: FloatArray) -> FloatArray:
+    """Return moments (2, n) in all directions, (n_directions, n)."""
+    return np.asarray(np.column_stack([np.cos(DIRECTIONS), np.sin(DIRECTIONS)]) @ moments)
+
+
+def around(structure: Structure, name: str, forces: FloatArray) -> FloatArray:
+    """Return the stress around a tube, (2 n_directions, n), under axial force and both moments (3, n)."""
+    section = next(m.section_start for m in structure.members if m.name == name)
+    outer, inner = section.outer_diameter_m, section.outer_diameter_m - 2.0 * section.thickness_m
+    area, modulus = 0.25 * np.pi * (outer**2 - inner**2), np.pi * (outer**4 - inner**4) / (32.0 * outer)
+    bent = turned(forces[1:]) / modulus
+    return np.concatenate([forces[0] / area + bent, forces[0] / area - bent])
+
+
+def worst(series: FloatArray) -> float:
+    """Return the largest damage-equivalent range of rows (k, n)."""
+    return float(dels(series).max())
+
+
+def introduction(likely: LikelyStructures, n: int) -> list[str]:
+    """Return the page's head."""
+    (sideways, upright), stds = np.exp(likely.mean[:2]) / 1e9, np.sqrt(np.diag(likely.covariance)[:2])
+    return [
+        "# Stress from a few accelerometers compared with OpenFAST",
+        "",
+        f"`python qualify/fatigue_openfast.py FOLDER`: {n} records of {DURATION_S / 60.0:g} minutes by "
+        "OpenFAST 5.0.0, none used for tuning: jacket15 in SubDyn on springs, ElastoDyn's tower and bending "
+        "blades of the IEA 15 MW turbine, AeroDyn in turbulence of class B, no waves; the working rotor at "
+        "fixed speed and pitch. Eight accelerometers (144, 77, 41 and 28 m above the sea), noise "
+        f"{1e3 * NOISE_M_S2:g} mm/s². The twin has rigid blades and is told drawings, state and wind; the "
+        f"first pair of the first record gives it feet of {sideways:.2f} GN/m (sideways, log-deviation "
+        f"{stds[0]:.2f}) and {upright:.2f} (upright, {stds[1]:.2f}), where the truth is "
+        f"{ASSET.feet_n_m / 1e9:g}.",
+        "",
+        f"Damage-equivalent range (m = {M:g}) over OpenFAST's, less one, in per cent: moments in the "
+        "direction, and stress at the point around each leg (four a bay, at its lower end), where it is "
+        "largest. The feet's reaction is about the sea level, as SubDyn tells it without a sea.",
+        "",
+    ]
+
+
+def rows(judged: dict[str, tuple[FloatArray, FloatArray, FloatArray]]) -> list[str]:
+    """Return errors by record and place, then how often intervals hold."""
+    of = [slice(0, 1), slice(1, 2), *(slice(2 + 4 * k, 6 + 4 * k) for k in range(len(BAYS)))]
+    lines = [f"| record | {' | '.join(PLACES)} |", "|---" * (1 + len(PLACES)) + "|"]
+    for name, (ratio, *_) in judged.items():
+        cells = [f"{100.0 * (np.median(ratio[at]) - 1.0):+.1f}" for at in of]
+        lines.append(f"| {CASES[name].state}, {CASES[name].wind:g} m/s | {' | '.join(cells)} |")
+    ratios, scores, stds = (np.array(values) for values in zip(*judged.values(), strict=True))
+    heads = ("place", "median (5 to 95 %)", "size", "intervals of 90 % inside", "true above", "true below")
+    lines += ["", f"| {' | '.join(heads)} | width by record |", "|---" * 7 + "|"]
+    for place, at in (dict(zip(PLACES, of, strict=True)) | {"all": slice(0, None)}).items():
+        own = scores[:, at]
+        shares = [np.abs(own) <= NORMAL_90, own > NORMAL_90, own < -NORMAL_90]
+        cells = [f"{100.0 * share.mean():.0f} %" for share in shares]
+        widths = [f"±{100.0 * np.expm1(NORMAL_90 * np.median(std)):.0f} %" for std in stds[:, at]]
+        ratio = quantiles(ratios[:, at].ravel().tolist())
+        lines.append(f"| {place} | {ratio} {' | '.join(cells)} | {', '.join(widths)} |")
+    return lines
+
+
+if __name__ == "__main__":
+    main()
