@@ -146,7 +146,13 @@ def test_what_is_left_later_is_that_of_a_greater_age() -> None:
 def test_the_design_basis_names_its_inputs_by_their_content(tmp_path: Path) -> None:
     file = tmp_path / "scenario.yaml"
     file.write_bytes(b"structure: jacket15\n")
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "feet.yaml").write_text("law: {file: curve.csv}\n")
+    (tmp_path / "sub" / "curve.csv").write_text("1,2\n")
+    file.write_bytes(b"structure: jacket15\nsupport: sub/feet.yaml\nname: scenario.yaml\n")
     basis = design_basis([file], models_at_height("T", design_factor=2.0), [{"what": "ice", "clause": "X 1"}])
+    # the scenario names itself, its feet, and these a table: each once
+    assert [Path(one["file"]).name for one in basis["inputs"]] == ["scenario.yaml", "feet.yaml", "curve.csv"]
     assert basis["inputs"][0]["sha256"] == hashlib.sha256(file.read_bytes()).hexdigest()
     assert basis["curves"]["free-corrosion"]["m"] == [3.0, 3.0]
     assert basis["curves"]["cathodic"]["log_a"][0] == 12.180

@@ -64,6 +64,7 @@ def site_(
     left_out = omission_documents(_LEFT_OUT)
     files = [site, read.scenario, *([] if read.twin is None else [read.twin])]
     files += [record for i in range(len(read.bins)) for record in read.records(i)]
+    files += [] if edition is None or not Path(edition).is_file() else [Path(edition)]
     basis = design_basis(files, model, left_out)
     joints = [_weld(read, found, one) for one in found.welds]
     document = {

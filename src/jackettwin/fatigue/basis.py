@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from jackettwin.fatigue.curves import ENVIRONMENTS
 from jackettwin.fatigue.environment import SPLASH_M
 from jackettwin.fatigue.weld_life import ModelsAtHeight
+from jackettwin.files import read_yaml
 from jackettwin.version import __version__
 
+_LONGEST_NAME = 255
 _METHOD = {
     "counting": "rainflow, ASTM E1049-85, four-point form; unclosed cycles count half",
     "damage": "Miner's sum at eight points of each side of a weld, the worst taken last",
@@ -29,7 +31,7 @@ def design_basis(
 
     Parameters
     ----------
-    files : that the numbers rest on, in the order of reading
+    files : that the numbers rest on, in the order of reading; those that they name follow them
     left_out : as ``left_out`` of the answer
     """
     zones = dict(zip(ENVIRONMENTS, (SPLASH_M[1] + 1.0, SPLASH_M[0] - 1.0, 0.0), strict=True))
@@ -37,7 +39,9 @@ def design_basis(
     some = curves["air"]
     return {
         "program": {"name": "jackettwin", "version": __version__},
-        "inputs": [{"file": str(f), "sha256": hashlib.sha256(f.read_bytes()).hexdigest()} for f in files],
+        "inputs": [
+            {"file": str(f), "sha256": hashlib.sha256(f.read_bytes()).hexdigest()} for f in _with_named(files)
+        ],
         "edition": some.curve.edition,
         "curves": {
             name: {
@@ -59,6 +63,35 @@ def design_basis(
         "method": dict(_METHOD),
         "left_out": [dict(one) for one in left_out],
     }
+
+
+def _with_named(files: Iterable[Path]) -> list[Path]:
+    """Return files, each followed by the files that it names, and they name, relative to their folder."""
+    found: dict[Path, Path] = {}
+    waiting = list(files)
+    while waiting:
+        file = waiting.pop(0)
+        if file.resolve() not in found:
+            found[file.resolve()] = file
+            texts = _texts(read_yaml(file)) if file.suffix.lower() in (".yaml", ".yml", ".json") else ()
+            waiting = [*(file.parent / text for text in texts if _is_file(file.parent, text)), *waiting]
+    return list(found.values())
+
+
+def _is_file(folder: Path, text: str) -> bool:
+    return "." in text and "\n" not in text and len(text) < _LONGEST_NAME and (folder / text).is_file()
+
+
+def _texts(value: Any) -> Iterator[str]:
+    """Yield all texts in plain data."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Mapping):
+        for one in value.values():
+            yield from _texts(one)
+    elif isinstance(value, list):
+        for one in value:
+            yield from _texts(one)
 
 
 def basis_page(title: str, basis: Mapping[str, Any], rows: Sequence[tuple[str, ...]]) -> str:
