@@ -1,4 +1,4 @@
-"""What a change was: causes planted in three jackets, told apart by the modes' changes.
+"""What a change was: causes planted in four jackets, told apart by the modes' changes.
 
 Usage: python qualify/diagnosis.py [draws a cause and size]
 
@@ -214,12 +214,13 @@ def calibration(found: list[Case], *, shared: bool = False) -> tuple[float, floa
 DRAWN = (
     "# Diagnosis",
     "",
-    "`python qualify/diagnosis.py {number}`: causes simulated in three jackets with uncertain feet at three",
+    "`python qualify/diagnosis.py {number}`: causes simulated in four jackets with uncertain feet at three",
     "sizes, {number} times each; five modes' frequencies and damping ratios (drawn, not identified), whose",
     "changes are known to 0.03 % and 2 %, as from a month before and after in the seasons of",
     "[watching](watching.md). Through the whole chain: [here](diagnosis_chain.md).",
     "The model's feet are fitted to the frequencies before; their error is then 0.5 %. Members and feet",
-    "have the names of their models: brace_… and foot_… in the first two jackets, numbers in the OC4 jacket.",
+    "have the names of their models: brace_… and foot_… in the first two jackets, numbers in the decks",
+    "of OC4 and of OC3's tripod.",
     "",
     "## A month after the change",
     "",
@@ -270,7 +271,9 @@ def _share(right: list[bool]) -> str:
 def main() -> None:
     draws = int(sys.argv[1]) if len(sys.argv) > 1 else 6
     with tempfile.TemporaryDirectory() as name:
-        both = [cases(jacket, s, draws) for jacket, (s, _) in jackets(Path(name)).items()]
+        stand = {jacket: structure for jacket, (structure, _) in jackets(Path(name)).items()}
+        stand["OC3 tripod"] = read_structure(str(Path(__file__).parent / "decks/oc3_tripod.dat"))
+        both = [cases(jacket, structure, draws) for jacket, structure in stand.items()]
     early, late = ([c for found in both for c in found[k]] for k in (0, 1))
     write_page("diagnosis", [*page(late, DRAWN, number=draws), *page(early, EARLY)])
 
