@@ -31,8 +31,8 @@ def taken_back(changes: Sequence[Change]) -> tuple[int | None, ...]:
     """
     found: list[int | None] = []
     for j, later in enumerate(changes):
-        gone = {*found, *(k for k, one in enumerate(found) if one is not None)}
-        free = (i for i in reversed(range(j)) if i not in gone and _cancel(changes[i], later))
+        spent = {i for pair in enumerate(found) if pair[1] is not None for i in pair}
+        free = (i for i in reversed(range(j)) if i not in spent and _cancel(changes[i], later))
         found.append(next(free, None))
     return tuple(found)
 
