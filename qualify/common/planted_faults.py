@@ -81,6 +81,7 @@ FAULTS = (
         ("bending about z stresses the other side of a tube", "-np.cos(angle) / modulus", "np.cos(angle) / modulus"),
         ("thicker walls leave more of a butt weld's eccentricity", "+ float((T_m / t_m) **", "+ float((t_m / T_m) **"),
         ("thick plates are stronger", "** self.thickness_exponent", "** -self.thickness_exponent"),
+        ("the middle brace of a KT joint is shielded as its neighbours", "(shapes[j].beta / own.beta) ** 2 if middle else 1.0", "1.0"),
         ("half cycles count whole", "np.full(self.half.size, 0.5)", "np.full(self.half.size, 1.0)"),
         ("the last closed cycles are taken twice", "self._taken = first.size", "self._taken = max(first.size - 1, 0)"),
         ("saddles and crowns are exchanged", "np.stack([cosine**2, sine**2])", "np.stack([sine**2, cosine**2])"),
@@ -95,6 +96,7 @@ FAULTS = (
         ("short waves reach as deep as long ones", "push = self._push(omega, angle, turn, speed)", "push = self._push(peak, angle, turn, speed)"),
         ("drag on members is in phase with their inertia", "(water / (1j * omega)).real", "(water / omega).real"),
         ("what begins otherwise stays in the predictions only", "(wanted.T - self.information @ (self.P @ wanted.T))", "wanted.T"),
+        ("a working rotor pushes by twice its damping", "thrust = model.dashpot(weather.heading_rad) * _AVERAGED", "thrust = 2.0 * model.dashpot(weather.heading_rad) * _AVERAGED"),
         ("levels are scored with half their curvature", "4.0 * forces.sum(axis=0)", "2.0 * forces.sum(axis=0)"),
     )),
     *_of("soil", rows=(
