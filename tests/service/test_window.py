@@ -414,6 +414,24 @@ def test_a_thousand_turbines_are_on_a_map_and_those_that_need_somebody_come_firs
     assert serious(page) == [] and opened.said == []
 
 
+def test_any_page_is_printed_whole_for_the_stretch_that_it_shows(opened: Open) -> None:
+    """On A4 a plot is as wide as the paper: a browser does not draw it anew for print, it is made smaller."""
+    page = opened.page("/assets/wtg/timeline?from=2025-03-01T00:00:00Z&to=2025-03-02T00:00:00Z")
+    expect(page.locator(".uplot canvas").first).to_be_visible()
+    paper = page.pdf(prefer_css_page_size=True)
+    assert paper.startswith(b"%PDF") and b"/MediaBox [0 0 594.9" in paper
+    page.emulate_media(media="print")
+    widest = page.evaluate("""() => {
+        const paper = (210 - 2 * 14) / 25.4 * 96;
+        document.body.style.width = `${paper}px`;
+        const drawn = [...document.querySelectorAll("main canvas, main .card")];
+        return Math.max(...drawn.map((e) => e.getBoundingClientRect().right)) / paper;
+    }""")
+    assert widest <= 1.001
+    expect(page.locator(".tools").first).to_be_hidden()
+    page.context.close()
+
+
 def test_what_there_is_not_says_so(opened: Open) -> None:
     opened.said.clear()
     page = opened.page("/")

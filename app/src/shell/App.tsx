@@ -86,7 +86,7 @@ function Top() {
             <span>{state === "live" ? "live" : state === "lost" ? "no connection" : "connecting"}</span>
           </span>
           <button type="button" class="wide-only" onClick={() => print()}>
-            Print
+            Print or PDF
           </button>
           <button
             type="button"
