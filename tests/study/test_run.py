@@ -5,11 +5,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import reduce
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from observations import estimate, observation
 
+import jackettwin.study.run as run_module
 from jackettwin.errors import InputError
 from jackettwin.files.json import null_for_nan
 from jackettwin.identification import ModalEstimate
@@ -27,7 +29,7 @@ from jackettwin.study.truth import true_modes
 from jackettwin.twin import TwinState, read_twin
 from jackettwin.twin.config import ModelError, TwinConfig, UpdateSettings, assembled
 from jackettwin.twin.exact_sums import of_day, of_estimate, plus
-from jackettwin.updating import Target, numbered_modes
+from jackettwin.updating import Problem, Target, Update, numbered_modes
 from jackettwin.updating.data.pairing import Counterpart
 
 
@@ -309,3 +311,23 @@ def test_records_of_noise_are_told_from_those_of_another_structure(tmp_path: Pat
     stated = config.identification.model_copy(update={"lowest_frequency_hz": 0.1})
     with pytest.raises(InputError, match="no mode was identified in any record.*spectra"):
         run_twin(replace(config, records=(file,), identification=stated))
+
+
+def test_a_law_that_nothing_fits_leaves_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is named with its reason; if no law fits, the reason of the first is the answer."""
+    config, fit = read_twin("thesis_table_6_1"), run_module.fitted
+
+    def fails(problem: Problem, *given: Any, **named: Any) -> Update:
+        if problem.model.family.name in failing:
+            raise InputError("no start of the search ended in a minimum")
+        return fit(problem, *given, **named)
+
+    monkeypatch.setattr(run_module, "fitted", fails)
+    laws = ("zener", "kelvin-voigt")
+    failing = {"zener"}
+    result = run_twin(config, laws=laws)
+    assert [u.law for u in result.updates] == ["kelvin-voigt"]
+    assert "zener: omitted: no start of the search ended in a minimum." in result.warnings
+    failing = set(laws)
+    with pytest.raises(InputError, match="no start"):
+        run_twin(config, laws=laws)

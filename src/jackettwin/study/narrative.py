@@ -7,6 +7,7 @@ from math import expm1, hypot
 from typing import Any
 
 from jackettwin.caveats import TOLERANCES, Assumption
+from jackettwin.errors import InputError
 from jackettwin.soil import MUDLINE
 from jackettwin.structure import Rayleigh
 from jackettwin.study.measure import Measured
@@ -157,6 +158,11 @@ def _relaxed(r: MeasuredRelaxation) -> str:
 def without_relaxation(laws: tuple[str, ...]) -> tuple[str, ...]:
     """Return why laws were omitted from an update to real poles."""
     return tuple(f"{law}: omitted, as a structure on it has no real poles." for law in laws)
+
+
+def without_fit(unfit: Mapping[str, InputError]) -> tuple[str, ...]:
+    """Return why laws were omitted that no start of their search could fit."""
+    return tuple(f"{law}: omitted: {error.problem}." for law, error in unfit.items())
 
 
 def cautions(

@@ -22,6 +22,7 @@ from jackettwin.study.narrative import (
     cautions,
     modelling_assumptions,
     tolerance_assumptions,
+    without_fit,
     without_relaxation,
 )
 from jackettwin.study.pair_directions import measured_directions
@@ -130,15 +131,21 @@ def updated_twin(
         with _said_where(config):
             return fitted(problem, shown, config.update, sampled=sampled, progress=progress, keep=keep)
 
+    unfit = dict[str, InputError]()
     for law in relaxing(config, wanted) if relaxations else wanted:
         progress(f"update {law}")
-        if law == SERIES:
-            chosen, why = series(lambda name: fit(name, sampled=False), progress)
-            lengths.append(Assumption(SERIES, why))
-            wanted = tuple(chosen.law if name == SERIES else name for name in wanted)
-            updates.append(fit(chosen.law))
-        else:
-            updates.append(fit(law))
+        try:
+            if law == SERIES:
+                chosen, why = series(lambda name: fit(name, sampled=False), progress)
+                lengths.append(Assumption(SERIES, why))
+                wanted = tuple(chosen.law if name == SERIES else name for name in wanted)
+                updates.append(fit(chosen.law))
+            else:
+                updates.append(fit(law))
+        except InputError as error:  # other laws may still explain the data
+            unfit[law] = error
+    if not updates:
+        raise next(iter(unfit.values()))
     # a series may end with a law that is also listed
     updates = list({u.law: u for u in updates}.values())
     if posteriors == "likely":
@@ -147,7 +154,7 @@ def updated_twin(
     others = suspects(config, assembly) if any(u.problem.weighted for u in updates) else ()
     seen = () if found is None else found.observations
     checked = tuple(scrutiny(u, measured, others, pairs, seen) for u in updates)
-    left_out = tuple(law for law in wanted if law not in [u.law for u in updates])
+    left_out = tuple(law for law in wanted if law not in {*unfit, *(u.law for u in updates)})
     return TwinResult(
         name=config.name,
         assembly=assembly,
@@ -164,7 +171,11 @@ def updated_twin(
             *lengths,
             *_of_tolerances(config, updates, checked),
         ),
-        warnings=(*without_relaxation(left_out), *cautions(config, found, measured, tuple(updates), labels)),
+        warnings=(
+            *without_relaxation(left_out),
+            *without_fit(unfit),
+            *cautions(config, found, measured, tuple(updates), labels),
+        ),
         relaxations=relaxations,
         rotor_speed_hz=speed,
         blades=blades,
