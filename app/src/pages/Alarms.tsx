@@ -8,7 +8,7 @@ import Evidence from "../parts/Watched";
 import { day, seconds } from "../words/time";
 import { sentence } from "../words/numbers";
 import type { PageProps } from "../shell/place";
-import { asked, assetUrl, keep } from "../shell/place";
+import { asked, assetUrl } from "../shell/place";
 
 const KINDS = [
   ["", "All"],
@@ -38,19 +38,8 @@ export default function Alarms({ asset }: PageProps) {
         is done.
       </Head>
       <div class="grid">
-        <Card
-          title="Asks for a person"
-          wide
-          more={
-            <Choice
-              label="Which"
-              value={state}
-              options={STATES}
-              onChoose={(one) => keep({ state: one || null })}
-            />
-          }
-        >
-          <Shown of={alarms} empty={(data) => (data.items.length ? null : <Empty title="No alarm" />)}>
+        <Card title="Asks for a person" wide more={<Choice label="Which" kept="state" options={STATES} />}>
+          <Shown of={alarms} none={<Empty title="No alarm" />}>
             {(data) => {
               const shown = data.items.filter((a) => (state === "closed") === Boolean(a.closed_by));
               return shown.length ? (
@@ -62,23 +51,11 @@ export default function Alarms({ asset }: PageProps) {
           </Shown>
         </Card>
         <Evidence asset={asset} marks={marks} />
-        <Card
-          title="Also said"
-          wide
-          more={
-            <Choice
-              label="Kind"
-              value={kind}
-              options={KINDS}
-              onChoose={(k) => keep({ severity: k || null })}
-            />
-          }
-        >
+        <Card title="Also said" wide more={<Choice label="Kind" kept="severity" options={KINDS} />}>
           <Shown
             of={said}
-            empty={(data) =>
-              data.items.some((f) => f.severity !== "alarm") ? null : <Empty title="Nothing else" />
-            }
+            some={(data) => data.items.some((f) => f.severity !== "alarm")}
+            none={<Empty title="Nothing else" />}
           >
             {(data) => (
               <ul class="list">

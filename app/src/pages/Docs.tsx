@@ -35,6 +35,7 @@ async function read(): Promise<Described> {
 }
 
 function Call({ row }: { row: Row }) {
+  const asks = (row.parameters ?? []).filter((p) => p.in === "query");
   const refused = Object.keys(row.responses).filter((status) => status >= "400");
   return (
     <li>
@@ -44,18 +45,16 @@ function Call({ row }: { row: Row }) {
         </code>
       </p>
       <p>{row.description ?? row.summary}</p>
-      {row.parameters?.some((p) => p.in === "query") && (
+      {asks.length > 0 && (
         <p class="quiet">
-          {row.parameters
-            .filter((p) => p.in === "query")
-            .map((p, i) => (
-              <span key={p.name}>
-                {i > 0 && " · "}
-                <code>{p.name}</code>
-                {p.required ? " (must be given)" : ""}
-                {p.description ? ` – ${p.description}` : ""}
-              </span>
-            ))}
+          {asks.map((p, i) => (
+            <span key={p.name}>
+              {i > 0 && " · "}
+              <code>{p.name}</code>
+              {p.required ? " (must be given)" : ""}
+              {p.description ? ` – ${p.description}` : ""}
+            </span>
+          ))}
         </p>
       )}
       <p class="quiet">

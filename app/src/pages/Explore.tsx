@@ -2,7 +2,7 @@
 import { useMemo, useState } from "preact/hooks";
 import { useAsset } from "../api/answer";
 import { type Schemas } from "../api/client";
-import { Card, Head, Pick } from "../parts/Bits";
+import { Card, Head, Pick, Slide } from "../parts/Bits";
 import { modeColour, paintOf } from "../parts/modes";
 import { Plot } from "../parts/plot/Plot";
 import type { Mark, PlotData, Range, Series } from "../parts/plot/series";
@@ -11,22 +11,18 @@ import { Laws } from "../parts/Laws";
 import { Surface } from "../parts/Surface";
 import { number, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
-import { asked, keep } from "../shell/place";
+import { asked } from "../shell/place";
 import { fixed, frequency, percent, quantity, words } from "../words/numbers";
 
 type Explored = Schemas["ExploredOut"];
 type Locus = Schemas["LocusOut"];
 type Branch = Schemas["BranchOut"];
+type OfBranch = (b: Branch, i: number) => number | null;
 const MOST_DAMPED = 0.3;
 const lively = (b: Branch, i: number): boolean => (b.damping_ratio[i] ?? 1) < MOST_DAMPED;
 
 /** Along the parameter: what a branch shows at each of its values, while it swings. */
-function along(
-  locus: Locus,
-  title: string,
-  yName: string,
-  of: (b: Branch, i: number) => number | null,
-): PlotData {
+function along(locus: Locus, title: string, yName: string, of: OfBranch): PlotData {
   return {
     title,
     time: false,
@@ -45,41 +41,33 @@ function along(
   };
 }
 
+type At = [branch: Branch, index: number];
+const dots = (name: string, colour: Series["colour"], at: At[]): Series => ({
+  name,
+  colour,
+  kind: "points",
+  x: at.map(([b, i]) => b.pole_real_rad_s[i] ?? 0),
+  y: at.map(([b, i]) => b.pole_imag_rad_s[i] ?? null),
+});
+
 /** Where the poles go; the point that the slider stands at, in ink. */
 function poles(locus: Locus, index: number): PlotData {
-  const points = (b: Branch): number[] =>
-    locus.values.flatMap((_, i) => ((b.damping_ratio[i] ?? 1) < MOST_DAMPED ? [i] : []));
-  const series = locus.branches.map((b): Series => {
-    const shown = points(b);
-    return {
-      name: words(b.label),
-      colour: modeColour(b.label),
-      kind: "points",
-      x: shown.map((i) => b.pole_real_rad_s[i] ?? 0),
-      y: shown.map((i) => b.pole_imag_rad_s[i] ?? null),
-    };
-  });
-  const now = locus.branches.filter((b) => (b.damping_ratio[index] ?? 1) < MOST_DAMPED);
-  const here: Series = {
-    name: "here",
-    colour: "ink",
-    kind: "points",
-    x: now.map((b) => b.pole_real_rad_s[index] ?? 0),
-    y: now.map((b) => b.pole_imag_rad_s[index] ?? null),
-  };
+  const swings = (b: Branch): At[] => locus.values.flatMap((_, i): At[] => (lively(b, i) ? [[b, i]] : []));
+  const series = locus.branches.map((b) => dots(words(b.label), modeColour(b.label), swings(b)));
+  const now = locus.branches.filter((b) => lively(b, index)).map((b): At => [b, index]);
   return {
     title: "Root locus",
     time: false,
     xName: "real part [rad/s]",
     yName: "imaginary part of the poles [rad/s]",
-    series: [...series, here],
+    series: [...series, dots("here", "ink", now)],
   };
 }
 
 function Along({ locus }: { locus: Locus }) {
   const [index, setIndex] = useState(locus.origin);
   const [range, setRange] = useState<Range | null>(null);
-  const value = locus.values[index] ?? 0;
+  const [value, median] = [locus.values[index] ?? 0, locus.values[locus.origin] ?? 1];
   const mark: Mark[] = [{ x: value, words: quantity(value, locus.unit), colour: "ink" }];
   const drawn = useMemo(
     () => [
@@ -105,21 +93,10 @@ function Along({ locus }: { locus: Locus }) {
         wide
         note="One parameter moves, the others stay where the data put them."
       >
-        <label class="slide">
-          <span>
-            {locus.parameter} <b>{quantity(value, locus.unit, 3)}</b>
-            {index === locus.origin
-              ? " (median)"
-              : ` (${quantity(value / (locus.values[locus.origin] ?? 1), "", 3)} × the median)`}
-          </span>
-          <input
-            type="range"
-            min={0}
-            max={locus.values.length - 1}
-            value={index}
-            onInput={(event) => setIndex(Number(event.currentTarget.value))}
-          />
-        </label>
+        <Slide max={locus.values.length - 1} at={index} onMove={setIndex}>
+          {locus.parameter} <b>{quantity(value, locus.unit, 3)}</b>
+          {index === locus.origin ? " (median)" : ` (${quantity(value / median, "", 3)} × the median)`}
+        </Slide>
         <div class="pair">
           {plots.map((plot) => (
             <Plot
@@ -146,10 +123,8 @@ function Along({ locus }: { locus: Locus }) {
               title: "Most damping",
               unit: `% at ${locus.parameter}`,
               numeric: true,
-              show: (b) =>
-                b.most_damped_at === null || b.most_damped_at === undefined
-                  ? "–"
-                  : `${percent(b.most_damping_ratio)} at ${quantity(b.most_damped_at, locus.unit)}`,
+              show: ({ most_damped_at: at, most_damping_ratio: most }) =>
+                at == null ? "–" : `${percent(most)} at ${quantity(at, locus.unit)}`,
             },
           ]}
         />
@@ -169,7 +144,7 @@ function Sensitivity({ asset }: { asset: string }) {
       wide
       note="Change of the mode if the parameter grows by one per cent: of its frequency in ‰, of its damping ratio in 0.001 %."
     >
-      <Shown of={found} empty={(data) => (data.items.length ? null : <Empty title="Not estimated yet" />)}>
+      <Shown of={found} none={<Empty title="Not estimated yet" />}>
         {(data) => (
           <Table
             label="Sensitivities"
@@ -226,9 +201,8 @@ function Drawn({ asset, explored }: { asset: string; explored: Explored }) {
       <div class="tools">
         <Pick
           label="Parameter"
-          value={locus?.parameter ?? ""}
+          kept="parameter"
           options={loci.map((l) => [l.parameter, l.parameter] as const)}
-          onChoose={(parameter) => keep({ parameter })}
         />
         <span class="quiet">Law {explored.law}</span>
       </div>
@@ -259,12 +233,11 @@ export default function Explore({ asset }: PageProps) {
       <Shown
         of={found}
         lines={12}
-        empty={(data) =>
-          data.loci?.length ? null : (
-            <Empty title="Nothing to explore yet">
-              This comes with the first estimate of the ground, when no record waits.
-            </Empty>
-          )
+        some={(data) => data.loci?.length}
+        none={
+          <Empty title="Nothing to explore yet">
+            This comes with the first estimate of the ground, when no record waits.
+          </Empty>
         }
       >
         {(data) => <Drawn asset={asset} explored={data} />}

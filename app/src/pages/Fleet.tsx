@@ -68,7 +68,7 @@ export function Fleet() {
         <h1>Turbines</h1>
         {assets.data && assets.data.items.length > 0 && <p class="said">{headline(assets.data.items)}</p>}
       </div>
-      <Shown of={assets} empty={(data) => (data.items.length ? null : <Nothing />)} lines={6}>
+      <Shown of={assets} none={<Nothing />} lines={6}>
         {(data) => {
           const rows = data.items.filter(
             (a) => (!wanted || a.status === wanted) && a.name.toLowerCase().includes(text.toLowerCase()),
@@ -79,9 +79,8 @@ export function Fleet() {
               <div class="tools">
                 <Choice
                   label="Status"
-                  value={wanted}
+                  kept="status"
                   options={[["", `All ${data.items.length}`], ...URGENT.map((s) => [s, s] as const)]}
-                  onChoose={(status) => keep({ status: status || null })}
                 />
                 <input
                   type="search"

@@ -5,7 +5,7 @@ import { may, useDeed } from "../api/do";
 import { Ago, Card, Choice, Light } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import { Table } from "../parts/Table";
-import { asked, assetUrl, keep } from "../shell/place";
+import { asked, assetUrl } from "../shell/place";
 
 type Job = Schemas["JobOut"];
 const STATES: readonly (readonly [string, string])[] = [
@@ -37,15 +37,11 @@ export default function Jobs() {
         <h1>Jobs</h1>
       </div>
       <div class="tools">
-        <Choice label="State" value={state} options={STATES} onChoose={(s) => keep({ state: s || null })} />
+        <Choice label="State" kept="state" options={STATES} />
         {deed.problem && <span class="error">{deed.problem.message}</span>}
       </div>
       <Card title="Newest first" wide>
-        <Shown
-          of={jobs}
-          lines={8}
-          empty={(data) => (data.items.length ? null : <Empty title="No job of this kind" />)}
-        >
+        <Shown of={jobs} lines={8} none={<Empty title="No job of this kind" />}>
           {(data) => (
             <Table
               label="Jobs"

@@ -121,7 +121,7 @@ export default function Life({ asset }: PageProps) {
         <h1>Life</h1>
         {life.data?.items[0] && <p class="said">{headline(life.data.items)}</p>}
       </div>
-      <Shown of={life} lines={8} empty={(data) => (data.items.length ? null : <Nothing />)}>
+      <Shown of={life} lines={8} none={<Nothing />}>
         {(data) => {
           const weld = data.items.find((w) => key(w) === wanted) ?? data.items[0];
           return (

@@ -109,7 +109,7 @@ export default function Live({ asset }: PageProps) {
           )}
         </p>
       </div>
-      <Shown of={listed} empty={() => (record || streams ? null : <Nothing />)}>
+      <Shown of={listed} some={() => record || streams} none={<Nothing />}>
         {() => (
           <div class="grid">
             <Card

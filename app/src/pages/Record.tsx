@@ -7,11 +7,11 @@ import { Heat } from "../parts/Heat";
 import { paintOf } from "../parts/modes";
 import { Plot } from "../parts/plot/Plot";
 import type { Mark, PlotData } from "../parts/plot/series";
-import { Shown, Trouble } from "../parts/Shown";
+import { Shown } from "../parts/Shown";
 import { Stabilisation } from "../parts/Stabilisation";
 import { ModeTable } from "../parts/ModeTable";
 import type { PageProps } from "../shell/place";
-import { asked, keep } from "../shell/place";
+import { asked } from "../shell/place";
 import { InTime, rangeKept } from "../parts/Stiffness";
 import { words } from "../words/numbers";
 import { seconds } from "../words/time";
@@ -137,14 +137,7 @@ function Spectrum({ record, modes }: { record: RecordOut; modes: readonly Mode[]
       title="Spectral densities"
       wide
       note="Welch's method, segments of a minute; upright lines are the modes found. A peak of the largest singular value alone is one mode, of two at once a close pair."
-      more={
-        <Choice
-          label="What"
-          value={what}
-          options={SPECTRA}
-          onChoose={(one) => keep({ spectrum: one || null })}
-        />
-      }
+      more={<Choice label="What" kept="spectrum" options={SPECTRA} />}
     >
       <Shown of={found} lines={6}>
         {() => plot && <Plot data={plot} height={300} range={[0, Math.min(2, record.sample_rate_hz / 2)]} />}
@@ -166,15 +159,7 @@ function Spectrogram({ record }: { record: RecordOut }) {
       title="Spectrogram"
       wide
       note="Segments of a minute that overlap by three quarters; a mode is a level line, what moves with the rotor is not."
-      more={
-        <Pick
-          label="Channel"
-          bare
-          value={channel}
-          options={names.map((name) => [name, name] as const)}
-          onChoose={(one) => keep({ channel: one })}
-        />
-      }
+      more={<Pick label="Channel" bare kept="channel" options={names.map((name) => [name, name] as const)} />}
     >
       <Shown of={found} lines={6}>
         {({ time_s, frequency_hz, segment_s, unit, level_db }) => (
@@ -224,12 +209,7 @@ export default function Record({ asset, id }: PageProps) {
     const found = await told(api.GET("/api/v1/assets/{asset}/modes", { params: { path: { asset }, query } }));
     return found.items.filter((m) => m.record_id === id);
   });
-  if (record.data === undefined)
-    return record.problem ? (
-      <Trouble problem={record.problem} again={record.again} />
-    ) : (
-      <div class="bones" role="status" aria-label="Reading" />
-    );
+  if (record.data === undefined) return <Shown of={record}>{() => null}</Shown>;
   const data = record.data;
   const problem = data.problem?.["detail"];
   return (
@@ -243,7 +223,7 @@ export default function Record({ asset, id }: PageProps) {
       </div>
       <div class="grid">
         <Card title="Modes found">
-          <Shown of={modes} empty={(rows) => (rows.length ? null : <p class="quiet">None yet.</p>)}>
+          <Shown of={modes} some={(rows) => rows.length} none={<p class="quiet">None yet.</p>}>
             {(rows) => (
               <ModeTable
                 asset={asset}

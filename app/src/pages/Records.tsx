@@ -61,12 +61,7 @@ export default function Records({ asset }: PageProps) {
       </Head>
       {may("engineer") && <Upload asset={asset} />}
       <div class="tools below">
-        <Choice
-          label="Status"
-          value={status}
-          options={STATUSES}
-          onChoose={(s) => keep({ status: s || null })}
-        />
+        <Choice label="Status" kept="status" options={STATUSES} />
       </div>
       <Card
         title={from && to ? `From ${from.slice(0, 10)} to ${to.slice(0, 10)}` : "Latest first"}
@@ -79,7 +74,7 @@ export default function Records({ asset }: PageProps) {
           )
         }
       >
-        <Shown of={found} lines={8} empty={(data) => (data.items.length ? null : <Nothing asset={asset} />)}>
+        <Shown of={found} lines={8} none={<Nothing asset={asset} />}>
           {(data) => (
             <>
               <Table label="Records" columns={COLUMNS} rows={data.items} id={(r) => r.record_id} />

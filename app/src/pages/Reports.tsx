@@ -27,7 +27,7 @@ export default function Reports({ asset }: PageProps) {
           ))}
         </div>
       </div>
-      <Shown of={twin} lines={10} empty={(data) => ((data.parameters as Knowledge).law ? null : <Nothing />)}>
+      <Shown of={twin} lines={10} some={(data) => (data.parameters as Knowledge).law} none={<Nothing />}>
         {(data) => {
           const known = data.parameters as Knowledge;
           const url = `/assets/${encodeURIComponent(asset)}/report?version=${data.version}`;

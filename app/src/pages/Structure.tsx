@@ -6,7 +6,7 @@ import { Card, Pick } from "../parts/Bits";
 import { InSpace } from "../parts/InSpace";
 import { Empty, Shown } from "../parts/Shown";
 import type { PageProps } from "../shell/place";
-import { asked, keep } from "../shell/place";
+import { asked } from "../shell/place";
 import { day, utc } from "../words/time";
 
 function Version({ asset, version }: { asset: string; version: number | undefined }) {
@@ -28,7 +28,7 @@ function Version({ asset, version }: { asset: string; version: number | undefine
       wide={version === undefined && !asked("beside")}
       note="Every part in its own phase: what is heavily damped does not pass through rest together. Green points are what the sensors measured, in the model's amplitude and phase."
     >
-      <Shown of={found} lines={12} empty={(data) => (data.nodes?.length ? null : <Nothing />)}>
+      <Shown of={found} lines={12} some={(data) => data.nodes?.length} none={<Nothing />}>
         {(data) => <InSpace drawn={drawn ?? data} />}
       </Shown>
     </Card>
@@ -48,25 +48,23 @@ export default function Structure({ asset }: PageProps) {
         {kept.length > 0 && (
           <Pick
             label="Moved as in"
-            value={asked("record") ?? ""}
+            kept="record"
             options={[
               ["", "its modes"],
               ...kept.map((r) => [r.record_id, `the record of ${utc(r.start_utc)}`] as const),
             ]}
-            onChoose={(record) => keep({ record: record || null })}
           />
         )}
         {others.length > 0 && (
           <Pick
             label="Beside it"
-            value={beside ?? ""}
+            kept="beside"
             options={[
               ["", "nothing"],
               ...others.map(
                 (v) => [String(v.version), `version ${v.version} of ${day(v.created_utc)}`] as const,
               ),
             ]}
-            onChoose={(one) => keep({ beside: one || null })}
           />
         )}
       </div>

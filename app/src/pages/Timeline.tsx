@@ -9,7 +9,7 @@ import { Empty, Shown, Trouble } from "../parts/Shown";
 import Stiffness, { InTime, keepRange, rangeKept } from "../parts/Stiffness";
 import { Rests, type Watch } from "../parts/Watched";
 import type { PageProps } from "../shell/place";
-import { asked, assetUrl, go, keep } from "../shell/place";
+import { asked, assetUrl, go } from "../shell/place";
 import { words } from "../words/numbers";
 import { day, seconds } from "../words/time";
 
@@ -50,23 +50,19 @@ async function look(
   labels: string[] = [],
 ): Promise<Seen> {
   const path = { asset };
-  const one = (label: object): Promise<{ items: Bins[] }> =>
-    told(
-      api.GET("/api/v1/assets/{asset}/modes/bins", {
-        params: { path, query: { ...times, ...label, points: POINTS } },
-      }),
-    );
+  const one = (label: object): Promise<{ items: Bins[] }> => {
+    const query = { ...times, ...label, points: POINTS };
+    return told(api.GET("/api/v1/assets/{asset}/modes/bins", { params: { path, query } }));
+  };
   const asks = labels.length ? labels.map((label) => one({ label })) : [one({})];
   const found = (await Promise.all(asks)).flatMap((page) => page.items).filter((b) => b.label);
   const first = (b: Bins): number => b.frequency_hz.median[0] ?? 0;
   const bins = found.sort((a, b) => first(a) - first(b));
   if (countOf(bins) > ROWS) return { bins, rows: null };
-  const page = (cursor: string | undefined): Promise<{ items: Mode[]; next_cursor?: string | null }> =>
-    told(
-      api.GET("/api/v1/assets/{asset}/modes", {
-        params: { path, query: { limit: 10_000, ...times, ...(cursor ? { cursor } : {}) } },
-      }),
-    );
+  const page = (cursor: string | undefined): Promise<{ items: Mode[]; next_cursor?: string | null }> => {
+    const query = { limit: 10_000, ...times, ...(cursor ? { cursor } : {}) };
+    return told(api.GET("/api/v1/assets/{asset}/modes", { params: { path, query } }));
+  };
   return { bins, rows: await everything(page) };
 }
 
@@ -106,35 +102,22 @@ export default function Timeline({ asset }: PageProps) {
       </Head>
       {close && part.problem && <Trouble problem={part.problem} again={part.again} />}
       <div class="tools">
-        <Choice
-          label="Quantity"
-          value={what}
-          options={QUANTITIES}
-          onChoose={(show) => keep({ show: show === "frequency" ? null : show })}
-        />
-        <Choice
-          label="State"
-          value={state}
-          options={STATES}
-          onChoose={(one) => keep({ state: one || null })}
-        />
+        <Choice label="Quantity" kept="show" options={QUANTITIES} />
+        <Choice label="State" kept="state" options={STATES} />
         {others.length > 0 && (
           <Pick
             label="Beside"
-            value={other}
+            kept="beside"
             options={[["", "no other turbine"], ...others.map((a) => [a.name, a.name] as const)]}
-            onChoose={(one) => keep({ beside: one || null })}
           />
         )}
         {from && to && (
-          <a
-            href={`${assetUrl(asset, "records")}?from=${encodeURIComponent(from)}&to=${encodeURIComponent(to)}`}
-          >
+          <a href={`${assetUrl(asset, "records")}?${String(new URLSearchParams({ from, to }))}`}>
             Records of this stretch
           </a>
         )}
       </div>
-      <Shown of={all} lines={10} empty={(data) => (data.bins.length ? null : <Nothing />)}>
+      <Shown of={all} lines={10} some={(data) => data.bins.length} none={<Nothing />}>
         {(data) => (
           <Drawn
             all={data.bins}
@@ -199,7 +182,7 @@ function Drawn({ all, seen, marks, what, wanted, range, beside, asset, watch, op
   const first = Math.min(...all.map((b) => seconds(b.start_utc) + (b.time_s[0] ?? 0)));
   const shown = plots.filter((p) => !wanted || p.label === wanted);
   const show = (days: string): void => keepRange(days ? [last - Number(days) * DAY_S, last + DAY_S] : null);
-  const title = what === "left" ? "Frequency residuals" : "Damping residuals";
+  const kind = what === "left" ? "frequency" : "damping";
   const simulated = all.reduce((n, b) => n + b.simulated, 0);
   const span = range ? String(Math.round((range[1] - range[0]) / DAY_S - 1)) : "";
   return (
@@ -208,22 +191,18 @@ function Drawn({ all, seen, marks, what, wanted, range, beside, asset, watch, op
         <Choice label="Range" value={span} options={SPANS} onChoose={show} />
         <Pick
           label="Mode"
-          value={wanted}
+          kept="mode"
           options={[["", `all ${plots.length}`], ...plots.map((p) => [p.label, words(p.label)] as const)]}
-          onChoose={(mode) => keep({ mode: mode || null })}
         />
       </div>
       {what === "ground" && <Stiffness asset={asset} />}
       {what.endsWith("left") && (
-        <Card title={title} wide note="Daily means without what wind, sea, temperature and tide explain.">
-          {watch && (
-            <Rests
-              watch={watch}
-              marks={marks}
-              kind={what === "left" ? "frequency" : "damping"}
-              label={wanted}
-            />
-          )}
+        <Card
+          title={`Residuals of ${kind}`}
+          wide
+          note="Daily means without what wind, sea, temperature and tide explain."
+        >
+          {watch && <Rests watch={watch} marks={marks} kind={kind} label={wanted} />}
         </Card>
       )}
       {PLAIN.has(what) && (
@@ -255,12 +234,7 @@ function Drawn({ all, seen, marks, what, wanted, range, beside, asset, watch, op
 const PLAIN = new Set(["frequency", "damping"]);
 
 /** A mode's plot with the medians of another turbine's mode of the same name. */
-function withOther(
-  plot: PlotData,
-  other: { name: string; bins: Bins[] },
-  label: string,
-  what: string,
-): PlotData {
+function withOther(plot: PlotData, other: DrawnProps["beside"], label: string, what: string): PlotData {
   const bins = other.bins.find((b) => b.label === label);
   if (!bins) return plot;
   const [median] = binPlot(bins, what, []).series.slice(-1);

@@ -149,7 +149,7 @@ export function Turbine({ asset }: PageProps) {
       <div class="grid">
         {known?.answers && <Answers asset={asset} known={known} />}
         <Card title="What changed, and why" more={<a href={assetUrl(asset, "alarms")}>All alarms</a>}>
-          <Shown of={alarms} empty={(data) => (data.items.length ? null : <Unchanged own={own} />)} lines={3}>
+          <Shown of={alarms} none={<Unchanged own={own} />} lines={3}>
             {(data) => <AlarmList alarms={mostUrgent(data.items).slice(0, 3)} again={alarms.again} />}
           </Shown>
         </Card>
@@ -158,7 +158,7 @@ export function Turbine({ asset }: PageProps) {
           more={<a href={assetUrl(asset, "timeline")}>Through time</a>}
           note="Mean of all records, ± one standard deviation."
         >
-          <Shown of={twin} empty={(data) => (data.records ? null : <NoRecord asset={asset} />)} lines={7}>
+          <Shown of={twin} some={(data) => data.records} none={<NoRecord asset={asset} />} lines={7}>
             {(data) => <Modes asset={asset} twin={data} />}
           </Shown>
         </Card>
@@ -166,13 +166,13 @@ export function Turbine({ asset }: PageProps) {
           <Stiffness asset={asset} />
         </Suspense>
         <Card title="Damping by source" note="Damping ratio in %, of all records.">
-          <Shown of={budget} empty={(data) => (data.items.length ? null : <NotYet />)} lines={7}>
+          <Shown of={budget} none={<NotYet />} lines={7}>
             {(data) => <Budget modes={data.items} />}
           </Shown>
         </Card>
         <Assumptions asset={asset} />
         <Card title="Ground and rotor" more={<a href={assetUrl(asset, "reports")}>Report</a>}>
-          <Shown of={twin} empty={() => (known?.parameters ? null : <NotYet />)} lines={5}>
+          <Shown of={twin} some={() => known?.parameters} none={<NotYet />} lines={5}>
             {() => <Supports known={known ?? {}} />}
           </Shown>
         </Card>

@@ -69,7 +69,7 @@ export default function Users() {
       </Head>
       <div class="grid">
         <Card title="Who may">
-          <Shown of={users} empty={(data) => (data.items.length ? null : <Empty title="No user yet" />)}>
+          <Shown of={users} none={<Empty title="No user yet" />}>
             {(data) => (
               <Table
                 label="Users"
@@ -89,7 +89,7 @@ export default function Users() {
           <Add again={users.again} />
         </Card>
         <Card title="Who did what" wide>
-          <Shown of={audit} empty={(data) => (data.items.length ? null : <Empty title="Nothing yet" />)}>
+          <Shown of={audit} none={<Empty title="Nothing yet" />}>
             {(data) => (
               <Table
                 label="Audit log"

@@ -87,9 +87,8 @@ export function Assumptions({ asset }: { asset: string }) {
       )}
       <Shown
         of={found}
-        empty={(data) =>
-          data.items.some((one) => one.confirmed === false) ? null : <Empty title="None is open" />
-        }
+        some={(data) => data.items.some((one) => one.confirmed === false)}
+        none={<Empty title="None is open" />}
       >
         {(data) => {
           const open = data.items.filter((one) => one.confirmed === false);

@@ -1,6 +1,7 @@
 // Small parts that every page uses.
 import type { ComponentChildren } from "preact";
 import type { Deed } from "../api/do";
+import { asked, keep } from "../shell/place";
 import { ago, local, utc } from "../words/time";
 
 const SAID: Record<string, string> = {
@@ -70,17 +71,27 @@ export function Card({ title, note, wide, more, children }: CardProps) {
 
 interface ChoiceProps {
   label: string;
-  value: string;
   options: readonly (readonly [string, string])[];
-  onChoose: (value: string) => void;
+  /** The choice stands in the address under this name; the first option is the usual one. */
+  kept?: string;
+  value?: string;
+  onChoose?: (value: string) => void;
+}
+
+function choosing({ options, kept, value = "", onChoose }: ChoiceProps): [string, (value: string) => void] {
+  const usual = options[0]?.[0] ?? "";
+  if (kept) return [asked(kept) ?? usual, (one) => keep({ [kept]: one === usual ? null : one })];
+  return [value, (one) => onChoose?.(one)];
 }
 
 /** A few things of which one is chosen. */
-export function Choice({ label, value, options, onChoose }: ChoiceProps) {
+export function Choice(props: ChoiceProps) {
+  const { label, options } = props;
+  const [value, choose] = choosing(props);
   return (
     <span class="choice" role="group" aria-label={label}>
       {options.map(([key, words]) => (
-        <button type="button" key={key} aria-pressed={key === value} onClick={() => onChoose(key)}>
+        <button type="button" key={key} aria-pressed={key === value} onClick={() => choose(key)}>
           {words}
         </button>
       ))}
@@ -89,17 +100,40 @@ export function Choice({ label, value, options, onChoose }: ChoiceProps) {
 }
 
 /** One of many things: a list to open, named beside it or only to who cannot see it. */
-export function Pick({ label, value, options, onChoose, bare }: ChoiceProps & { bare?: boolean }) {
+export function Pick(props: ChoiceProps & { bare?: boolean }) {
+  const { label, options, bare } = props;
+  const [value, choose] = choosing(props);
   return (
     <label class="pick">
       {!bare && `${label} `}
-      <select aria-label={label} value={value} onChange={(event) => onChoose(event.currentTarget.value)}>
+      <select aria-label={label} value={value} onChange={(event) => choose(event.currentTarget.value)}>
         {options.map(([key, words]) => (
           <option key={key} value={key}>
             {words}
           </option>
         ))}
       </select>
+    </label>
+  );
+}
+
+interface SlideProps {
+  children: ComponentChildren;
+  min?: number;
+  max: number;
+  step?: number | "any";
+  at: number;
+  onMove: (to: number) => void;
+}
+
+/** A number by slider, with its words above. */
+export function Slide({ children, min = 0, max, step = 1, at, onMove }: SlideProps) {
+  const moved = (event: { currentTarget: HTMLInputElement }): void =>
+    onMove(Number(event.currentTarget.value));
+  return (
+    <label class="slide">
+      <span>{children}</span>
+      <input type="range" min={min} max={max} step={step} value={at} onInput={moved} />
     </label>
   );
 }

@@ -3,9 +3,10 @@ import { useMemo, useState } from "preact/hooks";
 import { useAnswer } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
 import { quantity } from "../words/numbers";
-import { Card, Choice } from "./Bits";
+import { asked } from "../shell/place";
+import { Card, Choice, Slide } from "./Bits";
 import { Plot } from "./plot/Plot";
-import type { PlotData, Range } from "./plot/series";
+import type { PlotData, Range, Series } from "./plot/series";
 import { Shown } from "./Shown";
 
 /** Of each parameter: unit, least, greatest and first value, in decades where it spans some. */
@@ -30,13 +31,7 @@ const LAWS: Record<string, readonly Slider[]> = {
 const numberOf = ([, unit]: Slider, at: number): number => (unit ? 10 ** at : at);
 
 function plotsOf(law: Schemas["LawOut"]): PlotData[] {
-  const one = (
-    title: string,
-    yName: string,
-    time: boolean,
-    log: boolean,
-    y: (number | null)[],
-  ): PlotData => ({
+  const one = (title: string, yName: string, time: boolean, log: boolean, y: Series["y"]): PlotData => ({
     title,
     time: false,
     xName: time ? "time [s]" : "frequency [Hz]",
@@ -54,7 +49,7 @@ function plotsOf(law: Schemas["LawOut"]): PlotData[] {
 }
 
 export function Laws() {
-  const [name, setName] = useState("kelvin-voigt");
+  const name = asked("law") ?? "kelvin-voigt";
   const [places, setPlaces] = useState<Record<string, number>>({});
   const [range, setRange] = useState<Range | null>(null);
   const sliders = LAWS[name] ?? [];
@@ -74,29 +69,19 @@ export function Laws() {
       note="What a support does in each law: move a parameter, and see what it stores, loses and how it creeps."
     >
       <div class="tools">
-        <Choice
-          label="Law"
-          value={name}
-          options={Object.keys(LAWS).map((n) => [n, n] as const)}
-          onChoose={setName}
-        />
+        <Choice label="Law" kept="law" options={Object.keys(LAWS).map((n) => [n, n] as const)} />
       </div>
       {sliders.map((s) => (
-        <label class="slide" key={s[0]}>
-          <span>
-            {s[0]} <b>{quantity(numberOf(s, at(s)), s[1], 3)}</b>
-          </span>
-          <input
-            type="range"
-            min={s[2]}
-            max={s[3]}
-            step="any"
-            value={at(s)}
-            onInput={(event) =>
-              setPlaces({ ...places, [`${name} ${s[0]}`]: Number(event.currentTarget.value) })
-            }
-          />
-        </label>
+        <Slide
+          key={s[0]}
+          min={s[2]}
+          max={s[3]}
+          step="any"
+          at={at(s)}
+          onMove={(to) => setPlaces({ ...places, [`${name} ${s[0]}`]: to })}
+        >
+          {s[0]} <b>{quantity(numberOf(s, at(s)), s[1], 3)}</b>
+        </Slide>
       ))}
       <Shown of={found}>
         {() => (

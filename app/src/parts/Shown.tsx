@@ -38,14 +38,18 @@ export function Empty({ title, children }: { title: string; children?: Component
 
 interface ShownProps<T> {
   of: Answer<T>;
-  /** What to say if there is nothing, null if there is something. */
-  empty?: (data: T) => ComponentChildren;
+  /** Whether there is something to show; usually if there are items. */
+  some?: (data: T) => unknown;
+  /** What to say if there is nothing. */
+  none?: ComponentChildren;
   lines?: number;
   children: (data: T) => ComponentChildren;
 }
 
+const hasItems = (data: unknown): unknown => (data as { items?: unknown[] }).items?.length ?? true;
+
 /** An answer: bones while it is awaited, its problem, what to do if it is empty, or itself. */
-export function Shown<T>({ of, empty, lines = 4, children }: ShownProps<T>) {
+export function Shown<T>({ of, some = hasItems, none, lines = 4, children }: ShownProps<T>) {
   if (of.data === undefined) {
     if (of.problem) return <Trouble problem={of.problem} again={of.again} />;
     return (
@@ -56,7 +60,6 @@ export function Shown<T>({ of, empty, lines = 4, children }: ShownProps<T>) {
       </div>
     );
   }
-  const nothing = empty?.(of.data);
   return (
     <>
       {of.problem && (
@@ -64,7 +67,7 @@ export function Shown<T>({ of, empty, lines = 4, children }: ShownProps<T>) {
           Older than it should be: {of.problem.message}
         </p>
       )}
-      {nothing ? nothing : children(of.data)}
+      {none && !some(of.data) ? none : children(of.data)}
     </>
   );
 }

@@ -68,12 +68,9 @@ export default function Stiffness({ asset }: { asset: string }) {
     <Card title="The ground" wide>
       <Shown
         of={found}
-        empty={(data) =>
-          data.stiffness_in_time ? null : (
-            <Empty title="Not followed yet">
-              The stiffness of each day is followed from the third day on.
-            </Empty>
-          )
+        some={(data) => data.stiffness_in_time}
+        none={
+          <Empty title="Not followed yet">The stiffness of each day is followed from the third day on.</Empty>
         }
       >
         {(data) => <Drawn data={data} />}

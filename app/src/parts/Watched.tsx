@@ -4,7 +4,7 @@ import { useAsset } from "../api/answer";
 import type { Schemas } from "../api/client";
 import { quantity, words } from "../words/numbers";
 import { seconds } from "../words/time";
-import { Card, Pick } from "./Bits";
+import { Card, Pick, Slide } from "./Bits";
 import { modeColour } from "./modes";
 import type { Mark, PlotData, Series } from "./plot/series";
 import { Empty, Shown } from "./Shown";
@@ -96,12 +96,11 @@ export default function Evidence({ asset, marks }: { asset: string; marks: Mark[
     >
       <Shown
         of={found}
-        empty={(data) =>
-          data.days.length ? null : (
-            <Empty title="Not watched yet">
-              Days are judged once the baseline is whole, usually after a year.
-            </Empty>
-          )
+        some={(data) => data.days.length}
+        none={
+          <Empty title="Not watched yet">
+            Days are judged once the baseline is whole, usually after a year.
+          </Empty>
         }
       >
         {(data) => <Drawn watch={data} marks={marks} />}
@@ -177,16 +176,9 @@ function WouldBe({ watch, possible }: { watch: Watch; possible: Smallest[] }) {
           options={possible.map((s, i) => [String(i), said(s)] as const)}
           onChoose={(i) => setIndex(Number(i))}
         />
-        <label>
-          planted on {watch.days[at]}{" "}
-          <input
-            type="range"
-            min={0}
-            max={watch.days.length - 1}
-            value={at}
-            onInput={(e) => setAt(Number(e.currentTarget.value))}
-          />
-        </label>
+        <Slide max={watch.days.length - 1} at={at} onMove={setAt}>
+          planted on {watch.days[at]}
+        </Slide>
       </div>
       <Column plots={plots} together="evidence" />
     </>
