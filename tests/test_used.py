@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-CALLED_BY_OTHERS = ("jackettwin.client", "jackettwin.store.migrations")
-"""Modules whose names users or Alembic call."""
+CALLED_BY_OTHERS = ("jackettwin.client", "jackettwin.store.asset_copy", "jackettwin.store.migrations")
+"""Modules whose names users, scripts or Alembic call."""
 
 
 def imports(tree: ast.Module) -> Iterator[tuple[str, str]]:

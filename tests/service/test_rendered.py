@@ -30,7 +30,7 @@ QUERIES = {
     "/assets/{asset}/records": 4,
     "/records/{record_id}": 3,
     "/assets/{asset}/modes": 4,
-    "/assets/{asset}/modes/bins": 6,
+    "/assets/{asset}/modes/bins": 16,  # one for each label of a mode
     "/assets/{asset}/twin": 7,
     "/assets/{asset}/supports": 4,
     "/assets/{asset}/damping-budget": 7,

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from functools import partial
+
 from jackettwin.fatigue.curves import ENVIRONMENTS, Environment, read_curve
 from jackettwin.fatigue.life import LifeModel
 from jackettwin.fatigue.weld_life import ModelsAtHeight
@@ -24,10 +27,10 @@ def models_at_height(
     """
     source = () if edition is None else (edition,)
     models = {name: LifeModel(read_curve(curve, name, *source), design_factor) for name in ENVIRONMENTS}
+    return partial(_model_there, models)
 
-    def model(z_m: float) -> tuple[Environment, LifeModel]:
-        low, high = SPLASH_M
-        name: Environment = "air" if z_m > high else "cathodic" if z_m < low else "free-corrosion"
-        return name, models[name]
 
-    return model
+def _model_there(models: Mapping[str, LifeModel], z_m: float) -> tuple[Environment, LifeModel]:
+    low, high = SPLASH_M
+    name: Environment = "air" if z_m > high else "cathodic" if z_m < low else "free-corrosion"
+    return name, models[name]

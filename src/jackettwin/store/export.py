@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 Exported = Literal[
     "modes",
+    "mode_days",
     "findings",
     "records",
     "observations",

@@ -99,7 +99,12 @@ def _words(keys: dict[str, list[str]], key: str, at: int = 0) -> list[str]:
     try:
         return shlex.split(keys[key][at], posix=True)
     except ValueError as error:
-        raise InputError(f"is not readable: {error}", field=key, value=keys[key][at]) from None
+        raise InputError(
+            f"is not readable: {error}",
+            field=key,
+            value=keys[key][at],
+            remedy="close its quotation marks as Bladed writes them",
+        ) from None
 
 
 def _time(keys: dict[str, list[str]], n: int) -> FloatArray:
