@@ -399,6 +399,7 @@ def test_a_thousand_turbines_are_on_a_map_and_those_that_need_somebody_come_firs
         return {**like, **own, **(at if k < 990 else {})}
 
     page = opened.page("/jobs")
+    opened.said.clear()
     answer = {"items": [turbine(k) for k in range(1000)], "next_cursor": None}
     page.route("**/api/v1/assets", lambda route: route.fulfill(json=answer))
     opened.goto(page, "/")
