@@ -30,7 +30,7 @@ def models_at_height(
     return partial(_model_there, models)
 
 
-def _model_there(models: Mapping[str, LifeModel], z_m: float) -> tuple[Environment, LifeModel]:
+def _model_there(models: Mapping[Environment, LifeModel], z_m: float) -> tuple[Environment, LifeModel]:
     low, high = SPLASH_M
     name: Environment = "air" if z_m > high else "cathodic" if z_m < low else "free-corrosion"
     return name, models[name]
