@@ -58,6 +58,8 @@ describe("a plot", () => {
   test("has ticks in steps of 1, 2 or 5", () => {
     expect(ticksOf([0, 1], 5)).toEqual([0, 0.2, 0.4, 0.6, 0.8, 1]);
     expect(ticksOf([0.2, 30], 5, true)).toEqual([0.2, 0.5, 1, 2, 5, 10, 20]);
+    for (const none of [ticksOf([0, 1], 5, true), ticksOf([1, 1], 5), ticksOf([0, Infinity], 5)])
+      expect(none).toEqual([]);
   });
 });
 

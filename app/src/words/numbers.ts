@@ -31,8 +31,10 @@ export function fixed(value: Number_, decimals: number): string {
 
 function withStd(value: Number_, std: Number_, scale: number, decimals: number): string {
   if (!known(value)) return UNKNOWN;
-  const text = fixed(scale * value, decimals);
-  return known(std) ? `${text} ± ${fixed(scale * std, decimals)}` : text;
+  if (!known(std)) return fixed(scale * value, decimals);
+  // a small deviation has one digit at least
+  const digits = std > 0 ? Math.max(decimals, Math.min(Math.ceil(-Math.log10(scale * std)), 9)) : decimals;
+  return `${fixed(scale * value, digits)} ± ${fixed(scale * std, digits)}`;
 }
 
 /** Hertz with four decimals. */

@@ -107,6 +107,7 @@ export const readX = (plot: PlotData, x: number, span: number): string =>
 
 /** Places of an axis that people count in. */
 export function ticksOf([low, high]: Range, most: number, log = false): number[] {
+  if (!(high > low) || !Number.isFinite(high - low) || (log && low <= 0)) return []; // as before there are data
   if (log) {
     const found = [];
     for (let p = Math.floor(Math.log10(low)); p <= Math.log10(high); p++)

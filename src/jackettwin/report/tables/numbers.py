@@ -61,8 +61,11 @@ def rounded_percent(share: float) -> str:
 def _with_std(value: float | None, std: float | None, scale: float, decimals: int) -> str:
     if value is None or not math.isfinite(value):
         return UNKNOWN
-    text = fixed(scale * value, decimals)
-    return text if std is None or not math.isfinite(std) else f"{text} ± {fixed(scale * std, decimals)}"
+    if std is None or not math.isfinite(std):
+        return fixed(scale * value, decimals)
+    if std > 0.0:  # a small deviation has one digit at least
+        decimals = max(decimals, min(math.ceil(-math.log10(scale * std)), 9))
+    return f"{fixed(scale * value, decimals)} ± {fixed(scale * std, decimals)}"
 
 
 def interval(low_high: tuple[float, float] | None, scale: float, decimals: int) -> str:
