@@ -40,7 +40,7 @@ COMMANDS = (
     "watch table.csv --columns f1,f2,f3 --conditions none --out watched",
 )
 SHOTS = (
-    Shot("report", "demo/report.html", None, 1000, 920),
+    Shot("report", "demo/report.html", None, 1280, 1200),
     Shot("structure", "view.html", None, 1000, 760),
     Shot("supports", "law.html", "store and lose", 1000),
     Shot("soil", "soil.html", "bear sideways"),
