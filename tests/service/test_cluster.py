@@ -46,6 +46,7 @@ def test_a_worker_has_loaded_what_it_needs_before_its_first_task(compute: Worker
 
 def test_waiting_for_a_worker_is_not_the_tasks_time(compute: WorkerCluster) -> None:
     """Half a second before it begins and half a second of its own: less than its 0.8 s."""
+    compute.submit(os.getpid).result(timeout=60)  # the worker is there
     compute.submit(time.sleep, 0.5)
     begin = time.monotonic()
     assert compute.result(compute.submit(time.sleep, 0.5), 0.8) is None
