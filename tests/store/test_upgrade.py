@@ -121,7 +121,7 @@ def _backup_of(schema: str, folder: Path) -> Path:
             if table.name in ("servers", "alembic_version"):
                 continue
             rows = connection.execute(select(table)).mappings().all()
-            lines = [{k: backup._plain(v) for k, v in row.items()} for row in rows]
+            lines = [{k: backup.plain_value(v) for k, v in row.items()} for row in rows]
             content = "".join(json.dumps(line) + "\n" for line in lines)
             backup._add(out, f"tables/{table.name}.jsonl", content.encode())
             counts[table.name] = len(lines)

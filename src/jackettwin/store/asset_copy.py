@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import base64
 import json
 import lzma
-from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Column, Connection, LargeBinary, Table, insert, select
+from sqlalchemy import Column, Connection, Table, insert, select
 
 from jackettwin.store import tables
+from jackettwin.store.backup import plain_value, stored_value
 
 _TABLES = (
     tables.assets,
@@ -40,7 +39,7 @@ def copy_out(connection: Connection, asset: str) -> Rows:
 
 def write_copy(rows: Rows) -> bytes:
     """Return rows as compressed lines of JSON, the same bytes for the same rows."""
-    lines = [json.dumps([name, *map(_plain, row.values())]) for name in rows for row in rows[name]]
+    lines = [json.dumps([name, *map(plain_value, row.values())]) for name in rows for row in rows[name]]
     return lzma.compress("\n".join(lines).encode(), preset=9)
 
 
@@ -50,7 +49,7 @@ def read_copy(copy: bytes) -> Rows:
     for line in lzma.decompress(copy).decode().splitlines():
         name, *values = json.loads(line)
         columns = _columns(tables.metadata.tables[name])
-        row = {c.name: _stored(c, value) for c, value in zip(columns, values, strict=True)}
+        row = {c.name: stored_value(c, value) for c, value in zip(columns, values, strict=True)}
         found.setdefault(name, []).append(row)
     return found
 
@@ -65,15 +64,3 @@ def copy_in(connection: Connection, rows: Rows) -> None:
 def _columns(table: Table) -> list[Column[Any]]:
     """Return the columns but the number of a row, which belongs to a store."""
     return [column for column in table.c if column.name != "id"]
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, datetime):
-        return value.isoformat()
-    return base64.b64encode(value).decode() if isinstance(value, bytes) else value
-
-
-def _stored(column: Column[Any], plain: Any) -> Any:
-    if plain is not None and isinstance(column.type, tables.Utc):
-        return datetime.fromisoformat(plain)
-    return base64.b64decode(plain) if plain is not None and isinstance(column.type, LargeBinary) else plain

@@ -195,22 +195,27 @@ def _lines(
     stored = [type_coerce(c, LargeBinary).label(c.name) if isinstance(c.type, Packed) else c for c in table.c]
     rows = select(*stored).order_by(*order).execution_options(yield_per=_ROWS)
     for row in connection.execute(rows):
-        plain = {name: _plain(value) for name, value in row._mapping.items()}
+        plain = {name: plain_value(value) for name, value in row._mapping.items()}
         day = _day_of(plain) if table is tables.observations else ""
         yield day, json.dumps(plain, ensure_ascii=False).encode() + b"\n"
 
 
-def _plain(value: Any) -> Any:
+def plain_value(value: Any) -> Any:
+    """Return a stored value as JSON has it: times as text, bytes in base64."""
     if isinstance(value, datetime):
         return value.isoformat()
     return base64.b64encode(value).decode() if isinstance(value, bytes) else value
 
 
-def _value(table: Table, name: str, plain: Any) -> Any:
-    kind = table.c[name].type
-    if plain is not None and isinstance(kind, DateTime):
+def stored_value(column: Column[Any], plain: Any) -> Any:
+    """Return a value for a column from what :func:`plain_value` made of it."""
+    if plain is None:
+        return None
+    if isinstance(column.type, tables.Utc):
+        return datetime.fromisoformat(plain)
+    if isinstance(column.type, DateTime):  # of a table as the database describes it, which knows no zones
         return datetime.fromisoformat(plain).astimezone(UTC).replace(tzinfo=None)
-    return base64.b64decode(plain) if plain is not None and isinstance(kind, LargeBinary) else plain
+    return base64.b64decode(plain) if isinstance(column.type, LargeBinary) else plain
 
 
 def _add(archive: tarfile.TarFile, name: str, content: bytes) -> None:
@@ -241,7 +246,7 @@ def _insert(connection: Connection, table: Table, archive: tarfile.TarFile, days
     rows, count = (json.loads(line) for line in stream or ()), 0
     if table.name == tables.observations.name and days is not None:
         rows = (row for row in rows if _day_of(row) in days)
-    while part := [{k: _value(table, k, v) for k, v in row.items()} for row in islice(rows, _ROWS)]:
+    while part := [{k: stored_value(table.c[k], v) for k, v in row.items()} for row in islice(rows, _ROWS)]:
         connection.execute(insert(table), part)
         count += len(part)
     return count
