@@ -47,6 +47,8 @@ class JointPlan:
     braces : the ends that stand on it
     across : (n_braces, 3) unit vectors from the chord, normal to it
     joints : shape of each brace's joint
+    centre_m, half_m : (n_braces,) where braces meet the chord's wall, along the chord from the node, and half
+        the length over which they do
     """
 
     node: str
@@ -54,6 +56,8 @@ class JointPlan:
     braces: tuple[MemberEnd, ...]
     across: FloatArray
     joints: tuple[Joint, ...]
+    centre_m: FloatArray
+    half_m: FloatArray
 
 
 @dataclass(frozen=True)
@@ -161,7 +165,7 @@ def _plan(
         gap = float(gaps[beside].max()) if beside.any() else np.nan
         shape = e.section.outer_diameter_m, e.section.thickness_m, float(theta[i])
         joints.append(Joint(D, T, *shape, f_y, f_y, gap))
-    return JointPlan(node, chord, braces, across, tuple(joints))
+    return JointPlan(node, chord, braces, across, tuple(joints), centre, half)
 
 
 def joint_uses(

@@ -169,10 +169,7 @@ def _three(plan: JointPlan, i: int) -> tuple[tuple[int, int, int], tuple[float, 
     beside = np.flatnonzero(plan.across @ plan.across[i] > IN_PLANE)
     if beside.size != _OF_KT:
         return None
-    line, joints = plan.chord[0].away, plan.joints
-    cosine = np.array([float(end.away @ line) for end in plan.braces])
-    centre = np.array([0.5 * j.D / np.tan(j.theta) for j in joints]) * np.sign(cosine)
-    half = np.array([0.5 * j.d / np.sin(j.theta) for j in joints])
+    centre, half = plan.centre_m, plan.half_m
     a, b, c = (int(j) for j in beside[np.argsort(centre[beside], kind="stable")])
     first, second = (float(centre[q] - half[q] - centre[p] - half[p]) for p, q in ((a, b), (b, c)))
     return (a, b, c), (first, second)
