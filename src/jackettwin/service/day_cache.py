@@ -5,15 +5,11 @@ from __future__ import annotations
 from collections import OrderedDict
 from dataclasses import dataclass
 from threading import Lock
-from typing import TYPE_CHECKING
 
 from sqlalchemy import Connection
 
 from jackettwin.service import workers
 from jackettwin.store import assets, results
-
-if TYPE_CHECKING:
-    pass
 
 _MOST = 2048
 """Number of turbines in the cache, of some kilobytes each: more than a farm has."""

@@ -163,8 +163,8 @@ def keep_days(connection: Connection, asset: str, model_hash: str, before: datet
 
 def forget_day(connection: Connection, asset: str, model_hash: str, time: datetime) -> None:
     """Delete what is kept of the day of a time, whose rows change."""
-    same = {"asset": asset, "model_hash": model_hash, "day": (time - _EPOCH).days}
-    connection.execute(delete(mode_days).where(*(mode_days.c[name] == value for name, value in same.items())))
+    day = (time - _EPOCH).days
+    connection.execute(delete(mode_days).filter_by(asset=asset, model_hash=model_hash, day=day))
 
 
 def _midnight(day: int) -> datetime:
