@@ -37,7 +37,7 @@ from rotor_forces import aero_files
 from jackettwin.loads import Linearised, OperatingPoint, operating_point, read_rotor
 from jackettwin.records.readers.openfast import read_text
 from jackettwin.response.superelement.files import write_superelement
-from jackettwin.simulate import Asset as StandingAsset, asset_model, modes_at_work
+from jackettwin.simulate import Asset as StandingAsset, asset_model, modes_with_rotor
 
 WINDS = (4.0, 8.0, 12.0, 16.0, 20.0, 25.0)
 DURATION_S, OFFSET_M, STEP_S = 45.0, 0.3, 0.02
@@ -84,7 +84,7 @@ def introduction() -> list[str]:
         "AeroDyn files: OpenFAST 5.0.0, blade element momentum with Øye's dynamic wake (`DBEMT_Mod 2`),",
         "the skewed wake and unsteady aerodynamics (`UA_Mod 3`), steady uniform wind, rotor speed and pitch",
         "fixed at the values of jackettwin, tower displaced by 0.3 m and released. ζ is the whole mode's.",
-        "*Ours*: `modes_at_work`, the shaft locked in both. Bars: fore-aft ζ within 10 %, side-side 15 %.",
+        "*Ours*: `modes_with_rotor`, the shaft locked in both. Bars: fore-aft ζ within 10 %, side-side 15 %.",
         "`OPENFAST=… IEA15=… python qualify/operation.py` writes this page; `OPERATION_RUNS=FILE` keeps the",
         "results of OpenFAST.",
         "",
@@ -106,7 +106,7 @@ def row(program: str, decks: Path, at: OperatingPoint, *, flexible: bool) -> str
     rotor, _ = read_rotor("iea15")
     asset = tower_inside(on_feet("at work", KELVIN_VOIGT, np.degrees(at.pitch)))
     still = asset_model(StandingAsset(asset.structure, asset.support))
-    mean, modes = modes_at_work(still, rotor, at, shaft="locked", bending=flexible)
+    mean, modes = modes_with_rotor(still, rotor, at, shaft="locked", bending=flexible)
     theirs = known(
         f"{at.wind_speed:g} m/s, {flexible}", lambda: measured(program, decks, asset, at, mean, flexible)
     )

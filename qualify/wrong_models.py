@@ -71,9 +71,9 @@ from jackettwin.updating import (
 )
 from jackettwin.updating.model_error.checks import OBJECTED
 from jackettwin.updating.posterior.identifiability import identifiability
+from jackettwin.updating.posterior.importance_sampling import weighted_draws
 from jackettwin.updating.posterior.laplace import log_covariance
 from jackettwin.updating.posterior.smc import sample_posterior
-from jackettwin.updating.posterior.weighted import weighted_draws
 from jackettwin.updating.search.descent import bottom
 
 MODES = ((1, 2, 3, 4), (1, 2, 3, 4, 5), (1, 2, 4, 5), (1, 2, 3, 4, 5, 6, 7))

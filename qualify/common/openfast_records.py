@@ -23,7 +23,7 @@ from jackettwin.loads import operating_point, read_rotor
 from jackettwin.loads.aerodynamics.turbulence import turbulence
 from jackettwin.loads.aerodynamics.wind import Wind
 from jackettwin.records.readers.openfast import read_text
-from jackettwin.simulate import Asset as StandingAsset, asset_model, modes_at_work
+from jackettwin.simulate import Asset as StandingAsset, asset_model, modes_with_rotor
 from jackettwin.soil import read_support, with_static_reactions
 from jackettwin.structure import Structure
 from jackettwin.structure.cut import at_interface
@@ -76,7 +76,7 @@ def made(program: str, decks: Path, folder: Path, asset: Asset, weather: Weather
         at = operating_point(rotor, control, weather.wind)
         pitch_deg, speed_rpm = float(np.degrees(at.pitch)), at.rotor_speed * 30.0 / np.pi
         still = on_feet("at work", feet, pitch_deg)
-        thrust = modes_at_work(
+        thrust = modes_with_rotor(
             asset_model(StandingAsset(still.structure, still.support)), rotor, at, shaft="locked"
         )[0].load
     standing = on_feet("a record's asset", feet, pitch_deg)

@@ -51,7 +51,7 @@ FAULTS = (
         ("a moved interface throws what is inside the other way", "states - motion.values @ M_ib.T", "states + motion.values @ M_ib.T"),
         ("waves that the coordinates follow count twice", "held_displacement(system, along.on_dofs) - followed", "held_displacement(system, along.on_dofs)"),
     )),
-    *_of("checks", "tests/checks/test_grouted.py", rows=(
+    *_of("checks", "tests/checks/test_grouted_joints.py", rows=(
         ("grout slides with another power of its stiffness", "self.radial_stiffness**0.6", "self.radial_stiffness**0.5"),
     )),
     *_of("twin", "tests/twin/test_record_damage.py", rows=(

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from jackettwin.answers import Answers, Span, answer
-from jackettwin.answers.averaged import averaged_ground
 from jackettwin.answers.fit import moved_by
+from jackettwin.answers.ground_average import averaged_ground
 from jackettwin.answers.next_steps import next_steps, records_for
 from jackettwin.answers.result import NORMAL_90
 from jackettwin.cli.update import _modes as modes_of_terminal

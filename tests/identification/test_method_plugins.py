@@ -12,10 +12,10 @@ import pytest
 from jackettwin.records import Channel, Record, write_record
 
 METHOD = """
-from jackettwin.identification import IdentificationSettings, OrderPoles, Prepared
+from jackettwin.identification import IdentificationSettings, OrderPoles, PreparedRecord
 from jackettwin.identification.pole_methods import by_ssi_dat
 
-def era(ready: Prepared, settings: IdentificationSettings) -> list[OrderPoles]:
+def era(ready: PreparedRecord, settings: IdentificationSettings) -> list[OrderPoles]:
     return by_ssi_dat(ready, settings)
 """
 ENTRY = "[jackettwin.identification_methods]\nera = other_method:era\n"

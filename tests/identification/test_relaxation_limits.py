@@ -12,7 +12,7 @@ from scipy import signal, stats
 from jackettwin.errors import InputError
 from jackettwin.identification import IdentificationSettings, ambient_limits, limits_document
 from jackettwin.identification.pole_methods import relaxations
-from jackettwin.identification.preparation.prepared import prepare
+from jackettwin.identification.preparation.prepared_record import prepare
 from jackettwin.identification.relaxation_limits import ALIKE, TRIALS, AmbientLimits, with_relaxation
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Channel, Record

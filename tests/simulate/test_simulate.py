@@ -10,7 +10,7 @@ from jackettwin.errors import InputError
 from jackettwin.records import read_record, write_record
 from jackettwin.response.motion.time import Hold, first_order_hold, march_with_feedback, state_space
 from jackettwin.simulate import loads_document, read_scenario, simulate
-from jackettwin.simulate.motion.driving import loads_on
+from jackettwin.simulate.motion.loads import loads_on
 from jackettwin.simulate.motion.model import aerodynamics
 from jackettwin.simulate.motion.motion import simulate_motion
 from jackettwin.simulate.motion.rotor_feedback import march_with_rotor

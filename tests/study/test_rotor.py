@@ -10,7 +10,7 @@ from observations import estimate, observation
 
 from jackettwin.loads import operating_point, read_rotor
 from jackettwin.response.condensation.numbered_modes import Status
-from jackettwin.simulate import Asset, asset_model, modes_at_work
+from jackettwin.simulate import Asset, asset_model, modes_with_rotor
 from jackettwin.soil import Prony, family, on_translations
 from jackettwin.structure import assemble
 from jackettwin.study.measurements import MeasuredMode
@@ -147,7 +147,7 @@ def test_a_twin_at_work_has_the_modes_of_the_rotor_at_work(config: TwinConfig, a
     support = on_translations(config.structure, Prony(k0=theta[0], c=theta[1]))
     rotor, control = read_rotor("iea15")
     still = asset_model(Asset(config.structure, support, gravity=True, rayleigh=config.rayleigh))
-    _, modes = modes_at_work(still, rotor, operating_point(rotor, control, 12.0), shaft="free")
+    _, modes = modes_with_rotor(still, rotor, operating_point(rotor, control, 12.0), shaft="free")
     true = {m.label: m for m in modes}
     works, stands, rotor_of = at_work
     works = replace(works, tie="all", update=works.update.model_copy(update={"priors": {}, "bounds": {}}))

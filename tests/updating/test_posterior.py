@@ -22,10 +22,10 @@ from jackettwin.updating import (
     support_model,
 )
 from jackettwin.updating.posterior.convergence import convergence
+from jackettwin.updating.posterior.importance_sampling import weighted_draws
 from jackettwin.updating.posterior.laplace import log_covariance
-from jackettwin.updating.posterior.nested import sample_nested
+from jackettwin.updating.posterior.nested_sampling import sample_nested
 from jackettwin.updating.posterior.smc import Posterior, _evaluate, _moved, gathered, sample_posterior
-from jackettwin.updating.posterior.weighted import weighted_draws
 from jackettwin.updating.prior import BoxPrior
 
 TRUTH = np.array([3e9, 0.15])

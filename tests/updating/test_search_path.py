@@ -9,7 +9,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.soil import family
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating import NuisanceParameters, Problem, Residuals, Target, joint, support_model
-from jackettwin.updating.search.damped import damped_least_squares
+from jackettwin.updating.search.levenberg_marquardt import damped_least_squares
 from jackettwin.updating.search.path import Path, creep, minimum, squares
 from jackettwin.updating.search.surrogate import Surrogate
 

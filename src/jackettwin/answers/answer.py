@@ -7,8 +7,8 @@ from typing import Literal
 
 import numpy as np
 
-from jackettwin.answers.averaged import averaged_ground
 from jackettwin.answers.fit import fit_answer
+from jackettwin.answers.ground_average import averaged_ground
 from jackettwin.answers.next_steps import next_steps, records_for
 from jackettwin.answers.result import (
     Answers,

@@ -4,7 +4,7 @@ from .calculation_sheet import (
     joint_sheet as joint_sheet,
 )
 from .columns import StraightRun as StraightRun, columns as columns
-from .grouted import (
+from .grouted_joints import (
     GroutedConnection as GroutedConnection,
     GroutUse as GroutUse,
     grout_uses as grout_uses,

@@ -81,7 +81,7 @@ def operation_command(
     """
     from jackettwin.decks import read_structure
     from jackettwin.loads import Wind, read_rotor, read_schedule
-    from jackettwin.simulate import LEFT_OUT, Asset, asset_model, at_work, work_row
+    from jackettwin.simulate import LEFT_OUT, Asset, asset_model, operating_asset, operating_row
     from jackettwin.structure import assemble
 
     speeds = _speeds(wind)
@@ -97,7 +97,7 @@ def operation_command(
     rows = []
     for speed in speeds:
         with working(f"the rotor in operation at {speed:g} m/s"), located(field="--wind"):
-            found = at_work(
+            found = operating_asset(
                 asset,
                 machine,
                 control,
@@ -106,7 +106,7 @@ def operation_command(
                 seed=None if intensity == 0.0 else seed,
                 model=model,
             )
-        rows.append(work_row(found, blades=machine.n_blades))
+        rows.append(operating_row(found, blades=machine.n_blades))
     document = {
         "structure": stands.name,
         "rotor": rotor,

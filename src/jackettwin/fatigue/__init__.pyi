@@ -20,7 +20,7 @@ from .environment import models_at_height as models_at_height
 from .hot_spots import POSITIONS as POSITIONS, SIDES as SIDES, hot_spot_matrix as hot_spot_matrix
 from .joint_life import HotSpot as HotSpot, JointStresses as JointStresses, joint_stresses as joint_stresses
 from .life import YEAR_S as YEAR_S, LifeModel as LifeModel, SpotLife as SpotLife
-from .remaining import RemainingLife as RemainingLife
+from .remaining_life import RemainingLife as RemainingLife
 from .spectral import dirlik as dirlik, tovo_benasciutti as tovo_benasciutti
 from .tube_life import TubeLife as TubeLife, read_details as read_details, tube_lives as tube_lives
 from .tube_welds import (

@@ -17,7 +17,7 @@ from .limits import (
 )
 from .plausible import refuse_tiny as refuse_tiny
 from .schema import Placed as Placed, Schema as Schema, one_of as one_of, validate as validate
-from .shipped import find_file as find_file, shipped as shipped
+from .shipped_files import find_file as find_file, shipped as shipped
 from .stored_schema import DIGITS as DIGITS, StoredSchema as StoredSchema, digest as digest
 from .windio import Part as Part, WindIO as WindIO, windio as windio
 from .yaml import (

@@ -33,7 +33,7 @@ from .mode_shapes import mac as mac
 from .picks import Pick as Pick, parse_picks as parse_picks, refuse_strangers as refuse_strangers
 from .pole_methods import PoleMethod as PoleMethod
 from .preger import identify_setups as identify_setups, preger_document as preger_document
-from .preparation.prepared import Prepared as Prepared
+from .preparation.prepared_record import PreparedRecord as PreparedRecord
 from .record_steps import moving_channels as moving_channels
 from .relaxation_limits import AmbientLimits as AmbientLimits, ambient_limits as ambient_limits
 from .settings import IdentificationSettings as IdentificationSettings

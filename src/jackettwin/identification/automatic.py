@@ -18,14 +18,14 @@ from jackettwin.identification.peaks_above import peaks_above
 from jackettwin.identification.picks import Pick, of_record
 from jackettwin.identification.pole_methods import relaxations, uncertain
 from jackettwin.identification.preparation.components import components, expand_to_all_channels
-from jackettwin.identification.preparation.prepared import prepare
+from jackettwin.identification.preparation.prepared_record import prepare
 from jackettwin.identification.preparation.resolve import with_orders
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.preparation.whitening import as_measured, left_to_differentiate
 from jackettwin.identification.quiet_bands import candidates_of, searched, with_quiet_bands
 from jackettwin.identification.selection.choice import chosen_modes, clear_damping_doubts, screened_choice
 from jackettwin.identification.selection.light_damping import with_damping_likelihoods
-from jackettwin.identification.selection.picked import left_out, picked_clusters, with_verdicts
+from jackettwin.identification.selection.picks import left_out, picked_clusters, with_verdicts
 from jackettwin.identification.selection.screening import evidence
 from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.identification.status import ModeStatus
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from jackettwin.arrays import FloatArray
     from jackettwin.identification.decays.free_decay import Transient
-    from jackettwin.identification.preparation.prepared import Prepared
+    from jackettwin.identification.preparation.prepared_record import PreparedRecord
     from jackettwin.identification.selection.candidates import Candidate
     from jackettwin.identification.selection.choice import Choice
     from jackettwin.records import Record
@@ -184,7 +184,7 @@ def _decay(
 
 
 def _with_likelihoods(
-    chosen: Choice, y: FloatArray, ready: Prepared, settings: IdentificationSettings
+    chosen: Choice, y: FloatArray, ready: PreparedRecord, settings: IdentificationSettings
 ) -> Choice:
     """Return the modes, the lightly damped ones with the likelihood of their damping."""
     if not (settings.refine and uncertain(settings)):
@@ -194,7 +194,7 @@ def _with_likelihoods(
     return replace(chosen, modes=with_damping_likelihoods(chosen.modes, y, rate, ready.scale, kinds))
 
 
-def _with_picked_orders(ready: Prepared, picks: Sequence[Pick]) -> Prepared:
+def _with_picked_orders(ready: PreparedRecord, picks: Sequence[Pick]) -> PreparedRecord:
     """Return a prepared record whose model orders include those of the picks."""
     orders = [pick.order for pick in picks if pick.order is not None]
     return replace(ready, settings=with_orders(ready.settings, orders)) if orders else ready

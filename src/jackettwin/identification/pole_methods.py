@@ -28,7 +28,7 @@ from jackettwin.plugins import plugins
 
 if TYPE_CHECKING:
     from jackettwin.identification.estimate import RealPole, Stabilisation
-    from jackettwin.identification.preparation.prepared import Prepared
+    from jackettwin.identification.preparation.prepared_record import PreparedRecord
     from jackettwin.identification.settings import IdentificationSettings
 
 FEWEST_BLOCKS = 5
@@ -42,7 +42,7 @@ PLSCF_WINDOWS = 2
 """Lags of the half spectra, over the lag window of SSI: a resolution of half a line of the lowest mode."""
 
 
-PoleMethod = Callable[["Prepared", "IdentificationSettings"], list[OrderPoles]]
+PoleMethod = Callable[["PreparedRecord", "IdentificationSettings"], list[OrderPoles]]
 """Identification method: function from a prepared record and settings to the poles of every model order."""
 
 
@@ -59,14 +59,14 @@ def pole_method(name: str) -> PoleMethod:
     return cast(PoleMethod, look_up(plugins(PLUGINS), name, "identification method", field="method"))
 
 
-def poles_of(ready: Prepared, settings: IdentificationSettings) -> Stabilisation:
+def poles_of(ready: PreparedRecord, settings: IdentificationSettings) -> Stabilisation:
     """Return the poles of all orders, with their uncertainty if the method propagates it."""
     poles = pole_method(settings.method)(ready, settings)
     rate, band = ready.settings.sample_rate_hz, guarded_band_hz(ready.settings)
     return stabilisation(poles, settings, sample_rate_hz=rate, band_hz=band, scale=ready.scale)
 
 
-def by_plscf(ready: Prepared, settings: IdentificationSettings) -> list[OrderPoles]:
+def by_plscf(ready: PreparedRecord, settings: IdentificationSettings) -> list[OrderPoles]:
     """Return the poles by pLSCF on half spectra."""
     resolved, (low, high) = ready.settings, guarded_band_hz(ready.settings)
     lags = covariances(ready.y, PLSCF_WINDOWS * 2 * resolved.block_rows)[:, :, ready.references]
@@ -74,7 +74,7 @@ def by_plscf(ready: Prepared, settings: IdentificationSettings) -> list[OrderPol
     return plscf_poles(lags, resolved.orders, band=(low / rate, high / rate))
 
 
-def by_ssi_dat(ready: Prepared, settings: IdentificationSettings) -> list[OrderPoles]:
+def by_ssi_dat(ready: PreparedRecord, settings: IdentificationSettings) -> list[OrderPoles]:
     """Return the poles by data-driven SSI."""
     resolved = ready.settings
     subspace = ssi_dat(
@@ -86,7 +86,7 @@ def by_ssi_dat(ready: Prepared, settings: IdentificationSettings) -> list[OrderP
     return order_poles(subspace, subspace.orders(resolved.orders))
 
 
-def by_ssi_cov(ready: Prepared, settings: IdentificationSettings) -> list[OrderPoles]:
+def by_ssi_cov(ready: PreparedRecord, settings: IdentificationSettings) -> list[OrderPoles]:
     """Return the poles by covariance-driven SSI, with their uncertainty unless disabled."""
     rate, band = ready.settings.sample_rate_hz, guarded_band_hz(ready.settings)
     subspace = _subspace(ready, settings)
@@ -97,7 +97,7 @@ def by_ssi_cov(ready: Prepared, settings: IdentificationSettings) -> list[OrderP
     return order_poles_with_uncertainty(shared, orders, keep=lambda mu: admissible(mu, settings, rate, band))
 
 
-def relaxations(ready: Prepared, settings: IdentificationSettings) -> tuple[RealPole, ...]:
+def relaxations(ready: PreparedRecord, settings: IdentificationSettings) -> tuple[RealPole, ...]:
     """Return the poles that do not oscillate.
 
     Raises
@@ -132,7 +132,7 @@ def uncertain(settings: IdentificationSettings) -> bool:
     return settings.blocks >= FEWEST_BLOCKS and variant == ("ssi-cov", "br", "shift")
 
 
-def _subspace(ready: Prepared, settings: IdentificationSettings, every: int | None = None) -> Subspace:
+def _subspace(ready: PreparedRecord, settings: IdentificationSettings, every: int | None = None) -> Subspace:
     resolved = ready.settings
     return ssi_cov(
         covariances(ready.y, 2 * resolved.block_rows)[:, :, ready.references],
@@ -145,7 +145,7 @@ def _subspace(ready: Prepared, settings: IdentificationSettings, every: int | No
     )
 
 
-def _every(ready: Prepared) -> int:
+def _every(ready: PreparedRecord) -> int:
     """Return the samples between instruments: one if few would be left.
 
     It is also one for displacements, in which relaxations are strong and would hide modes with half the
@@ -158,7 +158,7 @@ def _every(ready: Prepared) -> int:
 
 
 def _propagation(
-    ready: Prepared, subspace: Subspace, settings: IdentificationSettings, every: int | None = None
+    ready: PreparedRecord, subspace: Subspace, settings: IdentificationSettings, every: int | None = None
 ) -> Propagation:
     rows, every = ready.settings.block_rows, _every(ready) if every is None else every
     blocks = block_covariances(ready.y, 2 * rows, settings.blocks)[..., ready.references]

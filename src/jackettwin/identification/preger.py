@@ -18,7 +18,7 @@ from jackettwin.identification.estimate import Identification, Spectrum
 from jackettwin.identification.examination import doubted, made_ready
 from jackettwin.identification.many_records.setups import WEAK_CONNECTION, add_channels, tie
 from jackettwin.identification.mode_shapes import mac
-from jackettwin.identification.preparation.prepared import prepare
+from jackettwin.identification.preparation.prepared_record import prepare
 from jackettwin.identification.preparation.resolve import guarded_band_hz
 from jackettwin.identification.selection.candidates import beside_tones, candidates
 from jackettwin.identification.selection.clustering import clusters
@@ -37,7 +37,7 @@ from jackettwin.records import Channel, FileDefaults, Record, read_record, with_
 
 if TYPE_CHECKING:
     from jackettwin.identification.estimate import ModalEstimate, ResolvedSettings, Stabilisation
-    from jackettwin.identification.preparation.prepared import Prepared
+    from jackettwin.identification.preparation.prepared_record import PreparedRecord
 
 
 TWICE_HALF_BANDWIDTHS, TWICE_MAC = 1.5, 0.5
@@ -47,7 +47,7 @@ mode's peak: two directions of a tower, of which one is damped by the rotor, mov
 
 @dataclass(frozen=True)
 class _Setups:
-    """Prepared setups in one unit of each channel.
+    """PreparedRecord setups in one unit of each channel.
 
     Attributes
     ----------
@@ -60,7 +60,7 @@ class _Setups:
         Channels of all setups that serve as references.
     """
 
-    ready: tuple[Prepared, ...]
+    ready: tuple[PreparedRecord, ...]
     channels: tuple[Channel, ...]
     scale: FloatArray
     references: tuple[str, ...]
@@ -238,7 +238,7 @@ def _setups(records: Sequence[Record], settings: IdentificationSettings) -> _Set
     )
 
 
-def _alike(records: Sequence[Record], settings: IdentificationSettings) -> list[Prepared]:
+def _alike(records: Sequence[Record], settings: IdentificationSettings) -> list[PreparedRecord]:
     """Prepare the setups with one band, in which the lowest mode of each lies, and one lag window."""
     ready = [prepare(record, settings) for record in records]
     bands = {(one.settings.lowest_frequency_hz, one.settings.highest_frequency_hz) for one in ready}
@@ -263,7 +263,7 @@ def _alike(records: Sequence[Record], settings: IdentificationSettings) -> list[
 
 
 def _references(
-    ready: Sequence[Prepared], records: Sequence[Record], settings: IdentificationSettings
+    ready: Sequence[PreparedRecord], records: Sequence[Record], settings: IdentificationSettings
 ) -> tuple[str, ...]:
     """Return the references: those chosen, or all channels that every setup has."""
     common = [

@@ -30,7 +30,7 @@ from jackettwin.records.processing.filters import lowpass_taps, resample
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from jackettwin.identification.preparation.prepared import Prepared
+    from jackettwin.identification.preparation.prepared_record import PreparedRecord
     from jackettwin.identification.selection.candidates import Candidate
     from jackettwin.identification.selection.clustering import Cluster
     from jackettwin.identification.settings import IdentificationSettings
@@ -58,7 +58,7 @@ class PoleSearch:
     bands: tuple[QuietBand, ...] = ()
 
 
-def searched(ready: Prepared, settings: IdentificationSettings) -> PoleSearch:
+def searched(ready: PreparedRecord, settings: IdentificationSettings) -> PoleSearch:
     """Return poles and candidates of the prepared samples."""
     poles = poles_of(ready, settings)
     resolved = ready.settings
@@ -75,7 +75,7 @@ def candidates_of(
     poles: Stabilisation,
     found: Sequence[Cluster],
     tones: Tones,
-    ready: Prepared,
+    ready: PreparedRecord,
     settings: IdentificationSettings,
 ) -> list[Candidate]:
     """Apply the hard criteria to clusters of poles of the prepared samples."""
@@ -89,7 +89,9 @@ def candidates_of(
     )
 
 
-def with_quiet_bands(first: PoleSearch, ready: Prepared, settings: IdentificationSettings) -> PoleSearch:
+def with_quiet_bands(
+    first: PoleSearch, ready: PreparedRecord, settings: IdentificationSettings
+) -> PoleSearch:
     """Return the search extended by further bands."""
     spectrum = welch(first.tones.clean, ready.settings.sample_rate_hz)
     out, above = first, 0.0
@@ -104,7 +106,7 @@ def with_quiet_bands(first: PoleSearch, ready: Prepared, settings: Identificatio
     return out
 
 
-def _explained(peak_hz: float, line_hz: float, search: PoleSearch, ready: Prepared) -> bool:
+def _explained(peak_hz: float, line_hz: float, search: PoleSearch, ready: PreparedRecord) -> bool:
     """Return whether a peak is outside the band or explained by a mode or tone."""
     resolved, tones = ready.settings, search.tones
     if not resolved.lowest_frequency_hz < peak_hz < resolved.highest_frequency_hz:
@@ -118,7 +120,7 @@ def _explained(peak_hz: float, line_hz: float, search: PoleSearch, ready: Prepar
     return any(low < peak_hz < high for low, high in ranges)
 
 
-def _above(ready: Prepared, low_hz: float) -> Prepared:
+def _above(ready: PreparedRecord, low_hz: float) -> PreparedRecord:
     """Return the samples high-passed at a band's lower edge, scaled to unit variance."""
     rate = ready.settings.sample_rate_hz
     fast = ready.y - resample(ready.y, lowpass_taps(TRANSITION * low_hz / rate, low_hz / rate))
@@ -135,7 +137,9 @@ def _above(ready: Prepared, low_hz: float) -> Prepared:
     return replace(ready, y=fast / scale[:, None], scale=ready.scale * scale, settings=settings)
 
 
-def _joined(out: PoleSearch, ready: Prepared, high_hz: float, settings: IdentificationSettings) -> PoleSearch:
+def _joined(
+    out: PoleSearch, ready: PreparedRecord, high_hz: float, settings: IdentificationSettings
+) -> PoleSearch:
     """Return the search with those of another band; of two for one mode, the less doubtful is used."""
     more, offset = searched(ready, settings), len(out.poles.order)
     if not len(more.poles.order):
@@ -158,7 +162,7 @@ def _joined(out: PoleSearch, ready: Prepared, high_hz: float, settings: Identifi
     )
 
 
-def _tones(known: Tones, more: Tones, ready: Prepared, offset: int) -> Tones:
+def _tones(known: Tones, more: Tones, ready: PreparedRecord, offset: int) -> Tones:
     """Return the tones of both searches, and all samples without the new ones."""
     clean, new = known.clean, [t for t in more.drifting if not any(t is k for k in known.drifting)]
     for tone in new:

@@ -20,11 +20,11 @@ from jackettwin.arrays import FloatArray
 from jackettwin.identification.decays.relaxations import POWER
 from jackettwin.identification.pole_methods import relaxations
 from jackettwin.identification.preparation.components import components
-from jackettwin.identification.preparation.prepared import prepare
+from jackettwin.identification.preparation.prepared_record import prepare
 from jackettwin.progress import SILENT, Progress
 
 if TYPE_CHECKING:
-    from jackettwin.identification.preparation.prepared import Prepared
+    from jackettwin.identification.preparation.prepared_record import PreparedRecord
     from jackettwin.identification.settings import IdentificationSettings
     from jackettwin.records import Record
 
@@ -139,7 +139,11 @@ def with_relaxation(
 
 
 def _limit(
-    ready: Prepared, settings: IdentificationSettings, rate: float, trials: int, rng: np.random.Generator
+    ready: PreparedRecord,
+    settings: IdentificationSettings,
+    rate: float,
+    trials: int,
+    rng: np.random.Generator,
 ) -> AmbientLimit:
     """Return the limit at one rate; each trial is made at the most informative amplitude."""
     sizes: list[float] = []

@@ -1,9 +1,3 @@
-from .at_work import (
-    LEFT_OUT as LEFT_OUT,
-    at_work as at_work,
-    modes_at_work as modes_at_work,
-    work_row as work_row,
-)
 from .batch import pending_cases as pending_cases, record_path as record_path, run_set as run_set
 from .combinations import (
     combined_uses as combined_uses,
@@ -16,6 +10,12 @@ from .interface_motion import (
 )
 from .members import scenario_uses as scenario_uses, water_notes as water_notes
 from .motion.model import asset_model as asset_model
+from .operating_modes import (
+    LEFT_OUT as LEFT_OUT,
+    modes_with_rotor as modes_with_rotor,
+    operating_asset as operating_asset,
+    operating_row as operating_row,
+)
 from .record import Simulation as Simulation, simulate as simulate
 from .recovery import FORCES_LEFT_OUT as FORCES_LEFT_OUT, recovered as recovered
 from .resultant import loads_document as loads_document

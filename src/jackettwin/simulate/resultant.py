@@ -11,7 +11,7 @@ from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.caveats import Omission, omission_documents
 from jackettwin.errors import InputError
 from jackettwin.loads import Water, morison_points, resultant_columns, water_weights
-from jackettwin.simulate.breaking import breaking_document
+from jackettwin.simulate.breaking_waves import breaking_document
 from jackettwin.simulate.motion.model import aerodynamics
 from jackettwin.simulate.motion.water import water_ends, water_loads, water_points, wave_field
 from jackettwin.simulate.motion.wind import rotor_loads_in, tower_loads, tower_points, wind_field

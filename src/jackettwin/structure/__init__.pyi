@@ -1,9 +1,3 @@
-from .adjusted import (
-    GROWTH_KG_M3 as GROWTH_KG_M3,
-    PROPERTIES as PROPERTIES,
-    adjusted as adjusted,
-    foot_stiffness as foot_stiffness,
-)
 from .assemble import Assembly as Assembly, assemble as assemble
 from .blades import BladeModes as BladeModes, BladeStructure as BladeStructure, blade_modes as blade_modes
 from .check import (
@@ -41,6 +35,12 @@ from .model import (
     Section as Section,
     Structure as Structure,
     Vector as Vector,
+)
+from .property_change import (
+    GROWTH_KG_M3 as GROWTH_KG_M3,
+    PROPERTIES as PROPERTIES,
+    adjusted as adjusted,
+    foot_stiffness as foot_stiffness,
 )
 from .rotor_modes import (
     FlexibleRotor as FlexibleRotor,

@@ -75,10 +75,10 @@ from .nuisance_parameters import (
     matrix_of as matrix_of,
 )
 from .posterior.identifiability import USABLE as USABLE, information as information
+from .posterior.importance_sampling import weighted_draws as weighted_draws
 from .posterior.laplace import laplace_draws as laplace_draws
 from .posterior.scatter import leg_scatter as leg_scatter
 from .posterior.smc import Posterior as Posterior
-from .posterior.weighted import weighted_draws as weighted_draws
 from .problem import Problem as Problem, State as State
 from .refined_quantity import Factor as Factor
 from .refinement import (

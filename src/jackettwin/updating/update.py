@@ -19,7 +19,7 @@ from jackettwin.updating.data.misfit import misfit
 from jackettwin.updating.model import ExactModes, SupportModel
 from jackettwin.updating.posterior.identifiability import Verdict, identifiability
 from jackettwin.updating.posterior.laplace import laplace_draws, log_covariance
-from jackettwin.updating.posterior.nested import sample_nested
+from jackettwin.updating.posterior.nested_sampling import sample_nested
 from jackettwin.updating.posterior.predictive import Missed, Predictive, predict_quantities
 from jackettwin.updating.posterior.smc import Posterior, sample_posterior
 from jackettwin.updating.problem import Problem

@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 
 from jackettwin.identification import IdentificationSettings, identify
+from jackettwin.identification.maximum_likelihood.band_fit import BandFit
 from jackettwin.identification.maximum_likelihood.fits import FitStart, accepted_fits
 from jackettwin.identification.maximum_likelihood.mode_drift import drifted, frequency_left, long_data_limits
-from jackettwin.identification.maximum_likelihood.refined import Refined
 from jackettwin.identification.synthetic import ModalSystem, simulate
 
 T = 600.0
 
 
-def refined(frequency_hz: float, damping_ratio: float, log_std: float) -> Refined:
-    return Refined(
+def refined(frequency_hz: float, damping_ratio: float, log_std: float) -> BandFit:
+    return BandFit(
         candidate=np.array([0]),
         frequency_hz=np.array([frequency_hz]),
         damping_ratio=np.array([damping_ratio]),

@@ -9,7 +9,7 @@ import pytest
 
 from jackettwin.identification import IdentificationSettings, identify, mac
 from jackettwin.identification.preparation.components import COMPONENTS, MAX_CHANNELS, components
-from jackettwin.identification.preparation.prepared import prepare
+from jackettwin.identification.preparation.prepared_record import prepare
 from jackettwin.identification.synthetic import ModalSystem, simulate
 
 N = 40

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from jackettwin.identification import IdentificationSettings, ModalEstimate, identify
-from jackettwin.identification.preparation.prepared import prepare
+from jackettwin.identification.preparation.prepared_record import prepare
 from jackettwin.identification.selection.screening import (
     PERIODS,
     Evidence,

@@ -19,7 +19,7 @@ from jackettwin.identification.frequency_domain.band_posterior import (
 )
 from jackettwin.identification.frequency_domain.fdd import no_poles, peaks, principal
 from jackettwin.identification.mode_shapes import aligned, mpc, mpd_rad, normalised
-from jackettwin.identification.preparation.prepared import prepare
+from jackettwin.identification.preparation.prepared_record import prepare
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.preparation.whitening import as_measured
 from jackettwin.identification.settings import IdentificationSettings

@@ -18,7 +18,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
 from jackettwin.identification.mode_shapes import aligned, mac, mpc, mpd_rad, normalised
-from jackettwin.identification.preparation.prepared import prepare
+from jackettwin.identification.preparation.prepared_record import prepare
 from jackettwin.identification.preparation.spectra import CLEAR_PEAK, welch
 from jackettwin.identification.preparation.whitening import as_measured
 from jackettwin.identification.settings import IdentificationSettings

@@ -19,7 +19,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from jackettwin.identification.maximum_likelihood.refined import Refined
+    from jackettwin.identification.maximum_likelihood.band_fit import BandFit
 
 
 EXTRA_DIRECTIONS = 3
@@ -68,7 +68,7 @@ def project(y: FloatArray, basis: FloatArray) -> FloatArray:
     return np.asarray(np.where(whole, basis.T @ np.where(whole, y, 0.0), np.nan))
 
 
-def expand_to_channels(fit: Refined, basis: FloatArray) -> Refined:
+def expand_to_channels(fit: BandFit, basis: FloatArray) -> BandFit:
     """Return a projected fit with its shapes expanded to all channels.
 
     Outside the span of the basis, the variance of a shape is set to that of its most certain direction.

@@ -18,9 +18,9 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.errors import NumericalError
 from jackettwin.findings import Finding
+from jackettwin.identification.maximum_likelihood.band_fit import BandFit
 from jackettwin.identification.maximum_likelihood.local_refinement import DITHER_SHARES, groups, refine_group
 from jackettwin.identification.maximum_likelihood.mode_drift import drifted
-from jackettwin.identification.maximum_likelihood.refined import Refined
 from jackettwin.identification.maximum_likelihood.refinement import refine
 
 if TYPE_CHECKING:
@@ -83,19 +83,19 @@ class AcceptedFit:
     Attributes
     ----------
     candidates : (n_candidates,) bool
-    modes : Refined
+    modes : BandFit
         Without those that drifted away from the mode they started from.
     """
 
     candidates: BoolArray
-    modes: Refined
+    modes: BandFit
 
 
 @dataclass(frozen=True)
 class _Attempt:
     """A fit, or the reason why it was rejected, and which candidates drifted, (n_candidates,) bool."""
 
-    fit: Refined | None
+    fit: BandFit | None
     drifted: BoolArray
     obstacle: str = ""
     converged: bool = False
@@ -171,7 +171,7 @@ def _shared_arguments(start: FitStart) -> dict[str, Any]:
     return {key: getattr(start, key) for key in SHARED_ARGUMENTS}
 
 
-def _attempt(fit: Callable[[], Refined], most: float, start: FitStart, duration_s: float) -> _Attempt:
+def _attempt(fit: Callable[[], BandFit], most: float, start: FitStart, duration_s: float) -> _Attempt:
     none = np.zeros(len(start.sure), dtype=bool)
     try:
         # an overflow shows in the result, which is checked below
@@ -205,7 +205,7 @@ def _attempt(fit: Callable[[], Refined], most: float, start: FitStart, duration_
     return _Attempt(refined, none, converged=True)
 
 
-def _finite(refined: Refined) -> bool:
+def _finite(refined: BandFit) -> bool:
     """Tell whether all numbers of a fit are finite and its variances positive."""
     numbers = (getattr(refined, name) for name in FIELDS_PER_MODE)
     variances = np.diagonal(refined.covariance, axis1=1, axis2=2)

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray
+from jackettwin.identification.maximum_likelihood.band_fit import BandFit
 from jackettwin.identification.maximum_likelihood.directions import directions, expand_to_channels, project
-from jackettwin.identification.maximum_likelihood.refined import Refined
 from jackettwin.identification.maximum_likelihood.refinement import NarrowBand, refine
 
 if TYPE_CHECKING:
@@ -91,7 +91,7 @@ def refine_group(
     avoid_hz: Sequence[tuple[float, float]] = (),
     dither_share: float = DITHER_SHARES[0],
     max_lack_of_fit: float = np.inf,
-) -> Refined:
+) -> BandFit:
     """Fit one group; parameters and candidate numbers are those of ``refine``.
 
     Many channels are projected onto the directions in which they move in the band (``directions.py``).

@@ -15,7 +15,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray
 
 if TYPE_CHECKING:
-    from jackettwin.identification.maximum_likelihood.refined import Refined
+    from jackettwin.identification.maximum_likelihood.band_fit import BandFit
 
 
 MAX_FREQUENCY_DRIFT = 3.0
@@ -48,7 +48,7 @@ def frequency_left(
 
 
 def drifted(
-    refined: Refined,
+    refined: BandFit,
     *,
     frequency_hz: FloatArray,
     damping_ratio: FloatArray,

@@ -24,8 +24,8 @@ from jackettwin.identification.maximum_likelihood.admission import (
     required_gain,
 )
 from jackettwin.identification.maximum_likelihood.background import with_background
+from jackettwin.identification.maximum_likelihood.band_fit import BandFit
 from jackettwin.identification.maximum_likelihood.periodogram import periodogram
-from jackettwin.identification.maximum_likelihood.refined import Refined
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -92,7 +92,7 @@ def refine(
     background: bool = False,
     narrow: NarrowBand | None = None,
     max_lack_of_fit: float = np.inf,
-) -> Refined:
+) -> BandFit:
     """Fit the sure candidates together and admit the doubtful ones that are needed.
 
     Parameters
@@ -193,7 +193,7 @@ def _result(
     chosen: Int64Array,
     gain: FloatArray,
     known: accuracy.Accuracy,
-) -> Refined:
+) -> BandFit:
     p = optimum.parameters
     n, n_channels = p.shapes.shape
     covariance = known.covariance
@@ -209,7 +209,7 @@ def _result(
         most = MAX_BIAS * np.sqrt(np.diagonal(log_covariance, axis1=1, axis2=2))
         bias = np.clip(accuracy.curvature_bias(data, p, known)[both], -most, most)
     wider = np.stack([np.ones(len(mode)), np.sqrt(1.0 + excess)], axis=1)
-    return Refined(
+    return BandFit(
         candidate=chosen[mode - p.n_fixed],
         frequency_hz=np.exp(p.log_f[mode] - bias[:, 0]),
         damping_ratio=np.exp(p.log_zeta[mode] - bias[:, 1]) / (1.0 + 0.5 * excess),
@@ -223,9 +223,9 @@ def _result(
     )
 
 
-def _abandoned(gain: FloatArray, n_channels: int, lack_of_fit: float) -> Refined:
+def _abandoned(gain: FloatArray, n_channels: int, lack_of_fit: float) -> BandFit:
     """Return a fit without modes."""
-    return Refined(
+    return BandFit(
         candidate=np.zeros(0, dtype=np.int64),
         frequency_hz=np.zeros(0),
         damping_ratio=np.zeros(0),

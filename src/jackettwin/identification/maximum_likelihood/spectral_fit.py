@@ -19,7 +19,7 @@ import numpy as np
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.identification.estimate import Spectrum
-from jackettwin.identification.preparation.prepared import prepare
+from jackettwin.identification.preparation.prepared_record import prepare
 from jackettwin.identification.preparation.spectra import SEGMENTS
 from jackettwin.identification.preparation.whitening import as_measured, left_to_differentiate
 from jackettwin.identification.settings import IdentificationSettings

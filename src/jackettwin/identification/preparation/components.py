@@ -24,7 +24,7 @@ from jackettwin.records import Channel
 
 if TYPE_CHECKING:
     from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
-    from jackettwin.identification.preparation.prepared import Prepared
+    from jackettwin.identification.preparation.prepared_record import PreparedRecord
     from jackettwin.identification.settings import IdentificationSettings
 
 
@@ -34,7 +34,9 @@ COMPONENTS = 12
 """Number of components."""
 
 
-def components(ready: Prepared, settings: IdentificationSettings) -> tuple[Prepared, FloatArray | None]:
+def components(
+    ready: PreparedRecord, settings: IdentificationSettings
+) -> tuple[PreparedRecord, FloatArray | None]:
     """Return the data to identify from, and the matrix (n_channels, n_components) that expands shapes.
 
     The channels themselves and None are returned if there are few channels, channels of several kinds, or
@@ -61,7 +63,7 @@ def components(ready: Prepared, settings: IdentificationSettings) -> tuple[Prepa
     return fewer, ready.scale[:, None] * U
 
 
-def expand_to_all_channels(found: Identification, ready: Prepared, basis: FloatArray) -> Identification:
+def expand_to_all_channels(found: Identification, ready: PreparedRecord, basis: FloatArray) -> Identification:
     """Return an identification from components with shapes and spectra at all channels."""
     rate = found.settings.sample_rate_hz
     return replace(

@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from jackettwin.identification.estimate import ModalEstimate, ResolvedSettings
-    from jackettwin.identification.maximum_likelihood.refined import Refined
-    from jackettwin.identification.preparation.prepared import Prepared
+    from jackettwin.identification.maximum_likelihood.band_fit import BandFit
+    from jackettwin.identification.preparation.prepared_record import PreparedRecord
     from jackettwin.identification.selection.candidates import Candidate, Tones
     from jackettwin.identification.selection.screening import Evidence
     from jackettwin.identification.settings import IdentificationSettings
@@ -74,7 +74,7 @@ class Choice:
 
 
 def chosen_modes(
-    judged: Sequence[Candidate], tones: Tones, ready: Prepared, settings: IdentificationSettings
+    judged: Sequence[Candidate], tones: Tones, ready: PreparedRecord, settings: IdentificationSettings
 ) -> Choice:
     """Refine the candidates and return those that are modes inside the band."""
     y, scale, resolved = tones.clean, ready.scale, ready.settings
@@ -197,7 +197,7 @@ def _about(refused: Rejected, mode: ModalEstimate) -> bool:
 def _start(
     modes: list[ModalEstimate],
     sure: BoolArray,
-    ready: Prepared,
+    ready: PreparedRecord,
     tones: Tones,
     settings: IdentificationSettings,
 ) -> FitStart:
@@ -226,7 +226,7 @@ def _lost_hz(tone_hz: float, duration_s: float) -> tuple[float, float]:
 
 
 def _refined_modes(
-    judged: Sequence[Candidate], open_to: list[int], refined: Refined, scale: FloatArray, duration_s: float
+    judged: Sequence[Candidate], open_to: list[int], refined: BandFit, scale: FloatArray, duration_s: float
 ) -> dict[int, ModalEstimate]:
     """Return the refined modes by candidate."""
     out = {}
@@ -284,7 +284,7 @@ def _sorted(
     )
 
 
-def _tones(ready: Prepared, resolved: ResolvedSettings) -> list[Rejected]:
+def _tones(ready: PreparedRecord, resolved: ResolvedSettings) -> list[Rejected]:
     low, high = guarded_band_hz(resolved)
     steady, drifting = "steady tone: one line of the periodogram; taken out", "drifting tone; taken out"
     found = [(f, steady) for f in ready.tones_hz]
@@ -293,7 +293,7 @@ def _tones(ready: Prepared, resolved: ResolvedSettings) -> list[Rejected]:
     return [Rejected(f, None, reason, _kind_of_tone(f, reason == steady, ready)) for f, reason in inside]
 
 
-def _kind_of_tone(frequency_hz: float, steady: bool, ready: Prepared) -> ModeStatus:
+def _kind_of_tone(frequency_hz: float, steady: bool, ready: PreparedRecord) -> ModeStatus:
     mains = steady and is_mains(frequency_hz, ready.recorded_hz, ready.duration_s)
     return ModeStatus.ELECTRICAL if mains else ModeStatus.TONE
 

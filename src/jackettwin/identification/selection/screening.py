@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from jackettwin.identification.estimate import ModalEstimate
-    from jackettwin.identification.preparation.prepared import Prepared
+    from jackettwin.identification.preparation.prepared_record import PreparedRecord
     from jackettwin.identification.selection.second_look import QuietBand
 
 Verdict = tuple[ModeStatus, Finding]
@@ -159,7 +159,7 @@ class Evidence:
 
 def evidence(
     y: FloatArray,
-    ready: Prepared,
+    ready: PreparedRecord,
     conditions: Mapping[str, Any],
     *,
     bands: Sequence[QuietBand] = (),

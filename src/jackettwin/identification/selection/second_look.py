@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from jackettwin.identification.estimate import ModalEstimate
-    from jackettwin.identification.preparation.prepared import Prepared
+    from jackettwin.identification.preparation.prepared_record import PreparedRecord
 
 WINDOW_RATIO = 0.6
 """Lag window of the second look over that of the first."""
@@ -31,7 +31,7 @@ SAME_FREQUENCY = 2.0
 class QuietBand:
     """Samples of a further band, and the range of frequency in which modes are taken from it [Hz]."""
 
-    ready: Prepared
+    ready: PreparedRecord
     taken_hz: tuple[float, float]
 
 
@@ -61,7 +61,9 @@ class SecondLook:
     band_hz: tuple[float, float]
 
 
-def second_look(y: FloatArray, ready: Prepared, band_hz: tuple[float, float] = (0.0, np.inf)) -> SecondLook:
+def second_look(
+    y: FloatArray, ready: PreparedRecord, band_hz: tuple[float, float] = (0.0, np.inf)
+) -> SecondLook:
     """Return the poles of a shorter lag window, without their uncertainty."""
     rate = ready.settings.sample_rate_hz
     rows = max(int(WINDOW_RATIO * ready.settings.block_rows), 3)

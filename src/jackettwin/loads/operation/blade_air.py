@@ -26,8 +26,8 @@ from jackettwin.loads.operation.bem import (
     ring_radius,
 )
 from jackettwin.loads.operation.dynamic_inflow import lift_share, wake_share
+from jackettwin.loads.operation.rotor_kinematics import ORDERS, in_plane, radial, rates, through
 from jackettwin.loads.operation.skewed_wake import redistributed
-from jackettwin.loads.operation.turning import ORDERS, in_plane, radial, rates, through
 
 _STEP_M_S = 0.01
 """Of velocity by which elements are differenced: within a tenth of the polars' spacing at the tip."""

@@ -15,7 +15,7 @@ from scipy.interpolate import interp1d
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.loads.aerodynamics.rotor import Rotor
-from jackettwin.loads.operation.turning import arms, blade_frames, prebend
+from jackettwin.loads.operation.rotor_kinematics import arms, blade_frames, prebend
 from jackettwin.structure import BladeModes, blade_modes
 
 MODES_PER_BLADE = 3

@@ -27,7 +27,7 @@ from jackettwin.loads.operation.blade_bending import (
     softening,
     turning_shapes,
 )
-from jackettwin.loads.operation.turning import (
+from jackettwin.loads.operation.rotor_kinematics import (
     AZIMUTH,
     PLACES,
     arms,

@@ -19,10 +19,10 @@ from jackettwin.response import (
     periodic_start,
     state_space,
 )
-from jackettwin.simulate.motion.driving import Loads, loads_on
 from jackettwin.simulate.motion.ground import EVALUATIONS, CyclicFeet
+from jackettwin.simulate.motion.loads import Loads, loads_on
 from jackettwin.simulate.motion.model import BAND_HZ, Model, TrueMode, true_modes
-from jackettwin.simulate.motion.pushing import Decrement, decrement, pushed, started
+from jackettwin.simulate.motion.pushes import Decrement, decrement, pushed, started
 from jackettwin.simulate.motion.rotor_feedback import march_with_rotor
 from jackettwin.simulate.scenario.scenario import Scenario, in_words_of
 

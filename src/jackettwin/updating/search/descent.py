@@ -9,7 +9,7 @@ from scipy.optimize import minimize
 
 from jackettwin.arrays import FloatArray
 from jackettwin.updating.problem import Found, Problem
-from jackettwin.updating.search.damped import Rows
+from jackettwin.updating.search.levenberg_marquardt import Rows
 from jackettwin.updating.search.path import Path, Trail, creep, minimum
 
 _POINT = 0.02

@@ -14,7 +14,7 @@ from scipy.optimize import least_squares
 
 from jackettwin.arrays import FloatArray
 from jackettwin.updating.problem import Found, Problem
-from jackettwin.updating.search.damped import Rows, damped_least_squares
+from jackettwin.updating.search.levenberg_marquardt import Rows, damped_least_squares
 from jackettwin.updating.search.surrogate import Surrogate
 
 _RIDGE = 1e-2

@@ -14,8 +14,8 @@ import numpy as np
 from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.soil import ABSENT
 from jackettwin.updating.problem import Problem
-from jackettwin.updating.search.damped import Rows, damped_least_squares
 from jackettwin.updating.search.descent import End
+from jackettwin.updating.search.levenberg_marquardt import Rows, damped_least_squares
 from jackettwin.updating.search.path import Path, held_minimum, minimum, squares
 
 _NOTHING = float(np.log(ABSENT))

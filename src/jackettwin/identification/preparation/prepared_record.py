@@ -47,7 +47,7 @@ MIN_REPORTED_SHARE = 0.005
 
 
 @dataclass(frozen=True)
-class Prepared:
+class PreparedRecord:
     """The usable channels of a record at the rate of the identification.
 
     Attributes
@@ -88,7 +88,7 @@ class Prepared:
     recorded_hz: float = 0.0
 
 
-def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
+def prepare(record: Record, settings: IdentificationSettings) -> PreparedRecord:
     """Select live vibration channels, detrend, whiten, subtract tones, decimate, fill gaps, and scale.
 
     Channels are scaled to unit variance, so that the direction of largest motion does not hide the other.
@@ -123,7 +123,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
     references = _references(record, usable, settings)
     if settings.method == "plscf":
         resolved = replace(resolved, orders=_degrees(settings, len(references)))
-    return Prepared(
+    return PreparedRecord(
         usable.channels,
         y / scale[:, None],
         scale,

@@ -6,7 +6,7 @@ from math import pi
 import pytest
 
 from jackettwin.loads import Coefficients, highest_wave, slam_per_length, wave_number
-from jackettwin.simulate.breaking import breaking_document
+from jackettwin.simulate.breaking_waves import breaking_document
 from jackettwin.simulate.scenario.sea import Sea, sea_warnings
 from jackettwin.structure import STEEL, Member, Reaction, Section, Structure
 

@@ -47,7 +47,7 @@ LEFT_OUT = tuple(
 
 
 @dataclass(frozen=True)
-class AtWork:
+class OperatingAsset:
     """One wind speed.
 
     Attributes
@@ -64,7 +64,7 @@ class AtWork:
     turbulent: Turbulent | None
 
 
-def at_work(
+def operating_asset(
     asset: Asset,
     rotor: Rotor,
     control: Control,
@@ -73,20 +73,20 @@ def at_work(
     shaft: str = "free",
     seed: int | None = 0,
     model: Model | None = None,
-) -> AtWork:
+) -> OperatingAsset:
     """Return an asset in a wind in which its rotor works.
 
     ``model`` is the asset in still air with a rigid rotor, if it is known.
     """
     still = model or asset_model(replace(asset, structure=without_rotor(asset.structure)))
     operation = operating_point(rotor, control, wind.speed_m_s)
-    mean, modes = modes_at_work(still, rotor, operation, shaft=shaft)
+    mean, modes = modes_with_rotor(still, rotor, operation, shaft=shaft)
     passing = passing_loads(rotor, operation, wind, tower=tower_outline(asset.structure))
     turbulent = None if seed is None else turbulent_loads(rotor, operation, wind, seed=seed)
-    return AtWork(operation, mean, modes, passing, turbulent)
+    return OperatingAsset(operation, mean, modes, passing, turbulent)
 
 
-def modes_at_work(
+def modes_with_rotor(
     still: Model, rotor: Rotor, operation: OperatingPoint, *, shaft: str, bending: bool = True
 ) -> tuple[Linearised, tuple[TrueMode, ...]]:
     """Return a rotor about a steady motion at the first frequency, and the modes up to 1.5 Hz with it.
@@ -123,7 +123,7 @@ def tower_outline(structure: Structure) -> TowerOutline | None:
     return TowerOutline(z, np.array([ends[height] for height in z]))
 
 
-def work_row(found: AtWork, *, blades: int) -> dict[str, Any]:
+def operating_row(found: OperatingAsset, *, blades: int) -> dict[str, Any]:
     """Return one wind speed as JSON has it, in SI units but for what its names say."""
     operation = found.operation
     turn_hz = operation.rotor_speed / (2.0 * pi)

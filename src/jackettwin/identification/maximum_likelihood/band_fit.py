@@ -8,7 +8,7 @@ from jackettwin.arrays import FloatArray, Int64Array
 
 
 @dataclass(frozen=True)
-class Refined:
+class BandFit:
     """Maximum-likelihood estimates of the modes of a band.
 
     Attributes

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from jackettwin.identification.preparation import prepared
-from jackettwin.identification.preparation.prepared import prepare
+from jackettwin.identification.preparation import prepared_record as module
+from jackettwin.identification.preparation.prepared_record import prepare
 from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.identification.synthetic import simulate
 
@@ -27,10 +27,10 @@ def fast(tower, rng):
 def test_decimating_first_loses_nothing(fast, monkeypatch):
     settings = IdentificationSettings(lowest_frequency_hz=0.2, sample_rate_hz=10.0)
     rates = []
-    search = prepared.steady_tones
-    monkeypatch.setattr(prepared, "steady_tones", lambda y, rate: (rates.append(rate), search(y, rate))[1])
+    search = module.steady_tones
+    monkeypatch.setattr(module, "steady_tones", lambda y, rate: (rates.append(rate), search(y, rate))[1])
     thinned = prepare(fast, settings)
-    monkeypatch.setattr(prepared, "TONE_RATE_RATIO", 1e6)
+    monkeypatch.setattr(module, "TONE_RATE_RATIO", 1e6)
     whole = prepare(fast, settings)
     assert rates == pytest.approx([200.0 / 6.0, 200.0])
     assert thinned.tones_hz == pytest.approx(whole.tones_hz, abs=1e-4)
@@ -41,8 +41,8 @@ def test_decimating_first_loses_nothing(fast, monkeypatch):
 
 def test_a_band_that_needs_the_rate_keeps_it(fast, monkeypatch):
     rates = []
-    search = prepared.steady_tones
-    monkeypatch.setattr(prepared, "steady_tones", lambda y, rate: (rates.append(rate), search(y, rate))[1])
+    search = module.steady_tones
+    monkeypatch.setattr(module, "steady_tones", lambda y, rate: (rates.append(rate), search(y, rate))[1])
     prepare(
         fast, IdentificationSettings(lowest_frequency_hz=0.2, highest_frequency_hz=60.0, sample_rate_hz=200.0)
     )
