@@ -121,6 +121,59 @@ def test_megapascals_taken_for_pascals_are_doubted(stress: Path) -> None:
     assert "--unit" in found["warnings"][0]
 
 
+@pytest.fixture
+def rosette(tmp_path: Path) -> Path:
+    """Return a rosette at 0, 45 and 90° of ±40 MPa across a weld, with a drift of 12 µm/m/K and a jump."""
+    t = np.arange(0.0, 600.0, 0.05)
+    across = 40e6 * np.sin(np.pi * t) / 2.1e11
+    warm = 10.0 + 2.0 * np.sin(2 * np.pi * t / 600.0)
+    gauges = [across, 0.5 * (1.0 - 0.3) * across, -0.3 * across]
+    rows = [t, *(1e6 * g + 12.0 * (warm - 10.0) for g in gauges), warm]
+    rows[1][5000:] += 90.0
+    path = tmp_path / "rosette.csv"
+    np.savetxt(
+        path, np.stack(rows, axis=1), delimiter=",", header="time_s,a,b_ue,c,t_steel", comments="", fmt="%.9g"
+    )
+    return path
+
+
+def test_a_rosette_has_the_cycles_of_its_stress(rosette: Path) -> None:
+    """Uniaxial stress of ±40 MPa: the jump and the heat are taken out and said."""
+    three = ("--column", "a", "--column", "b_ue", "--column", "c", "--angles", "0,45,90")
+    found = answer("strain", str(rosette), *three, "--temperature", "t_steel", "--per-kelvin", "12")
+    assert found["largest_range_mpa"] == pytest.approx(80.0, rel=5e-3)
+    assert [len(one["jumps_um_m"]) for one in found["gauges"]] == [1, 0, 0]
+    assert found["gauges"][0]["jumps_um_m"][0] == pytest.approx(90.0, rel=0.02)
+    assert "1 jumps of its zero" in found["warnings"][0]
+    hot = answer("strain", str(rosette), *three, "--scf", "2")
+    assert hot["largest_range_mpa"] > 160.0
+    alone = answer("strain", str(rosette), "--column", "a", "--temperature", "t_steel")
+    assert alone["gauges"][0]["per_kelvin_um_m"] == pytest.approx(12.0, rel=0.02)
+    assert alone["largest_range_mpa"] == pytest.approx(80.0, rel=0.02)
+    assert "real stress" in alone["warnings"][1]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--column", "d"), "t_steel"),
+        (("--column", "a", "--column", "c"), "three or four"),
+        (("--column", "a", "--column", "b_ue", "--column", "c"), "angle for each gauge"),
+        (("--column", "a", "--angles", "45"), "along itself"),
+        (("--column", "a", "--column", "b_ue", "--column", "c", "--angles", "0,0,90"), "rosette"),
+        (("--column", "a", "--unit", "m/m"), "no steel resists"),
+        (("--column", "b_ue", "--unit", "m/m"), "states"),
+        (("--column", "a", "--per-kelvin", "12"), "--temperature"),
+        (("--column", "a", "--poisson", "0.7"), "poisson"),
+        (("--column", "a", "--curve", "Q"), "S-N curve"),
+    ],
+)
+def test_gauges_that_cannot_be_are_refused(arguments: tuple[str, ...], said: str, rosette: Path) -> None:
+    found = run("strain", str(rosette), *arguments)
+    assert found.exit_code == 2
+    assert said in found.stderr and "Traceback" not in found.stderr
+
+
 def test_an_unknown_first_word_is_no_twin() -> None:
     found = run("strss", "leg.csv", "--column", "leg")
     assert found.exit_code == 2

@@ -22,6 +22,13 @@ from .joint_life import HotSpot as HotSpot, JointStresses as JointStresses, join
 from .life import YEAR_S as YEAR_S, LifeModel as LifeModel, SpotLife as SpotLife
 from .remaining_life import RemainingLife as RemainingLife
 from .spectral import dirlik as dirlik, tovo_benasciutti as tovo_benasciutti
+from .strain import (
+    STEEL_E_PA as STEEL_E_PA,
+    STEEL_NU as STEEL_NU,
+    SteadyStrain as SteadyStrain,
+    rosette_stress as rosette_stress,
+    steady_strain as steady_strain,
+)
 from .tube_life import TubeLife as TubeLife, read_details as read_details, tube_lives as tube_lives
 from .tube_welds import (
     TubeDetails as TubeDetails,

@@ -4,6 +4,7 @@ from .combinations import (
     read_combinations as read_combinations,
     water_at_rest as water_at_rest,
 )
+from .given_sections import given_sections as given_sections
 from .interface_motion import (
     InterfaceMotion as InterfaceMotion,
     read_interface_motion as read_interface_motion,
@@ -29,4 +30,8 @@ from .scenario.files import (
 from .scenario.scenario import Scenario as Scenario
 from .scenario.sets import read_set as read_set, shipped_sets as shipped_sets
 from .section_series import force_series as force_series, write_force_series as write_force_series
-from .weld_life import ScenarioLife as ScenarioLife, scenario_life as scenario_life
+from .weld_life import (
+    ScenarioLife as ScenarioLife,
+    given_life as given_life,
+    scenario_life as scenario_life,
+)
