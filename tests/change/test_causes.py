@@ -18,11 +18,13 @@ from jackettwin.change.causes import (
 )
 from jackettwin.change.changed_structures import Standing, braces, happenings, with_mass
 from jackettwin.change.ground import Ground, scour_loss
+from jackettwin.change.working_rotor import NAME, WorkingRotor
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
 from jackettwin.response.modes.modal import UndampedModes
 from jackettwin.soil.foundation import read_foundation
-from jackettwin.structure import assemble
+from jackettwin.structure import Assembly, assemble
+from jackettwin.twin import RotorSide
 
 LABELS = ("side_side_1", "fore_aft_1", "torsion_1")
 
@@ -242,3 +244,48 @@ def test_causes_stand_on_the_feet_of_the_posterior() -> None:
     soft, stiff = found.values()
     assert np.all(soft.frequency_hz[:2] < stiff.frequency_hz[:2])
     assert np.all(direction(soft, "soil softening")[:2] < 3.0 * direction(stiff, "soil softening")[:2])
+
+
+def test_a_rotor_at_work_is_part_of_the_structure_and_a_cause(model: ModelCauses) -> None:
+    """Stiffness k at the tower top: f² grows by φᵀkφ/ω², and what softens the ground shows less by as much.
+
+    A rotor that adds a tenth more raises ln f by ½ · 0.1 φᵀkφ/ω², and ln ζ by its dashpot's share.
+    """
+    structure = read_structure("jacket15")
+    side = RotorSide(3e5, np.diag([1.0, 0, 0, 0, 0, 0]), np.diag([2.0e5, 0, 0, 0, 0, 0]))
+    across = RotorSide(2e4, np.diag([0, 1.0, 0, 0, 0, 0]), np.zeros((6, 6)))
+    rotor = WorkingRotor({"c_fore_aft": side, "c_side_side": across})
+    feet = np.full((6, 2, 4), 2.5e9)
+    found = {}
+    for name, one in (("parked", None), ("operating", rotor)):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(causes, "_DRAWS", 1)
+            patch.setattr(causes, "happenings", lambda s: [h for h in happenings(s) if h.family == "soil"])
+            f, zeta = np.array([0.18, 0.19, 0.57]), np.array([0.01, 0.08, 0.01])
+            ground = Ground(stiffness=feet)
+            found[name] = model_causes(structure, LABELS, f, zeta, ground=ground, rotor=one)
+    parked, works = found["parked"], found["operating"]
+    side_side, fore_aft = (parked.labels.index(n) for n in LABELS[:2])
+    raised = (works.frequency_hz / parked.frequency_hz) ** 2
+    assert raised[side_side] == pytest.approx(1.0, abs=1e-3) and 1.1 < raised[fore_aft] < 1.3
+    soft = [direction(m, "soil softening")[fore_aft] for m in (parked, works)]
+    assert soft[1] / soft[0] == pytest.approx(1.0 / raised[fore_aft], rel=0.02)
+    assert not [c for c in parked.causes if c.name == NAME]
+    (cause,) = [c for c in works.causes if c.name == NAME]
+    assert cause.sizes.min() < 0.0 < cause.sizes.max()  # it may add less
+    stood = assemble(structure, gravity=True)
+    modes = UndampedModes(np.array([1.2]), undamped_unit_top(stood))
+    drawn = rotor.cause(stood, modes, np.array([0.05]), 4000, np.random.default_rng(1)).draws
+    # one kilogram at the tower top alone: ½k/ω² and c/(2ωζ), with a third and a fifth of scatter
+    np.testing.assert_allclose(np.median(drawn[:, 0]), 0.5 * 2.0e5 / 1.44, rtol=0.02)
+    np.testing.assert_allclose(drawn[:, 0].std() / drawn[:, 0].mean(), 0.3, rtol=0.05)
+    np.testing.assert_allclose(np.median(drawn[:, 1]), 3e5 / (2.0 * 1.2 * 0.05), rtol=0.02)
+    np.testing.assert_allclose(np.log(drawn[:, 1]).std(), 0.2, rtol=0.05)
+    assert not drawn[:, 2].any()
+
+
+def undamped_unit_top(assembly: Assembly) -> np.ndarray:
+    """Return a shape of a metre along x at the tower top alone, (n_dof, 1)."""
+    shape = np.zeros((assembly.stiffness.shape[0], 1))
+    shape[assembly.dofs(assembly.structure.top_node)[0]] = 1.0
+    return shape

@@ -10,6 +10,7 @@ import pyarrow.parquet as pq
 import pytest
 from click.testing import CliRunner, Result
 
+from jackettwin.change import WorkingRotor
 from jackettwin.change.modal_table import read_modal_table
 from jackettwin.change.table_monitoring import watch_table
 from jackettwin.cli import main
@@ -174,6 +175,31 @@ def test_too_short_a_baseline_is_refused_before_the_model_is_asked(wide: Columns
     with pytest.raises(InputError, match="too short"):
         watch_table(read, structure=read_structure("jacket15"), progress=steps.append)
     assert steps == []
+
+
+def test_a_twin_gives_its_rotor_at_work(
+    wide: Columns, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A parked twin has none; a twin in operation has the stiffness that `update` gives it."""
+    table, given = written(wide, tmp_path / "a.csv"), {}
+
+    def seen(*_: object, rotor: WorkingRotor | None, gravity: bool, **others: object) -> None:
+        given["rotor"], given["gravity"] = rotor, gravity
+        raise InputError("seen enough")
+
+    monkeypatch.setattr("jackettwin.change.table_monitoring.watch_table", seen)
+    found = {}
+    for state in ("parked", "operating"):
+        twin = tmp_path / f"{state}.yaml"
+        update = f"update: {{rotor: iea15, rotor_state: {state}, wind_speed_m_s: 12.0}}"
+        seen_modes = "targets: [{mode: 1, frequency_hz: 0.18, frequency_std_hz: 0.001}]"
+        twin.write_text(f"structure: jacket15\ngravity: true\n{seen_modes}\n{update}\n")
+        invoke(table, "--columns", "f1,f2", "--twin", str(twin))
+        found[state] = given["rotor"]
+    assert found["parked"] is None and given["gravity"] is True
+    assert found["operating"].sides["c_fore_aft"].stiffness[0, 0] > 1e4  # N/m
+    done = invoke(table, "--columns", "f1,f2", "--twin", str(twin), "--structure", "jacket15")
+    assert done.exit_code == 2 and "omit --structure" in done.stderr
 
 
 def test_a_row_without_a_label_is_refused(wide: Columns, tmp_path: Path) -> None:

@@ -25,3 +25,4 @@ from .watch_document import (
     statement as statement,
     watched_document as watched_document,
 )
+from .working_rotor import WorkingRotor as WorkingRotor

@@ -8,7 +8,7 @@ the draws of every direction.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from math import pi
 from typing import Any
@@ -19,6 +19,7 @@ from scipy.optimize import least_squares
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.change.changed_structures import Happening, Standing, happenings
 from jackettwin.change.ground import UNDESCRIBED, Ground
+from jackettwin.change.working_rotor import WorkingRotor
 from jackettwin.errors import InputError
 from jackettwin.loads import Coefficients, Water, mass_per_level
 from jackettwin.response import (
@@ -140,6 +141,7 @@ def model_causes(
     gravity: bool = True,
     seed: int = 0,
     ground: Ground = UNDESCRIBED,
+    rotor: WorkingRotor | None = None,
 ) -> ModelCauses:
     """Return the possible causes for a structure whose modes are known by label.
 
@@ -147,15 +149,21 @@ def model_causes(
     ----------
     labels, frequency_hz, damping_ratio : (n,) of the baseline; NaN where ζ is not known
     ground : what is known of it
+    rotor : at work, if the modes are those of operation
 
     Raises
     ------
     InputError
         If no label is that of a mode of the model.
     """
+
+    def standing(structure: Structure) -> Assembly:
+        assembly = assemble(structure, gravity=gravity)
+        return assembly if rotor is None else rotor.on(assembly)
+
     stiff = np.full(len(structure.reaction_nodes), _TYPICAL_STIFFNESS)
     typical = Standing(structure, stiff, stiff, ground.scour_loss)
-    assembly = assemble(structure, gravity=gravity)
+    assembly = standing(structure)
     named = Modes.of(typical, assembly)
     places = [named.labels.index(label) if label in named.labels else -1 for label in labels]
     if max(places, default=-1) < 0:
@@ -183,7 +191,7 @@ def model_causes(
     traceless = ["sensor: gain", "sensor: sign", "sensor: position"]
     kept = np.ones(MODES)
     for event in happenings(typical):
-        after = assemble(event.apply(typical).structure, gravity=gravity)  # whatever the feet
+        after = standing(event.apply(typical).structure)  # whatever the feet
         changed = [Modes.of(event.apply(s), after, like=b) for s, b in zip(stands, bases, strict=True)]
         draws = np.array([
             effect(event, base, then, eta, zeta)
@@ -194,13 +202,14 @@ def model_causes(
             traceless.append(event.name)
         else:
             sizes, weights = sizes_about(event.median, event.spread, both_ways=event.both_ways)
-            bend = _bend(event, stands[0], gravity, bases[0], loss[0], zeta, draws[0])
+            bend = _bend(event, stands[0], standing, bases[0], loss[0], zeta, draws[0])
             cause = Cause(
                 event.name, draws, sizes, weights, event.unit, bent_at=bend[0], bend=bend[1],
                 misfit=min(_MISSES * error, MISFIT),
             )  # fmt: skip
             found.append((event.family, cause))
-    causes = (*_families(found), _clock(), *_yaw(fitted, named.labels, zeta))
+    works = () if rotor is None else (rotor.cause(assembly, fit, zeta, _DRAWS, rng),)
+    causes = (*_families(found), *works, _clock(), *_yaw(fitted, named.labels, zeta))
     mixed = tuple(n for n, share in zip(named.labels, kept, strict=True) if share < _KEPT)
     best_seen = _seen_best(assembly, fit.shapes)
     return ModelCauses(named.labels, fitted, causes, tuple(traceless), mixed, level, best_seen)
@@ -314,7 +323,7 @@ def repeated(event: Happening, times: int) -> Happening:
 def _bend(
     event: Happening,
     standing: Standing,
-    gravity: bool,
+    assembled: Callable[[Structure], Assembly],
     base: Modes,
     eta: float,
     zeta: FloatArray,
@@ -330,7 +339,7 @@ def _bend(
     for times in _SOLVED:
         often = repeated(event, times)
         stands = often.apply(standing)
-        after = Modes.of(stands, assemble(stands.structure, gravity=gravity), like=base)
+        after = Modes.of(stands, assembled(stands.structure), like=base)
         bends.append(effect(often, base, after, eta, zeta) - once)
     none = bends[1] / (1 - _SOLVED[0])
     return event.per * np.array([0, 1, *_SOLVED]), np.array([none, *bends])

@@ -27,6 +27,7 @@ from jackettwin.change.smallest_changes import (
 )
 from jackettwin.change.table_monitoring import explained_alarm, structure_causes, watch_after_baseline
 from jackettwin.change.watch_document import alarm_document, sizes_by_mode, with_later_look
+from jackettwin.change.working_rotor import WorkingRotor
 from jackettwin.errors import InputError
 from jackettwin.files import StoredSchema, digest, null_for_nan
 from jackettwin.findings import Finding
@@ -143,6 +144,7 @@ def judge(
     kept: StoredMonitoring | None = None,
     settings: WatchSettings = _USUAL,
     ground: Ground = UNDESCRIBED,
+    rotor: Callable[[], WorkingRotor | None] = lambda: None,
 ) -> tuple[StoredMonitoring, tuple[Finding, ...]]:
     """Return the judgement of the days of a state, and new findings.
 
@@ -153,6 +155,7 @@ def judge(
     kept : what an earlier call returned; any of the same promise, it need not be of the same days
     settings : the promise; days before ``settings.relearn`` are left out
     ground : what is known of it, for the causes of a change
+    rotor : returns the rotor at work, if the twin's records are of operation; called when causes are needed
     """
     first = settings.relearn.isoformat() if settings.relearn else UNDATED
     fresh = StoredMonitoring(settings.baseline_days, settings.arl_years, relearn=first)
@@ -169,7 +172,7 @@ def judge(
     findings = []
     columns = known.columns or Columns.of(model, every, before)
     baseline = cache(lambda: history_of(columns, every, before))  # a year of days, rarely needed
-    causes = cache(lambda: _causes(model, baseline(), ground))  # takes seconds, rarely needed
+    causes = cache(lambda: _causes(model, baseline(), ground, rotor()))  # takes seconds, rarely needed
     if known.learnt is None:
         watch = watch_after_baseline(baseline(), settings.arl_years, causes())
         known = replace(
@@ -201,12 +204,14 @@ def _known(
     return kept
 
 
-def _causes(model: TwinModel, baseline: History, ground: Ground) -> ModelCauses | None:
+def _causes(
+    model: TwinModel, baseline: History, ground: Ground, rotor: WorkingRotor | None
+) -> ModelCauses | None:
     """Return the possible causes; None without a structure or if its modes were not seen."""
     if model.assembly is None:
         return None
     try:
-        return structure_causes(model.structure.structure, True, baseline, ground)
+        return structure_causes(model.structure.structure, True, baseline, ground, rotor)
     except InputError:
         return None
 

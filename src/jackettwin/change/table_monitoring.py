@@ -13,6 +13,7 @@ from jackettwin.change.ground import UNDESCRIBED, Ground
 from jackettwin.change.modal_table import ModalTable
 from jackettwin.change.next_measurements import Circumstances, Measurement, next_measurements
 from jackettwin.change.smallest_changes import SmallestChange, smallest_changes
+from jackettwin.change.working_rotor import WorkingRotor
 from jackettwin.errors import InputError
 from jackettwin.structure import Structure
 from jackettwin.watching import (
@@ -104,6 +105,7 @@ def watch_table(
     structure: Structure | None = None,
     gravity: bool = True,
     ground: Ground = UNDESCRIBED,
+    rotor: WorkingRotor | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> MonitoredTable:
     """Monitor a table of modes; no row is used before its day.
@@ -115,6 +117,7 @@ def watch_table(
     structure, gravity : what stands there, and whether its weight softens it: causes are then its own. None
         for what patterns over modes tell by themselves
     ground : what is known of it
+    rotor : at work, if the rows are of operation
     progress : told what is being done
 
     Raises
@@ -141,7 +144,7 @@ def watch_table(
     columns_to_watch(baseline)  # refuse before the causes are computed, which takes a while
     if structure is not None:
         progress("causes")
-    causes = None if structure is None else structure_causes(structure, gravity, baseline, ground)
+    causes = None if structure is None else structure_causes(structure, gravity, baseline, ground, rotor)
     progress("baseline")
     watch = watch_after_baseline(baseline, arl_years, causes)
     smallest = smallest_changes(watch, baseline, causes)
@@ -212,10 +215,12 @@ def _patterns(diagnosis: Diagnosis, causes: Sequence[Cause], known: BoolArray) -
     return found
 
 
-def structure_causes(structure: Structure, gravity: bool, baseline: History, ground: Ground) -> ModelCauses:
+def structure_causes(
+    structure: Structure, gravity: bool, baseline: History, ground: Ground, rotor: WorkingRotor | None
+) -> ModelCauses:
     """Return the possible causes for a structure with these modes."""
     f, zeta = typical(baseline.frequency), typical(baseline.damping)
-    return model_causes(structure, baseline.labels, f, zeta, gravity=gravity, ground=ground)
+    return model_causes(structure, baseline.labels, f, zeta, gravity=gravity, ground=ground, rotor=rotor)
 
 
 def watch_after_baseline(baseline: History, arl_years: float, causes: ModelCauses | None) -> Watch:

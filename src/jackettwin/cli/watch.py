@@ -4,16 +4,27 @@ from __future__ import annotations
 
 from datetime import UTC
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict
 
 import click
 
 from jackettwin.cli.console import FiniteFloat, Reply, answers, progress, say, say_all, show_table
-from jackettwin.errors import InputError, located
+from jackettwin.errors import InputError, located, require
 from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
+    from jackettwin.change import Ground, WorkingRotor
     from jackettwin.change.modal_table import ModalTable
+    from jackettwin.structure import Structure
+
+
+class _Of(TypedDict, total=False):
+    """What was measured."""
+
+    structure: Structure
+    gravity: bool
+    ground: Ground
+    rotor: WorkingRotor | None
 
 
 _SHOWN = 4
@@ -40,6 +51,12 @@ _SHOWN = 4
     "structure_name",
     help="STRUCTURE that was measured, whose patterns distinguish causes.",
 )
+@click.option(
+    "--twin",
+    "twin_file",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Twin file in place of --structure: also its ground, and its rotor if that is at work.",
+)
 @click.option("--relearn", help="Start of a new baseline, after a repair or a confirmed change.")
 @click.option(
     "--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for watched.json and report.html."
@@ -52,6 +69,7 @@ def watch_command(
     baseline_days: float,
     arl_years: float,
     structure_name: str | None,
+    twin_file: Path | None,
     relearn: str | None,
     out: Path | None,
 ) -> Reply:
@@ -77,15 +95,21 @@ def watch_command(
 
     read = read_modal_table(table, columns=_names(columns) or (), conditions=_chosen(conditions))
     from_day = _day(read, relearn)
-    structure = None if structure_name is None else read_structure(structure_name)
+    of: _Of = {} if structure_name is None else {"structure": read_structure(structure_name)}
+    if twin_file is not None:
+        require(
+            structure_name is None, "both a structure and a twin are given", field="--twin", value=twin_file,
+            remedy="omit --structure: the twin has its own",
+        )  # fmt: skip
+        of = _twin(twin_file)
     with progress(3 + len(read.history.by_day()), read.name) as step, located(file=table):
         watched = watch_table(
             read,
             baseline_days=baseline_days,
             arl_years=arl_years,
             from_day=from_day,
-            structure=structure,
             progress=step,
+            **of,
         )
     document = watched_document(watched)
     if out is not None:
@@ -113,6 +137,20 @@ def watch_command(
 
 
 _CAUSES = (TableColumn("cause", "cause"), TableColumn("probability [%]", "probability", ".1f", 100.0))
+
+
+def _twin(path: Path) -> _Of:
+    """Return what a twin knows of what was measured."""
+    from jackettwin.change import Ground, WorkingRotor
+    from jackettwin.twin import read_twin
+
+    config = read_twin(path)
+    return {
+        "structure": config.structure,
+        "gravity": config.gravity,
+        "ground": Ground.of(config),
+        "rotor": WorkingRotor.of(config),
+    }
 
 
 def _names(text: str | None) -> tuple[str, ...] | None:

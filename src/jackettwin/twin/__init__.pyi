@@ -1,5 +1,5 @@
 from .advance import advance as advance, advance_all as advance_all
-from .config import TwinConfig as TwinConfig
+from .config import TwinConfig as TwinConfig, assembled as assembled
 from .exact_sums import UNIT as UNIT, average as average, plus as plus
 from .files import read_twin as read_twin, shipped_twins as shipped_twins
 from .inputs import inputs_document as inputs_document
@@ -18,7 +18,9 @@ from .observe import examined as examined, observe as observe
 from .observe_files import Failed as Failed, observe_files as observe_files, sorted_out as sorted_out
 from .pair_angles import stations as stations
 from .rotor_at_work import (
+    AT_WORK_STD as AT_WORK_STD,
     USUAL_WIND_M_S as USUAL_WIND_M_S,
+    RotorSide as RotorSide,
     of_side as of_side,
     rotor_at_work as rotor_at_work,
     stiffness_at_work as stiffness_at_work,

@@ -10,6 +10,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from datetime import date
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +22,7 @@ from jackettwin.change import (
     JUDGED,
     Days,
     Ground,
+    WorkingRotor,
     corrections,
     finding_of,
     judge,
@@ -275,7 +277,9 @@ def watched(
     last = max(identities)
     every = Days(identities, lambda day: engine.DAY.load(json.loads(documents[day])))
     before, ground = JUDGED.load(kept) if kept else None, Ground.of(twin.config)
-    judged, new = judge(twin.model, every, before, twin.config.watch, ground)
+    judged, new = judge(
+        twin.model, every, before, twin.config.watch, ground, partial(WorkingRotor.of, twin.config)
+    )
     said = [(f"{last}T00:00:00+00:00", f) for f in new if f.severity == "info"]
     if (sees := sight_of(judged)) is not None:
         said.append((f"{min(identities)}T00:00:00+00:00", sees))

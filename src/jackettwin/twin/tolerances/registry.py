@@ -15,7 +15,7 @@ from jackettwin.plugins import plugins_of_type
 from jackettwin.response import Matrix
 from jackettwin.structure import Assembly, PointMass, Structure, without_rotor
 from jackettwin.twin.config import TwinConfig, assembled
-from jackettwin.twin.rotor_at_work import USUAL_WIND_M_S, rotor_at_work, stiffness_at_work
+from jackettwin.twin.rotor_at_work import AT_WORK_STD, USUAL_WIND_M_S, rotor_at_work, stiffness_at_work
 from jackettwin.twin.tolerances.parts import (
     JACKET,
     PIECE,
@@ -234,7 +234,7 @@ def _table() -> tuple[KnownTolerance, ...]:
             _steel(lambda s, x: with_top_bodies(s, lambda b: _turning_body(b, 1.0 + x))),
         ),
         KnownTolerance(
-            Tolerance(AT_WORK, "stiffness that a rotor at work adds at the tower top", 0.3, "-",
+            Tolerance(AT_WORK, "stiffness that a rotor at work adds at the tower top", AT_WORK_STD, "-",
                       "computed: frequencies agree with OpenFAST 5 within a fifth of the 6 to 8 % that it "
                       "adds (docs/verification/operation.md); a controller and gusts are assumed",
                       "take frequencies from records of the parked or idling rotor"),
