@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from jackettwin.verify.benchmarks.foundations import foundation_benchmarks
 from jackettwin.verify.benchmarks.frames import frame_benchmarks
 from jackettwin.verify.benchmarks.piles import pile_benchmarks
 from jackettwin.verify.benchmarks.turbines import turbine_benchmarks
@@ -15,6 +16,7 @@ __all__ = ["BENCHMARKS"]
 
 BENCHMARKS: dict[str, Callable[[], Computed]] = {
     "frames and beams": frame_benchmarks,
+    "foundations": foundation_benchmarks,
     "piles and beams on springs": pile_benchmarks,
     "rotors and towers": turbine_benchmarks,
     "waves": wave_benchmarks,
