@@ -1,4 +1,4 @@
-"""The rotor at work in watching: a part of the structure that is watched, and a cause of change itself."""
+"""The operating rotor in monitoring: part of the monitored structure, and itself a cause of change."""
 
 from __future__ import annotations
 

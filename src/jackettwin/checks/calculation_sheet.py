@@ -1,4 +1,4 @@
-"""How the utilisation of a member or a joint comes about: every quantity with formula, number and clause."""
+"""Calculation sheet of a member or joint: every quantity with its formula, value and clause."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-r"""Chord cans: how far the thick tube at a joint reaches, what the standard asks, and what a short one costs.
+r"""Chord cans: length of the thick tube at a joint, the required length, and the reduction for a short one.
 
 ISO 19902 (2007), 14.2.2: a can reaches a quarter of the chord's diameter or 300 mm beyond the braces. 14.3.5:
 of a short can the axial strength of Y and X joints is

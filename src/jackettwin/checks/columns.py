@@ -1,4 +1,4 @@
-"""Straight runs of members between joints that hold them: the columns of a buckling check."""
+"""Columns of a buckling check: straight runs of members between joints that restrain them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tubular joints of a structure against ISO 19902, clause 14: which tubes meet where, and how they use it."""
+"""Check of a structure's tubular joints by ISO 19902, clause 14: their geometry and utilisation."""
 
 from __future__ import annotations
 

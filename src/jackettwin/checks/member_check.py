@@ -1,4 +1,4 @@
-"""Every member of a structure against ISO 19902, from static or time-domain displacements."""
+"""Check of every member of a structure by ISO 19902, from static or time-domain displacements."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What of a structure no check covers, said and not left out silently."""
+"""Parts of a structure that no check covers, listed so that nothing is left out silently."""
 
 from __future__ import annotations
 

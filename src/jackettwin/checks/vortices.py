@@ -1,4 +1,4 @@
-r"""Whether a flow may set members swinging by the vortices it sheds: a screening by reduced velocity.
+r"""Screening of members for vortex-induced vibration by their reduced velocity.
 
 .. math:: V_R = \frac{U}{f D}
 

@@ -1,4 +1,4 @@
-"""Mode shapes at nodes as a table of text, in and out: what other programs print, by mode and node."""
+"""Mode shapes as text tables, one row per mode and node, as other programs print them: reader and writer."""
 
 from __future__ import annotations
 

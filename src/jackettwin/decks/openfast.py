@@ -1,4 +1,4 @@
-"""Lines, values and tables of an OpenFAST input file: SubDyn's, HydroDyn's, ElastoDyn's.
+"""Parsing of lines, values and tables of OpenFAST input files (SubDyn, HydroDyn, ElastoDyn).
 
 Tables are found by the keyword of their count line. SubDyn itself reads their columns by position, whatever
 the header says, and so do we where the columns are known (formats of SubDyn 0.4 to OpenFAST 5); elsewhere the

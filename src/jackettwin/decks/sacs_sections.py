@@ -1,4 +1,4 @@
-"""Sections of SACS decks that are no tubes: by the properties that a SECT card gives, or by their sides.
+"""Sections of SACS decks other than tubes: by the properties that a SECT card gives, or by their dimensions.
 
 A SECT card has AX, J, IY, IZ in columns 19 to 48 and the sides A, B, C, D from column 50 on: of a wide flange
 (WF) the flange's width and thickness, depth and web; of a box (BOX) depth with the thickness of its walls,

@@ -1,4 +1,4 @@
-"""Sections of members as YAML writes them: tubes, boxes, rectangles, I-sections, and any by their numbers."""
+"""Sections of members in YAML: tubes, boxes, rectangles, I-sections, and any section by its properties."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a file changes of a structure that it names: factors on steel, walls, masses and springs."""
+"""Changes that a file makes to the structure it names: factors on steel, walls, masses and springs."""
 
 from __future__ import annotations
 

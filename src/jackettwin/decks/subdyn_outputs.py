@@ -1,4 +1,4 @@
-"""Members whose forces a SubDyn deck asks for: what its channels M1N1FKze, M1N1MKxe … are of."""
+"""Members and nodes that the output channels of a SubDyn deck (M1N1FKze, M1N1MKxe …) refer to."""
 
 from __future__ import annotations
 

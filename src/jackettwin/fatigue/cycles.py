@@ -1,4 +1,4 @@
-"""Cycles of a stress series by rainflow counting, with a residue that goes on from record to record.
+"""Cycles of a stress series by rainflow counting, with a residue that is carried from record to record.
 
 Rainflow counting of ASTM E1049-85 in its four-point form (pylife): a closed loop is a full cycle. What has
 not closed is the residue. Ended, each of its ranges is half a cycle, as ASTM counts them; carried on, it

@@ -1,4 +1,4 @@
-"""What corrodes a weld at its elevation, and so its S-N curve."""
+"""Corrosion environment of a weld by its elevation, which selects its S-N curve."""
 
 from __future__ import annotations
 

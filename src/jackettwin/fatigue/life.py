@@ -1,4 +1,4 @@
-r"""Damage and life with what is uncertain in them.
+r"""Damage and life with their uncertainty.
 
 Damage D = Σ n/N of Miner. With logarithms normal, ln D of a weld has the variance
 

@@ -1,4 +1,4 @@
-r"""What is left of a weld's life: a lognormal life of which an age has passed without failure.
+r"""Remaining life of a weld: a lognormal life, given that no failure occurred until its age.
 
 With the median damage r of a year by the mean of the tests and the variance s² of its logarithm, a life T is
 lognormal about 1/r. Given that it is longer than the age a,

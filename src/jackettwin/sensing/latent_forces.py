@@ -1,4 +1,4 @@
-r"""Forces that nobody measured, as Gaussian processes on patterns of load.
+r"""Unmeasured forces as Gaussian processes on load patterns.
 
 A force is a pattern on the structure times a process of unit variance times a level that the record decides.
 Gusts are an Ornstein–Uhlenbeck process, whose density falls with :math:`f^{-2}` above its corner; a rotor's

@@ -1,4 +1,4 @@
-r"""Levels, corners and noise by evidence: Whittle's likelihood of a record's spectra.
+r"""Levels and corners of the latent forces, and sensor noise, by Whittle's likelihood of a record's spectra.
 
 .. math:: -\ln L = \sum_{f>0} \ln\det S(f) + y_f^H S(f)^{-1} y_f, \qquad
           S(f) = \sum_j S_j(f)\,h_j(f) h_j(f)^H + h\,R + ε^2\,\mathrm{diag}\,|y_f|^2

@@ -1,4 +1,4 @@
-r"""A structure as modes driven by latent forces: the state space that a record is smoothed with.
+r"""State-space model of a structure's modes driven by latent forces, with which a record is smoothed.
 
 .. math:: \ddot q + C \dot q + Ω^2 q = Φ^T S f, \qquad u = Φ q + R f, \quad
           R = (K^{-1} - Φ Ω^{-2} Φ^T) S

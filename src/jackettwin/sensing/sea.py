@@ -1,4 +1,4 @@
-r"""A sea as latent forces, and the damping of its drag on members that move.
+r"""Waves as latent forces, and the damping by their drag on moving members.
 
 A sea of many periods is three bands, since its waves reach down as far as they are long: long waves bend the
 whole jacket, short ones of the same record push near the surface only. Each band has the forces of a regular

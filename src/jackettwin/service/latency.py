@@ -1,4 +1,4 @@
-"""How long requests and queries take: measures of one server while it runs."""
+"""Duration of requests and queries, measured by a server while it runs."""
 
 from __future__ import annotations
 

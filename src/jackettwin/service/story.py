@@ -1,4 +1,4 @@
-"""Two years of days that nobody measured: what a turbine's modes might have done, for the demonstration.
+"""Two years of simulated days of a turbine's modes, for the demonstration.
 
 A day is the mean of its 144 records. Season and tide move every mode, a storm in the second spring washes
 the ground from around the feet, and the mast says nothing for four days of a maintenance stop. The size of

@@ -1,4 +1,4 @@
-"""Whether the waves of a scenario break, and what slams: beside Morison's loads, not in them."""
+"""Breaking of a scenario's waves, and slamming loads, which Morison's loads do not include."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Level of response at the tower top, beside what OpenFAST has in wind of the same class.
+"""Level of the response at the tower top, compared with OpenFAST's in wind of the same class.
 
 Whether a simulation is as loud as OpenFAST is a measured ratio with its interval, where both were run.
 """

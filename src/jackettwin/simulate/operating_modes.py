@@ -1,4 +1,4 @@
-"""An asset whose rotor is at work, by wind speed: modes, damping, thrust, and what shakes it."""
+"""Modes, damping, thrust and excitation of an asset with an operating rotor, by wind speed."""
 
 from __future__ import annotations
 

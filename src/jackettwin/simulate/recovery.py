@@ -1,4 +1,4 @@
-r"""Section forces and reactions of a foundation whose interface another program has moved.
+r"""Section forces and reactions of a foundation from the interface motion of another program.
 
 The foundation is a superelement of the interface's motion x_b, which is given, and of internal coordinates
 q with unit mass:

@@ -1,4 +1,4 @@
-r"""Static stiffness of a rigid suction caisson, the ground inside moving with it.
+r"""Static stiffness of a rigid suction caisson whose enclosed soil moves with it.
 
 A rigid cylinder of radius R embedded by its skirt d in an elastic stratum of shear modulus G, Poisson's ratio
 ν and depth H over rock, or a half-space (Kausel 1974 and Elsabee 1975, MIT, for sway, rocking and twist;

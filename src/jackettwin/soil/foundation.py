@@ -1,4 +1,4 @@
-"""Pile foundations from YAML: a pile, the ground it stands in, and its damping."""
+"""Pile foundations from YAML: a pile, its ground, and the damping of both."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One matrix at the mudline for a whole foundation: the feet are tied rigidly to one node, a law holds that.
+"""One matrix at the mudline for a whole foundation: the feet are tied rigidly to one node on a support law.
 
 The field's joint updates of monopiles have a lateral stiffness k_u, a rocking stiffness k_θ and one damping c
 there. With any law D of :mod:`jackettwin.soil.laws.families` the matrix is

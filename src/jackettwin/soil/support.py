@@ -1,4 +1,4 @@
-"""What holds a structure: fixed DOFs, and 6×6 springs scaled by a viscoelastic law."""
+"""Supports of a structure: fixed DOFs, and 6×6 springs scaled by a viscoelastic law."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Backups that follow one another: what each has of what there was, and whether the chain is whole."""
+"""Chains of incremental backups: the contents of each, and whether the chain is complete."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What hangs on the legs of a jacket and carries nothing: boat landings, anodes, growth.
+"""Appurtenances on the legs of a jacket, which have mass but carry no load: boat landings, anodes.
 
 The class is what a structure file gives under ``jacket.appurtenances``, key by key.
 """

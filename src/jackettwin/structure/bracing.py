@@ -1,4 +1,4 @@
-"""How the faces of a jacket are braced: X, K and Z bays, and horizontals between the legs."""
+"""Bracing of a jacket's faces: X, K and Z bays, and horizontals between the legs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Checks of a model before it is trusted: its mass, its rigid-body modes, improbable sections."""
+"""Checks of a model before it is used: its mass, its rigid-body modes, improbable sections."""
 
 from __future__ import annotations
 

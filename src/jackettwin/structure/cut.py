@@ -1,4 +1,4 @@
-"""Cut a structure at its interface: what stands on the ground, and what stands on that."""
+"""Cut of a structure at its interface into foundation and tower."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Section forces of every element from its ends' displacements, and the stress they make in a tube."""
+"""Section forces of every element from the displacements of its ends, and the stress in a tube."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Structure to elements, names to numbers; and the sums of their matrices on the degrees of freedom."""
+"""Division of a structure into elements and numbered degrees of freedom, and assembly of their matrices."""
 
 from __future__ import annotations
 

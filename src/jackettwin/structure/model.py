@@ -1,4 +1,4 @@
-"""What a structure is made of: nodes, tubular members, materials, point masses, rigid links."""
+"""Components of a structure: nodes, members, materials, point masses, rigid links."""
 
 from __future__ import annotations
 

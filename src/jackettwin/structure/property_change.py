@@ -1,4 +1,4 @@
-"""A structure with one property changed: of the steel of a part, a body, a spring, the feet it comes with."""
+"""Change of one property of a structure: of the steel of a part, a body, a spring, or its own feet."""
 
 from __future__ import annotations
 

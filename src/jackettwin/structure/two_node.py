@@ -1,4 +1,4 @@
-r"""Elements that are no tubes, as matrices between two nodes: cables, springs, beams of any section.
+r"""Elements other than tubes, as matrices between two nodes: cables, springs, beams of any section.
 
 They carry load and have weight, but waves do not load them and no code check covers them.
 Gravity adds the stiffness of their axial force to beams and cables (``weight.py``).

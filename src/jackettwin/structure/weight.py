@@ -1,4 +1,4 @@
-"""P-Δ: the forces of self-weight, and the geometric stiffness they add.
+"""P-Δ effect: axial forces of self-weight, and the geometric stiffness that they cause.
 
 The forces are found once, on the whole structure with its reaction nodes clamped; a part of it (a foundation
 cut at its interface) takes them over, so that a jacket feels the tower it no longer has.

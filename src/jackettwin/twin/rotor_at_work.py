@@ -1,4 +1,4 @@
-"""What a rotor at work adds at the tower top of a twin: damping, and stiffness of its bending blades."""
+"""Damping and stiffness that an operating rotor with bending blades adds at the tower top of a twin."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-r"""The air about the elements of a turning rotor: its steady flow by azimuth, and small changes of it.
+r"""Flow at the blade elements of a turning rotor: steady by azimuth, and linearised about that.
 
 Forces (normal to the blade, around in the sense of rotation) are functions of the flow u (normal, swirl), of
 the induced velocity w and of the lift's lag. Of a small change with e^{λt}

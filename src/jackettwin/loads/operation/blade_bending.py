@@ -1,4 +1,4 @@
-r"""Blades that bend as they turn: their modes as coordinates of the turning rotor.
+r"""Bending blades of a turning rotor: their modes as coordinates of the rotor.
 
 Each mode φ of a blade clamped to the hub, of unit mass, has one coordinate for every order m of the azimuth:
 in the frame of the tower a displacement φ(ψ)e^{imψ} grows with λ + imΩ, and its second derivative there holds

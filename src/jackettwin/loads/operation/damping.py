@@ -1,4 +1,4 @@
-r"""What a rotor at work takes from the motion of its tower: air, wake, gyroscopic and bending blades.
+r"""Linearised forces of an operating rotor on its moving tower: air, wake, gyroscopic, bending blades.
 
 The tower top's six motions and the blades' modes, each with its orders of the azimuth, move the elements of
 all blades with e^{λt}; forces of air and inertia on the same motions, averaged over azimuth, are Z(λ). The

@@ -1,4 +1,4 @@
-r"""Lags of the air about a turning rotor: of the wake behind a disc, and of the lift of a section.
+r"""Lags of an operating rotor's aerodynamics: dynamic inflow of the wake, and unsteady lift of a section.
 
 The wake follows what balances momentum through two lags in series, Øye's model (Snel & Schepers 1995,
 ECN-C--94-107; OpenFAST's DBEMT): of a motion with e^{st} a blade element sees the share

@@ -1,4 +1,4 @@
-"""What a rotor at work shakes its tower with: multiples of the blades' passing, and turbulence they cut."""
+"""Excitation of the tower by an operating rotor: multiples of blade passing, and turbulence at the blades."""
 
 from __future__ import annotations
 

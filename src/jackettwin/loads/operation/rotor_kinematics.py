@@ -1,4 +1,4 @@
-"""A rotor that turns: its blade elements by azimuth, and filters of what varies with it.
+"""Kinematics of a turning rotor: blade elements by azimuth, and harmonics of what varies with it.
 
 Arrays over azimuth have it first, (places, ...): what one blade does over a revolution. The mean over azimuth
 of what all blades do is what they do together; multiples of the blades' passing drop out.

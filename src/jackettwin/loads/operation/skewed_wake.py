@@ -1,4 +1,4 @@
-r"""The skewed wake: more induction where the blade points away from the wind, less where it points into it.
+r"""Skewed wake: more induction where the blade points downwind, less where it points upwind.
 
 .. math:: w(ψ) = w \left(1 + \frac{15π}{32} \tan\frac{χ}{2} \frac{r}{R} \cos(ψ - ψ_0)\right), \quad
           χ = (1 + 0.6 a) χ_0

@@ -1,4 +1,4 @@
-"""What is done now and then: mutes ended, old samples, events and uploads deleted, memory given back."""
+"""Periodic tasks: end mutes, delete old samples, events and uploads, release memory."""
 
 from __future__ import annotations
 

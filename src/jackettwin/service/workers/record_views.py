@@ -1,4 +1,4 @@
-"""What is drawn of a stored record beside its samples: how the structure moved, and where faults are."""
+"""Drawings of a stored record beside its samples: motion of the structure, and places of faults."""
 
 from __future__ import annotations
 

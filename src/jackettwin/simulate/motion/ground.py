@@ -1,4 +1,4 @@
-"""Ground that unloads and reloads under the feet, as what it adds to the linear pile heads."""
+"""Ground that unloads and reloads under the feet, as its difference from linear pile heads."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The linear part of a scenario: structure, ground, and what water and air add in the mean."""
+"""Linear model of a scenario: structure, ground, and the mean effects of water and air."""
 
 from __future__ import annotations
 

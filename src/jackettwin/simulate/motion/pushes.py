@@ -1,4 +1,4 @@
-"""A structure pushed at nodes, or pulled aside and let go: forces and start of its coordinates; the decay."""
+"""Forces at nodes and release tests of a scenario: modal forces, initial state, and logarithmic decrement."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Forces at nodes that a scenario gives itself: a file of them, and a pull that is let go."""
+"""Forces at nodes that a scenario states: a file of series, and a pull with release."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The sea of a scenario: still water, waves, current, and what is known to be wrong with them."""
+"""The sea of a scenario: still water, waves, current, and their known errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-r"""Damping of the steel tuned so that the first modes of the whole asset have a given ratio.
+r"""Tuning of the steel's damping so that the first modes of the whole asset have a given ratio.
 
 A ratio set on the tower alone says little of the coupled modes, which bend jacket and piles too (thesis
 section 5.3), and damping in proportion to stiffness that gives the first modes 1 % gives the third bending

@@ -1,4 +1,4 @@
-"""Layered ground: what each layer is made of, what scour has taken of it, and the effective stress."""
+"""Layered ground: properties of each layer, scour, and the effective stress."""
 
 from __future__ import annotations
 

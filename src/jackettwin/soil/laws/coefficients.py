@@ -1,4 +1,4 @@
-"""Support laws as rows of numbers: D(s) of every law, and of many laws at once.
+"""Support laws as rows of coefficients, and D(s) of one or many laws at once.
 
 A row is (k0, c, k_α, α, ω0, m, k_1, τ_1, k_2, τ_2, …):
 

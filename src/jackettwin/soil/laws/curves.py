@@ -1,4 +1,4 @@
-"""What a law does, drawn out: storage, loss, creep and relaxation on grids of frequency and time."""
+"""Curves of a law: storage, loss, creep and relaxation on grids of frequency and time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The support laws that can be updated: one class each, and the table they are looked up in.
+"""Support laws that can be updated: one class each, and their registry.
 
 A law is a class with its parameters and their bounds, the law it builds, and its row of numbers with the
 derivatives. It is entered in ``LAWS`` here, or by an installed package as an entry point. Updating, short

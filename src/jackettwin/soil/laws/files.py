@@ -1,4 +1,4 @@
-"""Support laws as YAML writes them: a number that scales a stiffness."""
+"""Support laws in YAML: parameters of a factor on a stiffness."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A pile under a static head load in ground that yields, and the most that it carries."""
+"""Static response of a pile to a head load in yielding ground, and its capacity."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-r"""A pile in ground that unloads and reloads: forces on its head along any path, step by step.
+r"""Cyclic response of a pile: forces on its head along any path, in ground that unloads and reloads.
 
 Steel is linear and its own inertia is left to the head (``lumped_head``); the ground is sliders at every
 station, p-y in both horizontal directions, t-z and q-z. At each step the head

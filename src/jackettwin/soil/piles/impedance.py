@@ -1,4 +1,4 @@
-"""What a pile does to the foot it carries: the 6×6 impedance of its head, exact and lumped."""
+"""The 6×6 impedance of a pile's head, exact and lumped."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A pile under the forces of its foot: along its axis, sideways in ground that yields, and its steel."""
+"""Utilisation of a pile by its foot's forces: axial and lateral capacity of the ground, and the steel."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-r"""A pile whose steel yields: moment and curvature of an elastic, perfectly plastic tube.
+r"""Moment and curvature of an elastic, perfectly plastic tube, for piles whose steel yields.
 
 A solid circle of radius R whose fibres yield at |y| > y_e = ε_y/κ carries
 

@@ -1,4 +1,4 @@
-"""Radiation damping: waves that a moving pile sends into the ground, as a dashpot per metre.
+"""Radiation damping of a pile: waves into the ground, as a dashpot per metre.
 
 A named option, for frequencies above the ground's own: below the first shear frequency V_s/4H of a layer of
 depth H on rock nothing is radiated, and 0.2–1 Hz lies below it for most sites. Soil loss under a jacket's

@@ -1,4 +1,4 @@
-"""Reaction curves along a pile: which curve stands at which depth, and its linear spring."""
+"""Reaction curves along a pile: the curve at each depth, and its linear spring."""
 
 from __future__ import annotations
 

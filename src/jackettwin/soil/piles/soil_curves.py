@@ -1,4 +1,4 @@
-"""The kinds of soil reaction curves, and the table they are looked up in.
+"""Kinds of soil reaction curves, and their registry.
 
 A kind is a function that returns the curve of one depth, and its row. The row is entered in ``SOIL_CURVES``
 here, or by an installed package as an entry point. A foundation file chooses a kind by its name.

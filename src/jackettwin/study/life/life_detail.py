@@ -1,4 +1,4 @@
-"""What a record's damage is made of: its bands of frequency, and what a sensor more would tell."""
+"""Composition of a record's damage: frequency bands, and the benefit of one more sensor."""
 
 from __future__ import annotations
 

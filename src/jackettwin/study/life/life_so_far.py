@@ -1,4 +1,4 @@
-r"""What an asset's days say of the damage at its welds, folded day by day; its size is bounded.
+r"""Damage at an asset's welds from the states of its days, accumulated day by day in bounded size.
 
 The damage of a year is that of the records over their time. What the records leave open of it, as variance of
 its logarithm, has three parts: the weather that the days sampled, as the scatter of a ratio over days,

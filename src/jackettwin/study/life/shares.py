@@ -1,4 +1,4 @@
-"""Whether a weld's share of all damage departs from its past; weather moves it less than damage."""
+"""Test whether a weld's share of all damage departs from its past; weather affects shares little."""
 
 from __future__ import annotations
 

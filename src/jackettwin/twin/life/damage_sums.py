@@ -1,4 +1,4 @@
-"""Exact sums of damage over records, the same in whatever order they are added: what a state keeps of welds.
+"""Exact sums of damage over records, independent of the order of addition, as stored in a state.
 
 Damage counts in whole units of 1e-11 at each of the eight points of a side, so that the worst point of all
 records is found, not the sum of each record's worst (Hammerstad et al.: up to 26 % of a life).

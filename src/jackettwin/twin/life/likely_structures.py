@@ -1,4 +1,4 @@
-r"""The structure as a record's own frequencies leave it: its feet, and what drawings do not fix.
+r"""Structures that a record's own frequencies make likely: stiffness of feet, and tolerances of drawings.
 
 Unknowns are the logarithms of the feet's stiffness sideways and upright and the tolerances φ of the twin, in
 their standard deviations. Frequencies of the record's modes tell of them to first order,

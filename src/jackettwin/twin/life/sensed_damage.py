@@ -1,4 +1,4 @@
-"""Damage of one record at the welds that it damages most, small enough to be kept of every record."""
+"""Damage of one record at the welds that it damages most, small enough to store for every record."""
 
 from __future__ import annotations
 
