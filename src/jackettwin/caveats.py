@@ -1,4 +1,4 @@
-"""What limits an answer: what it leaves out (``left_out``) and takes for granted (``assumptions``)."""
+"""Limits of an answer: omissions (``left_out``) and assumptions (``assumptions``)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 TOLERANCES = "tolerances."
-"""What the keys of assumptions that a twin file's ``tolerances`` can settle begin with."""
+"""Prefix of the keys of assumptions that a twin file's ``tolerances`` can settle."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What other installed packages add to our registries, through entry points."""
+"""Entries that other installed packages add to our registries through entry points."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How work tells how far it is, and learns that it is no longer wanted: one protocol, down to inner loops.
+"""Progress and cancellation of long work: one protocol, down to inner loops.
 
 Whoever runs a job hands it a :class:`Progress`. The job calls it often; the caller may show what it is told,
 or raise from the call, which ends the job where it stands: nothing below the edge asks a clock, a terminal or

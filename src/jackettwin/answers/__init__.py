@@ -1,4 +1,4 @@
-"""What a run means: is the model right, what is the ground, whose is the damping, what to do next."""
+"""Answers of a run: is the model right, what is the ground, whose is the damping, what to do next."""
 
 import lazy_loader
 

@@ -1,4 +1,4 @@
-"""What changed between two runs, and by how much of its uncertainty: from their ``result.json``."""
+"""Differences between two runs in terms of their uncertainty, from their ``result.json``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether the updated model meets what was measured, and what error of it would cover what it misses."""
+"""Fit of the updated model to the measurements, and the model error that would cover the deviations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What to measure next: how far each further measurement would narrow what is not known of the ground.
+"""Ranking of further measurements by how far each would narrow the intervals of the ground.
 
 The data's information JᵀJ is computed again with the standard deviations that the further measurement would
 have, at draws from the posterior. The model's own error stays: no number of records takes it away.
@@ -30,7 +30,7 @@ _FIRST_PAIR = (1, 2)
 _MORE_MODES = {"torsion": ("torsion_1",), "second_bending": ("fore_aft_2", "side_side_2")}
 """Modes that more sensors would show."""
 _FOOT_AMPLITUDE, _FOOT_PHASE_RAD = 0.1, 0.01
-"""How well low-noise accelerometers in step get a foot's motion beside the tower's: 10 % and 0.6°."""
+"""Accuracy of a foot's motion relative to the tower's by synchronous accelerometers: 10 % and 0.6°."""
 
 
 def next_steps(

@@ -1,4 +1,4 @@
-"""What a run says to the five questions of its first page, in numbers."""
+"""A run's answers to the five questions of its first page, in numbers."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ class ModeAnswer:
 
 @dataclass(frozen=True)
 class Clearance:
-    """How far a mode's frequency stays from a band that the rotor excites.
+    """Distance of a mode's frequency from a band that the rotor excites.
 
     ``margin`` is the distance of the nearer end of the mode's 90 % interval to the band's nearer edge, as a
     share of that edge; negative inside the band.
@@ -148,7 +148,7 @@ class Clearance:
 
 @dataclass(frozen=True)
 class GroundAnswer:
-    """What is known of one parameter of the ground.
+    """Estimate of one parameter of the ground.
 
     Attributes
     ----------
@@ -208,7 +208,7 @@ class AveragedGround:
 
 @dataclass(frozen=True)
 class FitAnswer:
-    """How the best fit meets what it was fitted to.
+    """Agreement of the best fit with its data.
 
     Attributes
     ----------

@@ -44,7 +44,7 @@ _USUAL = WatchSettings()
 
 @dataclass(frozen=True)
 class JudgedDay:
-    """What a judged day showed.
+    """Result of monitoring one day.
 
     Attributes
     ----------

@@ -23,7 +23,7 @@ _EVERY = "all modes alike"
 
 @dataclass(frozen=True)
 class SmallestChange:
-    """What would be found with 95 % within some days of its begin.
+    """Smallest change that is found with 95 % probability within some days of its onset.
 
     Attributes
     ----------

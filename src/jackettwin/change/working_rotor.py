@@ -31,7 +31,7 @@ schedule of pitch and speed, worn or iced blades or another controller change it
 
 @dataclass(frozen=True)
 class WorkingRotor:
-    """What a rotor at work adds to the tower top in the mean wind of a twin.
+    """Damping and stiffness that an operating rotor adds at the tower top in the mean wind of a twin.
 
     Attributes
     ----------

@@ -96,7 +96,7 @@ class GroutedConnection(Schema):
 
     @property
     def beyond_validity(self) -> tuple[str, ...]:
-        """What is outside the tests that the formulas rest on."""
+        """Quantities outside the range of the tests behind the formulas."""
         d, outside = self.pile_diameter_m, self.sleeve_diameter_m - 2.0 * self.sleeve_wall_m
         ranges = {
             "D_p/t_p": (d / self.pile_wall_m, 20.0, 40.0),
@@ -148,7 +148,7 @@ class GroutedConnection(Schema):
 
 @dataclass(frozen=True)
 class GroutUse:
-    """What the grout at a foot is used to by an axial force [N], tension positive."""
+    """Utilisation of the grout at a foot by an axial force [N], tension positive."""
 
     foot: str
     axial_n: float

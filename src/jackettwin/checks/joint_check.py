@@ -62,7 +62,7 @@ class JointPlan:
 
 @dataclass(frozen=True)
 class BraceUse:
-    """How a brace uses its joint at the worst instant.
+    """Utilisation of a joint by a brace at the worst instant.
 
     Attributes
     ----------

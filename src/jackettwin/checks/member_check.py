@@ -35,7 +35,7 @@ _BLOCK = 512
 
 @dataclass(frozen=True)
 class DesignBasis:
-    """How members are checked.
+    """Settings of the check of members.
 
     Attributes
     ----------

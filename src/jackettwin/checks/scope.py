@@ -19,7 +19,7 @@ _CLAUSES = (
     Omission("ice: out of scope", "ISO 19906"),
     Omission("earthquakes: out of scope", "ISO 19901-2"),
 )
-"""What no structure is checked for."""
+"""Clauses that no structure is checked for."""
 
 
 def left_out(structure: Structure) -> tuple[Omission, ...]:

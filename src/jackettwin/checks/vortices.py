@@ -58,7 +58,7 @@ class VortexUse(NamedTuple):
 
     @property
     def direction(self) -> str:
-        """What the vortices may excite: nothing, or motion in line with the flow or across it."""
+        """Motion that vortices may excite: none, in line with the flow, or across it."""
         if self.ratio < 1.0:
             return "none"
         return "in line" if self.medium == "water" and self.reduced_velocity < ONSET_ACROSS else "across"

@@ -1,4 +1,4 @@
-"""What ``jackettwin check`` prints."""
+"""Tables printed by ``jackettwin check``."""
 
 from __future__ import annotations
 

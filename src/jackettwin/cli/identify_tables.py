@@ -1,4 +1,4 @@
-"""What ``jackettwin identify`` prints."""
+"""Tables printed by ``jackettwin identify``."""
 
 from __future__ import annotations
 

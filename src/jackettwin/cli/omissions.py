@@ -1,4 +1,4 @@
-"""What ``modes``, ``superelement``, ``export`` and ``simulate`` leave out, and how to have it."""
+"""Omissions of ``modes``, ``superelement``, ``export`` and ``simulate``, and how to include them."""
 
 from __future__ import annotations
 

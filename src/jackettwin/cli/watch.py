@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class _Of(TypedDict, total=False):
-    """What was measured."""
+    """The measured table."""
 
     structure: Structure
     gravity: bool

@@ -39,11 +39,11 @@ _SILENT = {"END", "LDOPT", "LOADLB", "LCSEL", "LCOMB", "UCPART", "LIVE", "HYDRO"
 """Cards that hold no structure: combinations, code checks, titles."""
 _PINNED = (True, True, True, False, False, False)
 _HELD = {"FIXED": (True, True, True, True, True, True), "PINNED": _PINNED, "PILEHD": _PINNED}
-"""How a word holds a joint; a pile head is held by the supports that are updated."""
+"""DOFs that each fixity word fixes at a joint; a pile head is on the supports that are updated."""
 _ENVIRONMENT = {"CDM", "MGROV", "GRPOV", "GRPOVA", "WAVE", "WAVE1", "WIND", "CURR", "DEAD", "TIDE", "CENTER"}
 """Cards of the sea, of growth on members and of the self-weight's direction."""
 _WEIGHTS = ("WGT", "SURFWT")
-"""How the names of cards of weight groups begin; their columns are not documented publicly."""
+"""Prefixes of the cards of weight groups, whose columns are not documented publicly."""
 _GLOBAL = "1"
 """In column 7 of a MEMBER card: the offsets on the card behind it are in global axes."""
 _EXPONENT = re.compile(r"(?<=[\d.])([+-]\d+)$")
@@ -98,7 +98,7 @@ class _Bar:
 
 @dataclass
 class _Deck:
-    """What the cards of a deck say, in SI units."""
+    """Contents of the cards of a deck, in SI units."""
 
     units: _Units = _ENGLISH
     nodes: dict[str, Vector] = field(default_factory=dict)

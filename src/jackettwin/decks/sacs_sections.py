@@ -12,7 +12,7 @@ from math import inf
 from jackettwin.structure import STEEL, BeamSection, i_section, rectangular_section
 
 NAMES = {"WF": "I-section", "WFC": "I-section", "BOX": "box", "PRI": "any section"}
-"""What beams of a SACS shape are called; of others, any section."""
+"""Names of beams of a SACS shape; other shapes are general sections."""
 
 
 def sacs_section(

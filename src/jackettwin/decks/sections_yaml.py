@@ -122,7 +122,7 @@ SectionInFile = Annotated[
 ]
 """A section by its ``shape``; without one it is a tube."""
 SHAPES = {"box": "box", "rectangle": "rectangle", "i": "I-section", "any": "any section"}
-"""What a beam's section is called, by its ``shape``."""
+"""Name of a beam's section, by its ``shape``."""
 
 
 def build_tube(name: str, given: SectionInFile, *, remedy: str) -> Section:

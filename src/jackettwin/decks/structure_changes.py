@@ -32,7 +32,7 @@ class AdjustedPlace(Schema):
 
     @property
     def place(self) -> tuple[Literal["part", "body", "spring", "foot"], str]:
-        """What it is of, and its name.
+        """The object that is changed, and its name.
 
         Raises
         ------

@@ -112,7 +112,7 @@ class MassSchema(BodySchema):
 
 
 class BarSchema(Schema):
-    """What a bar is of: one section, or two if conical; ``twist_deg`` turns one that is no tube about it."""
+    """Sections of a bar: one, or two if conical; ``twist_deg`` turns other sections than tubes."""
 
     section: str | None = None
     sections: tuple[str, str] | None = None

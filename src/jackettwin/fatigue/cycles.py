@@ -37,7 +37,7 @@ class Cycles:
 
     @property
     def numbers(self) -> FloatArray:
-        """How often each range occurs, (n + m,): 1 or ½."""
+        """Count of each range, (n + m,): 1 or ½."""
         return np.concatenate([np.ones(self.full.size), np.full(self.half.size, 0.5)])
 
 

@@ -23,7 +23,7 @@ _FEWEST_YEARS = 1e-9
 
 @dataclass(frozen=True)
 class RemainingLife:
-    """What is left of a weld's life.
+    """Remaining life of a weld.
 
     Attributes
     ----------

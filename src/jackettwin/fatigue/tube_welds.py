@@ -57,7 +57,7 @@ class Detail:
 
 @dataclass(frozen=True)
 class TubeDetails:
-    """What is assessed of tubes beside their joints.
+    """Welds around tubes, other than tubular joints, that are assessed.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What was made at great cost, kept by the content it was made of: nothing is done twice."""
+"""Cache of expensive results by the content of their inputs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether there is room for a result, asked before the work that makes it."""
+"""Check for disk space before the work that needs it."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ Placed = Annotated[T, WrapValidator(_refusing_in_place)]
 """A frozen dataclass that a file gives as it is; what it refuses is reported at its place in the file."""
 _REFUSED = "refused"
 _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
-"""What pydantic calls an unknown key of a model, and of a dataclass."""
+"""Pydantic's error types for an unknown key of a model and of a dataclass."""
 
 
 def one_of(known: Callable[[], Iterable[str]]) -> AfterValidator:
@@ -74,7 +74,7 @@ _PLAIN = {
     **dict.fromkeys(("list_type", "tuple_type"), ("not a list", "write [a, b, …]")),
     **dict.fromkeys(_NO_MAPPING, ("not a mapping", "write keys")),
 }
-"""What pydantic calls a mistake → what to say of it, and what to do."""
+"""Pydantic's error type → our message and remedy."""
 _KINDS = ("str", "int", "float", "bool", "constrained-float", "constrained-int", "constrained-str")
 _OF_ANOTHER_KIND = (
     "literal_error",

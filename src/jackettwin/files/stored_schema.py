@@ -1,4 +1,4 @@
-"""What is kept, in one form: a schema's name, its version, and how older versions become this one.
+"""Stored documents in one form: a schema's name, its version, and migrations of older versions.
 
 Files written by any earlier version are read for ever: a version that changes adds its migration to the
 schema's row, and a file in ``tests/twin/stored`` that the old version wrote.
@@ -27,7 +27,7 @@ DIGITS = 24
 
 @dataclass(frozen=True)
 class StoredSchema(Generic[T]):
-    """How one kind of thing is kept.
+    """Schema of one kind of stored document.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What the structure does: modes, poles, motion in time."""
+"""Response of the structure: modes, poles, motion in time."""
 
 import lazy_loader
 

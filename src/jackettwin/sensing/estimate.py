@@ -63,7 +63,7 @@ class MotionEstimate:
 
     @property
     def covariance(self) -> FloatArray:
-        """What is not known of the coordinates at any instant far from the record's ends."""
+        """Covariance of the coordinates at any instant far from the record's ends."""
         T = self.to_coordinates
         return np.asarray(T @ self.smoother.smoothed @ T.T)
 

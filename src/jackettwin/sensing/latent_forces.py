@@ -39,7 +39,7 @@ _SPACING_M = 4.0
 _DISC = 4.0
 """Corner of what a disc of 240 m averages, some U/5D, over that of gusts, U/6L."""
 _QUICK = 25.0
-"""How much quicker the quick gusts are: two processes make Kaimal's f^(-5/3) within a factor of 1.6."""
+"""Ratio of the corners of quick and slow gusts: the two have Kaimal's f^(-5/3) within a factor of 1.6."""
 _QUICK_SHARE, _QUICK_LOG_STD = 0.3, 1.5
 """Expected of quick gusts over slow ones, and how far its logarithm may lie from that."""
 _TOP = {

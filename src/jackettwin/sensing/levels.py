@@ -46,7 +46,7 @@ _MORE, _NEAREST = 2.0, 0.05
 
 @dataclass(frozen=True)
 class Levels:
-    """What a record says of the forces on it and of its sensors.
+    """Levels of forces and noise estimated from a record.
 
     Attributes
     ----------

@@ -28,7 +28,7 @@ _CALM_M = 0.02
 
 @dataclass(frozen=True)
 class SensorReadings:
-    """What sensors read, and what they see of a structure's motion.
+    """Readings of sensors, and the motion of a structure that they measure.
 
     Attributes
     ----------

@@ -40,7 +40,7 @@ ASSET = "demo"
 TWIN = "openfast_pile"
 SAID = "The demonstration: its five records are OpenFAST's, the two years of days before them are simulated."
 _LOCKED = b"\noperation: {updates: [parked]} # of the days before its records, those with a locked shaft\n"
-"""What the demonstration adds to the shipped twin: the rotor's damping is predicted for a rotor at rest."""
+"""Keys that the demonstration adds to the shipped twin: rotor damping is predicted for a rotor at rest."""
 _EVERY_S = 4.0
 SHIPPED = Path(str(files("jackettwin.data") / "demonstration.xz"))
 """The asset after its story and all records but the last, with what is known of it."""

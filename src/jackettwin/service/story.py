@@ -61,7 +61,7 @@ _OWN = 4e-4
 
 @dataclass(frozen=True)
 class DayWeather:
-    """What a day was like."""
+    """Conditions of a day."""
 
     wind_m_s: float
     wave_m: float

@@ -53,7 +53,7 @@ class EnvironmentSchema(Schema):
 
 
 class ActionsSchema(Schema):
-    """What acts, unfactored."""
+    """Actions, unfactored."""
 
     permanent: PermanentSchema = PermanentSchema()
     variable: VariableSchema = VariableSchema()

@@ -107,7 +107,7 @@ class Foundation:
 
     @property
     def dashpots(self) -> PileSprings | None:
-        """What the ground radiates [N·s/m], beside its law."""
+        """Radiation damping of the ground [N·s/m], beside its law."""
         return None if self.radiation is None else self.radiation.on(self.pile, self.springs)
 
     def piled(self, structure: Structure) -> tuple[Structure, Support]:

@@ -1,4 +1,4 @@
-"""What is kept of the living twin: one database, one folder of waveforms."""
+"""Storage of the living twin: one database, one folder of waveforms."""
 
 import lazy_loader
 

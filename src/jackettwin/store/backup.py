@@ -43,7 +43,7 @@ from jackettwin.store.tables import SCHEMA_VERSION, Packed
 _LEFT_OUT = ("servers", "alembic_version")
 """Tables without a backup: the list of servers, since leases are released after a restore, and the schema."""
 _DAY, _WAVEFORM = b"o\t", b"w\t"
-"""What lines of the contents begin with: a day of observations with its hash, a waveform."""
+"""Prefixes of lines of the contents: a day of observations with its hash, a waveform."""
 _ROWS = 500
 """Number of rows that are inserted at once."""
 

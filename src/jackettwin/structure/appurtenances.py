@@ -15,7 +15,7 @@ from jackettwin.errors import require
 from jackettwin.structure.model import PointMass, Structure
 
 FURTHEST_M = 20.0
-"""How far beyond the legs' ends an appurtenance may lie [m]: a boat landing, not a slip of the pen."""
+"""Largest distance of an appurtenance beyond the legs' ends [m], enough for a boat landing."""
 
 
 @dataclass(frozen=True)

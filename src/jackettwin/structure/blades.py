@@ -24,7 +24,7 @@ _TORSION_N_M2 = 1e12
 
 @dataclass(frozen=True)
 class BladeStructure:
-    """What a blade is made of, at stations along its pitch axis.
+    """Properties of a blade at stations along its pitch axis.
 
     Attributes
     ----------

@@ -26,7 +26,7 @@ _LIGHTEST_TOP = 0.002
 
 @dataclass(frozen=True)
 class ModelCheck:
-    """What an engineer looks at before trusting a model.
+    """Properties that an engineer checks before using a model.
 
     Attributes
     ----------

@@ -99,7 +99,7 @@ class Member:
     part: str = ""
     """Which part of the structure it belongs to (``jacket``, ``transition_piece``, ``tower``, ``piles``)."""
     elements: int | None = None
-    """How many elements it is cut into; None leaves that to the structure and the analysis."""
+    """Number of elements it is divided into; None leaves that to the structure and the analysis."""
 
 
 @dataclass(frozen=True)
@@ -118,9 +118,9 @@ class Beam:
     twist_rad: float = 0.0
     part: str = ""
     shape: str = "any section"
-    """What its section is called."""
+    """Name of its section."""
     elements: int | None = None
-    """How many elements it is cut into; None leaves that to the structure and the analysis."""
+    """Number of elements it is divided into; None leaves that to the structure and the analysis."""
 
     def __post_init__(self) -> None:
         require_between("twist_rad", self.twist_rad, -1e3, 1e3)
@@ -176,7 +176,7 @@ class RigidLink:
 
 @dataclass(frozen=True)
 class Reaction:
-    """How the structure's own file holds a node: fixed DOFs and, on the others, a 6×6 stiffness and mass."""
+    """Support of a node in the structure's own file: fixed DOFs, and a 6×6 stiffness and mass elsewhere."""
 
     node: str
     fixed: tuple[bool, bool, bool, bool, bool, bool] = (True, True, True, False, False, False)

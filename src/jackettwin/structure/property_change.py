@@ -19,7 +19,7 @@ from jackettwin.structure.two_node import Matrix
 GROWTH_KG_M3 = 1325.0
 """Density of marine growth, ISO 19901-1 (2015) annex: 1325 kg/m³ unless measured."""
 RNA = "rna"
-"""What stands on the top node goes by this name, too."""
+"""Also the name of the body on the top node."""
 
 
 @dataclass(frozen=True)
@@ -260,7 +260,7 @@ PROPERTIES: dict[str, dict[str, Property]] = {
     "spring": {"stiffness": Property(True, _springs)},
     "foot": {"stiffness": Property(True, _feet)},
 }
-"""What can be changed: of a part, of the bodies on a node, of a spring, of a foot."""
+"""Properties that can be changed: of a part, of the bodies on a node, of a spring, of a foot."""
 
 
 def foot_stiffness(assembly: Assembly) -> sp.csc_array:

@@ -25,7 +25,7 @@ from jackettwin.structure.two_node import TwoNodeElement
 
 @dataclass(frozen=True)
 class WeightForces:
-    """What self-weight does to the parts of a structure, tension positive.
+    """Effect of self-weight on the parts of a structure, tension positive.
 
     Attributes
     ----------

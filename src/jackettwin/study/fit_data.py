@@ -1,4 +1,4 @@
-"""What the update fits: modes of the records or of the twin file, and their residuals."""
+"""Data of the update: modes of the records or of the twin file, and their residuals."""
 
 from __future__ import annotations
 

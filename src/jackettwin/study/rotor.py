@@ -30,7 +30,7 @@ _LOG_STD = {
     "parked": {"c_fore_aft": 0.8, "c_side_side": 0.4},
     "operating": {f"c_{side}": std for side, std in OPERATING_LOG_STD.items()},
 }
-"""How far it may be off: blades bend, air lags, turbulence takes 11–18 %; drag is small."""
+"""Its error, as a ratio: blades bend, air lags, turbulence takes 11–18 %; drag is small."""
 _BLADES = 3
 """Number of blades of a rotor without a description."""
 States = dict[str, tuple[Residuals, Mapping[str, float]]]

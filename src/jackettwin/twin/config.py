@@ -150,7 +150,7 @@ class UpdateSettings(Schema):
     rotor: str | None = None
     """A windIO file or shipped rotor from which the dashpots' priors and patterns follow."""
     rotor_state: Literal["parked", "operating"] = "parked"
-    """What the rotor does in the records that may update the supports."""
+    """State of the rotor in the records that may update the supports."""
     rotor_schedule: str | None = None
     """A CSV of its speed and pitch by wind; None leaves them to the windIO file's control."""
     shaft: Literal["locked", "free"] | None = None

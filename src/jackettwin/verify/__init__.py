@@ -24,9 +24,9 @@ _CHAPTERS: dict[str, Callable[[], Computed]] = {
     "chapter 10: open questions": open_questions.open_questions,
 }
 STEPS = len(_CHAPTERS)
-"""How often ``published_rows`` announces what it does."""
+"""Number of steps that ``published_rows`` announces."""
 STEPS_OF_OTHERS = len(BENCHMARKS)
-"""How often ``benchmark_rows`` announces what it does."""
+"""Number of steps that ``benchmark_rows`` announces."""
 
 
 def published_rows(step: Callable[[str], None] = lambda _: None) -> tuple[Row, ...]:

@@ -60,7 +60,7 @@ MAX_BIAS = 0.5
 
 @dataclass(frozen=True)
 class NarrowBand:
-    """What the fit of a narrow band assumes about the rest of the spectrum.
+    """Assumptions of the fit of a narrow band about the rest of the spectrum.
 
     Attributes
     ----------

@@ -1,1 +1,1 @@
-"""What a rotor at work does to its tower: damping by wind speed, thrust, and what it shakes it with."""
+"""Effects of an operating rotor on its tower: damping by wind speed, thrust and excitation."""

@@ -36,7 +36,7 @@ _STEP_SKEW = 1e-3
 
 @dataclass(frozen=True)
 class BladeAir:
-    """What changes of the flow do to the elements of all blades; arrays (places, n, ...).
+    """Derivatives of the elements' loads by changes of the flow, all blades; arrays (places, n, ...).
 
     Attributes
     ----------

@@ -43,7 +43,7 @@ from jackettwin.loads.operation.rotor_kinematics import (
 from jackettwin.structure import cross_matrix
 
 OPERATING_LOG_STD = {"fore_aft": 0.2, "side_side": 0.5}
-"""How far the rotor's part of the first bending modes' damping may be off, as a standard deviation of its
+"""Error of the rotor's part of the first bending modes' damping, as a standard deviation of its
 logarithm: within a tenth in steady wind (docs/verification/operation.md), and what turbulence, a controller
 and a drivetrain of its own change."""
 OPERATING_LEAST_RATIO = 1e-3

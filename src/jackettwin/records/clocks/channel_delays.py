@@ -182,7 +182,7 @@ MIN_BAND_RATIO = 1.6
 
 @dataclass(frozen=True)
 class DelayGrowth:
-    """How the delays of channels grow over the windows; 0 for the main group.
+    """Growth of the channels' delays over the windows; 0 for the main group.
 
     Attributes
     ----------

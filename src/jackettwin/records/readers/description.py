@@ -31,7 +31,7 @@ CHANNEL_METADATA = "channel_metadata"
 
 
 class ChannelEntry(Schema):
-    """What is known of one channel; what is not said may be known from the data file."""
+    """Description of one channel; omitted values may follow from the data file."""
 
     model_config = ConfigDict(extra="allow")
 

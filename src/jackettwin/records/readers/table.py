@@ -1,4 +1,4 @@
-"""What a data file holds, and how it becomes a ``Record`` with the help of the JSON beside it."""
+"""Contents of a data file, and their conversion to a ``Record`` with the help of the JSON beside it."""
 
 from __future__ import annotations
 

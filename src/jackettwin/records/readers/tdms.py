@@ -39,7 +39,7 @@ _PART = re.compile(r"/'((?:[^']|'')*)'")
 
 @dataclass(frozen=True)
 class _Layout:
-    """How one channel lies in a chunk: type, number of values, and bytes if they are texts."""
+    """Layout of one channel in a chunk: type, number of values, and bytes if they are texts."""
 
     kind: int
     count: int
@@ -54,7 +54,7 @@ class _Layout:
 
 @dataclass
 class _Contents:
-    """What the segments have said so far."""
+    """Description of the channels by the segments read so far."""
 
     layouts: dict[str, _Layout] = field(default_factory=dict)
     active: list[str] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""How records come in: uploads, folders, streams.
+"""Intake of records: uploads, folders, streams.
 
 Every way ends in :func:`jackettwin.service.intake.files.accept`.
 """

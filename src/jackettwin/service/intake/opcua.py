@@ -148,7 +148,7 @@ class OpcUaIntake:
 
 
 class _Told:
-    """What asyncua calls when a value changes."""
+    """Callback of asyncua for changed values."""
 
     def __init__(self, nodes: dict[Any, str], values: queue.Queue[Value]) -> None:
         self._nodes, self._values = nodes, values

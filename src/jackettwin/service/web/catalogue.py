@@ -248,7 +248,7 @@ def version_out(connection: Connection, version: assets.Version) -> VersionOut:
 
 
 _LEFT_OUT = {"refused": "refused", "mismatched": "of another structure", "set_aside": "set aside"}
-"""What is said of records by their status, if there are any."""
+"""Sentences about records of each status, if there are any."""
 
 
 def _status(row: assets.Summary, counts: dict[str, int], unseen: list[str]) -> dict[str, Any]:

@@ -1,1 +1,1 @@
-"""What the server does with its queue of work: lease it, keep results, and draw the consequences."""
+"""The server's queue of work: leases, results and their consequences."""

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 POLICIES = (settings.RAW_DAYS, settings.OBSERVATION_DAYS, settings.JOB_DAYS, settings.AUDIT_DAYS)
 _EVERY_S = 600.0
 _MUTES_S = 5.0
-"""How late a mute ends at most."""
+"""Largest delay of the end of a mute."""
 _STALE_S = 3600.0
 """Age after which an upload is a remainder of a crashed server."""
 

@@ -1,4 +1,4 @@
-"""What runs in worker processes, and the cluster that runs it: plain values in, plain values out.
+"""Tasks of worker processes, with plain values as inputs and outputs, and the cluster that runs them.
 
 The server loads the engine when it first needs it: ``workers.engine`` brings all numerics with it.
 """

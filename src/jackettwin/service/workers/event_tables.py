@@ -10,7 +10,7 @@ from jackettwin.errors import InputError
 BEGINS = ("begin", "begin_utc", "start", "start_utc", "start_time", "time_on", "beginn", "from")
 ENDS = ("end", "end_utc", "stop_utc", "end_time", "time_off", "ende", "to")
 KINDS = ("category", "iec_category", "event", "state", "status", "description", "code")
-"""What the columns may be called, in small letters and underscores; of several kinds the first is taken."""
+"""Accepted names of columns, in small letters and underscores; the first match counts."""
 INTERVAL = timedelta(minutes=10)
 CHANGING = "changing"
 """The state of ten minutes that an event does not fill: no record in them is of one state."""

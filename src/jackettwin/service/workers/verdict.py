@@ -71,7 +71,7 @@ CANNOT_MEET = "the model cannot reproduce the measurements on any ground: no int
 _GRID = 33
 """Number of points along each side of the stored cost surface."""
 DRAWN = ("explored", "structure", "assumptions")
-"""What is kept of an answer for pages of their own, beside what is known."""
+"""Parts of an answer that are stored for pages of their own."""
 NO_MODE = "no mode of the model has been measured"
 FEW, GROWN, MOST_DAYS = 24, 1.3, 30
 """Number of records up to which each new one gives a new posterior; beyond it, growth of the number and days

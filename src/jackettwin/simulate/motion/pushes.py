@@ -90,7 +90,7 @@ def started(x0: FloatArray, displacement: FloatArray, model: Model, space: State
 
 @dataclass(frozen=True)
 class Decrement:
-    """What the decay of a pulled node shows, beside the pole that carries most of it.
+    """Logarithmic decrement of a released node, and the pole of the mode that dominates its decay.
 
     Attributes
     ----------

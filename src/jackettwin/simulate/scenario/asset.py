@@ -67,7 +67,7 @@ class GroundSchema(SoilSchema):
 
 
 class AssetSchema(Schema):
-    """What a scenario file says of its asset.
+    """The asset of a scenario file.
 
     The ground is ``soil`` with ``piles``, or ``foundation`` (a file or a shipped name), or ``support``.
     """

@@ -160,7 +160,7 @@ _KEYS = {
     "depth": "water.depth_m",
     "flooded": "water.flooded",
 }
-"""What the sea calls its numbers, and a scenario does."""
+"""Names of the sea's values, and those of a scenario's keys."""
 
 
 @contextmanager

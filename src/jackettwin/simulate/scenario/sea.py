@@ -89,7 +89,7 @@ class Sea:
     depth_m: float
     coefficients: Coefficients
     water: Water | None = None
-    """What moves with the structure, if its mass does not hold it already."""
+    """Water that moves with the structure, if its mass does not include it already."""
     waves: str | None = None
     height_m: float = 0.0
     period_s: float = 0.0
@@ -99,7 +99,7 @@ class Sea:
     gamma: float | None = None
     spreading: float | None = None
     relative_velocity: str = "linearised"
-    """How drag knows the motion of the structure: ``none``, ``linearised`` or ``full``."""
+    """Dependence of drag on the structure's motion: ``none``, ``linearised`` or ``full``."""
     diffraction: bool = False
     current: Current | None = None
     ends: EndCoefficients = EndCoefficients()

@@ -95,7 +95,7 @@ class Layer:
 
     @property
     def soil(self) -> Sand | Clay:
-        """What the layer is made of."""
+        """Kind of soil of the layer."""
         soil = self.clay if self.sand is None else self.sand
         assert soil is not None
         return soil

@@ -21,7 +21,7 @@ class Parameter:
     median: float | None = None
     log_std: float | None = None
     words: str = ""
-    """What it is called in a sentence."""
+    """Its name in a sentence."""
 
     def __post_init__(self) -> None:
         self._check_prior()

@@ -21,7 +21,7 @@ RESISTANCE = 1.25
 
 @dataclass(frozen=True)
 class PileUse:
-    """What a pile is used to; a use of 1 is the most that is allowed.
+    """Utilisation of a pile; the allowed maximum is 1.
 
     Attributes
     ----------

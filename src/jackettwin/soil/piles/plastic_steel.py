@@ -63,7 +63,7 @@ def _circle(R: float, y_e: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 class PlasticSteel:
-    """What yielding takes from the elastic forces of a pile bent in its x–z plane."""
+    """Difference between the elastic forces of a pile bent in its x–z plane and those of yielding steel."""
 
     def __init__(self, pile: Pile, node_depth: FloatArray, yield_strength_pa: float) -> None:
         self.tube = YieldingTube(

@@ -45,7 +45,7 @@ class CurveOptions:
     cycles: float = 100.0
     """How many, for the one curve that asks: stiff clay without free water, if ``cyclic``."""
     layering: Literal["overburden", "georgiadis"] = "overburden"
-    """How p-y curves know of the layers above: by their weight σ'_v alone at the true depth, or by
+    """Effect of the layers above on p-y curves: by their weight σ'_v alone at the true depth, or by
     Georgiadis's equivalent depth."""
     sand_py: str = "rp2geo"
     clay_tz: str = "rp2geo"

@@ -29,7 +29,7 @@ _ONE_DAY = 1.0
 
 @dataclass(frozen=True)
 class LifeSoFar:
-    """What days say of damage.
+    """Damage by the days so far.
 
     Attributes
     ----------
@@ -142,7 +142,7 @@ class LifeSoFar:
 
 
 LIFE_SO_FAR = StoredSchema("life_so_far", LifeSoFar)
-"""How it is kept."""
+"""Schema of its stored form."""
 
 
 def joined(a: Mapping[int, WeldSums], b: Mapping[int, WeldSums]) -> dict[int, WeldSums]:

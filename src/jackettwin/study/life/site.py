@@ -42,7 +42,7 @@ class _SiteSchema(Schema):
 
 @dataclass(frozen=True)
 class Site:
-    """What happens to a structure in its life.
+    """Conditions and states of a structure over its life.
 
     Attributes
     ----------

@@ -186,4 +186,4 @@ WRITERS: dict[str, Callable[[Mapping[str, Any], Path], None]] = {
     ".uff": write_shapes_uff,
 }
 ALWAYS = (".json", ".csv", ".nc")
-"""What a folder gets; shapes in UFF need channels that say where they point."""
+"""Files of an exported folder; shapes in UFF need channels with directions."""

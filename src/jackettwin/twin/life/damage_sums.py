@@ -29,7 +29,7 @@ class PointSums(NamedTuple):
 
 
 class WeldSums(NamedTuple):
-    """What records say of one side of a weld.
+    """Damage of records at one side of a weld.
 
     Attributes
     ----------

@@ -44,7 +44,7 @@ _EXTRA = 6
 
 @dataclass(frozen=True)
 class StressModel:
-    """What a twin's stresses are told with.
+    """Model from which a twin's stresses are estimated.
 
     Attributes
     ----------
@@ -85,7 +85,7 @@ class StressModel:
 
     @cached_property
     def n_ways(self) -> int:
-        """How many stiffnesses the feet have; none where pins do not hold the structure up."""
+        """Number of stiffnesses of the feet; 0 where pins alone do not make the structure stable."""
         fixed = standing(self.assembly.structure).fixed
         return len(_WAYS) if fixed and all(len(dofs) == len("xyz") for _, dofs in fixed) else 0
 

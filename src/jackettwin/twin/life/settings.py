@@ -30,7 +30,7 @@ class LifeSettings(Schema):
 
     @property
     def models(self) -> ModelsAtHeight:
-        """What corrodes a weld at an elevation above the sea [m], and its curve there.
+        """Corrosion environment of a weld at an elevation above the sea [m], and its curve.
 
         Raises
         ------

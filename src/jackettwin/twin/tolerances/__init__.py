@@ -1,1 +1,1 @@
-"""What drawings, weighing and the sea leave open, and by how much: the one table of it."""
+"""Tolerances of drawings, weighing and the sea, in one table."""

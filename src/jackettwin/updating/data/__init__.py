@@ -1,1 +1,1 @@
-"""What the model is updated to."""
+"""Data that the model is updated to."""

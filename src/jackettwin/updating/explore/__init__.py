@@ -1,1 +1,1 @@
-"""What a law's parameters do to cost and modes, and which way a search took."""
+"""Effect of a law's parameters on cost and modes, and the paths of a search."""

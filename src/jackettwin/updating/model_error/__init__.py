@@ -1,1 +1,1 @@
-"""What the model itself may miss: tolerances of drawings and sea, common to all modes, and a remainder."""
+"""Errors of the model: tolerances of drawings and sea, common to all modes, and a remainder."""

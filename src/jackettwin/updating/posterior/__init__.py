@@ -1,1 +1,1 @@
-"""What the data leave open."""
+"""Posterior of the parameters, its evidence and identifiability."""

@@ -22,4 +22,4 @@ BENCHMARKS: dict[str, Callable[[], Computed]] = {
     "waves": wave_benchmarks,
     "welds": weld_benchmarks,
 }
-"""What computes the rows of a field."""
+"""Function that computes the rows of a field."""

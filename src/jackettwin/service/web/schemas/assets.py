@@ -90,7 +90,7 @@ class Taken(BaseModel):
 
 
 class AssumptionOut(BaseModel):
-    """What an answer takes for granted; ``confirmed`` is null of a choice of modelling.
+    """An assumption of an answer; ``confirmed`` is null for a choice of modelling.
 
     ``moves`` is the relative change of each updated parameter for one standard deviation more.
     """

@@ -41,7 +41,7 @@ class AlarmOut(FindingOut):
 
 
 class ActOut(BaseModel):
-    """What somebody did with a finding; ``unmute`` is the end of a mute, by a person or by its time."""
+    """An action on a finding; ``unmute`` is the end of a mute, by a person or at its time."""
 
     action: Literal["acknowledge", "assign", "comment", "mute", "unmute", "close", "reopen"]
     by: str
@@ -61,7 +61,7 @@ Comment = Annotated[str, Field(max_length=2000)]
 
 
 class Acknowledgement(BaseModel):
-    """What is to be said of an alarm or finding, or of a record that is set aside."""
+    """A comment on an alarm, a finding, or a record that is set aside."""
 
     comment: Comment = Field(min_length=1)
 

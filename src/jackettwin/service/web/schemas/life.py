@@ -8,7 +8,7 @@ from pydantic import BaseModel
 
 
 class YearsLeft(BaseModel):
-    """What is left of a life, as quantiles [years]; null where nothing fails."""
+    """Remaining life as quantiles [years]; null where nothing fails."""
 
     p05: float | None
     p50: float | None
