@@ -105,6 +105,29 @@ def test_a_slow_command_says_so_at_most_twice(monkeypatch: pytest.MonkeyPatch) -
     assert lines == ["run: Run it (loading the program)", "still loading the program"]
 
 
+def test_a_command_without_steps_says_that_it_continues(monkeypatch: pytest.MonkeyPatch) -> None:
+    """``modes``, ``check``, ``view`` and others were silent while they computed; steps report themselves."""
+    lines: list[str] = []
+    monkeypatch.setattr(console, "EVERY_S", 0.05)
+    monkeypatch.setattr(console.messages, "print", lambda line, **_: lines.append(line))
+
+    @click.command("modes")
+    @console.answers
+    def slow() -> console.Reply:
+        time.sleep(0.3)
+        with console.working("a step"):
+            inside.append(len(lines))
+            time.sleep(0.2)
+            inside.append(len([line for line in lines if "computing" in line]))
+        return console.Reply({}, lambda: None)
+
+    inside: list[int] = []
+    slow.main(["--json"], prog_name="modes", standalone_mode=False)
+    assert lines[0].startswith("modes: computing, ")
+    # no line of its own beside those of the step
+    assert inside[1] <= inside[0]
+
+
 def test_the_help_has_the_groups_of_the_readme_and_breaks_no_line() -> None:
     shown = CliRunner().invoke(main, ["--help"], terminal_width=80).stdout
     headings = re.findall(r"^\| \*\*(.*?)\*\*", README.read_text(), re.MULTILINE)

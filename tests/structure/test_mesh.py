@@ -7,7 +7,7 @@ import pytest
 from tests.response.conftest import monopile_structure
 
 from jackettwin.structure import Section
-from jackettwin.structure.mesh import discretise
+from jackettwin.structure.mesh import discretise, sum_of_blocks
 
 
 def test_conical_members_take_the_mean_of_each_piece_and_keep_their_volume() -> None:
@@ -48,3 +48,16 @@ def test_shear_flexibility_only_for_timoshenko() -> None:
     p = discretise(structure, theory="timoshenko").properties
     # thin tube: κ ≈ 1/2, I/A = D²/8: Φ = 12·2(1+ν)·(D²/8)/(κL²) = 7.8 D²/L²
     np.testing.assert_allclose(p.Phi, 7.8 * 6.93**2 / 20.0**2, rtol=0.01)
+
+
+def test_blocks_are_summed_where_they_overlap() -> None:
+    """A body, a beam and a spring may share DOFs; what cancels leaves no entry."""
+    mesh, rng = discretise(monopile_structure(2)), np.random.default_rng(2)
+    places = [np.array([3, 4, 5]), np.array([4, 5, 6, 7]), np.array([5, 0])]
+    blocks = [(at, rng.normal(size=(at.size, at.size))) for at in places]
+    wanted = np.zeros((mesh.n_dof, mesh.n_dof))
+    for at, block in blocks:
+        wanted[np.ix_(at, at)] += block
+    np.testing.assert_allclose(sum_of_blocks(mesh, blocks).toarray(), wanted, atol=1e-14)
+    against = [*blocks[:1], (places[0], -blocks[0][1])]
+    assert sum_of_blocks(mesh, against).nnz == 0 and sum_of_blocks(mesh, []).shape == wanted.shape

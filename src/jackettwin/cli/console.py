@@ -14,6 +14,7 @@ from itertools import count
 from math import isfinite
 from pathlib import Path
 from threading import Event, Thread
+from time import monotonic
 from typing import TYPE_CHECKING, Any, ParamSpec
 
 import click
@@ -38,6 +39,8 @@ messages = Console(stderr=True, highlight=False)
 """Progress, warnings and errors."""
 output = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 140)
 """Console for tables; a file or a pipe has a fixed width."""
+_reporting = Event()
+"""Set while a step of a command reports itself."""
 
 
 @contextmanager
@@ -57,6 +60,26 @@ def _reading_said(command: str, summary: str) -> Iterator[None]:
         yield
     finally:
         done.set()
+
+
+@contextmanager
+def _lasting_said(command: str) -> Iterator[None]:
+    """Report that a command continues, wherever no step of it reports this itself."""
+    done, started = Event(), monotonic()
+
+    def say() -> None:
+        while not done.wait(EVERY_S):
+            if not _reporting.is_set():
+                line = f"{command}: computing, {monotonic() - started:.0f} s"
+                messages.print(line, soft_wrap=True, markup=False)
+
+    thread = Thread(target=say, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        done.set()
+        thread.join()
 
 
 class CommandGroup(click.Group):
@@ -206,6 +229,16 @@ def plain(text: str) -> str:
 @contextmanager
 def progress(total: int, title: str) -> Iterator[CallbackProgress]:
     """Yield the function that reports the next of ``total`` steps, by a bar on a terminal, else by lines."""
+    _reporting.set()
+    try:
+        with _steps(total, title) as told:
+            yield told
+    finally:
+        _reporting.clear()
+
+
+@contextmanager
+def _steps(total: int, title: str) -> Iterator[CallbackProgress]:
     if not messages.is_terminal:
         with plain_progress(total, lambda line: messages.print(line, soft_wrap=True, markup=False)) as told:
             yield told
@@ -266,7 +299,8 @@ def answers(function: Callable[P, Reply]) -> Callable[P, None]:
     @wraps(function)
     def command(*args: P.args, **kwargs: P.kwargs) -> None:
         as_json = kwargs.pop("as_json")
-        answer = function(*args, **kwargs)
+        with _lasting_said(click.get_current_context().info_name or "jackettwin"):
+            answer = function(*args, **kwargs)
         if as_json:
             print_json(answer.document)
         else:

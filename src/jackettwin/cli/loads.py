@@ -48,6 +48,11 @@ def _show(name: str, document: dict[str, Any]) -> None:
         _show_still_water(document["still_water"])
     if document["phases"] is not None:
         show_table(Table("water, over one wave", _PHASES, document["phases"]))
+    if document["radiation"] is not None:
+        say(
+            "damping by the waves that the asset radiates, which models leave out: "
+            + ", ".join(f"{m['label']} {100.0 * m['damping_ratio']:.1g} %" for m in document["radiation"])
+        )
     if document["breaking"] is not None:
         _show_breaking(document["breaking"])
     say_all(document["warnings"], "warning")

@@ -30,6 +30,7 @@ from .members.morison import (
     point_forces as point_forces,
     wetness as wetness,
 )
+from .members.radiation_damping import radiation_damping as radiation_damping
 from .members.slam import (
     breaking_impact as breaking_impact,
     slam_coefficient as slam_coefficient,

@@ -10,20 +10,24 @@ from jackettwin.arrays import FloatArray
 from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.caveats import Omission, omission_documents
 from jackettwin.errors import InputError
-from jackettwin.loads import Water, morison_points, resultant_columns, water_weights
+from jackettwin.loads import Water, morison_points, radiation_damping, resultant_columns, water_weights
+from jackettwin.response import build_system, mode_kinds, mode_labels, undamped_modes
 from jackettwin.simulate.breaking_waves import breaking_document
-from jackettwin.simulate.motion.model import aerodynamics
+from jackettwin.simulate.motion.model import aerodynamics, asset_assembly
 from jackettwin.simulate.motion.water import water_ends, water_loads, water_points, wave_field
 from jackettwin.simulate.motion.wind import rotor_loads_in, tower_loads, tower_points, wind_field
 from jackettwin.simulate.scenario.air import Air, rotor_notes
+from jackettwin.simulate.scenario.asset import Asset
 from jackettwin.simulate.scenario.scenario import Scenario, in_words_of
-from jackettwin.simulate.scenario.sea import sea_warnings
+from jackettwin.simulate.scenario.sea import Sea, sea_warnings
 from jackettwin.structure import Assembly, assemble
 
 _FINE_M = 0.5
 """Longest piece of a member: the loads themselves are the result."""
 PHASES = 16
 """Phases of a regular wave that are tabulated."""
+_RADIATING = 5
+"""Modes whose radiation damping is tabulated."""
 
 
 def resultants(scenario: Scenario) -> dict[str, FloatArray]:
@@ -103,6 +107,7 @@ def loads_document(scenario: Scenario) -> dict[str, Any]:
         "parts": {name: _statistics(loads) for name, loads in parts.items()},
         "reference_point_m": [0.0, 0.0, sea_level],
         "phases": _phases(scenario, parts),
+        "radiation": None if scenario.sea is None else _radiation(scenario.asset, scenario.sea),
         "breaking": None
         if scenario.sea is None
         else breaking_document(scenario.sea, scenario.asset.structure),
@@ -150,6 +155,22 @@ def _still_water(scenario: Scenario) -> dict[str, Any] | None:
         "growth_weight_n": float(weights.growth.sum()),
         "pressure_at_the_bed_pa": sea.coefficients.density_kg_m3 * GRAVITY_M_S2 * sea.depth_m,
     }
+
+
+def _radiation(asset: Asset, sea: Sea) -> list[dict[str, Any]]:
+    """Return the damping ratio of the lowest modes from the waves that they radiate."""
+    assembly = asset_assembly(asset, sea=sea)
+    grid = morison_points(assembly, highest_z=0.0, coefficients=sea.coefficients)
+    modes = undamped_modes(build_system(assembly, asset.support), _RADIATING)
+    labels = mode_labels(mode_kinds(assembly, modes.shapes, modes.frequency_hz))
+    return [
+        {
+            "label": label,
+            "frequency_hz": float(omega / (2.0 * np.pi)),
+            "damping_ratio": radiation_damping(grid, shape, float(omega), sea.depth_m) / (2.0 * float(omega)),
+        }
+        for label, omega, shape in zip(labels, modes.omega, modes.shapes.T, strict=True)
+    ]
 
 
 def about_mudline(loads: FloatArray, depth_m: float) -> FloatArray:

@@ -192,9 +192,11 @@ def sum_of_elements(mesh: Mesh, matrices: FloatArray) -> sp.csc_array:
 
 def sum_of_blocks(mesh: Mesh, blocks: list[tuple[IntArray, FloatArray]]) -> sp.csc_array:
     """Return the sum of dense blocks, each on its own DOFs."""
-    total = sp.dok_array((mesh.n_dof, mesh.n_dof))
-    for dofs, block in blocks:
-        for i, row in enumerate(dofs):
-            for j, column in enumerate(dofs):
-                total[row, column] += block[i, j]
-    return total.tocsc()
+    if not blocks:
+        return sp.csc_array((mesh.n_dof, mesh.n_dof))
+    rows = np.concatenate([np.repeat(dofs, dofs.size) for dofs, _ in blocks])
+    columns = np.concatenate([np.tile(dofs, dofs.size) for dofs, _ in blocks])
+    values = np.concatenate([np.ravel(block) for _, block in blocks])
+    total = sp.coo_array((values, (rows, columns)), shape=(mesh.n_dof, mesh.n_dof)).tocsc()
+    total.eliminate_zeros()
+    return total

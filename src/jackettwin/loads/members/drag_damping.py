@@ -5,8 +5,7 @@ r"""Linearised drag damping of members in a random sea, from its spectrum.
 
 with P the projector normal to the member, h and v the depth functions of Airy waves and d the sea's heading.
 σ² is the mean variance of the two velocity components normal to a member, which the simulation computes from
-its time series. Radiation damping of the members is neglected: below 1 Hz their diameters are too small to
-generate waves.
+its time series. Damping by radiated waves is in ``radiation_damping``.
 """
 
 from __future__ import annotations

@@ -102,17 +102,7 @@ def asset_model(
     Nodes that are ``pushed`` keep coordinates of their own: they yield to a force as the whole model does.
     """
     top_node = asset.structure.top_node
-    structure = turned_nacelle(asset.structure, yaw)
-    assembly = assemble(
-        structure,
-        beam_theory=asset.beam,
-        rotary_inertia=asset.rotary_inertia,
-        subdivide=asset.subdivide,
-        gravity=asset.gravity,
-    )
-    if sea is not None and sea.water is not None:
-        grid = morison_points(assembly, highest_z=0.0, coefficients=sea.coefficients)
-        assembly = replace(assembly, mass=assembly.mass + water_mass(assembly, grid, sea.water).tocsc())
+    assembly = asset_assembly(asset, sea=sea, yaw=yaw)
     own = own_damping(assembly, asset.rayleigh)
     system = build_system(assembly, asset.support, rayleigh=asset.rayleigh, spread=own)
     small = reduced(system, below_hz=BAND_HZ, keep=_own_dofs(assembly, (top_node, *pushed)))
@@ -123,6 +113,21 @@ def asset_model(
         return model
     damping = tuned_damping(assembly, small, asset.coupled_damping)
     return model.with_forces_of_motion("structure", damping=damping, stiffness=np.zeros_like(damping))
+
+
+def asset_assembly(asset: Asset, *, sea: Sea | None = None, yaw: float = 0.0) -> Assembly:
+    """Return the matrices of an asset's steel, with the water's mass if the sea adds it."""
+    assembly = assemble(
+        turned_nacelle(asset.structure, yaw),
+        beam_theory=asset.beam,
+        rotary_inertia=asset.rotary_inertia,
+        subdivide=asset.subdivide,
+        gravity=asset.gravity,
+    )
+    if sea is None or sea.water is None:
+        return assembly
+    grid = morison_points(assembly, highest_z=0.0, coefficients=sea.coefficients)
+    return replace(assembly, mass=assembly.mass + water_mass(assembly, grid, sea.water).tocsc())
 
 
 def _own_dofs(assembly: Assembly, nodes: tuple[str, ...]) -> tuple[int, ...]:
