@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numpy as np
 import scipy.sparse as sp
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import located
 from jackettwin.files import digest
 from jackettwin.identification import Examination, IdentificationSettings, Pick
@@ -19,6 +21,25 @@ from jackettwin.twin.life.likely_structures import StressModel
 from jackettwin.twin.operation import OperationRule
 from jackettwin.twin.tolerances.registry import AT_WORK, TOLERANCES, directions, stiffer_at_work
 from jackettwin.updating import Direction, Feet, modes_by_foot_stiffness, numbered_modes, pairing_score
+
+_DECIMALS = 6
+"""Decimals of a matrix that make its identity: processors differ by 1e-13 of a freedom's own stiffness."""
+
+
+def _content(matrix: sp.csc_array) -> list[FloatArray]:
+    r"""Return the diagonal and the scaled entries of a symmetric matrix, equal on every processor.
+
+    An entry :math:`a_{ij}` is divided by :math:`\sqrt{a_{ii} a_{jj}}` and rounded; what is rounded to zero
+    is not there.
+    """
+    whole = matrix.tocoo()
+    diagonal = np.abs(matrix.diagonal())
+    own = np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    value = np.round(whole.data / (own[whole.row] * own[whole.col]), _DECIMALS)
+    row, column, value = (part[value != 0.0] for part in (whole.row, whole.col, value))
+    order = np.lexsort((row, column))
+    digits = np.array([float(f"{v:.{_DECIMALS}e}") for v in diagonal])
+    return [digits, value[order], row[order], column[order]]
 
 
 @dataclass(frozen=True)
@@ -87,8 +108,7 @@ class TwinModel:
             parts["life"] = [self.stress.settings.curve, self.stress.settings.edition]
         if self.assembly is not None:
             for name in ("mass", "stiffness"):
-                matrix = getattr(self.assembly, name).tocsc()
-                parts[name] = [matrix.data, matrix.indices, matrix.indptr]
+                parts[name] = _content(getattr(self.assembly, name))
             parts["nodes"] = {
                 name: list(map(float, at)) for name, at in self.assembly.structure.nodes.items()
             }
