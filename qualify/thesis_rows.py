@@ -150,7 +150,8 @@ def _(case: ThesisCase, answers: list[Answer]) -> str:
     del document["waves"]["diffraction"]
     plain = said("loads", str(case.write("slender.yaml", document)), "--json").document
     one, other = (d["parts"]["water"]["force_n"]["x"]["std"] for d in (answers[0].document, plain))
-    assert 0.5 < one / other < 1.0
+    # 2|m| of a slender cylinder rises to 2.1 before it falls
+    assert 0.5 < one / other < 1.06, one / other
     return f"wave force × {one / other:.3f} of that on slender members"
 
 

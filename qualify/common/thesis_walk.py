@@ -188,7 +188,7 @@ def prepared(file: Path, folder: Path) -> ThesisCase:
         for argv in first_commands(case):
             said(*argv)
     f = float(case.on_feet[0][0])
-    (folder / "picks.yaml").write_text(yaml.safe_dump([{"order": 35, "frequency_hz": f}]))
+    (folder / "picks.yaml").write_text(yaml.safe_dump({"picks": [{"order": 35, "frequency_hz": f}]}))
     return case
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.files import read_yaml
+from jackettwin.files import read_mapping, read_yaml
 
 
 def read(folder: Path, text: str) -> dict:
@@ -37,3 +37,13 @@ def test_numbers_with_exponents_are_numbers(tmp_path: Path) -> None:
 def test_what_is_no_mapping_is_refused(tmp_path: Path, text: str, message: str) -> None:
     with pytest.raises(InputError, match=message):
         read(tmp_path, text)
+
+
+@pytest.mark.parametrize("suffix", [".yaml", ".json"])
+def test_a_list_alone_is_the_value_of_its_key_where_there_is_one(tmp_path: Path, suffix: str) -> None:
+    """The page on `--picks` shows a list, which was refused as no mapping."""
+    path = tmp_path / f"picks{suffix}"
+    path.write_text('[{"order": 35, "frequency_hz": 0.33}]')
+    assert read_mapping(path, list_of="picks") == {"picks": [{"order": 35, "frequency_hz": 0.33}]}
+    with pytest.raises(InputError, match="must be a mapping"):
+        read_mapping(path)

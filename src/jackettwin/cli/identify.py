@@ -396,7 +396,7 @@ def _picks(path: str | None, files: Sequence[Path]) -> tuple[Pick, ...]:
     from jackettwin.identification import parse_picks, refuse_strangers
 
     with located(file=path):
-        picks = parse_picks(read_mapping(path, what="file of picks"))
+        picks = parse_picks(read_mapping(path, what="file of picks", list_of="picks"))
         refuse_strangers(picks, [file.stem for file in files])
         return picks
 

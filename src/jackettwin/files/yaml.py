@@ -92,19 +92,23 @@ def read_text(path: Path | str, *, what: str = "file") -> str:
         ) from None
 
 
-def read_yaml(path: Path | str, *, what: str = "file") -> dict[str, Any]:
-    """Read a YAML mapping.
+def read_yaml(path: Path | str, *, what: str = "file", list_of: str | None = None) -> dict[str, Any]:
+    """Read a YAML mapping, or a list that is the value of its key ``list_of``.
 
     Raises
     ------
     InputError
         If the file is missing, is not YAML, repeats a key, or is not a mapping.
     """
-    return parse_yaml(read_text(path, what=what), path, what=what)
+    return parse_yaml(read_text(path, what=what), path, what=what, list_of=list_of)
 
 
-def parse_yaml(text: str, path: Path | str, *, what: str = "file") -> dict[str, Any]:
+def parse_yaml(
+    text: str, path: Path | str, *, what: str = "file", list_of: str | None = None
+) -> dict[str, Any]:
     """Return the mapping that a text in YAML is; ``path`` is named in errors.
+
+    A list alone is the value of the key ``list_of``, if there is one.
 
     Raises
     ------
@@ -124,6 +128,8 @@ def parse_yaml(text: str, path: Path | str, *, what: str = "file") -> dict[str, 
         raise InputError(
             "is nested too deeply", file=path, remedy="a twin file has at most a few levels"
         ) from None
+    if list_of is not None and isinstance(data, list):
+        return {list_of: data}
     if not isinstance(data, dict):
         raise InputError(
             f"{what} must be a mapping of keys to values",
@@ -158,8 +164,8 @@ def _bounded(text: str) -> None:
             raise yaml.YAMLError("aliases stand for too much")
 
 
-def read_mapping(path: Path | str, *, what: str = "file") -> dict[str, Any]:
-    """Read a mapping from JSON, if the extension says so, else from YAML.
+def read_mapping(path: Path | str, *, what: str = "file", list_of: str | None = None) -> dict[str, Any]:
+    """Read a mapping, or a list that is the value of its key ``list_of``, from JSON or YAML by extension.
 
     Raises
     ------
@@ -167,11 +173,13 @@ def read_mapping(path: Path | str, *, what: str = "file") -> dict[str, Any]:
         If the file is missing, cannot be understood, or is not a mapping.
     """
     if Path(path).suffix.lower() != ".json":
-        return read_yaml(path, what=what)
+        return read_yaml(path, what=what, list_of=list_of)
     try:
         data = json.loads(read_text(path, what=what))
     except (ValueError, RecursionError) as error:
         raise InputError(f"is not JSON: {error}", file=path, remedy="mend it at that place") from None
+    if list_of is not None and isinstance(data, list):
+        return {list_of: data}
     if not isinstance(data, dict):
         raise InputError(f"{what} must be a mapping of keys to values", file=path, value=data)
     return data

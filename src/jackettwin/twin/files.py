@@ -311,7 +311,7 @@ def _picks(given: dict[str, Any], folder: Path, records: list[str]) -> tuple[Pic
     file = folder / source if isinstance(source, str) else None
     with located(file=file, field=None if file else "identification"):
         if file is not None:
-            source = read_mapping(file, what="file of picks")
+            source = read_mapping(file, what="file of picks", list_of="picks")
         picks = () if source is None else parse_picks(source)
         refuse_strangers(picks, records)
         return picks
