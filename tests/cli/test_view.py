@@ -1,5 +1,6 @@
 """``jackettwin view``: a page, or one message."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -26,6 +27,16 @@ def test_everything_at_once(tmp_path: Path) -> None:
     page = out.read_text()
     for word in ("undamped modes", "damped modes", "regular wave", "record pile_U12_s301", "ISO 19902"):
         assert word in page
+
+
+def test_feet_on_a_slope_and_a_part_of_girders(tmp_path: Path) -> None:
+    deck = Path(__file__).parents[2] / "qualify" / "decks" / "uneven_legs.yaml"
+    out = ["--modes", "0", "--out", str(tmp_path / "view.html"), "--json"]
+    result = CliRunner().invoke(main, ["view", str(deck), *out])
+    assert result.exit_code == 0, result.stderr
+    lines = json.loads(result.stdout)["dimensions"]
+    assert lines[1].startswith("4 feet at z -41.00 to -36.50 m")
+    assert "transition piece: z +11.00 to +16.00 m, 12.00 × 10.90 m in plan, 8 beams" in lines
 
 
 @pytest.mark.parametrize(

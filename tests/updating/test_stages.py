@@ -1,6 +1,7 @@
 """Stages: the last is the whole, masses add up, the numbers of reproduce's tables."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +10,8 @@ from jackettwin.decks import read_structure
 from jackettwin.structure import RigidLink, assemble, check
 from jackettwin.updating import numbered_modes
 from jackettwin.updating.steel import stages
+
+DECKS = Path(__file__).parents[2] / "qualify" / "decks"
 
 
 def test_jacket15_part_by_part() -> None:
@@ -48,3 +51,9 @@ def test_a_foot_beside_its_member_stands_in_every_stage() -> None:
     )
     assert [stage.name for stage in stages(moved, 2)] == ["jacket", "+ transition_piece", "+ tower"]
     np.testing.assert_allclose(stages(moved, 2)[0].frequency_hz, stages(whole, 2)[0].frequency_hz, rtol=1e-9)
+
+
+def test_a_part_of_beams_alone_is_added_where_it_connects() -> None:
+    """Girders between legs and tower came last, behind all tubes, so that there was no stage with them."""
+    found = stages(read_structure(DECKS / "uneven_legs.yaml"), 2)
+    assert [stage.name for stage in found] == ["jacket", "+ transition_piece", "+ tower"]

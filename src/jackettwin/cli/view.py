@@ -202,18 +202,26 @@ def _dimensions(assembly: Assembly) -> tuple[str, ...]:
     feet = [assembly.mesh.node_names.index(n) for n in structure.reaction_nodes]
     lines.append(f"z {z.min():+.2f} to {z.max():+.2f} m about the sea level")
     if feet:
-        lines.append(f"{len(feet)} feet at z {points[feet, 2].min():+.2f} m, {_footprint(points[feet])}")
-    parts = dict.fromkeys(m.part for m in structure.members if m.part)
+        low, high = z[feet].min(), z[feet].max()
+        slope = f" to {high:+.2f}" if high - low >= 0.005 else ""
+        lines.append(f"{len(feet)} feet at z {low:+.2f}{slope} m, {_footprint(points[feet])}")
+    parts = dict.fromkeys(bar.part for bar in structure.bars if bar.part)
     if len(parts) > _MOST_PARTS:
         tubes = [s.outer_diameter_m for m in structure.members for s in (m.section_start, m.section_end)]
         return (*lines, f"{len(parts)} parts, tubes {min(tubes):.2f} to {max(tubes):.2f} m")
     for part in parts:
-        own = [m for m in structure.members if m.part == part]
-        ends = points[[assembly.mesh.node_names.index(n) for m in own for n in (m.start, m.end)]]
-        diameters = [s.outer_diameter_m for m in own for s in (m.section_start, m.section_end)]
+        own = [bar for bar in structure.bars if bar.part == part]
+        ends = points[[assembly.mesh.node_names.index(n) for bar in own for n in (bar.start, bar.end)]]
+        tubes = [
+            s.outer_diameter_m
+            for m in structure.members
+            if m.part == part
+            for s in (m.section_start, m.section_end)
+        ]
+        size = f"tubes {min(tubes):.2f} to {max(tubes):.2f} m" if tubes else f"{len(own)} beams"
         lines.append(
             f"{part.replace('_', ' ')}: z {ends[:, 2].min():+.2f} to {ends[:, 2].max():+.2f} m, "
-            f"{_footprint(ends)}, tubes {min(diameters):.2f} to {max(diameters):.2f} m"
+            f"{_footprint(ends)}, {size}"
         )
     return tuple(lines)
 

@@ -90,7 +90,7 @@ def stages(structure: Structure, number: int, *, gravity: bool = False) -> tuple
     Parts that are not connected with the previous ones, such as legs that are joined only by braces, are
     added with the next part.
     """
-    parts = tuple(dict.fromkeys(one.part for one in structure.bars)) or ("",)
+    parts = _in_order(structure) or ("",)
     found: list[Stage] = []
     before = 0
     for k in range(1, len(parts) + 1):
@@ -106,6 +106,24 @@ def stages(structure: Structure, number: int, *, gravity: bool = False) -> tuple
         found.append(Stage(parts[:k], parts[before:k], mass, assembly, modes))
         before = k
     return tuple(found)
+
+
+def _in_order(structure: Structure) -> tuple[str, ...]:
+    """Return the parts as they are built.
+
+    A structure lists its beams behind its tubes, so that a part of beams alone, e.g. a transition piece of
+    box girders, has lost its place: it comes before the part that nothing connects without it.
+    """
+    parts = list(dict.fromkeys(one.part for one in structure.bars))
+    tubes = {member.part for member in structure.members}
+    for beams in [part for part in parts if part not in tubes]:
+        others = [part for part in parts if part != beams]
+        for k in range(1, len(others)):
+            standing = (*others[:k], beams)
+            if _if_joined(structure, standing) and not _if_joined(structure, tuple(others[: k + 1])):
+                parts = [*standing, *others[k:]]
+                break
+    return tuple(parts)
 
 
 def _if_joined(structure: Structure, parts: tuple[str, ...]) -> Structure | None:

@@ -245,8 +245,7 @@ def sensitivities(
                 row=1,
                 col=col,
             )
-    figure.update_yaxes(title_text=style.title("change of f per 1 % of the parameter", "%"), row=1, col=1)
-    figure.update_yaxes(
-        title_text=style.title("change of ζ per 1 % of the parameter, in 0.01 %", "-"), row=1, col=2
-    )
+    # short: the axis is 260 px high
+    figure.update_yaxes(title_text=style.title("Δf per 1 % of parameter", "%"), row=1, col=1)
+    figure.update_yaxes(title_text=style.title("Δζ per 1 % of parameter", "0.01 %"), row=1, col=2)
     return style.finish(figure, height=400, barmode="group", margin={"l": 70, "r": 24, "t": 84, "b": 54})

@@ -10,6 +10,9 @@ from jackettwin.arrays import FloatArray
 from jackettwin.soil import Parameter
 from jackettwin.updating.problem import Problem
 
+_PIECE = 500
+"""Points that are computed at once: compiled code lets no other thread report progress meanwhile."""
+
 
 @dataclass(frozen=True)
 class CostSurface:
@@ -71,4 +74,6 @@ def cost_curve(
 
 
 def _costs(problem: Problem, theta: FloatArray, moved: FloatArray) -> FloatArray:
-    return problem.costs(np.log(moved), problem.anchor(np.log(theta)))
+    anchor = problem.anchor(np.log(theta))
+    pieces = np.array_split(np.log(moved), -(-len(moved) // _PIECE))
+    return np.concatenate([problem.costs(piece, anchor) for piece in pieces])
