@@ -416,6 +416,10 @@ CATALOGUE: dict[str, Kind] = {
         "warning",
         "the change of {alarm} was: {was} ({was_probability:.0%}); now: {now} ({probability:.0%})",
     ),
+    "change_taken_back": Kind(
+        "warning",
+        "the change of {alarm} takes back that of {earlier}: a repair, or a mass that comes and goes",
+    ),
     # service
     "study_set_aside": Kind(
         "alarm",

@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
+from jackettwin.change import repairs
 from jackettwin.change.reversals import taken_back
-from jackettwin.watching import Change
 
 STD = 5e-4
 
 
-def change(*size: float, kind: str = "frequency") -> Change:
-    m = len(size)
-    members = np.abs(size) > 2.0 * STD
-    return Change(
-        0.0, kind, "any", 0.0, (0.0, 0.0), members, np.array(size), np.full(m, STD), np.zeros((1, m, m)),
-        np.zeros((1, m)), np.zeros(1), np.zeros((1, m, 1)), 20.0, (np.array(size) / STD) ** 2,
-    )  # fmt: skip
+def change(*size: float, kind: str = "frequency", day: int = 1) -> dict[str, Any]:
+    """Return the document of an alarm: changes of ln f with a standard deviation of STD."""
+    logs = {f"bending_{k}": x for k, x in enumerate(size)}
+    sized = {}
+    for name, x in logs.items():
+        at, low, high = np.expm1([x, x - 1.645 * STD, x + 1.645 * STD]).tolist()
+        sized[name] = {"size": at, "interval_90": [low, high], "unit": "-"}
+    return {
+        "kind": kind, "time_utc": f"2025-03-{day:02d}T00:00:00+00:00", "by_quantity": sized,
+        "quantities": [name for name, x in logs.items() if abs(x) > 2.0 * STD],
+    }  # fmt: skip
 
 
 def shares(sizes: Sequence[tuple[float, ...]]) -> tuple[int | None, ...]:
@@ -47,6 +52,32 @@ def test_scatter_and_other_kinds_take_back_nothing() -> None:
     assert taken_back([one, change(6e-3, 6e-3, kind="damping")]) == (None, None)
     assert taken_back([change(1.0, kind="scatter"), change(-1.0, kind="scatter")]) == (None, None)
     assert taken_back([one, other]) == (None, 0)
+
+
+def test_a_turn_back_of_a_pair_is_in_degrees() -> None:
+    """Turned by −8 and +8.4 degrees, known to half a degree; as shares of themselves they would not fit."""
+    one, other = (
+        change(1.0, kind="angle") | {"by_quantity": {"bending_0": {
+            "size": at, "interval_90": [at - 0.8, at + 0.8], "unit": "deg"
+        }}} for at in (-8.0, 8.4)
+    )  # fmt: skip
+    assert taken_back([one, other]) == (None, 0)
+
+
+def test_a_quantity_that_was_not_watched_then_takes_back_nothing() -> None:
+    assert taken_back([change(-6e-3), change(6e-3, 6e-3)]) == (None, None)
+
+
+def test_the_finding_names_both_days() -> None:
+    on, off = change(-6e-3, -6e-3, day=4), change(6e-3, 6e-3, day=19)
+    ((at, finding),) = repairs([on, off])
+    assert (at, finding.code, finding.subject) == (
+        off["time_utc"],
+        "change_taken_back",
+        "bending_0, bending_1",
+    )
+    assert "the change of 2025-03-19 takes back that of 2025-03-04" in str(finding)
+    assert repairs([on]) == ()
 
 
 def test_equal_changes_back_and_forth_are_told_in_99_of_100() -> None:

@@ -58,6 +58,13 @@ def test_days_that_change_raise_an_alarm_and_days_that_do_not_none(
     assert len(json.dumps(kept)) < 5e6
     _, quiet, _ = watched(folder, days(95, 0.0), None)
     assert [f["severity"] for f in quiet] == ["info", "info"]
+    # it is repaired: the second alarm takes back the first
+    repaired = days(130, 0.0) | days(95, -0.008)
+    _, said, _ = watched(folder, repaired, json.loads(json.dumps(kept)))
+    assert [f["code"] for f in said] == [
+        "watch_sees", "structure_changed", "structure_changed", "change_taken_back"
+    ]  # fmt: skip
+    assert said[-1]["text"].startswith(f"the change of {said[2]['day']} takes back that of {said[1]['day']}")
 
 
 def test_sums_of_past_days_are_kept_and_only_new_days_sent(folder: Path) -> None:

@@ -10,6 +10,7 @@ from .judge import (
     history_of as history_of,
     judge as judge,
     monitoring_document as monitoring_document,
+    repairs as repairs,
     sight_of as sight_of,
 )
 from .smallest_changes import (

@@ -20,6 +20,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.change.causes import ModelCauses, seen_causes
 from jackettwin.change.ground import UNDESCRIBED, Ground
+from jackettwin.change.reversals import taken_back
 from jackettwin.change.smallest_changes import (
     smallest_changes,
     smallest_documents,
@@ -184,9 +185,11 @@ def judge(
         known = _day(known, baseline, history_of(columns, every, [day]), day, causes)
     known = replace(known, judged=_fingerprint(every, after))
     told = {alarm["time_utc"]: len(alarm.get("verdicts", ())) for alarm in kept.alarms}
+    known_repairs = repairs(kept.alarms)
     for alarm in known.alarms:
         findings += [finding_of(alarm)] if alarm["time_utc"] not in told else []
         findings += [f for _, f in corrections(alarm)[max(told.get(alarm["time_utc"], 1), 1) - 1 :]]
+    findings += [f for at, f in repairs(known.alarms) if (at, f) not in known_repairs]
     return known, tuple(findings)
 
 
@@ -305,6 +308,16 @@ def corrections(alarm: Mapping[str, Any]) -> tuple[tuple[str, Finding], ...]:
         }  # fmt: skip
         found.append((now["time_utc"], Finding("cause_corrected", ", ".join(alarm["quantities"]), params)))
     return tuple(found)
+
+
+def repairs(alarms: Sequence[Mapping[str, Any]]) -> tuple[tuple[str, Finding], ...]:
+    """Return when a change took back an earlier one, as a repair does, and the finding on it."""
+    return tuple(
+        (later["time_utc"], Finding("change_taken_back", ", ".join(later["quantities"]), {
+            "alarm": later["time_utc"][:10], "earlier": alarms[i]["time_utc"][:10],
+        }))
+        for later, i in zip(alarms, taken_back(alarms), strict=True) if i is not None
+    )  # fmt: skip
 
 
 def _fingerprint(every: Days, dates: Sequence[str]) -> str:

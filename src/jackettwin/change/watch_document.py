@@ -31,7 +31,7 @@ def watched_document(watched: MonitoredTable) -> dict[str, Any]:
         "alarms": alarms,
         "reversals": [
             {"time_utc": alarms[j]["time_utc"], "takes_back_utc": alarms[i]["time_utc"]}
-            for j, i in enumerate(taken_back([alarm.change for alarm in watched.alarms]))
+            for j, i in enumerate(taken_back(alarms))
             if i is not None
         ],
         "quantities": {
@@ -205,10 +205,10 @@ def statement(watched: MonitoredTable) -> str:
             f"is expected once in {watched.watch.arl_years:g} years or more rarely."
         )
     parts = []
-    earlier = taken_back([alarm.change for alarm in watched.alarms])
-    for alarm, back in zip(watched.alarms, earlier, strict=True):
+    documents = [alarm_document(watched.watch, table.time, alarm) for alarm in watched.alarms]
+    earlier = taken_back(documents)
+    for alarm, doc, back in zip(watched.alarms, documents, earlier, strict=True):
         change = alarm.change
-        doc = alarm_document(watched.watch, table.time, alarm)
         what = "scatter of" if change.kind == "scatter" else "change of"
         began = [table.time(day) for day in (change.began, *change.began_interval_90)]
         parts.append(

@@ -117,7 +117,8 @@ def _on_a_tower(seen: SharedMotion, heights_m: FloatArray, names: list[str]) -> 
             cured = size.copy()
             cured[i] -= np.log(factor)
             left = float(np.max(np.abs(_bend(heights_m, cured))))
-            if left < TOWER_TOLERANCE:
+            # a power law may fall with height as well, which no tower's first bending mode does
+            if left < TOWER_TOLERANCE and _grows(heights_m, cured):
                 cures.append((left, i, factor))
     if cures:
         _, best, factor = min(cures)
@@ -141,6 +142,11 @@ def _bend(heights_m: FloatArray, size: FloatArray) -> FloatArray:
             b = further[np.argmin(np.abs(x[further] - x[i]))]
         out[i] = size[i] - size[a] - (size[b] - size[a]) * (x[i] - x[a]) / (x[b] - x[a])
     return out
+
+
+def _grows(heights_m: FloatArray, size: FloatArray) -> bool:
+    """Tell whether ln of the amplitudes hardly falls from one height to the next."""
+    return bool(np.all(np.diff(size[np.argsort(heights_m, kind="stable")]) > -TOWER_TOLERANCE))
 
 
 def _by_gravity(record: Record) -> Iterator[WrongUnit]:
