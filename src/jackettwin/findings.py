@@ -173,8 +173,8 @@ CATALOGUE: dict[str, Kind] = {
     # identification
     "peaks_above_band": Kind(
         "info",
-        "there are {count} clear peaks above the band, which ends at {edge:.3g} Hz: {peaks} Hz; modes are "
-        "not sought there, --band {widen} widens the band",
+        "above the band, which ends at {edge:.3g} Hz, the spectrum has {count}: {peaks} Hz; modes are not "
+        "sought there, --band {widen} widens the band",
     ),
     "not_refined": Kind("warning", "modes at {frequencies_hz} Hz are not refined: {obstacle}"),
     "hidden_mode": Kind(

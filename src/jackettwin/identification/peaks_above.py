@@ -53,5 +53,6 @@ def peaks_above(
     listed = ", ".join(f"{f:.3g}" for f in apart[:NAMED]) + (" …" if len(apart) > NAMED else "")
     low, top = resolved.lowest_frequency_hz, min(1.2 * apart[-1], 0.5 * PASSED * rate)
     params: dict[str, float | int | str | bool | None]
-    params = {"peaks": listed, "count": len(apart), "edge": edge, "widen": f"{low:.2g},{top:.3g}"}
+    count = "a clear peak" if len(apart) == 1 else f"{len(apart)} clear peaks"
+    params = {"peaks": listed, "count": count, "edge": edge, "widen": f"{low:.2g},{top:.3g}"}
     return (str(Finding("peaks_above_band", params=params)),)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from jackettwin.records.readers.channel_names import read_name, told
+from jackettwin.records.readers.channel_names import read_name, read_names, told
 
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
@@ -88,3 +88,23 @@ def test_what_was_taken_is_told_once_a_thing() -> None:
 
 def test_what_goes_without_saying_is_not_told() -> None:
     assert told({"acc_top_x": read_name("acc_top_x")}) == ()
+
+
+@pytest.mark.parametrize(
+    "pattern", ["WEA3_{}_Beschl_30m", "A_{}30", "WTG07_TWR_{}_L0", "L30_{}1", "B_Turm_{}_oben"]
+)
+@pytest.mark.parametrize("letters", ["EN", "ON", "xy", "XY"])
+def test_names_that_differ_by_a_direction_explain_each_other(pattern: str, letters: str) -> None:
+    east, north = (pattern.format(letter) for letter in letters)
+    found = read_names([north, east, pattern.format(7)])
+    assert (found[east].direction, found[north].direction) == (X, Y)
+    assert read_names([pattern.format(7)])[pattern.format(7)].direction is None
+    if read_name(east).direction is None:
+        assert read_names([east, pattern.format(7)])[east].direction is None  # alone it may be anything
+
+
+def test_letters_without_one_across_say_nothing() -> None:
+    for names in (["leg_a_1", "leg_b_1"], ["Sensor_E4", "Sensor_F4"], ["N_3", "N_4"], ["x_e_1", "y_n_2"]):
+        assert [reading.direction for reading in read_names(names).values()] == [
+            read_name(name).direction for name in names
+        ]

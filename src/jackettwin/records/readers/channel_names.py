@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
 Vector = tuple[float, float, float]
 
@@ -139,6 +139,41 @@ def read_name(name: str) -> Reading:
         datum=datum,
         level=levels[0] if len(set(levels)) == 1 else "",
     )
+
+
+_ACROSS = {"x": ("y", 0), "y": ("x", 1), "n": ("e", 1), "e": ("n", 0), "o": ("n", 0)}
+"""Letter of a direction, that of the direction across, and which of x and y it is."""
+_LETTER = re.compile(r"(?<![a-z])[xyeno](?![a-z])")
+
+
+def read_names(names: Iterable[str]) -> dict[str, Reading]:
+    """Return place and direction from the names of a record's channels, which may explain each other.
+
+    A letter that alone says nothing is a direction if another name differs by the letter of the direction
+    across, and by nothing else.
+
+    Examples
+    --------
+    >>> both = read_names(["WEA3_E_acc_2", "WEA3_N_acc_2", "WEA3_E_acc_5"])
+    >>> [reading.direction_word for reading in both.values()]
+    ['east', 'north', '']
+    """
+    read = {name: read_name(name) for name in names}
+    lower = {name.strip().lower() for name in read}
+    words = ("x", "y"), ("east", "north")
+    for name, reading in read.items():
+        text, found = name.strip().lower(), set()
+        for match in _LETTER.finditer(text) if reading.direction is None else ():
+            letter, at = match.group(), match.start()
+            across, axis = _ACROSS[letter]
+            others = ("e", "o") if across == "e" else (across,)
+            if any(text[:at] + other + text[at + 1 :] in lower for other in others):
+                found.add((axis, words[letter not in "xy"][axis]))
+        if len(found) == 1:
+            ((axis, word),) = found
+            vector = (1.0, 0.0, 0.0) if axis == 0 else (0.0, 1.0, 0.0)
+            read[name] = replace(reading, direction=vector, direction_word=word)
+    return read
 
 
 def told(used: Mapping[str, Reading]) -> tuple[str, ...]:

@@ -23,7 +23,7 @@ from jackettwin.quantities import (
     unit_in_name,
     vibration_of,
 )
-from jackettwin.records.readers.channel_names import Reading, read_name
+from jackettwin.records.readers.channel_names import Reading
 from jackettwin.records.readers.description import ChannelEntry
 from jackettwin.records.record import Channel
 
@@ -76,8 +76,10 @@ def merged(own: ChannelEntry | None, given: ChannelEntry | None) -> dict[str, An
     return own_entry | (given or ChannelEntry()).model_dump(exclude_unset=True)
 
 
-def described_channel(name: str, entry: Mapping[str, Any], defaults: FileDefaults) -> DescribedChannel:
-    """Return the channel in SI units, placed and directed by its entry, else by its name.
+def described_channel(
+    name: str, named_so: Reading, entry: Mapping[str, Any], defaults: FileDefaults
+) -> DescribedChannel:
+    """Return the channel in SI units, placed and directed by its entry, else by what its name says.
 
     Raises
     ------
@@ -88,7 +90,7 @@ def described_channel(name: str, entry: Mapping[str, Any], defaults: FileDefault
         kind, unit, gain = _measures(name, entry, defaults)
         named = unit_in_name(name, kind) if kind in VIBRATIONS and not unit else ""
         factor, si_unit = _factor(kind, unit or named)
-        read = replace(_from_name(name, entry, kind), unit=named)
+        read = replace(_from_name(named_so, entry, kind), unit=named)
         direction = _unit_vector(entry.get("direction") or read.direction or (0.0, 0.0, 0.0))
     except InputError as error:
         raise error.at(field=f"channels.{name}") from None
@@ -138,11 +140,10 @@ def _measures(name: str, entry: Mapping[str, Any], defaults: FileDefaults) -> tu
     return kind, unit, 1.0 if gain is None else float(gain)
 
 
-def _from_name(name: str, entry: Mapping[str, Any], kind: str) -> Reading:
+def _from_name(read: Reading, entry: Mapping[str, Any], kind: str) -> Reading:
     """Return what is taken from a vibration channel's name because its entry lacks it."""
     if kind not in VIBRATIONS:
         return Reading()
-    read = read_name(name)
     placed = entry.get("node") is not None or "height_m" in entry
     return Reading(
         direction=None if entry.get("direction") else read.direction,

@@ -15,7 +15,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean
 from jackettwin.quantities import guess_quantity, names_other
 from jackettwin.records.clocks import between_ticks, regularise
-from jackettwin.records.readers.channel_names import Reading, read_name, told
+from jackettwin.records.readers.channel_names import Reading, read_name, read_names, told
 from jackettwin.records.readers.channels import (
     DescribedChannel,
     FileDefaults,
@@ -306,7 +306,8 @@ def _described(
         defaults = replace(defaults, unit=table.unit)
     given = said.channels or {}
     return tuple(
-        described_channel(name, merged(table.channels.get(name), given.get(name)), defaults) for name in names
+        described_channel(name, named_so, merged(table.channels.get(name), given.get(name)), defaults)
+        for name, named_so in read_names(names).items()
     )
 
 
