@@ -19,6 +19,7 @@ from jackettwin.structure.cut import at_interface
 from jackettwin.structure.model import PointMass, RigidLink
 
 DECK = Path(__file__).parents[1] / "data" / "subdyn" / "IEA-15-240-RWT-Jacket_SubDyn.dat"
+OTHERS = Path(__file__).parents[2] / "qualify" / "decks"
 
 
 def frequencies(structure) -> np.ndarray:
@@ -46,10 +47,11 @@ def own_ground(base: Structure, kind: str) -> Structure:
 
 @pytest.mark.parametrize("kind", ["", "K", "M", "KM"])
 @pytest.mark.parametrize("support", ["own", "pinned", "clamped", "springs", "piles"])
-@pytest.mark.parametrize("name", ["jacket15", "deck"])
+@pytest.mark.parametrize("name", ["jacket15", "deck", "three_legs.yaml", "oc3_tripod.dat", "oc4_jacket.dat"])
 def test_what_is_read_back_has_the_same_matrices(name: str, support: str, kind: str, tmp_path: Path) -> None:
     """Stiffness and mass, to rounding, of a structure on every kind of support."""
-    base = read_structure(DECK) if name == "deck" else at_interface(read_structure(name))[0]
+    whole = {"jacket15": "jacket15", "deck": DECK}.get(name, OTHERS / name)
+    base = at_interface(read_structure(whole))[0]
     base = own_ground(replace(base, rotary_inertia=True), kind)
     held = {
         "own": own_support,

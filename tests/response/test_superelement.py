@@ -19,9 +19,11 @@ from jackettwin.response.superelement.craig_bampton import (
     superelement,
     with_deck_damping,
 )
+from jackettwin.response.superelement.extptfm_writer import LAYOUTS
 from jackettwin.response.superelement.files import read_superelement, write_superelement
 from jackettwin.response.system import build_system
 from jackettwin.soil import on_translations, own_support
+from jackettwin.soil.files import read_support
 from jackettwin.soil.laws.viscoelastic import Springpot, kelvin_voigt, maxwell_3, zener
 from jackettwin.soil.support import Support, clamped
 from jackettwin.structure import Rayleigh, Section, Structure, assemble, check
@@ -29,6 +31,7 @@ from jackettwin.structure.cut import at_interface
 from jackettwin.structure.model import STEEL, Member, Reaction
 
 DATA = Path(__file__).parents[1] / "data" / "subdyn"
+DECKS = Path(__file__).parents[2] / "qualify" / "decks"
 CASES = json.loads((DATA / "subdyn_results.json").read_text())["cases"]
 FEET = kelvin_voigt(2.5e9, 7.6e8)
 STEEL_DAMPING = {
@@ -193,6 +196,30 @@ def test_round_trip(tmp_path: Path, suffix: str) -> None:
     if suffix == ".npz":
         np.testing.assert_array_equal(again.basis, element.basis)
         assert again.reference_m == element.reference_m
+
+
+@pytest.mark.parametrize(
+    "support",
+    [
+        "kelvin-voigt:k=2.5e9,c=7.6e8",
+        "zener:k0=2.62e9,c=8.65e8,k1=9.99e9",
+        "springpot:k=1e9,alpha=0.06,f0=0.2",
+        "clamped",
+        "jacket15",
+    ],
+)
+@pytest.mark.parametrize("name", ["three_legs.yaml", "oc3_tripod.dat", "oc4_jacket.dat"])
+def test_every_structure_on_every_support_is_read_back(name: str, support: str, tmp_path: Path) -> None:
+    """Mass, damping and stiffness, to the digits on paper, in every form that is written."""
+    base = at_interface(read_structure(DECKS / name))[0]
+    system = build_system(assemble(base), read_support(support, base), rayleigh=Rayleigh.minimum(0.01, 0.3))
+    element = superelement(system, number=10)
+    for form in (".npz", *LAYOUTS):
+        path = tmp_path / f"a{form if form == '.npz' else '.dat'}"
+        files = write_superelement(element, path, **({} if form == ".npz" else {"layout": form}))
+        again = read_superelement(files[0])
+        for one in ("M", "C", "K", "weight_n"):
+            np.testing.assert_allclose(getattr(again, one), getattr(element, one), rtol=1e-14, atol=0.0)
 
 
 @pytest.mark.parametrize(

@@ -8,10 +8,24 @@ import pytest
 from scipy.stats import t
 
 from jackettwin.simulate import read_scenario, simulate
-from jackettwin.simulate.level import BESIDE_OPENFAST, BETWEEN, FIRST, RECORDS, SECOND, band_rms
+from jackettwin.simulate.level import (
+    BESIDE_OPENFAST,
+    BETWEEN,
+    FIRST,
+    FLANK,
+    RECORDS,
+    SECOND,
+    band_rms,
+    operating_levels,
+)
 
 PAGE = Path(__file__).parents[2] / "docs" / "verification" / "response_level.md"
-TITLES = {FIRST: "the first pair", BETWEEN: "between the modes", SECOND: "the second pair"}
+TITLES = {
+    FIRST: "the first pair",
+    BETWEEN: "between the modes",
+    SECOND: "the second pair",
+    FLANK: "the lower flank of the second pair",
+}
 
 
 def test_the_ratios_are_those_of_the_page() -> None:
@@ -63,3 +77,17 @@ def test_what_was_not_compared_is_said(scenario_file) -> None:
     said = " ".join(metadata["levels_beyond_comparison"])
     for word in ("not parked", "8 to 16 m/s", "grid", "askew", "waves"):
         assert word in said
+
+
+def test_an_operating_rotor_s_level_follows_from_its_damping(scenario_file) -> None:
+    """√(ζ of `operation` / ζ here); e^(1.645 · ½ · 0.2) wide fore-aft, by the page of operation."""
+    keys = {"rotor": {"state": "operating"}, "wind": {"speed_m_s": 12.0, "seed": 1}, "support": "clamped"}
+    scenario = read_scenario(scenario_file(**keys))
+    found = operating_levels(scenario, {"fore_aft_1": 0.16, "side_side_1": 0.01})
+    fore_aft = found["fore_aft"]
+    assert 0.06 < fore_aft.expected_damping_ratio < 0.14  # bending blades: 11.9 % on jacket15's feet
+    assert fore_aft.ratio == pytest.approx(np.sqrt(fore_aft.expected_damping_ratio / 0.16), rel=1e-12)
+    low, high = fore_aft.ratio_interval_90
+    assert high / fore_aft.ratio == pytest.approx(fore_aft.ratio / low) == pytest.approx(np.exp(0.1645))
+    parked = read_scenario(scenario_file(wind={"speed_m_s": 12.0, "seed": 1}))
+    assert operating_levels(parked, {"fore_aft_1": 0.16}) == {}

@@ -290,6 +290,15 @@ class Reply:
     exit_code: int = 0
 
 
+def with_omissions(document: object, command: str) -> object:
+    """Return a document with what the command always leaves out, unless it says so itself."""
+    from jackettwin.cli.omissions import ALWAYS, omitted_by
+
+    if not isinstance(document, Mapping) or command not in ALWAYS:
+        return document
+    return {**document, "left_out": document.get("left_out", omitted_by(command))}
+
+
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
@@ -302,7 +311,7 @@ def answers(function: Callable[P, Reply]) -> Callable[P, None]:
         with _lasting_said(click.get_current_context().info_name or "jackettwin"):
             answer = function(*args, **kwargs)
         if as_json:
-            print_json(answer.document)
+            print_json(with_omissions(answer.document, click.get_current_context().info_name or ""))
         else:
             answer.show()
         if answer.exit_code:

@@ -13,8 +13,10 @@ from jackettwin.errors import InputError
 from jackettwin.report import Table, TableColumn, cell
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from jackettwin.arrays import FloatArray
-    from jackettwin.simulate import Simulation
+    from jackettwin.simulate import OperatingLevel, Simulation
 
 
 DEFAULT_SCENARIO = "parked"
@@ -45,6 +47,7 @@ def simulate_command(
     from jackettwin.records import write_record
     from jackettwin.simulate import (
         force_series,
+        operating_levels,
         read_scenario,
         rotor_notes,
         simulate,
@@ -63,12 +66,15 @@ def simulate_command(
             write_force_series(force_series(chosen, names), section_forces)
     elif members is not None:
         raise InputError("needs --section-forces", field="--members", value=members, remedy="name its file")
+    truth = done.record.metadata["true_modes"]
+    at_work = operating_levels(chosen, {m["label"]: m["damping_ratio"] for m in truth})
     asset = chosen.asset
     odd = check(assemble(asset.structure)).warnings
     notes = [
         *rotor_notes(chosen.air, chosen.turbine),
         *asset.support.notes,
         *odd,
+        *_operating_notes(at_work),
         *_unusual_shares(done, loops=asset.foundation is not None),
     ]
 
@@ -78,7 +84,19 @@ def simulate_command(
 
     forces = None if section_forces is None else str(section_forces)
     document = {**done.document(), "record": str(path), "section_forces": forces, "notes": notes}
+    document["operating_levels"] = {side: level._asdict() for side, level in at_work.items()}
     return Reply({**document, "left_out": of_simulation(chosen)}, show)
+
+
+def _operating_notes(levels: Mapping[str, OperatingLevel]) -> list[str]:
+    """Return by which factor the first pair of an operating rotor is too loud or quiet, and its interval."""
+    return [
+        f"{side}_1 has ζ {100 * level.damping_ratio:.2f} % here, with rigid blades in a frozen wake, and "
+        f"{100 * level.expected_damping_ratio:.2f} % with bending blades and a wake that lags (`operation`): "
+        f"its level is about {level.ratio:.2f} times as large ({low:.2f} to {high:.2f})"
+        for side, level in levels.items()
+        for low, high in (level.ratio_interval_90,)
+    ]
 
 
 def _unusual_shares(done: Simulation, *, loops: bool) -> list[str]:

@@ -9,6 +9,7 @@ from .interface_motion import (
     InterfaceMotion as InterfaceMotion,
     read_interface_motion as read_interface_motion,
 )
+from .level import OperatingLevel as OperatingLevel, operating_levels as operating_levels
 from .members import scenario_uses as scenario_uses, water_notes as water_notes
 from .motion.model import asset_model as asset_model
 from .operating_modes import (

@@ -5,6 +5,7 @@ Whether a simulation is as loud as OpenFAST is a measured ratio with its interva
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import exp, sqrt
 from typing import NamedTuple
@@ -12,19 +13,25 @@ from typing import NamedTuple
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.loads import OPERATING_LOG_STD, operating_point
+from jackettwin.simulate.motion.model import asset_model
 from jackettwin.simulate.motion.motion import Motion
+from jackettwin.simulate.operating_modes import modes_with_rotor
 from jackettwin.simulate.scenario.air import GRID_M
 from jackettwin.simulate.scenario.scenario import Instrument, Scenario
 from jackettwin.simulate.sensing import readings
+from jackettwin.structure import without_rotor
 
 FIRST, BETWEEN, SECOND = "first pair", "between first and second pair", "second pair"
-BANDS = {FIRST: (0.8, 1.2), BETWEEN: (1.7, 3.4), SECOND: (3.4, 5.6)}
+FLANK = "lower flank of the second pair"
+BANDS = {FIRST: (0.8, 1.2), BETWEEN: (1.7, 3.4), SECOND: (3.4, 5.6), FLANK: (4.24, 4.42)}
 """Bands over the first bending frequency."""
 DIRECTIONS = {"fore_aft": (1.0, 0.0, 0.0), "side_side": (0.0, 1.0, 0.0)}
 
 
 COMPARED, RECORDS, SPEEDS_M_S = "jacket15", 7, (8.0, 16.0)
 """Structure, number and mean winds of the OpenFAST records with which levels were compared."""
+_NORMAL_90 = 1.645
 _STUDENT_90 = 1.943
 """The 95 % quantile of Student's t with one degree of freedom less than there are records."""
 
@@ -49,6 +56,8 @@ BESIDE_OPENFAST = {
     (BETWEEN, "side_side"): Ratio(0.97, 0.02),
     (SECOND, "fore_aft"): Ratio(1.12, 0.02),
     (SECOND, "side_side"): Ratio(0.92, 0.02),
+    (FLANK, "fore_aft"): Ratio(1.00, 0.04),
+    (FLANK, "side_side"): Ratio(1.25, 0.06),
 }
 """From docs/verification/response_level.md."""
 
@@ -100,6 +109,46 @@ def levels(motion: Motion, scenario: Scenario) -> tuple[Level, ...]:
             mean, interval = (ratio.mean, ratio.interval_90) if ratio else (None, None)
             found.append(Level(band, direction, limits, rms, mean, interval))
     return tuple(found)
+
+
+class OperatingLevel(NamedTuple):
+    """Level of an operating rotor's scenario in the first pair: its blades are rigid, its wake is frozen.
+
+    Attributes
+    ----------
+    damping_ratio : of the scenario's model
+    expected_damping_ratio : with bending blades and a wake and lift that lag, as ``operation`` has them
+    ratio, ratio_interval_90 : root mean square here over the expected, √(expected ζ/ζ), and its interval by
+        the standard deviation of the expected ln ζ
+    """
+
+    damping_ratio: float
+    expected_damping_ratio: float
+    ratio: float
+    ratio_interval_90: tuple[float, float]
+
+
+def operating_levels(scenario: Scenario, damping: Mapping[str, float]) -> dict[str, OperatingLevel]:
+    """Return by direction how loud the first pair of an operating rotor's scenario is; nothing of another.
+
+    Parameters
+    ----------
+    damping : {label: ratio} of the scenario's modes
+    """
+    air, turbine = scenario.air, scenario.turbine
+    if air is None or turbine is None or turbine.state != "operating":
+        return {}
+    still = asset_model(replace(scenario.asset, structure=without_rotor(scenario.asset.structure)))
+    operation = operating_point(turbine.rotor, turbine.control, air.wind.speed_m_s)
+    expected = {m.label: m for m in modes_with_rotor(still, turbine.rotor, operation, shaft="free")[1]}
+    found = {}
+    for side in DIRECTIONS:
+        here, other = damping.get(f"{side}_1"), expected.get(f"{side}_1")
+        if here is None or other is None or min(here, other.damping_ratio) <= 0.0:
+            continue
+        ratio, wide = sqrt(other.damping_ratio / here), exp(0.5 * _NORMAL_90 * OPERATING_LOG_STD[side])
+        found[side] = OperatingLevel(here, other.damping_ratio, ratio, (ratio / wide, ratio * wide))
+    return found
 
 
 def band_rms(x: FloatArray, step_s: float, limits_hz: tuple[float, float]) -> float:

@@ -86,9 +86,13 @@ def _of_wind(scenario: Scenario, air: Air, assembly: Assembly) -> FloatArray:
 
 
 _LEFT_OUT = (
+    Omission("ice: out of scope", "ISO 19906"),
+    Omission("earthquakes: out of scope", "ISO 19901-2"),
+    Omission("motion of the asset: it stands still"),
+)
+_OF_WAVES = (
     Omission("slam of horizontal members is in `breaking`, not in the loads", "DNV-RP-C205 8"),
     Omission("impact of breaking waves is in `breaking`, not in the loads", "IEC 61400-3-1"),
-    Omission("ice: out of scope", "ISO 19906"),
     Omission("run-up, spray and marine growth that is not given"),
 )
 
@@ -111,9 +115,9 @@ def loads_document(scenario: Scenario) -> dict[str, Any]:
         "breaking": None
         if scenario.sea is None
         else breaking_document(scenario.sea, scenario.asset.structure),
-        "left_out": []
-        if scenario.sea is None or scenario.sea.waves is None
-        else omission_documents(_LEFT_OUT),
+        "left_out": omission_documents(
+            (*(_OF_WAVES if scenario.sea is not None and scenario.sea.waves is not None else ()), *_LEFT_OUT)
+        ),
         "warnings": [
             *([] if scenario.sea is None else sea_warnings(scenario.sea, scenario.asset.structure)),
             *rotor_notes(scenario.air, scenario.turbine),
