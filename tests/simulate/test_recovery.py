@@ -20,6 +20,7 @@ from jackettwin.simulate import (
     read_scenario,
     recovered,
 )
+from jackettwin.simulate.interface_motion import MOTIONS
 from jackettwin.simulate.members import deflections
 from jackettwin.simulate.motion.motion import simulate_motion
 from jackettwin.simulate.recovery import internal_motion
@@ -176,3 +177,44 @@ def test_motions_that_are_none_are_refused(tmp_path: Path, text: str, said: str)
 def test_members_above_the_interface_are_refused(scenario: Scenario, whole) -> None:
     with pytest.raises(InputError, match="member below the interface"):
         recovered(scenario, whole[1], ["tower_1"])
+
+
+BLADED = """FILE\tbase.$21
+ACCESS\tD
+FORM\tU
+RECL\t4
+FORMAT\tR*8
+CONTENT\t'MOTION'
+NDIMENS\t2
+DIMENS\t6 50
+GENLAB\t'Tower base'
+VARIAB\t'Base x' 'Base y' 'Base z' 'Base Rx' 'Base Ry' 'Base Rz'
+VARUNIT\tL L L A A A
+AXISLAB\t'Time'
+AXIUNIT\tT
+AXIMETH\t2
+MIN\t0.0
+STEP\t0.1
+"""
+SIX = dict(zip(MOTIONS, ("Base x", "Base y", "Base z", "Base Rx", "Base Ry", "Base Rz"), strict=True))
+
+
+def test_a_motion_of_bladed_has_its_channels_named(tmp_path: Path) -> None:
+    values = 1e-3 * np.random.default_rng(1).standard_normal((50, 6))
+    path = tmp_path / "base.%21"
+    path.write_text(BLADED)
+    (tmp_path / "base.$21").write_bytes(values.tobytes())
+    found = read_interface_motion(path, SIX)
+    np.testing.assert_array_equal(found.values, values)
+    assert found.step_s == pytest.approx(0.1)
+    # without names, with one missing, one that is not there, and a displacement for a rotation
+    for named, said in (
+        (None, "--channel x=NAME"),
+        ({"x": "Base x"}, "motions without a channel"),
+        (SIX | {"z": "Base Z2"}, "no such channel"),
+        (SIX | {"rx": "Base x"}, "another unit"),
+    ):
+        with pytest.raises(InputError, match=said):
+            read_interface_motion(path, named)
+    done = CliRunner().invoke(main, ["recover", "x.yaml", str(path), "--out", "a.parquet", "--channel", "x"])
+    assert done.exit_code == 2 and "MOTION=NAME" in done.stderr

@@ -9,6 +9,7 @@ import click
 
 from jackettwin.caveats import omission_documents, omission_sentences
 from jackettwin.cli.console import Reply, answers, numbers_of, say, say_all, show_table, working
+from jackettwin.errors import require
 from jackettwin.report import Table, TableColumn
 
 _SHOWN = 12
@@ -24,6 +25,13 @@ _SHOWN = 12
     type=click.Path(dir_okay=False, path_type=Path),
     help="Series of section forces and reactions: .parquet, or OpenFAST's .outb.",
 )
+@click.option(
+    "--channel",
+    "channels",
+    multiple=True,
+    metavar="MOTION=NAME",
+    help="Channel of MOTION that is x, y, z, rx, ry or rz of the interface, for each of the six: Bladed's.",
+)
 @click.option("--members", metavar="NAME,…", help="Of which; default: those on the ground and the interface.")
 @click.option(
     "--reference",
@@ -38,12 +46,19 @@ _SHOWN = 12
 )
 @answers
 def recover_command(
-    scenario: str, motion: Path, out: Path, members: str | None, reference: str | None, number: int | None
+    scenario: str,
+    motion: Path,
+    out: Path,
+    channels: tuple[str, ...],
+    members: str | None,
+    reference: str | None,
+    number: int | None,
 ) -> Reply:
     """Recover forces below the interface from its MOTION.
 
     SCENARIO has structure, support, and what acts below the interface: weight, water, waves. MOTION is
-    OpenFAST's output (.out, .outb) with PtfmSurge … PtfmYaw or IntfTDXss … IntfRDZss, or a CSV.
+    OpenFAST's output (.out, .outb) with PtfmSurge … PtfmYaw or IntfTDXss … IntfRDZss, Bladed's (.%NN, with
+    --channel), or a CSV.
     """
     from jackettwin.simulate import (
         FORCES_LEFT_OUT,
@@ -53,7 +68,8 @@ def recover_command(
         write_force_series,
     )
 
-    chosen, moved = read_scenario(scenario), read_interface_motion(motion)
+    named = None if not channels else dict(_channel(text) for text in channels)
+    chosen, moved = read_scenario(scenario), read_interface_motion(motion, named)
     names = () if members is None else tuple(name.strip() for name in members.split(","))
     point = None
     if reference is not None:
@@ -78,6 +94,15 @@ def recover_command(
         "left_out": omission_documents(FORCES_LEFT_OUT),
     }
     return Reply(document, lambda: _show(document))
+
+
+def _channel(text: str) -> tuple[str, str]:
+    """Return motion and channel of ``x=NAME``."""
+    motion, equals, name = text.partition("=")
+    require(
+        bool(equals and name.strip()), "is no MOTION=NAME", field="--channel", value=text, allowed="x=NAME"
+    )
+    return motion.strip(), name.strip()
 
 
 def _show(document: dict[str, Any]) -> None:

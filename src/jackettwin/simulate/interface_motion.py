@@ -1,18 +1,21 @@
-"""The motion of a foundation's interface as another program computed it: OpenFAST's output, or a CSV."""
+"""The motion of a foundation's interface as another program computed it: OpenFAST, Bladed, or a CSV."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError, located, require
+from jackettwin.errors import InputError, located, look_up, require
 from jackettwin.files import read_text as read_lines
 from jackettwin.quantities import plain_unit
 from jackettwin.records import read_output
 
+MOTIONS = ("x", "y", "z", "rx", "ry", "rz")
+"""What channels of a program that names them freely are of."""
 CSV_COLUMNS = ("x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad")
 _OF_PROGRAMS = (
     # SubDyn's transition piece, in its own frame at rest
@@ -35,10 +38,16 @@ class InterfaceMotion:
     step_s: float
 
 
-def read_interface_motion(path: Path) -> InterfaceMotion:
-    """Read OpenFAST's .out or .outb (``PtfmSurge`` …, else SubDyn's ``IntfTDXss`` …), or a CSV.
+def read_interface_motion(path: Path, channels: Mapping[str, str] | None = None) -> InterfaceMotion:
+    """Read OpenFAST's .out or .outb (``PtfmSurge`` …, else SubDyn's ``IntfTDXss`` …), Bladed's, or a CSV.
 
     A CSV has the columns ``time_s``, ``x_m``, ``y_m``, ``z_m``, ``rx_rad``, ``ry_rad`` and ``rz_rad``.
+    Bladed's series (a header ``.%NN``) have the names of who wrote them.
+
+    Parameters
+    ----------
+    channels : {one of MOTIONS: channel}, optional
+        Which channels of a program's output move along and turn about the global axes; needed for Bladed.
 
     Raises
     ------
@@ -47,7 +56,7 @@ def read_interface_motion(path: Path) -> InterfaceMotion:
     """
     with located(file=path, field="motion"):
         require(path.is_file(), "no such file", value=str(path), remedy="check the path")
-        t, values = _of_csv(path) if path.suffix.lower() == ".csv" else _of_openfast(path)
+        t, values = _of_csv(path) if path.suffix.lower() == ".csv" else _of_program(path, channels)
         require(t.size > 2, "too few rows", value=int(t.size), allowed="three or more")
         step = float((t[-1] - t[0]) / (t.size - 1))
         uneven = np.abs(np.diff(t) - step).max() if np.isfinite(step) else np.inf
@@ -88,22 +97,31 @@ def _of_csv(path: Path) -> tuple[FloatArray, FloatArray]:
     return columns[:, 0], columns[:, 1:]
 
 
-def _of_openfast(path: Path) -> tuple[FloatArray, FloatArray]:
+def _of_program(path: Path, named: Mapping[str, str] | None) -> tuple[FloatArray, FloatArray]:
     found = read_output(path)
     assert found.times_s is not None
     rows = {name.lower(): i for i, name in enumerate(found.names)}
     channels = next((names for names in _OF_PROGRAMS if all(name in rows for name in names)), None)
+    if named is not None:
+        missing = [one for one in MOTIONS if one not in named]
+        require(not missing, "motions without a channel", value=missing, allowed=", ".join(MOTIONS))
+        channels = tuple(named[one].lower() for one in MOTIONS)
+        for name in channels:
+            look_up(rows, name, "channel", field="--channel")
     require(
         channels is not None,
         "has no motion of the interface",
         value=", ".join(found.names[:8]),
         allowed="PtfmSurge, PtfmSway, PtfmHeave, PtfmRoll, PtfmPitch, PtfmYaw, or IntfTDXss … IntfRDZss",
-        remedy="add them to the OutList of ElastoDyn or SubDyn",
+        remedy="add them to the OutList of ElastoDyn or SubDyn, or name the channels: --channel x=NAME …",
     )
     assert channels is not None
     values = []
-    for name in channels:
+    for motion, name in zip(MOTIONS, channels, strict=True):
         unit = plain_unit(found.channels[found.names[rows[name]]].unit or "")
-        require(unit in _UNITS, "unknown unit", value=f"{name} ({unit})", allowed=", ".join(_UNITS))
+        of_kind = {"m"} if motion in MOTIONS[:3] else {"rad", "deg"}
+        require(
+            unit in of_kind, "another unit", value=f"{name} ({unit})", allowed=" or ".join(sorted(of_kind))
+        )
         values.append(_UNITS[unit] * found.data[rows[name]])
     return found.times_s, np.stack(values, axis=1)
