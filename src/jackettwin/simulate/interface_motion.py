@@ -101,23 +101,24 @@ def _of_program(path: Path, named: Mapping[str, str] | None) -> tuple[FloatArray
     found = read_output(path)
     assert found.times_s is not None
     rows = {name.lower(): i for i, name in enumerate(found.names)}
-    channels = next((names for names in _OF_PROGRAMS if all(name in rows for name in names)), None)
+    wanted: tuple[str, ...] | None
+    wanted = next((names for names in _OF_PROGRAMS if all(name in rows for name in names)), None)
     if named is not None:
         missing = [one for one in MOTIONS if one not in named]
         require(not missing, "motions without a channel", value=missing, allowed=", ".join(MOTIONS))
-        channels = tuple(named[one].lower() for one in MOTIONS)
-        for name in channels:
+        wanted = tuple(named[one].lower() for one in MOTIONS)
+        for name in wanted:
             look_up(rows, name, "channel", field="--channel")
     require(
-        channels is not None,
+        wanted is not None,
         "has no motion of the interface",
         value=", ".join(found.names[:8]),
         allowed="PtfmSurge, PtfmSway, PtfmHeave, PtfmRoll, PtfmPitch, PtfmYaw, or IntfTDXss … IntfRDZss",
         remedy="add them to the OutList of ElastoDyn or SubDyn, or name the channels: --channel x=NAME …",
     )
-    assert channels is not None
+    assert wanted is not None
     values = []
-    for motion, name in zip(MOTIONS, channels, strict=True):
+    for motion, name in zip(MOTIONS, wanted, strict=True):
         unit = plain_unit(found.channels[found.names[rows[name]]].unit or "")
         of_kind = {"m"} if motion in MOTIONS[:3] else {"rad", "deg"}
         require(
