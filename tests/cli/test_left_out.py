@@ -16,7 +16,7 @@ from jackettwin.cli.omissions import ALWAYS, omitted_by
 
 BY_OPTIONS = {"modes", "superelement", "export", "simulate", "loads", "check", "soil", "operation", "recover"}
 """Commands whose options decide what they leave out."""
-OF_WELDS = {"stress", "scenario", "record", "site"}
+OF_WELDS = {"stress", "scenario", "record", "site", "strain", "forces"}
 COMPUTES_NOTHING = {"init", "compare", "verify", "fatigue", *GROUPS["Living"]}
 """They keep books, write a file to fill in, or set two results side by side."""
 JOINT = """
