@@ -173,7 +173,7 @@ def judge(
     findings = []
     columns = known.columns or Columns.of(model, every, before)
     baseline = cache(lambda: history_of(columns, every, before))  # a year of days, rarely needed
-    causes = cache(lambda: _causes(model, baseline(), ground, rotor()))  # takes seconds, rarely needed
+    causes = cache(lambda: _causes(model, baseline(), ground, rotor))  # takes seconds, rarely needed
     if known.learnt is None:
         watch = watch_after_baseline(baseline(), settings.arl_years, causes())
         known = replace(
@@ -208,13 +208,13 @@ def _known(
 
 
 def _causes(
-    model: TwinModel, baseline: History, ground: Ground, rotor: WorkingRotor | None
+    model: TwinModel, baseline: History, ground: Ground, rotor: Callable[[], WorkingRotor | None]
 ) -> ModelCauses | None:
     """Return the possible causes; None without a structure or if its modes were not seen."""
     if model.assembly is None:
         return None
     try:
-        return structure_causes(model.structure.structure, True, baseline, ground, rotor)
+        return structure_causes(model.structure.structure, True, baseline, ground, rotor())
     except InputError:
         return None
 
