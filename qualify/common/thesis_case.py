@@ -77,7 +77,7 @@ class ThesisCase:
 
     @cached_property
     def parts(self) -> list[str]:
-        return list(dict.fromkeys(bar.part for bar in self.structure.bars))
+        return list(stages(self.structure, 1)[-1].parts)
 
     @property
     def sensors(self) -> list[dict[str, Any]]:

@@ -155,6 +155,8 @@ def commands(row: Row, case: ThesisCase, twins: Twins) -> Iterator[list[str]]:
             yield ["update", file.name, *law]
         elif kind == "scenario":
             document = merged(case.scenario, yaml.safe_load(code))
+            if "flooded" in document["water"]:
+                document["water"]["flooded"] = case.parts[:1]
             if "start" in document:
                 document = {key: v for key, v in document.items() if key not in ("waves", "wind")}
                 document["start"]["node"] = case.top
@@ -170,14 +172,22 @@ def first_commands(case: ThesisCase) -> list[list[str]]:
     return [
         ["simulate", "day.yaml", "--out", "day.parquet"],
         ["simulate", "pull.yaml", "--out", "pull.parquet"],
-        ["modes", str(case.file), "--shapes", "other.csv"],
+        ["modes", str(case.file), "--support", "pinned", "--shapes", "other.csv"],
     ]
 
 
-def walked(row: Row, case: ThesisCase, twins: Twins) -> list[Answer]:
-    """Run all commands of a row in the case's folder, as JSON; return what they say."""
+def walked(row: Row, case: ThesisCase, twins: Twins, *, text: bool = False) -> list[Answer]:
+    """Run all commands of a row in the case's folder; return their JSON.
+
+    With ``text`` each runs first as a person gives it, and must print something.
+    """
+    answers = []
     with chdir(case.folder):
-        return [said(*argv, "--json") for argv in commands(row, case, twins)]
+        for argv in commands(row, case, twins):
+            if text:
+                assert said(*argv).text.strip(), argv
+            answers.append(said(*argv, "--json"))
+    return answers
 
 
 def prepared(file: Path, folder: Path) -> ThesisCase:

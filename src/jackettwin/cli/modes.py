@@ -112,7 +112,8 @@ def modes_command(
         "subdivide": subdivide,
         "gravity": gravity,
     }
-    bare = assemble(blades_option(blades, read_structure(structure)), **options)
+    read = read_structure(structure).with_theory(beam, rotary_inertia)
+    bare = assemble(blades_option(blades, read), **options)
     standing, held = supported_option(support, bare, pile_model)
     assembly = bare if standing is bare.structure else assemble(standing, **options)
     steel = rayleigh_option(rayleigh)

@@ -132,7 +132,7 @@ def superelement_command(
     require_format(out)
     if is_superelement(Path(structure)):
         return _answer(_rewritten(Path(structure), out, layout))
-    whole = with_joints(read_structure(structure), interface, feet)
+    whole = with_joints(read_structure(structure).with_theory(beam, None), interface, feet)
     turbine: tuple[str, ...] = ()
     if tower_inside:
         whole, turbine = _up_to_the_top(whole, interface), (whole.top_node,)

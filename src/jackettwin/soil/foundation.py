@@ -75,9 +75,9 @@ class Foundation:
         curves = pile_curves(self.pile, profile, self.options)
         return replace(self, springs=linearised(curves), curves=curves, profile=profile)
 
-    def head(self) -> PileHead:
-        """Return a pile lumped at its head."""
-        return lumped_head(self.pile, self.springs, law=self.law, dashpots=self.dashpots)
+    def head(self, above: Structure | None = None) -> PileHead:
+        """Return a pile lumped at its head, with the beam theory of the structure above."""
+        return lumped_head(self.pile, self.springs, law=self.law, dashpots=self.dashpots, above=above)
 
     def cyclic(self) -> CyclicPile:
         """Return a pile in ground that unloads and reloads.
@@ -117,7 +117,7 @@ class Foundation:
 
     def heads(self, structure: Structure) -> Support:
         """Return pile heads lumped at the feet: as many unknowns as without piles."""
-        return replace(on_pile_heads(structure, self.head()), notes=self.notes)
+        return replace(on_pile_heads(structure, self.head(structure)), notes=self.notes)
 
     def lumped(self, structure: Structure) -> tuple[Structure, Support]:
         """Return the structure and its pile heads, as ``piled`` does with every node of the piles."""

@@ -326,6 +326,14 @@ class Structure:
         """Name of the highest node."""
         return max(self.nodes, key=lambda name: self.nodes[name][2])
 
+    def with_theory(self, beam: str | None, rotary_inertia: bool | None) -> Structure:
+        """Return the structure with other beams, where given: also of the piles lumped at its feet."""
+        return replace(
+            self,
+            beam=self.beam if beam is None else beam,
+            rotary_inertia=self.rotary_inertia if rotary_inertia is None else rotary_inertia,
+        )
+
     def with_masses(self, masses: tuple[PointMass, ...]) -> Structure:
         """Return the structure with other point masses."""
         return replace(self, masses=masses)

@@ -178,7 +178,7 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         value=list(damping.modes),
         remedy="omit damping.modes or update.steel_damping: free",
     )
-    structure = _structure(schema, folder)
+    structure = _structure(schema, folder).with_theory(schema.beam, schema.rotary_inertia)
     if schema.update.rotor is not None and schema.update.rotor_state == "operating":
         structure = without_rotor(structure)  # the blades bend in what the rotor adds at work
     return TwinConfig(

@@ -93,7 +93,8 @@ class AssetSchema(Schema):
         InputError
             If a part is missing, given twice, or wrong.
         """
-        structure, foundation = _structure(self, folder), _foundation(self, folder)
+        structure = _structure(self, folder).with_theory(self.beam, self.rotary_inertia)
+        foundation = _foundation(self, folder)
         loops = self.soil is not None and self.soil.hysteresis
         if foundation is None:
             structure, support = read_supported(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -27,21 +27,36 @@ class PileMatrices:
     dashpots: sp.csc_array
 
 
-def pile_matrices(pile: Pile, springs: PileSprings, *, dashpots: PileSprings | None = None) -> PileMatrices:
+def pile_matrices(
+    pile: Pile,
+    springs: PileSprings,
+    *,
+    dashpots: PileSprings | None = None,
+    above: Structure | None = None,
+) -> PileMatrices:
     """Return the matrices of one pile, from the same beams as every other member.
 
-    ``dashpots`` are the ground's own [N·s/m], beside what the law says of its springs: radiation.
+    ``dashpots`` are the ground's own [N·s/m], beside what the law says of its springs: radiation. The beam
+    theory is that of the structure ``above``, as of piles that are its members; Euler–Bernoulli without one.
     """
-    free = pile_assembly(pile, springs.node_depth)
+    free = pile_assembly(pile, springs.node_depth, above=above)
     soil = _at_nodes(springs)
     lost = sp.csc_array(soil.shape) if dashpots is None else _at_nodes(dashpots)
     return PileMatrices(free.stiffness, free.mass, soil, lost)
 
 
-def pile_assembly(pile: Pile, node_depth: FloatArray) -> Assembly:
+def pile_assembly(pile: Pile, node_depth: FloatArray, *, above: Structure | None = None) -> Assembly:
     """Return a free pile with its nodes at these depths, its head first."""
     below, members = pile_beams("head", (0.0, 0.0, 0.0), pile, node_depth)
-    return assemble(Structure("pile", {"head": (0.0, 0.0, 0.0), **below}, tuple(members)))
+    alone = Structure("pile", {"head": (0.0, 0.0, 0.0), **below}, tuple(members))
+    if above is not None:
+        alone = replace(
+            alone,
+            beam=above.beam,
+            rotary_inertia=above.rotary_inertia,
+            shear_in_mass=above.shear_in_mass,
+        )
+    return assemble(alone)
 
 
 def _at_nodes(springs: PileSprings) -> sp.csc_array:
@@ -55,13 +70,14 @@ def head_impedance(
     *,
     law: Law = ELASTIC,
     dashpots: PileSprings | None = None,
+    above: Structure | None = None,
 ) -> ComplexArray:
     """Return the head's dynamic stiffness K*(s) of a pile, (n_s, 6, 6); s = iω [rad/s].
 
     The pile's other DOFs are eliminated exactly at each s: K* = F_hh − F_hi F_ii⁻¹ F_ih with
     F = K + D(s) S + sC + s² M.
     """
-    m = pile_matrices(pile, springs, dashpots=dashpots)
+    m = pile_matrices(pile, springs, dashpots=dashpots, above=above)
     values = np.atleast_1d(np.asarray(s, dtype=np.complex128))
     result = np.empty((values.size, 6, 6), dtype=np.complex128)
     for i, value in enumerate(values):
@@ -91,14 +107,19 @@ class PileHead:
 
 
 def lumped_head(
-    pile: Pile, springs: PileSprings, *, law: Law = ELASTIC, dashpots: PileSprings | None = None
+    pile: Pile,
+    springs: PileSprings,
+    *,
+    law: Law = ELASTIC,
+    dashpots: PileSprings | None = None,
+    above: Structure | None = None,
 ) -> PileHead:
     """Return a pile reduced to its head by its static shapes (Guyan).
 
     Rayleigh's principle makes K* right to second order in D(s) − 1 and in (ω/ω_p)², ω_p the pile's own first
     frequency with its head held: well above the structure's modes for any driven pile.
     """
-    m = pile_matrices(pile, springs, dashpots=dashpots)
+    m = pile_matrices(pile, springs, dashpots=dashpots, above=above)
     static = sp.csc_array(m.steel + m.soil)
     inner = -spla.splu(sp.csc_matrix(static[6:, 6:])).solve(static[6:, :6].toarray())
     T = np.vstack([np.eye(6), inner])
