@@ -118,14 +118,14 @@ def drawing(site: int, tie: str, on_axis: bool) -> Drawing:
     return Drawing(config, replace(model, directions=own), others)
 
 
-def _model(assembly: Assembly, tie: str) -> SupportModel:
+def _model(assembly: Assembly, tie: str, highest: int = HIGHEST) -> SupportModel:
     return support_model(
         assembly,
         family=family("maxwell-3"),
         rayleigh=Rayleigh.minimum(STEEL["ratio"], STEEL["frequency_hz"]),
         tie=tie,
         bounds=BOUNDS,
-        highest_mode=HIGHEST,
+        highest_mode=highest,
     )
 
 
@@ -239,7 +239,7 @@ def twin(case: int, built: Callable[[int], Asset] = asset) -> Result:
     errors = error_model(known.config, known.model, pairs)
     problem = joint(known.model, {"": (data, {})}, error_model=errors)
     bare, shipped = joint(known.model, {"": (data, {})}), joint(known.model, {"": (widened(data), {})})
-    oracle = joint(_model(assembly_of(world), tie), {"": (as_built, {})})
+    oracle = joint(_model(assembly_of(world), tie, max(numbers)), {"": (as_built, {})})
     about = {
         "kind": kind,
         "site": world.site.name,

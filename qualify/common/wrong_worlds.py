@@ -22,7 +22,9 @@ from jackettwin.updating import SupportModel, support_model
 
 DECKS = Path(__file__).parents[1] / "decks"
 STEEL = {"ratio": 0.0055, "frequency_hz": 0.2}
-HIGHEST = 7
+HIGHEST, OF_ASSET = 7, 12
+"""Modes of a drawing that are measured, and modes of an asset among which they are looked for: growth brings
+modes of single braces down among them."""
 
 
 @dataclass(frozen=True)
@@ -304,7 +306,7 @@ def true_modes(world: World, wanted: tuple[int, ...]) -> tuple[np.ndarray, tuple
     Also their shapes (n, n_dof).
     """
     assembly = assembly_of(world)
-    poles, own = _shapes(world, assembly)
+    poles, own = _shapes(world, assembly, OF_ASSET)
     n = world.vertical.size
     plain = replace(
         world,
@@ -313,7 +315,7 @@ def true_modes(world: World, wanted: tuple[int, ...]) -> tuple[np.ndarray, tuple
         horizontal=np.full(n, world.horizontal.mean()),
         vertical=np.full(n, world.vertical.mean()),
     )
-    _, plan = _shapes(plain, assembly_of(plain))
+    _, plan = _shapes(plain, assembly_of(plain), HIGHEST)
     like = np.abs(plan.conj() @ (assembly.mass @ own.T)) ** 2
     sizes = (np.einsum("mi,im->m", one.conj(), assembly.mass @ one.T).real for one in (plan, own))
     _, match = linear_sum_assignment(-like / np.outer(*sizes))
@@ -321,23 +323,23 @@ def true_modes(world: World, wanted: tuple[int, ...]) -> tuple[np.ndarray, tuple
     return poles[own_numbers], tuple(number + 1 for number in own_numbers), own[own_numbers]
 
 
-def _shapes(world: World, assembly: Assembly) -> tuple[np.ndarray, np.ndarray]:
+def _shapes(world: World, assembly: Assembly, highest: int) -> tuple[np.ndarray, np.ndarray]:
     """Return poles (n_modes,) and shapes (n_modes, n_dof) of the asset's first modes."""
-    model = _true_model(world, assembly)
-    found = model.predict(true_theta(world, model), tuple(range(1, HIGHEST + 1))).numbered
+    model = _true_model(world, assembly, highest)
+    found = model.predict(true_theta(world, model), tuple(range(1, highest + 1))).numbered
     shapes = [
         model.condensed.expand(pole, x) for pole, x in zip(found.poles[0], found.shapes[0], strict=True)
     ]
     return found.poles[0], np.array(shapes)
 
 
-def _true_model(world: World, assembly: Assembly) -> SupportModel:
+def _true_model(world: World, assembly: Assembly, highest: int) -> SupportModel:
     return support_model(
         assembly,
         family=family(world.law),
         rayleigh=Rayleigh.minimum(STEEL["ratio"], STEEL["frequency_hz"]),
         tie="per-leg-horizontal-vertical",
-        highest_mode=HIGHEST,
+        highest_mode=highest,
     )
 
 
