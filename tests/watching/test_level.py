@@ -14,6 +14,7 @@ from jackettwin.watching.level import (
     Readings,
     after_row,
     forecast,
+    halved,
     mixture_quantiles,
     no_rows,
     rooted,
@@ -134,7 +135,9 @@ def test_a_window_from_few_roots_smooths_as_the_whole_does(rng: np.random.Genera
     every, used = followed(start, read)
     whole = smoothed(start, every[-1], used)
     cut = 40
-    roots = rooted(every[cut])
+    begun, _ = followed(halved(every[cut]), _from(read, cut))
+    roots = rooted(every[cut], begun[-1])
+    assert roots.log_weight.size <= 8 < every[cut].log_weight.size
     later, _ = followed(roots, _from(read, cut))
     part = smoothed(roots, later[-1], _from(used, cut))
     of = [mixture_quantiles(m.weights, m.level, m.level_std, (0.5,))[0] for m in (whole[-10], part[-10])]

@@ -30,6 +30,7 @@ from .level import (
     Readings as Readings,
     after_row as after_row,
     forecast as forecast,
+    halved as halved,
     no_rows as no_rows,
     rooted as rooted,
     smoothed as smoothed,

@@ -113,6 +113,7 @@ class Hypotheses:
     slopes : (m,) change of each quantity per unit of the level
     n_rows, day : number of rows processed, and day of the last
     taken : sum of the rows' weights in the mean of the level
+    half : (h,) index of its ancestor at the last :func:`halved`, if any
     """
 
     mean: FloatArray
@@ -127,6 +128,7 @@ class Hypotheses:
     n_rows: int = 0
     day: float = float("nan")
     taken: float = 0.0
+    half: IntArray | None = None
 
     @property
     def weights(self) -> FloatArray:
@@ -230,14 +232,11 @@ def after_row(known: Hypotheses, readings: Readings, r: int) -> tuple[Hypotheses
     day, m = float(readings.days[r]), known.slopes.size
     p = readings.rows.shape[1]
     gap = 0.0 if known.n_rows == 0 else max(day - known.day, 0.0)
-    mean, cov = known.mean.copy(), known.cov.copy()
-    grid = _GRID[known.model]
+    known, n_old = _branched(known, day, gap)
+    mean, cov, grid = known.mean, known.cov, _GRID[known.model]
     keep, grown = _decay(np.array(gap), grid[:, 3])
     age_all(mean, cov, gap, m, p, keep, grown * _process_variance(grid[:, :1]), grid[:, 1])
-    known = replace(known, mean=mean, cov=cov)
-    if known.n_rows and np.floor(day) > np.floor(known.day):
-        known = _branched(known, day, gap)
-        mean, cov, grid = known.mean, known.cov, _GRID[known.model]
+    jump_all(mean[n_old:], cov[n_old:], np.tile(np.array(JUMPS) ** 2, (len(mean) - n_old) // len(JUMPS)))
     noise = readings.noise[r].copy()
     likelihood = learn_all(
         mean, cov, readings.rows[r], readings.values[r], noise, known.slopes, grid[:, 2],
@@ -258,28 +257,20 @@ def _mean_step(taken: float, readings: Readings, r: int, slopes: FloatArray) -> 
     return total, own / total if total > 0.0 else 0.0
 
 
-def _branched(known: Hypotheses, day: float, gap: float) -> Hypotheses:
-    """Return the hypotheses, extended by those in which the level jumped since the last row."""
-    best = np.argsort(-known.log_weight, kind="stable")[:_PARENTS]
-    parents, sizes = np.repeat(best, len(JUMPS)), np.tile(np.arange(len(JUMPS)), best.size)
-    mean, cov = known.mean[parents], known.cov[parents]
-    jump_all(mean, cov, np.array(JUMPS)[sizes] ** 2)
-    chance = -np.expm1(-JUMPS_A_DAY * gap) / len(JUMPS)
-    paths = tuple(
-        (*known.paths[i], (known.n_rows, int(size))) for i, size in zip(parents, sizes, strict=True)
-    )
-    join = np.concatenate
-    return replace(
-        known,
-        mean=join([known.mean, mean]),
-        cov=join([known.cov, cov]),
-        log_weight=join([known.log_weight, known.log_weight[parents] + np.log(chance)]),
-        model=join([known.model, known.model[parents]]),
-        row=join([known.row, np.full(parents.size, known.n_rows)]),
-        root=join([known.root, known.root[parents]]),
-        paths=(*known.paths, *paths),
-        jumped=join([known.jumped, np.full(parents.size, day)]),
-    )
+def _branched(known: Hypotheses, day: float, gap: float) -> tuple[Hypotheses, int]:
+    """Return a copy of the hypotheses, followed by those in which the level jumps, and from where on these are.
+
+    The level may have jumped since the last row if that is of an earlier day.
+    """
+    may = known.n_rows > 0 and np.floor(day) > np.floor(known.day)
+    n, best = known.log_weight.size, np.argsort(-known.log_weight, kind="stable")[: _PARENTS if may else 0]
+    more = _chosen(known, np.concatenate([np.arange(n), np.repeat(best, len(JUMPS))]))
+    if may:
+        more.log_weight[n:] += np.log(-np.expm1(-JUMPS_A_DAY * gap) / len(JUMPS))
+        more.row[n:], more.jumped[n:] = known.n_rows, day
+    sizes = tuple(range(len(JUMPS))) * best.size
+    paths = ((*path, (known.n_rows, size)) for path, size in zip(more.paths[n:], sizes, strict=True))
+    return replace(more, paths=(*known.paths, *paths)), n
 
 
 def _pruned(known: Hypotheses) -> Hypotheses:
@@ -292,7 +283,7 @@ def _pruned(known: Hypotheses) -> Hypotheses:
     kept[order[:_MOST]] = True
     kept &= known.log_weight > known.log_weight[order[0]] - _NEGLIGIBLE
     kept |= (known.row >= 0) & (known.n_rows - known.row <= _YOUNG_ROWS)
-    return _chosen(known, np.flatnonzero(kept))
+    return known if kept.all() else _chosen(known, np.flatnonzero(kept))
 
 
 def _chosen(known: Hypotheses, kept: IntArray) -> Hypotheses:
@@ -304,6 +295,7 @@ def _chosen(known: Hypotheses, kept: IntArray) -> Hypotheses:
         model=known.model[kept],
         row=known.row[kept],
         root=known.root[kept],
+        half=None if known.half is None else known.half[kept],
         jumped=known.jumped[kept],
         paths=tuple(known.paths[i] for i in kept),
     )
@@ -346,18 +338,25 @@ def forecast(known: Hypotheses, days: float) -> Mixture:
     )
 
 
-def rooted(known: Hypotheses, later: Hypotheses | None = None) -> Hypotheses:
+def halved(known: Hypotheses) -> Hypotheses:
+    """Return the hypotheses, each its own ancestor from here on; see :func:`rooted`."""
+    return replace(known, half=np.arange(known.log_weight.size))
+
+
+def rooted(known: Hypotheses, later: Hypotheses) -> Hypotheses:
     """Return the hypotheses as roots of later ones, from which smoothing can start.
 
     Parameters
     ----------
-    later : later state, descended from these; only the most likely of its roots are returned
+    later : later state, descended from these since they were :func:`halved`; only the roots that are the most
+        likely by then are returned
     """
-    if later is not None:
-        weight = np.bincount(later.root, later.weights, known.log_weight.size)
-        known = _chosen(known, np.sort(np.argsort(-weight, kind="stable")[:_MOST_ROOTS]))
+    if later.half is None:
+        raise ValueError("hypotheses that were never halved")
+    weight = np.bincount(later.half, later.weights, known.log_weight.size)
+    known = _chosen(known, np.sort(np.argsort(-weight, kind="stable")[:_MOST_ROOTS]))
     h = known.log_weight.size
-    return replace(known, root=np.arange(h), paths=((),) * h)
+    return replace(known, root=np.arange(h), paths=((),) * h, half=None)
 
 
 def smoothed(start: Hypotheses, end: Hypotheses, readings: Readings) -> tuple[Mixture, ...]:

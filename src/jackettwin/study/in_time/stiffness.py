@@ -46,8 +46,9 @@ _LEAST_SPREAD = 5e-4
 """Least standard deviation of ln f that conditions may explain."""
 _EPOCH = np.datetime64("1970-01-01")
 _MOST_DRAWS = 60
-_HALVINGS = 18
-"""Halvings of the interval of six standard deviations in which a quantile is searched: to 4·10⁻⁶ of it."""
+_STEPS = (32, 24)
+"""Steps into which the range of a level is divided, and then the step that contains a quantile. Within the last
+step, a 64th of a standard deviation, the distribution is linear."""
 _FINE, _COARSE, _HEAVY = np.linspace(-6.0, 6.0, 49), np.linspace(-6.0, 6.0, 9), 6
 """Standard deviations from the mean of the heaviest components, and of all, at which the distribution of a
 level is computed. In between it is linear: wrong by 0.002 at most."""
@@ -191,13 +192,13 @@ def _quantiles(
         inside = np.minimum(bend * levels[[0, -1], None] / flat, -np.expm1(-bend * _FARTHEST))
         ends = origin + np.clip(-np.log1p(-inside) / bend, -_FARTHEST, _FARTHEST)
         low, high = np.full((3, 1), ends[0].min()), np.full((3, 1), ends[1].max())
-        for _ in range(_HALVINGS):
-            middle = 0.5 * (low + high)
-            x = np.clip(middle - origin, -_FARTHEST, _FARTHEST)
-            share = np.interp(-np.expm1(-bend * x) / bend * flat, levels, below).mean(axis=1, keepdims=True)
-            less = share < wanted[:, None]
-            low, high = np.where(less, middle, low), np.where(less, high, middle)
-        out[t] = np.exp(0.5 * (low + high))[:, 0]
+        for steps in _STEPS:
+            y = low + (high - low) * np.linspace(0.0, 1.0, steps + 1)
+            x = np.clip(y[..., None] - origin, -_FARTHEST, _FARTHEST)
+            share = np.interp(-np.expm1(-bend * x) / bend * flat, levels, below).mean(axis=-1)
+            at = np.clip((share < wanted[:, None]).sum(axis=1), 1, steps)[:, None]
+            low, high = (np.take_along_axis(y, at - side, axis=1) for side in (1, 0))
+        out[t] = np.exp([np.interp(p, own, one) for p, own, one in zip(wanted, share, y, strict=True)])
     return out
 
 

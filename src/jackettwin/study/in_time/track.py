@@ -34,6 +34,7 @@ from jackettwin.watching import (
     after_row,
     forecast,
     fresh,
+    halved,
     no_rows,
     rooted,
     smoothed,
@@ -138,9 +139,10 @@ class StiffnessTrack:
         track = replace(
             self, dates=(*self.dates, date), copied=(*self.copied, date) if copied else self.copied
         )
-        if self.bank is None or len(track.dates) in LEARNT_DAYS:
+        if self.kept is None or self.bank is None or len(track.dates) in LEARNT_DAYS:
             return track._learnt_anew(about)
-        return track._ran((date,))._halved()
+        track = track._ran((date,))
+        return track._halved() if len(track.dates) - self.kept.days == STEP_DAYS else track
 
     def _learnt_anew(self, about: Sensitivity) -> StiffnessTrack:
         known = normalisation_of(self.model, self.every, self.dates, about)
@@ -159,13 +161,13 @@ class StiffnessTrack:
         begun = replace(self, bank=start, lagged=lagged, window=(), half=None)._ran(dates[:STEP_DAYS])
         if len(dates) < STEP_DAYS:
             return begun
-        return replace(begun, half=begun)._ran(dates[STEP_DAYS:])
+        return begun._halved()._ran(dates[STEP_DAYS:])
 
     def _halved(self) -> StiffnessTrack:
-        """Return the track that remembers itself, if its window has as many days as become final at once."""
-        if self.kept is None or len(self.dates) - self.kept.days != STEP_DAYS:
-            return self
-        return replace(self, half=self)
+        """Return the track that remembers itself, the window's days so far being those that become final."""
+        if self.bank is None:
+            raise ValueError("a track that has not begun")
+        return replace(self, bank=halved(self.bank), half=self)
 
     def _ran(self, dates: Sequence[str]) -> StiffnessTrack:
         """Return the track with the rows of some more days."""
@@ -214,7 +216,8 @@ class StiffnessTrack:
             return {}
         return {**self.kept.final, **self._window_levels(reference)}
 
-    def _window_levels(self, reference: Reference) -> dict[str, StiffnessLevel]:
+    def _window_levels(self, reference: Reference, before: str = "9999") -> dict[str, StiffnessLevel]:
+        """Return the smoothed stiffness of the window's days before a date."""
         kept, bank = self.kept, self.bank
         if kept is None or bank is None or not self.window:
             return {}
@@ -223,8 +226,9 @@ class StiffnessTrack:
         days = np.floor(whole.days).astype(np.intp)
         last = {int(day): i for i, day in enumerate(days)}
         epoch = np.datetime64("1970-01-01")
-        found = levels_of([every[i] for i in last.values()], reference, kept.normal.about)
-        return {str(epoch + day): level for day, level in zip(last, found, strict=True)}
+        rows = {date: i for day, i in last.items() if (date := str(epoch + day)) < before}
+        found = levels_of([every[i] for i in rows.values()], reference, kept.normal.about)
+        return dict(zip(rows, found, strict=True))
 
     def moved(self, reference: Reference) -> StiffnessTrack:
         """Return the track with the oldest days of a too long window made final."""
@@ -232,15 +236,11 @@ class StiffnessTrack:
         if kept is None or n - kept.days < 2 * STEP_DAYS:
             return self
         cut = n - STEP_DAYS
-        whole = self._window_levels(reference)
-        gone = {date: whole[date] for date in self.dates[kept.days : cut] if date in whole}
         before = self.half
-        if before is None or before.bank is None:
+        if self.bank is None or before is None or before.bank is None:
             raise ValueError("a track that has not begun")
-        all_roots = replace(self, bank=rooted(before.bank), lagged=before.lagged, window=())._ran(
-            self.dates[cut:]
-        )
-        start = rooted(before.bank, all_roots.bank)
+        gone = self._window_levels(reference, before=self.dates[cut])
+        start = rooted(before.bank, self.bank)
         known = max(kept.identified, cut)
         window = replace(
             kept, start=start, lagged=before.lagged, days=cut, final={**kept.final, **gone}, identified=known,
