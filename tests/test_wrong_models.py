@@ -19,6 +19,8 @@ def test_intervals_of_wrong_models_hold_the_truth_and_those_of_a_true_one_do_not
     assert binomtest(hits, of, 0.91).pvalue > 0.01
     plain, of = held(found, "plain")
     assert binomtest(plain, of, 0.91, alternative="less").pvalue < 0.01
+    # the sizes are those of the tolerances: 1.3 with half of them, 0.36 with twice
+    assert 0.45 < np.mean([r["product"]["chi2_of_truth"] for r in found]) < 0.9
     width = np.median([r["product"]["length"][-2] for r in found])
     oracle = np.median([r["oracle"]["length"][-2] for r in found])
     assert np.exp(width) < 2.5 * np.exp(oracle)

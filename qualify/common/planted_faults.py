@@ -239,6 +239,10 @@ FAULTS = (
         ("a branch that the data need is left out", "return bool((path.problem.costs(points, path.last) <= ceiling).all())", "return True"),
         ("laws with other branches left count as the same", "return _level(self._path, way, ceiling) or all(", "return True or all("),
     )),
+    *_of("updating/model_error/error_model", "tests/test_wrong_models.py", rows=(
+        ("tolerances are half as large", "common = residuals.gains(", "common = 0.5 * residuals.gains("),
+        ("tolerances are twice as large", "common = residuals.gains(", "common = 2.0 * residuals.gains("),
+    )),
     *_of("identification/decays", "tests/identification/decays/test_modes_of_decay.py", "tests/identification/decays/test_relaxations.py", rows=(
         ("close pairs of a decay are one mode", "if 1.0 - max(gains) < HALVED * (1.0 - alone) else []", "if False else []"),
         ("a relaxation beyond the tested rates is told", "if pole is not None and not rates[0] <= pole.rate_rad_s <= rates[-1]:", "if False:"),

@@ -258,7 +258,7 @@ def _mean_step(taken: float, readings: Readings, r: int, slopes: FloatArray) -> 
 
 
 def _branched(known: Hypotheses, day: float, gap: float) -> tuple[Hypotheses, int]:
-    """Return a copy of the hypotheses, followed by those in which the level jumps, and from where on these are.
+    """Return a copy of the hypotheses, followed by those in which the level jumps, and where these begin.
 
     The level may have jumped since the last row if that is of an earlier day.
     """

@@ -47,7 +47,7 @@ _LEAST_SPREAD = 5e-4
 _EPOCH = np.datetime64("1970-01-01")
 _MOST_DRAWS = 60
 _STEPS = (32, 24)
-"""Steps into which the range of a level is divided, and then the step that contains a quantile. Within the last
+"""Steps into which the range of a level is divided, then the one that contains a quantile. Within the last
 step, a 64th of a standard deviation, the distribution is linear."""
 _FINE, _COARSE, _HEAVY = np.linspace(-6.0, 6.0, 49), np.linspace(-6.0, 6.0, 9), 6
 """Standard deviations from the mean of the heaviest components, and of all, at which the distribution of a

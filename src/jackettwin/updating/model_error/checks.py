@@ -18,7 +18,7 @@ from math import exp, sqrt
 import numpy as np
 from scipy.special import chdtrc, ndtri
 
-from jackettwin.arrays import FloatArray
+from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.updating.data.misfit import UNLIKELY
 from jackettwin.updating.data.targets import Target
 from jackettwin.updating.model_error.checked_data import CheckedData, Column, checked_data
@@ -29,8 +29,8 @@ from jackettwin.updating.model_error.mode_checks import OrderCheck, ShapeCheck
 from jackettwin.updating.problem import Problem
 
 OBJECTED = 0.05
-"""Probability with which the checks of all data and suspects together object to a correct model whose errors
-are as large as the tolerances."""
+"""Probability with which the checks object to a correct model whose errors are as large as the tolerances.
+Half of it is that of all data, half that of all suspects, so that many data hide no expected error."""
 _DRAWN = 4000
 """Draws for the largest of all checks: its limit is then within 0.05 standard deviations."""
 _MOST = 3
@@ -179,10 +179,10 @@ def objection(
     chi2 = float(rows.r @ Wr)
     used = int((np.linalg.svd(rows.J * problem.prior.std, compute_uv=False) > 0.5).sum())
     freedom = max(rows.r.size - used, 1)
-    limit = _limit(rows, W)
-    unseen, suspected = _suspects(rows, precision, limit)
+    of_data, of_suspects = _limits(rows, W)
+    unseen, suspected = _suspects(rows, precision, of_suspects)
     result = Objection(
-        _checks(rows, set(problem.data_names), W, Wr, limit),
+        _checks(rows, set(problem.data_names), W, Wr, of_data),
         chi2,
         freedom,
         float(chdtrc(freedom, max(chi2, 0.0))),
@@ -208,23 +208,31 @@ def _left(rows: CheckedData, precision: FloatArray, without: str = "") -> tuple[
     return np.asarray(inverse - inverse @ rows.J @ moved), np.asarray(-moved)
 
 
-def _limit(rows: CheckedData, W: FloatArray) -> float:
-    """Return the standard deviations that the largest check of a correct model exceeds with ``OBJECTED``.
+def _limits(rows: CheckedData, W: FloatArray) -> tuple[float, float]:
+    """Return the standard deviations that the largest check of data, and of suspects, seldom exceeds.
 
-    The checks are correlated, many data being explained by few errors, so that Bonferroni's limit is too
-    high: it is drawn. Suspects of one sense are exceeded in that sense only.
+    A correct model exceeds each with half of ``OBJECTED``. The checks are correlated, many data being
+    explained by few errors, so that Bonferroni's limit is too high: it is drawn. Suspects of one sense are
+    exceeded in that sense only.
     """
-    each = [(unit, False) for unit in np.eye(len(rows.names), rows.r.size)]
-    each += [(gamma, direction.tolerance.one_sided) for direction, gamma in rows.asked]
     values, vectors = np.linalg.eigh(W)
     root = vectors * np.sqrt(np.maximum(values, 0.0))
-    tests = np.array([test for test, _ in each]) @ root
-    size = np.linalg.norm(tests, axis=1)
-    seen = size > np.sqrt(_TOLD)
-    both = ~np.array([one_sided for _, one_sided in each])[seen]
-    z = (tests[seen] / size[seen, None]) @ np.random.default_rng(0).standard_normal((rows.r.size, _DRAWN))
-    z[both] = np.abs(z[both])
-    return float(np.quantile(z.max(axis=0), 1.0 - OBJECTED)) if seen.any() else np.inf
+    draws = np.random.default_rng(0).standard_normal((rows.r.size, _DRAWN))
+
+    def limit(tests: FloatArray, one_sided: BoolArray) -> float:
+        through = tests @ root
+        size = np.linalg.norm(through, axis=1)
+        seen = size > np.sqrt(_TOLD)
+        if not seen.any():
+            return float("inf")
+        z = (through[seen] / size[seen, None]) @ draws
+        z = np.where(one_sided[seen, None], z, np.abs(z))
+        return float(np.quantile(z.max(axis=0), 1.0 - 0.5 * OBJECTED))
+
+    data = np.eye(len(rows.names), rows.r.size)
+    suspects = np.array([gamma for _, gamma in rows.asked]).reshape(-1, rows.r.size)
+    one_sided = np.array([direction.tolerance.one_sided for direction, _ in rows.asked], dtype=np.bool_)
+    return limit(data, np.zeros(len(data), dtype=np.bool_)), limit(suspects, one_sided)
 
 
 def _suspects(
