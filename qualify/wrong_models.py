@@ -75,7 +75,7 @@ from jackettwin.updating import (
 from jackettwin.updating.model_error.checked_data import checked_data
 from jackettwin.updating.model_error.checks import OBJECTED
 from jackettwin.updating.model_error.marginal import covariance
-from jackettwin.updating.posterior.identifiability import identifiability
+from jackettwin.updating.posterior.identifiability import contradicted, identifiability
 from jackettwin.updating.posterior.importance_sampling import weighted_draws
 from jackettwin.updating.posterior.laplace import log_covariance
 from jackettwin.updating.posterior.smc import sample_posterior
@@ -382,6 +382,8 @@ def _estimated(
         result["unseen"] = [one.tolerance.name for one in said.unseen]
         result["suspected"] = [t.name for t in said.suspected]
         verdicts = identifiability(problem, draws, converged=status in ("ok", "weighted"), misfit=away)
+        if said.suspected:
+            verdicts = contradicted(verdicts, said.suspected[0].words)
         result["verdicts"] = [v.verdict for v in verdicts]
     return result | {"cpu_s": time.process_time() - start}
 

@@ -30,6 +30,7 @@ def test_another_law_is_asked_for_and_soft_feet_are_said_to_be_invisible() -> No
     viscous, soft = twin(VISCOUS), twin(SOFT)
     assert viscous["kind"] == "another law of the ground" and soft["kind"] == "soft horizontal feet"
     assert viscous["product"]["suspected"] == ["law"] and viscous["product"]["objects"]
+    assert "identified" not in viscous["product"]["verdicts"]
     assert not soft["product"]["objects"] and "soft_sideways" in soft["product"]["unseen"]
     assert told(viscous) and told(soft)
 

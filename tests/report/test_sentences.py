@@ -310,6 +310,16 @@ def test_nothing_is_known_without_condition_where_the_model_is_contradicted() ->
     assert not any(line.startswith("The ground's stiffness is known") for line in lines)
 
 
+def test_what_is_roughly_known_is_so_only_if_the_model_is_right_where_it_is_contradicted() -> None:
+    answers = objected_answers(suspected=(SOFT,))
+    weak = replace(answers, ground=tuple(replace(g, verdict="weak", factor=1.5) for g in answers.ground))
+    lines = sentences(weak).headline
+    assert any(
+        line.startswith("If the model is right all the same, the ground's stiffness is known roughly: ")
+        for line in lines
+    )
+
+
 def test_what_these_data_would_not_show_is_said_with_its_size() -> None:
     nothing = replace(SOFT, name="weak_leg", words="one foot softer than the others")
     found = Objection(

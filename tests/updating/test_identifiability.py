@@ -8,7 +8,7 @@ import pytest
 from jackettwin.soil import family
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating import Problem, Residuals, Target, single, support_model
-from jackettwin.updating.posterior.identifiability import USABLE, Verdict, identifiability
+from jackettwin.updating.posterior.identifiability import USABLE, Verdict, contradicted, identifiability
 from jackettwin.updating.posterior.laplace import laplace_draws
 from jackettwin.updating.posterior.predictive import predict_quantities, support_quantities
 from jackettwin.updating.posterior.smc import sample_posterior
@@ -63,6 +63,16 @@ def spread(problem: Problem, column: int, z: np.ndarray) -> Verdict:
     draws = np.log(TRUTH) + 0.1 * rng.standard_normal((z.size, 4))
     draws[:, column] = z
     return identifiability(problem, draws)[column]
+
+
+def test_what_the_data_contradict_is_not_identified(verdicts: dict[str, Verdict]) -> None:
+    found = contradicted([*verdicts.values()], "one foot softer than the others")
+    before = [v.verdict for v in verdicts.values()]
+    assert "identified" in before
+    assert [v.verdict for v in found] == ["weak" if one == "identified" else one for one in before]
+    assert all(one is v for one, v in zip(found, verdicts.values(), strict=True) if v.verdict != "identified")
+    doubted = [one for one, v in zip(found, before, strict=True) if v == "identified"]
+    assert all("one foot softer" in one.reason and one.decided_by == "misfit" for one in doubted)
 
 
 def test_an_interval_too_long_to_use_is_not_identified(problem: Problem) -> None:

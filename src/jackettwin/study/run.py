@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -32,7 +33,7 @@ from jackettwin.study.result import DampingExcess, TwinResult
 from jackettwin.study.rotor import mean_wind, operating_states, rotor_damping, rotor_speed_hz
 from jackettwin.study.scrutiny import Scrutiny, scrutiny
 from jackettwin.twin import TwinConfig, TwinModel, TwinState, suspects, twin_model
-from jackettwin.updating import Update, likely, recommended, series
+from jackettwin.updating import Update, contradicted, likely, recommended, series
 
 Posteriors = Literal["all", "likely", "none"]
 log = logging.getLogger(__name__)
@@ -154,6 +155,7 @@ def updated_twin(
     others = suspects(config, assembly) if any(u.problem.weighted for u in updates) else ()
     seen = () if found is None else found.observations
     checked = tuple(scrutiny(u, measured, others, pairs, seen) for u in updates)
+    updates = [_judged(u, s) for u, s in zip(updates, checked, strict=True)]
     left_out = tuple(law for law in wanted if law not in {*unfit, *(u.law for u in updates)})
     return TwinResult(
         name=config.name,
@@ -228,6 +230,15 @@ def _said_where(config: TwinConfig) -> Iterator[None]:
     except InputError as error:
         source = "records" if config.records else "targets"
         raise error.at(file=config.path, field=None if error.field else source) from None
+
+
+def _judged(u: Update, s: Scrutiny) -> Update:
+    """Return a fit of which nothing is identified if its data ask for an error beyond the tolerances."""
+    asked = () if s.objection is None else s.objection.suspected
+    if not asked or u.uncertainty is None:
+        return u
+    verdicts = contradicted(u.uncertainty.verdicts, " and ".join(t.words for t in asked))
+    return replace(u, fit=replace(u.fit, uncertainty=replace(u.uncertainty, verdicts=verdicts)))
 
 
 def _with_one_posterior(

@@ -74,7 +74,11 @@ from .nuisance_parameters import (
     NuisanceParameters as NuisanceParameters,
     matrix_of as matrix_of,
 )
-from .posterior.identifiability import USABLE as USABLE, information as information
+from .posterior.identifiability import (
+    USABLE as USABLE,
+    contradicted as contradicted,
+    information as information,
+)
 from .posterior.importance_sampling import weighted_draws as weighted_draws
 from .posterior.laplace import laplace_draws as laplace_draws
 from .posterior.scatter import leg_scatter as leg_scatter

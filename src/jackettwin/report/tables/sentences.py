@@ -213,8 +213,8 @@ def _ground_headline(a: Answers) -> list[str]:
     for kind in ("stiffness", "damping"):
         of_kind = [g for g in a.ground if g.kind == kind]
         sure = [g for g in of_kind if g.verdict == "identified"]
+        whose = "If the model is right all the same, the" if doubted else "The"
         if sure:
-            whose = "If the model is right all the same, the" if doubted else "The"
             said.append(f"{whose} ground's {kind} is known: {listed([_value(g) for g in sure])}.")
         elif all(g.verdict == "unidentified" for g in of_kind) and of_kind:
             said.append(f"The ground's {kind} is not determined by {data_words(a)}.")
@@ -222,7 +222,7 @@ def _ground_headline(a: Answers) -> list[str]:
             some = [g for g in of_kind if g.verdict == "weak"]
             best = [g for g in some if verdict_words(g) == _ROUGHLY] or some
             ranges = listed([_range(g) for g in best])
-            said.append(f"The ground's {kind} is {verdict_words(best[0])}: {ranges}.")
+            said.append(f"{whose} ground's {kind} is {verdict_words(best[0])}: {ranges}.")
     return said
 
 

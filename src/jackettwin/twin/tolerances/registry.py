@@ -367,8 +367,8 @@ def _table() -> tuple[KnownTolerance, ...]:
 
 
 REMAINDERS = {"remainder_frequency": 0.003, "remainder_damping": 0.02}
-"""Relative errors of each mode on its own. A finer mesh or a shell model changes a frequency by 0.2 to 0.5 %. Of
-the other laws a dashpot is the farthest from the twin's: beyond ``loss_growth`` it changes damping ratios by
+"""Relative errors of each mode on its own. A finer mesh or a shell model changes a frequency by 0.2 to 0.5 %.
+Of other laws a dashpot is the farthest from the twin's: beyond ``loss_growth`` it changes damping ratios by
 1.9 %, without it by 31 % (``qualify/wrong_models.py laws``)."""
 SCALES = (1.0, 1.4)
 """Equally likely factors on all tolerances and remainders of a twin together, up to twice the variance, as

@@ -29,8 +29,9 @@ from jackettwin.updating.model_error.mode_checks import OrderCheck, ShapeCheck
 from jackettwin.updating.problem import Problem
 
 OBJECTED = 0.05
-"""Probability with which the checks object to a correct model whose errors are as large as the tolerances.
-Half of it is that of all data, half that of all suspects, so that many data hide no expected error."""
+"""Probability with which the checks object to a correct model whose errors are as large as the tolerances."""
+_BY_DATA = 0.2
+"""Share of it by single data, whose own errors are seldom small; the rest is by suspects."""
 _DRAWN = 4000
 """Draws for the largest of all checks: its limit is then within 0.05 standard deviations."""
 _MOST = 3
@@ -211,7 +212,7 @@ def _left(rows: CheckedData, precision: FloatArray, without: str = "") -> tuple[
 def _limits(rows: CheckedData, W: FloatArray) -> tuple[float, float]:
     """Return the standard deviations that the largest check of data, and of suspects, seldom exceeds.
 
-    A correct model exceeds each with half of ``OBJECTED``. The checks are correlated, many data being
+    A correct model exceeds each with its share of ``OBJECTED``. The checks are correlated, many data being
     explained by few errors, so that Bonferroni's limit is too high: it is drawn. Suspects of one sense are
     exceeded in that sense only.
     """
@@ -219,7 +220,7 @@ def _limits(rows: CheckedData, W: FloatArray) -> tuple[float, float]:
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     draws = np.random.default_rng(0).standard_normal((rows.r.size, _DRAWN))
 
-    def limit(tests: FloatArray, one_sided: BoolArray) -> float:
+    def limit(tests: FloatArray, one_sided: BoolArray, share: float) -> float:
         through = tests @ root
         size = np.linalg.norm(through, axis=1)
         seen = size > np.sqrt(_TOLD)
@@ -227,12 +228,13 @@ def _limits(rows: CheckedData, W: FloatArray) -> tuple[float, float]:
             return float("inf")
         z = (through[seen] / size[seen, None]) @ draws
         z = np.where(one_sided[seen, None], z, np.abs(z))
-        return float(np.quantile(z.max(axis=0), 1.0 - 0.5 * OBJECTED))
+        return float(np.quantile(z.max(axis=0), 1.0 - share * OBJECTED))
 
     data = np.eye(len(rows.names), rows.r.size)
     suspects = np.array([gamma for _, gamma in rows.asked]).reshape(-1, rows.r.size)
     one_sided = np.array([direction.tolerance.one_sided for direction, _ in rows.asked], dtype=np.bool_)
-    return limit(data, np.zeros(len(data), dtype=np.bool_)), limit(suspects, one_sided)
+    two_sided = np.zeros(len(data), dtype=np.bool_)
+    return limit(data, two_sided, _BY_DATA), limit(suspects, one_sided, 1.0 - _BY_DATA)
 
 
 def _suspects(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -121,6 +122,20 @@ def identifiability(
         )
         for j, p in enumerate(problem.parameters)
     )
+
+
+def contradicted(verdicts: Sequence[Verdict], words: str) -> tuple[Verdict, ...]:
+    """Return the verdicts of a fit whose data ask for an error that its intervals do not include.
+
+    Nothing is identified then.
+
+    Parameters
+    ----------
+    words : the error in words
+    """
+    reason = f"the data ask for {words}, which the interval does not include"
+    doubted = [replace(v, verdict="weak", decided_by="misfit", reason=reason) for v in verdicts]
+    return tuple(one if v.verdict == "identified" else v for v, one in zip(verdicts, doubted, strict=True))
 
 
 def _deciders(problem: Problem, z: FloatArray, ratio: FloatArray, converged: bool) -> list[Decider]:
