@@ -1,20 +1,24 @@
 """The stiffness through time on years whose seasons are made by other means: coverage, steps, cost.
 
-Usage: python qualify/stiffness_in_time.py [n_histories]
+Usage: python qualify/stiffness_in_time.py [n_histories | days] [--jobs N]
 
-A history that was computed by the same code is not computed again.
+``days`` prints what days alone cost in the first history, and how fast the machine is. A history that was
+computed by the same code is not computed again.
 """
 
 from __future__ import annotations
 
+import argparse
 import sys
 import time
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 from common.cases import Result, cases
+from common.pace import eigenvalue_seconds
 from common.page import write_page
 from common.stiffness_histories import KINDS, MODES, History, history, modes_table
 
@@ -169,8 +173,14 @@ def case(number: int) -> Result:
 
 
 def main() -> None:
-    number = int(sys.argv[1]) if len(sys.argv) > 1 else 20
-    found = cases("stiffness_in_time", number, case, whole=True)
+    parser = argparse.ArgumentParser()
+    parser.add_argument("what", nargs="?", default="20")
+    parser.add_argument("--jobs", type=int, default=1)
+    given = parser.parse_args()
+    if given.what == "days":
+        sys.stdout.write("\n".join(days_alone(case(0)["alone"])) + "\n")
+        return
+    found = cases("stiffness_in_time", int(given.what), case, whole=True, jobs=given.jobs)
     each = [{key: value for key, value in one.items() if key not in ("case", "cpu_s")} for one in found]
     write_page("stiffness_in_time", page([Scored(**one) for one in each]))
 
@@ -193,15 +203,29 @@ mean of all | width | records to follow −15 % |
 """
 
 
-def page(found: list[Scored]) -> list[str]:
-    steps = [s.records for s in found if s.records is not None]
-    first, second, third = (1e3 * np.mean([s.seconds[i] for s in found]) for i in range(3))
-    alone = dict(zip(ALONE, found[0].alone, strict=False))
+def days_alone(seconds: Sequence[float]) -> list[str]:
+    """Return what one day alone costs, from the CPU seconds of days ``ALONE``, and the machine's pace."""
+    alone = dict(zip(ALONE, seconds, strict=True))
     anew = {n: spent for n, spent in alone.items() if n in LEARNT_DAYS}
     moving = [spent for n, spent in alone.items() if n >= 2 * STEP_DAYS and n % STEP_DAYS == 0]
     # the first one compiles
     rest = {n for n in alone if n not in anew and (n < 2 * STEP_DAYS or n % STEP_DAYS)} - {ALONE[0]}
     usual = [alone[n] for n in sorted(rest)]
+    return [
+        f"One day alone, with the state read from a file and written back: {1e3 * np.median(usual):.0f} ms "
+        f"(at most {1e3 * max(usual):.0f} ms) on {len(usual)}",
+        f"days between the {min(rest)}th and the {max(rest)}th; {1e3 * np.median(moving):.0f} ms (at most",
+        f"{1e3 * max(moving):.0f} ms) on {len(moving)} days on which the window moves, every {STEP_DAYS}th; "
+        "where effects of conditions are learnt again, "
+        + ", ".join(f"{1e3 * spent:.0f} ms on day {n}" for n, spent in anew.items())
+        + ".",
+        f"The eigenvalues of a matrix of 800 rows take {eigenvalue_seconds():.2f} CPU-s here.",
+    ]
+
+
+def page(found: list[Scored]) -> list[str]:
+    steps = [s.records for s in found if s.records is not None]
+    first, second, third = (1e3 * np.mean([s.seconds[i] for s in found]) for i in range(3))
     number = len(found)
     head = f"`python qualify/stiffness_in_time.py {number}`: {number} {ABOUT}"
     lines = ["# Stiffness in time", "", *head.splitlines()]
@@ -219,13 +243,7 @@ def page(found: list[Scored]) -> list[str]:
     cost = (
         f"A day in a run of many takes {first:.0f}, {second:.0f} and {third:.0f} ms of one core",
         "in the three years.",
-        f"One day alone, with the state read from a file and written back: {1e3 * np.median(usual):.0f} ms "
-        f"(at most {1e3 * max(usual):.0f} ms) on {len(usual)}",
-        f"days between the {min(rest)}th and the {max(rest)}th; {1e3 * np.median(moving):.0f} ms (at most",
-        f"{1e3 * max(moving):.0f} ms) on {len(moving)} days on which the window moves, every {STEP_DAYS}th; "
-        "where effects of conditions are learnt again, "
-        + ", ".join(f"{1e3 * spent:.0f} ms on day {n}" for n, spent in anew.items())
-        + ".",
+        *days_alone(found[0].alone),
     )
     return [*lines, last, "", *cost]
 

@@ -38,7 +38,8 @@ not show them; if a twin file gives one a size, it becomes a tolerance.
 LEFT = {
     "remainder_frequency": "computed: finer meshes and shells change frequencies by 0.2 to 0.5 %",
     "remainder_damping": "computed: a dashpot differs from the twin's law by 1.9 % beyond `loss_growth`, "
-    "by 31 % without it (`python qualify/wrong_models.py laws`)",
+    "by 31 % without it (`python qualify/wrong_models.py laws`); assumed: steel by a tenth in each mode, a "
+    "third of the whole",
 }
 """Sources of the remainders."""
 
