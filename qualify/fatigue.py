@@ -1,12 +1,14 @@
 """Does a twin with a few accelerometers know the stress at welds? Simulated jackets whose stresses are known.
 
 Of every asset feet (each another), damping, mass of the rotor, marine growth, drag and added mass are drawn,
-of every record wind, sea and the sensors' noise; the twin is told the mean wind and the sea's height, period
-and direction. It updates its feet with two records of its own; then four others are judged: parked, idling,
-operating and in a storm. The truth is the simulation's own: section forces of its model with waves along the
-members. Beside the smoother stand modal expansion of accelerations that are integrated twice, the same in
-three bands, and an augmented Kalman filter with forces on the tower top that walk at random and forget, each
-on the updated twin and on feet thirty times stiffer. Usage: python qualify/fatigue.py [n_records]
+of every record wind, sea and the sensors' noise; the twin is told its turbine, state, mean wind and the sea's
+height, period and direction. It updates its feet with two records of its own; then four others are judged:
+parked, idling, operating and in a storm. The truth is the simulation's own: section forces of its model with
+waves along the members. Beside the smoother stand modal expansion of accelerations that are integrated twice,
+the same in three bands, and an augmented Kalman filter with forces on the tower top that walk at random and
+forget, each on the updated twin and on feet thirty times stiffer.
+
+Usage: python qualify/fatigue.py [n_records]
 """
 
 from __future__ import annotations
@@ -29,7 +31,7 @@ from jackettwin.decks import read_structure
 from jackettwin.errors import JackettwinError
 from jackettwin.fatigue import count, equivalent_range
 from jackettwin.intervals import NORMAL_90
-from jackettwin.loads import Coefficients
+from jackettwin.loads import Coefficients, read_rotor
 from jackettwin.records import Record, write_record
 from jackettwin.response import Sensor, System, observation_matrix
 from jackettwin.sensing import (
@@ -37,6 +39,7 @@ from jackettwin.sensing import (
     LatentForce,
     MotionEstimate,
     MotionModel,
+    RotorByWind,
     SensorReadings,
     Weather,
     likely_motions,
@@ -86,6 +89,8 @@ STATES = ("parked", "idling", "operating", "storm, parked")
 """Of the records of each asset."""
 FEET = {"k": {"median": 1.2e9, "log_std": 1.0}, "c": {"median": 2.5e7, "log_std": 1.0}}
 """What a pile's design says of its head, to a factor of e."""
+ROTOR = RotorByWind(*read_rotor("iea15"), 0.17)
+"""The twin is told its turbine."""
 UPDATING = 2
 """Records that an asset updates itself with."""
 
@@ -390,7 +395,7 @@ def judged(case: int) -> Result:
     with tempfile.TemporaryDirectory() as folder:
         scenario = read_scenario(str(write_scenario(Path(folder), case)))
         simulated = simulate(scenario).record
-    sea = Weather.of(simulated.conditions, DEPTH_M, coefficients)
+    sea = Weather.of(simulated.conditions, DEPTH_M, coefficients, ROTOR)
     first = sensed_model(systems[0], sea)
     true, wanted, displacement = truth_of(scenario, Judge(systems[0], first, dry), first)
     sensors = tuple(i.sensor for i in scenario.instruments)

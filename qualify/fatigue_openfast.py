@@ -37,11 +37,13 @@ from fatigue import DRAWS, SUPPORTS, M, dels, mudline_moment, quantiles, tower_m
 from jackettwin.arrays import FloatArray
 from jackettwin.identification import identify
 from jackettwin.intervals import NORMAL_90
+from jackettwin.loads import read_rotor
 from jackettwin.records import Channel, Record
 from jackettwin.response import Sensor
 from jackettwin.sensing import (
     SECTION_REMAINDER,
     MotionModel,
+    RotorByWind,
     Weather as KnownWeather,
     likely_motions,
     readings_of,
@@ -139,7 +141,9 @@ def of_record(
     """Return estimated over true ranges, scores of the truth in the interval, and its std (n_places,)."""
     readings = readings_of(record(structure, told, seed), sensors(structure), likely.model.assembly)
     weather = KnownWeather.of(
-        {"mean_wind_speed_m_s": CASES[name].wind, "state": CASES[name].state, "waves": "none"}, ASSET.depth_m
+        {"mean_wind_speed_m_s": CASES[name].wind, "state": CASES[name].state, "waves": "none"},
+        ASSET.depth_m,
+        rotor=RotorByWind(*read_rotor("iea15"), FIRST_PAIR_HZ[0], shaft="locked"),
     )
     draws = []
     for k, estimate in enumerate(likely_motions(likely.systems(SUPPORTS), readings, weather)):

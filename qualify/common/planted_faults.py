@@ -96,7 +96,7 @@ FAULTS = (
         ("short waves reach as deep as long ones", "push = self._push(omega, angle, turn, speed)", "push = self._push(peak, angle, turn, speed)"),
         ("drag on members is in phase with their inertia", "(water / (1j * omega)).real", "(water / omega).real"),
         ("what begins otherwise stays in the predictions only", "(wanted.T - self.information @ (self.P @ wanted.T))", "wanted.T"),
-        ("a working rotor pushes by twice its damping", "thrust = model.dashpot(weather.heading_rad) * _AVERAGED", "thrust = 2.0 * model.dashpot(weather.heading_rad) * _AVERAGED"),
+        ("a working rotor pushes by twice its damping", "thrust = slope * _AVERAGED", "thrust = 2.0 * slope * _AVERAGED"),
         ("levels are scored with half their curvature", "4.0 * forces.sum(axis=0)", "2.0 * forces.sum(axis=0)"),
     )),
     *_of("soil", rows=(

@@ -12,6 +12,7 @@ from .estimate import (
 from .latent_forces import LatentForce as LatentForce
 from .motion_model import MotionModel as MotionModel, motion_model as motion_model
 from .readings import SensorReadings as SensorReadings, Weather as Weather, readings_of as readings_of
+from .rotor_by_wind import RotorAtTop as RotorAtTop, RotorByWind as RotorByWind
 from .smoother import (
     SteadySmoother as SteadySmoother,
     discrete as discrete,

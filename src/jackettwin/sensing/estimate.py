@@ -10,10 +10,11 @@ import scipy.linalg as la
 
 from jackettwin.arrays import FloatArray
 from jackettwin.response import System
-from jackettwin.sensing.latent_forces import gusts_std, wind_forces, with_thrust
+from jackettwin.sensing.latent_forces import wind_forces
 from jackettwin.sensing.levels import Levels, find_levels
 from jackettwin.sensing.motion_model import MotionModel, motion_model
 from jackettwin.sensing.readings import SensorReadings, Weather, thinned
+from jackettwin.sensing.rotor_by_wind import damped_at_work, pushed_at_work
 from jackettwin.sensing.sea import SeaOnMembers
 from jackettwin.sensing.smoother import SteadySmoother, discrete, steady_smoother
 from jackettwin.structure import SectionForces, section_forces
@@ -27,10 +28,6 @@ _REMAINDERS = ((15.0, 0.08), (-15.0, 0.10), (-np.inf, 0.20))
 """The same of stress at welds, from these heights above the sea [m] on; deep braces vibrate of their own."""
 _FIRST, _DAMPING_LOG_STD = 2, 0.4
 """Modes whose damping records tell, and the logarithm's deviation of that of others: 0.3 to 1 % in steel."""
-_AT_WORK, _AT_WORK_LOG_STD = 0.08, 0.35
-"""Fore-aft damping ratio that a working rotor adds to the first pair where no record told it: 4 to 13 %."""
-_AVERAGED, _ASIDE = 0.75, 0.2
-"""Gusts over a disc of 240 m over those at a point; a rotor's force aside over its thrust."""
 BAND_HZ = 2.2
 """Modes up to here move with their own inertia; what is beyond follows the forces at once."""
 
@@ -105,28 +102,21 @@ def sensed_model(system: System, weather: Weather) -> MotionModel:
 def _model_in(system: System, weather: Weather, sea: SeaOnMembers) -> MotionModel:
     forces = (*wind_forces(system.assembly, wind_m_s=weather.wind_m_s), *sea.forces())
     model = motion_model(system, forces, below_hz=BAND_HZ, drag=sea.damping())
-    return _pushed(_damped_at_work(model, weather), weather)
+    return _pushed(_damped(model, weather), weather)
 
 
-def _damped_at_work(model: MotionModel, weather: Weather, away: float = 0.0) -> MotionModel:
-    """Return a model that a working rotor damps, ``away`` deviations of its ratio from a usual one."""
+def _damped(model: MotionModel, weather: Weather, away: float = 0.0) -> MotionModel:
+    """Return a model that its rotor damps if it works, ``away`` deviations from what is expected."""
     if not weather.working:
         return model
-    return model.with_dashpot(_AT_WORK * float(np.exp(_AT_WORK_LOG_STD * away)), weather.heading_rad)
+    return damped_at_work(model, weather.rotor, weather.heading_rad, away)
 
 
 def _pushed(model: MotionModel, weather: Weather) -> MotionModel:
-    """Return a model whose working rotor pushes as much as it damps.
-
-    Thrust that grows by c with the wind's speed resists the tower's by the same c, so that slow gusts of
-    standard deviation σ push by cσ, whatever accelerations say of a motion that they do not feel.
-    """
-    if not weather.working or weather.wind_m_s is None:
+    """Return a model whose rotor pushes as is expected if it works."""
+    if not weather.working:
         return model
-    thrust = model.dashpot(weather.heading_rad) * _AVERAGED * gusts_std(weather.wind_m_s)
-    ways = {"rotor Fx": np.cos(weather.heading_rad), "rotor Fy": np.sin(weather.heading_rad)}
-    levels = {name: thrust * max(abs(float(share)), _ASIDE) for name, share in ways.items()}
-    return model.with_forces(with_thrust(model.forces, levels))
+    return pushed_at_work(model, weather.rotor, weather.heading_rad, weather.wind_m_s)
 
 
 def moved(model: MotionModel, readings: SensorReadings, *, draws: int = 0) -> MotionEstimate:
@@ -165,7 +155,7 @@ def likely_motions(
         away = rng.standard_normal(3) if k % 2 == 0 else -away
         model = motion_model(system, forces, below_hz=BAND_HZ, drag=np.exp(_DRAG_LOG_STD * away[0]) * drag)
         model = model.with_damping_beyond(_FIRST, float(np.exp(_DAMPING_LOG_STD * away[1])))
-        model = damped(_damped_at_work(model, weather, away[2]))
+        model = damped(_damped(model, weather, away[2]))
         found.append(under(model, readings, estimate.levels))
     return tuple(found)
 

@@ -2,7 +2,7 @@ r"""Unmeasured forces as Gaussian processes on load patterns.
 
 A force is a pattern on the structure times a process of unit variance times a level that the record decides.
 Gusts are an Ornstein–Uhlenbeck process, whose density falls with :math:`f^{-2}` above its corner; a rotor's
-disc averages them, so that its force falls with f⁻⁴ above U/5D, and not its moments. Waves are a band about
+disc averages them, so that its force falls with f⁻⁴ above U/D, and not its moments. Waves are a band about
 their peak that is nothing at rest and falls with f⁻⁶, as short waves do not reach down:
 
 .. math:: S_{gust}(ω) = \frac{2a}{a^2 + ω^2}, \qquad
@@ -36,12 +36,18 @@ _TAIL = 1.5
 _PASSED = _TAIL**3 * (_TAIL + _BAND) / (_TAIL**2 + 2.0 * _BAND * _TAIL + 1.0) ** 2
 """Share of a band's variance that its tail leaves."""
 _SPACING_M = 4.0
-_DISC = 4.0
-"""Corner of what a disc of 240 m averages, some U/5D, over that of gusts, U/6L."""
+_DISC_CORNER, _DISC = 0.62, 12.0
+"""Lower corner of Kaimal's gusts averaged over a disc of 240 m over U/6L, and the upper one over the lower.
+
+Of S(f) times the mean of the coherence exp(−12 √((fr/U)² + (0.12 r/L)²)) of all pairs of its points (IEC
+61400-1 (2019), C.2): from 6 to 24 m/s the lower lies at 0.59 to 0.63 U/6L, the upper 10 to 16 times there."""
 _QUICK = 25.0
 """Ratio of the corners of quick and slow gusts: the two have Kaimal's f^(-5/3) within a factor of 1.6."""
-_QUICK_SHARE, _QUICK_LOG_STD = 0.3, 1.5
-"""Expected of quick gusts over slow ones, and how far its logarithm may lie from that."""
+_QUICK_SHARE, _QUICK_LOG_STD, _QUICK_RATE_LOG_STD = 0.3, 1.5, 0.3
+"""Expected ratio of quick gusts to slow ones, and the deviations of its logarithm and of their corner's.
+
+With a free corner the quick gusts fit what lies above 1 Hz and slow moments replace them: those were found
+three times too large in a simulated record at work."""
 _TOP = {
     0: ("rotor Fx", None),
     1: ("rotor Fy", None),
@@ -175,7 +181,8 @@ def wind_forces(assembly: Assembly, *, wind_m_s: float | None = None) -> tuple[L
         at = (_FORCE_N, 3.0, 0.2) if of is None else (_LEVER_M * _FORCE_N, _LEVER_LOG_STD, 0.2)
         # a disc averages the force, and not the gusts across it that make moments
         kind: Literal["gust", "disc"] = "disc" if of is None else "gust"
-        slow.append(LatentForce(name, _on_top(assembly, row), nothing, kind, corner, *at, of))
+        rate = _DISC_CORNER * corner if of is None else corner
+        slow.append(LatentForce(name, _on_top(assembly, row), nothing, kind, rate, *at, of))
     for axis, load in zip("xy", _on_tower(assembly), strict=False):
         slow.append(LatentForce(f"tower {axis}", load, nothing, "gust", corner, gusts, known))
     quick = [
@@ -186,7 +193,7 @@ def wind_forces(assembly: Assembly, *, wind_m_s: float | None = None) -> tuple[L
             rate=_QUICK * corner,
             level=_QUICK_SHARE * f.level,
             level_log_std=_QUICK_LOG_STD,
-            rate_log_std=1.0,
+            rate_log_std=_QUICK_RATE_LOG_STD,
             beside=f.name,
         )
         for f in slow

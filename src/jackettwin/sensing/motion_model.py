@@ -77,6 +77,16 @@ class MotionModel:
         c = 2.0 * ratio * self.omega[most] / moved[most] ** 2
         return replace(self, damping=self.damping + c * np.outer(moved, moved))
 
+    def with_damping_at_top(self, damping: FloatArray, least_ratio: float) -> MotionModel:
+        """Return the model with damping (6, 6) at the tower top; no motion is damped by less than a ratio.
+
+        A rotor's damping of one of six motions may be negative, what is left of the structure's own is not.
+        """
+        top = self.shapes[self.assembly.dofs(self.assembly.structure.top_node)]
+        values, vectors = np.linalg.eigh(self.damping + top.T @ damping @ top)
+        least = 2.0 * least_ratio * float(self.omega[0])
+        return replace(self, damping=(vectors * np.maximum(values, least)) @ vectors.T)
+
     def dashpot(self, heading_rad: float) -> float:
         """Return the dashpot at the tower top [N·s/m] that damps the first pair towards a heading so much."""
         moved = self.at_top(heading_rad)

@@ -16,6 +16,7 @@ from jackettwin.loads import Coefficients
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import Record, decimate
 from jackettwin.response import Sensor, observation_matrix
+from jackettwin.sensing.rotor_by_wind import RotorAtTop, RotorByWind
 from jackettwin.structure import Assembly
 
 _DERIVATIVE = {"acceleration": 2, "velocity": 1}
@@ -61,6 +62,7 @@ class Weather:
     coefficients : drag, added mass and growth of the members; None are those of bare ones
     working : whether the rotor turns and produces
     heading_rad : towards which its wind blows, anticlockwise from x seen from above
+    rotor : what it does at the tower top in this wind; None is a usual rotor
     """
 
     wind_m_s: float | None = None
@@ -71,6 +73,7 @@ class Weather:
     coefficients: Coefficients | None = None
     working: bool = False
     heading_rad: float = 0.0
+    rotor: RotorAtTop | None = None
 
     @classmethod
     def of(
@@ -78,24 +81,27 @@ class Weather:
         conditions: Mapping[str, Any],
         depth_m: float | None = None,
         coefficients: Coefficients | None = None,
+        rotor: RotorByWind | None = None,
     ) -> Weather:
-        """Return the wind and sea that a record's conditions state."""
+        """Return the wind and sea that a record's conditions state, and what a known rotor does in them."""
 
         def number(name: str) -> float | None:
             value = conditions.get(name)
             return float(value) if isinstance(value, (int, float)) and value > 0.0 else None
 
         calm = conditions.get("wave_height_m") == 0.0 or conditions.get("waves") == "none"
+        working, wind = conditions.get("state") == "operating", number("mean_wind_speed_m_s")
         direction, heading = (conditions.get(name) for name in ("wave_direction_deg", "yaw_deg"))
         return cls(
-            number("mean_wind_speed_m_s"),
+            wind,
             _CALM_M if calm else number("wave_height_m"),
             number("wave_period_s"),
             radians(float(direction)) if isinstance(direction, (int, float)) else 0.0,
             depth_m,
             coefficients,
-            conditions.get("state") == "operating",
+            working,
             radians(float(heading)) if isinstance(heading, (int, float)) else 0.0,
+            rotor.at(wind) if rotor is not None and working and wind is not None else None,
         )
 
 

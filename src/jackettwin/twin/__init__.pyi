@@ -23,6 +23,7 @@ from .rotor_at_work import (
     RotorSide as RotorSide,
     of_side as of_side,
     rotor_at_work as rotor_at_work,
+    rotor_by_wind as rotor_by_wind,
     stiffness_at_work as stiffness_at_work,
 )
 from .state import (

@@ -19,6 +19,7 @@ from jackettwin.twin.calibration import Calibrations, sensors_at
 from jackettwin.twin.config import PAIRED_MODES, TwinConfig, assembled
 from jackettwin.twin.life.likely_structures import StressModel
 from jackettwin.twin.operation import OperationRule
+from jackettwin.twin.rotor_at_work import rotor_by_wind
 from jackettwin.twin.tolerances.registry import AT_WORK, TOLERANCES, directions, stiffer_at_work
 from jackettwin.updating import Direction, Feet, modes_by_foot_stiffness, numbered_modes, pairing_score
 
@@ -233,6 +234,7 @@ def _stress_model(config: TwinConfig, assembly: Assembly, numbered: UndampedMode
         None if config.water is None else config.water.depth_m,
         None if config.water is None else config.water.coefficients,
         _at_work(config, assembly),
+        rotor_by_wind(config, float(numbered.frequency_hz[0])),
     )
 
 

@@ -130,12 +130,13 @@ def _damage(
         if of is not None and mode.status.is_a_mode
     }
     record = seen.record
-    works = model.operation.with_state(record.conditions).get("state") == AT_WORK
+    conditions = model.operation.with_state(record.conditions)
+    works = conditions.get("state") == AT_WORK
     stress = model.stress.working() if works else model.stress
     try:
         likely = likely_structures(stress, modes, min(feet.stiffness_n_m, STIFFEST_N_M))
         readings = readings_of(record, model.placed(record), model.structure)
-        weather = Weather.of(record.conditions, model.stress.depth_m, model.stress.coefficients)
+        weather = Weather.of(conditions, stress.depth_m, stress.coefficients, stress.rotor)
         return sensed_damage(likely, readings, weather), ()
     except JackettwinError as error:
         return None, (Finding("life_unknown", params={"reason": str(error)}),)

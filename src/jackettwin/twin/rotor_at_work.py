@@ -13,12 +13,15 @@ from jackettwin.arrays import FloatArray
 from jackettwin.errors import located
 from jackettwin.loads import (
     OPERATING_LEAST_RATIO,
+    Control,
+    Rotor,
     operating_damping,
     operating_point,
     read_rotor,
     read_schedule,
 )
 from jackettwin.response import Matrix, UndampedModes
+from jackettwin.sensing import RotorByWind
 from jackettwin.structure import Assembly
 from jackettwin.twin.config import TwinConfig
 from jackettwin.updating import DASHPOTS
@@ -71,10 +74,8 @@ def rotor_at_work(
         If the rotor's files are wrong, or its schedule does not reach the wind.
     """
     given = config.update
+    rotor, control = _files(config)
     with located(file=config.path, field="update"):
-        rotor, control = read_rotor(given.rotor or "")
-        if given.rotor_schedule is not None:
-            control = replace(control, schedule=read_schedule(Path(given.rotor_schedule)))
         operation = operating_point(rotor, control, wind)
     top = numbered.shapes[assembly.dofs(assembly.structure.top_node)][:, :2]
     omega = numbered.omega[:2]
@@ -96,6 +97,28 @@ def rotor_at_work(
             part[axis, axis] = 1.0
         found[name] = RotorSide(float(c), part / direct, of_side(mean.stiffness, name))
     return found
+
+
+def rotor_by_wind(config: TwinConfig, first_hz: float) -> RotorByWind | None:
+    """Return a twin's rotor in any wind, for what it does at a first frequency; None without its files.
+
+    Raises
+    ------
+    InputError
+        If the rotor's files are wrong.
+    """
+    if config.update.rotor is None:
+        return None
+    return RotorByWind(*_files(config), first_hz, config.update.shaft or "free")
+
+
+def _files(config: TwinConfig) -> tuple[Rotor, Control]:
+    given = config.update
+    with located(file=config.path, field="update"):
+        rotor, control = read_rotor(given.rotor or "")
+        if given.rotor_schedule is not None:
+            control = replace(control, schedule=read_schedule(Path(given.rotor_schedule)))
+    return rotor, control
 
 
 def stiffness_at_work(sides: Mapping[str, RotorSide], assembly: Assembly) -> Matrix:

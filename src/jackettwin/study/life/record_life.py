@@ -36,7 +36,7 @@ from jackettwin.sensing import (
 )
 from jackettwin.structure import Assembly, assemble
 from jackettwin.study.life.updated_system import updated_systems
-from jackettwin.twin import TwinConfig, WeldMap, twin_model, weld_map
+from jackettwin.twin import TwinConfig, WeldMap, rotor_by_wind, twin_model, weld_map
 from jackettwin.twin.calibration import calibrated
 from jackettwin.updating import Update
 
@@ -85,11 +85,15 @@ def sensed(config: TwinConfig, path: Path, *, feel_gravity: bool = False) -> tup
     if record.metadata.get("axes") == "rotor" or any(c.frame == "nacelle" for c in record.channels):
         record = to_global_axes(record)
     model = twin_model(config)
-    water = config.water
-    sea = (None, None) if water is None else (water.depth_m, water.coefficients)
+    water, numbered = config.water, model.numbered
     return (
         readings_of(record, model.placed(record), model.structure, feel_gravity=feel_gravity),
-        Weather.of(record.conditions, *sea),
+        Weather.of(
+            config.operation.with_state(record.conditions),
+            None if water is None else water.depth_m,
+            None if water is None else water.coefficients,
+            None if numbered is None else rotor_by_wind(config, float(numbered.frequency_hz[0])),
+        ),
     )
 
 

@@ -22,7 +22,7 @@ from jackettwin.fatigue import JointStresses, ModelsAtHeight
 from jackettwin.identification import ModalEstimate
 from jackettwin.loads import Coefficients
 from jackettwin.response import System, UndampedModes, build_system, track_modes, undamped_modes
-from jackettwin.sensing import MotionModel
+from jackettwin.sensing import MotionModel, RotorByWind
 from jackettwin.soil import Prony, Spring, Support, standing
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.twin.life.settings import LifeSettings
@@ -57,6 +57,7 @@ class StressModel:
     depth_m : of the water; None takes the lowest node for the bed
     coefficients : of drag, added mass and growth; None are those of bare members
     at_work : what a standard deviation of the stiffness that the rotor at work adds does to the structure
+    rotor : how it damps at work and what its thrust does in gusts; None is a usual one
     """
 
     settings: LifeSettings
@@ -68,6 +69,7 @@ class StressModel:
     depth_m: float | None = None
     coefficients: Coefficients | None = None
     at_work: Direction | None = None
+    rotor: RotorByWind | None = None
 
     def working(self) -> StressModel:
         """Return the model with the rotor at work, whose stiffness is left open; as it is without a rotor."""
