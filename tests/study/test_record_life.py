@@ -87,4 +87,5 @@ def test_the_tower_base_is_known_through_wrong_feet(scenario: Scenario, truth: F
     assert ratio == pytest.approx([1.0, 1.0], abs=0.06)
     turned = tuple(replace(s, direction=tuple(-v for v in s.direction)) for s in sensors[:2])
     wrong = dels(estimated(scenario, (*turned, *sensors[2:]))) / dels(truth)
-    assert np.abs(wrong - 1.0).max() > 0.2
+    # three times what sensors that point the right way may leave
+    assert np.abs(wrong - 1.0).max() > 0.18

@@ -8,7 +8,13 @@ from .check import (
 )
 from .cut import at_interface as at_interface
 from .damping import Rayleigh as Rayleigh, RayleighSchema as RayleighSchema
-from .eigen import AT_REST as AT_REST, below_zero as below_zero, dense as dense, lowest_modes as lowest_modes
+from .eigen import (
+    AT_REST as AT_REST,
+    below_zero as below_zero,
+    dense as dense,
+    lowest_modes as lowest_modes,
+    refined_modes as refined_modes,
+)
 from .forces import (
     SectionForces as SectionForces,
     element_weight as element_weight,

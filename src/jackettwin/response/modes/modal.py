@@ -12,7 +12,7 @@ from jackettwin.errors import require
 from jackettwin.response.modes.multiple import aligned
 from jackettwin.response.modes.poles import REAL, poles_below
 from jackettwin.response.system import System
-from jackettwin.structure import AT_REST, below_zero, lowest_modes
+from jackettwin.structure import AT_REST, below_zero, lowest_modes, refined_modes
 
 _SHOWN = 6
 """Number of modes named when a result is printed."""
@@ -77,8 +77,12 @@ class DampedModes:
         return -self.eigenvalues.real / np.abs(self.eigenvalues)
 
 
-def undamped_modes(system: System, number: int) -> UndampedModes:
+def undamped_modes(system: System, number: int, *, near: UndampedModes | None = None) -> UndampedModes:
     """Return the ``number`` lowest undamped modes, by sparse shift-invert Lanczos.
+
+    Parameters
+    ----------
+    near : modes of a similar structure, as many or more, which one step of inverse iteration refines
 
     Raises
     ------
@@ -87,8 +91,12 @@ def undamped_modes(system: System, number: int) -> UndampedModes:
     NumericalError
         If the iteration does not converge.
     """
-    pencil = system.pencil
-    w, x = lowest_modes(pencil.static_stiffness(), pencil.M, number, shift=below_zero(pencil.K, pencil.M))
+    pencil, shift = system.pencil, below_zero(system.pencil.K, system.pencil.M)
+    if near is None:
+        w, x = lowest_modes(pencil.static_stiffness(), pencil.M, number, shift=shift)
+    else:
+        x0 = near.shapes[system.free]
+        w, x = refined_modes(pencil.static_stiffness(), pencil.M, x0, number, shift=shift)
     return UndampedModes(w, aligned(system.assembly, w, system.expand(x)))
 
 

@@ -30,7 +30,8 @@ from jackettwin.twin.life.weld_map import planned_joints
 from jackettwin.updating import Direction, moved_along, on_unlike_feet, possible
 
 _STEPS = 3
-_LONGEST_STEP = 1.5
+_LONGEST_STEP, _SETTLED = 1.5, 0.02
+"""Of ln k and of tolerances in their deviations."""
 _MODES = 5
 """Both bending pairs and torsion; higher ones feel blades and braces more than feet."""
 _REMAINDER = 0.005
@@ -192,21 +193,32 @@ def likely_structures(
     P0[: model.n_ways, : model.n_ways] *= _OWN_STD**2
     P0[: model.n_ways, : model.n_ways] += _COMMON_STD**2
     theta, P = prior, P0
+    near: UndampedModes | None = None
     for _ in range(_STEPS if measured else 0):
-        H, r, R = _misfit(model, theta, measured)
+        H, r, R, near = _misfit(model, theta, measured, near)
         gain = P0 @ H.T @ np.linalg.inv(H @ P0 @ H.T + np.diag(R))
         step = prior + gain @ (r + H @ (theta - prior)) - theta
         theta = theta + step * min(1.0, _LONGEST_STEP / max(np.abs(step).max(), 1e-300))
         P = P0 - gain @ H @ P0
+        if np.abs(step).max() < _SETTLED:
+            break
     return LikelyStructures(model, theta, P, {m: mode.damping_ratio for m, mode in measured.items()})
 
 
 def _misfit(
-    model: StressModel, theta: FloatArray, measured: Mapping[int, ModalEstimate]
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return slopes (m, n), what measured ln f exceed the model's by (m,), and their variances (m,)."""
+    model: StressModel,
+    theta: FloatArray,
+    measured: Mapping[int, ModalEstimate],
+    near: UndampedModes | None,
+) -> tuple[FloatArray, FloatArray, FloatArray, UndampedModes]:
+    """Return slopes (m, n), what measured ln f exceed the model's by (m,), their variances (m,), and modes.
+
+    Parameters
+    ----------
+    near : modes of the step before
+    """
     system, numbered = model.system(theta), model.numbered
-    modes = undamped_modes(system, numbered.omega.size + _EXTRA)
+    modes = undamped_modes(system, numbered.omega.size + _EXTRA, near=near)
     successor = track_modes(model.assembly.mass, numbered.omega, numbered.shapes, modes.shapes)
     known = [m for m in measured if successor[m - 1] >= 0]
     at = successor[[m - 1 for m in known]] if known else np.zeros(0, dtype=np.intp)
@@ -214,4 +226,4 @@ def _misfit(
     r = np.array([np.log(measured[m].frequency_hz) for m in known]) - np.log(modes.frequency_hz[at])
     own = [measured[m].log_covariance for m in known]
     R = np.array([_REMAINDER**2 + (_REMAINDER**2 if c is None else float(c[0, 0])) for c in own])
-    return H, r, R
+    return H, r, R, modes

@@ -210,9 +210,15 @@ class _Curves:
                 w, s = divmod(int(sides[i]), len(SIDES))
                 curve, t = self.models[w].curve, float(self.thickness_m[w, s])
                 known = np.ones(len(POSITIONS)) if like is None else like[i] / max(like[i].max(), 1e-300)
-                for p in np.flatnonzero(known >= _MINOR):
-                    cycles = count(stress[w - int(first[joint])][s, p])
-                    found[i, p] = curve.damage(cycles.ranges, cycles.numbers, thickness_m=t)
+                major = np.flatnonzero(known >= _MINOR)
+                if not major.size:
+                    continue
+                cycles = [count(stress[w - int(first[joint])][s, p]) for p in major]
+                ranges = np.concatenate([c.ranges for c in cycles])
+                each = 1.0 / curve.cycles_to_failure(ranges, thickness_m=t)
+                of = np.repeat(major, [c.ranges.size for c in cycles])
+                numbers = np.concatenate([c.numbers for c in cycles])
+                found[i] = np.bincount(of, each * numbers, minlength=len(POSITIONS))
                 minor, worst = known < _MINOR, int(known.argmax())
                 found[i, minor] = known[minor] * found[i, worst]
         return found
