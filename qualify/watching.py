@@ -4,6 +4,7 @@ Usage: python qualify/watching.py [quiet turbines a kind of seasons] [turbines a
        [of a kind without conditions] [folder of pieces]
        python qualify/watching.py speed
        python qualify/watching.py kinds [turbines a kind of seasons] [folder of pieces]
+       python qualify/watching.py right [turbines]
 
 Each turbine is a piece that is kept in a file; a run that was stopped goes on where it was. Pieces of other
 source code are not used.
@@ -35,10 +36,12 @@ from jackettwin.watching import History, Look, Pattern, Watch, diagnose, general
 from jackettwin.watching.block import Block, begin, no_begins, watched as columns_watched
 from jackettwin.watching.design import Design, design_of, fresh, regressors, with_slow_processes
 from jackettwin.watching.directions import SHARES, Directions, directions_of
+from jackettwin.watching.hours import Hours
 from jackettwin.watching.learning import OCTAVES, learn
-from jackettwin.watching.overshoot import crossing_share
+from jackettwin.watching.memory import empty_bank, filtered
+from jackettwin.watching.overshoot import calibrated
 from jackettwin.watching.state import PossibleOnsets
-from jackettwin.watching.watch import KINDS as KINDS_OF_QUANTITIES
+from jackettwin.watching.watch import KINDS as KINDS_OF_QUANTITIES, STEADY_DAYS
 
 LABELS = ("bending_1", "bending_2", "bending_3", "bending_4")
 BASELINE, YEARS = 365.0, 3
@@ -89,9 +92,8 @@ def patterns() -> tuple[Pattern, ...]:
     return replace(found, mixed=()).patterns(bending)
 
 
-def watched(h: History, arl: float, until: float = 1e9) -> tuple[Watch, list[Look]]:
+def watched(h: History, watch: Watch, until: float = 1e9) -> tuple[Watch, list[Look]]:
     """Return the watch and its looks up to the first alarm after the baseline, or a day."""
-    watch = watching.start(h.between(0.0, BASELINE), arl_years=arl, patterns=patterns())
     looks: list[Look] = []
     for day in h.between(BASELINE, until).by_day():
         watch, look = watching.step(watch, day)
@@ -101,6 +103,11 @@ def watched(h: History, arl: float, until: float = 1e9) -> tuple[Watch, list[Loo
     return watch, looks
 
 
+def begun_watch(h: History, arl: float) -> Watch:
+    """Return the watch at the end of the baseline."""
+    return watching.start(h.between(0.0, BASELINE), arl_years=arl, patterns=patterns())
+
+
 # false alarms
 
 
@@ -108,10 +115,13 @@ def quiet(kind: str, seed: int, first_seed: int = QUIET_SEEDS) -> dict[str, Any]
     """Return whether and after how many years a quiet turbine crosses each threshold."""
     place = list(KINDS).index(kind)
     h = history(seasons(first_seed + 100 * place + seed, YEARS * 365.0, KINDS[kind]))
-    watch, looks = watched(untold(h) if first_seed == UNTOLD_SEEDS else h, ARLS[-1])
+    h = untold(h) if first_seed == UNTOLD_SEEDS else h
+    begun = begun_watch(h, ARLS[-1])
+    _, looks = watched(h, begun)
     out = {}
     for arl in ARLS:
-        first = next((k for k in looks if k.log_r >= replace(watch, arl_years=arl).log_threshold), None)
+        threshold = calibrated(replace(begun, arl_years=arl), h.between(0.0, BASELINE)).log_threshold
+        first = next((k for k in looks if k.log_r >= threshold), None)
         end = looks[-1].day if first is None else first.day
         out[f"{arl:g}"] = [first is not None, (end - BASELINE) / 365.25]
     return out
@@ -120,6 +130,74 @@ def quiet(kind: str, seed: int, first_seed: int = QUIET_SEEDS) -> dict[str, Any]
 def untold(h: History) -> History:
     """Return the same modes without any condition beside them."""
     return replace(h, conditions=np.zeros((h.days.size, 0)), condition_names=())
+
+
+def one_mode(days: np.ndarray, ln_f: np.ndarray) -> History:
+    """Return one mode at noon of each day, known to a thousandth, with a temperature that does not act."""
+    f, none = 0.3 * np.exp(ln_f)[:, None], np.full((days.size, 1), np.nan)
+    swing = 10.0 + 8.0 * np.sin(2.0 * np.pi * days / 60.0)
+    return History(
+        days, ("one",), f, 1e-3 * f, none, none, swing[:, None], ("temperature_c",),
+        np.zeros(days.size, dtype=np.intp),
+    )  # fmt: skip
+
+
+def right(seed: int, learnt: Watch, baseline: History) -> dict[str, Any]:
+    """Return as ``quiet`` for a mode whose days are drawn from what the watch itself predicts for them.
+
+    Its models, their weights and the uncertainty of its baseline are then right, so that E[R_t] is the prior
+    weight of t days.
+    """
+    rng, watch, logs = np.random.default_rng((78, seed)), learnt, []
+    days = BASELINE + 0.5 + np.arange(int((YEARS - 1) * 365.25))
+    weights, considered = learnt.blocks[0].log_weights, learnt.considered
+    model = rng.choice(weights.size, p=np.exp(weights) / np.exp(weights).sum())
+    for day in days:
+        block = watch.blocks[0]
+        rows, _ = regressors(watch.design, one_mode(np.array([day]), np.zeros(1)), watch.lagged)
+        none = np.zeros((1, 1))
+        hour = Hours(np.array([day]), rows, none, none + 1e-6, none, none)
+        belief = block.beliefs[model]
+        ahead = filtered(block.memories[model], belief, empty_bank(1, belief.mean.size), hour, watch.last_day)
+        ln_f = rng.normal(-ahead.innovation[0, 0], np.sqrt(ahead.spread[0, 0]))
+        watch, look = watching.step(watch, one_mode(np.array([day]), ln_f + np.log(block.typical / 0.3)))
+        logs.append(look.log_r)
+        if look.change is not None:
+            break
+        # a share of the weights returns to those of the baseline, now and then
+        back = -np.expm1(-(watch.considered - considered) / STEADY_DAYS)
+        considered, weights = watch.considered, watch.blocks[0].log_prior
+        if rng.random() < back:
+            model = rng.choice(weights.size, p=np.exp(weights) / np.exp(weights).sum())
+    out = {}
+    for arl in ARLS:
+        threshold = calibrated(replace(learnt, arl_years=arl), baseline).log_threshold
+        over = np.flatnonzero(np.array(logs) >= threshold)
+        out[f"{arl:g}"] = [
+            over.size > 0,
+            float(days[over[0] if over.size else len(logs) - 1] - BASELINE) / 365.25,
+        ]
+    return out
+
+
+def right_models(turbines: int) -> list[str]:
+    """Return the table of false alarms where the model is right; a baseline serves for eight turbines."""
+    found = []
+    for seed in range(turbines):
+        if seed % 8 == 0:
+            rng, days = np.random.default_rng((79, seed)), np.arange(int(BASELINE)) + 0.5
+            keep, slow = np.exp(-1.0 / 7.0), [rng.standard_normal()]
+            for _ in days[1:]:
+                slow.append(keep * slow[-1] + np.sqrt(1.0 - keep**2) * rng.standard_normal())
+            baseline = one_mode(days, 1e-3 * (np.array(slow) + rng.standard_normal(days.size)))
+            learnt = watching.start(baseline, arl_years=ARLS[-1])
+        found.append(right(seed, learnt, baseline))
+        sys.stderr.write(f"right {seed}\n")
+    return [
+        "| model | ARL [years] | alarms | years watched | promised | ratio | chance |",
+        "|---|---|---|---|---|---|---|",
+        *_counted("right, one mode", found),
+    ]
 
 
 def false_alarms(pieces: dict[str, Any]) -> list[str]:
@@ -173,7 +251,8 @@ def _counted(name: str, found: list[Any]) -> list[str]:
 def untold_scour(seed: int) -> float | None:
     """Return after how many days scour is found if nobody tells the conditions, or None."""
     s, begun = planted_turbine(PLANTED[0], seed)
-    _, looks = watched(untold(history(s)), 10.0, begun + 365.0)
+    h = untold(history(s))
+    _, looks = watched(h, begun_watch(h, 10.0), begun + 365.0)
     return None if looks[-1].change is None else looks[-1].day - begun
 
 
@@ -183,7 +262,8 @@ def scour(kind: str, seed: int) -> float | None:
     rng = np.random.default_rng((9, place, seed))
     begun = BASELINE + rng.uniform(20.0, 200.0)
     s = seasons(SCOUR_SEEDS + 100 * place + seed, BASELINE + 600.0, KINDS[kind])
-    _, looks = watched(history(PLANTED[0].apply(s, begun, rng)), 10.0, begun + 365.0)
+    h = history(PLANTED[0].apply(s, begun, rng))
+    _, looks = watched(h, begun_watch(h, 10.0), begun + 365.0)
     return None if looks[-1].change is None else looks[-1].day - begun
 
 
@@ -267,7 +347,8 @@ def changed(place: int, seed: int) -> dict[str, Any]:
     """Return what became of one change: days until the alarm, and whether it was named and dated."""
     planted = PLANTED[place]
     s, begun = planted_turbine(planted, seed)
-    watch, looks = watched(history(s), 10.0, begun + (14.0 if planted.name.startswith("sensor") else 365.0))
+    h, days = history(s), 14.0 if planted.name.startswith("sensor") else 365.0
+    watch, looks = watched(h, begun_watch(h, 10.0), begun + days)
     change = looks[-1].change
     if change is None:
         return {"delay": None}
@@ -323,7 +404,7 @@ def informed(seed: int) -> dict[str, Any]:
             LABELS, design, lagged, told, PossibleOnsets(*np.zeros((3, 0)), none),
             last, float(np.floor(last)), last, 10.0,
         )  # fmt: skip
-        watch = replace(watch, crossing=crossing_share(watch, baseline))
+        watch = calibrated(watch, baseline)
         # nothing is staked on what is left out: what the watch adds for its share is taken off
         staked, all_staked = (
             SHARES["scatter"] + sum(SHARES[block.kind] for block in some) for some in (told, blocks)
@@ -360,7 +441,7 @@ def _falling_pair(sizes: tuple[float, ...]) -> Directions:
     return Directions(
         "frequency", ("pair", "any"), np.ones((2, 4), dtype=bool), np.array([[1.0, 1.0, 0.0, 0.0]]),
         np.array([0.0, -np.inf]), np.array([*(-x for x in sizes), *sizes]), np.full(2 * number, 1e-6),
-        weights,
+        weights[None],
     )  # fmt: skip
 
 
@@ -539,6 +620,9 @@ def computed(pieces: Iterable[tuple[str, Callable[[], Any]]], folder: Path) -> d
 def main() -> None:
     if sys.argv[1:] == ["speed"]:
         sys.stdout.write("\n".join(speed()))
+        return
+    if sys.argv[1:2] == ["right"]:
+        sys.stdout.write("\n".join(right_models(int(sys.argv[2]) if len(sys.argv) > 2 else 24)) + "\n")
         return
     if sys.argv[1:2] == ["kinds"]:
         folder = Path(sys.argv[3] if len(sys.argv) > 3 else "out/qualify")

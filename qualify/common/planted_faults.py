@@ -156,7 +156,7 @@ FAULTS = (
         ("steps exceed the threshold as if a day moved them twice as far", "half = 0.5 * np.maximum(mu, 1e-6)", "half = np.maximum(mu, 1e-6)"),
         ("learning forgets to shrink the covariance", "row[j] -= part * g[j]", "row[j] -= 0.5 * part * g[j]"),
         ("innovations are not divided by their variance", "mean[i] += g[i] * nu / s", "mean[i] += g[i] * nu"),
-        ("Bayes factors of steps lack one half", "each[k] = 0.5 * (bent / wide - np.log(wide)) + log_weight[k]", "each[k] = (bent / wide - np.log(wide)) + log_weight[k]"),
+        ("Bayes factors of steps lack one half", "each[k] = 0.5 * (bent / wide - np.log(wide)) + own[k]", "each[k] = (bent / wide - np.log(wide)) + own[k]"),
         ("slow regressors start anew with a baseline", "np.where(slow, last, first)", "np.where(slow, first, first)"),
         ("processes age with the square root of time", "np.exp(-gaps[r] * rates[k])", "np.exp(-np.sqrt(gaps[r] * rates[k]))"),
     )),

@@ -1,5 +1,7 @@
 """Bayes factors of steps against numerical integration."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.stats import f as fisher, norm
@@ -15,7 +17,7 @@ def test_pairs_and_all_modes_are_bet_on_and_stakes_add_up_to_the_share() -> None
     found = directions_of("frequency", LABELS, HZ)
     assert found.names == ("a", "b", "c", "a and b", "all modes", "any")
     assert abs(np.exp(found.log_weights).sum() - 0.7) < 1e-12
-    assert abs(np.exp(found.log_size_weights).sum() - 1.0) < 1e-12
+    np.testing.assert_allclose(np.exp(found.log_size_weights).sum(axis=1), 1.0, rtol=1e-12)
 
 
 def test_a_pattern_is_one_more_bet_and_those_alike_are_one() -> None:
@@ -49,6 +51,26 @@ def test_a_factor_is_the_integral_over_sizes(rng: np.random.Generator) -> None:
             total += side * share * np.trapezoid(np.exp(c * d - 0.5 * a * d * d) * norm.pdf(z), z)
     got = log_bayes_factors(found, info[None], score[None])[0, 3]
     assert abs(got - np.log(total)) < 1e-8
+
+
+def test_weights_of_sizes_that_are_stored_for_all_directions_are_those_of_each(
+    rng: np.random.Generator,
+) -> None:
+    found = directions_of("frequency", LABELS, HZ)
+    stored = replace(found, log_size_weights=found.log_size_weights[0])
+    info, score = 1e6 * np.eye(3), 1e3 * rng.standard_normal(3)
+    one, other = (log_bayes_factors(d, info[None], score[None]) for d in (found, stored))
+    np.testing.assert_array_equal(one, other)
+
+
+def test_a_size_that_is_not_tested_along_a_direction_is_tested_along_the_others() -> None:
+    found = directions_of("frequency", LABELS, HZ)
+    chosen = np.ones(found.log_size_weights.shape, dtype=np.bool_)
+    chosen[0] = np.abs(found.sizes) == np.abs(found.sizes).max()
+    info, score = 1e7 * np.eye(3), -1e7 * np.array([1e-3, 1e-3, 0.0])  # each falls by a thousandth, 3 σ
+    all_of, some = (log_bayes_factors(d, info[None], score[None])[0] for d in (found, found.testing(chosen)))
+    assert some[0] < all_of[0] - 2.0
+    np.testing.assert_array_equal(some[1:], all_of[1:])
 
 
 def test_under_no_change_a_factor_has_mean_one(rng: np.random.Generator) -> None:

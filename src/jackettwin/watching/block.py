@@ -324,6 +324,13 @@ def log_scatter(block: Block, spoken: DayResult) -> FloatArray:
     return log_ratios(spoken.chi2, spoken.freedom, block.steadiness)
 
 
+def scatter_freedom(block: Block, history: History, rows: FloatArray) -> FloatArray:
+    """Return the median degrees of freedom of a day's scatter within the hours, (m,)."""
+    y, _, variance, _ = residuals(block, history, rows)
+    hours = by_hour(history.days, history.states, np.nan_to_num(rows), y, variance, WINDOW_DAYS)
+    return np.asarray(np.median(_by_day(hours, block.memories[0])[1], axis=0))
+
+
 def thinned(block: Block, keep: BoolArray) -> Block:
     """Return the block with only some of the onsets."""
     return replace(block, banks=tuple(bank.thinned(keep) for bank in block.banks))

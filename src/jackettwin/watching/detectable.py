@@ -77,9 +77,9 @@ class Sight:
         a = np.einsum("di,kij,dj->kd", u, info, u)
         c = np.einsum("di,kij,j->kd", u, info, step)
         drawn = c[..., None] + np.sign(c)[..., None] * np.sqrt(a)[..., None] * _Z
-        worth = log_along(directions, np.repeat(a[..., None], _Z.size, axis=2), drawn)
-        stake = directions.log_weights[:-1, None]
-        best = (self.power * worth + stake).max(axis=1)
+        each = np.moveaxis(drawn, 2, 1)
+        worth = log_along(directions, np.repeat(a[:, None], _Z.size, axis=1), np.ascontiguousarray(each))
+        best = (self.power * worth + directions.log_weights[:-1]).max(axis=2)
         mass = norm.pdf(_Z) / norm.pdf(_Z).sum()
         return np.asarray((best >= self.log_needed) @ mass)
 
@@ -111,13 +111,13 @@ def sight(watch: Watch, baseline: History, days: float) -> Sight | None:
         return None
     records = replayed(baseline, days)
     rows, _ = regressors(watch.design, records, watch.lagged)
-    known = [informed(block, records, rows, watch.last_day) for block in watch.blocks]
+    known = [informed(block, records, rows, watch.last_day, np.array([np.inf])) for block in watch.blocks]
     gap = days / np.unique(np.floor(records.days)).size
     needed = watch.log_threshold - np.log(max(gap, 1.0) * (1.0 - INSIDE)) + np.log(watch.staked)
     return Sight(
         days,
         tuple(block.directions for block in watch.blocks),
-        tuple(info for info, _ in known),
+        tuple(info[0] for info, _ in known),
         tuple(weights for _, weights in known),
         float(needed),
         watch.power,
@@ -132,16 +132,28 @@ def replayed(baseline: History, days: float) -> History:
 
 
 def informed(
-    block: Block, records: History, rows: FloatArray, last_day: float
+    block: Block, records: History, rows: FloatArray, last_day: float, ages: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return, by model, A of a step before some records, and the weight."""
+    """Return A of a step before some records at each age, (n_ages, n_models, m, m), and the models' weights.
+
+    Parameters
+    ----------
+    ages : (n_ages,) ascending [days]
+    """
     y, _, variance, _ = residuals(block, records, rows)
     hours = by_hour(records.days, records.states, np.nan_to_num(rows), y, variance, WINDOW_DAYS)
     live = [i for i, weight in enumerate(block.log_weights) if np.exp(weight) > _LEAST]
+    age = np.searchsorted(ages, hours.days - np.floor(records.days[0]), side="right")
     info = []
     for i in live:
-        belief = block.beliefs[i]
-        bank = empty_bank(len(block.kept), belief.mean.size).with_begin()
-        info.append(filtered(block.memories[i], belief, bank, hours, last_day).bank.info[0])
+        belief, last = block.beliefs[i], last_day
+        bank, grown = empty_bank(len(block.kept), belief.mean.size).with_begin(), []
+        for k in range(len(ages)):
+            part = hours.at(age == k)
+            if part.days.size:
+                done = filtered(block.memories[i], belief, bank, part, last)
+                belief, bank, last = done.belief, done.bank, float(part.days[-1])
+            grown.append(bank.info[0])
+        info.append(grown)
     weights = np.exp(block.log_weights[live])
-    return np.array(info), np.asarray(weights / weights.sum())
+    return np.swapaxes(np.array(info), 0, 1), np.asarray(weights / weights.sum())

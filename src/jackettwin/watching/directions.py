@@ -9,7 +9,7 @@ c of a step. A ramp dated as a step would appear to begin in its middle.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -45,6 +45,8 @@ _PATTERNED = 0.4
 """Share of the remaining weight given to the causes of a model, if there is one."""
 _ALIKE = 0.9
 """Cosine above which patterns are merged into one direction, with little effect on the Bayes factor."""
+_NOT_TESTED = -1e9
+"""Ln of the weight of a size that is not tested."""
 _MOVES = 0.1
 """Share of the largest change in a pattern below which a quantity counts as unchanged."""
 
@@ -61,7 +63,7 @@ class Directions:
     vectors : (n − 1, m) directions, without "any"
     log_weights : (n,) ln of the prior weights
     sizes, widths : (n_sizes,) steps δ ~ N(size, width²) along a vector
-    log_size_weights : (n_sizes,) ln of the weights of the sizes
+    log_size_weights : (n − 1, n_sizes) ln of the weights of the sizes along each vector
     """
 
     kind: str
@@ -72,6 +74,15 @@ class Directions:
     sizes: FloatArray
     widths: FloatArray
     log_size_weights: FloatArray
+
+    @property
+    def all_size_weights(self) -> FloatArray:
+        """Ln of the weights of the sizes that are tested along any vector, (n_sizes,)."""
+        return np.asarray(np.atleast_2d(self.log_size_weights).max(axis=0))
+
+    def testing(self, chosen: BoolArray) -> Directions:
+        """Return the directions with some of the sizes (n − 1, n_sizes); no other gets their weight."""
+        return replace(self, log_size_weights=np.where(chosen, self.log_size_weights, _NOT_TESTED))
 
 
 @dataclass(frozen=True)
@@ -121,7 +132,7 @@ def directions_of(
         np.log(SHARES[kind] * stakes),
         np.concatenate([-size, size]),
         _WIDTH * np.concatenate([size, size]),
-        np.log(np.concatenate([falling * of_size, (1.0 - falling) * of_size])),
+        np.tile(np.log(np.concatenate([falling * of_size, (1.0 - falling) * of_size])), (len(vectors), 1)),
     )
 
 
@@ -165,18 +176,24 @@ def log_bayes_factors(directions: Directions, info: FloatArray, score: FloatArra
     u = directions.vectors
     along = log_along(directions, np.einsum("di,tij,dj->td", u, info, u), score @ u.T)
     half = len(directions.sizes) // 2
-    both = np.logaddexp(directions.log_size_weights[:half], directions.log_size_weights[half:])
+    both = np.logaddexp(*np.split(directions.all_size_weights, 2))
     free = np.empty(len(info))
     log_any(np.ascontiguousarray(info), np.ascontiguousarray(score), directions.sizes[half:], both, free)
     return np.concatenate([along, free[:, None]], axis=1)
 
 
 def log_along(directions: Directions, a: FloatArray, c: FloatArray) -> FloatArray:
-    """Return ln of the Bayes factors of changes with given a and c, averaged over sizes, shaped like a."""
+    """Return ln of the Bayes factors of changes with given a and c, averaged over sizes, shaped like a.
+
+    The last axis of both is that of the directions.
+    """
+    return _mixed(directions, directions.log_size_weights, a, c)
+
+
+def _mixed(directions: Directions, log_weights: FloatArray, a: FloatArray, c: FloatArray) -> FloatArray:
     out = np.empty(a.shape)
-    log_mixed(
-        a.ravel(), c.ravel(), directions.sizes, directions.widths**2, directions.log_size_weights, out.ravel()
-    )
+    weights = np.atleast_2d(log_weights)  # states stored by earlier versions have those of all vectors
+    log_mixed(a.ravel(), c.ravel(), directions.sizes, directions.widths**2, weights, out.ravel())
     return out
 
 
@@ -202,4 +219,4 @@ def log_ramps(directions: Directions, u: FloatArray, bank: Bank, days: FloatArra
     info = lower + np.tril(lower, -1).T
     score, w = bank.score @ u, increments(days, now)
     a = np.stack([np.einsum("ij,jk,ik->i", w, info, w), np.diag(info)])
-    return log_along(directions, a, np.stack([w @ score, score]))
+    return _mixed(directions, directions.all_size_weights[None], a, np.stack([w @ score, score]))

@@ -51,6 +51,11 @@ class Hours:
         rest = (a[seen][:, chosen] for a in (self.values, self.noise, self.chi2, self.freedom))
         return Hours(self.days[seen], self.rows[seen], *rest)
 
+    def at(self, chosen: BoolArray) -> Hours:
+        """Return some of the hours."""
+        arrays = (self.days, self.rows, self.values, self.noise, self.chi2, self.freedom)
+        return Hours(*(a[chosen] for a in arrays))
+
 
 def outliers(
     rest: FloatArray, variance: FloatArray, tail: FloatArray

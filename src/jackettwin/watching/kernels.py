@@ -150,15 +150,17 @@ def log_mixed(a, c, mu, square, log_weight, out):
 
     Parameters
     ----------
-    a, c : (n,) uᵀAu and uᵀb of each direction
-    mu, square, log_weight : (n_sizes,) μ, v², and ln of the weights
+    a, c : (n,) uᵀAu and uᵀb, of one direction after the other, again and again
+    mu, square : (n_sizes,) μ and v²
+    log_weight : (n_directions, n_sizes) ln of the weights
     """
     each = np.empty(mu.size)
     for i in range(a.size):
+        own = log_weight[i % len(log_weight)]
         for k in range(mu.size):
             wide = 1.0 + a[i] * square[k]
             bent = c[i] * c[i] * square[k] + 2.0 * c[i] * mu[k] - a[i] * mu[k] * mu[k]
-            each[k] = 0.5 * (bent / wide - np.log(wide)) + log_weight[k]
+            each[k] = 0.5 * (bent / wide - np.log(wide)) + own[k]
         out[i] = _log_sum(each)
 
 

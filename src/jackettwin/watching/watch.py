@@ -49,7 +49,7 @@ from jackettwin.watching.design import (
 from jackettwin.watching.directions import SHARES, Pattern, directions_of
 from jackettwin.watching.history import History, Kind, typical
 from jackettwin.watching.hours import ENOUGH
-from jackettwin.watching.overshoot import crossing_share
+from jackettwin.watching.overshoot import calibrated
 from jackettwin.watching.scatter import STRONGER
 from jackettwin.watching.state import PossibleOnsets, Watch
 
@@ -171,7 +171,7 @@ def start(
         min(PATIENCE * span, MOST_PATIENCE_DAYS) if design.hidden else 0.0,
         GUARDED if design.hidden and span > WHOLE_YEAR_DAYS else 1.0,
     )
-    return replace(learnt, crossing=crossing_share(learnt, baseline))
+    return calibrated(learnt, baseline)
 
 
 def _no_begins(m: int) -> PossibleOnsets:
