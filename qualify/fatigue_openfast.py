@@ -63,6 +63,7 @@ CASES = {
     "operating_14": Weather("operating", 14.0, 0.0, 6.0, 0.0, 14),
     "parked_gale": Weather("parked", 20.0, 0.0, 6.0, 0.0, 15),
     "operating_11": Weather("operating", 11.0, 0.0, 6.0, 0.0, 16),
+    "operating_18": Weather("operating", 18.0, 0.0, 6.0, 0.0, 17),
 }
 NOISE_M_S2 = 5e-4
 FIRST_PAIR_HZ = (0.13, 0.22)

@@ -104,7 +104,7 @@ def _worst(worst: Sequence[WeldLife], like: str) -> Table:
 def _bands(worst: Sequence[WeldLife], by_band: Sequence[Mapping[str, float]]) -> Table:
     names = list(by_band[0]) if by_band else []
     rows = [
-        (*_name(one), *(f"{100.0 * shares[name]:.0f}" for name in names))
+        (*_name(one), *(f"{round(100.0 * shares[name])}" for name in names))
         for one, shares in zip(worst, by_band, strict=True)
     ]
     caption = (
