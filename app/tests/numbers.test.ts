@@ -4,9 +4,6 @@ import cases from "./numbers.json";
 
 type Spoken = Record<string, (...given: unknown[]) => string>;
 
-test.each(cases as [string, unknown[], string][])(
-  "%s of %j is as the report writes it",
-  (name, given, said) => {
-    expect((numbers as unknown as Spoken)[name]?.(...given)).toBe(said);
-  },
-);
+test.each(cases as [string, unknown[], string][])("%s of %j is as the report writes it", (name, given, said) => {
+  expect((numbers as unknown as Spoken)[name]?.(...given)).toBe(said);
+});

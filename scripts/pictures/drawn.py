@@ -15,6 +15,7 @@ from jackettwin.fatigue import ENVIRONMENTS, read_curve
 from jackettwin.loads import airy_wave, regular_wave
 from jackettwin.response.superelement.accuracy import default_band_hz, reduced_modes
 from jackettwin.response.superelement.craig_bampton import superelement
+from jackettwin.sensing.latent_forces import LatentForce, gust_corner
 from jackettwin.structure import Rayleigh
 from jackettwin.structure.cut import at_interface
 
@@ -131,10 +132,33 @@ def utilisations() -> go.Figure:
     return figure
 
 
+def latent_densities() -> go.Figure:
+    """Draw what virtual sensing expects of wind and sea: the density of each force, at one level."""
+    figure = _figure("frequency [Hz]", "density over variance [1/Hz]")
+    frequency_hz = np.geomspace(1e-3, 1.0, 400)
+    corner, peak = gust_corner(10.0), 2.0 * np.pi * 0.1
+    drawn = (
+        ("gusts at 10 m/s", "gust", corner, _BLUE, "solid"),
+        ("as a rotor averages them", "disc", corner, _BLUE, "dash"),
+        ("quick gusts", "gust", 25.0 * corner, _BLUE, "dot"),
+        ("sea of 10 s, long waves", "wave", peak, _GREEN, "solid"),
+        ("its shorter waves", "wave", 1.7 * peak, _GREEN, "dash"),
+        ("its shortest", "wave", 2.9 * peak, _GREEN, "dot"),
+    )
+    none = np.empty(0)
+    for name, kind, rate, colour, dash in drawn:
+        density = LatentForce(name, none, none, kind, rate).density(2.0 * np.pi * frequency_hz)
+        figure.add_scatter(x=frequency_hz, y=density, name=name, line={"color": colour, "dash": dash})
+    figure.update_xaxes(type="log", exponentformat="power", dtick=1)
+    figure.update_yaxes(type="log", exponentformat="power", dtick=1, range=[-4.0, 5.5])
+    return figure
+
+
 DRAWN: dict[str, Callable[[], go.Figure]] = {
     "fatigue": sn_curves,
     "loads": wave_theories,
     "superelement": superelement_error,
     "member_checks": utilisations,
+    "virtual_sensing": latent_densities,
 }
 """Every picture drawn here, under the name of the page of docs/theory that shows it."""

@@ -15,6 +15,7 @@ from jackettwin.report.view.motions import (
     damped_motion,
     measured_shape,
     record_motion,
+    section_stress,
     undamped_motion,
     wave_motion,
 )
@@ -116,6 +117,29 @@ def test_motions_are_scaled_and_closed(view: View, system: System) -> None:
     np.testing.assert_allclose(drawn, exact, atol=1e-3 * np.abs(exact).max())
     assert len(wave["load"]) == 12
     assert "towards 0° from +x" in wave["note"]
+
+
+def test_a_bent_and_pulled_mast_is_stressed_as_by_hand() -> None:
+    """Bent to a curvature κ: E R κ everywhere; pulled by a strain ε: E ε; turned as a rigid body: nothing."""
+    tube = Section(1.0, 0.02)
+    mast = Structure(
+        name="mast",
+        nodes={"foot": (0.0, 0.0, 0.0), "top": (0.0, 0.0, 30.0)},
+        members=(Member("mast", "foot", "top", tube, tube, STEEL),),
+    )
+    assembly = assemble(mast, subdivide=3)
+    z = assembly.mesh.coordinates[:, 2]
+    bent, pulled, turned = np.zeros((3, z.size, 6))
+    bent[:, 0], bent[:, 4] = 1e-3 * z**2 / 2.0, 1e-3 * z
+    pulled[:, 2] = 1e-4 * z
+    turned[:, 0], turned[:, 4] = 1e-2 * z, 1e-2
+    order = assembly.expand.T @ np.array([bent.ravel(), pulled.ravel(), turned.ravel()]).T
+    parts = section_stress(assembly, order.T).reshape(3, -1, 3)
+    found = np.abs(parts[..., 0]) + np.hypot(parts[..., 1], parts[..., 2])
+    E = mast.members[0].material.youngs_modulus_pa
+    np.testing.assert_allclose(found[0], E * 0.5 * 1e-3, rtol=1e-9)
+    np.testing.assert_allclose(found[1], E * 1e-4, rtol=1e-9)
+    np.testing.assert_allclose(found[2], 0.0, atol=1e-6 * E * 1e-3)
 
 
 def test_playback_tells_the_record_s_own_time(view: View) -> None:

@@ -12,8 +12,10 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from fastapi.testclient import TestClient
+from httpx import Response
 from tests.service.conftest import HERE, Done, description, hour, record_file, turn, upload
 
+from jackettwin.files import find_file
 from jackettwin.service.context import Service
 from jackettwin.service.web import pages
 
@@ -410,3 +412,22 @@ def test_a_description_may_be_a_file(client: TestClient) -> None:
         answer = client.post("/api/v1/assets/wtg/records", files=files)
         assert answer.status_code == status
         assert "UploadFile" not in answer.text
+
+
+def test_a_twin_is_drafted_from_a_structure_and_a_record(client: TestClient) -> None:
+    """As `init` does, with what was guessed and a drawing; what is drafted can be added."""
+    deck = find_file("jacket15", "structures").read_bytes()
+    sent = {"structure": ("my deck.yaml", deck), "record": ("r.parquet", record_file())}
+
+    def asked(**files: tuple[str, bytes]) -> Response:
+        return client.post("/api/v1/drafts", files={**sent, **files}, data={"description": description()})
+
+    found = asked().json()
+    assert [place["channel"] for place in found["places"]] == ["acc_top_x", "acc_top_y"]
+    assert all(place["why"] and not place["lacks"] for place in found["places"])
+    assert len(found["drawn"]["sensors"]) == 2 and "records:" not in found["twin"]
+    body = {"name": "new", "twin": found["twin"], "files": {found["structure"]: deck.decode()}}
+    added = client.post("/api/v1/assets", json=body)
+    assert added.status_code == 201, added.text
+    broken = asked(structure=("a.yaml", b"nodes: 3\n"))
+    assert broken.status_code == 422 and broken.json()["remedy"]

@@ -18,6 +18,7 @@ from playwright.sync_api import Browser, Page, expect, sync_playwright
 from tests.service.conftest import NOON, PASSWORD, description, hour, make_service, record_file, turn
 from tests.service.servers import free_port
 
+from jackettwin.files import find_file
 from jackettwin.service.context import Service
 from jackettwin.service.web import pages
 from jackettwin.service.web.app import EXAMPLES, create_app
@@ -50,6 +51,9 @@ WIDTHS = {"desk": 1440, "tablet": 1024, "phone": 390}
 pytestmark = pytest.mark.skipif(
     not CHROMIUM or not pages._built(), reason="Chromium is not installed, or make app was not run"
 )
+
+
+expect.set_options(timeout=20_000)  # a loaded machine is slow, not wrong
 
 
 class Open:
@@ -410,7 +414,7 @@ def test_a_thousand_turbines_are_on_a_map_and_those_that_need_somebody_come_firs
     rows = page.locator("tbody tr")
     expect(rows).to_have_count(100)
     expect(rows.first).to_contain_text("t007")
-    expect(rows.nth(10)).to_contain_text("records: 1 refused")
+    expect(rows.nth(10)).to_contain_text("Records: 1 refused")
     page.get_by_role("button", name="Show all 1000").click()
     expect(rows).to_have_count(1000)
     assert serious(page) == [] and opened.said == []
@@ -514,8 +518,37 @@ def test_residuals_evidence_and_a_planted_change_are_drawn(
 
 def test_a_record_is_drawn_as_spectrogram_and_by_singular_values(opened: Open) -> None:
     page = opened.page(f"/assets/wtg/records/{newest(opened.url)}")
-    expect(page.locator("svg.surface image")).to_have_attribute("href", re.compile("^data:image/png"))
+    drawn = page.locator("svg.surface image")
+    expect(drawn).to_have_attribute("href", re.compile("^data:image/png"))
     page.get_by_role("button", name="Singular values").click()
-    expect(page.get_by_text("largest", exact=True)).to_be_visible()
+    expect(page.get_by_text("largest", exact=True)).to_be_visible(timeout=30_000)
     assert "spectrum=singular" in page.url
+    page.context.close()
+
+
+def test_a_turbine_begins_from_a_deck_and_a_record_and_each_guess_is_confirmed(opened: Open) -> None:
+    deck = find_file("jacket15", "structures").read_bytes()
+    given = (
+        ("jacket.yaml", deck),
+        ("r7.parquet", record_file(7)),
+        ("r7.json", description(hour(7)).encode()),
+    )
+    page = opened.page("/start")
+    page.get_by_label("Files of the turbine").set_input_files(
+        [{"name": name, "mimeType": "text/plain", "buffer": content} for name, content in given]
+    )
+    page.get_by_role("button", name="Draft a twin").click()
+    expect(page.locator(".picture canvas")).to_be_visible()
+    guesses = page.get_by_role("checkbox", name=re.compile("^acc_top_"))
+    expect(guesses).to_have_count(2)
+    page.get_by_label("Name of the turbine").fill("begun")
+    page.get_by_role("button", name="Add", exact=True).click()
+    assert page.url.endswith("/start")  # nothing is added before each guess is confirmed
+    for guess in guesses.all():
+        guess.check()
+    assert serious(page) == []
+    page.get_by_role("button", name="Add", exact=True).click()
+    page.wait_for_url("**/assets/begun/records")
+    expect(page.locator("tbody tr")).to_have_count(1)
+    httpx.delete(f"{opened.url}/api/v1/assets/begun?confirm=begun")
     page.context.close()

@@ -5,9 +5,7 @@ import { api, Problem, told } from "./client";
 import { connection, happened } from "./events";
 import type { paths } from "./schema";
 
-type Got<P> = P extends { get: { responses: { 200: { content: { "application/json": infer A } } } } }
-  ? A
-  : never;
+type Got<P> = P extends { get: { responses: { 200: { content: { "application/json": infer A } } } } } ? A : never;
 type OfRecord = keyof {
   [P in keyof paths as P extends `/api/v1/records/{record_id}${infer S}` ? S : never]: 0;
 };
@@ -46,34 +44,24 @@ export function useAnswer<T>(
     };
     ask().then(
       (data) => keep(data, undefined),
-      (error: unknown) =>
-        keep(undefined, error instanceof Problem ? error : new Problem("server", String(error))),
+      (error: unknown) => keep(undefined, error instanceof Problem ? error : new Problem("server", String(error))),
     );
   }, [key, about, events, tries, lost]);
   const current = state.key === key ? state : { data: undefined, problem: undefined };
   return { data: current.data, problem: current.problem, again: () => setTries((n) => n + 1) };
 }
 
-/** Ask what the API says of an asset at an address below it. */
-export function useAsset<S extends OfAsset>(
-  asset: string,
-  below: S,
-  query: object = {},
-): Answer<Readable<Got<paths[`/api/v1/assets/{asset}${S}`]>>> {
-  const path = `/api/v1/assets/{asset}${below}`;
-  return useAnswer(asset, `${path} ${asset} ${JSON.stringify(query)}`, () =>
-    told(api.GET(path as never, { params: { path: { asset }, query } } as never)),
+/** Ask what the API says at an address below an asset or a record. */
+function useBelow<P extends keyof paths>(asset: string | null, path: P, of: object, query: object) {
+  return useAnswer<Readable<Got<paths[P]>>>(asset, JSON.stringify([path, of, query]), () =>
+    told(api.GET(path as never, { params: { path: of, query } } as never)),
   );
 }
 
-/** Ask what the API says of a record at an address below it; it does not change. */
-export function useRecord<S extends OfRecord>(
-  record: string,
-  below: S,
-  query: object = {},
-): Answer<Readable<Got<paths[`/api/v1/records/{record_id}${S}`]>>> {
-  const path = `/api/v1/records/{record_id}${below}`;
-  return useAnswer(null, `${path} ${record} ${JSON.stringify(query)}`, () =>
-    told(api.GET(path as never, { params: { path: { record_id: record }, query } } as never)),
-  );
-}
+/** Ask of an asset, and again with each of its events. */
+export const useAsset = <S extends OfAsset>(asset: string, below: S, query: object = {}) =>
+  useBelow(asset, `/api/v1/assets/{asset}${below}`, { asset }, query);
+
+/** Ask of a record, which does not change. */
+export const useRecord = <S extends OfRecord>(record: string, below: S, query: object = {}) =>
+  useBelow(null, `/api/v1/records/{record_id}${below}`, { record_id: record }, query);

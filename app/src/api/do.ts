@@ -31,6 +31,13 @@ const ROLES = ["viewer", "engineer", "admin"];
 /** Whether who is logged in may do what asks for a role; the server decides, this only hides what would fail. */
 export const may = (role: string): boolean => ROLES.indexOf(me.value?.role ?? "") >= ROLES.indexOf(role);
 
-/** The texts of files by name, as a twin's are sent. */
-export const textsOf = async (files: readonly File[]): Promise<Record<string, string>> =>
-  Object.fromEntries(await Promise.all(files.map(async (f) => [f.name, await f.text()] as const)));
+export const isTwin = (file: File): boolean => /\.ya?ml$/.test(file.name);
+export const namesOf = (files: readonly File[]): string => files.map((f) => f.name).join(", ") || "none yet";
+
+/** A twin file and the files beside it, as they are sent. */
+export async function twinOf(files: readonly File[]): Promise<{ twin: string; files: Record<string, string> }> {
+  const twin = files.find(isTwin);
+  if (!twin) throw new Problem("refused", "None of them is a YAML file: the twin file is missing.");
+  const others = files.filter((f) => f !== twin).map(async (f) => [f.name, await f.text()] as const);
+  return { twin: await twin.text(), files: Object.fromEntries(await Promise.all(others)) };
+}

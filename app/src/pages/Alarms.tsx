@@ -5,7 +5,7 @@ import { Card, Choice, Light, Time, Head } from "../parts/Bits";
 import { Handling, History, standing } from "../parts/Handling";
 import { Empty, Shown } from "../parts/Shown";
 import Evidence from "../parts/Watched";
-import { day, seconds } from "../words/time";
+import { alarmMarks } from "../parts/modes";
 import { sentence } from "../words/numbers";
 import type { PageProps } from "../shell/place";
 import { asked, assetUrl } from "../shell/place";
@@ -26,16 +26,10 @@ export default function Alarms({ asset }: PageProps) {
   const alarms = useAsset(asset, "/alarms");
   const query = { limit: 200, ...(kind ? { severity: kind as "info" | "warning" } : {}) };
   const said = useAsset(asset, "/findings", query);
-  const marks = (alarms.data?.items ?? []).map((a) => ({
-    x: seconds(a.time_utc),
-    words: `alarm ${day(a.time_utc)}`,
-    colour: "alarm",
-  }));
   return (
     <>
       <Head title="Alarms">
-        A change of the structure, with its causes by probability. Whoever looked says what was seen and what
-        is done.
+        A change of the structure, with its causes by probability. Whoever looked says what was seen and what is done.
       </Head>
       <div class="grid">
         <Card title="Asks for a person" wide more={<Choice label="Which" kept="state" options={STATES} />}>
@@ -50,7 +44,7 @@ export default function Alarms({ asset }: PageProps) {
             }}
           </Shown>
         </Card>
-        <Evidence asset={asset} marks={marks} />
+        <Evidence asset={asset} marks={alarmMarks(alarms.data?.items)} />
         <Card title="Also said" wide more={<Choice label="Kind" kept="severity" options={KINDS} />}>
           <Shown
             of={said}

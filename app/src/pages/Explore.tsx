@@ -75,12 +75,7 @@ function Along({ locus }: { locus: Locus }) {
         const [here, there] = [b.frequency_hz[i], b.frequency_hz[locus.origin]];
         return here && there ? 100 * (here / there) : null;
       }),
-      along(
-        locus,
-        "Damping ratios",
-        "damping ratio [%]",
-        (b, i) => 100 * (b.damping_ratio[i] ?? NaN) || null,
-      ),
+      along(locus, "Damping ratios", "damping ratio [%]", (b, i) => 100 * (b.damping_ratio[i] ?? NaN) || null),
     ],
     [locus],
   );
@@ -99,14 +94,7 @@ function Along({ locus }: { locus: Locus }) {
         </Slide>
         <div class="pair">
           {plots.map((plot) => (
-            <Plot
-              key={plot.title}
-              data={plot}
-              height={240}
-              range={range}
-              onRange={setRange}
-              together="explore"
-            />
+            <Plot key={plot.title} data={plot} height={240} range={range} onRange={setRange} together="explore" />
           ))}
         </div>
       </Card>
@@ -199,11 +187,7 @@ function Drawn({ asset, explored }: { asset: string; explored: Explored }) {
   return (
     <>
       <div class="tools">
-        <Pick
-          label="Parameter"
-          kept="parameter"
-          options={loci.map((l) => [l.parameter, l.parameter] as const)}
-        />
+        <Pick label="Parameter" kept="parameter" options={loci.map((l) => [l.parameter, l.parameter] as const)} />
         <span class="quiet">Law {explored.law}</span>
       </div>
       <div class="grid">

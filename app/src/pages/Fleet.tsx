@@ -5,7 +5,7 @@ import { Ago, Choice, Light } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import { type Column, number, Table } from "../parts/Table";
 import { asked, assetUrl, keep } from "../shell/place";
-import { Map_ } from "../parts/Map";
+import { Site } from "../parts/Site";
 import { count, sentence, years } from "../words/numbers";
 
 const URGENT = ["alarm", "warning", "no data", "ok"];
@@ -75,7 +75,7 @@ export function Fleet() {
           );
           return (
             <section class="card" aria-label="All turbines">
-              {data.items.length > 1 && <Map_ assets={data.items} />}
+              {data.items.length > 1 && <Site assets={data.items} />}
               <div class="tools">
                 <Choice
                   label="Status"
@@ -91,14 +91,7 @@ export function Fleet() {
                 />
               </div>
               {rows.length ? (
-                <Table
-                  label="Turbines"
-                  columns={COLUMNS}
-                  rows={rows}
-                  id={(a) => a.name}
-                  sorted={0}
-                  most={100}
-                />
+                <Table label="Turbines" columns={COLUMNS} rows={rows} id={(a) => a.name} sorted={0} most={100} />
               ) : (
                 <Empty title="No turbine fits">
                   <button type="button" onClick={() => keep({ status: null, find: null })}>

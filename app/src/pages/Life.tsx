@@ -85,24 +85,16 @@ function One({ weld }: { weld: Weld }) {
   const facts: [string, string][] = [
     ["Worst point", weld.position],
     ["Environment", weld.environment],
-    [
-      "Damage so far",
-      `${scientific(weld.damage, 2)} (90 %: ${scientific(low, 2)} to ${scientific(high, 2)})`,
-    ],
+    ["Damage so far", `${scientific(weld.damage, 2)} (90 %: ${scientific(low, 2)} to ${scientific(high, 2)})`],
     ["It rests on", `${count(weld.records, "record")}, ${(weld.observed_s / 86_400).toPrecision(2)} days`],
-    [
-      "Life by the design curve",
-      `${years(weld.life_years)} years, of which ${years(weld.age_years)} are gone`,
-    ],
+    ["Life by the design curve", `${years(weld.life_years)} years, of which ${years(weld.age_years)} are gone`],
     ["What leaves it open", largest(weld.variance_shares)],
     ["By state of operation", largest(weld.damage_by_state)],
     ...(weld.beyond_validity.length
       ? [["Beyond the range of its factors", weld.beyond_validity.join(", ")] as [string, string]]
       : []),
     ...(weld.over_budget ? [["Over its budget since", day(weld.over_budget.since)] as [string, string]] : []),
-    ...(weld.departed
-      ? [["Departed from its past since", day(weld.departed.since)] as [string, string]]
-      : []),
+    ...(weld.departed ? [["Departed from its past since", day(weld.departed.since)] as [string, string]] : []),
   ];
   return (
     <div class="weld">
@@ -169,8 +161,8 @@ function headline(welds: readonly Weld[]): string {
 const Nothing = () => (
   <Empty title="No life yet">
     <p>
-      Life is counted from records, weld by weld, once the twin file says <code>life: {"{}"}</code> and the
-      server has the extra package <code>fatigue</code>.
+      Life is counted from records, weld by weld, once the twin file says <code>life: {"{}"}</code> and the server has
+      the extra package <code>fatigue</code>.
     </p>
     <pre>pip install 'jackettwin[service,fatigue]'</pre>
   </Empty>

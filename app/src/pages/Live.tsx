@@ -49,13 +49,10 @@ function useReplay(record: RecordOut | undefined, roll: Roll): void {
       asked = base + to;
       const query = { from, to, points: 10_000 };
       const params = { path: { record_id: record.record_id }, query };
-      const found = (await told(
-        api.GET("/api/v1/records/{record_id}/signal", { params }),
-      )) as Schemas["Signal"];
+      const found = (await told(api.GET("/api/v1/records/{record_id}/signal", { params }))) as Schemas["Signal"];
       if (roll.streams) return;
       const step = (found.time_s[1] ?? 1) - (found.time_s[0] ?? 0);
-      for (const [name, bins] of Object.entries(found.channels))
-        roll.add(name, base + from, step, bins["max"] ?? []);
+      for (const [name, bins] of Object.entries(found.channels)) roll.add(name, base + from, step, bins["max"] ?? []);
     };
     const again = (): void => void more().catch(() => undefined);
     again();
@@ -74,9 +71,7 @@ function Moving({ drawn, record, roll }: { drawn: Schemas["StructureOut"]; recor
   useEffect(() => {
     const timer = setInterval(() => {
       const start = moved.data?.motions[0]?.start_s ?? 0;
-      view.current?.stand(
-        (((roll.now() - start) % record.duration_s) + record.duration_s) % record.duration_s,
-      );
+      view.current?.stand((((roll.now() - start) % record.duration_s) + record.duration_s) % record.duration_s);
     }, 40);
     return () => clearInterval(timer);
   }, [moved.data]);
@@ -101,8 +96,7 @@ export default function Live({ asset }: PageProps) {
             "Samples as they arrive from the broker."
           ) : record ? (
             <>
-              Nothing streams in: the record of <Time at={record.start_utc} /> is played again, at its own
-              pace.
+              Nothing streams in: the record of <Time at={record.start_utc} /> is played again, at its own pace.
             </>
           ) : (
             "Nothing streams in."

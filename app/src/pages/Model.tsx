@@ -2,8 +2,9 @@
 import { useState } from "preact/hooks";
 import { type Answer, useAsset } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
-import { may, textsOf, useDeed } from "../api/do";
-import { Card, Time, Head, FormEnd } from "../parts/Bits";
+import { may, namesOf, twinOf, useDeed } from "../api/do";
+import { Card, Field, Form, Head, Time } from "../parts/Bits";
+import { Drop } from "../parts/Drop";
 import { Shown } from "../parts/Shown";
 import { number, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
@@ -52,41 +53,23 @@ function Comparison({ asset, version }: { asset: string; version: number }) {
 }
 
 function NewVersion({ asset, versions }: { asset: string; versions: Answer<Versions> }) {
-  const deed = useDeed();
+  const [files, setFiles] = useState<File[]>([]);
   const [said, setSaid] = useState("");
-  const send = async (event: SubmitEvent): Promise<void> => {
-    event.preventDefault();
-    const form = new FormData(event.currentTarget as HTMLFormElement);
-    const chosen = form.getAll("files").filter((f): f is File => f instanceof File && f.size > 0);
-    const twin = form.get("twin");
-    const done = await deed.run(async () => {
-      const text = twin instanceof File ? await twin.text() : "";
-      const body = { twin: text, files: await textsOf(chosen), comment: String(form.get("comment") ?? "") };
-      const made = await told(api.PUT("/api/v1/assets/{asset}", { params: { path: { asset } }, body }));
-      setSaid(
-        `Version ${made.version} is there; records are observed by it too. It counts once it is adopted.`,
-      );
-    });
-    if (done) versions.again();
+  const send = async (text: (name: string) => string): Promise<void> => {
+    const body = { ...(await twinOf(files)), comment: text("comment") };
+    const made = await told(api.PUT("/api/v1/assets/{asset}", { params: { path: { asset } }, body }));
+    setSaid(`Version ${made.version} is there; records are observed by it too. It counts once it is adopted.`);
+    versions.again();
   };
   return (
     <Card title="A new version">
-      <form class="stack" onSubmit={(event) => void send(event)}>
-        <label>
-          Twin file (YAML)
-          <input name="twin" type="file" required accept=".yaml,.yml" />
-        </label>
-        <label>
-          Files that it names
-          <input name="files" type="file" multiple />
-        </label>
-        <label>
-          Why
-          <input name="comment" maxLength={1000} required />
-        </label>
+      <Drop label="Twin file and the files that it names" onFiles={setFiles}>
+        The twin file (YAML) and the files that it names: {namesOf(files)}
+      </Drop>
+      <Form words="Add" busy="A worker reads it" onSend={send}>
+        <Field label="Why" name="comment" maxLength={1000} required />
         {said && <p role="status">{said}</p>}
-        <FormEnd deed={deed} words={deed.busy ? "A worker reads it" : "Add"} />
-      </form>
+      </Form>
     </Card>
   );
 }
@@ -103,8 +86,8 @@ export default function Model({ asset }: PageProps) {
   return (
     <>
       <Head title="Model">
-        Every version of the twin stays, with what it knows. One is adopted: its answers count. Adopting an
-        earlier one rolls back.
+        Every version of the twin stays, with what it knows. One is adopted: its answers count. Adopting an earlier
+        one rolls back.
       </Head>
       <div class="grid">
         <Card title="Versions" wide>

@@ -189,10 +189,7 @@ function About({ record }: { record: RecordOut }) {
   const facts: [string, string][] = [
     ["Length", `${record.duration_s.toFixed(0)} s at ${Number(record.sample_rate_hz.toPrecision(4))} Hz`],
     ["Source", record.source_name],
-    ...Object.entries(record.conditions).map(([name, value]): [string, string] => [
-      condition(name),
-      String(value),
-    ]),
+    ...Object.entries(record.conditions).map(([name, value]): [string, string] => [condition(name), String(value)]),
   ];
   return <Facts facts={facts} />;
 }

@@ -18,8 +18,7 @@ function Version({ asset, version }: { asset: string; version: number | undefine
     return told(api.GET("/api/v1/records/{record_id}/motion", { params: { path: { record_id: record } } }));
   });
   const drawn = useMemo(
-    () =>
-      found.data && moved.data ? { ...found.data, motions: [moved.data, ...found.data.motions] } : found.data,
+    () => (found.data && moved.data ? { ...found.data, motions: [moved.data, ...found.data.motions] } : found.data),
     [found.data, moved.data],
   );
   return (
@@ -61,9 +60,7 @@ export default function Structure({ asset }: PageProps) {
             kept="beside"
             options={[
               ["", "nothing"],
-              ...others.map(
-                (v) => [String(v.version), `version ${v.version} of ${day(v.created_utc)}`] as const,
-              ),
+              ...others.map((v) => [String(v.version), `version ${v.version} of ${day(v.created_utc)}`] as const),
             ]}
           />
         )}

@@ -1,9 +1,9 @@
 // How each mode went through time: one graph a mode, one range for all, every point a record.
-import { useMemo } from "preact/hooks";
+import { useEffect, useMemo, useState } from "preact/hooks";
 import { useAnswer, useAsset } from "../api/answer";
-import { api, type Alarm, everything, type Mode, told } from "../api/client";
+import { api, everything, type Mode, told } from "../api/client";
 import { Card, Choice, Head, Pick } from "../parts/Bits";
-import { binPlot, type Bins, byLabel, modePlot } from "../parts/modes";
+import { alarmMarks, binPlot, type Bins, byLabel, modePlot } from "../parts/modes";
 import type { Mark, PlotData, Range } from "../parts/plot/series";
 import { Empty, Shown, Trouble } from "../parts/Shown";
 import Stiffness, { InTime, keepRange, rangeKept } from "../parts/Stiffness";
@@ -11,7 +11,7 @@ import { Rests, type Watch } from "../parts/Watched";
 import type { PageProps } from "../shell/place";
 import { asked, assetUrl, go } from "../shell/place";
 import { words } from "../words/numbers";
-import { day, seconds } from "../words/time";
+import { seconds } from "../words/time";
 
 const QUANTITIES = [
   ["frequency", "Frequency"],
@@ -33,6 +33,7 @@ const SPANS = [
   ["", "All"],
 ] as const;
 const DAY_S = 86_400;
+const REST_MS = 150;
 /** Of so many rows each is drawn. */
 const ROWS = 20_000;
 const POINTS = 1000;
@@ -66,11 +67,7 @@ async function look(
   return { bins, rows: await everything(page) };
 }
 
-const countOf = (bins: readonly Bins[]): number =>
-  bins.reduce((n, b) => b.count.reduce((sum, k) => sum + k, n), 0);
-
-export const alarmMarks = (alarms: readonly Alarm[]): Mark[] =>
-  alarms.map((a) => ({ x: seconds(a.time_utc), words: `alarm ${day(a.time_utc)}`, colour: "alarm" }));
+const countOf = (bins: readonly Bins[]): number => bins.reduce((n, b) => b.count.reduce((sum, k) => sum + k, n), 0);
 
 export default function Timeline({ asset }: PageProps) {
   const state = asked("state") ?? "";
@@ -78,9 +75,7 @@ export default function Timeline({ asset }: PageProps) {
   const all = useAnswer(asset, `modes ${asset} ${state}`, () => look(asset, of));
   const other = asked("beside") ?? "";
   const assets = useAnswer(null, "assets", () => told(api.GET("/api/v1/assets")));
-  const beside = useAnswer(null, `beside ${other} ${state}`, async () =>
-    other ? (await look(other, of)).bins : [],
-  );
+  const beside = useAnswer(null, `beside ${other} ${state}`, async () => (other ? (await look(other, of)).bins : []));
   const others = (assets.data?.items ?? []).filter((a) => a.name !== asset);
   const watch = useAsset(asset, "/watch");
   const alarms = useAsset(asset, "/alarms");
@@ -89,11 +84,15 @@ export default function Timeline({ asset }: PageProps) {
   const [from, to] = [asked("from"), asked("to")];
   const labels = all.data?.bins.map((b) => b.label) ?? [];
   // What is drawn row by row as a whole needs no closer look.
-  const close = from && to && labels.length && !all.data?.rows ? { from, to } : null;
+  const close = useRested(from && to && labels.length && !all.data?.rows ? `${from} ${to}` : "");
   const part = useAnswer(
     asset,
-    `modes ${asset} ${state} ${JSON.stringify(close)}`,
-    async () => close && look(asset, { ...close, ...of }, labels),
+    `part of ${asset} ${state} ${close && "close"}`,
+    async () => {
+      const [from = "", to = ""] = close.split(" ");
+      return close ? look(asset, { from, to, ...of }, labels) : null;
+    },
+    close,
   );
   return (
     <>
@@ -135,6 +134,16 @@ export default function Timeline({ asset }: PageProps) {
       </Shown>
     </>
   );
+}
+
+/** A value once it has stood still: while a reader moves, what is there is moved. */
+function useRested(value: string): string {
+  const [rested, setRested] = useState(value);
+  useEffect(() => {
+    const timer = setTimeout(() => setRested(value), REST_MS);
+    return () => clearTimeout(timer);
+  }, [value]);
+  return rested;
 }
 
 interface DrawnProps {
@@ -209,10 +218,7 @@ function Drawn({ all, seen, marks, what, wanted, range, beside, asset, watch, op
         <Card
           title={what === "damping" ? "Damping ratios" : "Frequencies"}
           wide
-          note={
-            simulated > 0 &&
-            `${simulated} of ${countOf(all)} points are simulated: nobody measured these days.`
-          }
+          note={simulated > 0 && `${simulated} of ${countOf(all)} points are simulated: nobody measured these days.`}
         >
           {!seen.rows && <p class="quiet">Bins of time; choose one, or zoom, to see its records.</p>}
           {shown.map(({ label, plot, pick }) => (
@@ -238,14 +244,11 @@ function withOther(plot: PlotData, other: DrawnProps["beside"], label: string, w
   const bins = other.bins.find((b) => b.label === label);
   if (!bins) return plot;
   const [median] = binPlot(bins, what, []).series.slice(-1);
-  return median
-    ? { ...plot, series: [...plot.series, { ...median, name: other.name, colour: "grey" }] }
-    : plot;
+  return median ? { ...plot, series: [...plot.series, { ...median, name: other.name, colour: "grey" }] } : plot;
 }
 
 const Nothing = () => (
   <Empty title="No mode yet">
-    Modes are found in records: give one on the page of records, or wait until those that arrived are
-    observed.
+    Modes are found in records: give one on the page of records, or wait until those that arrived are observed.
   </Empty>
 );

@@ -13,10 +13,11 @@ import { Table } from "../parts/Table";
 import { later } from "../parts/later";
 import type { PageProps } from "../shell/place";
 import { assetUrl } from "../shell/place";
-import { between, count, frequency, percent, quantity, words } from "../words/numbers";
+import { between, count, frequency, percent, quantity, sentence, words } from "../words/numbers";
 
 const Stiffness = later(() => import("../parts/Stiffness"));
 type Twin = Schemas["TwinOut"];
+const RECORDS = [{ title: "Records", numeric: true, show: (m: KnownMode) => m.records }];
 
 /** Numbers that a manager asks for: the first bending modes, the ground, alarms. */
 function Figures({ twin, alarms }: { twin: Twin; alarms: readonly Alarm[] }) {
@@ -65,17 +66,11 @@ function Figures({ twin, alarms }: { twin: Twin; alarms: readonly Alarm[] }) {
   );
 }
 
-function Modes({ asset, twin }: { asset: string; twin: Twin }) {
-  const modes = twin.modes as unknown as KnownMode[];
-  const records = { title: "Records", numeric: true, show: (m: KnownMode) => m.records };
-  return <ModeTable asset={asset} modes={modes} more={[records]} />;
-}
-
 function Supports({ known }: { known: Knowledge }) {
   const rows = Object.entries(known.parameters ?? {});
   return (
     <>
-      {known.statement && <p class="note">{known.statement}</p>}
+      {known.statement && <p class="note">{sentence(known.statement)}</p>}
       <Table
         label="Supports"
         rows={rows}
@@ -130,7 +125,7 @@ function Head({ asset, twin }: { asset: Asset; twin: Twin | undefined }) {
         {` · model version ${asset.version}`}
       </span>
       {asset.comment && <p>{asset.comment}</p>}
-      {twin && twin.status !== "ok" && <p class="said">{twin.status}</p>}
+      {twin && twin.status !== "ok" && <p class="said">{sentence(twin.status)}</p>}
     </div>
   );
 }
@@ -159,7 +154,7 @@ export function Turbine({ asset }: PageProps) {
           note="Mean of all records, ± one standard deviation."
         >
           <Shown of={twin} some={(data) => data.records} none={<NoRecord asset={asset} />} lines={7}>
-            {(data) => <Modes asset={asset} twin={data} />}
+            {(data) => <ModeTable asset={asset} modes={data.modes as unknown as KnownMode[]} more={RECORDS} />}
           </Shown>
         </Card>
         <Suspense fallback={null}>
@@ -170,7 +165,7 @@ export function Turbine({ asset }: PageProps) {
             {(data) => <Budget modes={data.items} />}
           </Shown>
         </Card>
-        <Assumptions asset={asset} />
+        <Assumptions asset={asset} known={known ?? {}} />
         <Card title="Ground and rotor" more={<a href={assetUrl(asset, "reports")}>Report</a>}>
           <Shown of={twin} some={() => known?.parameters} none={<NotYet />} lines={5}>
             {() => <Supports known={known ?? {}} />}
@@ -205,6 +200,4 @@ const NoRecord = ({ asset }: { asset: string }) => (
   </Empty>
 );
 
-const NotYet = () => (
-  <Empty title="Not estimated yet">This is done when no record waits, and takes a minute.</Empty>
-);
+const NotYet = () => <Empty title="Not estimated yet">This is done when no record waits, and takes a minute.</Empty>;

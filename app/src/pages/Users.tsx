@@ -1,41 +1,25 @@
 // Who may what, and who did what.
 import { useAnswer } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
-import { useDeed } from "../api/do";
-import { Card, FormEnd, Time, Head } from "../parts/Bits";
+import { Card, Field, Form, Head, Time } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import { Table } from "../parts/Table";
 
 type Role = Schemas["UserOut"]["role"];
 
 function Add({ again }: { again: () => void }) {
-  const deed = useDeed();
-  const send = async (event: SubmitEvent): Promise<void> => {
-    event.preventDefault();
-    const form = event.currentTarget as HTMLFormElement;
-    const of = new FormData(form);
-    const text = (name: string): string => String(of.get(name) ?? "");
+  const send = async (text: (name: string) => string): Promise<void> => {
     const assets = text("assets")
       .split(",")
       .map((a) => a.trim())
       .filter(Boolean);
-    const body = {
-      name: text("name"),
-      role: text("role") as Role,
-      password: text("password"),
-      assets: assets.length ? assets : null,
-    };
-    if (await deed.run(() => told(api.POST("/api/v1/users", { body })))) {
-      form.reset();
-      again();
-    }
+    const own = { name: text("name"), role: text("role") as Role, password: text("password") };
+    await told(api.POST("/api/v1/users", { body: { ...own, assets: assets.length ? assets : null } }));
+    again();
   };
   return (
-    <form class="stack" onSubmit={(event) => void send(event)}>
-      <label>
-        Name
-        <input name="name" required autocomplete="off" />
-      </label>
+    <Form words="Add" onSend={send}>
+      <Field label="Name" name="name" required autocomplete="off" />
       <label>
         Role
         <select name="role">
@@ -44,24 +28,22 @@ function Add({ again }: { again: () => void }) {
           <option value="admin">admin: also users and archives</option>
         </select>
       </label>
-      <label>
-        Password, 12 characters or more
-        <input name="password" type="password" minLength={12} required autocomplete="new-password" />
-      </label>
-      <label>
-        Turbines it may see, by comma; none for all
-        <input name="assets" />
-      </label>
-      <FormEnd deed={deed} words="Add" />
-    </form>
+      <Field
+        label="Password, 12 characters or more"
+        name="password"
+        type="password"
+        minLength={12}
+        required
+        autocomplete="new-password"
+      />
+      <Field label="Turbines it may see, by comma; none for all" name="assets" />
+    </Form>
   );
 }
 
 export default function Users() {
   const users = useAnswer("", "users", () => told(api.GET("/api/v1/users")));
-  const audit = useAnswer("", "audit", () =>
-    told(api.GET("/api/v1/audit", { params: { query: { limit: 100 } } })),
-  );
+  const audit = useAnswer("", "audit", () => told(api.GET("/api/v1/audit", { params: { query: { limit: 100 } } })));
   return (
     <>
       <Head title="Users">

@@ -40,6 +40,7 @@ export function AlarmList({ alarms, again, whole = false }: AlarmListProps) {
             <a href={evidence(alarm)}>the days around it</a>
           </p>
           <p>{sentence(alarm.text)}</p>
+          <Causes causes={alarm.params["causes"] as Record<string, number> | undefined} />
           {whole ? (
             <History finding={alarm} />
           ) : (
@@ -61,3 +62,14 @@ export function AlarmList({ alarms, again, whole = false }: AlarmListProps) {
     </ul>
   );
 }
+
+/** Every likely cause with its probability, as a bar. */
+const Causes = ({ causes = {} }: { causes?: Record<string, number> | undefined }) => (
+  <ul class="causes">
+    {Object.entries(causes).map(([cause, probability]) => (
+      <li key={cause}>
+        <meter value={probability} aria-label={cause} /> {Math.round(100 * probability)} % {cause}
+      </li>
+    ))}
+  </ul>
+);

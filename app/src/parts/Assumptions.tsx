@@ -2,49 +2,43 @@
 import { useState } from "preact/hooks";
 import { useAsset } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
-import { may, useDeed } from "../api/do";
+import { may } from "../api/do";
+import type { Knowledge } from "../api/shapes";
 import { assetUrl } from "../shell/place";
 import { count } from "../words/numbers";
-import { Card, FormEnd } from "./Bits";
+import { Card, Form } from "./Bits";
 import { Empty, Shown } from "./Shown";
 
 type Assumption = Schemas["AssumptionOut"];
 
 /** By how much a standard deviation of it moves what it moves most. */
-function moved(one: Assumption): string {
-  const [name, most] =
-    Object.entries(one.moves ?? {}).toSorted(([, a], [, b]) => Math.abs(b) - Math.abs(a))[0] ?? [];
+function moved(one: Assumption, known: Knowledge): string {
+  const [name, most] = Object.entries(one.moves ?? {}).toSorted(([, a], [, b]) => Math.abs(b) - Math.abs(a))[0] ?? [];
   return name === undefined || most === undefined
     ? ""
-    : `moves ${name} by ${(100 * Math.abs(most)).toPrecision(2)} %`;
+    : `moves ${known.parameters?.[name]?.words ?? name} by ${(100 * Math.abs(most)).toPrecision(2)} %`;
 }
 
 function Confirm({ asset, one, done }: { asset: string; one: Assumption; done: (version: number) => void }) {
   const [open, setOpen] = useState(false);
-  const deed = useDeed();
   if (!open)
     return (
       <button type="button" onClick={() => setOpen(true)}>
         Confirm
       </button>
     );
-  const send = async (event: SubmitEvent): Promise<void> => {
-    event.preventDefault();
-    const comment = String(new FormData(event.currentTarget as HTMLFormElement).get("comment") ?? "");
-    await deed.run(async () => {
-      const params = { path: { asset, key: one.key } };
-      const path = "/api/v1/assets/{asset}/assumptions/{key}/confirm";
-      done((await told(api.POST(path, { params, body: { comment } }))).version);
-    });
+  const send = async (text: (name: string) => string): Promise<void> => {
+    const params = { path: { asset, key: one.key } };
+    const path = "/api/v1/assets/{asset}/assumptions/{key}/confirm";
+    done((await told(api.POST(path, { params, body: { comment: text("comment") } }))).version);
   };
   return (
-    <form class="stack" onSubmit={(event) => void send(event)}>
+    <Form words="Confirm" onSend={send} onLeave={() => setOpen(false)}>
       <label>
         How it was settled
         <textarea name="comment" required maxLength={2000} placeholder={one.settled_by ?? ""} />
       </label>
-      <FormEnd deed={deed} words="Confirm" onLeave={() => setOpen(false)} />
-    </form>
+    </Form>
   );
 }
 
@@ -53,17 +47,18 @@ const FIRST = 4;
 
 interface ListProps {
   asset: string;
+  known: Knowledge;
   items: Assumption[];
   done: (version: number) => void;
 }
 
-const List = ({ asset, items, done }: ListProps) => (
+const List = ({ asset, known, items, done }: ListProps) => (
   <ul class="list">
     {items.map((one) => (
       <li key={one.key}>
         <p>{one.value}</p>
         <p class="quiet">
-          {[moved(one), one.settled_by && `to settle it: ${one.settled_by}`].filter(Boolean).join("; ")}
+          {[moved(one, known), one.settled_by && `to settle it: ${one.settled_by}`].filter(Boolean).join("; ")}
         </p>
         {may("engineer") && <Confirm asset={asset} one={one} done={done} />}
       </li>
@@ -71,18 +66,15 @@ const List = ({ asset, items, done }: ListProps) => (
   </ul>
 );
 
-export function Assumptions({ asset }: { asset: string }) {
+export function Assumptions({ asset, known }: { asset: string; known: Knowledge }) {
   const [version, setVersion] = useState<number | null>(null);
   const found = useAsset(asset, "/assumptions");
   return (
-    <Card
-      title="Open assumptions"
-      note="What the answers hang on and nobody has settled, the weightiest first."
-    >
+    <Card title="Open assumptions" note="What the answers hang on and nobody has settled, the weightiest first.">
       {version !== null && (
         <p class="said-done" role="status">
-          Version {version} takes it as settled. <a href={assetUrl(asset, "model")}>Adopt it</a> once its
-          records are observed.
+          Version {version} takes it as settled. <a href={assetUrl(asset, "model")}>Adopt it</a> once its records are
+          observed.
         </p>
       )}
       <Shown
@@ -94,11 +86,11 @@ export function Assumptions({ asset }: { asset: string }) {
           const open = data.items.filter((one) => one.confirmed === false);
           return (
             <>
-              <List asset={asset} items={open.slice(0, FIRST)} done={setVersion} />
+              <List asset={asset} known={known} items={open.slice(0, FIRST)} done={setVersion} />
               {open.length > FIRST && (
                 <details>
                   <summary>{count(open.length - FIRST, "lighter one")}</summary>
-                  <List asset={asset} items={open.slice(FIRST)} done={setVersion} />
+                  <List asset={asset} known={known} items={open.slice(FIRST)} done={setVersion} />
                 </details>
               )}
             </>

@@ -1,6 +1,7 @@
 // Small parts that every page uses.
-import type { ComponentChildren } from "preact";
-import type { Deed } from "../api/do";
+import type { ComponentChildren, InputHTMLAttributes } from "preact";
+import type { Problem } from "../api/client";
+import { useDeed } from "../api/do";
 import { asked, keep } from "../shell/place";
 import { ago, local, utc } from "../words/time";
 
@@ -128,8 +129,7 @@ interface SlideProps {
 
 /** A number by slider, with its words above. */
 export function Slide({ children, min = 0, max, step = 1, at, onMove }: SlideProps) {
-  const moved = (event: { currentTarget: HTMLInputElement }): void =>
-    onMove(Number(event.currentTarget.value));
+  const moved = (event: { currentTarget: HTMLInputElement }): void => onMove(Number(event.currentTarget.value));
   return (
     <label class="slide">
       <span>{children}</span>
@@ -152,16 +152,35 @@ export function Facts({ facts }: { facts: readonly (readonly [string, string])[]
   );
 }
 
-interface FormEndProps {
-  deed: Deed;
+export const Field = ({ label, ...more }: { label: string } & InputHTMLAttributes) => (
+  <label>
+    {label}
+    <input {...more} />
+  </label>
+);
+
+interface FormProps {
   words: string;
+  /** What the button says while the server is at it. */
+  busy?: string;
+  /** What to do with what was written, by the names of the fields. */
+  onSend: (text: (name: string) => string) => Promise<unknown>;
   onLeave?: () => void;
+  children: ComponentChildren | ((problem: Problem | null) => ComponentChildren);
 }
 
-/** The end of a form: why it failed, its button, and a way out of it. */
-export function FormEnd({ deed, words, onLeave }: FormEndProps) {
+/** Fields, why sending them failed, the button, and a way out. */
+export function Form({ words, busy, onSend, onLeave, children }: FormProps) {
+  const deed = useDeed();
+  const send = async (event: SubmitEvent): Promise<void> => {
+    event.preventDefault();
+    const form = event.currentTarget as HTMLFormElement;
+    const of = new FormData(form);
+    if (await deed.run(() => onSend((name) => String(of.get(name) ?? "")))) form.reset();
+  };
   return (
-    <>
+    <form class="stack" onSubmit={(event) => void send(event)}>
+      {typeof children === "function" ? children(deed.problem) : children}
       {deed.problem && (
         <p class="error" role="alert">
           {deed.problem.message} {deed.problem.remedy}
@@ -169,7 +188,7 @@ export function FormEnd({ deed, words, onLeave }: FormEndProps) {
       )}
       <span>
         <button class="main" disabled={deed.busy}>
-          {words}
+          {deed.busy ? (busy ?? words) : words}
         </button>{" "}
         {onLeave && (
           <button type="button" onClick={onLeave}>
@@ -177,6 +196,6 @@ export function FormEnd({ deed, words, onLeave }: FormEndProps) {
           </button>
         )}
       </span>
-    </>
+    </form>
   );
 }

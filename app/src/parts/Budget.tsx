@@ -41,12 +41,7 @@ function Row({ mode, most }: { mode: Schemas["BudgetOut"]; most: number }) {
         ) : null}
         {measured && <line x1={at(measured.value)} x2={at(measured.value)} y1="0" y2="18" />}
         {measured && (
-          <line
-            x1={at(measured.low ?? measured.value)}
-            x2={at(measured.high ?? measured.value)}
-            y1="1"
-            y2="1"
-          />
+          <line x1={at(measured.low ?? measured.value)} x2={at(measured.high ?? measured.value)} y1="1" y2="1" />
         )}
       </svg>
       <span class="n">

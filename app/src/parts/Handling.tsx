@@ -2,8 +2,8 @@
 import { useState } from "preact/hooks";
 import { useAnswer } from "../api/answer";
 import { api, type Finding, told } from "../api/client";
-import { may, useDeed } from "../api/do";
-import { FormEnd, Time } from "./Bits";
+import { may } from "../api/do";
+import { Form, Time } from "./Bits";
 
 type Act = "acknowledge" | "assign" | "comment" | "mute" | "close" | "reopen";
 const DAY_MS = 86_400_000;
@@ -34,8 +34,7 @@ function possible(f: Finding): Act[] {
   return f.severity === "alarm" && !f.acknowledged_by ? ["acknowledge", ...own] : own;
 }
 
-async function sent(f: Finding, act: Act, form: FormData): Promise<unknown> {
-  const text = (name: string): string => String(form.get(name) ?? "");
+async function sent(f: Finding, act: Act, text: (name: string) => string): Promise<unknown> {
   const comment = text("comment");
   if (act === "acknowledge") {
     const params = { path: { alarm_id: f.id } };
@@ -61,7 +60,6 @@ interface HandlingProps {
 /** Buttons, one of which opens a form. */
 export function Handling({ finding, again }: HandlingProps) {
   const [act, setAct] = useState<Act | null>(null);
-  const deed = useDeed();
   if (!may("engineer"))
     return finding.severity === "alarm" && !finding.acknowledged_by ? (
       <span class="quiet">Engineers acknowledge alarms.</span>
@@ -76,16 +74,14 @@ export function Handling({ finding, again }: HandlingProps) {
         ))}
       </p>
     );
-  const send = async (event: SubmitEvent): Promise<void> => {
-    event.preventDefault();
-    const form = new FormData(event.currentTarget as HTMLFormElement);
-    if (!(await deed.run(() => sent(finding, act, form)))) return;
+  const send = async (text: (name: string) => string): Promise<void> => {
+    await sent(finding, act, text);
     setAct(null);
     again();
   };
   const must = act === "acknowledge" || act === "comment" || act === "close";
   return (
-    <form class="stack" onSubmit={(event) => void send(event)}>
+    <Form words={ACTS[act]?.[0] ?? act} onSend={send} onLeave={() => setAct(null)}>
       {act === "assign" && (
         <label>
           To whom (a user's name; empty for nobody)
@@ -108,8 +104,7 @@ export function Handling({ finding, again }: HandlingProps) {
         {ACTS[act]?.[1]}
         <textarea name="comment" required={must} maxLength={2000} />
       </label>
-      <FormEnd deed={deed} words={ACTS[act]?.[0] ?? act} onLeave={() => setAct(null)} />
-    </form>
+    </Form>
   );
 }
 

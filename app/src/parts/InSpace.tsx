@@ -8,13 +8,7 @@ import { theme } from "../shell/theme";
 /** Pictures of one page turn together. */
 const open = new Set<View>();
 
-export function InSpace({
-  drawn,
-  view,
-}: {
-  drawn: Schemas["StructureOut"];
-  view?: { current: View | null };
-}) {
+export function InSpace({ drawn, view }: { drawn: Schemas["StructureOut"]; view?: { current: View | null } }) {
   const root = useRef<HTMLDivElement>(null);
   const own = useRef<View | null>(null);
   const dark = theme.value;

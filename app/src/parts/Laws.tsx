@@ -55,12 +55,7 @@ export function Laws() {
   const sliders = LAWS[name] ?? [];
   const at = (s: Slider): number => places[`${name} ${s[0]}`] ?? s[4];
   const of = `${name}:${sliders.map((s) => `${s[0]}=${numberOf(s, at(s)).toPrecision(4)}`).join(",")}`;
-  const found = useAnswer(
-    null,
-    "law",
-    async () => told(api.GET("/api/v1/law", { params: { query: { of } } })),
-    of,
-  );
+  const found = useAnswer(null, "law", async () => told(api.GET("/api/v1/law", { params: { query: { of } } })), of);
   const plots = useMemo(() => (found.data ? plotsOf(found.data) : []), [found.data]);
   return (
     <Card

@@ -34,8 +34,7 @@ export class Roll {
     pieces.push({ from, step, values });
     const end = from + step * values.length;
     if (this.streams && Math.abs(end - this.now()) > 3) this.zero += end - this.now(); // a clock that jumped
-    while (pieces[0] && pieces[0].from + pieces[0].step * pieces[0].values.length < end - KEPT_S)
-      pieces.shift();
+    while (pieces[0] && pieces[0].from + pieces[0].step * pieces[0].values.length < end - KEPT_S) pieces.shift();
   }
 }
 

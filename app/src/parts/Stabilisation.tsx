@@ -37,9 +37,7 @@ function Chart({ poles, picks, onPick, modes }: ChartProps) {
   const groups = useMemo(() => sorted(poles, picks), [poles, picks]);
   const plot = useMemo((): PlotData => {
     const series = KIND.map((kind): Series => {
-      const own = [...groups[kind]].sort(
-        (a, b) => (poles.frequency_hz[a] ?? 0) - (poles.frequency_hz[b] ?? 0),
-      );
+      const own = [...groups[kind]].sort((a, b) => (poles.frequency_hz[a] ?? 0) - (poles.frequency_hz[b] ?? 0));
       groups[kind] = own;
       const at = (values: number[]): number[] => own.map((i) => values[i] ?? NaN);
       const [x, y] = [at(poles.frequency_hz), at(poles.order)];
@@ -61,11 +59,7 @@ export function candidates(poles: Poles): number[] {
   const best = new Map<number, number>();
   poles.mode.forEach((mode, i) => {
     const old = best.get(mode);
-    if (
-      mode >= 0 &&
-      poles.stable[i] &&
-      (old === undefined || (poles.order[i] ?? 0) >= (poles.order[old] ?? 0))
-    )
+    if (mode >= 0 && poles.stable[i] && (old === undefined || (poles.order[i] ?? 0) >= (poles.order[old] ?? 0)))
       best.set(mode, i);
   });
   return [...best.values()].sort((a, b) => (poles.frequency_hz[a] ?? 0) - (poles.frequency_hz[b] ?? 0));

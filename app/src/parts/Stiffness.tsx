@@ -4,6 +4,7 @@ import { useMemo } from "preact/hooks";
 import { useAsset } from "../api/answer";
 import { type Schemas } from "../api/client";
 import { asked, keep } from "../shell/place";
+import { sentence } from "../words/numbers";
 import { day, seconds } from "../words/time";
 import { Card } from "./Bits";
 import { Plot } from "./plot/Plot";
@@ -69,9 +70,7 @@ export default function Stiffness({ asset }: { asset: string }) {
       <Shown
         of={found}
         some={(data) => data.stiffness_in_time}
-        none={
-          <Empty title="Not followed yet">The stiffness of each day is followed from the third day on.</Empty>
-        }
+        none={<Empty title="Not followed yet">The stiffness of each day is followed from the third day on.</Empty>}
       >
         {(data) => <Drawn data={data} />}
       </Shown>
@@ -83,7 +82,7 @@ function Drawn({ data }: { data: Supports }) {
   const plot = useMemo(() => stiffnessPlot(data), [data]);
   return (
     <>
-      {data.statement && <p>{data.statement}</p>}
+      {data.statement && <p>{sentence(data.statement)}</p>}
       <InTime data={plot} height={260} />
     </>
   );

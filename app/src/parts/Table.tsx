@@ -50,12 +50,9 @@ export function Table<T>(props: TableProps<T>) {
   const [order, setOrder] = useState({ column: props.sorted ?? -1, down: props.descending ?? false });
   const [most, setMost] = useState(props.most ?? Infinity);
   const by = props.columns[order.column]?.by;
-  const sorted = by
-    ? props.rows.toSorted((a, b) => compared(by(a), by(b)) * (order.down ? -1 : 1))
-    : props.rows;
+  const sorted = by ? props.rows.toSorted((a, b) => compared(by(a), by(b)) * (order.down ? -1 : 1)) : props.rows;
   const rows = sorted.slice(0, most);
-  const sort = (column: number): void =>
-    setOrder((old) => ({ column, down: old.column === column && !old.down }));
+  const sort = (column: number): void => setOrder((old) => ({ column, down: old.column === column && !old.down }));
   return (
     <div class="scroll" tabIndex={0} role="region" aria-label={props.label}>
       <table class={props.columns.length > MANY ? "many" : ""}>

@@ -1,16 +1,17 @@
 // Records given by hand: dropped or chosen, sent one after the other, watched until they are observed.
-import { useRef, useState } from "preact/hooks";
+import { useState } from "preact/hooks";
 import { me, problemOf } from "../api/client";
 import { assetUrl } from "../shell/place";
+import { Drop } from "./Drop";
 
-interface Sent {
+export interface Sent {
   name: string;
   said: string;
   record?: string;
   failed: boolean;
 }
 
-async function send(asset: string, file: File, description: File | undefined): Promise<Sent> {
+export async function send(asset: string, file: File, description: File | undefined): Promise<Sent> {
   const form = new FormData();
   form.append("file", file);
   if (description) form.append("description", description);
@@ -48,51 +49,26 @@ export function paired(files: readonly File[]): [File, File | undefined][] {
 export function Upload({ asset }: { asset: string }) {
   const [sent, setSent] = useState<Sent[]>([]);
   const [left, setLeft] = useState(0);
-  const [over, setOver] = useState(false);
-  const input = useRef<HTMLInputElement>(null);
-  const take = async (files: FileList | null): Promise<void> => {
-    const every = paired([...(files ?? [])]);
+  const take = async (files: File[]): Promise<void> => {
+    const every = paired(files);
     setLeft(every.length);
     for (const [file, description] of every) {
       const one = await send(asset, file, description);
       setSent((old) => [one, ...old]);
       setLeft((n) => n - 1);
     }
-    if (input.current) input.current.value = "";
   };
   return (
-    <div
-      class={over ? "drop over" : "drop"}
-      onDragOver={(event) => {
-        event.preventDefault();
-        setOver(true);
-      }}
-      onDragLeave={() => setOver(false)}
-      onDrop={(event) => {
-        event.preventDefault();
-        setOver(false);
-        void take(event.dataTransfer?.files ?? null);
-      }}
-    >
-      <label>
-        Drop records here, or choose them; a JSON of the same name describes what a file does not say.{" "}
-        <input
-          ref={input}
-          type="file"
-          multiple
-          aria-label="Records to send"
-          onChange={(event) => void take(event.currentTarget.files)}
-        />
-      </label>
+    <Drop label="Records to send" onFiles={(files) => void take(files)}>
+      Drop records here, or choose them; a JSON of the same name describes what a file does not say.
       {left > 0 && <p role="status">Sending, {left} to go</p>}
       <ul class="list" aria-label="Sent">
         {sent.map((one, i) => (
           <li key={sent.length - i} class={one.failed ? "error" : ""}>
-            {one.record ? <a href={assetUrl(asset, "records", one.record)}>{one.name}</a> : one.name}:{" "}
-            {one.said}
+            {one.record ? <a href={assetUrl(asset, "records", one.record)}>{one.name}</a> : one.name}: {one.said}
           </li>
         ))}
       </ul>
-    </div>
+    </Drop>
   );
 }

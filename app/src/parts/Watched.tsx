@@ -29,8 +29,7 @@ export function restPlot(watch: Watch, index: number, marks: Mark[], planted?: P
   const q = watch.quantities[index];
   const x = watch.days.map(noon);
   const scale = q?.kind === "angle" ? 180 / Math.PI : 100;
-  const scaled = (values: (number | null)[] = [], by = scale): (number | null)[] =>
-    values.map((v) => v && by * v);
+  const scaled = (values: (number | null)[] = [], by = scale): (number | null)[] => values.map((v) => v && by * v);
   const rest = scaled(q?.rest);
   const series: Series[] = [
     {
@@ -80,8 +79,7 @@ export function Rests({ watch, marks, kind, label }: RestsProps) {
       ),
     [watch, kind, label, key],
   );
-  if (!plots.length)
-    return <Empty title="Not watched yet">Days are judged once the baseline is whole.</Empty>;
+  if (!plots.length) return <Empty title="Not watched yet">Days are judged once the baseline is whole.</Empty>;
   return <Column plots={plots} together="timeline" />;
 }
 
@@ -98,9 +96,7 @@ export default function Evidence({ asset, marks }: { asset: string; marks: Mark[
         of={found}
         some={(data) => data.days.length}
         none={
-          <Empty title="Not watched yet">
-            Days are judged once the baseline is whole, usually after a year.
-          </Empty>
+          <Empty title="Not watched yet">Days are judged once the baseline is whole, usually after a year.</Empty>
         }
       >
         {(data) => <Drawn watch={data} marks={marks} />}

@@ -1,7 +1,7 @@
 // How modes look: the colour by kind, as in the report, and their plots through time.
-import type { Mode, Schemas } from "../api/client";
+import type { Alarm, Mode, Schemas } from "../api/client";
 import { words } from "../words/numbers";
-import { seconds } from "../words/time";
+import { day, seconds } from "../words/time";
 import type { Mark, PlotData } from "./plot/series";
 
 const PAINTS = ["blue", "vermillion", "green", "purple", "orange", "sky", "grey", "ink"];
@@ -34,10 +34,12 @@ export function byLabel(modes: readonly Mode[]): Map<string, Mode[]> {
   return found;
 }
 
+export const alarmMarks = (alarms: readonly Alarm[] = []): Mark[] =>
+  alarms.map((a) => ({ x: seconds(a.time_utc), words: `alarm ${day(a.time_utc)}`, colour: "alarm" }));
+
 export function modePlot(label: string, modes: readonly Mode[], what: string, marks: Mark[]): PlotData {
   const damping = what === "damping";
-  const value = (m: Mode): number | null =>
-    damping ? m.damping_ratio && 100 * m.damping_ratio : m.frequency_hz;
+  const value = (m: Mode): number | null => (damping ? m.damping_ratio && 100 * m.damping_ratio : m.frequency_hz);
   const end = (m: Mode, i: 0 | 1): number | null => {
     if (damping) return m.damping_ratio_interval_95 && 100 * (m.damping_ratio_interval_95[i] ?? NaN);
     return m.frequency_std_hz === null ? null : m.frequency_hz + (i ? 1.96 : -1.96) * m.frequency_std_hz;

@@ -67,6 +67,8 @@ async function logOut(): Promise<void> {
 
 function Top() {
   const { asset, page } = route.value;
+  const { path } = place.value;
+  const here = page === "turbine" ? "" : page === "record" ? "records" : page;
   const state = connection.value;
   const user = me.value;
   return (
@@ -103,27 +105,16 @@ function Top() {
           )}
         </div>
       </div>
-      {!asset && (
-        <nav class="tabs" aria-label="Pages">
-          {OWN_TABS.filter(([, , role]) => may(role)).map(([url, words]) => (
-            <a key={url} href={url} {...(url === place.value.path ? { "aria-current": "page" } : {})}>
-              {words}
-            </a>
-          ))}
-        </nav>
-      )}
-      {asset && (
-        <nav class="tabs" aria-label="Pages">
-          {TABS.map(([key, words]) => {
-            const here = key === (page === "turbine" ? "" : page === "record" ? "records" : page);
-            return (
-              <a key={key} href={assetUrl(asset, key)} {...(here ? { "aria-current": "page" } : {})}>
+      <nav class="tabs" aria-label="Pages">
+        {(asset ? TABS.map(([key, name]) => [assetUrl(asset, key), name, key] as const) : OWN_TABS).map(
+          ([url, words, key]) =>
+            (asset || may(key)) && (
+              <a key={url} href={url} {...((asset ? key === here : url === path) ? { "aria-current": "page" } : {})}>
                 {words}
               </a>
-            );
-          })}
-        </nav>
-      )}
+            ),
+        )}
+      </nav>
     </header>
   );
 }

@@ -12,7 +12,18 @@ export const place = signal(here());
 
 window.addEventListener("popstate", () => (place.value = here()));
 
+const PACE_MS = 150; // browsers write two hundred addresses in half a minute, and not one more
+let [written, waits] = [0, 0];
+
+function write(): void {
+  clearTimeout(waits);
+  [written, waits] = [performance.now(), 0];
+  const text = place.value.query.toString();
+  history.replaceState(null, "", place.value.path + (text && `?${text}`));
+}
+
 export function go(url: string, replace = false): void {
+  if (waits) write();
   history[replace ? "replaceState" : "pushState"](null, "", url);
   const before = place.value.path;
   place.value = here();
@@ -24,21 +35,23 @@ export function go(url: string, replace = false): void {
 
 /** Keep something of what a page shows in its address; null forgets it. */
 export function keep(values: Record<string, string | null>): void {
-  const query = new URLSearchParams(location.search);
+  const query = new URLSearchParams(place.value.query);
   for (const [name, value] of Object.entries(values)) {
     if (value === null) query.delete(name);
     else query.set(name, value);
   }
-  const text = query.toString();
-  go(location.pathname + (text && `?${text}`), true);
+  place.value = { path: place.value.path, query };
+  clearTimeout(waits);
+  const rest = written + PACE_MS - performance.now();
+  if (rest > 0) waits = setTimeout(write, rest);
+  else write();
 }
 
 export const asked = (name: string): string | null => place.value.query.get(name);
 
 /** Follow links of ours without leaving the page. */
 document.addEventListener("click", (event) => {
-  if (event.defaultPrevented || event.button !== 0 || event.metaKey || event.ctrlKey || event.shiftKey)
-    return;
+  if (event.defaultPrevented || event.button !== 0 || event.metaKey || event.ctrlKey || event.shiftKey) return;
   const link = (event.target as Element).closest("a");
   if (!link || link.target || link.hasAttribute("download") || link.origin !== location.origin) return;
   if (link.dataset["leave"] !== undefined || link.hash) return;

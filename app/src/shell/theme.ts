@@ -10,9 +10,7 @@ const onPaper = signal(false);
 window.addEventListener("beforeprint", () => (onPaper.value = true));
 window.addEventListener("afterprint", () => (onPaper.value = false));
 export const theme = computed<Theme>(() =>
-  !onPaper.value && (chosen.value === "dark" || (chosen.value === null && systemDark.value))
-    ? "dark"
-    : "light",
+  !onPaper.value && (chosen.value === "dark" || (chosen.value === null && systemDark.value)) ? "dark" : "light",
 );
 system.addEventListener("change", () => (systemDark.value = system.matches));
 theme.subscribe((now) => (document.documentElement.dataset["theme"] = now));

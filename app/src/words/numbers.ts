@@ -40,8 +40,7 @@ function withStd(value: Number_, std: Number_, scale: number, decimals: number):
 /** Hertz with four decimals. */
 export const frequency = (value: Number_, std?: Number_): string => withStd(value, std, 1, 4);
 /** A ratio in per cent, without the sign. */
-export const percent = (value: Number_, std?: Number_, decimals = 2): string =>
-  withStd(value, std, 100, decimals);
+export const percent = (value: Number_, std?: Number_, decimals = 2): string => withStd(value, std, 100, decimals);
 
 export function scientific(value: Number_, digits = 3): string {
   if (!known(value)) return UNKNOWN;
@@ -94,4 +93,5 @@ export const sentence = (text: string): string =>
   text
     .replace(/\b(fore_aft|side_side|torsion|heave)_\d+\b/g, words)
     .replace(/(\d)%/g, "$1 %")
-    .replace(/([ (])-(?=\d)/g, "$1−");
+    .replace(/([ (])-(?=\d)/g, "$1−")
+    .replace(/^[a-z]/, (first) => first.toUpperCase());

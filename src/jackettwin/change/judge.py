@@ -277,6 +277,10 @@ def monitoring_document(judged: StoredMonitoring) -> dict[str, Any]:
     }
 
 
+_NAMED = 0.01
+"""Smallest probability of a cause that a finding names."""
+
+
 def finding_of(alarm: Mapping[str, Any]) -> Finding:
     """Return the finding on an alarm."""
     best = alarm["causes"][0]
@@ -286,6 +290,7 @@ def finding_of(alarm: Mapping[str, Any]) -> Finding:
         "time_utc": alarm["time_utc"], "began": alarm["began_utc"][:10], "began_low": began_low,
         "began_high": began_high, "size": alarm["size"], "low": low, "high": high, "cause": best["cause"],
         "probability": best["probability"], "by_mode": sizes_by_mode(alarm),
+        "causes": {of["cause"]: of["probability"] for of in alarm["causes"] if of["probability"] >= _NAMED},
     }  # fmt: skip
     sensor = best["cause"].startswith("sensor") or alarm["kind"] == "scatter"
     turned = "structure_turned" if alarm.get("unit") == "deg" else "structure_changed"

@@ -67,8 +67,7 @@ def init_command(
     from jackettwin.decks import read_structure
     from jackettwin.files import atomic_path, check_room
     from jackettwin.records import FileDefaults, read_zone, record_files
-    from jackettwin.structure import assemble
-    from jackettwin.study.draft import draft_twin
+    from jackettwin.study.draft import assembled_as_stated, draft_twin
     from jackettwin.twin import model_of_records, read_twin
 
     if out.exists() and not force:
@@ -81,13 +80,7 @@ def init_command(
     with progress(2 + min(len(files), _MOST_READ), "init") as step:
         step(f"assemble {structure}")
         stated = model_of_records(files)
-        assembly = assemble(
-            built,
-            gravity=stated.get("gravity", True),
-            beam_theory=stated.get("beam"),
-            rotary_inertia=stated.get("rotary_inertia"),
-            subdivide=stated.get("subdivide"),
-        )
+        assembly = assembled_as_stated(built, stated)
         read, left_out, defaults = [], [], FileDefaults(sample_rate, unit, gain, zone)
         for file in files[:_MOST_READ]:
             step(f"read {file.name}")

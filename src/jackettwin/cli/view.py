@@ -97,9 +97,10 @@ def view_command(
     from jackettwin.decks import read_structure
     from jackettwin.loads import Coefficients
     from jackettwin.records import read_record
-    from jackettwin.report.view.motions import record_motion, wave_motion
-    from jackettwin.report.view.page import View, write_view
-    from jackettwin.report.view.quantities import material_quantities, thickness_quantities
+    from jackettwin.report import View, record_motion, thickness_quantities
+    from jackettwin.report.view.motions import wave_motion
+    from jackettwin.report.view.page import write_view
+    from jackettwin.report.view.quantities import material_quantities
     from jackettwin.response import build_system, playback, record_sensors, undamped_modes, wave_passage
     from jackettwin.structure import assemble, check
 

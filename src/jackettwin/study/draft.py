@@ -6,13 +6,14 @@ import json
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from jackettwin.errors import InputError
 from jackettwin.identification import moving_channels
 from jackettwin.records import Channel, FileDefaults, Record, with_conditions
 from jackettwin.records.readers.channel_names import read_name
 from jackettwin.response import Sensor, observation_matrix
-from jackettwin.structure import Assembly, Structure
+from jackettwin.structure import Assembly, Structure, assemble
 from jackettwin.twin import stated_model
 from jackettwin.updating import numbered_modes
 from jackettwin.version import __version__
@@ -73,6 +74,17 @@ class Draft:
     def complete(self) -> bool:
         """Whether the twin can be run: at least one sensor has a position."""
         return any(not place.lacks for place in self.places)
+
+
+def assembled_as_stated(structure: Structure, stated: Mapping[str, Any]) -> Assembly:
+    """Return a structure's matrices under the modelling keys that its records state; else with gravity."""
+    return assemble(
+        structure,
+        gravity=stated.get("gravity", True),
+        beam_theory=stated.get("beam"),
+        rotary_inertia=stated.get("rotary_inertia"),
+        subdivide=stated.get("subdivide"),
+    )
 
 
 def draft_twin(

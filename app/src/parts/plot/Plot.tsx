@@ -207,9 +207,7 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
               if (!s) return;
               const [x, y, low, high] = [s.x[hit[1]] ?? 0, s.y[hit[1]], s.low?.[hit[1]], s.high?.[hit[1]]];
               const interval =
-                typeof low === "number" && typeof high === "number"
-                  ? ` (${digits(low)} to ${digits(high)})`
-                  : "";
+                typeof low === "number" && typeof high === "number" ? ` (${digits(low)} to ${digits(high)})` : "";
               const [from, to] = latest.current.shown;
               setRead(
                 `${readX(data, x, to - from)} · ${s.name} ${typeof y === "number" ? digits(y) : "–"}${interval}`,
@@ -219,6 +217,11 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
           ready: [
             (self) => {
               self.over.addEventListener("dblclick", () => latest.current.onRange(null));
+              const wheel = (e: WheelEvent): void => {
+                const to = wheeled(self, e);
+                if (to) latest.current.onRange(to);
+              };
+              self.over.addEventListener("wheel", wheel, { passive: false });
               let down = 0;
               self.over.addEventListener("mousedown", (e) => (down = e.clientX));
               self.over.addEventListener("mouseup", (e) => {
@@ -288,6 +291,18 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
       />
     </figure>
   );
+}
+
+/** Where the wheel leads: sideways (or with shift) along, with control nearer or farther; else nowhere. */
+function wheeled(u: uPlot, event: WheelEvent): Range | null {
+  const { min: a = 0, max: b = 1 } = u.scales["x"] ?? {};
+  const along = event.shiftKey ? event.deltaX || event.deltaY : event.deltaX;
+  if (!event.ctrlKey && Math.abs(along) <= (event.shiftKey ? 0 : Math.abs(event.deltaY))) return null;
+  event.preventDefault();
+  const [at, by] = [u.posToVal(event.offsetX, "x"), Math.exp(event.deltaY / 300)];
+  if (event.ctrlKey) return [at - (at - a) * by, at + (b - at) * by];
+  const step = ((b - a) * along) / u.over.clientWidth;
+  return [a + step, b + step];
 }
 
 /** Whether a number has one digit: a logarithmic axis begins anywhere. */

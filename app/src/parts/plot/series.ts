@@ -45,18 +45,10 @@ const quoted = (text: string): string => (/[",\n]/.test(text) ? `"${text.replace
 
 /** One line a point: series, x, y, low, high. */
 export function csvOf(plot: PlotData): string {
-  const head = ["series", plot.time ? "time_utc" : plot.xName, plot.yName, "low", "high"]
-    .map(quoted)
-    .join(",");
+  const head = ["series", plot.time ? "time_utc" : plot.xName, plot.yName, "low", "high"].map(quoted).join(",");
   const lines = plot.series.flatMap((s) =>
     Array.from(s.x, (x, i) =>
-      [
-        quoted(s.name),
-        plot.time ? stamp(x) : String(x),
-        cell(s.y[i]),
-        cell(s.low?.[i]),
-        cell(s.high?.[i]),
-      ].join(","),
+      [quoted(s.name), plot.time ? stamp(x) : String(x), cell(s.y[i]), cell(s.low?.[i]), cell(s.high?.[i])].join(","),
     ),
   );
   return [head, ...lines].join("\n") + "\n";

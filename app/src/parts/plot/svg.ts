@@ -45,9 +45,9 @@ export function svgOf(plot: PlotData, range: Range, paint: (name: string) => str
   return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${WIDTH} ${HEIGHT}" font-family="sans-serif" font-size="12" fill="${paint("ink")}"><rect width="${WIDTH}" height="${HEIGHT}" fill="${paint("paper")}"/>${parts.join("")}</svg>`;
 }
 
-type Map_ = (v: number) => number;
+type Scale = (v: number) => number;
 
-function shapes(s: Series, range: Range, log: boolean, px: Map_, py: Map_, paint: string): string[] {
+function shapes(s: Series, range: Range, log: boolean, px: Scale, py: Scale, paint: string): string[] {
   const seen = Array.from(s.x, (x, i) => ({ x, y: s.y[i], low: s.low?.[i], high: s.high?.[i] })).filter(
     (p) => p.x >= range[0] && p.x <= range[1],
   );
@@ -65,9 +65,7 @@ function shapes(s: Series, range: Range, log: boolean, px: Map_, py: Map_, paint
     return [`<path d="${path(points)}" fill="none" stroke="${paint}" stroke-width="1.5"${dash}/>`];
   }
   const bars = seen.flatMap((p) =>
-    there(p.low) && there(p.high)
-      ? [`M${px(p.x).toFixed(1)} ${py(p.low).toFixed(1)}V${py(p.high).toFixed(1)}`]
-      : [],
+    there(p.low) && there(p.high) ? [`M${px(p.x).toFixed(1)} ${py(p.low).toFixed(1)}V${py(p.high).toFixed(1)}`] : [],
   );
   const dots = points.map(
     ([x, y]) => `<circle cx="${px(x).toFixed(1)}" cy="${py(y).toFixed(1)}" r="2.4" fill="${paint}"/>`,

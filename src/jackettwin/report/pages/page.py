@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import re
 from base64 import b64encode
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -118,6 +119,20 @@ def page_text(sections: Sequence[PageSection], *, title: str, subtitle: str = ""
     """Return one self-contained HTML page, with the plotting library only if there is a plot."""
     library = packed(get_plotlyjs()) if any(_plots(sections)) else ""
     return _rendered("page.html.j2", sections=sections, title=title, subtitle=subtitle, plotly=library)
+
+
+_LIBRARY = re.compile(r'(<script type="text/plain" class="packed" id="plotly">)[^<]*')
+"""The library that draws the plots of a page, the same in each."""
+
+
+def without_library(page: str) -> str:
+    """Return a page without the library that draws its plots."""
+    return _LIBRARY.sub(r"\1", page)
+
+
+def with_library(page: str) -> str:
+    """Return a page that :func:`without_library` made with the installed library in its place."""
+    return _LIBRARY.sub(lambda found: found[1] + packed(get_plotlyjs()), page)
 
 
 def write_page(sections: Sequence[PageSection], path: Path, *, title: str, subtitle: str = "") -> Path:

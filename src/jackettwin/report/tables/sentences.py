@@ -520,10 +520,15 @@ def _disagreement(m: ModeAnswer) -> str:
     )
 
 
+def _lasting(minutes: float) -> str:
+    """Return a duration in the unit that people would give it in."""
+    return f"{minutes:.0f} minutes" if minutes < 2880.0 else count(round(minutes / 1440.0), "day")
+
+
 def _trust(a: Answers) -> list[str]:
     if a.records:
         said = [
-            f"Data: {count(a.records, 'record')}, {a.minutes:.0f} minutes; "
+            f"Data: {count(a.records, 'record')}, {_lasting(a.minutes)}; "
             f"{count(len(a.modes), 'mode')} paired with the model."
         ]
     else:

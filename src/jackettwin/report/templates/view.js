@@ -67,6 +67,10 @@ export function show(root, D, asked = new Map()) {
   const home = {turn: -0.62, tilt: 0.2, zoom: 1, x: 0, y: 0};
   const eye = Object.assign({}, home), linked = new Set();
   const state = {frame: 0, playing: true, last: 0, motion: null, quantity: null, gone: false};
+  const moving = {log: false, from_zero: true};
+  const colours = [...D.quantities,
+    ...(D.motions.some(o => o.load) ? [{...moving, name: "wave load, mean of member", unit: "kN/m", frames: true}] : []),
+    ...(D.motions.some(o => o.stress) ? [{...moving, name: "stress, modes at 0.1 m", unit: "MPa", stress: true}] : [])];
   let at = D.nodes.slice(), scale = 1, size = [1, 1], pixel = 1, screen = [], hover = -1;
 
   function shown(id) { const box = $(id); return box ? box.checked : false; }
@@ -103,11 +107,18 @@ export function show(root, D, asked = new Map()) {
 
   /* ---- colour ---- */
   function values() {
+    if (state.quantity.stress) { return stressed(state.motion, Math.floor(state.frame)); }
     if (state.quantity.frames) {
       const mo = state.motion && state.motion.load ? state.motion : D.motions.find(o => o.load);
       return mo.load[mo === state.motion ? Math.floor(state.frame) : 0];
     }
     return state.quantity.values;
+  }
+  function stressed(mo, frame) {  // the larger of an element's ends, of a mode where it moves by 0.1 m
+    if (!mo || !mo.stress) { return Array(m).fill(null); }
+    const size = mo.largest_m || 0.1, sum = k => mo.stress.reduce((all, shape, j) => all + mo.q[frame][j] * shape[k], 0);
+    const end = k => Math.abs(sum(k)) + Math.hypot(sum(k + 1), sum(k + 2));
+    return Array.from({length: m}, (_, e) => size * Math.max(end(6 * e), end(6 * e + 3)));
   }
   function mapped(v) { return state.quantity.log ? Math.log10(v) : v; }
   function colour(v) {
@@ -161,7 +172,7 @@ export function show(root, D, asked = new Map()) {
     pen.closePath(); pen.stroke();
     const label = point(cells, 0);
     pen.fillStyle = `rgb(${rgb})`; pen.font = "12px system-ui, sans-serif"; pen.textAlign = "left";
-    const said = z === 0 ? "sea level" : `mud line ${z.toFixed(1)} m`;
+    const said = z === 0 ? "sea level" : `mud line ${z < 0 ? "−" : "+"}${Math.abs(z).toFixed(1)} m`;
     const room = size[0] - pen.measureText(said).width - 4;  // on a phone the name would be cut off
     pen.fillText(said, Math.min(label[0] + 6, room), label[1] + 4);
   }
@@ -333,15 +344,16 @@ export function show(root, D, asked = new Map()) {
     state.motion = index < 0 ? null : D.motions[index];
     state.frame = 0;
     $("note").textContent = state.motion ? state.motion.note : "";
-    named(); told(); draw();
+    named(); told(); colourBy();
   }
   function named() {
     const mo = state.motion;
     $("factor").textContent = !mo ? "" : mo.largest_m ? `${number(factor() / mo.largest_m)} × as large` : `largest ${number(factor())} m`;
   }
   function colourBy() {
-    const q = state.quantity = D.quantities[Number($("quantity").value)];
-    const all = (q.frames ? D.motions.flatMap(o => o.load ? o.load.flat() : []) : q.values).filter(v => v !== null && isFinite(q.log ? Math.log10(v) : v)).map(mapped);
+    const q = state.quantity = colours[Number($("quantity").value)];
+    const frames = q.stress && state.motion ? state.motion.q.map((_, k) => stressed(state.motion, k)).flat() : [];
+    const all = (q.stress ? frames : q.frames ? D.motions.flatMap(o => o.load ? o.load.flat() : []) : q.values).filter(v => v !== null && isFinite(q.log ? Math.log10(v) : v)).map(mapped);
     q.low = all.reduce((a, b) => Math.min(a, b), q.from_zero ? 0 : Infinity);
     q.high = all.reduce((a, b) => Math.max(a, b), -Infinity);
     bar(); draw();
@@ -408,8 +420,7 @@ export function show(root, D, asked = new Map()) {
   ["water", "growth", "flooded", "sensors", "measured", "dimensions", "ghost"].forEach(id => { if ($(id)) { $(id).addEventListener("change", draw); } });
 
   /* ---- lists, and what the address asks for: #motion=2&quantity=1&phase=0.25&play=0 ---- */
-  if (D.motions.some(o => o.load)) { D.quantities.push({name: "wave load, mean of member", unit: "kN/m", log: false, frames: true, from_zero: true}); }
-  D.quantities.forEach((q, k) => $("quantity").add(new Option(q.unit === "–" ? q.name : `${q.name} [${q.unit}]`, k)));
+  colours.forEach((q, k) => $("quantity").add(new Option(q.unit === "–" ? q.name : `${q.name} [${q.unit}]`, k)));
   $("motion").add(new Option("still", -1));
   [...new Set(D.motions.map(o => o.group))].forEach(group => {
     const part = document.createElement("optgroup");

@@ -10,7 +10,7 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 from jackettwin.response import Passage, Playback, Sensor, observation_matrix, sensor_positions
-from jackettwin.structure import Assembly
+from jackettwin.structure import Assembly, section_forces, tube_radius
 
 _MOTION = "motion"
 """The kind of sensors whose way can be drawn: not strains, not inclinations."""
@@ -65,6 +65,8 @@ class DrawnMotion:
         ``height_m``, ``length_m``, ``direction_rad``: the surface, with its crest at the origin in frame 0.
     load_kn_m : (n_frames, n_elements), optional
     measured : SensorMotion, optional
+    stress : (n_shapes, 6·n_elements), optional
+        Stress of each shape [Pa], as in :func:`section_stress`.
     """
 
     name: str
@@ -78,9 +80,13 @@ class DrawnMotion:
     wave: dict[str, float] | None = None
     load_kn_m: FloatArray | None = None
     measured: SensorMotion | None = None
+    stress: FloatArray | None = None
 
     def document(self) -> dict[str, Any]:
-        """Return plain data; shapes are scaled so that the largest translation over time is one."""
+        """Return plain data; shapes are scaled so that the largest translation over time is one.
+
+        Stresses are in the same scale [MPa/m].
+        """
         largest = float(np.abs(self._extreme()).max(initial=0.0))
         scale = 1.0 / largest if largest > 0.0 else 1.0
         return {
@@ -95,6 +101,9 @@ class DrawnMotion:
             "cyclic": self.cyclic,
             "wave": self.wave,
             "measured": None if self.measured is None else self.measured.document(scale),
+            "stress": None
+            if self.stress is None
+            else [[float(f"{v:.3g}") for v in row] for row in self.stress * scale / 1e6],
             "load": None if self.load_kn_m is None else np.round(self.load_kn_m, 3).tolist(),
         }
 
@@ -115,6 +124,7 @@ def undamped_motion(assembly: Assembly, name: str, frequency_hz: float, shape: F
         _translations(assembly, shape[None]),
         np.cos(theta)[:, None],
         1.0 / (frequency_hz * _FRAMES),
+        stress=section_stress(assembly, shape[None]),
     )
 
 
@@ -138,7 +148,24 @@ def damped_motion(
         np.stack([np.cos(theta), np.sin(theta)], axis=1),
         1.0 / (f * _FRAMES),
         measured=measured,
+        stress=section_stress(assembly, parts),
     )
+
+
+def section_stress(assembly: Assembly, shapes: FloatArray) -> FloatArray:
+    r"""Return the nominal stress of shapes at both ends of every element, (n_shapes, 6·n_elements) [Pa].
+
+    Of each end N/A, :math:`M_y R/I` and :math:`M_z R/I`: the largest stress of its section is
+    :math:`|σ_N| + \sqrt{σ_y^2 + σ_z^2}`, also of a sum of shapes.
+
+    Parameters
+    ----------
+    shapes : (n_shapes, assembly.n_dof)
+    """
+    p, forces = assembly.mesh.properties, section_forces(assembly, shapes)
+    outer = (tube_radius(p) / p.I)[:, None]
+    parts = (forces.axial / p.A[:, None], forces.bending_y * outer, forces.bending_z * outer)
+    return np.stack(parts, axis=-1).reshape(shapes.shape[0], -1)
 
 
 def measured_shape(
@@ -209,6 +236,7 @@ def record_motion(assembly: Assembly, name: str, found: Playback) -> DrawnMotion
         found.step_s,
         cyclic=False,
         start_s=found.start_s,
+        stress=section_stress(assembly, found.shapes.T),
     )
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any, BinaryIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 from fastapi import UploadFile
 from sqlalchemy import Connection
@@ -18,6 +19,7 @@ from jackettwin.service.web.problems import ApiError, disk_full
 from jackettwin.service.web.schemas.assets import Taken
 from jackettwin.service.web.schemas.records import PicksIn
 from jackettwin.service.work.conditions import add_conditions
+from jackettwin.service.workers.drafts import draft
 from jackettwin.service.workers.failures import ROOM_BYTES
 from jackettwin.service.workers.tasks import read_conditions
 from jackettwin.store import assets, journal, people, reading, records, work, writing
@@ -113,6 +115,33 @@ def take_conditions(
         count, again = add_conditions(connection, service, asset, values, by)
     service.wake()
     return Taken(count=count, observed_again=again)
+
+
+def drafted(
+    service: Service, structure: UploadFile, record: UploadFile, description: str | None
+) -> dict[str, Any]:
+    """Return what a worker drafts from a structure and a record; neither is kept."""
+    if description is not None:
+        _check(description)
+    if service.free_bytes() < ROOM_BYTES:
+        raise disk_full()
+    paths: list[Path] = []
+    try:
+        for file, beside in ((structure, None), (record, description)):
+            pieces = _limited(file.file, service.settings.upload_limit_bytes)
+            said = None if beside is None else beside.encode()
+            paths.append(spooled(service.settings.spool, file.filename or "file", pieces, said))
+        limits = (service.settings.freedoms_limit, service.settings.worker_memory_bytes)
+        future = service.cluster.submit(draft, *map(str, paths), *limits, priority=100)
+        found = service.cluster.result(future, service.settings.parse_limit_s)
+    except TimeoutError:
+        raise ApiError(422, "the files could not be read in time", field="structure") from None
+    finally:
+        for path in paths:
+            discard(path)
+    if isinstance(found, InputError):
+        raise found
+    return cast("dict[str, Any]", found)
 
 
 def by_worker(service: Service, record_id: str, who: Who, task: Callable[..., Any], *more: Any) -> Any:

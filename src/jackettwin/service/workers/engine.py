@@ -19,6 +19,7 @@ from jackettwin.findings import Finding
 from jackettwin.identification import Pick
 from jackettwin.records import Channel, FileDefaults
 from jackettwin.store import read_waveform
+from jackettwin.structure import Structure
 from jackettwin.twin import (
     ALL,
     OBSERVATION,
@@ -113,9 +114,20 @@ def examine(folder: Path, most_freedoms: int) -> TwinProfile:
         If it cannot be read, or has too many degrees of freedom.
     """
     config = read_twin(folder / TWIN_FILE, records_follow=True)
-    usual = config.subdivide or config.structure.subdivide
-    inner = sum((bar.elements or usual) - 1 for bar in config.structure.bars)
-    freedoms = 6 * (len(config.structure.nodes) + inner)
+    check_freedoms(config.structure, config.subdivide, most_freedoms)
+    return profile_of(Twin(config, twin_model(config)))
+
+
+def check_freedoms(structure: Structure, subdivide: int | None, most_freedoms: int) -> None:
+    """Raise an error on a structure that would have too many degrees of freedom.
+
+    Raises
+    ------
+    InputError
+    """
+    usual = subdivide or structure.subdivide
+    inner = sum((bar.elements or usual) - 1 for bar in structure.bars)
+    freedoms = 6 * (len(structure.nodes) + inner)
     require(
         freedoms <= most_freedoms,
         "the structure has too many degrees of freedom",
@@ -124,7 +136,6 @@ def examine(folder: Path, most_freedoms: int) -> TwinProfile:
         allowed=f"up to {most_freedoms} freedoms",
         remedy="divide members less finely, or set JACKETTWIN_SERVE_FREEDOMS_LIMIT",
     )
-    return profile_of(Twin(config, twin_model(config)))
 
 
 def profile_path(folder: Path) -> Path:

@@ -27,7 +27,7 @@ def motion(folder: str, waveform: str, duration_s: float) -> dict[str, Any]:
     InputError
         If the twin has no structure, or no accelerometer of the record has a place.
     """
-    from jackettwin.report.view.motions import record_motion
+    from jackettwin.report import record_motion
     from jackettwin.response import playback
 
     model = load_twin(Path(folder)).model

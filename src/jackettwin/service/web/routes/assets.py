@@ -26,6 +26,7 @@ from jackettwin.service.web.problems import ApiError, answers
 from jackettwin.service.web.schemas.assets import (
     AssetOut,
     ConditionsIn,
+    DraftOut,
     NewAsset,
     NewVersion,
     Position,
@@ -74,6 +75,25 @@ def add_asset(body: NewAsset, who: Asker, parts: Parts) -> AssetOut:
     catalogue.add_text_version(parts, body.name, *given, if_fit=is_new)
     with reading(parts.database) as connection:
         return catalogue.one(connection, body.name)
+
+
+@router.post(
+    "/drafts", dependencies=[auth.ENGINEER, WAITING], responses=answers(400, 401, 403, 413, 422, 503, 507)
+)
+def draft_twin(
+    parts: Parts,
+    structure: Annotated[UploadFile, File(description="A SACS deck, SubDyn input or YAML file.")],
+    record: Annotated[UploadFile, File(description="A record in any supported format.")],
+    description: Annotated[
+        UploadFile | str | None,
+        Form(description="The description of the record in JSON, as a field or a file."),
+    ] = None,
+) -> DraftOut:
+    """Draft a twin file from a structure and a record, as ``jackettwin init`` does; nothing is stored.
+
+    Each channel is placed by its name, and what was guessed is drawn and said.
+    """
+    return DraftOut(**uploads.drafted(parts, structure, record, uploads.text_of(description)))
 
 
 @router.get("/assets/{asset}", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))

@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import AwareDatetime, BaseModel, Field, FiniteFloat
 
 from jackettwin.service.web.schemas.common import FIRST, LAST
+from jackettwin.service.web.schemas.drawings import StructureOut
 from jackettwin.service.web.schemas.modes import TwinOut
 
 
@@ -54,6 +55,24 @@ class NewAsset(NewVersion):
     """An asset with the first version of its twin."""
 
     name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")
+
+
+class GuessOut(BaseModel):
+    """A channel, and why its sensor is placed where it is drawn, or what it lacks for that."""
+
+    channel: str
+    why: str
+    lacks: str
+
+
+class DraftOut(BaseModel):
+    """A drafted twin file with the guesses in it, to be confirmed."""
+
+    structure: str = Field(description="Name under which the twin file names the structure.")
+    twin: str
+    places: list[GuessOut]
+    missing: list[str]
+    drawn: StructureOut = Field(description="The structure with the sensors that have a place.")
 
 
 class VersionOut(BaseModel):

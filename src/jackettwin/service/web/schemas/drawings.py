@@ -120,6 +120,10 @@ class MotionOut(BaseModel):
     cyclic: bool
     largest_m: float | None
     measured: MeasuredShapeOut | None
+    stress: list[list[float]] | None = Field(
+        default=None,
+        description="N/A, My/W and Mz/W [MPa] of each shape at both ends of every element; per metre.",
+    )
 
 
 class ColourOut(BaseModel):

@@ -64,7 +64,7 @@ function roundLength(scale: number): number {
 const alarmsLast = (a: { asset: Asset }, b: { asset: Asset }): number =>
   Number(a.asset.status === "alarm") - Number(b.asset.status === "alarm");
 
-export function Map_({ assets }: { assets: readonly Asset[] }) {
+export function Site({ assets }: { assets: readonly Asset[] }) {
   const { marks, scale, below, placed, height } = drawn(assets);
   const length = scale && roundLength(scale);
   const chosen = asked("find")?.toLowerCase() ?? "";
@@ -73,15 +73,12 @@ export function Map_({ assets }: { assets: readonly Asset[] }) {
     <svg class="map" viewBox={`0 0 ${WIDTH} ${height}`} role="group" aria-label="Map of the turbines">
       {placed > 0 && (
         <text x={EDGE - 8} y={below + 18}>
-          {placed === assets.length ? "No positions are known" : `${placed} without a position`}: jackettwin
-          asset place NAME LATITUDE LONGITUDE
+          {placed === assets.length ? "No positions are known" : `${placed} without a position`}: jackettwin asset
+          place NAME LATITUDE LONGITUDE
         </text>
       )}
       {scale > 0 && (
-        <path
-          class="rule"
-          d={`M${WIDTH - EDGE} ${below - 12}h${-length * scale}m0-4v8m${length * scale} 0v-8`}
-        />
+        <path class="rule" d={`M${WIDTH - EDGE} ${below - 12}h${-length * scale}m0-4v8m${length * scale} 0v-8`} />
       )}
       {scale > 0 && (
         <text x={WIDTH - EDGE} y={below - 20} text-anchor="end">
