@@ -6,6 +6,7 @@ Minutes of one core. Run it when the model, the story or the form of what is sto
 
 from __future__ import annotations
 
+import gzip
 import sys
 import tempfile
 from datetime import UTC, datetime, time
@@ -16,6 +17,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.service.conftest import Here
 
+from jackettwin.report import without_library
 from jackettwin.service import ServiceSettings
 from jackettwin.service.context import Service
 from jackettwin.service.demonstration import ASSET, SHIPPED, arrive, shipped_records, tell_story
@@ -25,14 +27,16 @@ from jackettwin.store import asset_copy, open_database, reading, work
 
 
 def without_what_is_large(rows: asset_copy.Rows) -> asset_copy.Rows:
-    """Return rows without the report and the state of judging; a server makes both with the next record.
+    """Return rows without the state of judging, which a server makes with the next record.
 
-    What pages show remains. The estimate from all records is said to be another program's, so that it is due.
+    The report is plain and without the program that draws its plots, which every installation has. The
+    estimate from all records is said to be another program's, so that it is due.
     """
     (knowledge,) = rows["knowledge"]
     document = {name: value for name, value in knowledge["document"].items() if name != "judged"}
     document["together"] = {**document["together"], "code_version": "shipped"}
-    return {**rows, "knowledge": [{**knowledge, "document": document, "report": None}]}
+    report = without_library(gzip.decompress(knowledge["report"]).decode()).encode()
+    return {**rows, "knowledge": [{**knowledge, "document": document, "report": report}]}
 
 
 def main() -> None:

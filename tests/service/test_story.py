@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 from datetime import timedelta
 from itertools import islice
@@ -96,6 +97,8 @@ def test_the_shipped_demonstration_is_of_this_program(
             assert results.find_drawn(connection, "demo", 1, "explored")["loci"]
             assert results.find_watch(connection, "demo", 1)["days"]
             assert results.find_stiffness(connection, "demo", 1)["stiffness_in_time"]
+            page = gzip.decompress(results.find_report(connection, "demo", 1) or b"").decode()
+            assert "Is the model right?" in page and len(page) > 1_500_000  # with the library of its plots
         assert [arrive(service, record) for record in shipped_records()] == 4 * [False] + [True]
     assert told.name == kept.name
     for (mode, _), (other, _) in zip(told.modes.values(), kept.modes.values(), strict=True):

@@ -6,6 +6,7 @@ always the same, so that everybody sees the same.
 
 from __future__ import annotations
 
+import gzip
 import logging
 import time
 from collections.abc import Iterator
@@ -17,6 +18,7 @@ from threading import Thread
 from typing import TYPE_CHECKING
 
 from jackettwin.records import Record, read_record
+from jackettwin.report import with_library
 from jackettwin.service.intake.bundles import bundle, twin_folder
 from jackettwin.service.intake.examination import examined
 from jackettwin.service.intake.files import accept
@@ -40,7 +42,7 @@ ASSET = "demo"
 TWIN = "openfast_pile"
 SAID = "The demonstration: its five records are OpenFAST's, the two years of days before them are simulated."
 _LOCKED = b"\noperation: {updates: [parked]} # of the days before its records, those with a locked shaft\n"
-"""Keys that the demonstration adds to the shipped twin: rotor damping is predicted for a rotor at rest."""
+"""What the demonstration adds to the shipped twin: the rotor's damping is predicted for a rotor at rest."""
 _EVERY_S = 4.0
 SHIPPED = Path(str(files("jackettwin.data") / "demonstration.xz"))
 """The asset after its story and all records but the last, with what is known of it."""
@@ -100,6 +102,9 @@ def lay_out(service: Place) -> bool:
     if not same or assets.unpack(version["bundle"]) != contents:
         log.warning("the shipped demonstration is of another model; its two years are told anew")
         return False
+    (known,) = rows["knowledge"]
+    report = with_library(known["report"].decode())  # shipped without the largest part, which is installed
+    known["report"] = gzip.compress(report.encode(), mtime=0)
     with writing(service.database) as connection:
         asset_copy.copy_in(connection, rows)
         journal.tell(connection, "asset", ASSET, {"version": 1}, service.now())
