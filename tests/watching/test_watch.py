@@ -51,13 +51,17 @@ def test_a_step_is_found_dated_measured_and_named(stepped: History) -> None:
     assert abs(sum(v.probability for v in found.verdicts) - 1.0) < 1e-9
 
 
-def test_a_cause_that_the_model_expects_is_found_earlier(quiet: History) -> None:
-    """A pair that parts is no mode alone, no pair alike and not all: only the pattern says it."""
+def test_a_cause_that_the_model_expects_has_more_evidence(quiet: History) -> None:
+    """A pair that parts is no mode alone, no pair alike and not all: only the pattern says it.
+
+    Both are found on one day, with ten times the evidence if the pattern is expected.
+    """
     parts = np.array([-1.0, 1.0])
     moved = quiet.frequency * np.exp(0.003 * parts * (quiet.days >= 120.0)[:, None])
     expected = (Pattern("brace", parts),)
     told, untold = (watched(replace(quiet, frequency=moved), patterns=p) for p in (expected, ()))
-    assert told[2][0].day < untold[2][0].day and told[2][0].direction == "brace"
+    assert told[2][0].day <= untold[2][0].day and told[2][0].direction == "brace"
+    assert told[2][0].log_r > untold[2][0].log_r + 2.0
     assert not watched(quiet, patterns=expected)[2]
 
 
