@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from jackettwin.cli.cache import keeping
-from jackettwin.cli.console import Reply, answers, progress, say, say_all, show_table
+from jackettwin.cli.console import Reply, answers, progress, say, say_all, show_table, with_omissions
 from jackettwin.report import Table
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def follow_command(
     document = follow_document(followed)
     if out is not None:
         with atomic_folder(out) as temporary:
-            write_json(document, temporary / "followed.json")
+            write_json(with_omissions(document, "follow"), temporary / "followed.json")
             build_follow_page(followed, temporary / "report.html")
             rows = rows_of_days(twin_model(config), followed.state)
             write_modes_in_time(rows, temporary / MODES_IN_TIME)

@@ -10,7 +10,7 @@ import click
 
 from jackettwin.cli.answers import answers_document, print_answers
 from jackettwin.cli.cache import keeping
-from jackettwin.cli.console import Reply, answers, progress, say
+from jackettwin.cli.console import Reply, answers, progress, say, with_omissions
 from jackettwin.cli.provenance import provenance
 from jackettwin.cli.update import DEFAULT_TWIN, print_updates
 
@@ -84,7 +84,7 @@ def run_command(
         document |= {"provenance": dict(made), "inputs": inputs_document(config)}
         with atomic_folder(folder) as temporary:
             build_report(result, temporary, answers=found, provenance=made)
-            write_json(document, temporary / "result.json")
+            write_json(with_omissions(document, "run"), temporary / "result.json")
             rows = rows_of_records(result.observations)
             write_modes_in_time(rows, temporary / MODES_IN_TIME)
 

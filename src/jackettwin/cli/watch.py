@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING, TypedDict
 
 import click
 
-from jackettwin.cli.console import FiniteFloat, Reply, answers, progress, say, say_all, show_table
+from jackettwin.cli.console import (
+    FiniteFloat,
+    Reply,
+    answers,
+    progress,
+    say,
+    say_all,
+    show_table,
+    with_omissions,
+)
 from jackettwin.errors import InputError, located, require
 from jackettwin.report import Table, TableColumn
 
@@ -114,7 +123,7 @@ def watch_command(
     document = watched_document(watched)
     if out is not None:
         with atomic_folder(out) as temporary:
-            write_json(document, temporary / "watched.json")
+            write_json(with_omissions(document, "watch"), temporary / "watched.json")
             build_watch_page(watched, temporary / "report.html")
 
     def show() -> None:
