@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -57,8 +57,21 @@ def smallest_changes(
     for days in HORIZONS_DAYS:
         seen = sight(watch, baseline, days)
         if seen is not None:
-            out += _general(watch, baseline, seen) if causes is None else _of_structure(watch, seen, causes)
+            now = _general(watch, baseline, seen) if causes is None else _of_structure(watch, seen, causes)
+            sooner = {one.change: one for one in out}
+            out += [_with_sooner(one, sooner.get(one.change)) for one in now]
     return tuple(out)
+
+
+def _with_sooner(one: SmallestChange, sooner: SmallestChange | None) -> SmallestChange:
+    """Return a horizon's change with what a shorter one finds, for this is found within more days, too."""
+    if sooner is None:
+        return one
+    if one.found is not None and sooner.found is not None:
+        return replace(one, found=max(one.found, sooner.found))
+    if sooner.size is not None and (one.size is None or sooner.size < one.size):
+        return replace(one, size=sooner.size, step=sooner.step)
+    return one
 
 
 def _general(watch: Watch, baseline: History, seen: Sight) -> Iterator[SmallestChange]:
