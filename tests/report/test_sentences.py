@@ -183,6 +183,20 @@ def test_a_step_that_narrows_nothing_is_not_advised() -> None:
     assert "ecord 1 hour in the same way" in told and "to a factor of 1.9 (now 40)" in told
 
 
+def test_thousands_of_years_are_not_advised() -> None:
+    ages = NextStep("records", {"loss_factor": 12.0}, 3e6)
+    said = " ".join(str(part) for part in sentences(replace(ANSWERS, next_steps=(ages,))).__dict__.values())
+    assert "not even 100 years of records" in said
+
+
+def test_a_mode_that_the_model_damps_too_much_by_no_single_source_names_none() -> None:
+    off = replace(
+        MODE, sources={"structure": Span(0.009), "soil": Span(0.008)}, model_damping=Span(0.017, 0.016, 0.018)
+    )
+    said = " ".join(str(part) for part in sentences(replace(ANSWERS, modes=(off,))).__dict__.values())
+    assert "larger than measured" in said and "None" not in said
+
+
 def test_a_law_far_above_the_others_is_said_to_be() -> None:
     sure = replace(
         ANSWERS, laws=(replace(ANSWERS.laws[0], probability=0.99), replace(ANSWERS.laws[1], probability=0.01))

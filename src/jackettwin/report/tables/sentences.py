@@ -29,6 +29,8 @@ _NOTHING = 0.005
 """Changes of a logarithm below this are not reported."""
 SMALL = 0.10
 """Sources with a smaller share of a mode's damping are not named."""
+_LONG_DAYS = 36_525.0
+"""Length of records beyond which this length is named instead: a hundred years."""
 _MOST = 4
 """Number of ground parameters on the first page; further ones follow later."""
 _SOURCES = {"structure": "the steel", "soil": "the ground", "rotor": "the rotor", "water": "the water"}
@@ -510,10 +512,8 @@ def _disagreement(m: ModeAnswer) -> str:
         else "part of its damping is not explained"
     )
     fitted = "" if m.fits_damping else "; its damping was not fitted"
-    alone = listed(
-        [f"{_SOURCES[s]} alone gives {percent_words(Span(m.sources[s].value))}" for s in m.excessive]
-    )
-    beyond = f". {alone[0].upper()}{alone[1:]}" if alone else ""
+    alone = [f"{_SOURCES[s]} alone gives {percent_words(Span(m.sources[s].value))}" for s in m.excessive]
+    beyond = f". {listed(alone)[0].upper()}{listed(alone)[1:]}" if alone else ""
     return (
         f"{words(m.label).capitalize()}: {why}: {percent_words(b)} in the model, {percent_words(a)} "
         f"measured{fitted}{beyond}."
@@ -632,4 +632,6 @@ def _records(a: Answers, step: NextStep) -> str:
     length = count(round(days), "day") if days >= 2.0 else count(max(round(24 * days), 1), "hour")
     if _enough(a, step):
         return f"record {length} in the same way ({round(times * a.records)} records instead of {a.records})"
+    if days > _LONG_DAYS:
+        length = f"{_LONG_DAYS / 365.25:.0f} years"
     return f"more records alone do not determine it, not even {length} of records"
