@@ -206,17 +206,18 @@ def _modes(lines: ComplexArray, f: FloatArray, starts_hz: list[float]) -> BandPo
     before = [np.log(starts_hz), np.full(m, np.log(START_DAMPING)), 0.5 * force, np.zeros(m * (m - 1))]
     starts = [np.concatenate([*before, [np.log(noise)], v.T.ravel()]) for v in (at_peaks, np.eye(m))]
     theta = min((_most_probable(cost, start, f, m) for start in starts), key=cost)
+    alpha = theta[-m * m :].reshape(m, m).T
+    alpha = alpha / np.linalg.norm(alpha, axis=0)
+    # a search may shorten shapes, whose lengths have no effect, below the step of the differences
+    theta[-m * m :] = alpha.T.ravel()
     curvature = _curvature(cost, theta)
     rows = np.r_[:m, m : 2 * m]
     covariance = _covariance(curvature, singular=m)
     if covariance is None or not _credible(theta[:m], theta[m : 2 * m], f, covariance[m : 2 * m, m : 2 * m]):
         return None
-    alpha = theta[-m * m :].reshape(m, m).T
-    size = np.linalg.norm(alpha, axis=0)
-    alpha = alpha / size
     free = len(theta) - m + m * (n - m)
     inside = covariance[-m * m :, -m * m :].reshape(m, m, m, m)
-    shape_var = [np.einsum("ai,ij,aj->a", basis, inside[i, :, i, :], basis) / size[i] ** 2 for i in range(m)]
+    shape_var = [np.einsum("ai,ij,aj->a", basis, inside[i, :, i, :], basis) for i in range(m)]
     return BandPosterior(
         np.exp(theta[:m]),
         np.exp(theta[m : 2 * m]),
