@@ -52,11 +52,11 @@ def section_forces(
     mesh = assembly.mesh
     leading = displacement.shape[:-1]
     nodal = (assembly.expand @ displacement.reshape(-1, assembly.n_dof).T).T
-    ends = np.asarray(nodal)[:, mesh.element_dofs()].reshape(-1, mesh.start.size, 4, 3)
-    local = np.einsum("eij,tekj->teki", mesh.axes, ends).reshape(-1, mesh.start.size, 12)
+    ends = np.asarray(nodal)[:, mesh.element_dofs()].reshape(len(nodal), mesh.start.size, 4, 3)
+    local = np.einsum("eij,tekj->teki", mesh.axes, ends).reshape(len(nodal), mesh.start.size, 12)
     force = np.einsum("eij,tej->tei", beam.stiffness(mesh.properties), local)
     if along is not None:
-        force = force - along.reshape(-1, mesh.start.size, 12)
+        force = force - along.reshape(len(nodal), mesh.start.size, 12)
     force = force.reshape(*leading, mesh.start.size, 2, 6) * np.array([[-1.0], [1.0]])
     return SectionForces(*np.moveaxis(force, -1, 0))
 
