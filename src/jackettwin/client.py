@@ -113,6 +113,18 @@ class Client:
         body = {"twin": twin, "files": dict(files or {}), "comment": comment}
         return self._asked("PUT", f"/assets/{name}", json=body)
 
+    def draft(self, structure: Path | str, record: Path | str) -> Answer:
+        """Return a twin drafted from files of a structure and a record, with its guesses; none is stored.
+
+        Raises
+        ------
+        InputError
+            If a file is refused; names field, value and remedy.
+        """
+        with Path(structure).open("rb") as deck, Path(record).open("rb") as samples:
+            files = {"structure": (Path(structure).name, deck), "record": (Path(record).name, samples)}
+            return self._asked("POST", "/drafts", files=files)
+
     def versions(self, asset: str) -> Answers:
         """Yield the versions of a turbine's twin."""
         return self._pages(f"/assets/{asset}/versions")

@@ -26,6 +26,7 @@ from jackettwin.store.assets import bundle_of, unpack
 EXAMPLES: dict[str, Any] = {
     "files": {},
     "record": "r.parquet",
+    "structure": "r.parquet",
     "description": {},
     "table": "scada.csv",
     "time_utc": ["2025-03-01T12:00:00Z"],
