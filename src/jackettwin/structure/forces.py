@@ -56,7 +56,8 @@ def section_forces(
     local = np.einsum("eij,tekj->teki", mesh.axes, ends).reshape(len(nodal), mesh.start.size, 12)
     force = np.einsum("eij,tej->tei", beam.stiffness(mesh.properties), local)
     if along is not None:
-        force = force - along.reshape(len(nodal), mesh.start.size, 12)
+        # loads that rest are one for all displacements
+        force = force - along.reshape(int(np.prod(along.shape[:-2])), mesh.start.size, 12)
     force = force.reshape(*leading, mesh.start.size, 2, 6) * np.array([[-1.0], [1.0]])
     return SectionForces(*np.moveaxis(force, -1, 0))
 
