@@ -13,7 +13,6 @@ from jackettwin.caveats import Omission, omission_documents
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import (
     CommandGroup,
-    FiniteFloat,
     PageFile,
     Reply,
     answers,
@@ -23,9 +22,10 @@ from jackettwin.cli.console import (
     working,
 )
 from jackettwin.cli.fatigue_forces import forces_
-from jackettwin.cli.fatigue_series import curve_options, strain_, stress_
+from jackettwin.cli.fatigue_series import strain_, stress_
 from jackettwin.cli.fatigue_site import site_
-from jackettwin.cli.weld_tables import OF_WELDS, show_lives, tube_row, tube_warnings, weld_row, weld_warnings
+from jackettwin.cli.weld_options import details_option, edition_option, joint_options
+from jackettwin.cli.weld_tables import OF_WELDS, lives_document, show_lives
 from jackettwin.errors import InputError, did_you_mean
 from jackettwin.report import Table
 
@@ -104,21 +104,11 @@ def scf(file: Path) -> Reply:
     return Reply(document, show)
 
 
-def _details_option(command: Any) -> Any:
-    """Add the option that names the file of details of tubes."""
-    said = "File (YAML or JSON) of butt_welds, and of details of tubes with their factors."
-    return click.option("--details", type=click.Path(path_type=Path), help=said)(command)
-
-
 @fatigue_command.command("scenario")
 @click.argument("scenario")
-@click.option("--curve", default="T", show_default=True, help="S-N curve of tubular joints.")
-@click.option(
-    "--design-factor", default=1.0, show_default=True, type=FiniteFloat(min=1.0, max=10.0),
-    help="Design fatigue factor.",
-)  # fmt: skip
-@_details_option
-@curve_options
+@joint_options
+@details_option
+@edition_option
 @answers
 def scenario_(
     scenario: str, curve: str, design_factor: float, details: Path | None, edition: str | None
@@ -135,16 +125,13 @@ def scenario_(
     model, tubes = models(curve), read_details(details, models)
     with working("stresses at the welds"):
         found = scenario_life(read, model, tubes)
-    rows = [weld_row(one) for one in found.joints]
     document = {
         "scenario": read.name,
         "edition": model(np.inf)[1].curve.edition,
         "curve": curve,
         "design_factor": design_factor,
         "duration_s": found.duration_s,
-        "joints": rows,
-        "welds": [tube_row(one) for one in found.tubes],
-        "warnings": [*weld_warnings(rows), *tube_warnings(found.tubes, found.apart)],
+        **lives_document(found.joints, found.tubes, found.apart),
         "left_out": omission_documents(
             [
                 Omission("other seas, winds and states: all time is assumed to be like this scenario"),
@@ -158,11 +145,7 @@ def scenario_(
 @fatigue_command.command("record")
 @click.argument("twin")
 @click.argument("record", type=click.Path(path_type=Path))
-@click.option("--curve", default="T", show_default=True, help="S-N curve of tubular joints.")
-@click.option(
-    "--design-factor", default=1.0, show_default=True, type=FiniteFloat(min=1.0, max=10.0),
-    help="Design fatigue factor.",
-)  # fmt: skip
+@joint_options
 @click.option(
     "--draws", default=2, show_default=True, type=click.IntRange(1, 200),
     help="Number of motions for each support, whose damage is averaged.",
@@ -176,8 +159,8 @@ def scenario_(
 )
 @click.option("--fresh", is_flag=True, help="Ignore stored identifications and fits of earlier runs.")
 @click.option("--report", type=PageFile(), help="Also write a page, in a folder that exists.")
-@_details_option
-@curve_options
+@details_option
+@edition_option
 @answers
 def record_(
     twin: str,
@@ -212,7 +195,6 @@ def record_(
         found = life_of_record(
             config, update, readings, weather, model, draws=draws, supports=supports, details=tubes
         )
-    rows = [weld_row(one) for one in found.welds]
     document = {
         "twin": config.name,
         "record": record.name,
@@ -226,9 +208,7 @@ def record_(
             for f in found.estimate.levels.forces
         ],
         "noise": np.sqrt(found.estimate.levels.noise),
-        "joints": rows,
-        "welds": [tube_row(one) for one in found.tubes],
-        "warnings": [*weld_warnings(rows), *tube_warnings(found.tubes, found.apart), _FROM_SENSORS],
+        **lives_document(found.welds, found.tubes, found.apart, after=(_FROM_SENSORS,)),
         "left_out": omission_documents([*_OF_RECORDS, *OF_WELDS]),
     }
     if report is not None:

@@ -10,35 +10,25 @@ import click
 import numpy as np
 
 from jackettwin.caveats import Omission, omission_documents
-from jackettwin.cli.console import FiniteFloat, Reply, answers, working
-from jackettwin.cli.weld_tables import OF_WELDS, show_lives, tube_row, tube_warnings, weld_row, weld_warnings
+from jackettwin.cli.console import Reply, answers, working
+from jackettwin.cli.weld_options import STRONGEST_PA, details_option, edition_option, joint_options
+from jackettwin.cli.weld_tables import OF_WELDS, lives_document, show_lives
 from jackettwin.errors import located, look_up, require
 
 if TYPE_CHECKING:
     from jackettwin.arrays import FloatArray
     from jackettwin.records import ReadTable
 
-_STRONGEST_PA = 2e9
-"""Stress range above which the unit must be wrong."""
 _UNEVEN = 0.01
 _UNITS = {"n": 1.0, "nm": 1.0, "kn": 1e3, "knm": 1e3, "mn": 1e6, "mnm": 1e6}
-_SUBDYN = ("FKze", "MKxe", "MKye")
-"""How SubDyn's columns of section forces end."""
 
 
 @click.command("forces")
 @click.argument("structure")
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("--curve", default="T", show_default=True, help="S-N curve of tubular joints.")
-@click.option(
-    "--design-factor", default=1.0, show_default=True, type=FiniteFloat(min=1.0, max=10.0),
-    help="Design fatigue factor.",
-)  # fmt: skip
-@click.option(
-    "--details", type=click.Path(path_type=Path),
-    help="File (YAML or JSON) of butt_welds, and of details of tubes with their factors.",
-)  # fmt: skip
-@click.option("--edition", default=None, help="A shipped set of S-N curves or a YAML file.")
+@joint_options
+@details_option
+@edition_option
 @answers
 def forces_(
     structure: str, file: Path, curve: str, design_factor: float, details: Path | None, edition: str | None
@@ -69,10 +59,9 @@ def forces_(
         ranges = [one.largest_range_pa for one in found.joints]
         widest = max([*ranges, *(one.largest_range_pa for one in found.tubes)], default=0.0)
         require(
-            widest < _STRONGEST_PA, f"no steel resists stress ranges of {widest / 1e6:.3g} MPa",
+            widest < STRONGEST_PA, f"no steel resists stress ranges of {widest / 1e6:.3g} MPa",
             field="columns", remedy="are the forces in the units that their columns name?",
         )  # fmt: skip
-    rows = [weld_row(one) for one in found.joints]
     if found.unknown:
         warnings.append(
             f"{len(found.unknown)} joints or butt welds lack section forces: {few(list(found.unknown))}"
@@ -86,9 +75,7 @@ def forces_(
         "duration_s": found.duration_s,
         "sections": sum(len(at) for at in given.places.values()),
         "unknown": list(found.unknown),
-        "joints": rows,
-        "welds": [tube_row(one) for one in found.tubes],
-        "warnings": [*warnings, *weld_warnings(rows), *tube_warnings(found.tubes, found.apart)],
+        **lives_document(found.joints, found.tubes, found.apart, before=warnings),
         "left_out": omission_documents(
             [
                 Omission("other seas, winds and states: all time is assumed to be like this file"),
@@ -143,8 +130,10 @@ def _scale(table: ReadTable, name: str) -> float:
     InputError
         If the file states another unit.
     """
+    from jackettwin.decks import SECTION_CHANNELS
+
     entry = table.channels.get(name)
-    if not name.endswith(_SUBDYN) or entry is None or entry.unit is None:
+    if not name.endswith(SECTION_CHANNELS) or entry is None or entry.unit is None:
         return 1.0
     said = "".join(c for c in entry.unit.lower() if c.isalpha())
     return look_up(_UNITS, said, "unit of force", field=name, remedy="let SubDyn write N and N*m")

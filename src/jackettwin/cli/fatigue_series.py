@@ -10,6 +10,7 @@ import numpy as np
 
 from jackettwin.caveats import Omission, omission_documents
 from jackettwin.cli.console import FiniteFloat, Reply, answers, messages, numbers_of, say, working
+from jackettwin.cli.weld_options import STRONGEST_PA, edition_option
 from jackettwin.errors import InputError, look_up, require
 from jackettwin.quantities import known_units, plain_unit, to_si
 
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
 
 _UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "N/mm^2": 1e6, "ksi": 6.894757293168e6}
 _STRAIN_UNITS = {unit: to_si("strain", unit) for unit in known_units("strain")}
-_STRONGEST_PA = 2e9
-"""Stress range above which the unit must be wrong."""
 _WEAKEST_PA = 1e4
 """Stress range below which the unit is probably wrong."""
 _N_EQ = 1e7
@@ -29,14 +28,6 @@ _ROSETTE = (1, 3, 4)
 """How many gauges may stand at one place."""
 _HOT_K = 1e-4
 """Strain of a kelvin: beyond it a drift is no gauge's; steel expands by 1.2e-5."""
-
-
-def curve_options(command: Any) -> Any:
-    """Add the options that choose an S-N curve."""
-    edition = click.option(
-        "--edition", default=None, help="A shipped set of S-N curves or a YAML file; default: the newest."
-    )
-    return edition(command)
 
 
 def _of_series(command: Any) -> Any:
@@ -54,7 +45,7 @@ def _of_series(command: Any) -> Any:
             type=FiniteFloat(min=1.0, max=1000.0),
             help="Thickness of the plate; default: no effect of thickness.",
         ),
-        curve_options,
+        edition_option,
     )
     for option in reversed(options):
         command = option(command)
@@ -224,13 +215,13 @@ def _counted(
         cycles, scale, said = _across_gaps(values, file, column)
     widest = float(cycles.ranges.max(initial=0.0))
     require(
-        widest < _STRONGEST_PA,
+        widest < STRONGEST_PA,
         f"no steel resists stress ranges of {widest / 1e6:.3g} MPa",
         file=file,
         field=column,
         value=f"in {unit}",
         remedy="state the unit with --unit"
-        + (" Pa" if unit in _UNITS and 1e4 < widest / _UNITS[unit] < _STRONGEST_PA else ""),
+        + (" Pa" if unit in _UNITS and 1e4 < widest / _UNITS[unit] < STRONGEST_PA else ""),
     )
     warnings = [*warnings, *said]
     if 0.0 < widest < _WEAKEST_PA:

@@ -11,7 +11,8 @@ import numpy as np
 
 from jackettwin.caveats import Omission, omission_documents
 from jackettwin.cli.cache import keeping
-from jackettwin.cli.console import FiniteFloat, Reply, answers, messages, progress, say
+from jackettwin.cli.console import Reply, answers, messages, progress, say
+from jackettwin.cli.weld_options import edition_option, joint_options
 from jackettwin.cli.weld_tables import POINT, SHOWN, SIDE, show_welds
 from jackettwin.files import atomic_path
 from jackettwin.report import Table, TableColumn
@@ -33,12 +34,8 @@ _LEFT_OUT = (
 
 @click.command("site")
 @click.argument("site", type=click.Path(path_type=Path))
-@click.option("--curve", default="T", show_default=True, help="S-N curve of tubular joints.")
-@click.option(
-    "--design-factor", default=1.0, show_default=True, type=FiniteFloat(min=1.0, max=10.0),
-    help="Design fatigue factor.",
-)  # fmt: skip
-@click.option("--edition", default=None, help="A shipped set of S-N curves or a YAML file.")
+@joint_options
+@edition_option
 @click.option(
     "--basis", "page", type=click.Path(path_type=Path),
     help="Write the design basis with its results to this file, as Markdown.",

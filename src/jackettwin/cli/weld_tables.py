@@ -66,7 +66,30 @@ def show_lives(document: dict[str, Any], like: str) -> None:
         messages.print(f"warning: {warning}")
 
 
-def weld_row(one: WeldLife) -> dict[str, Any]:
+def lives_document(
+    joints: Sequence[WeldLife],
+    tubes: Sequence[TubeLife],
+    apart: Sequence[str],
+    *,
+    before: Sequence[str] = (),
+    after: Sequence[str] = (),
+) -> dict[str, Any]:
+    """Return the lives of welds and the warnings on them as JSON has them.
+
+    Parameters
+    ----------
+    apart : nodes in line where walls do not meet
+    before, after : other warnings, by their place
+    """
+    rows = [_weld_row(one) for one in joints]
+    return {
+        "joints": rows,
+        "welds": [_tube_row(one) for one in tubes],
+        "warnings": [*before, *_weld_warnings(rows), *_tube_warnings(tubes, apart), *after],
+    }
+
+
+def _weld_row(one: WeldLife) -> dict[str, Any]:
     """Return one side of a joint's weld as JSON has it."""
     weld = one.weld
     return {
@@ -82,7 +105,7 @@ def weld_row(one: WeldLife) -> dict[str, Any]:
     }
 
 
-def tube_row(one: TubeLife) -> dict[str, Any]:
+def _tube_row(one: TubeLife) -> dict[str, Any]:
     """Return a weld around a tube as JSON has it."""
     weld = one.weld
     return {
@@ -114,7 +137,7 @@ def _life(one: WeldLife | TubeLife) -> dict[str, Any]:
     }
 
 
-def tube_warnings(tubes: tuple[TubeLife, ...], apart: tuple[str, ...]) -> list[str]:
+def _tube_warnings(tubes: Sequence[TubeLife], apart: Sequence[str]) -> list[str]:
     """Return what a reader must know of the welds around tubes."""
     from jackettwin.structure import few
 
@@ -128,7 +151,7 @@ def tube_warnings(tubes: tuple[TubeLife, ...], apart: tuple[str, ...]) -> list[s
     return found
 
 
-def weld_warnings(rows: list[dict[str, Any]]) -> list[str]:
+def _weld_warnings(rows: list[dict[str, Any]]) -> list[str]:
     """Return what a reader must know of the joints' welds."""
     from jackettwin.structure import few
 

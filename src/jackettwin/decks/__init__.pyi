@@ -10,5 +10,9 @@ from .sacs import is_sacs as is_sacs, sacs_remarks as sacs_remarks
 from .structure_changes import AdjustedPlace as AdjustedPlace
 from .structure_yaml import RnaSchema as RnaSchema
 from .subdyn import DeckDamping as DeckDamping, read_deck_damping as read_deck_damping
-from .subdyn_outputs import MemberOutput as MemberOutput, member_outputs as member_outputs
+from .subdyn_outputs import (
+    SECTION_CHANNELS as SECTION_CHANNELS,
+    MemberOutput as MemberOutput,
+    member_outputs as member_outputs,
+)
 from .subdyn_writer import write_subdyn as write_subdyn

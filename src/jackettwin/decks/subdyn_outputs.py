@@ -14,6 +14,9 @@ from jackettwin.decks.subdyn_members import deck_axes
 from jackettwin.errors import located, look_up, require
 from jackettwin.structure import Structure
 
+SECTION_CHANNELS = ("FKze", "MKxe", "MKye")
+"""Ends of the channels of axial force and bending moments about local x and y."""
+
 
 class MemberOutput(NamedTuple):
     """A node of a member whose forces a deck asks for.

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray
-from jackettwin.decks import MemberOutput
+from jackettwin.decks import SECTION_CHANNELS, MemberOutput
 from jackettwin.errors import InputError, look_up, require
 from jackettwin.structure import Assembly, SectionForces
 
 _PARTS = ("axial", "bending_y", "bending_z")
-_SUBDYN = ("FKze", "MKxe", "MKye")
 _COLUMN = re.compile(
     r"^(?P<member>.+)\.(?P<end>start|end)\.(?P<part>axial|bending_y|bending_z)_(?P<unit>[kM]?(?:n|nm))$",
     re.IGNORECASE,
@@ -119,7 +118,10 @@ def given_sections(
             place = (match["member"], 0.0 if match["end"].lower() == "start" else 1.0)
             found.setdefault(place, {})[part] = scale * values
     for one in outputs:
-        own = {part: rows.get(f"{one.prefix}{suffix}") for part, suffix in zip(_PARTS, _SUBDYN, strict=True)}
+        own = {
+            part: rows.get(f"{one.prefix}{suffix}")
+            for part, suffix in zip(_PARTS, SECTION_CHANNELS, strict=True)
+        }
         if any(values is not None for values in own.values()):
             found[one.member, one.position] = _turned(assembly, one, _whole(one.prefix, own))
     if not found:
