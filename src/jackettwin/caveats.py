@@ -26,6 +26,13 @@ class Omission:
     clause: str | None = None
 
 
+OUT_OF_SCOPE = (
+    Omission("ice: out of scope", "ISO 19906"),
+    Omission("earthquakes: out of scope", "ISO 19901-2"),
+)
+"""Actions that no part of the program has."""
+
+
 def omission_documents(omissions: Iterable[Omission]) -> list[dict[str, str | None]]:
     """Return omissions as they stand under ``left_out`` in every answer."""
     return [{"what": one.what, "clause": one.clause} for one in omissions]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 
-from jackettwin.caveats import Omission
+from jackettwin.caveats import OUT_OF_SCOPE, Omission
 from jackettwin.structure import PILES, Structure, few
 
 _CLAUSES = (
@@ -16,8 +16,7 @@ _CLAUSES = (
     Omission("members: junctions of cones", "ISO 19902 13.6"),
     Omission("dented, corroded and grouted members", "ISO 19902 13.7 to 13.9"),
     Omission("partial action factors: actions as given; --combinations FILE factors them", "ISO 19902 9"),
-    Omission("ice: out of scope", "ISO 19906"),
-    Omission("earthquakes: out of scope", "ISO 19901-2"),
+    *OUT_OF_SCOPE,
 )
 """Clauses that no structure is checked for."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from jackettwin.caveats import Omission, omission_documents
+from jackettwin.caveats import OUT_OF_SCOPE, Omission, omission_documents
 
 if TYPE_CHECKING:
     from jackettwin.simulate import Scenario
@@ -17,8 +17,6 @@ _WATER = Omission(
 _WIND = Omission("the rotor in wind: `operation`, `simulate`")
 
 
-_ICE = Omission("ice: out of scope", "ISO 19906")
-_EARTHQUAKES = Omission("earthquakes: out of scope", "ISO 19901-2")
 _UPDATED = (
     Omission("ground that softens with amplitude: one linear law; scenarios with `hysteresis` have loops"),
     Omission("rotations of feet, and what couples their directions, unless `support.stiffness` gives them"),
@@ -47,7 +45,7 @@ ALWAYS: dict[str, tuple[Omission, ...]] = {
     "view": (_P_DELTA, _WATER, Omission("checks of what is drawn: colours are stresses, `check` has codes")),
     "law": (Omission("amplitude: a law is linear; scenarios with `hysteresis` have loops of the soil"),),
     "simulate-set": (
-        Omission("what `simulate` leaves out of each case: run one of them"), _ICE, _EARTHQUAKES,
+        Omission("what `simulate` leaves out of each case: run one of them"), *OUT_OF_SCOPE,
     ),
     "scf": (
         Omission("ring-stiffened and grouted joints", "DNV-RP-C203 appendix B"),
@@ -104,7 +102,6 @@ def of_simulation(scenario: Scenario) -> Left:
         [
             *found,
             Omission("displacements in the equilibrium: loads act on the structure at rest"),
-            _ICE,
-            _EARTHQUAKES,
+            *OUT_OF_SCOPE,
         ]
     )

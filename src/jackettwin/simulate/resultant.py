@@ -8,7 +8,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.axes import GRAVITY_M_S2
-from jackettwin.caveats import Omission, omission_documents
+from jackettwin.caveats import OUT_OF_SCOPE, Omission, omission_documents
 from jackettwin.errors import InputError
 from jackettwin.loads import Water, morison_points, radiation_damping, resultant_columns, water_weights
 from jackettwin.response import build_system, mode_kinds, mode_labels, undamped_modes
@@ -86,8 +86,7 @@ def _of_wind(scenario: Scenario, air: Air, assembly: Assembly) -> FloatArray:
 
 
 _LEFT_OUT = (
-    Omission("ice: out of scope", "ISO 19906"),
-    Omission("earthquakes: out of scope", "ISO 19901-2"),
+    *OUT_OF_SCOPE,
     Omission("motion of the asset: it stands still"),
 )
 _OF_WAVES = (
