@@ -93,6 +93,8 @@ def draft_twin(
     records: Sequence[tuple[str, Record]],
     defaults: FileDefaults,
     further: Sequence[str] = (),
+    *,
+    listed: bool = True,
 ) -> Draft:
     """Return a commented twin file.
 
@@ -108,6 +110,8 @@ def draft_twin(
         Properties of the logger that the user gave.
     further : sequence of str
         Records that are listed but not read.
+    listed : bool
+        Whether the file names its records; those of an asset in a store are imported separately.
     """
     first, stated = with_conditions(records[0][1]), stated_model(records[0][1].metadata)
     places = tuple(_place(channel, assembly) for channel in moving_channels(first).channels)
@@ -125,14 +129,17 @@ def draft_twin(
         *_logger(defaults),
         "sensors:                            # place above mean sea level, direction in global axes: CHECK",
         *[_sensor_line(place) for place in places],
-        "records:",
-        *[f"  - {_text(path)}   # {_described(record)}" for path, record in records],
-        *[f"  - {_text(path)}" for path in further],
+        *(_records(records, further) if listed else ()),
         *_UPDATE,
         *(["# Missing:"] if missing else []),
         *[f"#   {sentence}" for sentence in missing],
     ]
     return Draft("\n".join(lines) + "\n", places, missing)
+
+
+def _records(records: Sequence[tuple[str, Record]], further: Sequence[str]) -> list[str]:
+    read = [f"  - {_text(path)}   # {_described(record)}" for path, record in records]
+    return ["records:", *read, *[f"  - {_text(path)}" for path in further]]
 
 
 def _place(channel: Channel, assembly: Assembly) -> SensorPlace:

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import Any
 
 from jackettwin.errors import InputError, located
-
-_RECORDS = re.compile(r"^records:.*\n(?:  - .*\n)+", re.MULTILINE)
-"""Records of a twin file; those of an asset are imported separately."""
 
 
 def draft(structure: str, record: str, most_freedoms: int, memory_bytes: int) -> Any:
@@ -38,12 +34,12 @@ def draft(structure: str, record: str, most_freedoms: int, memory_bytes: int) ->
                 built = read_structure(deck)
                 check_freedoms(built, stated.get("subdivide"), most_freedoms)
                 assembly = assembled_as_stated(built, stated)
-            found = draft_twin(deck.name, assembly, [(name, read)], FileDefaults())
+            found = draft_twin(deck.name, assembly, [(name, read)], FileDefaults(), listed=False)
             placed = tuple(place.sensor for place in found.places if not place.lacks)
             drawn = view_document(View(assembly, thickness_quantities(assembly), (), placed))
             return {
                 "structure": deck.name,
-                "twin": _RECORDS.sub("", found.text),
+                "twin": found.text,
                 "places": [
                     {
                         "channel": place.sensor.channel,
