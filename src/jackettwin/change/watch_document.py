@@ -10,12 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from jackettwin.change.reversals import taken_back
+from jackettwin.change.reversals import Z90, taken_back
 from jackettwin.change.smallest_changes import smallest_documents
 from jackettwin.change.table_monitoring import Alarm, MonitoredTable
 from jackettwin.watching import CauseVerdict, Watch
 
-_Z90 = 1.645
 _NAMED, _LIKELY = 3, 0.001
 """Number of causes in a sentence if none is clear, and the smallest probability of a listed cause."""
 
@@ -156,7 +155,7 @@ def _unit(change: str, kind: str) -> str:
 
 
 def _sized(size: float, std: float, unit: str) -> dict[str, Any]:
-    ends = np.array([size - _Z90 * std, size, size + _Z90 * std])
+    ends = np.array([size - Z90 * std, size, size + Z90 * std])
     low, mid, high = map(float, np.degrees(ends) if unit == "deg" else np.expm1(ends))
     return {"size": mid, "interval_90": [low, high], "unit": unit}
 

@@ -16,7 +16,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.loads import OPERATING_LOG_STD, operating_point
 from jackettwin.simulate.motion.model import asset_model
 from jackettwin.simulate.motion.motion import Motion
-from jackettwin.simulate.operating_modes import modes_with_rotor
+from jackettwin.simulate.operating_modes import Z90, modes_with_rotor
 from jackettwin.simulate.scenario.air import GRID_M
 from jackettwin.simulate.scenario.scenario import Instrument, Scenario
 from jackettwin.simulate.sensing import readings
@@ -31,7 +31,6 @@ DIRECTIONS = {"fore_aft": (1.0, 0.0, 0.0), "side_side": (0.0, 1.0, 0.0)}
 
 COMPARED, RECORDS, SPEEDS_M_S = "jacket15", 7, (8.0, 16.0)
 """Structure, number and mean winds of the OpenFAST records with which levels were compared."""
-_NORMAL_90 = 1.645
 _STUDENT_90 = 1.943
 """The 95 % quantile of Student's t with one degree of freedom less than there are records."""
 
@@ -146,7 +145,7 @@ def operating_levels(scenario: Scenario, damping: Mapping[str, float]) -> dict[s
         here, other = damping.get(f"{side}_1"), expected.get(f"{side}_1")
         if here is None or other is None or min(here, other.damping_ratio) <= 0.0:
             continue
-        ratio, wide = sqrt(other.damping_ratio / here), exp(0.5 * _NORMAL_90 * OPERATING_LOG_STD[side])
+        ratio, wide = sqrt(other.damping_ratio / here), exp(0.5 * Z90 * OPERATING_LOG_STD[side])
         found[side] = OperatingLevel(here, other.damping_ratio, ratio, (ratio / wide, ratio * wide))
     return found
 
