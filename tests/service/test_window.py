@@ -294,7 +294,8 @@ def test_a_place_is_in_its_address(opened: Open) -> None:
     expect(page.locator("figure.plot")).to_have_count(1)
     page.get_by_role("button", name="Frequency", exact=True).click()
     page.get_by_role("button", name="30 days").click()
-    assert "mode=mode_1" in page.url and "from=" in page.url and "show" not in page.url
+    # The address is written at a pace, so it is waited for.
+    expect(page).to_have_url(re.compile(r"\?(?!.*show)(?=.*mode=mode_1)(?=.*from=)"))
     lines = saved(page)
     assert len(lines) >= 5 and lines[0].startswith("series,time_utc,")
     page.context.close()
@@ -361,7 +362,7 @@ def test_life_is_told_weld_by_weld(opened: Open, monkeypatch: pytest.MonkeyPatch
     expect(page.get_by_text("The first weld has 130 years left (31 to 540).")).to_be_visible()
     page.get_by_role("link", name="leg_1_3, brace_1_2_1, brace").click()
     expect(page.get_by_role("heading", name="leg_1_3, brace_1_2_1, brace")).to_be_visible()
-    assert "weld=" in page.url
+    expect(page).to_have_url(re.compile("weld="))
     assert serious(page) == []
     page.set_viewport_size({"width": 390, "height": 900})
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
@@ -522,7 +523,7 @@ def test_a_record_is_drawn_as_spectrogram_and_by_singular_values(opened: Open) -
     expect(drawn).to_have_attribute("href", re.compile("^data:image/png"))
     page.get_by_role("button", name="Singular values").click()
     expect(page.get_by_text("largest", exact=True)).to_be_visible(timeout=30_000)
-    assert "spectrum=singular" in page.url
+    expect(page).to_have_url(re.compile("spectrum=singular"))
     page.context.close()
 
 
