@@ -40,7 +40,8 @@ SLOPE_1_M = 0.012
 """Turn of the tower top over its way in the first modes of the records' asset."""
 BANDS = {"0.02–0.12 Hz": (0.02, 0.12), "0.14–0.21 Hz": (0.14, 0.21), "0.3–0.6 Hz": (0.3, 0.6)}
 DEPTH_M = 72.0
-_STANDING = {"Wake_Mod": "0", "UA_Mod": "0"}
+STANDING = {"Wake_Mod": "0", "UA_Mod": "0"}
+"""AeroDyn without induction and unsteady lift."""
 
 
 def main() -> None:
@@ -151,7 +152,7 @@ def aerodyn(program: str, decks: Path, folder: Path, scenario: Scenario) -> tupl
     primary = write_case(
         folder, scenario.asset.structure, turbine(), run, foundation="unused", depth_m=DEPTH_M
     )
-    aero_files(decks, folder, inflow={"WindType": "3", "FileName_BTS": '"wind.bts"'}, aero=_STANDING)
+    aero_files(decks, folder, inflow={"WindType": "3", "FileName_BTS": '"wind.bts"'}, aero=STANDING)
     log = folder / "log.txt"
     with log.open("w") as stream:
         subprocess.run([program, primary.name], cwd=folder, stdout=stream, stderr=stream, check=True)

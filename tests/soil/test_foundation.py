@@ -103,7 +103,7 @@ def test_stout_piles_are_said_to_be_beyond_the_curves(tmp_path: Path, diameter_m
     path = tmp_path / "piles.yaml"
     path.write_text(PILE.replace("2.8", str(diameter_m)) + CLAY)
     notes = read_support(path, read_structure("jacket15")).notes
-    assert ["diameters long" in note for note in notes] == [True] * said
+    assert any("diameters long" in note for note in notes) is said
 
 
 def test_a_pile_longer_than_its_layers_is_said(tmp_path: Path) -> None:

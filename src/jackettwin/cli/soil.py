@@ -37,15 +37,21 @@ _REACH = {"py": 0.1, "tz": 0.02, "qz": 0.1}
 _LEFT_OUT = (
     Omission("axial force and strain hardening in the pushover's yielding steel", "ISO 19902 17"),
     Omission(
-        "ground between the piles of a group: `curves: {p_multiplier: …}` weakens each one's own",
+        "settlement of a pile by the loads of its group's others; what weakens their lateral ground is "
+        "included by `curves: {group: …}`",
         "ISO 19902 17",
     ),
     Omission(
-        "cyclic degradation along the axis and set-up but by `t_multiplier`; weight of pile and plug",
+        "cyclic degradation along the axis, but in sand by `axial_cycles` and in clay by `t_multiplier`; "
+        "set-up but by `t_multiplier`; weight of pile and plug",
         "ISO 19902 17",
     ),
     Omission("base and side terms of stocky piles, but by `curves: {sand_py: pisa, clay_py: pisa}`"),
 )
+_FACTORS = {
+    "group_p_multiplier": "p-y curves, by the other piles of the group",
+    "sand_friction_left": "shaft friction in sand, after cycles along the axis",
+}
 _LINEAR = "linear ground has no curves and no capacity; describe the ground by layers"
 
 
@@ -124,6 +130,7 @@ def _document(
         "frequency_hz": frequency_hz,
         "head_stiffness": K.real,
         "head_loss": K.imag,
+        **_factors(ground),
         "curves": None if curves is None else {"kinds": _kinds(ground), **_curves(curves)},
         "capacity": None if curves is None or pushed is None else _capacity(ground, curves, pushed),
         "pushover": None if pushed is None else _pushover(pushed, arm_m),
@@ -142,6 +149,16 @@ def _add_yield(document: dict[str, Any], ground: Foundation, pushed: Pushover, f
             f"alone); at the end its curvature is {pushed.ductility:.1f} times that of first yield, "
             f"{pushed.hinge_m:.1f} m deep"
         )
+
+
+def _factors(ground: Foundation) -> dict[str, float | None]:
+    """Return what the pile's group and cycles along its axis leave of the ground's reactions."""
+    options, layered = ground.options, ground.profile is not None
+    group, cycles = options.group, options.axial_cycles
+    return {
+        "group_p_multiplier": group.p_multiplier(ground.pile.outer_diameter_m) if group and layered else None,
+        "sand_friction_left": cycles.friction_left if cycles and layered else None,
+    }
 
 
 def _kinds(ground: Foundation) -> list[dict[str, str]]:
@@ -186,6 +203,8 @@ def _capacity(ground: Foundation, curves: PileCurves, pushed: Pushover) -> dict[
         "inner_shaft_n": axial.inner_n,
         "plugged": axial.plugged,
         "tip_n": axial.tip_n,
+        "block_shaft_n": None if axial.block is None else axial.block.shaft_n,
+        "block_base_n": None if axial.block is None else axial.block.base_n,
         "axial_compression_n": axial.compression_n,
         "axial_tension_n": axial.tension_n,
         "lateral_n": pushed.ultimate_n,
@@ -221,6 +240,9 @@ def _show(document: dict[str, Any]) -> None:
     title = f"head at {document['frequency_hz']:g} Hz [N/m, N, N·m/rad]"
     show_table(Table(title, ("", *names), rows))
     capacity, pushed = document["capacity"], document["pushover"]
+    for key, words in _FACTORS.items():
+        if document[key] is not None:
+            say(f"{words}: {document[key]:.3f}")
     if capacity is not None:
         say(
             f"capacity [MN]: compression {1e-6 * capacity['axial_compression_n']:.1f} (shaft "
@@ -230,6 +252,11 @@ def _show(document: dict[str, Any]) -> None:
             f"{capacity['lateral_displacement_limit_m']:.2f} m (at most "
             f"{1e-6 * capacity['highest_lateral_n']:.2f})"
         )
+        if capacity["block_shaft_n"] is not None:
+            say(
+                f"its share of the group's block of clay [MN]: sides {1e-6 * capacity['block_shaft_n']:.1f}, "
+                f"base {1e-6 * capacity['block_base_n']:.1f}"
+            )
         from jackettwin.report.pages.soil import pushover_table
 
         show_table(pushover_table(pushed, "pushover"))

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import pi
+from itertools import combinations
+from math import inf, pi
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -16,6 +17,7 @@ from jackettwin.soil.ground.profile import Layer, Scour, SoilProfile
 from jackettwin.soil.laws.files import LawSchema
 from jackettwin.soil.laws.viscoelastic import Law
 from jackettwin.soil.piles.cyclic import CyclicPile, cyclic_pile
+from jackettwin.soil.piles.group import REACH
 from jackettwin.soil.piles.impedance import PileHead, lumped_head, on_pile_heads
 from jackettwin.soil.piles.piles import Pile, PileSprings, dashpots, linear_springs, with_piles
 from jackettwin.soil.piles.radiation import Radiation
@@ -113,11 +115,26 @@ class Foundation:
     def piled(self, structure: Structure) -> tuple[Structure, Support]:
         """Return the structure on its piles, every node of them."""
         piled, support = with_piles(structure, self.pile, self.springs, law=self.law, dashpots=self.dashpots)
-        return piled, replace(support, notes=self.notes)
+        return piled, replace(support, notes=(*self.notes, *self._close_feet(structure)))
 
     def heads(self, structure: Structure) -> Support:
         """Return pile heads lumped at the feet: as many unknowns as without piles."""
-        return replace(on_pile_heads(structure, self.head(structure)), notes=self.notes)
+        notes = (*self.notes, *self._close_feet(structure))
+        return replace(on_pile_heads(structure, self.head(structure)), notes=notes)
+
+    def _close_feet(self, structure: Structure) -> tuple[str, ...]:
+        """Return a sentence on feet whose piles weaken each other's ground, if no group is given."""
+        if self.profile is None or self.options.group is not None or self.options.p_multiplier != 1.0:
+            return ()
+        plan = [np.array(structure.nodes[node][:2]) for node in structure.reaction_nodes]
+        apart = min((float(np.hypot(*(b - a))) for a, b in combinations(plan, 2)), default=inf)
+        D = self.pile.outer_diameter_m
+        if apart >= REACH * D:
+            return ()
+        return (
+            f"feet are {apart / D:.1f} diameters apart: their piles weaken each other's ground, which is "
+            "left out; give curves: {group: {others_m: …}}",
+        )
 
     def lumped(self, structure: Structure) -> tuple[Structure, Support]:
         """Return the structure and its pile heads, as ``piled`` does with every node of the piles."""
@@ -177,7 +194,7 @@ class FoundationSchema(Schema):
         return Foundation(self.pile, springs, law, self.radiation, *about)
 
     def _notes(self) -> tuple[str, ...]:
-        """Return a sentence on a pile that is longer than its layers, and on one that is not slender."""
+        """Return sentences on a pile longer than its layers, on one not slender, and on cycles in clay."""
         if self.soil.layers is None:
             return ()
         notes, length = [], self.pile.length_m
@@ -194,6 +211,8 @@ class FoundationSchema(Schema):
                 f"the pile is only {slenderness:.1f} diameters long: API's curves are of slender piles; base "
                 "and side shear, by which a monopile or a caisson carries much of its load, are left out"
             )
+        if self.curves.axial_cycles is not None and any(one.clay for one in self.soil.layers):
+            notes.append("cycles along the axis weaken sand alone; for clay give curves: {t_multiplier: …}")
         return tuple(notes)
 
     def _profile(self) -> SoilProfile | None:

@@ -12,6 +12,7 @@ import scipy.sparse.linalg as spla
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import NumericalError, require
 from jackettwin.soil.ground.curves import tangent_stiffness
+from jackettwin.soil.piles.group import ClayBlock
 from jackettwin.soil.piles.impedance import pile_matrices
 from jackettwin.soil.piles.piles import Pile, PileSprings
 from jackettwin.soil.piles.plastic_steel import PlasticSteel
@@ -158,22 +159,31 @@ class AxialCapacity:
     inner_n : friction inside, of the soil that stays behind as the pile goes on; none if it plugs
     tip_n : of the whole base if it plugs, else of the steel
     plugged : whether the soil inside goes with the pile
+    block : share of the clay that the pile's group encloses, which may fail as one; None of a single pile
     """
 
     shaft_n: float
     inner_n: float
     tip_n: float
     plugged: bool
+    block: ClayBlock | None = None
 
     @property
-    def compression_n(self) -> float:
-        """Shaft, outside and inside, and tip."""
+    def alone_n(self) -> float:
+        """Of a single pile: shaft, outside and inside, and tip."""
         return self.shaft_n + self.inner_n + self.tip_n
 
     @property
+    def compression_n(self) -> float:
+        """Of the pile, or its share of the block, whichever carries less."""
+        return (
+            self.alone_n if self.block is None else min(self.alone_n, self.block.shaft_n + self.block.base_n)
+        )
+
+    @property
     def tension_n(self) -> float:
-        """The shaft outside; neither weight nor friction inside is counted."""
-        return self.shaft_n
+        """The shaft outside or the block's sides; neither weight nor friction inside is counted."""
+        return self.shaft_n if self.block is None else min(self.shaft_n, self.block.shaft_n)
 
 
 @dataclass(frozen=True)
@@ -217,9 +227,9 @@ def axial_capacity(pile: Pile, curves: PileCurves) -> AxialCapacity:
     shaft, D, d = float(curves.at.weight @ t), pile.outer_diameter_m, pile.inner_diameter_m
     bearing_pa = float(curves.qz.capacity) / pile.tip_area_m2
     whole, steel = 0.25 * np.pi * D**2, 0.25 * np.pi * (D**2 - d**2)
-    plug = AxialCapacity(shaft, 0.0, bearing_pa * whole, plugged=True)
-    core = AxialCapacity(shaft, shaft * d / D, bearing_pa * steel, plugged=False)
-    return min(plug, core, key=lambda one: one.compression_n)
+    plug = AxialCapacity(shaft, 0.0, bearing_pa * whole, True, curves.block)
+    core = AxialCapacity(shaft, shaft * d / D, bearing_pa * steel, False, curves.block)
+    return min(plug, core, key=lambda one: one.alone_n)
 
 
 def pushover(

@@ -13,6 +13,7 @@ from jackettwin.soil.ground.curves import NOTHING, Curve, secant_stiffness
 from jackettwin.soil.ground.layering import equivalent_points
 from jackettwin.soil.ground.pisa import StockyGround
 from jackettwin.soil.ground.profile import Point, SoilProfile, ground_at
+from jackettwin.soil.piles.group import ClayBlock
 from jackettwin.soil.piles.piles import Pile, PileSprings, Stations, stations
 from jackettwin.soil.piles.soil_curves import CurveOptions
 
@@ -29,7 +30,7 @@ class PileCurves:
     """Reaction curves of a pile: p-y and t-z at every station, q-z at the tip.
 
     ``sides`` are the moments along the shaft of a stocky pile, one a station or none, ``base_shear`` and
-    ``base_moment`` those under its tip.
+    ``base_moment`` those under its tip. ``block`` is the pile's share of the clay that its group encloses.
     """
 
     at: Stations
@@ -40,6 +41,7 @@ class PileCurves:
     sides: tuple[SideMoment, ...] = ()
     base_shear: Curve = NOTHING
     base_moment: Curve = NOTHING
+    block: ClayBlock | None = None
 
 
 def pile_curves(pile: Pile, profile: SoilProfile, options: CurveOptions | None = None) -> PileCurves:
@@ -48,7 +50,7 @@ def pile_curves(pile: Pile, profile: SoilProfile, options: CurveOptions | None =
     Raises
     ------
     InputError
-        If scour leaves nothing of the pile in the ground.
+        If scour leaves nothing of the pile in the ground, or piles of its group overlap.
     """
     options = CurveOptions() if options is None else options
     scour = profile.scour.total_m
@@ -80,6 +82,7 @@ def pile_curves(pile: Pile, profile: SoilProfile, options: CurveOptions | None =
         tz=tuple(curve("tz", point) for point in points),
         qz=curve("qz", points[-1]),
         diameter_m=D,
+        block=options.group.block(pile, profile, at, layer) if options.group else None,
     )
     if not any(point is not None and options.is_stocky(point.soil) for point in points):
         return found

@@ -12,6 +12,7 @@ from functools import cache
 from typing import Literal, NamedTuple, cast
 
 from jackettwin.errors import look_up, require, require_between
+from jackettwin.files import Placed
 from jackettwin.plugins import plugins_of_type
 from jackettwin.soil.ground.curves import Curve, ScaledCurve
 from jackettwin.soil.ground.pisa import StockyGround
@@ -26,6 +27,7 @@ from jackettwin.soil.ground.tz_curves import (
     sand_tz,
     tip_qz,
 )
+from jackettwin.soil.piles.group import AxialCycles, PileGroup
 from jackettwin.soil.piles.piles import Pile
 
 REACTIONS = ("sand_py", "clay_py", "sand_tz", "clay_tz", "sand_qz", "clay_qz")
@@ -52,9 +54,13 @@ class CurveOptions:
     sand_qz: str = "rp2geo"
     clay_qz: str = "rp2geo"
     p_multiplier: float = 1.0
-    """On every p-y curve: of a pile in a group, behind others of its row."""
+    """On every p-y curve, beside that of ``group``."""
     t_multiplier: float = 1.0
     """On every t-z curve: shaft friction that cycles along the axis have left, or set-up has added."""
+    group: Placed[PileGroup] | None = None
+    """Where the other piles of this one's group stand."""
+    axial_cycles: Placed[AxialCycles] | None = None
+    """Cycles along the axis, on t-z curves of sand."""
 
     def __post_init__(self) -> None:
         require_between("cycles", self.cycles, 1.0, 1e9)
@@ -104,8 +110,15 @@ class CurveOptions:
         """Return the lateral, shaft or tip reaction of the ground at one depth of a pile."""
         reaction = _reaction(point.soil, of)
         found = soil_curves(reaction)[getattr(self, reaction)].build(point, pile, self)
-        factor = {"py": self.p_multiplier, "tz": self.t_multiplier, "qz": 1.0}[of]
+        factor = self._factor(of, point.soil, pile.outer_diameter_m)
         return found if factor == 1.0 else ScaledCurve(found, factor)
+
+    def _factor(self, of: Literal["py", "tz", "qz"], soil: Sand | Clay, diameter_m: float) -> float:
+        if of == "py":
+            return self.p_multiplier * (self.group.p_multiplier(diameter_m) if self.group else 1.0)
+        cycled = self.axial_cycles if of == "tz" and isinstance(soil, Sand) else None
+        left = 1.0 if cycled is None else cycled.friction_left
+        return left * (self.t_multiplier if of == "tz" else 1.0)
 
 
 def _reaction(soil: Sand | Clay, of: str) -> str:
