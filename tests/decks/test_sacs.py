@@ -83,48 +83,7 @@ def test_mass_is_that_of_the_cards(deck: Path) -> None:
     assert check(assemble(read_structure(deck))).mass_kg == pytest.approx(legs + brace + weight, rel=1e-6)
 
 
-METRIC = """\
-LDOPT       NF+Z1.0280007.849000 -42.500  42.500GLOBMN          CMB
-  A tripod under a cone, in the columns and with the exponents of public decks of wind turbines' jackets
-OPTIONS      MN       SDUC   1 1   DC  A
-SECT
-SECT CONE1     CON4985.71.9605+89.8000+79.8000+7 400.604.000409.20
-SECT TUBE1     TUB1.64+46.1579+83.0789+83.0789+8 400.6013.50
-SECT TUBE2     TUB                               600.002.000
-GRUP
-GRUP 002 CONE1                21.008.10024.82 1    1.001.00     0.500N7.8490
-GRUP 052 TUBE1                20.007.69024.82 1    1.001.00     0.500N1.00-3
-GRUP L07BTUBE1                21.008.10034.50 1    1.001.00     0.500 7.8490
-GRUP L07ETUBE2                21.008.10034.50 1    1.001.00     0.500 7.8490
-GRUP LG2         200.0015.000 20.007.72224.80 1    1.001.00     0.500 7.8490
-MEMBER
-MEMBER 2   1    002
-MEMBER 601L1    052                180.00
-MEMBER1001P601L LG2
-MEMBER OFFSETS                     56.401            -56.40
-MEMBER 002P601L LG2     111
-MEMBER 003P601L L07
-JOINT
-JOINT 2         0.    -1.    93.       -41.433 20.000 222000
-JOINT 1         0.    -1.    90.       -41.433 50.000
-JOINT 601L     -6.    -4.    12.       1.091-4 20.000
-JOINT 001P    -11.    -8.   -42.-50.000-13.200-50.000 PILEHD
-JOINT 002P     11.    -8.   -42. 50.000-13.200-50.000 PILEHD
-JOINT 003P      0.     8.   -42.        13.200-50.000 111222
-CURR
-CURR      42.500   0.116
-WGTJT ANOD  1     12.0
-LOAD
-LOADCNNACL
-LOAD   1                      -8100.0                       GLOB JOIN   NACELLE
-LOADCNN090
-LOAD   1              52.4    -8100.0                       GLOB JOIN   AGAIN
-LOADCNCRAN
-LOAD   1                       -100.0                       GLOB JOIN   CRANE
-LCOMB C000 NACL1.0000CRAN1.0000
-END
- **LEG1**    2     6.000    -4.243    12.200    11.500    -8.132   -33.500
-"""
+METRIC = (Path(__file__).parents[1] / "data" / "sacs" / "tripod.sacs").read_text(encoding="utf-8")
 
 
 @pytest.fixture

@@ -1,24 +1,32 @@
 """Decks written and read again are the same structure."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
+from jackettwin.cli import main
+from jackettwin.cli.joints import with_joints
 from jackettwin.decks import read_structure
+from jackettwin.decks.subdyn import DeckDamping, read_deck_damping
 from jackettwin.decks.subdyn_writer import write_subdyn
 from jackettwin.errors import InputError
 from jackettwin.response.modes.modal import undamped_modes
+from jackettwin.response.superelement.craig_bampton import superelement
+from jackettwin.response.superelement.files import read_superelement, write_superelement
 from jackettwin.response.system import build_system
 from jackettwin.soil import clamped, on_translations, own_support, pinned, with_static_reactions
 from jackettwin.soil.foundation import read_foundation
 from jackettwin.soil.laws.viscoelastic import Prony, kelvin_voigt
-from jackettwin.structure import Structure, assemble
+from jackettwin.structure import Rayleigh, Structure, assemble
 from jackettwin.structure.cut import at_interface
 from jackettwin.structure.model import PointMass, RigidLink
 
 DECK = Path(__file__).parents[1] / "data" / "subdyn" / "IEA-15-240-RWT-Jacket_SubDyn.dat"
+SACS = Path(__file__).parents[1] / "data" / "sacs"
 OTHERS = Path(__file__).parents[2] / "qualify" / "decks"
 
 
@@ -67,6 +75,71 @@ def test_what_is_read_back_has_the_same_matrices(name: str, support: str, kind: 
     for old, new in ((before.M, after.M), (before.static_stiffness(), after.static_stiffness())):
         # z is counted from the sea level in a deck: lengths differ by their rounding
         np.testing.assert_allclose(new.toarray(), old.toarray(), rtol=0.0, atol=1e-11 * abs(old).max())
+
+
+@pytest.mark.parametrize(
+    ("name", "interface", "feet"),
+    [
+        ("tripod.sacs", "2", None),
+        ("tripod.sacs", "1,601L", "001P,002P,003P"),
+        ("k_braced.yaml", None, None),
+        ("deck_and_tower.yaml", None, None),
+        ("square.yaml", None, None),
+        ("uneven_legs.yaml", None, None),
+        ("tripod_lattice.dat", None, None),
+    ],
+)
+def test_every_structure_comes_back_from_deck_and_superelement(
+    name: str, interface: str | None, feet: str | None, tmp_path: Path
+) -> None:
+    """M, K and C of SACS decks, K-braces, a tower on its deck, square and uneven legs, mass in the ground.
+
+    A deck holds M and K, and a superelement the dashpots of the ground as well.
+    """
+    place = SACS if name.endswith(".sacs") else OTHERS
+    whole = with_joints(read_structure(place / name), interface, feet)
+    base = own_ground(replace(at_interface(whole)[0], rotary_inertia=True), "KM")
+    before = build_system(assemble(base), own_support(base)).pencil
+    again = read_structure(write_subdyn(base, tmp_path / "deck.dat")[0])
+    after = build_system(assemble(again), own_support(again)).pencil
+    for old, new in ((before.M, after.M), (before.static_stiffness(), after.static_stiffness())):
+        np.testing.assert_allclose(new.toarray(), old.toarray(), rtol=0.0, atol=1e-11 * abs(old).max())
+    damped = build_system(
+        assemble(base), on_translations(base, kelvin_voigt(2.5e9, 7.6e8)), rayleigh=Rayleigh(0.01, 0.002)
+    )
+    element = superelement(damped, number=4, band_hz=3.0)
+    for kind in ("se.npz", "se.dat"):
+        back = read_superelement(write_superelement(element, tmp_path / kind)[0])
+        for key in ("M", "K", "C"):
+            own = getattr(element, key)
+            np.testing.assert_allclose(getattr(back, key), own, rtol=0.0, atol=1e-13 * abs(own).max())
+    assert abs(element.C).max() > 0.0
+
+
+@pytest.mark.parametrize("way", ["modes alone", "rayleigh", "matrix"])
+def test_a_deck_s_own_damping_is_exported(way: str, tmp_path: Path) -> None:
+    """C of what is read back, too: `export` of a deck wrote 1 % whatever the deck had said."""
+    rng = np.random.default_rng(3)
+    root = rng.normal(size=(6, 6))
+    damping = DeckDamping(
+        (0.02, 0.015, 0.007),
+        *((0.01, 0.002) if way == "rayleigh" else (0.0, 0.0)),
+        1e5 * root @ root.T if way == "matrix" else np.zeros((6, 6)),
+    )
+    deck, again = tmp_path / "deck.dat", tmp_path / "again.dat"
+    write_subdyn(read_structure(DECK), deck, damping)
+    run = CliRunner().invoke(main, ["export", str(deck), "--out", str(again), "--json"])
+    assert run.exit_code == 0, run.stderr
+    assert not any("own damping" in one["what"] for one in json.loads(run.stdout)["left_out"])
+    back = read_deck_damping(again)
+    assert back.modal == pytest.approx(damping.modal, rel=1e-14)
+    assert (back.alpha, back.beta) == (damping.alpha, damping.beta)
+    np.testing.assert_array_equal(back.interface, damping.interface)
+    # a matrix is of the interface that the deck names
+    run = CliRunner().invoke(main, ["export", str(deck), "--interface", "1", "--out", str(again), "--json"])
+    assert run.exit_code == 0, run.stderr
+    assert ("it is left out" in run.stderr) is (way == "matrix")
+    assert not read_deck_damping(again).interface.any()
 
 
 def test_a_jacket_on_piles_becomes_a_deck(tmp_path: Path) -> None:

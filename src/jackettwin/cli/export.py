@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -44,7 +45,7 @@ def export_command(
 
     The foundation is the part below the interface. Nodes of piles modelled as members become reaction joints.
     """
-    from jackettwin.decks import read_structure, write_subdyn
+    from jackettwin.decks import read_deck_damping, read_structure, write_subdyn
     from jackettwin.soil import held_where_sprung, with_static_reactions
     from jackettwin.structure import assemble, at_interface
 
@@ -55,12 +56,21 @@ def export_command(
     whole = held_where_sprung(whole, held)
     foundation, _ = at_interface(whole)
     path = out or Path("out") / f"{whole.name}_SubDyn.dat"
-    files = [str(file) for file in write_subdyn(with_static_reactions(foundation, held), path)]
-    warnings = _warnings(whole, held)
+    deck = Path(structure).suffix.lower() == ".dat"
+    damping, warnings = read_deck_damping(Path(structure)) if deck else None, _warnings(whole, held)
+    if damping is not None and interface is not None and damping.interface.any():
+        damping = replace(damping, interface=0.0 * damping.interface)
+        warnings.append("the deck's damping matrix is of its own interface: it is left out")
+    files = [str(file) for file in write_subdyn(with_static_reactions(foundation, held), path, damping)]
     for warning in warnings:
         messages.print(f"warning: {warning}")
     return Reply(
-        {"structure": whole.name, "files": files, "warnings": warnings, "left_out": of_export()},
+        {
+            "structure": whole.name,
+            "files": files,
+            "warnings": warnings,
+            "left_out": of_export(damping=damping is None),
+        },
         lambda: say("wrote " + ", ".join(files)),
     )
 

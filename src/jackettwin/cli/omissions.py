@@ -73,14 +73,15 @@ def of_superelement(*, gravity: bool, steel: bool) -> Left:
     return omission_documents([*([] if gravity else [_P_DELTA]), *([] if steel else [own]), loads])
 
 
-def of_export() -> Left:
-    """Return what no deck holds of a structure."""
+def of_export(*, damping: bool) -> Left:
+    """Return what no deck holds of a structure; ``damping``: whether that of a deck is not at hand."""
+    own = Omission("the structure's own damping: the deck has 1 % for each of its modes")
     return omission_documents(
         [
             Omission("tower and turbine: what is above the interface"),
             Omission("damping of the ground, and stiffness that varies with frequency: `superelement`"),
             Omission("geometric (P-Δ) stiffness: `superelement --gravity`"),
-            Omission("the structure's own damping: the deck has 1 % for each of its modes"),
+            *([own] if damping else []),
         ]
     )
 

@@ -1,8 +1,8 @@
 """Structures to OpenFAST SubDyn input files, in the format of OpenFAST 5.
 
 A deck holds what SubDyn knows: joints, circular beams and beams of any section, rigid links, concentrated
-masses, and reactions with the static stiffness and mass of what is below them. Names that are not whole
-numbers become numbers.
+masses, reactions with the static stiffness and mass of what is below them, and the damping that another deck
+has stated. Names that are not whole numbers become numbers.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from jackettwin.decks.subdyn import DeckDamping
 from jackettwin.decks.subdyn_members import deck_axes
 from jackettwin.errors import InputError, require
 from jackettwin.files import atomic_path
@@ -37,12 +38,18 @@ _FEMMOD = {"euler-bernoulli": 1, "timoshenko": 3}
 _DOFS = ("x", "y", "z", "tx", "ty", "tz")
 _ZERO_ROW = "   ".join(["0.0"] * 6)
 _MODES = 24
+_UNKNOWN = DeckDamping((0.01,), 0.0, 0.0, np.zeros((6, 6)))
+"""Of a structure that is of no deck: a guess, which the command says."""
 
 Tube = tuple[Material, Section]
 
 
-def write_subdyn(structure: Structure, path: Path) -> tuple[Path, ...]:
+def write_subdyn(structure: Structure, path: Path, damping: DeckDamping | None = None) -> tuple[Path, ...]:
     """Write a SubDyn input file, and one SSI file for each different reaction; return the files.
+
+    Parameters
+    ----------
+    damping : of the deck that the structure is of; otherwise 1 % of each internal mode
 
     Raises
     ------
@@ -63,7 +70,8 @@ def write_subdyn(structure: Structure, path: Path) -> tuple[Path, ...]:
     names = {
         text: f"{path.stem}_ssi_{k}.dat" for k, text in enumerate(dict.fromkeys(grounds.values()), start=1)
     }
-    files = {path: subdyn_text(structure, {node: names[text] for node, text in grounds.items()})}
+    ssi_files = {node: names[text] for node, text in grounds.items()}
+    files = {path: subdyn_text(structure, ssi_files, damping or _UNKNOWN)}
     files |= {path.with_name(name): text for text, name in names.items()}
     for target, text in files.items():
         with atomic_path(target) as temporary:
@@ -92,7 +100,7 @@ def _require_known(structure: Structure) -> None:
         )
 
 
-def subdyn_text(structure: Structure, ssi_files: dict[str, str]) -> str:
+def subdyn_text(structure: Structure, ssi_files: dict[str, str], damping: DeckDamping) -> str:
     """Return a SubDyn input file.
 
     Parameters
@@ -108,7 +116,7 @@ def subdyn_text(structure: Structure, ssi_files: dict[str, str]) -> str:
     for b in structure.beams:
         beams.setdefault((b.material, b.section), len(beams) + 1)
     sections = [
-        _control(structure),
+        _control(structure, damping),
         _joints(structure, joints),
         _reactions(structure, joints, ssi_files),
         _table("INTERFACE JOINTS: 1/0 for Locked (to the TP)/Free DOF @each Interface Joint", "NInterf",
@@ -168,7 +176,10 @@ def _table(title: str, keyword: str, header: str, rows: Sequence[str]) -> list[s
     return [_ruled(title), f"{len(rows):>6}   {keyword:<16}- Number of rows", header, units, *rows]
 
 
-def _control(structure: Structure) -> list[str]:
+def _control(structure: Structure, damping: DeckDamping) -> list[str]:
+    percent = ", ".join(f"{100.0 * ratio:.15g}" for ratio in damping.modal or (0.0,))
+    factors, matrix = (damping.alpha, damping.beta), np.asarray(damping.interface)
+    way = 2 if matrix.any() else int(any(factors))
     values = (
         ("False", "Echo", "Echo input data (flag)"),
         ('"DEFAULT"', "SDdeltaT", "Local Integration Step"),
@@ -178,11 +189,11 @@ def _control(structure: Structure) -> list[str]:
         (f"{_FEMMOD[structure.beam]}", "FEMMod", "Element model [1= Euler-Bernoulli; 3= 2-node Timoshenko]"),
         (f"{structure.subdivide}", "NDiv", "Number of sub-elements per member"),
         (f"{_MODES}", "Nmodes", "Number of internal modes to retain"),
-        ("1", "JDampings", "Damping Ratios for each retained mode (% of critical)"),
-        ("0", "GuyanDampMod", "Guyan damping {0=none, 1=Rayleigh Damping, 2=user specified matrix}"),
-        ("0.0, 0.0", "RayleighDamp", "Mass and stiffness proportional damping coefficients"),
+        (percent, "JDampings", "Damping Ratios for each retained mode (% of critical)"),
+        (f"{way}", "GuyanDampMod", "Guyan damping {0=none, 1=Rayleigh Damping, 2=user specified matrix}"),
+        (", ".join(map(_n, factors)), "RayleighDamp", "Mass and stiffness proportional damping coefficients"),
         ("6", "GuyanDampSize", "Guyan damping matrix [only if GuyanDampMod=2]"),
-        *[f"   {_ZERO_ROW}"] * 6,
+        *("   " + "   ".join(_n(value) for value in row) for row in matrix),
         _ruled("INITIAL RIGID-BODY POSITION [floating structures only]"),
         "RBSurge RBSway RBHeave RBRoll RBPitch RBYaw",
         "(m) (m) (m) (deg) (deg) (deg)",

@@ -30,7 +30,8 @@ def at_interface(structure: Structure) -> tuple[Structure, Structure | None]:
         "the structure has no interface",
         field="interface_nodes",
         value=[],
-        remedy="name the nodes that carry what stands on the foundation",
+        remedy="name the nodes that carry what stands on the foundation: `interface_nodes` of a file, or "
+        "`--interface NODE,…` where a deck does not state them",
     )
     inside = reached_by(structure.joined, _grounded(structure) - interface, stop=interface)
     require(
