@@ -3,37 +3,72 @@
 from dataclasses import replace
 from math import pi, sqrt
 
+import numpy as np
 import pytest
 
 from jackettwin.checks import DesignBasis, calculation_sheet, frame_use, joint_sheet
 from jackettwin.checks.iso19902_joints import Joint
+from jackettwin.checks.iso19902_pressure import PRESSURE_CHECKS
 from jackettwin.checks.joint_check import BraceUse
 from jackettwin.decks import read_structure
-from jackettwin.errors import InputError
 from jackettwin.response import build_system, nodal_load, self_weight, static_displacement
 from jackettwin.soil import clamped
-from jackettwin.structure import assemble
+from jackettwin.structure import Section, assemble
 
 
 @pytest.fixture(scope="module")
 def checked():
-    assembly = assemble(read_structure("jacket15"))
+    jacket = read_structure("jacket15")
+    wide = Section(1.6, 0.04)
+    coned = (replace(m, section_end=wide) if m.name == "leg_2_bay_2" else m for m in jacket.members)
+    assembly = assemble(replace(jacket, members=tuple(coned)))
     load = self_weight(assembly) + nodal_load(assembly, {"tower_top": (2e6, 5e5, 0.0, 0.0, 0.0, 1e7)})
     u = static_displacement(build_system(assembly, clamped(assembly.structure)), load)
     return assembly, u
 
 
 @pytest.mark.parametrize("edition", ["2007", "2020"])
-def test_every_uniform_member_s_sheet_has_the_check_s_utilisation(checked, edition: str) -> None:
+@pytest.mark.parametrize("wet", [False, True])
+def test_every_member_s_sheet_has_the_check_s_utilisations(checked, edition: str, wet: bool) -> None:
+    """Cones too, and under pressure; each line's unit and clause are there to follow."""
     assembly, u = checked
     basis = DesignBasis(edition=edition)
-    uses = {one.member: one for one in frame_use(assembly, u, basis).members}
-    uniform = [m for m in assembly.structure.members if m.section_start == m.section_end]
-    assert len(uniform) > 50
-    for member in uniform:
-        use = uses[member.name]
-        lines = {line.symbol: line.value for line in calculation_sheet(member, use, basis)}
-        assert lines[f"U {use.check}"] == pytest.approx(use.utilisation, rel=1e-9), member.name
+    z = np.array(assembly.mesh.coordinates[:, 2])
+    depth = np.maximum(72.0 - np.stack([z[assembly.mesh.start], z[assembly.mesh.end]], axis=1), 0.0)
+    uses = frame_use(assembly, u, basis, pressure=1.1e4 * depth if wet else None).members
+    governed = set()
+    for use in uses:
+        sheet = calculation_sheet(use, basis)
+        lines = {line.symbol: line.value for line in sheet}
+        assert lines[f"U {use.check}"] == pytest.approx(use.utilisation, rel=1e-9), use.member
+        assert len(lines) == len(sheet)  # no symbol twice
+        governed.add(use.check)
+    assert any(check in PRESSURE_CHECKS for check in governed) is wet
+    assert {line.clause for line in sheet}
+
+
+def test_steel_thinner_or_stronger_than_the_clause_covers_is_no_headline(checked) -> None:
+    """13.1: f_y at most 500 MPa and 0.9 f_u, walls from 6 mm on, D/t at most 120."""
+    assembly, u = checked
+    brace = "brace_1_1_1"
+
+    def beyond(**given: float) -> tuple[str, ...]:
+        uses = frame_use(assembly, u, DesignBasis(**given)).members
+        return next(one.beyond_validity for one in uses if one.member == brace)
+
+    assert beyond(yield_strength_pa=500e6) == ()
+    assert beyond(yield_strength_pa=501e6) == ("f_y = 501 MPa is above 500 MPa",)
+    assert beyond(yield_strength_pa=355e6, tensile_strength_pa=395e6) == ()
+    assert beyond(yield_strength_pa=355e6, tensile_strength_pa=394e6) == ("f_y is above 0.9 f_u",)
+    thin = Section(0.7, 0.0059)
+    members = tuple(
+        replace(m, section_start=thin, section_end=thin) if m.name == brace else m
+        for m in assembly.structure.members
+    )
+    thinned = assemble(replace(assembly.structure, members=members))
+    use = next(one for one in frame_use(thinned, u).members if one.member == brace)
+    assert use.beyond_validity == ("t = 5.9 mm is below 6 mm",)
+    assert not use.covered
 
 
 def test_lines_by_hand(checked) -> None:
@@ -41,7 +76,7 @@ def test_lines_by_hand(checked) -> None:
     basis = DesignBasis()
     member = next(m for m in assembly.structure.members if m.name == "brace_1_1_1")
     use = next(one for one in frame_use(assembly, u, basis).members if one.member == member.name)
-    found = {line.symbol: line.value for line in calculation_sheet(member, use, basis)}
+    found = {line.symbol: line.value for line in calculation_sheet(use, basis)}
     D, t = found["D"], found["t"]
     assert found["A"] == pytest.approx(pi * t * (D - t))
     assert found["f_v"] == pytest.approx(355e6 / sqrt(3.0))
@@ -53,16 +88,32 @@ def test_lines_by_hand(checked) -> None:
         assert found["U tension"] == pytest.approx(1.05 * found["σ_a"] / 355e6)
 
 
-def test_cones_and_pressure_are_refused(checked) -> None:
+def test_lines_under_pressure_by_hand(checked) -> None:
+    """The lowest leg in 1.1 MPa of water: each line from those before it."""
     assembly, u = checked
-    basis = DesignBasis()
-    uses = {one.member: one for one in frame_use(assembly, u, basis).members}
-    tube = next(m for m in assembly.structure.members if m.section_start == m.section_end)
-    cone = replace(tube, section_end=replace(tube.section_end, outer_diameter_m=2.5))
-    with pytest.raises(InputError, match="uniform tubes"):
-        calculation_sheet(cone, uses[cone.name], basis)
-    with pytest.raises(InputError, match="hydrostatic pressure"):
-        calculation_sheet(tube, replace(uses[tube.name], check="hoop"), basis)
+    pressure = np.full((assembly.mesh.start.size, 2), 0.8e6)
+    use = next(
+        one for one in frame_use(assembly, u, pressure=pressure).members if one.member == "leg_1_bay_1"
+    )
+    found = {line.symbol: line.value for line in calculation_sheet(use, DesignBasis())}
+    D, t = found["D"], found["t"]
+    assert found["p"] == 0.8e6
+    assert found["σ_h"] == pytest.approx(0.8e6 * D / (2.0 * t))
+    assert found["σ_q"] == pytest.approx(0.5 * found["σ_h"])
+    assert found["μ"] == pytest.approx(found["L_r"] / D * sqrt(2.0 * D / t))
+    assert found["B"] == pytest.approx(min(1.25 * found["σ_h"] / found["f_h"], 1.0))
+    assert found["η"] == pytest.approx(5.0 - 4.0 * found["f_h"] / found["f_y"])
+    left = max(1.0 + 0.09 * found["B"] ** 2 - found["B"] ** (2.0 * found["η"]), 0.0)
+    assert found["r"] == pytest.approx(max(sqrt(left) - 0.3 * found["B"], 1e-3))
+    assert found["U hoop"] == pytest.approx(1.25 * found["σ_h"] / found["f_h"])
+    squeezed = max(found["σ_q"] - found["σ_a"], 0.0)
+    pulled = max(found["σ_a"] - found["σ_q"], 0.0)
+    by_hand = (
+        1.05 * pulled / found["f_t,h"]
+        + 1.18 * squeezed / found["f_yc"]
+        + 1.05 * found["σ_b"] / found["f_b,h"]
+    )
+    assert found["U pressure_section"] == pytest.approx(by_hand)
 
 
 @pytest.mark.parametrize("conservative", [False, True])

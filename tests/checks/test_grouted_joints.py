@@ -68,6 +68,17 @@ def test_the_command_checks_the_grout_of_feet(tmp_path: Path) -> None:
     # weight in all, and the moment parts lee from luff
     assert sum(row["axial_n"] for row in rows) < -2e7
     assert rows[0]["axial_n"] < rows[-1]["axial_n"]
+    # outside the range of the tests a connection is last and no headline, however much it is used
+    wide, rest = (
+        SLEEVE | {"feet": ["foot_1"], "length_m": 1.0},
+        SLEEVE | {"feet": ["foot_2", "foot_3", "foot_4"]},
+    )
+    path.write_text("connections:\n" + "".join(f"  - {json.dumps(one)}\n" for one in (rest, wide)))
+    found = json.loads(CliRunner().invoke(main, [*arguments, "--grout", str(path), "--json"]).stdout)
+    rows = found["grouted"]
+    assert rows[-1]["foot"] == "foot_1" and rows[-1]["beyond_validity"]
+    assert rows[-1]["utilisation"] > max(1.0, rows[0]["utilisation"])
+    assert not any("grout used above 1" in text and "foot_1" in text for text in found["warnings"])
     pinned = CliRunner().invoke(main, ["check", "jacket15", "--grout", str(path)])
     assert pinned.exit_code == 2
     assert "put the feet on springs" in pinned.output

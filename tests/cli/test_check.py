@@ -44,7 +44,7 @@ def test_forces_and_lengths_are_shown() -> None:
     # the tower's walls are beyond the standard's range: it is in the warnings, and no headline
     assert not tower["covered"]
     assert "tower_12" not in text
-    assert "D/t above 120, beyond ISO 19902 13: tower_1" in text
+    assert "beyond ISO 19902 13.1: tower_1 (D/t = " in text
     assert "kN·m" in text
 
 

@@ -125,7 +125,12 @@ def test_the_command_shows_the_envelope_and_refuses_what_does_not_belong(tmp_pat
     def run(*arguments: str):
         return CliRunner().invoke(main, ["check", *arguments])
 
-    found = json.loads(run("jacket15", "--support", "clamped", "--combinations", path, "--json").stdout)
+    arguments = ["jacket15", "--support", "clamped", "--combinations", path]
+    found = json.loads(run(*arguments, "--sheet", "leg_1_bay_1", "--json").stdout)
+    # the sheet is of the worst combination
+    leg = next(row for row in found["members"] if row["member"] == "leg_1_bay_1")
+    lines = {line["symbol"]: line["value"] for line in found["sheet"]}
+    assert lines[f"U {leg['check']}"] == pytest.approx(leg["utilisation"])
     assert {row["combination"] for row in found["combinations"]} >= {"still", "extreme, DLC 6.1, 0°"}
     assert found["members"][0]["combination"] in {row["combination"] for row in found["combinations"]}
     assert not any("partial action factors" in one["what"] for one in found["left_out"])

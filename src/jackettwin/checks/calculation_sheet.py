@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from jackettwin.checks.iso19902 import CHECKS, Stress, Tube, strength, utilisation
+from jackettwin.checks.iso19902 import C_X, Strength, Stress, strength, utilisation
 from jackettwin.checks.iso19902_joints import (
     ALPHA_F,
     C_1,
@@ -17,10 +17,16 @@ from jackettwin.checks.iso19902_joints import (
     gap_factor,
     strength_factors,
 )
+from jackettwin.checks.iso19902_pressure import (
+    column_strength,
+    hoop_strength,
+    pressure_terms,
+    pressure_use,
+)
 from jackettwin.checks.joint_check import BraceUse
 from jackettwin.checks.member_check import DesignBasis, MemberUse
-from jackettwin.errors import require
-from jackettwin.structure import Member
+
+Row = tuple[str, str, Any, str, str]
 
 
 class SheetLine(NamedTuple):
@@ -33,43 +39,24 @@ class SheetLine(NamedTuple):
     clause: str
 
 
-def calculation_sheet(member: Member, use: MemberUse, basis: DesignBasis) -> tuple[SheetLine, ...]:
-    """Return the calculation of a member's governing check, line by line.
-
-    Raises
-    ------
-    InputError
-        If the member is a cone, or hydrostatic pressure governs it.
-    """
-    section = member.section_start
-    require(
-        section == member.section_end,
-        "a calculation sheet is of uniform tubes",
-        field="--sheet",
-        value=member.name,
-        remedy="name a member that is no cone",
-    )
-    require(
-        use.check in CHECKS,
-        "a calculation sheet knows no hydrostatic pressure, which governs this member",
-        field="--sheet",
-        value=member.name,
-        remedy="leave out --still-water, or flood the member",
-    )
-    D, t, E = section.outer_diameter_m, section.thickness_m, member.material.youngs_modulus_pa
-    d, KL, f_y = D - 2.0 * t, use.buckling.K * use.buckling.L, basis.yield_strength_pa
+def calculation_sheet(use: MemberUse, basis: DesignBasis) -> tuple[SheetLine, ...]:
+    """Return the calculation of a member's checks where its governing one is worst, line by line."""
+    tube, KL = use.worst.tube, use.buckling.K * use.buckling.L
+    D, t, f_y = float(tube.D), float(tube.t), float(tube.f_y)
+    d = D - 2.0 * t
     A, Z_e = np.pi / 4.0 * (D**2 - d**2), np.pi / 32.0 * (D**4 - d**4) / D
     N, V_y, V_z, T, M_y, M_z = (float(value) for value in use.worst.forces)
-    s = strength(Tube(*(np.array(value) for value in (D, t, E, f_y, KL))))
+    s = strength(tube)
     stresses = (N / A, M_y / Z_e, M_z / Z_e, 2.0 * np.hypot(V_y, V_z) / A, T / (2.0 * Z_e))
     stress = Stress(*(np.array(value) for value in stresses))
     U = utilisation(s, stress, C_m=basis.C_m, edition=basis.edition)
-    lines: list[tuple[str, str, Any, str, str]] = [
-        ("D", "outer diameter", D, "m", "13.1"),
-        ("t", "wall", t, "m", "13.1"),
+    lines: list[Row] = [
+        ("D", "outer diameter, of a cone in the middle of the element", D, "m", "13.1"),
+        ("t", "wall, at least 6 mm", t, "m", "13.1"),
+        ("D/t", "at most 120", D / t, "", "13.1"),
         ("A", "π/4 (D² − d²)", A, "m²", "13.2.2"),
         ("Z_e", "π/32 (D⁴ − d⁴)/D", Z_e, "m³", "13.2.4"),
-        ("f_y", "yield strength", f_y, "Pa", "13.2.2"),
+        ("f_y", "yield strength, at most 500 MPa", f_y, "Pa", "13.2.2"),
         ("K L", "effective length factor times length of the column", KL, "m", "13.5"),
         ("f_yc", "f_y, 1.047 f_y − 0.274 f_y²/f_xe or f_xe, with f_xe = 0.6 E t/D", s.f_yc, "Pa", "13.2.3.3"),
         ("f_c", "(1 − 0.278 λ²) f_yc or 0.9 f_yc/λ², with λ = K L/(π r) √(f_yc/E)", s.f_c, "Pa", "13.2.3.2"),
@@ -92,7 +79,46 @@ def calculation_sheet(member: Member, use: MemberUse, basis: DesignBasis) -> tup
         ("U section", _SECTION[basis.edition], U.section, "", "13.3.2, 13.3.3"),
         ("U stability", "1.18 σ_c/f_c + 1.05 C_m σ_b/(f_b (1 − σ_c/f_e))", U.stability, "", "13.3.3"),
     ]
-    return tuple(SheetLine(name, how, float(value), unit, clause) for name, how, value, unit, clause in lines)
+    if use.worst.pressure_pa > 0.0:
+        lines += _under_pressure(use, s, stress, basis)
+    return _sheet(lines)
+
+
+def _under_pressure(use: MemberUse, s: Strength, stress: Stress, basis: DesignBasis) -> list[Row]:
+    """Return the lines of 13.2.6 and 13.4."""
+    tube, p = use.worst.tube, np.array(use.worst.pressure_pa)
+    h = hoop_strength(tube, np.array(use.buckling.L))
+    terms = pressure_terms(tube, h, p)
+    U = pressure_use(tube, s, h, stress, p, C_m=basis.C_m)
+    f_xe = 2.0 * C_X * tube.E * tube.t / tube.D
+    return [
+        ("p", "hydrostatic pressure, factored", p, "Pa", "13.4.1"),
+        ("σ_h", "p D/(2 t)", terms.hoop_stress, "Pa", "13.2.6.1"),
+        ("σ_q", "σ_h/2", terms.capped, "Pa", "13.4.1"),
+        ("L_r", "between rings, here joints", use.buckling.L, "m", "13.2.6.2"),
+        ("μ", "L_r/D √(2 D/t)", use.buckling.L / tube.D * np.sqrt(2.0 * tube.D / tube.t), "", "13.2.6.2"),
+        ("f_he", "2 C_h E t/D, C_h by μ", h.f_he, "Pa", "13.2-26 to 13.2-30"),
+        ("f_h", "f_y, 0.7 f_y (f_he/f_y)^0.4 or f_he", h.f_h, "Pa", "13.2-23 to 13.2-25"),
+        ("B", "1.25 σ_h/f_h ≤ 1", terms.B, "", "13.4-10"),
+        ("η", "5 − 4 f_h/f_y", terms.eta, "", "13.4-11"),
+        ("r", "√(1 + 0.09 B² − B^(2η)) − 0.3 B", terms.left, "", "13.4-8"),
+        ("f_t,h", "f_y r", tube.f_y * terms.left, "Pa", "13.4-8"),
+        ("f_b,h", "f_b r", s.f_b * terms.left, "Pa", "13.4-9"),
+        ("f_c,h", "f_yc by λ and σ_q", column_strength(tube, s, terms.capped), "Pa", "13.4-15, 13.4-16"),
+        ("f_xe", "0.6 E t/D", f_xe, "Pa", "13.2-10"),
+        ("U hoop", "1.25 σ_h/f_h", U.hoop, "", "13.2.6"),
+        ("U pressure_section", "1.05 (σ_t − σ_q)/f_t,h or 1.18 (σ_c + σ_q)/f_yc, + 1.05 σ_b/f_b,h",
+         U.section, "", "13.4-12, 13.4-19"),
+        ("U pressure_stability", "1.18 σ_c/f_c,h + 1.05 C_m σ_b/(f_b,h (1 − σ_c/f_e))",
+         U.stability, "", "13.4-20"),
+        ("U pressure_local", "(σ_b + σ_c + σ_q − f_he/2.5)/(f_xe/1.18 − f_he/2.5) + (1.25 σ_h/f_he)²",
+         U.local, "", "13.4-21"),
+    ]  # fmt: skip
+
+
+def _sheet(lines: list[Row]) -> tuple[SheetLine, ...]:
+    kept = [line for line in lines if np.isfinite(line[2])]
+    return tuple(SheetLine(name, how, float(value), unit, clause) for name, how, value, unit, clause in kept)
 
 
 def joint_sheet(use: BraceUse, *, conservative: bool = False) -> tuple[SheetLine, ...]:
@@ -116,7 +142,7 @@ def joint_sheet(use: BraceUse, *, conservative: bool = False) -> tuple[SheetLine
     M_ipd, M_opd = force * joint.d * q.in_plane * Q_f[1], force * joint.d * q.out_of_plane * Q_f[2]
     parts = abs(P) / P_d, (M_ip / M_ipd) ** 2, abs(M_op) / M_opd
     kinds = q.tension if P >= 0.0 else q.compression
-    lines: list[tuple[str, str, Any, str, str]] = [
+    lines: list[Row] = [
         ("D", "outer diameter of the chord", joint.D, "m", "14.3.1"),
         ("T", "wall of the chord", joint.T, "m", "14.3.1"),
         ("d", "outer diameter of the brace", joint.d, "m", "14.3.1"),
@@ -157,8 +183,7 @@ def joint_sheet(use: BraceUse, *, conservative: bool = False) -> tuple[SheetLine
         ("U op", "|M op|/M_d op", parts[2], "", "14.3-12"),
         ("U joint", "U axial + U ip + U op", sum(parts), "", "14.3-12"),
     ]  # fmt: skip
-    kept = [line for line in lines if np.isfinite(line[2])]
-    return tuple(SheetLine(name, how, float(value), unit, clause) for name, how, value, unit, clause in kept)
+    return _sheet(lines)
 
 
 _SECTION = {

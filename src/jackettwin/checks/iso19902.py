@@ -18,8 +18,9 @@ GAMMA_T, GAMMA_C, GAMMA_B, GAMMA_V = 1.05, 1.18, 1.05, 1.05
 """Partial resistance factors of 13.2.2, 13.2.3, 13.2.4 and 13.2.5."""
 C_X = 0.3
 """Elastic critical buckling coefficient of 13.2.3.3: half the theoretical one, for imperfections."""
-MOST_SLENDER_WALL = 120.0
-"""Largest D/t of clause 13.1."""
+MOST_SLENDER_WALL, THINNEST_WALL_M = 120.0, 0.006
+HIGHEST_YIELD_PA, HIGHEST_YIELD_RATIO = 500e6, 0.9
+"""Scope of clause 13.1: largest D/t, least wall, largest f_y and f_y/f_u."""
 EDITIONS = ("2007", "2020")
 STEEPEST = 0.99
 """σ_c/f_e beyond which bending is amplified no further; such a column has failed by 13.2.3 already."""

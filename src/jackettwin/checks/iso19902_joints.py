@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.checks.iso19902 import HIGHEST_YIELD_PA
 from jackettwin.errors import InputError
 
 GAMMA_J, GAMMA_Q = 1.05, 1.05
@@ -24,7 +25,6 @@ C_2 = (43.0, 11.0, 22.0)
 """Table 14.3-2, axial force of K, Y and X joints."""
 C_BENDING = (25.0, 43.0)
 """The same against moments, whatever the joint."""
-_HIGHEST_YIELD_PA = 500e6
 GAMMA_Z = 1.17
 """Extra resistance factor of critical joints, (14.3-13): their braces are to fail first."""
 YIELD_OF_TENSILE = 0.8
@@ -77,7 +77,7 @@ class Joint:
             (0.2 <= self.beta <= 1.0, f"β = {self.beta:.2f} is not 0.2 to 1"),
             (10.0 <= self.gamma <= 50.0, f"γ = {self.gamma:.1f} is not 10 to 50"),
             (np.radians(29.99) <= self.theta, f"θ = {np.degrees(self.theta):.0f}° is below 30°"),
-            (self.f_y <= _HIGHEST_YIELD_PA, f"f_y = {self.f_y / 1e6:.0f} MPa is above 500 MPa"),
+            (self.f_y <= HIGHEST_YIELD_PA, f"f_y = {self.f_y / 1e6:.0f} MPa is above 500 MPa"),
             (
                 not self.gap / self.T <= -1.2 * self.gamma,
                 f"overlap g/T = {self.gap / self.T:.0f} is beyond −1.2 γ",

@@ -41,6 +41,25 @@ class PressureUse(NamedTuple):
     local: FloatArray
 
 
+class PressureTerms(NamedTuple):
+    """What pressure does to a section: σ_h and σ_q [Pa], B, η, and the factor r on f_y and f_b."""
+
+    hoop_stress: FloatArray
+    capped: FloatArray
+    B: FloatArray
+    eta: FloatArray
+    left: FloatArray
+
+
+def pressure_terms(tube: Tube, h: HoopStrength, pressure: FloatArray) -> PressureTerms:
+    """Return the terms of :func:`pressure_use` that depend on the pressure [Pa] alone."""
+    hoop_stress = 0.5 * pressure * tube.D / tube.t
+    B, eta = np.minimum(GAMMA_H * hoop_stress / h.f_h, 1.0), 5.0 - 4.0 * h.f_h / tube.f_y
+    left = np.sqrt(np.maximum(1.0 + 0.09 * B**2 - B ** (2.0 * eta), 0.0)) - 0.3 * B
+    # at B = 1 nothing is left, and the hoop check says so already
+    return PressureTerms(hoop_stress, 0.5 * hoop_stress, B, eta, np.maximum(left, 1e-3))
+
+
 def hoop_strength(tube: Tube, ring_spacing: FloatArray) -> HoopStrength:
     r"""Return the hoop buckling strengths of tubes.
 
@@ -101,13 +120,8 @@ def pressure_use(
 
     with the stresses :math:`σ_{t,c} = σ_t - σ_q` or :math:`σ_{c,c} = σ_c + σ_q`, σ_q = ½σ_h.
     """
-    hoop_stress = 0.5 * pressure * tube.D / tube.t
-    capped = 0.5 * hoop_stress
+    hoop_stress, capped, _, _, left = pressure_terms(tube, h, pressure)
     hoop = GAMMA_H * hoop_stress / h.f_h
-    B = np.minimum(hoop, 1.0)
-    left = np.sqrt(np.maximum(1.0 + 0.09 * B**2 - B ** (2.0 * (5.0 - 4.0 * h.f_h / tube.f_y)), 0.0)) - 0.3 * B
-    # at B = 1 nothing is left, and the hoop check says so already
-    left = np.maximum(left, 1e-3)
     bending = np.hypot(stress.bending_y, stress.bending_z)
     bent = GAMMA_B * bending / (s.f_b * left)
     tension, compression = np.maximum(stress.axial - capped, 0.0), np.maximum(capped - stress.axial, 0.0)

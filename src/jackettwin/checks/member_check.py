@@ -8,12 +8,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jackettwin.arrays import FloatArray
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.checks.cans import with_cans
 from jackettwin.checks.columns import columns
 from jackettwin.checks.iso19902 import (
     CHECKS,
+    HIGHEST_YIELD_PA,
+    HIGHEST_YIELD_RATIO,
     MOST_SLENDER_WALL,
+    THINNEST_WALL_M,
     Strength,
     Stress,
     Tube,
@@ -92,11 +95,17 @@ class Worst:
         N, Vy, Vz, T, My, Mz there [N, N·m].
     end_forces : (2, 6) array
         The same at the member's start and end at that instant.
+    tube : Tube
+        The section that is checked there; of a cone the middle of its element.
+    pressure_pa : float
+        Of the water outside over what is inside.
     """
 
     position: float
     forces: FloatArray
     end_forces: FloatArray
+    tube: Tube
+    pressure_pa: float
 
 
 @dataclass(frozen=True)
@@ -112,10 +121,15 @@ class MemberUse:
     worst: Worst
     von_mises_pa: float
     """Largest von Mises stress, whatever the governing check [Pa]."""
-    covered: bool
-    """Whether D/t ≤ 120, the scope of clause 13."""
+    beyond_validity: tuple[str, ...] = ()
+    """In which respects it is outside the scope of clause 13 (13.1)."""
     case: str = ""
     """The combination of actions it is of."""
+
+    @property
+    def covered(self) -> bool:
+        """Whether clause 13 covers it: otherwise its use is no headline."""
+        return not self.beyond_validity
 
 
 @dataclass(frozen=True)
@@ -220,9 +234,53 @@ class _MemberCheck:
                 self.tube, self.strength, self.hoop, stress, self.pressure[None], C_m=basis.C_m
             )
             U += [np.broadcast_to(one, U[0].shape) for one in under]
-        slender = (self.tube.D / self.tube.t)[:, 0]
         section = U[list(CHECKS).index("section")]
-        return _uses(self.assembly, np.stack(U), forces, self.lengths, slender), section
+        return self._uses(np.stack(U), forces), section
+
+    def _uses(self, U: FloatArray, forces: SectionForces) -> tuple[MemberUse, ...]:
+        """Return the use of every member from U, (n_checks, n_cases, n_elements, 2)."""
+        uses, mesh = [], self.assembly.mesh
+        stress = von_mises_stress(self.assembly, forces).reshape(-1, mesh.start.size, 2)
+        for index, member in enumerate(self.assembly.structure.members):
+            mine = np.flatnonzero(mesh.member == index)
+            own = U[:, :, mine]
+            check, case, element, end = np.unravel_index(int(own.argmax()), own.shape)
+            N = np.stack([component[case, mine] for component in forces], axis=-1)
+            at = mine[element]
+            worst = Worst(
+                float(element + end) / mine.size,
+                N[element, end],
+                np.stack([N[0, 0], N[-1, 1]]),
+                Tube(*(row[at, 0] for row in self.tube)),
+                0.0 if self.pressure is None else float(self.pressure[at, end]),
+            )
+            uses.append(
+                MemberUse(
+                    member.name,
+                    member.part,
+                    float(own.max()),
+                    list(ALL_CHECKS)[check],
+                    dict(zip(ALL_CHECKS, map(float, own.max(axis=(1, 2, 3))), strict=False)),
+                    self.lengths[index],
+                    worst,
+                    float(stress[:, mine].max()),
+                    self._beyond(mine),
+                )
+            )
+        return tuple(uses)
+
+    def _beyond(self, elements: IntArray) -> tuple[str, ...]:
+        """Return in which respects some elements are outside the scope of clause 13 (13.1)."""
+        basis = self.basis
+        slender, wall = float((self.tube.D / self.tube.t)[elements].max()), float(self.tube.t[elements].min())
+        f_y, f_u = basis.yield_strength_pa, basis.tensile_strength_pa
+        ranges = (
+            (slender <= MOST_SLENDER_WALL, f"D/t = {slender:.0f} is above {MOST_SLENDER_WALL:.0f}"),
+            (wall >= THINNEST_WALL_M, f"t = {1e3 * wall:.1f} mm is below {1e3 * THINNEST_WALL_M:.0f} mm"),
+            (f_y <= HIGHEST_YIELD_PA, f"f_y = {f_y / 1e6:.0f} MPa is above {HIGHEST_YIELD_PA / 1e6:.0f} MPa"),
+            (f_u is None or f_y <= HIGHEST_YIELD_RATIO * f_u, f"f_y is above {HIGHEST_YIELD_RATIO:g} f_u"),
+        )
+        return tuple(words for holds, words in ranges if not holds)
 
 
 def worst_uses(first: tuple[MemberUse, ...], second: tuple[MemberUse, ...]) -> tuple[MemberUse, ...]:
@@ -234,34 +292,6 @@ def worst_uses(first: tuple[MemberUse, ...], second: tuple[MemberUse, ...]) -> t
         stress = max(a.von_mises_pa, b.von_mises_pa)
         found.append(replace(worse, by_check=by_check, von_mises_pa=stress))
     return tuple(found)
-
-
-def _uses(
-    assembly: Assembly, U: FloatArray, forces: SectionForces, lengths: list[Buckling], slender: FloatArray
-) -> tuple[MemberUse, ...]:
-    """Return the use of every member from U, (n_checks, n_cases, n_elements, 2)."""
-    uses = []
-    stress = von_mises_stress(assembly, forces).reshape(-1, assembly.mesh.start.size, 2)
-    for index, member in enumerate(assembly.structure.members):
-        mine = np.flatnonzero(assembly.mesh.member == index)
-        own = U[:, :, mine]
-        check, case, element, end = np.unravel_index(int(own.argmax()), own.shape)
-        N = np.stack([component[case, mine] for component in forces], axis=-1)
-        worst = Worst(float(element + end) / mine.size, N[element, end], np.stack([N[0, 0], N[-1, 1]]))
-        uses.append(
-            MemberUse(
-                member.name,
-                member.part,
-                float(own.max()),
-                list(ALL_CHECKS)[check],
-                dict(zip(ALL_CHECKS, map(float, own.max(axis=(1, 2, 3))), strict=False)),
-                lengths[index],
-                worst,
-                float(stress[:, mine].max()),
-                bool((slender[mine] <= MOST_SLENDER_WALL).all()),
-            )
-        )
-    return tuple(uses)
 
 
 def buckling_lengths(assembly: Assembly, basis: DesignBasis, plans: tuple[JointPlan, ...]) -> list[Buckling]:

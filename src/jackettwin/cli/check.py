@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from jackettwin.checks import DesignBasis, FrameUse, GroutUse, SheetLine, VortexUse
     from jackettwin.response import System
     from jackettwin.soil import PileModel, PileUse
-    from jackettwin.structure import Assembly
 
 
 @click.command("check")
@@ -154,12 +153,11 @@ def check_command(
             no_weight=no_weight or None,
             still_water=still_water or None,
             flooded=flooded or None,
-            sheet=sheet,
             wind=wind,
             current=current,
         )
         return _combined(
-            combinations, structure, support, pile_model, subdivide, basis, pile_resistance, grout
+            combinations, structure, support, pile_model, subdivide, basis, pile_resistance, grout, sheet
         )
     if (structure is None) == (scenario is None):
         raise InputError(
@@ -170,7 +168,7 @@ def check_command(
     if scenario is not None:
         at_rest = "belongs to a structure at rest"
         _refuse(at_rest, "leave it out: a scenario has its own water", still_water=still_water or None)
-        _refuse(at_rest, "name the structure", wind=wind, current=current, sheet=sheet, grout=grout)
+        _refuse(at_rest, "name the structure", wind=wind, current=current, grout=grout)
         chosen_scenario = read_scenario(scenario)
         use = scenario_uses(chosen_scenario, basis)
         stands = chosen_scenario.asset.structure
@@ -180,7 +178,8 @@ def check_command(
             *_piles_left_out(()),
             *_grout_left_out(None),
         )
-        return _reply(chosen_scenario.name, use, water_notes(chosen_scenario), missing)
+        notes, lines = water_notes(chosen_scenario), _sheet(sheet, use, basis)
+        return _reply(chosen_scenario.name, use, notes, missing, sheet=lines)
     assert structure is not None
     assembly = assemble(read_structure(structure), subdivide=subdivide)
     stands, held = supported_option(support, assembly, pile_model)
@@ -217,7 +216,7 @@ def check_command(
         piles=piles,
         grouted=_grouted(grout, system, u),
         vortices=vortices,
-        sheet=_sheet(sheet, assembly, use, basis),
+        sheet=_sheet(sheet, use, basis),
     )
 
 
@@ -237,6 +236,7 @@ def _combined(
     basis: DesignBasis,
     resistance: float,
     grout: Path | None,
+    sheet: str | None,
 ) -> Reply:
     """Return the envelope of a file of combinations, with each one's own worst use."""
     from jackettwin.checks import left_out
@@ -283,13 +283,12 @@ def _combined(
         missing,
         piles=tuple(piles.values()),
         grouted=tuple(grouted.values()),
+        sheet=_sheet(sheet, found.envelope, basis),
         combinations=found.each,
     )
 
 
-def _sheet(
-    name: str | None, assembly: Assembly, use: FrameUse, basis: DesignBasis
-) -> tuple[SheetLine, ...] | None:
+def _sheet(name: str | None, use: FrameUse, basis: DesignBasis) -> tuple[SheetLine, ...] | None:
     """Return the calculation of a member or a joint; None if none is requested."""
     from jackettwin.checks import calculation_sheet, joint_sheet
 
@@ -299,9 +298,8 @@ def _sheet(
     if ":" in name:
         joint = look_up(joints, name, "joint, NODE:BRACE,", field="--sheet")
         return joint_sheet(joint, conservative=basis.conservative_joints)
-    members = {one.name: one for one in assembly.structure.members}
-    member = look_up(members, name, "member", field="--sheet")
-    return calculation_sheet(member, next(one for one in use.members if one.member == name), basis)
+    members = {one.member: one for one in use.members}
+    return calculation_sheet(look_up(members, name, "member", field="--sheet"), basis)
 
 
 def _piles(

@@ -41,7 +41,12 @@ def check_document(
         "combinations": [_combination_row(case, one) for case, one in (combinations or {}).items()],
         "sheet": None if sheet is None else [line._asdict() for line in sheet],
         "piles": [_pile_row(one) for one in sorted(piles, key=lambda one: -one.axial)],
-        "grouted": [_grout_row(one) for one in sorted(grouted, key=lambda one: -one.utilisation)],
+        "grouted": [
+            _grout_row(one)
+            for one in sorted(
+                grouted, key=lambda one: (bool(one.connection.beyond_validity), -one.utilisation)
+            )
+        ],
         "vortices": [_vortex_row(one) for one in vortices],
         "warnings": [
             *_warnings(use),
@@ -87,6 +92,7 @@ def _row(use: MemberUse) -> dict[str, Any]:
         "end": _forces(worst.end_forces[1]),
         "von_mises_stress_pa": use.von_mises_pa,
         "covered": use.covered,
+        "beyond_validity": list(use.beyond_validity),
         "combination": use.case or None,
     }
 
@@ -173,7 +179,7 @@ def _grout_row(use: GroutUse) -> dict[str, Any]:
 def _grout_warnings(uses: tuple[GroutUse, ...]) -> list[str]:
     from jackettwin.structure import few
 
-    over = [use.foot for use in uses if use.utilisation > 1.0]
+    over = [use.foot for use in uses if use.utilisation > 1.0 and not use.connection.beyond_validity]
     beyond = list(dict.fromkeys(why for use in uses for why in use.connection.beyond_validity))
     found = [f"grout used above 1: {few(over)}"] if over else []
     return found + ([f"grout beyond the tests of ISO 19902 15.1: {few(beyond)}"] if beyond else [])
@@ -207,7 +213,7 @@ def _warnings(use: FrameUse) -> list[str]:
     from jackettwin.structure import few
 
     # rows beyond a rule's range are last in the tables and not in the headline
-    thin = [one.member for one in use.members if not one.covered]
+    outside = [one for one in use.members if not one.covered]
     over = [one.member for one in use.members if one.covered and one.utilisation > 1.0]
     joints = [
         f"{one.brace} at {one.node}"
@@ -217,8 +223,10 @@ def _warnings(use: FrameUse) -> list[str]:
     short = [f"{one.brace} at {one.node}" for one in use.joints if one.joint.can_short_m > 0.0]
     beyond = [(f"{one.brace} at {one.node}", why) for one in use.joints for why in one.joint.beyond_validity]
     found = []
-    if thin:
-        found.append(f"D/t above 120, beyond ISO 19902 13: {few(thin)}")
+    if outside:
+        found.append(
+            f"beyond ISO 19902 13.1: {few([f'{one.member} ({one.beyond_validity[0]})' for one in outside])}"
+        )
     if over:
         found.append(f"used above 1: {few(over)}")
     if joints:
