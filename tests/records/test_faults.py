@@ -100,6 +100,20 @@ def test_crests_of_a_smooth_response_are_no_spikes(rng: np.random.Generator) -> 
     assert np.flatnonzero(faults.spikes(smooth)).tolist() == [3000, 7001, 7002]
 
 
+def test_the_first_motion_after_a_release_is_no_spike(rng: np.random.Generator) -> None:
+    """Modes up to half the sample rate set in at once and die out within seconds; a planted spike is told."""
+    t = np.arange(2400) / 20.0 - 10.0
+    f, zeta = np.array([0.38, 1.2, 6.3, 9.2]), np.array([0.013, 0.01, 0.05, 0.06])
+    poles = 2.0 * np.pi * f * (-zeta + 1j * np.sqrt(1.0 - zeta**2))
+    for _ in range(20):
+        phase = 2.0 * np.pi * rng.uniform(size=4)
+        decays = np.exp(np.outer(poles, np.maximum(t, 0.0)) + 1j * phase[:, None]).real
+        y = np.where(t > 0.0, [1.0, 0.3, 2.0, 2.0] @ decays, 0.0) + 1e-3 * rng.normal(size=t.size)
+        assert not faults.spikes(y).any()
+        y[1500] += 20.0
+        assert np.flatnonzero(faults.spikes(y)).tolist() == [1500]
+
+
 def test_a_coarse_reading_is_told_by_its_levels(rng: np.random.Generator) -> None:
     y = rng.standard_normal(6_000)
     assert faults.quantiser_step(np.round(y)) == 1.0

@@ -117,6 +117,17 @@ def test_the_interval_of_the_rate_holds_the_truth_in_95_percent() -> None:
     assert inside >= stats.binom.ppf(0.0005, n, 0.95)
 
 
+def test_an_error_of_the_modes_is_no_relaxation() -> None:
+    """A companion 0.3 % beside a mode is to first order its derivative: it adds nothing to the amplitudes."""
+    rng = np.random.default_rng(12)
+    t = np.arange(1500) / RATE_HZ
+    pole = 2.0 * np.pi * 1.003 * F[0] * (-ZETA[0] + 1j * np.sqrt(1.0 - ZETA[0] ** 2))
+    y = decays(rng, np.array([0.2, -0.1]), RATES[1])
+    alone = amplitude_test(y, RATE_HZ, F, ZETA, RATES).amplitude[1]
+    beside = amplitude_test(y + np.exp(pole * t).real, RATE_HZ, F, ZETA, RATES).amplitude[1]
+    np.testing.assert_allclose(beside, alone, rtol=0.02)
+
+
 def test_where_it_is_let_go() -> None:
     rng = np.random.default_rng(2)
     record = released(rng, 0.2, wait_s=30.0)

@@ -5,11 +5,14 @@ After the release at t = 0 each channel is the sum of a constant, modes (fitted 
 .. math:: y_c(t) = b_c + \mathrm{Re} \sum_m a_{cm} e^{\lambda_m t} + A_c e^{-at} + e_c(t).
 
 For a given rate a the model is linear in the amplitude A_c: with g the part of :math:`e^{-at}` orthogonal to
-the constant and the modes, :math:`\hat A_c = g^T y_c/g^T g`. Its variance and degrees of freedom are those
-for noise with the spectrum of the residual of the whole fit, so that :math:`\hat A_c/\sigma_c` follows
-Student's t distribution. A relaxation is detected if any channel at any rate of a grid passes the test; the
-thresholds limit false alarms to 5 % of records over all channels and rates (Bonferroni). A relaxation of
-amplitude
+the constant, the modes :math:`e^{\lambda_m t}` and their derivatives :math:`t e^{\lambda_m t}`, which hold
+errors of the poles and the difference between the two poles of a pair fitted as one,
+:math:`\hat A_c = g^T y_c/g^T g`. Its variance and degrees of freedom are those for noise with the spectrum of
+the residual of the whole fit, so that :math:`\hat A_c/\sigma_c` follows Student's t distribution. Where the
+residual is clearly stronger while g lasts than in the mean (motion of modes too weak to be fitted),
+:math:`\sigma_c` is enlarged by that ratio. A relaxation is detected if any channel at any rate of a grid
+passes the test; the thresholds limit false alarms to 5 % of records over all channels and rates
+(Bonferroni). A relaxation of amplitude
 
 .. math:: A_c = (t_{1-\alpha/2} + t_{0.95})\,\sigma_c
 
@@ -67,6 +70,8 @@ _ROUNDS = 3
 _STILL = 1e-6
 """Share of the mean power below which a channel counts as not moving."""
 MIN_SAMPLES = 256
+NOT_BY_CHANCE = 1e-3
+"""Probability below which steady noise does not explain that it is strongest while a relaxation lasts."""
 
 
 @dataclass(frozen=True)
@@ -315,9 +320,15 @@ def _left(
 
 
 def _basis(t: FloatArray, frequency_hz: FloatArray, damping_ratio: FloatArray) -> FloatArray:
-    """Return an orthonormal basis of a constant and the modes' decays, (n_samples, 2 n_modes + 1)."""
+    """Return an orthonormal basis of a constant, the modes' decays and their derivatives by the poles.
+
+    Returns
+    -------
+    (n_samples, 4 n_modes + 1)
+    """
     poles = 2.0 * np.pi * frequency_hz * (-damping_ratio + 1j * np.sqrt(1.0 - damping_ratio**2))
     decays = np.exp(np.outer(t, poles))
+    decays = np.hstack([decays, t[:, None] * decays * poles.real])
     return np.linalg.qr(np.concatenate([decays.real, decays.imag, np.ones((len(t), 1))], axis=1))[0]
 
 
@@ -340,9 +351,25 @@ def _in_noise(g: FloatArray, noise: FloatArray) -> tuple[FloatArray, FloatArray]
     freedom = max(2.0 * weight.sum() ** 2 / np.sum(weight**2) * n / size, 3.0)
     # the residual has one fewer: the fit removed the component along g
     variance *= freedom / (freedom - 1.0)
-    white = np.mean(noise**2, axis=1) * (g @ g)
-    std = np.sqrt(np.maximum(variance, white)) + 1e-300
+    power = np.mean(noise**2, axis=1)
+    std = np.sqrt(np.maximum(variance, power * (g @ g)) * _concentration(g, noise, lines)) + 1e-300
     return std, np.full(len(noise), freedom - 1.0)
+
+
+def _concentration(g: FloatArray, noise: FloatArray, lines: FloatArray) -> FloatArray:
+    """Return the power of noise while g lasts over its mean where chance does not explain it, else 1.
+
+    Parameters
+    ----------
+    lines : (n_channels, n_lines)
+        The noise's spectrum: the narrower, the fewer independent samples g spans.
+    """
+    weight = g**2 / (g @ g)
+    ratio = (noise**2 @ weight) / (np.mean(noise**2, axis=1) + 1e-300)
+    independent = np.mean(lines, axis=1) ** 2 / (np.mean(lines**2, axis=1) + 1e-300) / (weight @ weight)
+    freedom = np.maximum(2.0 * independent, 1.0)
+    by_chance = scipy.special.chdtri(freedom, NOT_BY_CHANCE) / freedom
+    return np.where(ratio > by_chance, ratio, 1.0)
 
 
 def _strongest_hz(y: FloatArray, sample_rate_hz: float) -> float:

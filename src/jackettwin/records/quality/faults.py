@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import ndimage
+from scipy.special import ndtri
 
 from jackettwin.arrays import BoolArray, FloatArray, Int64Array
 from jackettwin.findings import Finding
@@ -27,6 +28,10 @@ SPIKE_WINDOW = 9
 """Window of the running median; a spike is shorter than half of it [samples]."""
 SPIKE_BLOCK = 256
 """Length of the blocks over which the local scatter is taken [samples]."""
+ONSET_BLOCK, ONSET_SHARE, ONSET_RATIO = 32, 0.85, 2.0
+"""Where motion sets in, as after a release, it is stronger than around it for less than ``SPIKE_BLOCK``: the
+scatter of blocks of 32 samples counts, taken from a share of them that spikes leave alone, where it is more
+than twice that of the long blocks (in steady noise it is at most 1.6 times)."""
 SPIKE_SIGMAS = 8.0
 """Smallest distance of a spike from the running median, in robust standard deviations;
 its probability in Gaussian noise is 1e-15."""
@@ -85,7 +90,8 @@ def spikes(y: FloatArray, *, hold: int = 1) -> BoolArray:
     """Mark short excursions of large amplitude (fewer than five samples).
 
     The excursion must exceed ``SPIKE_SIGMAS`` robust standard deviations of the departures from
-    the running median, both of the whole channel and of the surroundings (a gust is no spike);
+    the running median, both of the whole channel and of the surroundings (neither a gust nor the first
+    motion after a release is a spike);
     ``CREST_SIGMAS`` of the window (nor is the crest of a smooth wave, whose flanks the median follows);
     and one robust standard deviation of the signal, as smaller ones are harmless.
     ``hold`` is the number of samples for which each value is repeated.
@@ -96,7 +102,9 @@ def spikes(y: FloatArray, *, hold: int = 1) -> BoolArray:
     x = bridge(y)
     median = ndimage.median_filter(x, size=(SPIKE_WINDOW - 1) * hold + 1, mode="nearest")
     departure = np.abs(x - median)
-    usual = np.maximum(_surroundings(departure), np.median(departure[finite]))
+    usual = np.maximum(_surroundings(departure, SPIKE_BLOCK, 0.5), np.median(departure[finite]))
+    brief = _surroundings(departure, ONSET_BLOCK * hold, ONSET_SHARE)
+    usual = np.where(brief > ONSET_RATIO * usual, brief, usual)
     quartiles = np.percentile(y[finite], [25.0, 75.0])
     least = max(float(quartiles[1] - quartiles[0]) / 1.349, 1e-12 * float(np.ptp(y[finite])))
     far: BoolArray = finite & (departure > np.maximum(SPIKE_SIGMAS * 1.4826 * usual, least))
@@ -113,12 +121,25 @@ def _spread_around(x: FloatArray, at: Int64Array, hold: int) -> FloatArray:
     return out
 
 
-def _surroundings(departure: FloatArray) -> FloatArray:
-    """Return for every sample the largest median of its block and the two adjacent ones."""
-    n_blocks = max(len(departure) // SPIKE_BLOCK, 1)
+def _surroundings(departure: FloatArray, block: int, share: float) -> FloatArray:
+    """Return for every sample the largest scatter of its block and the two adjacent ones.
+
+    Parameters
+    ----------
+    departure : (n_samples,)
+    block : length of a block [samples]
+    share : of a block's samples whose largest departure measures its scatter
+
+    Returns
+    -------
+    (n_samples,)
+        As medians: a departure that this share of Gaussian noise does not exceed, times that of a half.
+    """
+    n_blocks = max(len(departure) // block, 1)
     block = len(departure) // n_blocks
-    medians = np.median(departure[: n_blocks * block].reshape(n_blocks, block), axis=1)
-    wide = np.repeat(ndimage.maximum_filter1d(medians, 3, mode="nearest"), block)
+    blocks = departure[: n_blocks * block].reshape(n_blocks, block)
+    scatter = np.quantile(blocks, share, axis=1) * (ndtri(0.75) / ndtri(0.5 + 0.5 * share))
+    wide = np.repeat(ndimage.maximum_filter1d(scatter, 3, mode="nearest"), block)
     return np.pad(wide, (0, len(departure) - len(wide)), mode="edge")
 
 
