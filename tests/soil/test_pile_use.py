@@ -8,6 +8,7 @@ import pytest
 from jackettwin.checks import DesignBasis
 from jackettwin.soil import head_forces, pile_use
 from jackettwin.soil.ground.curves import Tanh
+from jackettwin.soil.piles.capacity import pushover
 from jackettwin.soil.piles.piles import Pile, stations
 from jackettwin.soil.piles.reaction_curves import PileCurves
 from jackettwin.soil.support import Spring, Support
@@ -66,6 +67,24 @@ def test_a_lateral_force_is_used_below_the_head_and_any_way_round() -> None:
     assert found.steel_depth_m == pytest.approx(H / 4e5, abs=1.5)
     assert turned.steel.utilisation == pytest.approx(found.steel.utilisation, rel=1e-6)
     assert turned.head_m == pytest.approx(found.head_m, rel=1e-6)
+
+
+@pytest.mark.parametrize(("arm", "heading"), [(0.0, 0.0), (4.0, 2.1), (-3.0, 4.0)])
+def test_lateral_use_is_demand_over_the_load_at_the_same_arm(arm: float, heading: float) -> None:
+    """γ_R H over the pushover's load, whichever way the head is pushed; Broms's long pile for its size."""
+    c, s = np.cos(heading), np.sin(heading)
+    H = 0.5e6
+    found = used(H * c, H * s, -1e6, -H * arm * s, H * arm * c, 0.0)
+    limit = pushover(PILE, GROUND, arm_m=arm, yield_strength_pa=345e6).ultimate_n
+    assert found.lateral == pytest.approx(1.25 * H / limit, rel=1e-3)
+    if arm == 0.0:
+        M_p = 345e6 * (1.5**3 - 1.42**3) / 6.0
+        # the hinge, twelve metres deep, is not whole yet
+        assert 0.6 < limit / np.sqrt(2.0 * 4e5 * M_p) < 1.0
+    assert used(0.0, 0.0, -1e6, 0.0, 0.0, 0.0).lateral == 0.0
+    turned = used(0.0, 0.0, 0.0, 0.0, 1e6, 0.0)
+    assert 0.0 < turned.lateral < np.inf
+    assert turned.worst >= turned.lateral
 
 
 def test_beyond_the_ground_nothing_stands() -> None:

@@ -361,8 +361,8 @@ def _piles_left_out(piles: tuple[PileUse, ...]) -> tuple[Omission, ...]:
         return (Omission(how, "ISO 19902 17"),)
     return (
         Omission(
-            "piles: group effects, cyclic degradation along the axis, set-up, the weight of piles and plug, "
-            "yielding steel and driving; the structure is supported by the ground's initial stiffness",
+            "piles: group effects, cycles and set-up beyond the foundation's `curves`, weight of piles and "
+            "plug, driving; the structure is supported by the ground's initial stiffness",
             "ISO 19902 17",
         ),
     )

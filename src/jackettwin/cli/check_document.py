@@ -40,7 +40,7 @@ def check_document(
         "joints": [_joint_row(one) for one in joints],
         "combinations": [_combination_row(case, one) for case, one in (combinations or {}).items()],
         "sheet": None if sheet is None else [line._asdict() for line in sheet],
-        "piles": [_pile_row(one) for one in sorted(piles, key=lambda one: -one.axial)],
+        "piles": [_pile_row(one) for one in sorted(piles, key=lambda one: -max(one.axial, one.lateral))],
         "grouted": [
             _grout_row(one)
             for one in sorted(
@@ -135,6 +135,7 @@ def _pile_row(use: PileUse) -> dict[str, Any]:
     return {
         "foot": use.foot,
         "axial_utilisation": use.axial,
+        "lateral_utilisation": use.lateral,
         "capacity_compression_n": capacity.compression_n,
         "capacity_tension_n": capacity.tension_n,
         "plugged": capacity.plugged,
@@ -153,7 +154,7 @@ def _pile_row(use: PileUse) -> dict[str, Any]:
 def _pile_warnings(uses: tuple[PileUse, ...]) -> list[str]:
     from jackettwin.structure import few
 
-    over = [use.foot for use in uses if use.axial > 1.0 or (use.steel and use.steel.utilisation > 1.0)]
+    over = [use.foot for use in uses if use.stands and use.worst > 1.0]
     fallen = [use.foot for use in uses if not use.stands]
     found = [f"piles used above 1: {few(over)}"] if over else []
     return found + ([f"the ground cannot carry the piles of {few(fallen)}"] if fallen else [])

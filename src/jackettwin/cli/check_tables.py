@@ -123,6 +123,7 @@ _GROUTED = (
 _PILES = (
     TableColumn("foot", "foot"),
     TableColumn("axial use", "axial_utilisation", ".3f"),
+    TableColumn("lateral use", "lateral_utilisation", ".3f"),
     TableColumn("steel use", "steel_utilisation", ".3f"),
     TableColumn("at depth [m]", "steel_depth_m", ".1f"),
     TableColumn("head moves [mm]", "head_displacement_m", ".1f", 1e3),

@@ -113,8 +113,8 @@ def secant_stiffness(curve: Curve, y: FloatArray | float) -> FloatArray:
     return np.where(moving, curve.force(y) / np.where(moving, y, 1.0), curve.initial_stiffness)
 
 
-def tangent_stiffness(curve: Curve, y: FloatArray | float, *, step: float = 1e-6) -> FloatArray:
-    """Return dp/dy by central differences; ``step`` is relative to |y| but at least 1e-9 m."""
-    y = np.asarray(y, dtype=np.float64)
-    h = np.maximum(step * np.abs(y), 1e-9)
-    return np.asarray((curve.force(y + h) - curve.force(y - h)) / (2.0 * h))
+def force_and_tangent(curve: Curve, y: float, *, step: float = 1e-6) -> tuple[float, float]:
+    """Return p(y), and dp/dy by central differences; ``step`` is relative to |y| but at least 1e-9 m."""
+    h = max(step * abs(y), 1e-9)
+    here, ahead, behind = curve.force(np.array([y, y + h, y - h]))
+    return float(here), float(ahead - behind) / (2.0 * h)

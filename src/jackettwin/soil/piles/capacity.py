@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,7 +12,7 @@ import scipy.sparse.linalg as spla
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import NumericalError, require
-from jackettwin.soil.ground.curves import tangent_stiffness
+from jackettwin.soil.ground.curves import Curve, force_and_tangent
 from jackettwin.soil.piles.group import ClayBlock
 from jackettwin.soil.piles.impedance import pile_matrices
 from jackettwin.soil.piles.piles import Pile, PileSprings
@@ -94,11 +95,9 @@ def soil_reaction(
     direction = np.where((r > 0.0)[:, None], u[:, :2] / radial[:, None], [1.0, 0.0])
     p, dp = _nodal(curves, "py", r)
     along_shaft = p.copy()
-    p[-1] += float(curves.base_shear.force(r[-1]))
-    dp[-1] += float(tangent_stiffness(curves.base_shear, r[-1]))
+    _add_base(p, dp, curves.base_shear, r)
     t, dt = _nodal(curves, "tz", u[:, 2])
-    t[-1] += float(curves.qz.force(u[-1, 2]))
-    dt[-1] += float(tangent_stiffness(curves.qz, u[-1, 2]))
+    _add_base(t, dt, curves.qz, u[:, 2])
     force = np.zeros_like(u)
     force[:, :2] = p[:, None] * direction
     force[:, 2] = t
@@ -111,7 +110,8 @@ def soil_reaction(
     if curves.sides:
         turned, stiffness = _turning(curves, along_shaft, u[:, 3:5])
         force[:, 3:5], blocks[:, 3:5, 3:5] = turned, stiffness
-    return force, sp.csc_array(sp.block_diag(list(blocks)))
+    n = len(blocks)
+    return force, sp.csc_array(sp.bsr_array((blocks, np.arange(n), np.arange(n + 1)), shape=(6 * n, 6 * n)))
 
 
 def _turning(curves: PileCurves, p: FloatArray, rotation: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -125,16 +125,12 @@ def _turning(curves: PileCurves, p: FloatArray, rotation: FloatArray) -> tuple[F
     safe = np.where(theta > 0.0, theta, 1.0)
     direction = np.where((theta > 0.0)[:, None], rotation / safe[:, None], [0.0, 1.0])
     moved = theta[at.node]
-    force = np.array([float(side.curve.force(v)) for side, v in zip(curves.sides, moved, strict=True)])
-    slope = np.array(
-        [float(tangent_stiffness(side.curve, v)) for side, v in zip(curves.sides, moved, strict=True)]
-    )
+    force, slope = _of_curves([side.curve for side in curves.sides], moved)
     by_force = np.array([side.by_force for side in curves.sides])
     length = at.at_nodes(np.ones_like(at.weight))
     with_p = np.abs(p / length)[at.node]
     m, dm = (at.at_nodes(np.where(by_force, with_p, 1.0) * one) for one in (force, slope))
-    m[-1] += float(curves.base_moment.force(theta[-1]))
-    dm[-1] += float(tangent_stiffness(curves.base_moment, theta[-1]))
+    _add_base(m, dm, curves.base_moment, theta)
     along = direction[:, :, None] * direction[:, None, :]
     secant = np.where(theta > 0.0, m / safe, dm)[:, None, None]
     return m[:, None] * direction, dm[:, None, None] * along + secant * (np.eye(2) - along)
@@ -142,11 +138,22 @@ def _turning(curves: PileCurves, p: FloatArray, rotation: FloatArray) -> tuple[F
 
 def _nodal(curves: PileCurves, kind: str, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return reaction and tangent at the nodes from the curves at their stations."""
-    at, family = curves.at, curves.py if kind == "py" else curves.tz
-    moved = y[at.node]
-    p = np.array([float(curve.force(v)) for curve, v in zip(family, moved, strict=True)])
-    dp = np.array([float(tangent_stiffness(curve, v)) for curve, v in zip(family, moved, strict=True)])
+    at = curves.at
+    p, dp = _of_curves(curves.py if kind == "py" else curves.tz, y[at.node])
     return at.at_nodes(p), at.at_nodes(dp)
+
+
+def _of_curves(family: Sequence[Curve], moved: FloatArray) -> FloatArray:
+    """Return force and tangent of each curve at its displacement, (2, n)."""
+    found = [force_and_tangent(curve, float(v)) for curve, v in zip(family, moved, strict=True)]
+    return np.array(found).reshape(-1, 2).T
+
+
+def _add_base(force: FloatArray, tangent: FloatArray, base: Curve, moved: FloatArray) -> None:
+    """Add what the base does to the reaction of the lowest node."""
+    p, dp = force_and_tangent(base, float(moved[-1]))
+    force[-1] += p
+    tangent[-1] += dp
 
 
 @dataclass(frozen=True)
