@@ -58,6 +58,9 @@ describe("a plot", () => {
   test("has ticks in steps of 1, 2 or 5", () => {
     expect(ticksOf([0, 1], 5)).toEqual([0, 0.2, 0.4, 0.6, 0.8, 1]);
     expect(ticksOf([0.2, 30], 5, true)).toEqual([0.2, 0.5, 1, 2, 5, 10, 20]);
+    expect(ticksOf([9.7e-9, 0.02], 5, true)).toEqual([1e-8, 1e-6, 1e-4, 1e-2]); // where uPlot's own search does not end
+    expect(ticksOf([18, 46], 5, true)).toEqual([20, 30, 40]);
+    expect(ticksOf([1e9, 1e9 + 1e-7], 5).length).toBeLessThan(9);
     for (const none of [ticksOf([0, 1], 5, true), ticksOf([1, 1], 5), ticksOf([0, Infinity], 5)])
       expect(none).toEqual([]);
   });

@@ -96,7 +96,7 @@ def test_a_backup_of_an_older_schema_is_read_for_ever(
     counts = restore(tmp_path / "old.tar.gz", other, tmp_path / "b")
     assert (counts["records"], counts["knowledge"], counts["windows"]) == (1, 1, 1)
     with other.connect() as c:
-        assert results.find_supports(c, "wtg", 1) == {"law": "zener"}
+        assert results.find_supports(c, "wtg", 1) == {"law": "zener", "reported": False}
         assert records.find_record(c, "wtg", "ab12").start_utc == NOW
         assert c.scalar(text("select n_late from windows")) == 0
     other.dispose()

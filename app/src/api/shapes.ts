@@ -25,6 +25,8 @@ export interface Knowledge {
   statement?: string;
   records?: number;
   until_utc?: string;
+  /** Whether there is a report. */
+  reported?: boolean;
   /** The questions of the report's first page, and what is said to each in short. */
   answers?: { question: string; answer: string }[];
   parameters?: Record<string, KnownParameter>;

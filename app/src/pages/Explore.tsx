@@ -100,7 +100,7 @@ function Along({ locus }: { locus: Locus }) {
       </Card>
       <Card title="Modes here" note={`At ${locus.parameter} = ${quantity(value, locus.unit, 3)}.`}>
         <Table
-          label="Modes here"
+          label="Frequencies and damping ratios"
           rows={locus.branches}
           id={(b) => b.label}
           columns={[
@@ -156,22 +156,19 @@ function Sensitivity({ asset }: { asset: string }) {
 }
 
 function Curves({ explored }: { explored: Explored }) {
-  const plot = useMemo((): PlotData => {
-    return {
+  const plot = useMemo(
+    (): PlotData => ({
       title: "Cost along each parameter",
       time: false,
       xName: "factor on the median",
       yName: "cost",
       log: true,
-      series: (explored.curves ?? []).map((c, i) => ({
-        name: c.parameter,
-        colour: paintOf(i),
-        kind: "line",
-        x: c.factor,
-        y: c.cost,
-      })),
-    };
-  }, [explored]);
+      series: (explored.curves ?? []).map(({ parameter: name, factor: x, cost: y }, i) => {
+        return { name, colour: paintOf(i), kind: "line", x, y };
+      }),
+    }),
+    [explored],
+  );
   return (
     <Card title="How sharply the data decide" note="A flat curve: the data say little of this parameter.">
       <Plot data={plot} height={300} />

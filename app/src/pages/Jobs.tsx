@@ -8,15 +8,8 @@ import { Table } from "../parts/Table";
 import { asked, assetUrl } from "../shell/place";
 
 type Job = Schemas["JobOut"];
-const STATES: readonly (readonly [string, string])[] = [
-  ["", "All"],
-  ["queued", "waiting"],
-  ["leased", "under way"],
-  ["done", "done"],
-  ["failed", "failed"],
-  ["set_aside", "set aside"],
-];
 const WORDS: Record<string, string> = { queued: "waiting", leased: "under way" };
+const STATES = Object.entries({ "": "All", ...WORDS, done: "done", failed: "failed", set_aside: "set aside" });
 const KINDS: Record<string, string> = {
   observe: "find the modes of a record",
   know: "ask what all records say",

@@ -95,7 +95,7 @@ export default function Model({ asset }: PageProps) {
           <Shown of={versions}>
             {(data) => (
               <Table
-                label="Versions"
+                label="All versions"
                 rows={data.items.toReversed()}
                 id={(v) => String(v.version)}
                 columns={[

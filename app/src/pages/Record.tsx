@@ -22,19 +22,12 @@ const SPECTRA = [
   ["singular", "Singular values"],
 ] as const;
 type Stretch = Schemas["StretchOut"];
-const UNITS: readonly (readonly [RegExp, string])[] = [
-  [/_m_s$/, " [m/s]"],
-  [/_deg$/, " [°]"],
-  [/_c$/, " [°C]"],
-  [/_rpm$/, " [1/min]"],
-  [/_m$/, " [m]"],
-  [/_s$/, " [s]"],
-];
+const UNITS: Record<string, string> = { m_s: "m/s", deg: "°", c: "°C", rpm: "1/min", m: "m", s: "s" };
 
 /** mean_wind_speed_m_s: mean wind speed [m/s]. */
 export function condition(name: string): string {
-  const [end, unit] = UNITS.find(([known]) => known.test(name)) ?? [/$/, ""];
-  return name.replace(end, "").replaceAll("_", " ") + unit;
+  const [, own = name, unit = ""] = /^(.*?)_(m_s|deg|c|rpm|m|s)$/.exec(name) ?? [];
+  return own.replaceAll("_", " ") + (unit && ` [${UNITS[unit]}]`);
 }
 
 function Signals({ record }: { record: RecordOut }) {

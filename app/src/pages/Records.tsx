@@ -1,9 +1,10 @@
 // Which records are there, and how far did each get?
 import { useState } from "preact/hooks";
 import { useAsset } from "../api/answer";
-import { type RecordOut } from "../api/client";
+import type { Mode, RecordOut } from "../api/client";
 import { may } from "../api/do";
 import { Card, Choice, Light, Time, Head } from "../parts/Bits";
+import { ModeTable } from "../parts/ModeTable";
 import { Empty, Shown } from "../parts/Shown";
 import { type Column, number, Table } from "../parts/Table";
 import { Upload } from "../parts/Upload";
@@ -11,29 +12,25 @@ import type { PageProps } from "../shell/place";
 import { asked, assetUrl, keep } from "../shell/place";
 
 type Status = RecordOut["status"];
-const STATUSES: readonly (readonly [string, string])[] = [
-  ["", "All"],
-  ["observed", "observed"],
-  ["received", "waiting"],
-  ["refused", "refused"],
-  ["mismatched", "mismatched"],
-  ["set_aside", "set aside"],
-];
+const LEFT_OUT = { refused: "refused", mismatched: "mismatched", set_aside: "set aside" };
+const STATUSES = Object.entries({ "": "All", observed: "observed", received: "waiting", ...LEFT_OUT });
 
 const detail = (record: RecordOut): string => {
   const said = record.problem?.["detail"];
   return typeof said === "string" ? said : record.picks ? "poles picked by hand" : "";
 };
 
+const Began = ({ asset, id, at }: { asset: string; id: string; at: string }) => (
+  <a href={assetUrl(asset, "records", id)}>
+    <Time at={at} />
+  </a>
+);
+
 const COLUMNS: Column<RecordOut>[] = [
   { title: "Status", show: (r) => <Light status={r.status} />, by: (r) => r.status },
   {
     title: "Began",
-    show: (r) => (
-      <a href={assetUrl(r.asset, "records", r.record_id)}>
-        <Time at={r.start_utc} />
-      </a>
-    ),
+    show: (r) => <Began asset={r.asset} id={r.record_id} at={r.start_utc} />,
     by: (r) => r.start_utc,
   },
   number("Length", "min", (r) => r.duration_s / 60, { say: (v) => v.toFixed(1) }),
@@ -63,6 +60,7 @@ export default function Records({ asset }: PageProps) {
       <div class="tools below">
         <Choice label="Status" kept="status" options={STATUSES} />
       </div>
+      <LeastKnown asset={asset} times={from && to ? { from, to } : {}} />
       <Card
         title={from && to ? `From ${from.slice(0, 10)} to ${to.slice(0, 10)}` : "Latest first"}
         wide
@@ -88,6 +86,27 @@ export default function Records({ asset }: PageProps) {
         </Shown>
       </Card>
     </>
+  );
+}
+
+const SHOWN = 5;
+
+/** Which record is worst, and why. */
+function LeastKnown({ asset, times }: { asset: string; times: object }) {
+  const found = useAsset(asset, "/modes", { ...times, order: "least_known", limit: 10 * SHOWN });
+  const modes = found.data?.items ?? [];
+  const rows = modes.filter((m, i) => modes.findIndex((o) => o.record_id === m.record_id) === i).slice(0, SHOWN);
+  const began = { title: "Record", show: (m: Mode) => <Began asset={asset} id={m.record_id} at={m.time_utc} /> };
+  return (
+    <Card
+      title="The worst first"
+      wide
+      note="Records whose frequencies are least certain for their size, each with its widest mode: a mode is known the less, the more it is damped and the fewer of its cycles the record holds."
+    >
+      <Shown of={found} lines={5} none={<p class="quiet">No mode yet.</p>}>
+        {() => <ModeTable asset={asset} modes={rows} id={(m) => m.record_id} more={[began]} />}
+      </Shown>
+    </Card>
   );
 }
 

@@ -27,7 +27,7 @@ export default function Reports({ asset }: PageProps) {
           ))}
         </div>
       </div>
-      <Shown of={twin} lines={10} some={(data) => (data.parameters as Knowledge).law} none={<Nothing />}>
+      <Shown of={twin} lines={10} some={(data) => (data.parameters as Knowledge).reported} none={<Nothing />}>
         {(data) => {
           const known = data.parameters as Knowledge;
           const url = `/assets/${encodeURIComponent(asset)}/report?version=${data.version}`;
@@ -55,4 +55,8 @@ export default function Reports({ asset }: PageProps) {
   );
 }
 
-const Nothing = () => <Empty title="No report yet">It is written when no record waits.</Empty>;
+const Nothing = () => (
+  <Empty title="No report yet">
+    It is written when no record waits, in a minute or two: <a href="/jobs">what is being done</a>.
+  </Empty>
+);

@@ -13,25 +13,10 @@ import { asked, assetUrl, go } from "../shell/place";
 import { words } from "../words/numbers";
 import { seconds } from "../words/time";
 
-const QUANTITIES = [
-  ["frequency", "Frequency"],
-  ["damping", "Damping"],
-  ["left", "Frequency residual"],
-  ["damping-left", "Damping residual"],
-  ["ground", "Ground"],
-] as const;
-const STATES = [
-  ["", "Any state"],
-  ["parked", "parked"],
-  ["idling", "idling"],
-  ["operating", "operating"],
-] as const;
-const SPANS = [
-  ["30", "30 days"],
-  ["90", "90 days"],
-  ["365", "1 year"],
-  ["", "All"],
-] as const;
+const LEFT = { left: "Frequency residual", "damping-left": "Damping residual" };
+const QUANTITIES = Object.entries({ frequency: "Frequency", damping: "Damping", ...LEFT, ground: "Ground" });
+const STATES = Object.entries({ "": "Any state", parked: "parked", idling: "idling", operating: "operating" });
+const SPANS = Object.entries({ 30: "30 days", 90: "90 days", 365: "1 year", "": "All" });
 const DAY_S = 86_400;
 const REST_MS = 150;
 /** Of so many rows each is drawn. */

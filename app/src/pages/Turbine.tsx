@@ -142,7 +142,6 @@ export function Turbine({ asset }: PageProps) {
       {own.data ? <Head asset={own.data} twin={twin.data} /> : <div class="head bones" />}
       {twin.data && twin.data.records > 0 && <Figures twin={twin.data} alarms={alarms.data?.items ?? []} />}
       <div class="grid">
-        {known?.answers && <Answers asset={asset} known={known} />}
         <Card title="What changed, and why" more={<a href={assetUrl(asset, "alarms")}>All alarms</a>}>
           <Shown of={alarms} none={<Unchanged own={own} />} lines={3}>
             {(data) => <AlarmList alarms={mostUrgent(data.items).slice(0, 3)} again={alarms.again} />}
@@ -157,6 +156,7 @@ export function Turbine({ asset }: PageProps) {
             {(data) => <ModeTable asset={asset} modes={data.modes as unknown as KnownMode[]} more={RECORDS} />}
           </Shown>
         </Card>
+        {known?.answers && <Answers asset={asset} known={known} />}
         <Suspense fallback={null}>
           <Stiffness asset={asset} />
         </Suspense>

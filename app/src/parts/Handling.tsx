@@ -7,12 +7,7 @@ import { Form, Time } from "./Bits";
 
 type Act = "acknowledge" | "assign" | "comment" | "mute" | "close" | "reopen";
 const DAY_MS = 86_400_000;
-const SPANS: readonly (readonly [number, string])[] = [
-  [1, "a day"],
-  [7, "a week"],
-  [30, "a month"],
-  [365, "a year"],
-];
+const SPANS = Object.entries({ 1: "a day", 7: "a week", 30: "a month", 365: "a year" });
 /** Of each act: its button, what is asked, and how it is told afterwards. */
 const ACTS: Record<string, readonly [string, string, string]> = {
   acknowledge: ["Acknowledge", "What you saw, and what you do about it", "acknowledged"],

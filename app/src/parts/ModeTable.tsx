@@ -14,15 +14,16 @@ interface SomeMode {
 interface ModeTableProps<T extends SomeMode> {
   asset: string;
   modes: readonly T[];
+  id?: (mode: T) => string;
   more: readonly Column<T>[];
 }
 
-export function ModeTable<T extends SomeMode>({ asset, modes, more }: ModeTableProps<T>) {
+export function ModeTable<T extends SomeMode>({ asset, modes, id = (m) => m.label, more }: ModeTableProps<T>) {
   return (
     <Table
       label="Modes"
       rows={modes}
-      id={(m) => m.label}
+      id={id}
       columns={[
         {
           title: "Mode",

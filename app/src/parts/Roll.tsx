@@ -1,7 +1,7 @@
 // Signals that roll: samples by channel, the newest at the right, drawn with every frame of the screen.
 import { useEffect, useRef } from "preact/hooks";
 import { colour, theme } from "../shell/theme";
-import { paintOf } from "./modes";
+import { PAINTS } from "./modes";
 
 const KEPT_S = 240;
 const LANE_PX = [22, 56] as const;
@@ -76,7 +76,7 @@ export function Lanes({ roll, span }: { roll: Roll; span: number }) {
     const sheet = canvas.current;
     const ink = sheet?.getContext("2d");
     if (!sheet || !ink) return;
-    const paints = ["quiet", "line"].map(colour);
+    const [quiet = "", ...paints] = ["quiet", ...PAINTS].map(colour); // asking costs a layout
     let frame = 0;
     let count = 0;
     const draw = (): void => {
@@ -92,14 +92,14 @@ export function Lanes({ roll, span }: { roll: Roll; span: number }) {
       ink.clearRect(0, 0, width, height);
       ink.font = "12px system-ui, sans-serif";
       names.forEach((name, k) => {
-        ink.strokeStyle = colour(paintOf(k));
+        ink.strokeStyle = paints[k % paints.length] ?? quiet;
         const said = lane(ink, roll.channels.get(name) ?? [], roll.now(), span, [
           NAMES_PX,
           k * each,
           width - NAMES_PX,
           each,
         ]);
-        ink.fillStyle = paints[0] ?? "";
+        ink.fillStyle = quiet;
         ink.fillText(name.slice(0, 13), 0, (k + 0.5) * each + 4);
         if (each > 40) ink.fillText(said, 0, (k + 0.5) * each + 18);
       });

@@ -4,7 +4,7 @@ import { words } from "../words/numbers";
 import { day, seconds } from "../words/time";
 import type { Mark, PlotData } from "./plot/series";
 
-const PAINTS = ["blue", "vermillion", "green", "purple", "orange", "sky", "grey", "ink"];
+export const PAINTS = ["blue", "vermillion", "green", "purple", "orange", "sky", "grey", "ink"];
 /** The colour of the k-th of some series. */
 export const paintOf = (k: number): string => PAINTS[k % PAINTS.length] ?? "blue";
 export type Bins = Schemas["ModeBinsOut"];

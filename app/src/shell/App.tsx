@@ -32,18 +32,8 @@ const PAGES: Record<string, ComponentType<PageProps>> = {
   docs: later(() => import("../pages/Docs")),
   start: later(() => import("../pages/Start")),
 };
-const TABS: readonly (readonly [string, string])[] = [
-  ["", "Turbine"],
-  ["live", "Live"],
-  ["timeline", "Timeline"],
-  ["structure", "Structure"],
-  ["explore", "Explore"],
-  ["life", "Life"],
-  ["records", "Records"],
-  ["alarms", "Alarms"],
-  ["model", "Model"],
-  ["reports", "Report"],
-];
+const TABS = ["", ..."live timeline structure explore life records alarms model reports".split(" ")];
+const titled = (key: string): string => (key ? key.charAt(0).toUpperCase() + key.slice(1) : "Turbine");
 const OWN_TABS: readonly (readonly [string, string, string])[] = [
   ["/", "Turbines", "viewer"],
   ["/jobs", "Jobs", "viewer"],
@@ -106,7 +96,7 @@ function Top() {
         </div>
       </div>
       <nav class="tabs" aria-label="Pages">
-        {(asset ? TABS.map(([key, name]) => [assetUrl(asset, key), name, key] as const) : OWN_TABS).map(
+        {(asset ? TABS.map((key) => [assetUrl(asset, key), titled(key), key] as const) : OWN_TABS).map(
           ([url, words, key]) =>
             (asset || may(key)) && (
               <a key={url} href={url} {...((asset ? key === here : url === path) ? { "aria-current": "page" } : {})}>

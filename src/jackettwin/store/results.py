@@ -231,9 +231,15 @@ def list_modes(
     after: int | None = None,
     limit: int | None = 1000,
     state: str | None = None,
+    least_known: bool = False,
 ) -> list[Mapping[str, Any]]:
-    """Return modes over time, in the order of their identification; of records in a state of operation."""
-    query = select(modes).filter_by(asset=asset, model_hash=model_hash).order_by(modes.c.id).limit(limit)
+    """Return modes over time, in the order of their identification; of records in a state of operation.
+
+    With ``least_known``, the mode whose frequency has the largest relative standard deviation comes first.
+    """
+    doubt = (modes.c.frequency_std_hz / modes.c.frequency_hz).desc().nulls_last()
+    order = (doubt, modes.c.id) if least_known else (modes.c.id,)
+    query = select(modes).filter_by(asset=asset, model_hash=model_hash).order_by(*order).limit(limit)
     if label is not None:
         query = query.where(modes.c.label == label)
     if after is not None:
@@ -295,8 +301,10 @@ def find_kept(connection: Connection, asset: str, version: int) -> Mapping[str, 
 
 
 def find_supports(connection: Connection, asset: str, version: int) -> dict[str, Any]:
-    """Return the estimates of the supports without the state of monitoring; empty if there are none yet."""
-    return dict(_part(connection, asset, version, "known"))
+    """Return the estimates of the supports and whether a report is kept (``reported``); empty before them."""
+    query = select(knowledge.c.document["known"], knowledge.c.report.is_not(None))
+    row = connection.execute(query.where(*_of_version(asset, version))).one_or_none()
+    return {} if row is None or not row[0] else {**row[0], "reported": bool(row[1])}
 
 
 def find_drawn(connection: Connection, asset: str, version: int, name: str) -> Any:

@@ -6,7 +6,7 @@ import { colour, theme } from "../../shell/theme";
 import { scientific } from "../../words/numbers";
 import { SaveMenu } from "./SaveMenu";
 import type { PlotData, Range, Series } from "./series";
-import { extentOf, readX, spanOf } from "./series";
+import { extentOf, readX, spanOf, ticksOf } from "./series";
 import { MANY, under } from "./under";
 
 interface PlotProps {
@@ -128,19 +128,11 @@ function options(
       },
     },
     axes: [
+      { ...axis, space: 70, ...(data.time ? { values: TIMES } : ownTicks(data.logX)) },
       {
         ...axis,
-        ...(data.time ? { values: TIMES } : data.logX ? { values: (_u, ticks) => decades(ticks) } : {}),
-        space: 70,
-      },
-      {
-        ...axis,
-        size: 62,
-        space: 24,
-        values: (_u, ticks) => {
-          const few = ticks.filter((v) => v !== null && isRound(v)).length < 2;
-          return ticks.map((v) => (v === null || (data.log && !few && !isRound(v)) ? "" : axisNumber(v)));
-        },
+        ...ownTicks(data.log),
+        size: (_u, said) => Math.max(62, ...(said ?? []).map((text) => 18 + 6.5 * text.length)),
       },
     ],
     ...more,
@@ -305,11 +297,15 @@ function wheeled(u: uPlot, event: WheelEvent): Range | null {
   return [a + step, b + step];
 }
 
-/** Whether a number has one digit: a logarithmic axis begins anywhere. */
-const isRound = (v: number): boolean => Number(v.toPrecision(1)) === Number(v.toPrecision(6));
-/** Whole decades are named, what lies between them is not. */
-const decades = (ticks: (number | null)[]): string[] =>
-  ticks.map((v) => (v !== null && Number.isInteger(Number(Math.log10(v).toFixed(6))) ? axisNumber(v) : ""));
+/** Ticks of our own: on logarithmic scales uPlot's search for them does not end for one of fifty ranges (9.5e-9 to 1). */
+const ownTicks = (log = false): uPlot.Axis => ({
+  splits: (u, axis, low, high) => {
+    const room = (axis ? u.bbox.height / 36 : u.bbox.width / 90) / devicePixelRatio;
+    return ticksOf([low, high], Math.max(room, 2), log);
+  },
+  filter: (_u, ticks) => ticks,
+  values: (_u, ticks) => ticks.map(axisNumber),
+});
 const axisNumber = (v: number): string =>
   v !== 0 && (Math.abs(v) < 1e-3 || Math.abs(v) >= 1e6)
     ? scientific(v, 1).replace(/^1 × /, "")

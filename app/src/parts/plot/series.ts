@@ -101,19 +101,20 @@ export const readX = (plot: PlotData, x: number, span: number): string =>
 export function ticksOf([low, high]: Range, most: number, log = false): number[] {
   if (!(high > low) || !Number.isFinite(high - low) || (log && low <= 0)) return []; // as before there are data
   if (log) {
+    const decades = Math.log10(high / low);
+    const every = Math.max(Math.ceil(decades / most), 1);
     const found = [];
-    for (let p = Math.floor(Math.log10(low)); p <= Math.log10(high); p++)
-      for (const m of high / low > 1e3 ? [1] : [1, 2, 5]) {
-        const value = m * 10 ** p;
+    for (let p = Math.floor(Math.log10(low) / every) * every; p <= Math.log10(high); p += every)
+      for (const m of decades < most / 2 ? [1, 2, 5] : [1]) {
+        const value = Number(`${m}e${p}`);
         if (value >= low && value <= high) found.push(value);
       }
-    return found;
+    if (found.length > 2) return found;
   }
   const raw = (high - low) / most;
   const size = 10 ** Math.floor(Math.log10(raw));
   const step = size * ([1, 2, 5, 10].find((m) => m * size >= raw) ?? 10);
-  const found = [];
-  for (let v = Math.ceil(low / step) * step; v <= high + step * 1e-9; v += step)
-    found.push(Number(v.toPrecision(12)));
-  return found;
+  const first = Math.ceil(low / step);
+  const many = Math.floor(high / step + 1e-9) - first + 1; // counted, not added up to: a step may be lost in what it is added to
+  return Array.from({ length: many }, (_, k) => Number(((first + k) * step).toPrecision(12)));
 }

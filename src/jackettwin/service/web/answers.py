@@ -50,8 +50,9 @@ def modes(
     cursor: str | None,
     limit: int,
     state: str | None,
+    least_known: bool = False,
 ) -> Page[ModeOut]:
-    """Return a page of modes through time."""
+    """Return a page of modes through time, or the modes that are known least, which have one page only."""
     chosen: dict[str, Any] = {
         "label": label,
         "since": since,
@@ -59,9 +60,10 @@ def modes(
         "after": _row(cursor),
         "limit": limit + 1,
         "state": state,
+        "least_known": least_known,
     }
     rows = results.list_modes(connection, version.asset, version.model_hash, **chosen)
-    return _page(rows, limit, _mode_out)
+    return _page(rows[:limit] if least_known else rows, limit, _mode_out)
 
 
 def coloured_by_life(drawn: StructureOut, welds: Sequence[Mapping[str, Any]]) -> StructureOut:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from datetime import datetime
-from typing import Annotated
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query, Response
 from fastapi.responses import StreamingResponse
@@ -47,6 +47,10 @@ _PARQUET, _ARROW = "application/vnd.apache.parquet", "application/vnd.apache.arr
 State = Annotated[
     str | None, Query(max_length=64, description="First word of the records' state of operation.")
 ]
+Order = Annotated[
+    Literal["found", "least_known"],
+    Query(description="least_known: largest relative standard deviation of the frequency first, one page."),
+]
 When = Annotated[datetime | None, Query(description="Time of the state; default: now.")]
 
 
@@ -60,11 +64,12 @@ def modes(
     state: State = None,
     cursor: Cursor = None,
     limit: Limit = 1000,
+    order: Order = "found",
 ) -> Page[ModeOut]:
     """List the modes of every record, in the order in which they were found."""
     version = known_asset(connection, asset)
     window = (signals.with_zone(since, "from"), signals.with_zone(until, "to"))
-    return said.modes(connection, version, label, *window, cursor, limit, state)
+    return said.modes(connection, version, label, *window, cursor, limit, state, order == "least_known")
 
 
 @router.get("/assets/{asset}/modes/bins", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
