@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from jackettwin.errors import InputError
 from jackettwin.identification import mac
 from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.updating import Problem, Residuals, SupportModel, Target, joint
-from jackettwin.updating.data.shapes import ShapeTarget
+from jackettwin.updating.data.shapes import ProfileTarget, ShapeTarget
 
 TRUTH, MODES = np.array([6e8, 0.1]), (1, 2, 4)
 SENSORS = tuple(
@@ -65,6 +66,41 @@ def test_gradients_are_differences(problem: Problem) -> None:
         np.testing.assert_allclose(
             J[:, j], (up - down) / (2 * h), rtol=1e-5, atol=1e-5 * np.abs(J[:, j]).max()
         )
+
+
+@pytest.fixture(scope="module")
+def profiles(model: SupportModel, problem: Problem) -> Problem:
+    """The first pair's frequencies, and how far 41 m moves with 144 m, mixed as one record sees a pair."""
+    exact = model.exact_modes(TRUTH, MODES)
+    seen = (
+        observation_matrix(model.assembly, SENSORS)
+        @ exact.shapes[:, :2]
+        @ np.array([[1.0, 0.6], [-0.6, 1.0]])
+    )
+    shapes = tuple(
+        ProfileTarget.seen(model, m, exact.frequency_hz[m - 1], SENSORS, seen[:, m - 1], 0.003)
+        for m in (1, 2)
+    )
+    return replace(problem, states=(replace(problem.states[0], shapes=shapes),))
+
+
+def test_a_profile_is_of_no_direction_and_tells_softer_feet(profiles: Problem) -> None:
+    r, J, _ = profiles.evaluate(np.log(TRUTH), None)
+    assert profiles.data_names[3:] == ["profile1", "profile2"]
+    np.testing.assert_allclose(r[3:], 0.0, atol=0.5)  # alike in both directions to 1e-3
+    z, h = np.log([2e8, 0.3]), 1e-4
+    near = profiles.evaluate(z, None)[2]
+    r, J, _ = profiles.evaluate(z, near)
+    assert (r[3:] > 2.0).all()  # a softer foot moves more
+    for j in range(2):
+        step = h * (np.arange(2) == j)
+        up, down = (profiles.evaluate(z + s, near)[0][3:] for s in (step, -step))
+        np.testing.assert_allclose(J[3:, j], (up - down) / (2 * h), rtol=1e-4, atol=1e-4)
+
+
+def test_a_profile_needs_two_places(model: SupportModel) -> None:
+    with pytest.raises(InputError, match="two places"):
+        ProfileTarget.seen(model, 1, 0.2, SENSORS[:2], np.ones(2), 0.003)
 
 
 def test_shapes_count_in_the_likelihood(problem: Problem) -> None:

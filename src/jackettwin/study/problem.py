@@ -22,6 +22,7 @@ from jackettwin.updating import (
     NuisanceParameters,
     PairDirection,
     Problem,
+    ProfileTarget,
     RelaxationTarget,
     Residuals,
     ShapeTarget,
@@ -197,42 +198,50 @@ def _heads(config: TwinConfig) -> Support | None:
 def measured_shapes(
     config: TwinConfig, model: SupportModel, evidence: UpdateEvidence
 ) -> tuple[ShapeTarget, ...]:
-    """Return the measured shape of highest MAC of each fitted mode; none without ``mac_std``."""
+    """Return the measured shape of highest MAC of each fitted mode; none where shapes are not fitted."""
     state = evidence.state
     first, _ = next(iter(evidence.states.values()))
     if state is None:
         return _given_shapes(config, model, first)
-    if config.update.mac_std is None or first.relative:
+    if first.relative:
         return ()
-    std = config.update.mac_std
     best = {mode: state.clearest[str(mode)] for mode in first.modes if str(mode) in state.clearest}
     return tuple(
-        ShapeTarget.seen(model, mode, one.frequency_hz, one.sensors, one.shape, std)
+        kind.seen(model, mode, one.frequency_hz, one.sensors, one.shape, std)
+        for kind, std in _shape_kinds(config)
         for mode, one in best.items()
     )
 
 
+def _shape_kinds(config: TwinConfig) -> list[tuple[type[ShapeTarget], float]]:
+    """Return what is fitted of mode shapes, and its standard deviation."""
+    kinds = ((ShapeTarget, config.update.mac_std), (ProfileTarget, config.update.profile_std))
+    return [(kind, std) for kind, std in kinds if std is not None]
+
+
 def _given_shapes(config: TwinConfig, model: SupportModel, data: Residuals) -> tuple[ShapeTarget, ...]:
     """Return the shapes of the targets that are fitted."""
-    if config.update.mac_std is None:
+    kinds = _shape_kinds(config)
+    if not kinds:
         return ()
     if data.relative:
         raise InputError(
             "shapes can be fitted with data that have standard deviations, not with relative errors",
             file=config.path,
-            field="update.mac_std",
-            value=config.update.mac_std,
+            field="update.mac_std" if config.update.mac_std else "update.profile_std",
+            value=kinds[0][1],
             remedy="give every target its standard deviation, or omit the shapes",
         )
     places = {sensor.channel: sensor for sensor in config.sensors}
-    shapes = []
+    shapes: list[ShapeTarget] = []
     for t in data.used:
         given = config.shapes.get(t.mode, {})
         if given and t.frequency_hz is not None:
             sensors, values = tuple(places[name] for name in given), np.array(list(given.values()))
             with located(file=config.path):
-                seen = ShapeTarget.seen(model, t.mode, t.frequency_hz, sensors, values, config.update.mac_std)
-            shapes.append(seen)
+                shapes += [
+                    kind.seen(model, t.mode, t.frequency_hz, sensors, values, std) for kind, std in kinds
+                ]
     return tuple(shapes)
 
 

@@ -145,6 +145,9 @@ class UpdateSettings(Schema):
     model_errors: Annotated[tuple[ModelError, ...], Field(alias="model_error")] = ()
     mac_std: Positive | None = None
     """Standard deviation of 1 − MAC; with None, mode shapes are not fitted."""
+    profile_std: Positive | None = None
+    """Standard deviation of how far the place that moves least in a mode moves with the one that moves most;
+    with None, it is not fitted."""
     dashpots: tuple[Literal["c_fore_aft", "c_side_side"], ...] = ()
     """Nacelle dashpots that are also updated, stated at the mean wind speed."""
     rotor: str | None = None
@@ -169,6 +172,11 @@ class UpdateSettings(Schema):
         if isinstance(self.starts, int):
             return self.starts
         return points_of(problem, self.starts) or DEFAULT_STARTS
+
+    @property
+    def fits_shapes(self) -> bool:
+        """Whether mode shapes are fitted in any way."""
+        return self.mac_std is not None or self.profile_std is not None
 
     def fits_damping(self, label: str) -> bool:
         """Return whether the damping of a mode is fitted."""

@@ -264,22 +264,23 @@ def _targets(schema: TwinSchema) -> tuple[tuple[Target, ...], tuple[GivenRelaxat
 
 
 def _shapes(schema: TwinSchema, targets: tuple[Target, ...]) -> dict[int, dict[str, complex]]:
-    """Return the shapes of the targets that are modes; ``update.mac_std`` is their weight."""
+    """Return the shapes of the targets that are modes, if the update says how they weigh."""
     shapes = {t.number: t.shape for t in schema.targets if t.number is not None and t.mode_shape}
-    std = schema.update.mac_std
+    update = schema.update
     require(
-        not shapes or std is not None,
+        not shapes or update.fits_shapes,
         "fitting shapes needs the standard deviation of 1 − MAC",
         field="update.mac_std",
         allowed="> 0",
-        remedy="e.g. mac_std: 0.02; or omit mode_shape",
+        remedy="e.g. mac_std: 0.02, or profile_std: 0.003; or omit mode_shape",
     )
+    name = "profile_std" if update.mac_std is None else "mac_std"
     require(
-        not schema.targets or std is None or shapes,
-        "mac_std is given but no target has a shape",
-        field="update.mac_std",
-        value=std,
-        remedy="give targets a mode_shape: {channel: value, …}, or omit mac_std",
+        not schema.targets or not update.fits_shapes or shapes,
+        f"{name} is given but no target has a shape",
+        field=f"update.{name}",
+        value=getattr(update, name),
+        remedy=f"give targets a mode_shape: {{channel: value, …}}, or omit {name}",
     )
     with located(field="targets.mode_shape"):
         for t in (t for t in targets if t.mode in shapes):

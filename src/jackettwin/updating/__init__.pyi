@@ -16,7 +16,7 @@ from .data.pairing import (
     subspace_mac_nearby as subspace_mac_nearby,
 )
 from .data.relaxations import RelaxationTarget as RelaxationTarget
-from .data.shapes import ShapeTarget as ShapeTarget
+from .data.shapes import ProfileTarget as ProfileTarget, ShapeTarget as ShapeTarget
 from .data.targets import Residuals as Residuals, Target as Target
 from .drift import Drift as Drift, find_drift as find_drift
 from .explore.cost import (

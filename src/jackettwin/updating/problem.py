@@ -62,7 +62,7 @@ class State:
     @property
     def names(self) -> list[str]:
         """Names of the residuals: frequencies and damping ratios, then shapes, then relaxations."""
-        shapes = (f"MAC{shape.mode}" for shape in self.shapes)
+        shapes = (shape.name for shape in self.shapes)
         return [*self.residuals.names, *shapes, *(relaxation.name for relaxation in self.relaxations)]
 
     @property

@@ -1,9 +1,18 @@
-r"""Mode shapes as data: one minus the MAC at the sensors, over its standard deviation.
+r"""Mode shapes as data: the MAC at the sensors, and how far they move low on the tower.
+
+Of the MAC one less it over its standard deviation is the residual:
 
 .. math:: r = \frac{1}{σ}\left(1 - \frac{|m^H y|^2}{(m^H m)(y^H y)}\right), \quad y = T x
 
 with the measured shape m, the model's coordinates x and T their motion at the sensors. The record was rotated
-to rotor axes before, so that yaw does not affect m.
+to rotor axes before, so that yaw does not affect m. One minus the MAC is of second order in what shapes
+differ by, and the two modes of a pair lie in their plane in any directions. How far the place that moves
+least moves with the one that moves most is of first order and, of a structure alike in all directions, of
+none:
+
+.. math:: r = \frac{p(y) - p(m)}{σ}, \qquad p(y) = \frac{\mathrm{Re}\, y_{most}^H y_{least}}{|y_{most}|^2}
+
+It tells how much of a first mode is motion of the feet, which its frequency hardly does.
 """
 
 from __future__ import annotations
@@ -14,6 +23,7 @@ from math import log, pi, sqrt
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.errors import require
 from jackettwin.response import Sensor, observation_matrix
 from jackettwin.updating.model import SupportModel
 
@@ -52,6 +62,11 @@ class ShapeTarget:
         return cls(mode, np.asarray(observation_matrix(model.assembly, sensors) @ expansion), shape, std)
 
     @property
+    def name(self) -> str:
+        """What the datum is called."""
+        return f"MAC{self.mode}"
+
+    @property
     def log_normalisation(self) -> float:
         """−log of the normal density at zero."""
         return log(sqrt(2.0 * pi) * self.std)
@@ -76,3 +91,81 @@ class ShapeTarget:
         size = np.einsum("ki,ki->k", y.conj(), y).real
         mac = np.abs(overlap) ** 2 / (size * np.vdot(self.shape, self.shape).real)
         return (1.0 - mac) / self.std, y, overlap, size
+
+
+@dataclass(frozen=True)
+class ProfileTarget(ShapeTarget):
+    """How far the place that moves least in a measured shape moves with the one that moves most.
+
+    Attributes
+    ----------
+    at_sensors, shape : of the channels (2k,) of the place that moves most, then of those (k,) of the other
+        that measure the same
+    std : float
+        Standard deviation of that share.
+    """
+
+    @classmethod
+    def seen(
+        cls,
+        model: SupportModel,
+        mode: int,
+        frequency_hz: float,
+        sensors: tuple[Sensor, ...],
+        shape: ComplexArray,
+        std: float,
+    ) -> ProfileTarget:
+        """Return the target of a shape measured by sensors on the model's structure.
+
+        Raises
+        ------
+        InputError
+            If no two places have sensors that measure the same.
+        """
+        pairs = _most_and_least(sensors, shape)
+        chosen = tuple(sensors[i] for i in pairs)
+        own = ShapeTarget.seen(model, mode, frequency_hz, chosen, np.asarray(shape)[pairs], std)
+        return cls(own.mode, own.at_sensors, own.shape, own.std)
+
+    @property
+    def name(self) -> str:
+        """What the datum is called."""
+        return f"profile{self.mode}"
+
+    def values(self, x: ComplexArray) -> FloatArray:
+        """Return the residuals (n_sets,) of shapes x (n_sets, n)."""
+        return np.asarray((_share(x @ self.at_sensors.T) - _share(self.shape[None])) / self.std)
+
+    def jacobian(self, x: ComplexArray, slopes: ComplexArray) -> FloatArray:
+        """Return the derivatives (n_z,) of the residual of one shape x (n,) from dx/dz (n_z, n)."""
+        most, least = np.split(x @ self.at_sensors.T, 2)
+        d_most, d_least = np.split(slopes @ self.at_sensors.T, 2, axis=1)
+        size = float(np.vdot(most, most).real)
+        share = float(np.vdot(most, least).real) / size
+        change = (d_most.conj() @ least + d_least @ most.conj()).real
+        return np.asarray((change - 2.0 * share * (d_most @ most.conj()).real) / (size * self.std))
+
+
+def _share(y: ComplexArray) -> FloatArray:
+    """Return p (n_sets,) of motions (n_sets, 2k) of two places."""
+    most, least = np.split(y, 2, axis=1)
+    return np.asarray((most.conj() * least).sum(axis=1).real / (np.abs(most) ** 2).sum(axis=1))
+
+
+def _most_and_least(sensors: tuple[Sensor, ...], shape: ComplexArray) -> list[int]:
+    """Return the channels of the place that moves most, then those of the one that moves least."""
+    places: dict[tuple[object, ...], dict[tuple[object, ...], int]] = {}
+    for i, s in enumerate(sensors):
+        at = places.setdefault((s.node, s.height_m, s.member, s.position), {})
+        at[s.quantity, *s.direction] = i
+    size = {place: float(np.linalg.norm(shape[[*at.values()]])) for place, at in places.items()}
+    most, least = (places[pick(size, key=size.__getitem__)] for pick in (max, min))
+    alike = [way for way in most if way in least] if most is not least else []
+    require(
+        alike,
+        "a profile needs sensors that measure the same at two places",
+        field="update.profile_std",
+        value=[s.channel for s in sensors],
+        remedy="place sensors of the same direction at two heights, or omit profile_std",
+    )
+    return [*(most[way] for way in alike), *(least[way] for way in alike)]
