@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import log, pi, sqrt
+from typing import Self
 
 import numpy as np
 
@@ -40,12 +41,16 @@ class ShapeTarget:
     shape : (n_channels,) measured shape
     std : float
         Standard deviation of 1 − MAC, due to noise at the sensors and errors of the model's shapes.
+    frequency_hz : at which it was measured
+    sensors : (n_channels,) by which
     """
 
     mode: int
     at_sensors: ComplexArray
     shape: ComplexArray
     std: float
+    frequency_hz: float
+    sensors: tuple[Sensor, ...]
 
     @classmethod
     def seen(
@@ -56,10 +61,15 @@ class ShapeTarget:
         sensors: tuple[Sensor, ...],
         shape: ComplexArray,
         std: float,
-    ) -> ShapeTarget:
+    ) -> Self:
         """Return the target of a shape measured by sensors on the model's structure."""
         expansion = model.condensed.expansion(2j * pi * frequency_hz)
-        return cls(mode, np.asarray(observation_matrix(model.assembly, sensors) @ expansion), shape, std)
+        at_sensors = np.asarray(observation_matrix(model.assembly, sensors) @ expansion)
+        return cls(mode, at_sensors, shape, std, frequency_hz, sensors)
+
+    def on(self, model: SupportModel) -> Self:
+        """Return the target on the coordinates of another model."""
+        return self.seen(model, self.mode, self.frequency_hz, self.sensors, self.shape, self.std)
 
     @property
     def name(self) -> str:
@@ -114,7 +124,7 @@ class ProfileTarget(ShapeTarget):
         sensors: tuple[Sensor, ...],
         shape: ComplexArray,
         std: float,
-    ) -> ProfileTarget:
+    ) -> Self:
         """Return the target of a shape measured by sensors on the model's structure.
 
         Raises
@@ -124,8 +134,7 @@ class ProfileTarget(ShapeTarget):
         """
         pairs = _most_and_least(sensors, shape)
         chosen = tuple(sensors[i] for i in pairs)
-        own = ShapeTarget.seen(model, mode, frequency_hz, chosen, np.asarray(shape)[pairs], std)
-        return cls(own.mode, own.at_sensors, own.shape, own.std)
+        return super().seen(model, mode, frequency_hz, chosen, np.asarray(shape)[pairs], std)
 
     @property
     def name(self) -> str:

@@ -112,11 +112,12 @@ def _with_beside(problem: Problem, beside: Sequence[Target]) -> Problem:
     for row, name in enumerate(residuals.names):
         if name in place:
             own_errors[row] = first.errors[place[name]]
-    state: State = replace(first, residuals=residuals, errors=own_errors)
+    shaped = (replace(s, shapes=tuple(shape.on(model) for shape in s.shapes)) for s in problem.states)
+    states: tuple[State, ...] = tuple(shaped)
     return replace(
         problem,
         model=model,
-        states=(state, *problem.states[1:]),
+        states=(replace(states[0], residuals=residuals, errors=own_errors), *states[1:]),
         error_model=None if errors is None else errors.on(model.condensed),
     )
 
