@@ -98,6 +98,13 @@ def test_a_profile_is_of_no_direction_and_tells_softer_feet(profiles: Problem) -
         np.testing.assert_allclose(J[3:, j], (up - down) / (2 * h), rtol=1e-4, atol=1e-4)
 
 
+def test_a_model_that_reaches_further_has_the_same_shapes(problem: Problem, profiles: Problem) -> None:
+    for one in (problem, profiles):
+        z = np.log([2e8, 0.3])
+        r, higher = (p.evaluate(z, None)[0] for p in (one, one.on(one.model.reaching(12))))
+        np.testing.assert_allclose(higher[3:5], r[3:5], rtol=3e-3)  # f4 lies at the end of the band
+
+
 def test_a_profile_needs_two_places(model: SupportModel) -> None:
     with pytest.raises(InputError, match="two places"):
         ProfileTarget.seen(model, 1, 0.2, SENSORS[:2], np.ones(2), 0.003)

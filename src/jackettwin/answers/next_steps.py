@@ -129,8 +129,7 @@ def _candidates(
 def _with_modes(problem: Problem, modes: tuple[int, ...], z: FloatArray) -> Problem:
     """Return a problem with more modes, known as well as those that are measured are on average."""
     first = problem.states[0]
-    model, errors = problem.model.reaching(max(modes)), problem.error_model
-    reaching = replace(problem, model=model, error_model=errors and errors.on(model.condensed))
+    reaching = problem.on(problem.model.reaching(max(modes)))
     pole = reaching.model.predict_many(reaching.vectors(z[None], first), modes).poles[0]
     f, zeta = np.abs(pole) / (2.0 * np.pi), -pole.real / np.abs(pole)
     known = first.residuals.targets

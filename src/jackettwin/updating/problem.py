@@ -227,6 +227,12 @@ class Problem:
         """
         return np.eye(self.n_data) if self.error_model is None else inverse_root(self.gains(found)[0])
 
+    def on(self, model: SupportModel) -> Problem:
+        """Return the problem on another model of the same structure, e.g. one that reaches higher modes."""
+        states = tuple(replace(s, shapes=tuple(shape.on(model) for shape in s.shapes)) for s in self.states)
+        errors = self.error_model and self.error_model.on(model.condensed)
+        return replace(self, model=model, states=states, error_model=errors)
+
     @property
     def plain(self) -> Problem:
         """The problem of a model without errors."""

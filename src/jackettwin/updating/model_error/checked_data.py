@@ -104,22 +104,15 @@ def _with_beside(problem: Problem, beside: Sequence[Target]) -> Problem:
     targets = tuple(known[mode] for mode in sorted(known))
     if targets == tuple(sorted(first.residuals.targets, key=lambda t: t.mode)):
         return problem
-    model = problem.model.reaching(max(known))
+    whole = problem.on(problem.model.reaching(max(known)))
     residuals = Residuals(targets, relative=False)
-    errors = problem.error_model
     place = {name: row for row, name in enumerate(first.residuals.names)}
     own_errors = np.zeros((residuals.count, first.errors.shape[1]))
     for row, name in enumerate(residuals.names):
         if name in place:
             own_errors[row] = first.errors[place[name]]
-    shaped = (replace(s, shapes=tuple(shape.on(model) for shape in s.shapes)) for s in problem.states)
-    states: tuple[State, ...] = tuple(shaped)
-    return replace(
-        problem,
-        model=model,
-        states=(replace(states[0], residuals=residuals, errors=own_errors), *states[1:]),
-        error_model=None if errors is None else errors.on(model.condensed),
-    )
+    state = replace(whole.states[0], residuals=residuals, errors=own_errors)
+    return replace(whole, states=(state, *whole.states[1:]))
 
 
 def _log_std(state: State) -> FloatArray:
