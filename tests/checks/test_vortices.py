@@ -5,7 +5,7 @@ from math import pi, sqrt
 
 import pytest
 
-from jackettwin.checks import vortex_uses
+from jackettwin.checks import VortexUse, vortex_uses
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
 from jackettwin.response import build_system, undamped_modes
@@ -72,6 +72,22 @@ def test_limits_in_water(V_R: float, excites: str) -> None:
     use = brace(vortex_uses(portal(30.0), current_m_s=V_R * f * 0.5, first_frequency_hz=1.0))
     assert use.direction == excites
     assert use.reduced_velocity == pytest.approx(V_R)
+
+
+@pytest.mark.parametrize(
+    ("medium", "V_R", "ways"),
+    [
+        ("water", 0.9, ()), ("water", 2.0, ("in line",)), ("water", 4.0, ("in line", "across")),
+        ("water", 5.0, ("across",)), ("water", 17.0, ()),
+        ("air", 1.6, ()), ("air", 2.5, ("in line",)), ("air", 4.0, ()), ("air", 6.0, ("across",)),
+    ],
+)  # fmt: skip
+def test_lock_in_by_reduced_velocity(medium: str, V_R: float, ways: tuple[str, ...]) -> None:
+    use = VortexUse("m", "", medium, 0.5, 2.0, V_R, 1.0)
+    assert use.locks_in == ways
+    low, high = use.lock_in_m_s
+    assert low < high
+    assert ("across" in ways) is (low <= V_R <= high)  # f D is 1 m/s
 
 
 def test_tower_has_the_frequency_of_the_structure_and_media_are_left_out_one_by_one() -> None:

@@ -3,9 +3,12 @@
 from dataclasses import replace
 from math import pi
 
+import numpy as np
 import pytest
 
 from jackettwin.loads import Coefficients, highest_wave, slam_per_length, wave_number
+from jackettwin.loads.sea.given_kinematics import Kinematics
+from jackettwin.loads.sea.given_waves import Elevation
 from jackettwin.simulate.breaking_waves import breaking_document
 from jackettwin.simulate.scenario.sea import Sea, sea_warnings
 from jackettwin.structure import STEEL, Member, Reaction, Section, Structure
@@ -78,3 +81,26 @@ def test_levels_count_from_still_water(frame: Structure) -> None:
 
 def test_calm_water_does_not_break(frame: Structure) -> None:
     assert breaking_document(replace(sea(0.0), waves=None), frame) is None
+
+
+def test_given_water_slams_at_its_own_speed(frame: Structure) -> None:
+    """η = 3 sin ωt rises past 1 m at ω√(9 − 1); given kinematics by their own vertical velocity there."""
+    omega, amplitude = 2.0 * pi / PERIOD, 3.0
+    t = np.arange(0.0, 90.0, 0.02)
+    eta = amplitude * np.sin(omega * t)
+    elevation = Elevation(t, eta)
+    given = replace(sea(6.0, "elevation"), elevation=elevation)
+    (row,) = breaking_document(given, frame)["slammed"]
+    assert row["member"] == "low beam"
+    assert row["speed_m_s"] == pytest.approx(omega * np.sqrt(8.0), rel=1e-3)
+    assert row["force_n_m"] == pytest.approx(slam_per_length(row["speed_m_s"], 0.6, density_kg_m3=1025.0))
+    up = 0.5 * omega * amplitude * np.cos(omega * t)
+    velocity = np.stack([np.zeros((t.size, 2)), np.stack([0.0 * up, up], axis=1)], axis=2)
+    # at the upper level the whole, at the lower none: 1 m is half way
+    moving = Kinematics(elevation, np.array([-3.0, 5.0]), velocity, np.zeros_like(velocity))
+    (row,) = breaking_document(replace(given, waves="kinematics", kinematics=moving), frame)["slammed"]
+    assert row["speed_m_s"] == pytest.approx(0.25 * omega * np.sqrt(8.0), rel=1e-3)
+    # water that stays below, or only falls, slams nothing
+    for low in (0.9 * eta / amplitude, np.linspace(2.0, -2.0, t.size)):
+        still = replace(given, elevation=Elevation(t, low))
+        assert breaking_document(still, frame)["slammed"] == []

@@ -4,7 +4,9 @@ r"""Screening of members for vortex-induced vibration by their reduced velocity.
 
 Below its onset nothing needs to be shown. In air the onset is that of EN 1991-1-4:2005, E.1.2(2):
 :math:`v_{crit} = fD/St > 1.25\,v_m` with St = 0.18 (table E.1). In water it is 1 in line with the flow and 3
-across it (DNV-RP-C205, 2010, section 9). Beyond it the response itself has to be shown: not done here.
+across it (DNV-RP-C205, 2010, section 9). Within its ranges of lock-in (in line 1 to 4.5, across 3 to 16 in
+water; 1.7 to 3.2 and 4.7 to 8 in air) vortices follow the member's motion. Beyond the onset the response
+itself has to be shown: not done here.
 """
 
 from __future__ import annotations
@@ -21,6 +23,11 @@ STROUHAL = 0.18
 """Of a circular cylinder, EN 1991-1-4:2005, table E.1."""
 ONSET_IN_AIR = 1.0 / (1.25 * STROUHAL)
 ONSET_IN_LINE, ONSET_ACROSS = 1.0, 3.0
+LOCK_IN: Mapping[str, tuple[tuple[float, float], tuple[float, float]]] = {
+    "water": ((ONSET_IN_LINE, 4.5), (ONSET_ACROSS, 16.0)),
+    "air": ((1.7, 3.2), (4.7, 8.0)),
+}
+"""Reduced velocities from and up to which vortices lock on, in line and across (DNV-RP-C205 section 9)."""
 SEA_WATER_KG_M3 = 1025.0
 CLAUSES: Mapping[str, str] = {"air": "EN 1991-1-4 E.1.2(2)", "water": "DNV-RP-C205 section 9"}
 
@@ -50,6 +57,18 @@ class VortexUse(NamedTuple):
     def onset_m_s(self) -> float:
         """Speed of the flow from where on it matters [m/s]."""
         return self.onset * self.frequency_hz * self.diameter_m
+
+    @property
+    def locks_in(self) -> tuple[str, ...]:
+        """The motions on which vortices lock at this speed."""
+        ways = zip(("in line", "across"), LOCK_IN[self.medium], strict=True)
+        return tuple(way for way, (low, high) in ways if low <= self.reduced_velocity <= high)
+
+    @property
+    def lock_in_m_s(self) -> tuple[float, float]:
+        """Speeds between which vortices lock on the motion across the flow [m/s]."""
+        low, high = (V * self.frequency_hz * self.diameter_m for V in LOCK_IN[self.medium][1])
+        return low, high
 
     @property
     def ratio(self) -> float:

@@ -192,6 +192,8 @@ def _vortex_row(use: VortexUse) -> dict[str, Any]:
     return {
         **use._asdict(),
         "onset_m_s": use.onset_m_s,
+        "locks_in": list(use.locks_in),
+        "lock_in_m_s": list(use.lock_in_m_s),
         "ratio": use.ratio,
         "excites": use.direction,
         "clause": CLAUSES[use.medium],

@@ -21,8 +21,8 @@ _LONG_CREST = 0.5
 def breaking_document(sea: Sea, structure: Structure) -> dict[str, Any] | None:
     """Return the height at which waves break, whether these do, and what they slam; None without waves.
 
-    Random waves are judged by their most probable highest of a thousand, with the peak period. The speed at
-    which linear waves of height H rise past a level z is ω√(H²/4 − z²).
+    Random waves are judged by their most probable highest of a thousand, with the peak period. Linear waves
+    of height H rise past a level z at ω√(H²/4 − z²), given ones at their own speed.
     """
     if sea.waves is None:
         return None
@@ -46,13 +46,33 @@ def _slammed(sea: Sea, structure: Structure, omega: float, height: float) -> lis
     for member in structure.members:
         rise, levels = _posture(structure, member)
         z = float(np.mean(levels))
-        if member.part == PILES or rise > _LEVEL or abs(z) >= 0.5 * height:
+        if member.part == PILES or rise > _LEVEL:
+            continue
+        speed = omega * sqrt(max(0.25 * height**2 - z**2, 0.0)) if sea.elevation is None else _given(sea, z)
+        if speed <= 0.0:
             continue
         D = max(member.section_start.outer_diameter_m, member.section_end.outer_diameter_m)
-        speed = omega * sqrt(0.25 * height**2 - z**2)
         force = slam_per_length(speed, D, density_kg_m3=sea.coefficients.density_kg_m3)
         rows.append({"member": member.name, "z_msl_m": z, "speed_m_s": speed, "force_n_m": force})
     return sorted(rows, key=lambda row: -float(row["force_n_m"]))
+
+
+def _given(sea: Sea, z: float) -> float:
+    """Return the largest speed of given water that rises past a level, zero if none does [m/s].
+
+    Of given kinematics it is the vertical velocity there as the surface passes, of a given elevation dη/dt.
+    """
+    assert sea.elevation is not None
+    t, eta = sea.elevation.time_s, sea.elevation.eta_m
+    before = np.flatnonzero((eta[:-1] < z) & (eta[1:] >= z))
+    if not before.size:
+        return 0.0
+    steps, risen = t[before + 1] - t[before], eta[before + 1] - eta[before]
+    if sea.kinematics is None:
+        return float((risen / steps).max())
+    at = (z - eta[before]) / risen
+    up = np.array([np.interp(z, sea.kinematics.z_m, row) for row in sea.kinematics.velocity[..., 1]])
+    return max(float((up[before] + at * (up[before + 1] - up[before])).max()), 0.0)
 
 
 def _impact(sea: Sea, structure: Structure, celerity: float, limit: float) -> dict[str, Any] | None:
