@@ -211,7 +211,7 @@ def test_all_of_them_by_the_api(
         assert twin["law"] == "lagging" and {"k", "tau_s", "guy_wires"} <= set(twin["parameters"])
 
 
-def known_twin(server: Server, seconds: float = 120.0) -> dict[str, Any]:
+def known_twin(server: Server, seconds: float = 600.0) -> dict[str, Any]:
     """Return what the API says of the supports, once it is known."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:

@@ -102,6 +102,9 @@ def test_a_task_that_its_worker_dies_of_was_tried(compute: WorkerCluster) -> Non
     fatal = compute.submit(os.abort)
     with pytest.raises(KilledWorker):
         fatal.result(timeout=60)
+    end = time.monotonic() + 30.0  # on a loaded machine the error arrives before the event
+    while not compute.has_begun(fatal) and time.monotonic() < end:
+        time.sleep(0.1)
     assert compute.has_begun(fatal)
     assert compute.submit(os.getpid).result(timeout=60)  # its nanny has another one
 

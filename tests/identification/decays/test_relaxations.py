@@ -106,7 +106,7 @@ def released(rng: np.random.Generator, slow: float, *, wait_s: float = 12.0) -> 
 
 
 def test_the_interval_of_the_rate_holds_the_truth_in_95_percent() -> None:
-    rng, n, inside, widths = np.random.default_rng(11), 60, 0, []
+    rng, n, inside, widths = np.random.default_rng(11), 30, 0, []
     for _ in range(n):
         found = release_relaxations(released(rng, 0.2))
         assert found is not None and found.pole is not None

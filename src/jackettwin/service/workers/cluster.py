@@ -21,6 +21,7 @@ from urllib.parse import urlsplit
 import dask
 from distributed import Client, Future, LocalCluster, get_worker
 from distributed.core import Status
+from distributed.utils import sync
 
 from jackettwin.errors import InputError
 from jackettwin.service.settings import ServiceSettings
@@ -80,16 +81,19 @@ _REMEMBERED = 10_000
 """Number of stored begin times of tasks, far more than there are tasks at once."""
 
 
-_SENT_S = 0.01
-"""Delay so that a worker's message is sent even if the task ends it at once; Dask collects messages for 2
-ms."""
+_HEARD_S = 5.0
+"""Longest wait until the scheduler has heard of a task's begin; a task is not refused for want of that."""
 
 
 def run(topic: str, task: Callable[..., Any], *args: Any) -> Any:
-    """Run a task in a worker: report its begin, and release free memory afterwards."""
+    """Run a task in a worker: report its begin, and release free memory afterwards.
+
+    The scheduler acknowledges the report, so that it is not lost if the task ends the worker at once.
+    """
     worker = get_worker()
-    worker.log_event(topic, worker.get_current_task())
-    time.sleep(_SENT_S)
+    with suppress(Exception):
+        heard = worker.scheduler.log_event
+        sync(worker.loop, heard, topic=topic, msg=worker.get_current_task(), callback_timeout=_HEARD_S)
     try:
         return task(*args)
     finally:
