@@ -31,6 +31,9 @@ from tests.service.conftest import record_file
 
 from jackettwin.store import assets, open_database, reading, results, sqlite_url, streams, tables
 
+CHROMIUM = next((p for p in ("chromium", "chromium-browser", "google-chrome") if shutil.which(p)), "")
+"""Name of the browser, empty where there is none."""
+
 
 @contextmanager
 def opened(url: str) -> Iterator[Engine]:

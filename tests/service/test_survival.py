@@ -9,14 +9,18 @@ import hashlib
 import os
 import shutil
 import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
+from playwright.sync_api import Page, expect, sync_playwright
 from tests.service.conftest import HERE, description, hour, make_service, record_file, upload
-from tests.service.servers import Broker, Database, Server, opened, publish
+from tests.service.servers import CHROMIUM, Broker, Database, Server, opened, publish
 
 from jackettwin.service import add_twin, take_here
+from jackettwin.service.web import pages
 from jackettwin.service.web.app import create_app
 from jackettwin.service.workers import engine
 from jackettwin.service.workers.tasks import File, read_file
@@ -72,8 +76,23 @@ def new_store(folder: Path, *names: str) -> Path:
     return store
 
 
+@contextmanager
+def reader(url: str) -> Iterator[Page | None]:
+    """Yield a page of the window that a reader opened before anything happened; None without a browser."""
+    if not CHROMIUM or not pages._built():
+        yield None
+        return
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=shutil.which(CHROMIUM), args=["--no-sandbox"])
+        page = browser.new_page()
+        page.goto(f"{url}/assets/wtg/records")
+        expect(page.get_by_title("Connection: live")).to_be_visible(timeout=60_000)
+        yield page
+        browser.close()
+
+
 def test_kills_of_server_worker_and_broker_do_not_show(tmp_path: Path, expected: dict[str, str]) -> None:
-    """Records, and a stream of two windows that comes shuffled and doubled."""
+    """Records, and a stream of two windows, shuffled and doubled; a reader sees it without loading again."""
     broker = Broker(tmp_path / "broker")
     broker.start()
     server = Server(
@@ -81,8 +100,10 @@ def test_kills_of_server_worker_and_broker_do_not_show(tmp_path: Path, expected:
     )
     server.start()
     sent = records()
+    stack = ExitStack()
     try:
         wait_for(lambda: server.get("/api/v1/ready").json()["broker"])
+        page = stack.enter_context(reader(server.url))
         server.send(*sent[0])
         server.send(*sent[1])
         assert {os.getpriority(os.PRIO_PROCESS, pid) for pid in server.workers()} == {os.nice(0) + 5}
@@ -90,6 +111,8 @@ def test_kills_of_server_worker_and_broker_do_not_show(tmp_path: Path, expected:
         publish(broker.port, first_s=0.0, last_s=650.0, seed=1, doubled=True, asset="stream")
         server.send(*sent[2])
         server.kill()
+        if page:
+            expect(page.get_by_text("The server does not answer.").first).to_be_visible(timeout=60_000)
         publish(broker.port, first_s=650.0, last_s=900.0, seed=2, asset="stream")
         server.start()
         server.send(*sent[3])
@@ -107,7 +130,12 @@ def test_kills_of_server_worker_and_broker_do_not_show(tmp_path: Path, expected:
         assert [r["start_utc"] for r in rows[:2]] == ["2025-03-01T12:00:00Z", "2025-03-01T12:10:00Z"]
         found = server.get(f"/api/v1/records/{rows[0]['record_id']}/signal?points=1").json()
         assert set(found["channels"]) == {"acc_top_x", "acc_top_y"}
+        if page:
+            rows_shown = page.get_by_role("region", name="Records", exact=True).locator("tbody .observed")
+            expect(rows_shown).to_have_count(RECORDS, timeout=60_000)
+            expect(page.get_by_text("The server does not answer.")).to_have_count(0)
     finally:
+        stack.close()
         server.stop()
         broker.stop()
     assert not server.workers_alive()

@@ -135,7 +135,7 @@ function Sensitivity({ asset }: { asset: string }) {
       <Shown of={found} none={<Empty title="Not estimated yet" />}>
         {(data) => (
           <Table
-            label="Sensitivities"
+            label="Sensitivity of each mode"
             rows={data.items}
             id={(m) => m.label}
             columns={[

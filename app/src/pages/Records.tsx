@@ -104,7 +104,7 @@ function LeastKnown({ asset, times }: { asset: string; times: object }) {
       note="Records whose frequencies are least certain for their size, each with its widest mode: a mode is known the less, the more it is damped and the fewer of its cycles the record holds."
     >
       <Shown of={found} lines={5} none={<p class="quiet">No mode yet.</p>}>
-        {() => <ModeTable asset={asset} modes={rows} id={(m) => m.record_id} more={[began]} />}
+        {() => <ModeTable asset={asset} modes={rows} id={(m) => m.record_id} first={[began]} />}
       </Shown>
     </Card>
   );

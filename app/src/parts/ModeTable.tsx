@@ -15,16 +15,24 @@ interface ModeTableProps<T extends SomeMode> {
   asset: string;
   modes: readonly T[];
   id?: (mode: T) => string;
-  more: readonly Column<T>[];
+  first?: readonly Column<T>[];
+  more?: readonly Column<T>[];
 }
 
-export function ModeTable<T extends SomeMode>({ asset, modes, id = (m) => m.label, more }: ModeTableProps<T>) {
+export function ModeTable<T extends SomeMode>({
+  asset,
+  modes,
+  id = (m) => m.label,
+  first = [],
+  more = [],
+}: ModeTableProps<T>) {
   return (
     <Table
       label="Modes"
       rows={modes}
       id={id}
       columns={[
+        ...first,
         {
           title: "Mode",
           show: (m) => <a href={`${assetUrl(asset, "timeline")}?mode=${m.label}`}>{words(m.label)}</a>,

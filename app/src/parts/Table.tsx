@@ -38,7 +38,7 @@ interface TableProps<T> {
 }
 
 /** Columns from which on a phone shows each row as a card. */
-const MANY = 4;
+const MANY = 3;
 
 function compared(a: string | number | null, b: string | number | null): number {
   if (a === null || b === null) return Number(a === null) - Number(b === null);

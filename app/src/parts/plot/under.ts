@@ -72,7 +72,7 @@ function marks(u: uPlot, c: Canvas, data: PlotData): void {
   const ratio = devicePixelRatio;
   c.ctx.font = `${12 * ratio}px system-ui, sans-serif`;
   let free = -Infinity;
-  for (const mark of data.marks ?? []) {
+  for (const mark of data.marks?.toSorted((a, b) => a.x - b.x) ?? []) {
     const px = u.valToPos(mark.x, "x", true);
     const paint = colour(mark.colour);
     if (mark.to !== undefined) {
@@ -89,7 +89,7 @@ function marks(u: uPlot, c: Canvas, data: PlotData): void {
     c.ctx.setLineDash([]);
     const width = c.ctx.measureText(mark.words).width;
     const turned = px + width + 8 * ratio > c.left + c.width;
-    if (px >= c.left && px > free) {
+    if (px >= c.left && px <= c.left + c.width && px > free) {
       c.ctx.fillStyle = paint;
       c.ctx.textAlign = turned ? "right" : "left";
       c.ctx.fillText(mark.words, px + (turned ? -5 : 5) * ratio, c.top + 13 * ratio);
