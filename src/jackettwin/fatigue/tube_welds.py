@@ -22,7 +22,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import did_you_mean, require, require_between
 from jackettwin.fatigue.weld_life import ModelsAtHeight
-from jackettwin.structure import Assembly, Member, Section, SectionForces, Structure
+from jackettwin.structure import PILES, Assembly, Member, Section, SectionForces, Structure
 
 TUBE_POSITIONS = ("0°", "45°", "90°", "135°", "180°", "225°", "270°", "315°")
 """Around a tube, from the y of its local axes to z."""
@@ -161,7 +161,8 @@ def butt_weld_factor(
 def tube_welds(assembly: Assembly, details: TubeDetails) -> tuple[tuple[TubeWeld, ...], tuple[str, ...]]:
     """Return the welds around a structure's tubes, and the nodes where walls do not meet.
 
-    Butt welds stand where two members in line have other sections at their node. Where the walls there miss
+    Butt welds stand where two members in line have other sections at their node, and along piles that are
+    members at each of their nodes, as a pile's girth welds may be at any depth. Where the walls there miss
     each other, plates or a cone that the model does not know must join them: such nodes are named instead.
 
     Raises
@@ -184,6 +185,10 @@ def tube_welds(assembly: Assembly, details: TubeDetails) -> tuple[tuple[TubeWeld
         beyond = tuple(_beyond(t, T, offset))
         name = f"{thin.name} to {thick.name}"
         found.append(_weld(assembly, name, BUTT_WELD, thin, at, factor, details.models, beyond))
+    for pile in (member for member in structure.members if member.part == PILES):
+        diameter, t = pile.section_start.outer_diameter_m, pile.section_start.thickness_m
+        factor = butt_weld_factor(diameter, t, t, details.misalignment_m)
+        found.append(_weld(assembly, f"girth at {pile.start}", BUTT_WELD, pile, 0.0, factor, details.models))
     members = {member.name: member for member in structure.members}
     for one in details.own:
         member = members[one.member]
