@@ -20,6 +20,7 @@ from jackettwin.decks import read_structure
 from jackettwin.fatigue import Counter
 from jackettwin.identification import identify
 from jackettwin.records import Record
+from jackettwin.response import observation_matrix
 from jackettwin.sensing import SensorReadings, Weather, estimate_motion, readings_of
 from jackettwin.simulate import read_scenario, simulate
 from jackettwin.structure import Rayleigh, assemble
@@ -67,7 +68,7 @@ def main() -> None:
     }
 
     def one() -> LikelyStructures:
-        likely = likely_structures(model, modes, 1e9)
+        likely = likely_structures(model, modes, 1e9, sensors=observation_matrix(model.assembly, sensors))
         sensed_damage(likely, readings_of(record, sensors, model.assembly), weather)
         return likely
 

@@ -39,7 +39,7 @@ from jackettwin.identification import identify
 from jackettwin.intervals import NORMAL_90
 from jackettwin.loads import read_rotor
 from jackettwin.records import Channel, Record
-from jackettwin.response import Sensor
+from jackettwin.response import Sensor, observation_matrix
 from jackettwin.sensing import (
     SECTION_REMAINDER,
     MotionModel,
@@ -133,7 +133,8 @@ def known(structure: Structure, parked: Record) -> LikelyStructures:
     )
     low, high = FIRST_PAIR_HZ
     pair = [m for m in identify(parked).modes if m.status.is_a_mode and low < m.frequency_hz < high]
-    return likely_structures(model, {k + 1: mode for k, mode in enumerate(pair[:2])}, 1e9)
+    modes = {k + 1: mode for k, mode in enumerate(pair[:2])}
+    return likely_structures(model, modes, 1e9, sensors=observation_matrix(assembly, sensors(structure)))
 
 
 def of_record(

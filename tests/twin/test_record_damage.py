@@ -14,7 +14,7 @@ from observations import estimate, observation
 
 from jackettwin.decks import read_structure
 from jackettwin.records import Channel, Record
-from jackettwin.response import Sensor, undamped_modes
+from jackettwin.response import Sensor, observation_matrix, undamped_modes
 from jackettwin.sensing import (
     Weather,
     discrete,
@@ -41,6 +41,11 @@ from jackettwin.twin.life.likely_structures import likely_structures
 from jackettwin.twin.life.sensed_damage import STEP, SensedDamage, damage_of, sensed_damage, steps_of
 from jackettwin.updating import Direction, Tolerance, numbered_modes
 
+TOWER = tuple(
+    Sensor(f"a{h:.0f}{axis}", way, height_m=h)
+    for h in (144.0, 77.0, 28.0)
+    for axis, way in (("x", (1.0, 0.0, 0.0)), ("y", (0.0, 1.0, 0.0)))
+)
 NOON = datetime(2025, 3, 1, 12, tzinfo=UTC)
 
 
@@ -132,6 +137,46 @@ def test_a_records_frequencies_tell_the_feet(stress_model: StressModel) -> None:
     assert std[1] < 0.5 and abs(found.mean[2]) < 1.0
 
 
+def test_shapes_of_the_first_pair_tell_feet_from_mass(stress_model: StressModel) -> None:
+    """Mixed as a record sees a pair; 1 mm/m of noise. A sensor turned round tells nothing."""
+    at, true = observation_matrix(stress_model.assembly, TOWER), np.append(np.log([1.5e9, 1.5e9]), 1.0)
+    modes = undamped_modes(stress_model.system(true), 2)
+    shapes = at @ modes.shapes @ np.array([[0.8, 0.6], [-0.6, 0.8]])
+    shapes += 1e-3 * np.abs(shapes).max() * np.random.default_rng(1).standard_normal(shapes.shape)
+    found = {}
+    for name, turned in (("without", None), ("shapes", 1.0), ("turned round", -1.0)):
+        seen = {
+            i + 1: replace(
+                estimate(float(f), 0.01, 1e-3),
+                mode_shape=np.append(shapes[:-1, i], (turned or 1.0) * shapes[-1, i]).astype(complex),
+            )
+            for i, f in enumerate(modes.frequency_hz)
+        }
+        found[name] = likely_structures(stress_model, seen, 6e8, sensors=at if turned else None)
+    std = {name: np.sqrt(one.covariance[:2, :2].sum()) for name, one in found.items()}
+    off = {name: abs((one.mean - true)[:2].sum()) for name, one in found.items()}
+    assert off["shapes"] < 2.0 * std["shapes"] and std["shapes"] < 0.7 * std["without"]
+    assert_allclose(found["turned round"].mean, found["without"].mean)
+
+
+def test_slopes_of_shapes_are_differences(stress_model: StressModel) -> None:
+    """Of what lies out of the pair's plane, to a tenth: the modes that are summed are not all."""
+    at, theta, h = observation_matrix(stress_model.assembly, TOWER), np.array([21.1, 22.1, 0.3]), 1e-3
+    system = stress_model.system(theta)
+    modes, pair = undamped_modes(system, 18), np.arange(2)
+    seen = np.asarray(at @ modes.shapes)
+    slopes = stress_model.shape_slopes(system, modes, pair, seen)
+    out = np.eye(len(seen)) - seen[:, :2] @ np.linalg.pinv(seen[:, :2])
+    for j in range(3):
+        step = h * np.eye(3)[j]
+        near = (at @ undamped_modes(stress_model.system(theta + s), 2).shapes for s in (step, -step))
+        ahead, behind = (x * np.sign((x * seen[:, :2]).sum(axis=0)) for x in near)
+        expected = out @ (ahead - behind) / (2.0 * h)
+        assert_allclose(
+            out @ slopes[j], expected, atol=0.1 * np.abs(expected).max() + 1e-9 * np.abs(seen).max()
+        )
+
+
 def test_a_rotor_at_work_stiffens_no_feet(stress_model: StressModel) -> None:
     """Fore-aft 8 % up, as the rotor's stiffness makes it: told as the rotor's, within its tolerance."""
     assembly = stress_model.assembly
@@ -179,19 +224,14 @@ def sensed(stress_model: StressModel) -> tuple[SensedDamage, dict[int, np.ndarra
     weather = Weather(12.0, 2.5, 8.0, 0.3, 72.0)
     system = likely.systems(1)[0]
     model = likely.damped(sensed_model(system, weather))
-    sensors = tuple(
-        Sensor(f"a{h:.0f}{axis}", way, height_m=h)
-        for h in (144.0, 77.0, 28.0)
-        for axis, way in (("x", (1.0, 0.0, 0.0)), ("y", (0.0, 1.0, 0.0)))
-    )
     known = model.with_forces(tuple(f.with_level(2e4 if f.kind == "disc" else f.level) for f in model.forces))
-    blank = Record(np.ones((6, 8)), 10.0, tuple(Channel(s.channel) for s in sensors))
-    empty = readings_of(blank, sensors, system.assembly)
+    blank = Record(np.ones((6, 8)), 10.0, tuple(Channel(s.channel) for s in TOWER))
+    empty = readings_of(blank, TOWER, system.assembly)
     C = known.motion_rows(empty.rows, empty.tilt, empty.derivative)
     smoother = steady_smoother(*discrete(*known.dynamics(), 0.1), C, np.full(6, 5e-8))
     states, y = smoother.draw(6000, np.random.default_rng(5))
     to = np.vstack([np.eye(known.n_modes, states.shape[1]), known.force_rows()])
-    readings = readings_of(Record(y.T, 10.0, blank.channels), sensors, system.assembly)
+    readings = readings_of(Record(y.T, 10.0, blank.channels), TOWER, system.assembly)
     damage = sensed_damage(likely, readings, weather)
     assert damage is not None
     chart = weld_map(system, known, stress_model.dry)

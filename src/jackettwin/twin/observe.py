@@ -134,7 +134,8 @@ def _damage(
     works = conditions.get("state") == AT_WORK
     stress = model.stress.working() if works else model.stress
     try:
-        likely = likely_structures(stress, modes, min(feet.stiffness_n_m, STIFFEST_N_M))
+        stiffness = min(feet.stiffness_n_m, STIFFEST_N_M)
+        likely = likely_structures(stress, modes, stiffness, sensors=model.sees(seen))
         readings = readings_of(record, model.placed(record), model.structure)
         weather = Weather.of(conditions, stress.depth_m, stress.coefficients, stress.rotor)
         return sensed_damage(likely, readings, weather), ()

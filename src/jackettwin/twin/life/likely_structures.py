@@ -5,8 +5,14 @@ their standard deviations. Frequencies of the record's modes tell of them to fir
 
 .. math:: \frac{∂ \ln ω}{∂θ} = \frac{x^T (∂K - ω^2 ∂M)\,x}{2 ω^2}, \qquad x^T M x = 1,
 
-about the point that Gauss and Newton find, so that they are normal there (Tarantola 2005, eq. (3.51)). This
-is no update: supports stay springs, and one record's modes tell of them what one record can.
+about the point that Gauss and Newton find, so that they are normal there (Tarantola 2005, eq. (3.51)). A
+first frequency hardly tells soft feet from mass on top; the shapes of the first pair do, as far as they lie
+out of the plane of the model's pair, with
+
+.. math:: \frac{∂x_i}{∂θ} = \sum_{n} x_n \frac{x_n^T (∂K - ω_i^2 ∂M)\,x_i}{ω_i^2 - ω_n^2}
+
+over the other modes (Fox & Kapoor 1968). This is no update: supports stay springs, and one record's modes
+tell of them what one record can.
 """
 
 from __future__ import annotations
@@ -16,8 +22,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+import scipy.sparse as sp
 
-from jackettwin.arrays import FloatArray
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.fatigue import JointStresses, ModelsAtHeight
 from jackettwin.identification import ModalEstimate
 from jackettwin.loads import Coefficients
@@ -36,6 +43,10 @@ _MODES = 5
 """Both bending pairs and torsion; higher ones feel blades and braces more than feet."""
 _REMAINDER = 0.005
 """Of a frequency: what beams and springs miss of it."""
+_PAIR = 2
+"""Modes whose shapes tell of the feet: those that sensors on a tower see best."""
+_SHAPE_REMAINDER, _OTHERWISE = 0.003, 0.05
+"""Of a shape over its largest entry: what beams and gains of sensors miss of it, and what no foot makes."""
 _COMMON_STD, _OWN_STD, _UPRIGHT = 1.5, 0.5, 0.7
 """Of ln k of all feet together, of each way alone, and how much stiffer feet are upright."""
 _WAYS = (np.diag([1.0, 1.0, 0.0, 0.0, 0.0, 0.0]), np.diag([0.0, 0.0, 1.0, 0.0, 0.0, 0.0]))
@@ -134,6 +145,31 @@ class StressModel:
                 found[:, j] += (on_feet * one.feet).sum(axis=(1, 2, 3))
         return found / (2.0 * omega[:, None] ** 2)
 
+    def shape_slopes(
+        self, system: System, modes: UndampedModes, pair: IntArray, seen: FloatArray
+    ) -> FloatArray:
+        """Return ∂/∂θ (n_ways + n_directions, n_channels, 2) of what sensors see of a pair, out of its plane.
+
+        Feet unlike each other are left out: they turn a pair within its plane more than out of it.
+
+        Parameters
+        ----------
+        seen : (n_channels, n_modes) of all modes
+        """
+        x, square = modes.shapes[:, pair], modes.omega**2
+        between = np.zeros((self.n_ways + len(self.directions), modes.omega.size, pair.size))
+        for spring in system.support.springs:
+            at = modes.shapes[self.assembly.dofs(spring.node)]
+            way = int(spring.matrix[2, 2] > 0.0)
+            between[way] += spring.law.static_stiffness * at.T @ spring.matrix @ at[:, pair]
+        for j, one in enumerate(self.directions, start=self.n_ways):
+            if one.stiffness is not None:
+                between[j] += modes.shapes.T @ (one.stiffness @ x)
+            if one.mass is not None:
+                between[j] -= modes.shapes.T @ (one.mass @ x) * square[pair]
+        others = np.setdiff1d(np.arange(modes.omega.size), pair)
+        return np.asarray(seen[:, others] @ (between[:, others] / (square[pair] - square[others, None])))
+
 
 @dataclass(frozen=True)
 class LikelyStructures:
@@ -177,7 +213,11 @@ class LikelyStructures:
 
 
 def likely_structures(
-    model: StressModel, modes: Mapping[int, ModalEstimate], stiffness_n_m: float
+    model: StressModel,
+    modes: Mapping[int, ModalEstimate],
+    stiffness_n_m: float,
+    *,
+    sensors: sp.csr_array | None = None,
 ) -> LikelyStructures:
     """Return the structures that modes of a record leave likely.
 
@@ -185,6 +225,8 @@ def likely_structures(
     ----------
     modes : {number on pinned feet: as measured}
     stiffness_n_m : of each foot, to start from
+    sensors : (n_channels, n_dof) what the channels of the modes' shapes see of a displacement; without it
+        frequencies tell alone
     """
     measured = {m: modes[m] for m in sorted(modes) if m <= min(_MODES, model.numbered.omega.size)}
     k = np.log(stiffness_n_m) + _UPRIGHT * (np.arange(model.n_ways) - 0.5 * (model.n_ways - 1))
@@ -195,7 +237,7 @@ def likely_structures(
     theta, P = prior, P0
     near: UndampedModes | None = None
     for _ in range(_STEPS if measured else 0):
-        H, r, R, near = _misfit(model, theta, measured, near)
+        H, r, R, near = _misfit(model, theta, measured, near, sensors)
         gain = P0 @ H.T @ np.linalg.inv(H @ P0 @ H.T + np.diag(R))
         step = prior + gain @ (r + H @ (theta - prior)) - theta
         theta = theta + step * min(1.0, _LONGEST_STEP / max(np.abs(step).max(), 1e-300))
@@ -210,8 +252,11 @@ def _misfit(
     theta: FloatArray,
     measured: Mapping[int, ModalEstimate],
     near: UndampedModes | None,
+    sensors: sp.csr_array | None,
 ) -> tuple[FloatArray, FloatArray, FloatArray, UndampedModes]:
-    """Return slopes (m, n), what measured ln f exceed the model's by (m,), their variances (m,), and modes.
+    """Return slopes (m, n), what data exceed the model's by (m,), their variances (m,), and modes.
+
+    Data are the logarithms of frequencies, then shapes over their largest entry.
 
     Parameters
     ----------
@@ -226,4 +271,30 @@ def _misfit(
     r = np.array([np.log(measured[m].frequency_hz) for m in known]) - np.log(modes.frequency_hz[at])
     own = [measured[m].log_covariance for m in known]
     R = np.array([_REMAINDER**2 + (_REMAINDER**2 if c is None else float(c[0, 0])) for c in own])
+    parts = [(H, r, np.array(R))]
+    pair = successor[:_PAIR]
+    if sensors is not None and pair.size == _PAIR and (pair >= 0).all():
+        seen = np.asarray(sensors @ modes.shapes)
+        slopes = model.shape_slopes(system, modes, pair, seen)
+        shapes = [_shape_misfit(seen[:, pair], slopes, measured[m]) for m in measured if m <= _PAIR]
+        parts += [part for part in shapes if part is not None]
+    H, r, R = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
     return H, r, R, modes
+
+
+def _shape_misfit(
+    pair: FloatArray, slopes: FloatArray, mode: ModalEstimate
+) -> tuple[FloatArray, FloatArray, FloatArray] | None:
+    """Return slopes (k, n), what a measured shape exceeds the plane of a model's pair by (k,), its variances.
+
+    None where a channel lies so far out of it that a sensor is wrong and no foot.
+    """
+    top = mode.mode_shape[int(np.abs(mode.mode_shape).argmax())]
+    shape = (mode.mode_shape / top).real
+    inverse = np.linalg.pinv(pair)
+    out = np.eye(shape.size) - pair @ inverse
+    r = out @ shape
+    if np.abs(r).max() > _OTHERWISE:
+        return None
+    own = 0.0 if mode.mode_shape_std is None else mode.mode_shape_std / abs(top)
+    return out @ (slopes @ (inverse @ shape)).T, r, np.full(r.size, _SHAPE_REMAINDER**2) + np.square(own)
