@@ -108,6 +108,13 @@ def test_a_block_of_clay_fails_as_one() -> None:
     assert two.block.shaft_n == pytest.approx((8.0 + pi * D) * 30.0 * 4e4 / 2.0)
 
 
+@pytest.mark.parametrize("profile", [CLAY, SAND])
+def test_the_curves_of_iso_19901_4_are_api_s(profile: SoilProfile) -> None:
+    names = dict.fromkeys(("sand_tz", "clay_tz", "sand_qz", "clay_qz"), "iso19901-4")
+    one, other = (pile_curves(PILE, profile, CurveOptions(**chosen)) for chosen in (names, {}))
+    assert (one.tz, one.qz) == (other.tz, other.qz)
+
+
 def test_cycles_along_the_axis_weaken_sand_alone() -> None:
     """1 − 0.126 (0.4 − 0.1) 100^0.45 by hand."""
     cycles = AxialCycles(0.4, 100.0)

@@ -170,7 +170,8 @@ def _clay_py(point: Point, pile: Pile, options: CurveOptions) -> Curve:
 def _sand_tz(point: Point, pile: Pile, options: CurveOptions) -> Curve:
     soil = cast("Sand", point.soil)
     f = sand_friction(stress_pa=point.stress_pa, beta=soil.beta, limit_pa=soil.limit_friction_pa)
-    return sand_tz(friction_pa=f, D=pile.outer_diameter_m, form=options.sand_tz)
+    form = "rp2a" if options.sand_tz == "rp2a" else "rp2geo"
+    return sand_tz(friction_pa=f, D=pile.outer_diameter_m, form=form)
 
 
 def _clay_tz(point: Point, pile: Pile, options: CurveOptions) -> Curve:
@@ -209,6 +210,15 @@ SOIL_CURVES = (
     SoilCurve("clay_tz", "rp2geo", "API RP 2GEO: peak at 1 % of the diameter, then a residual", _clay_tz),
     SoilCurve("sand_qz", "rp2geo", "API RP 2GEO: full bearing at a tenth of the diameter", _sand_qz),
     SoilCurve("clay_qz", "rp2geo", "API RP 2GEO: full bearing at a tenth of the diameter", _clay_qz),
+    *(
+        SoilCurve(reaction, "iso19901-4", "ISO 19901-4 (2016), the same curve as API RP 2GEO's", build)
+        for reaction, build in (
+            ("sand_tz", _sand_tz),
+            ("clay_tz", _clay_tz),
+            ("sand_qz", _sand_qz),
+            ("clay_qz", _clay_qz),
+        )
+    ),
 )
 PLUGINS = "jackettwin.soil_curves"
 """Group of entry points, each a :class:`SoilCurve`."""
