@@ -34,6 +34,9 @@ def test_a_loggers_steps_become_int16(tmp_path: Path, step: float) -> None:
     back = read_waveform(path)
     np.testing.assert_array_equal(back.data, data)
     assert record_id(back) == record_id(record(data))
+    second = read_waveform(path, ["a1", "none"])
+    np.testing.assert_array_equal(second.data, data[1:])
+    assert second.channels == back.channels[1:]
     assert (back.channels, back.conditions, back.start_utc) == (
         record(data).channels,
         {"mean_wind_speed_m_s": 8.5},

@@ -5,6 +5,7 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from importlib import import_module
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ from jackettwin.study.follow import follow, follow_days, follow_observations
 from jackettwin.study.follow_result import FOLLOWED, Followed, follow_document, read_followed
 from jackettwin.study.in_time.question import question_of
 from jackettwin.study.in_time.slope import MOST_SPANS, spans_of
+from jackettwin.study.in_time.track import SuddenChange
 from jackettwin.twin import Observation, TwinConfig, TwinModel, read_twin, twin_model
 from jackettwin.updating import Problem, SupportModel, support_model, update
 
@@ -214,6 +216,22 @@ def test_of_a_drift_too_short_to_be_seen_nothing_is_said(followed: Followed) -> 
     assert drift is not None
     blind = replace(drift, z=np.zeros_like(drift.z), covariance=np.eye(len(drift.z)))
     assert "would not reveal even a doubling a day" in replace(followed, drift=blind).statement
+
+
+def test_a_sudden_change_lies_after_the_last_estimate_before_it(followed: Followed) -> None:
+    """Estimated once a month, nobody knows the day: the sentence names the month."""
+    change = SuddenChange(0.99, (20203.0,) * 3, (0.87, 0.91, 0.97))  # days since 1970: 2025-04-25
+    one, track = followed.days[0], SimpleNamespace(changes=(change,))
+
+    def said(*dates: str) -> str:
+        days = tuple(replace(one, date=d, time_utc=datetime.fromisoformat(f"{d}T12:00Z"),
+                             relative=(0.8, 0.9, 1.0)) for d in dates)  # fmt: skip
+        return replace(followed, days=days, track=track).stiffness_statement  # type: ignore[arg-type]
+
+    monthly = said("2025-02-24", "2025-03-26", "2025-04-25")
+    assert monthly.startswith("The stiffness fell by 9 % between 2025-03-26 and 2025-04-25, 90 % interval")
+    daily = said("2025-04-23", "2025-04-24", "2025-04-25")
+    assert daily.startswith("The stiffness fell by 9 % on 2025-04-25, 90 % interval -13 to -3 %.")
 
 
 def test_what_cannot_be_followed(

@@ -7,6 +7,7 @@ thirty binary digits are noise that no compression shortens.
 from __future__ import annotations
 
 import json
+from collections.abc import Collection
 from dataclasses import asdict, replace
 from datetime import datetime
 from fractions import Fraction
@@ -76,18 +77,22 @@ def is_waveform(path: Path) -> bool:
         return False
 
 
-def read_waveform(path: Path) -> Record:
-    """Return the record that :func:`write_waveform` wrote, equal to the last bit."""
-    table = pq.read_table(path)
-    about: dict[str, Any] = json.loads(table.schema.metadata[b"jackettwin"])
+def read_waveform(path: Path, names: Collection[str] | None = None) -> Record:
+    """Return the record that :func:`write_waveform` wrote, equal to the last bit; or some of its channels."""
+    about: dict[str, Any] = json.loads(pq.read_schema(path).metadata[b"jackettwin"])
+    wanted = [i for i, c in enumerate(about["channels"]) if names is None or c["name"] in names]
+    table = pq.read_table(path, columns=[f"c{i}" for i in wanted])
     data = np.empty((table.num_columns, table.num_rows))
-    for i, step in enumerate(about["steps"]):
-        data[i] = _unpacked(table.column(i).to_numpy(), step)
+    for row, column, i in zip(data, table.columns, wanted, strict=True):
+        row[:] = _unpacked(column.to_numpy(), about["steps"][i])
     start = about["start_utc"]
     return Record(
         data,
         about["sample_rate_hz"],
-        tuple(Channel(**{**c, "direction": tuple(c["direction"])}) for c in about["channels"]),
+        tuple(
+            Channel(**{**c, "direction": tuple(c["direction"])})
+            for c in (about["channels"][i] for i in wanted)
+        ),
         None if start is None else datetime.fromisoformat(start),
         about["conditions"],
         about["metadata"],

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, date, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -174,7 +174,8 @@ class Followed:
             f"On {last.time_utc:%Y-%m-%d} the stiffness is {middle} of that of the first day, "
             f"90 % interval {low} to {high}."
         )
-        return " ".join((*map(_sudden, self.changes), now))
+        dates = [day.date[:10] for day in self.days if day.relative is not None]
+        return " ".join((*(_sudden(change, dates) for change in self.changes), now))
 
     @property
     def _slope(self) -> str:
@@ -200,12 +201,15 @@ class Followed:
         )
 
 
-def _sudden(change: SuddenChange) -> str:
-    """Return the sentence on a sudden change."""
+def _sudden(change: SuddenChange, dates: Sequence[str]) -> str:
+    """Return the sentence on a sudden change, which lies after the last of the dates before it."""
     first, when, last = (f"{day_utc(x):%Y-%m-%d}" for x in change.days)
+    before = max((d for d in dates if d < first), default=first)
     low, middle, high = (100.0 * (x - 1.0) for x in change.factor)
     verb = "fell" if middle < 0.0 else "rose"
     about = f"on {when}" if first == last else f"about {when} (between {first} and {last})"
+    if (date.fromisoformat(first) - date.fromisoformat(before)).days > 1:  # nothing was estimated since
+        about = f"between {before} and {last}"
     return f"The stiffness {verb} by {abs(middle):.2g} % {about}, 90 % interval {low:+.2g} to {high:+.2g} %."
 
 

@@ -53,8 +53,8 @@ def record_out(record: StoredRecord) -> RecordOut:
     return RecordOut(**known, raw_kept=record.waveform is not None)
 
 
-def samples(service: Service, record_id: str, who: Who) -> Record:
-    """Return the samples of a record; answers 404 if they were deleted."""
+def samples(service: Service, record_id: str, who: Who, names: list[str] | None = None) -> Record:
+    """Return the samples of a record, or of some of its channels; answers 404 if they were deleted."""
     from jackettwin.store import read_waveform
 
     with reading(service.database) as connection:
@@ -62,7 +62,8 @@ def samples(service: Service, record_id: str, who: Who) -> Record:
     path = None if record.waveform is None else service.settings.store / record.waveform
     if path is None or not path.exists():
         raise ApiError(404, "the samples of this record were deleted", field="record_id")
-    return read_waveform(path)
+    known = {channel["name"] for channel in record.channels}
+    return read_waveform(path, names if known.issuperset(names or ()) else None)
 
 
 def extremes(

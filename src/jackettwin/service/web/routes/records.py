@@ -125,7 +125,7 @@ def signal(
     accept: Annotated[str, Header()] = "application/json",
 ) -> Any:
     """Return the extremes of each bin of time [s after the start], as JSON or Arrow."""
-    found = signals.extremes(signals.samples(parts, record_id, who), channels, since, until, points)
+    found = signals.extremes(signals.samples(parts, record_id, who, channels), channels, since, until, points)
     if "application/vnd.apache.arrow.stream" in accept:
         with writing(parts.database) as connection:
             people.note_down(connection, who.name, "download", f"samples of {record_id}", "ok", parts.now())
@@ -165,7 +165,8 @@ def spectrogram(
     segment_s: Annotated[float, Query(ge=1.0, le=600.0)] = 60.0,
 ) -> SpectrogramOut:
     """Return the spectral density of a channel through time; default: the first channel."""
-    return signals.spectrogram(signals.samples(parts, record_id, who), channel, up_to_hz, segment_s)
+    found = signals.samples(parts, record_id, who, None if channel is None else [channel])
+    return signals.spectrogram(found, channel, up_to_hz, segment_s)
 
 
 @router.get(
