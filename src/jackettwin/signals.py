@@ -7,12 +7,15 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import count
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import scipy  # scipy.ndimage is loaded where it is used
 
 from jackettwin.arrays import FloatArray, IntArray
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
 
 
 def hann(n: int) -> FloatArray:
@@ -80,34 +83,39 @@ def _is_smooth(n: int, largest: int) -> bool:
     return n == 1
 
 
-def convolve(y: FloatArray, taps: FloatArray) -> FloatArray:
-    """Return the full convolution of each row with a filter, (n_channels, n_samples + n_taps − 1).
+def convolution(taps: FloatArray, n: int) -> Callable[[FloatArray], FloatArray]:
+    """Return the full convolution of a row of n samples with a filter, as a function of the row.
 
-    >>> convolve(np.array([[1.0, 0.0, 2.0]]), np.array([1.0, -1.0])).round(12).tolist()
-    [[1.0, -1.0, 2.0, -2.0]]
+    One row at a time: the transforms of a day's channels would take gigabytes.
+
+    >>> convolution(np.array([1.0, -1.0]), 3)(np.array([1.0, 0.0, 2.0])).round(12).tolist()
+    [1.0, -1.0, 2.0, -2.0]
     """
-    n = y.shape[1] + len(taps) - 1
-    size = next_fast_len(n, real=True)
+    length = n + len(taps) - 1
+    size = next_fast_len(length, real=True)
     response = np.fft.rfft(taps, size)
-    out = np.empty((len(y), n))
-    for i, row in enumerate(y):  # one at a time: the transforms of a day's channels would take gigabytes
-        out[i] = np.fft.irfft(np.fft.rfft(row, size) * response, size)[:n]
-    return out
+    return lambda row: np.asarray(np.fft.irfft(np.fft.rfft(row, size) * response, size)[:length])
 
 
-def resample(y: FloatArray, taps: FloatArray, up: int, down: int, *, first: int, n_out: int) -> FloatArray:
-    r"""Filter rows at ``up`` times their rate and keep every ``down``-th sample, (n_channels, n_out).
+def resample(
+    rows: Iterable[FloatArray], n: int, taps: FloatArray, up: int, down: int, *, first: int, n_out: int
+) -> FloatArray:
+    r"""Filter rows of n samples at ``up`` times their rate and keep every ``down``-th, (n_rows, n_out).
 
     With :math:`h` the filter at the raised rate, :math:`z_k = \sum_m h_{k d - m u}\, y_m` for
     :math:`k` from ``first`` on. Outputs whose :math:`k d` leaves the same remainder :math:`p` by :math:`u`
     see the same taps :math:`h_p, h_{p+u}, …`, so each of the ``up`` phases is one convolution at the rate of
     the input.
     """
-    out = np.empty((len(y), n_out))
-    for start in range(min(up, n_out)):
-        m, p = divmod((first + start) * down, up)
-        out[:, start::up] = convolve(y, taps[p::up])[:, m::down][:, : len(range(start, n_out, up))]
-    return out
+    phases = [divmod((first + start) * down, up) for start in range(min(up, n_out))]
+    filters = [convolution(taps[p::up], n) for _, p in phases]
+    out = []
+    for row in rows:
+        kept = np.empty(n_out)
+        for start, ((m, _), filtered) in enumerate(zip(phases, filters, strict=True)):
+            kept[start::up] = filtered(row)[m::down][: len(range(start, n_out, up))]
+        out.append(kept)
+    return np.array(out).reshape(-1, n_out)
 
 
 def local_peaks(values: FloatArray, prominence: float = 0.0) -> IntArray:

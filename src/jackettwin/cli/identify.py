@@ -154,7 +154,7 @@ def identify_command(
         if merge == "preger":
             document, show = _setups(files, settings, how["defaults"]), show_one
         elif len(files) == 1:
-            how["keep"] = cache.keeping(fresh=fresh)
+            how |= {"keep": cache.keeping(fresh=fresh), "whole": whole}
             document, show = _one(files[0], settings, how, compare, report), show_one
         else:
             keep = _keep(out, len(files), fresh=fresh) or cache.kept_in(Path(passing))

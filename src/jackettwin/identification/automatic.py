@@ -124,7 +124,7 @@ def identify(
     screening_data = None
     if uncertain(settings):
         screening_data = evidence(
-            tones.clean, ready, record.conditions, bands=search.bands, sensors=basis is None
+            tones.clean, ready, record.conditions, looks=search.looks, sensors=basis is None
         )
     if screening_data is not None and not wanted:
         judged = clear_damping_doubts(judged, screening_data)
@@ -136,13 +136,15 @@ def identify(
     for number, index in enumerate(chosen.candidate):
         label[judged[index].cluster.poles] = number
     modes = tuple(_named(mode, settings) for mode in chosen.modes)
+    spectrum = welch(y, resolved.sample_rate_hz)
+    spectrum = replace(spectrum, density=spectrum.density * scale[:, None] ** 2)
     identified = Identification(
         records=(record.name,),
         channels=ready.channels,
         modes=modes if decay is None else decay.as_doubtful(modes),
         rejected=chosen.rejected,
         stabilisation=replace(poles, cluster=label),
-        spectrum=as_measured(welch(y * scale[:, None], resolved.sample_rate_hz), ready.differentiated),
+        spectrum=as_measured(spectrum, ready.differentiated),
         settings=resolved,
         duration_s=record.duration_s,
         warnings=(*ready.warnings, *missing, *map(str, chosen.findings)),

@@ -13,6 +13,7 @@ from jackettwin.findings import Finding
 from jackettwin.identification.automatic import identify
 from jackettwin.identification.comparison import Comparison, compare_methods
 from jackettwin.identification.estimate import Identification, ModalEstimate
+from jackettwin.identification.long_record import LongRecord, read_whole
 from jackettwin.identification.many_records.pairs import along_axes
 from jackettwin.identification.picks import Pick
 from jackettwin.identification.record_steps import (
@@ -87,17 +88,24 @@ def examine_file(
     defaults: FileDefaults | None = None,
     compare: bool = False,
     keep: Keep = NOT_KEPT,
+    whole: bool = False,
 ) -> Examination:
     """Read and examine one record; ``defaults`` gives rate and unit of a file that lacks them.
+
+    Parameters
+    ----------
+    whole : bool
+        Whether a file of hours is read in pieces, each at the rate that its modes need.
 
     Raises
     ------
     InputError
         If the record cannot be read, no channel carries a signal, or the record cannot be identified.
     """
-    record = read_record(path, defaults)
+    long = read_whole(path, settings, defaults) if whole else None
+    record = read_record(path, defaults) if long is None else long.record
     with located(file=path):
-        return examine(record, settings, places=places, picks=picks, compare=compare, keep=keep)
+        return examine(record, settings, places=places, picks=picks, compare=compare, keep=keep, long=long)
 
 
 def examine(
@@ -108,6 +116,7 @@ def examine(
     picks: tuple[Pick, ...] = (),
     compare: bool = False,
     keep: Keep = NOT_KEPT,
+    long: LongRecord | None = None,
 ) -> Examination:
     """Assess, repair and identify one record in the rotor's axes.
 
@@ -122,6 +131,8 @@ def examine(
         Whether to identify by every method too.
     keep : Keep
         Store of identifications for later calls.
+    long : LongRecord, optional
+        What the full rate of a long record showed.
 
     Raises
     ------
@@ -129,11 +140,16 @@ def examine(
         If no channel carries a signal, or the record cannot be identified.
     """
     source = with_conditions(record)
-    ready, quality, findings, doubts = made_ready(source, places, thorough=not settings.quick)
+    ready, quality, findings, doubts = made_ready(
+        source, places, thorough=not settings.quick, known=() if long is None else long.findings
+    )
     in_axes = knows_yaw(source) or source.metadata.get("axes") == "rotor"
 
     def compute() -> Identified:
-        found = _beside_orders(identify(ready, settings, picks=picks), findings)
+        found = identify(ready, settings, picks=picks)
+        if long is not None:
+            found = replace(found, notes=long.peaks_above(settings, found.settings))
+        found = _beside_orders(found, findings)
         found = doubted(found, doubts)
         found = along_axes(found) if in_axes else found
         warnings = (str(f) for f in findings if f.severity != "info")
@@ -148,9 +164,14 @@ def examine(
 
 
 def made_ready(
-    source: Record, places: Sequence[Channel] = (), *, thorough: bool = True
+    source: Record, places: Sequence[Channel] = (), *, thorough: bool = True, known: Findings = ()
 ) -> tuple[Record, Quality, Findings, Findings]:
     """Choose, assess and repair the channels of a record with its conditions, and turn them into rotor axes.
+
+    Parameters
+    ----------
+    known : tuple of Finding
+        Faults of samples that were declared missing before.
 
     Returns
     -------
@@ -168,6 +189,7 @@ def made_ready(
     chosen, stepped = zeros_in_line(chosen)
     chosen, crossed = axes_in_line(chosen)
     quality = assess(chosen, thorough=thorough)
+    quality = replace(quality, findings=(*known, *quality.findings))
     alarms = (f for f in (*repeated, *stepped, *too_short(chosen)) if f.severity == "alarm")
     doubts = (*alarms, *(f for f in quality.findings if f.code in UNFIT and not f.repaired))
     steps: tuple[Step, ...] = (

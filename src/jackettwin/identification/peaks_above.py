@@ -13,7 +13,7 @@ from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import detrend
 
 if TYPE_CHECKING:
-    from jackettwin.identification.estimate import ResolvedSettings
+    from jackettwin.identification.estimate import ResolvedSettings, Spectrum
     from jackettwin.identification.settings import IdentificationSettings
     from jackettwin.records import Record
 
@@ -34,24 +34,37 @@ def peaks_above(
     record: Record, settings: IdentificationSettings, resolved: ResolvedSettings
 ) -> tuple[str, ...]:
     """Return the sentence on clear peaks above the band; none if the user set the band."""
-    edge, rate = resolved.highest_frequency_hz, record.sample_rate_hz
-    if settings.highest_frequency_hz is not None or edge >= 0.5 * PASSED * rate:
+    if settings.highest_frequency_hz is not None:
         return ()
-    rows = [i for i, c in enumerate(record.channels) if c.quantity in VIBRATIONS]
-    y = record.data[rows]
-    rows = [i for i, row in zip(rows, y, strict=True) if np.isfinite(row).any() and np.nanstd(row) > 0.0]
-    length = min(int(LINES_BELOW * rate / edge), int(MOST_SHARE * y.shape[1]))
-    if not rows or length < LINES_BELOW // 4:
-        return ()
-    vibrating = record.select([record.channels[i].name for i in rows])
-    seen = densities(detrend(vibrating).data, rate, length)
-    inside = seen.frequencies_hz < 0.5 * PASSED * rate
-    found = [f for f in clear_peaks_hz(seen.frequencies_hz[inside], seen.density[:, inside]) if f > edge]
-    apart = [f for f, below in zip(found, [0.0, *found], strict=False) if f > APART * below]
+    spectrum = spectrum_above(record, resolved.highest_frequency_hz)
+    return () if spectrum is None else peaks_in(spectrum, resolved)
+
+
+def spectrum_above(record: Record, edge_hz: float) -> Spectrum | None:
+    """Return the densities of the vibrating channels; None if the record hardly reaches above the edge."""
+    rate = record.sample_rate_hz
+    length = min(int(LINES_BELOW * rate / edge_hz), int(MOST_SHARE * record.data.shape[1]))
+    if edge_hz >= 0.5 * PASSED * rate or length < LINES_BELOW // 4:
+        return None
+    names = [
+        c.name
+        for c, y in zip(record.channels, record.data, strict=True)
+        if c.quantity in VIBRATIONS and np.isfinite(y).any() and np.nanstd(y) > 0.0
+    ]
+    return densities(detrend(record.select(names)).data, rate, length) if names else None
+
+
+def peaks_in(spectrum: Spectrum, resolved: ResolvedSettings) -> tuple[str, ...]:
+    """Return the sentence on clear peaks of densities above a band."""
+    edge, top_hz = resolved.highest_frequency_hz, PASSED * float(spectrum.frequencies_hz[-1])
+    inside = spectrum.frequencies_hz < top_hz
+    found = clear_peaks_hz(spectrum.frequencies_hz[inside], spectrum.density[:, inside])
+    above = [f for f in found if f > edge]
+    apart = [f for f, below in zip(above, [0.0, *above], strict=False) if f > APART * below]
     if not apart:
         return ()
     listed = ", ".join(f"{f:.3g}" for f in apart[:NAMED]) + (" …" if len(apart) > NAMED else "")
-    low, top = resolved.lowest_frequency_hz, min(1.2 * apart[-1], 0.5 * PASSED * rate)
+    low, top = resolved.lowest_frequency_hz, min(1.2 * apart[-1], top_hz)
     params: dict[str, float | int | str | bool | None]
     count = "a clear peak" if len(apart) == 1 else f"{len(apart)} clear peaks"
     params = {"peaks": listed, "count": count, "edge": edge, "widen": f"{low:.2g},{top:.3g}"}

@@ -22,7 +22,7 @@ from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.selection.candidates import Tones, candidates, find_tones
 from jackettwin.identification.selection.clustering import clusters
 from jackettwin.identification.selection.peaks import clear_peaks_hz
-from jackettwin.identification.selection.second_look import QuietBand
+from jackettwin.identification.selection.second_look import SecondLook, second_look
 from jackettwin.identification.tones.steady_tones import without_tones
 from jackettwin.records import less_phase
 from jackettwin.records.processing.filters import lowpass_taps, resample
@@ -50,12 +50,12 @@ SAME_SHAPE = 0.8
 
 @dataclass(frozen=True)
 class PoleSearch:
-    """Poles of one or several bands, their candidates, and the tones."""
+    """Poles of one or several bands, their candidates, the tones, and the second looks at further bands."""
 
     poles: Stabilisation
     judged: list[Candidate]
     tones: Tones
-    bands: tuple[QuietBand, ...] = ()
+    looks: tuple[SecondLook, ...] = ()
 
 
 def searched(ready: PreparedRecord, settings: IdentificationSettings) -> PoleSearch:
@@ -158,7 +158,7 @@ def _joined(
         _together(out.poles, more.poles),
         sorted(kept, key=lambda c: c.mode.frequency_hz),
         _tones(out.tones, more.tones, ready, offset),
-        (*out.bands, QuietBand(ready, (low_hz, high_hz))),
+        (*out.looks, second_look(ready.y, ready, (low_hz, high_hz))),
     )
 
 

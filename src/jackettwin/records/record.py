@@ -115,7 +115,7 @@ class Record:
         return tuple(channel.name for channel in self.channels)
 
     def select(self, names: Sequence[str]) -> Record:
-        """Return the record with only the named channels, in the order given.
+        """Return the record with only the named channels, in the order given; all of them share the samples.
 
         Raises
         ------
@@ -124,6 +124,8 @@ class Record:
         """
         places = {name: i for i, name in enumerate(self.channel_names)}
         rows = [look_up(places, name, "channel", field="channels") for name in names]
+        if rows == list(range(len(self.channels))):
+            return self
         return replace(self, data=self.data[rows], channels=tuple(self.channels[i] for i in rows))
 
     def of_quantity(self, quantity: str) -> Record:

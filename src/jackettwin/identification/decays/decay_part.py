@@ -8,6 +8,7 @@ they explain nearly all of a free decay and little of a forced response.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +29,9 @@ MIN_SAMPLES = 64
 """Shortest record searched; the choice of the band reports shorter ones."""
 MIN_CYCLES = 8.0
 """Fewest cycles of the strongest frequency in a decay."""
+MIN_DAMPING_RATIO = 1e-4
+"""Least damping ratio of a decay, a tenth of bare welded steel's: random motion whose highest point was hours
+ago falls more slowly."""
 LATEST_START = 0.9
 """Latest start of a decay, as a share of the record."""
 FLOOR_QUANTILE = 0.1
@@ -80,11 +84,11 @@ def decay_part(y: FloatArray, sample_rate_hz: float) -> DecayPart | None:
     if width is None:
         return None
     strongest = CYCLES * sample_rate_hz / width
-    rows = ndimage.uniform_filter1d(y**2, width, axis=1, mode="nearest")
-    quiet = np.quantile(rows, FLOOR_QUANTILE, axis=1, keepdims=True) + 1e-12 * np.mean(
-        rows, axis=1, keepdims=True
-    )
-    smooth = np.mean(rows / (quiet + 1e-300), axis=0)
+    smooth = np.zeros(y.shape[1])
+    for row in y:
+        power = ndimage.uniform_filter1d(row**2, width, mode="nearest")
+        quiet = np.quantile(power, FLOOR_QUANTILE) + 1e-12 * np.mean(power)
+        smooth += power / (quiet + 1e-300) / len(y)
     inside = smooth[: int(LATEST_START * len(smooth))]
     first = int(np.argmax(inside))
     after = smooth[first:]
@@ -94,34 +98,39 @@ def decay_part(y: FloatArray, sample_rate_hz: float) -> DecayPart | None:
     for last, ended in ends:
         fall = 0.5 * float(np.log(smooth[first] / smooth[last]))
         highest_later = float(smooth[last:].max())
-        long_enough = (last - first) * strongest / sample_rate_hz >= MIN_CYCLES
+        cycles = (last - first) * strongest / sample_rate_hz
+        damped = fall > 2.0 * np.pi * cycles * MIN_DAMPING_RATIO
         again = highest_later > np.exp(-2.0 * MIN_LATER_DROP) * smooth[first]
-        if fall >= MIN_FALL and long_enough and not again:
+        if fall >= MIN_FALL and cycles >= MIN_CYCLES and damped and not again:
             return DecayPart(first, last, strongest, fall, ended)
     return None
 
 
 def _cycles_width(y: FloatArray, sample_rate_hz: float) -> int | None:
     """Return the samples in two cycles of the strongest frequency, or None if the record is too short."""
-    white = y / (y.std(axis=1, keepdims=True) + 1e-300)
-    fourth = np.mean(np.square(np.square(white)), axis=0)
+    scale = y.std(axis=1, keepdims=True) + 1e-300
+    fourth = sum(np.square(np.square(row / size)) for row, size in zip(y, scale, strict=True)) / len(y)
     rough = ndimage.uniform_filter1d(fourth, max(y.shape[1] // 50, 8), mode="nearest")
-    strongest = _strongest_hz(white[:, int(np.argmax(rough)) :], sample_rate_hz)
+    first = int(np.argmax(rough))
+    later = (row[first:] / size for row, size in zip(y, scale, strict=True))
+    strongest = _strongest_hz(later, sample_rate_hz)
     if strongest is None:
         return None
     width = max(round(CYCLES * sample_rate_hz / strongest), 4)
     return width if y.shape[1] >= MIN_CYCLES / CYCLES * width else None
 
 
-def _strongest_hz(y: FloatArray, sample_rate_hz: float) -> float | None:
+def _strongest_hz(rows: Iterable[FloatArray], sample_rate_hz: float) -> float | None:
     """Return the frequency of the largest power."""
-    n = y.shape[1]
-    if n < 64:
-        return None
-    padded = next_fast_len(n, real=True)
-    lines = np.fft.rfft((y - y.mean(axis=1, keepdims=True)) * hann(n), padded, axis=1)
-    f = np.arange(lines.shape[1]) * (sample_rate_hz / padded)
-    density = np.mean(np.abs(lines) ** 2, axis=0)
-    density[f < 4.0 * sample_rate_hz / n] = 0.0
-    k = int(np.argmax(density))
-    return float(f[k]) if density[k] > 0.0 else None
+    density: FloatArray | float = 0.0
+    for row in rows:
+        n = len(row)
+        if n < MIN_SAMPLES:
+            return None
+        padded = next_fast_len(n, real=True)
+        density = density + np.abs(np.fft.rfft((row - row.mean()) * hann(n), padded)) ** 2
+    total = np.asarray(density)
+    f = np.arange(total.size) * (sample_rate_hz / padded)
+    total[f < 4.0 * sample_rate_hz / n] = 0.0
+    k = int(np.argmax(total))
+    return float(f[k]) if total[k] > 0.0 else None

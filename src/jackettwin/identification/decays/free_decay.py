@@ -207,7 +207,8 @@ def _part_beside_impact(record: Record, part: DecayPart, level: Record) -> Recor
 
 def _falling(level: Record) -> tuple[DecayPart | None, Record]:
     """Return the decaying part, and the record without gaps at the sample rate that it needs."""
-    level = replace(level, data=np.apply_along_axis(bridge, 1, level.data))
+    if not np.isfinite(level.data).all():
+        level = replace(level, data=np.apply_along_axis(bridge, 1, level.data))
     part = decay_part(level.data, level.sample_rate_hz)
     factor = 1 if part is None else int(level.sample_rate_hz / (SAMPLES_PER_CYCLE * part.strongest_hz))
     if factor > 1:

@@ -102,22 +102,26 @@ def periodogram(
     """
     n_channels, n_samples = y.shape
     duration = n_samples / sample_rate_hz
-    present = np.isfinite(y)
-    x = np.fft.rfft(np.where(present, y, 0.0), axis=1) / sample_rate_hz / np.sqrt(duration)
-    x /= np.sqrt(present.mean(axis=1, keepdims=True))
     first, last = int(np.ceil(band_hz[0] * duration)), int(np.floor(band_hz[1] * duration))
-    line = np.arange(max(first, 1), min(last, x.shape[1] - 1) + 1)
+    line = np.arange(max(first, 1), min(last, n_samples // 2) + 1)
     f = line / duration
-    x = x[:, line] * (2j * np.pi * f) ** np.asarray(derivatives)[:, None]
+    x = np.empty((n_channels, len(line)), dtype=complex)
+    for row, own, times in zip(y, x, derivatives, strict=True):
+        present = np.isfinite(row)
+        own[:] = np.fft.rfft(np.where(present, row, 0.0))[line[0] : line[-1] + 1]
+        own /= sample_rate_hz * np.sqrt(duration * present.mean())
+        if times:
+            own *= (2j * np.pi * f) ** times
     start = group_starts(f, duration, *modes)
     count = np.diff(np.append(start, len(f))).astype(float)
     density = np.empty((len(start), n_channels, n_channels), dtype=complex)
-    for b in range(n_channels):
-        density[:, :, b] = np.add.reduceat(x * x[b].conj(), start, axis=1).T / count[:, None]
+    for a in range(n_channels):
+        for b in range(a, n_channels):
+            density[:, a, b] = np.add.reduceat(x[a] * x[b].conj(), start) / count
+            density[:, b, a] = density[:, a, b].conj()
     omega = 2.0 * np.pi * np.add.reduceat(f, start) / count
     middle = start + (count // 2).astype(int)
-    power = np.abs(x) ** 2
-    floor = _local_median(power, line)[:, middle].T
+    floor = np.stack([_local_median(own, line)[middle] for own in x], axis=1)
     kept = np.ones(len(start), dtype=bool)
     end = f[np.append(start[1:], len(f)) - 1]
     for low, high in avoid_hz:
@@ -142,8 +146,8 @@ def group_starts(
     return np.flatnonzero(np.diff(np.floor(np.cumsum(1.0 / lines) + 1e-9), prepend=-1.0) > 0.0)
 
 
-def _local_median(power: FloatArray, line: IntArray) -> FloatArray:
-    """Return the running median over a window proportional to frequency, corrected to a mean.
+def _local_median(x: ComplexArray, line: IntArray) -> FloatArray:
+    """Return the running median of the power over a window proportional to frequency, corrected to a mean.
 
     The window has a fixed width on a logarithmic frequency axis. A periodogram line is exponentially
     distributed; its median is ln 2 times its mean.
@@ -153,5 +157,5 @@ def _local_median(power: FloatArray, line: IntArray) -> FloatArray:
     step = np.log(line[-1] / line[0]) / n
     width = max(int(MEDIAN_SHARE_OF_BAND / step), 9) | 1
     nearest = np.clip(np.round(grid).astype(int) - line[0], 0, len(line) - 1)
-    smooth = running_median(power[:, nearest], width) / np.log(2.0)
-    return np.asarray([np.interp(line, grid, row) for row in smooth])
+    smooth = running_median(np.abs(x[nearest]) ** 2, width) / np.log(2.0)
+    return np.asarray(np.interp(line, grid, smooth))

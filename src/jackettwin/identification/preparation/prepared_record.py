@@ -101,7 +101,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> PreparedRecord:
     """
     usable, warnings = usable_channels(record)
     level, differentiated = accelerated(detrend(usable))
-    top = _band_top_hz(level, settings) or np.inf
+    top = band_top_hz(level, settings) or np.inf
     level = _decimated(level, top, settings)
     rotor = None if settings.quick else estimated_speed(level.data, level.sample_rate_hz)
     tones, slowly_drifting, without = steady_tones(level.data, level.sample_rate_hz)
@@ -139,7 +139,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> PreparedRecord:
     )
 
 
-def _band_top_hz(level: Record, settings: IdentificationSettings) -> float | None:
+def band_top_hz(level: Record, settings: IdentificationSettings) -> float | None:
     """Return the upper limit of the band, or None without a peak.
 
     Only a few channels are examined. If none has the lowest peak, the limit is merely higher than necessary.

@@ -12,11 +12,14 @@ from jackettwin.signals import local_peaks
 SEGMENTS = 8
 """Number of segments in Welch's method (half overlapping)."""
 
+LONGEST_SEGMENT_S = 900.0
+"""Longest segment [s]: it resolves the peak of a tower mode, and hours give a smoother spectrum."""
+
 CLEAR_PEAK = 8.0
 """Smallest ratio of a peak to the median of the two octaves around it."""
 
 FEWEST_CYCLES = 20.0
-"""Fewest cycles in the record of a frequency that is considered."""
+"""Fewest cycles in eight segments of a frequency that is considered."""
 
 
 def welch(y: FloatArray, sample_rate_hz: float, segment_length: int | None = None) -> Spectrum:
@@ -27,9 +30,9 @@ def welch(y: FloatArray, sample_rate_hz: float, segment_length: int | None = Non
     y : (n_channels, n_samples)
         Zero-mean samples; NaN marks a missing one.
     """
-    f, matrix = spectral_matrix(y, sample_rate_hz, segment_length or _length(y))
+    f, matrix = spectral_matrix(y, sample_rate_hz, segment_length or _length(y, sample_rate_hz))
     density = np.asarray(np.einsum("faa->af", matrix).real)
-    scale = np.sqrt(np.nanmean(y**2, axis=1))
+    scale = np.sqrt([np.nanmean(row**2) for row in y])
     # for a positive Hermitian matrix these are the singular values, at a third of their cost
     singular = np.linalg.eigvalsh(matrix / np.multiply.outer(scale, scale))[:, ::-1].T
     return Spectrum(f, density, np.abs(singular))
@@ -37,13 +40,13 @@ def welch(y: FloatArray, sample_rate_hz: float, segment_length: int | None = Non
 
 def densities(y: FloatArray, sample_rate_hz: float, segment_length: int | None = None) -> Spectrum:
     """Return the densities of :func:`welch` without singular values, at a third of the cost."""
-    f, density = welch_densities(y, sample_rate_hz, segment_length or _length(y))
+    f, density = welch_densities(y, sample_rate_hz, segment_length or _length(y, sample_rate_hz))
     return Spectrum(f, density, np.empty((0, f.size)))
 
 
-def _length(y: FloatArray) -> int:
+def _length(y: FloatArray, sample_rate_hz: float) -> int:
     """Return the number of samples in a segment."""
-    return max(int(y.shape[1]) // SEGMENTS, 16)
+    return max(min(int(y.shape[1]) // SEGMENTS, int(LONGEST_SEGMENT_S * sample_rate_hz)), 16)
 
 
 def lowest_peak_hz(spectrum: Spectrum) -> float | None:

@@ -34,6 +34,7 @@ from jackettwin.identification.selection.one_sensor import MIN_OTHER_SENSORS, of
 from jackettwin.identification.selection.peaks import clear_peaks_hz, contrast, share_of_one_part
 from jackettwin.identification.selection.second_look import SAME_SHAPE, SecondLook, second_look, seen_again
 from jackettwin.identification.status import ModeStatus
+from jackettwin.identification.tones.sinusoid import transform
 from jackettwin.records.clocks.another_time import comparable_channels
 
 if TYPE_CHECKING:
@@ -41,7 +42,6 @@ if TYPE_CHECKING:
 
     from jackettwin.identification.estimate import ModalEstimate
     from jackettwin.identification.preparation.prepared_record import PreparedRecord
-    from jackettwin.identification.selection.second_look import QuietBand
 
 Verdict = tuple[ModeStatus, Finding]
 
@@ -162,7 +162,7 @@ def evidence(
     ready: PreparedRecord,
     conditions: Mapping[str, Any],
     *,
-    bands: Sequence[QuietBand] = (),
+    looks: Sequence[SecondLook] = (),
     sensors: bool = True,
 ) -> Evidence:
     """Gather the data by which modes are judged.
@@ -174,18 +174,15 @@ def evidence(
     conditions : mapping
         Conditions of the record; ``wave_period_s`` or another of ``PERIODS`` is the peak period of the sea
         [s].
-    bands : sequence of QuietBand
-        Further bands in which modes were sought.
+    looks : sequence of SecondLook
+        Second looks at further bands in which modes were sought.
     sensors : bool
         Whether the channels are sensors, not components of many sensors.
     """
     periods = [conditions[key] for key in PERIODS if isinstance(conditions.get(key), int | float)]
     return Evidence(
-        looks=(
-            second_look(y, ready),
-            *(second_look(band.ready.y, band.ready, band.taken_hz) for band in bands),
-        ),
-        lines=np.asarray(np.fft.rfft(np.nan_to_num(y), axis=1)),
+        looks=(second_look(y, ready), *looks),
+        lines=transform(y),
         scale=ready.scale,
         duration_s=y.shape[1] / ready.settings.sample_rate_hz,
         peak_of_sea_hz=1.0 / periods[0] if periods and periods[0] > 0.0 else None,

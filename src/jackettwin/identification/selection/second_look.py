@@ -28,14 +28,6 @@ SAME_FREQUENCY = 2.0
 
 
 @dataclass(frozen=True)
-class QuietBand:
-    """Samples of a further band, and the range of frequency in which modes are taken from it [Hz]."""
-
-    ready: PreparedRecord
-    taken_hz: tuple[float, float]
-
-
-@dataclass(frozen=True)
 class SecondLook:
     """Poles of the second look, as flat arrays of equal length.
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 import numpy as np
 from numpy import fft
 
-from jackettwin.arrays import FloatArray
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError
 from jackettwin.signals import next_fast_len
 
 SEGMENT_WINDOWS = 8
 """Length of the FFT segments, in lag windows."""
+SEGMENTS_AT_ONCE = 64
+"""Segments that are transformed together."""
 LEAST_PAIRS = 0.2
 """Smallest share of the sample pairs of a lag that must be free of gaps."""
 
@@ -109,10 +111,14 @@ def _lag_products(late: FloatArray, early: FloatArray, n_lags: int) -> FloatArra
     """
     size = next_fast_len(min(max(SEGMENT_WINDOWS * n_lags, 1024), early.shape[1] + n_lags), real=True)
     hop = size - n_lags
-    n_segments = -(-early.shape[1] // hop)
-    spectrum_early = fft.rfft(_segments(early, n_segments, hop, hop), size, axis=2)
-    spectrum_late = fft.rfft(_segments(late, n_segments, hop, size), axis=2)
-    cross = spectrum_late.transpose(2, 0, 1) @ spectrum_early.conj().transpose(2, 1, 0)
+    cross: ComplexArray | float = 0.0
+    for first in range(0, early.shape[1], SEGMENTS_AT_ONCE * hop):
+        after = first + SEGMENTS_AT_ONCE * hop
+        some, beyond = early[:, first:after], late[:, first : after + n_lags]
+        n_segments = -(-some.shape[1] // hop)
+        spectrum_early = fft.rfft(_segments(some, n_segments, hop, hop), size, axis=2)
+        spectrum_late = fft.rfft(_segments(beyond, n_segments, hop, size), axis=2)
+        cross = cross + spectrum_late.transpose(2, 0, 1) @ spectrum_early.conj().transpose(2, 1, 0)
     return np.ascontiguousarray(fft.irfft(cross, size, axis=0)[: n_lags + 1])
 
 

@@ -20,7 +20,7 @@ import numpy as np
 from numpy import fft
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.identification.tones.bands import Band, bands_of, overlapping_bands
+from jackettwin.identification.tones.bands import MAX_ELEMENTS, Band, bands_of, overlapping_bands
 from jackettwin.identification.tones.phase_track import baseband
 from jackettwin.identification.tones.sinusoid import lines_around, sinusoid, transform
 
@@ -176,21 +176,23 @@ def _coherent_speeds(
     """Yield speeds whose two orders are in the bands at f and at its multiple."""
     ratio, lower, higher = pair
     lows, highs = bands_of(lines, duration_s, f, half), bands_of(lines, duration_s, ratio * f, ratio * half)
+    # each baseband is relative to its own middle line; the multiple of the lower one differs slightly
+    low, high = (np.array([_line(band, duration_s) for band in x]) for x in (lows, highs))
     length = 2 ** np.ceil(np.log2(8.0 * ratio * half * duration_s + 8.0)).astype(np.intp)
-    for n in np.unique(length):
-        at = np.flatnonzero(length == n)
-        a = _analytic(lines, duration_s, [lows[k] for k in at], int(n))
-        b = _analytic(lines, duration_s, [highs[k] for k in at], int(n))
-        unit_a, unit_b = a / (np.abs(a) + 1e-300), b / (np.abs(b) + 1e-300)
-        # each baseband is relative to its own middle line; the multiple of the lower one differs slightly
-        low, high = (np.array([_line(band, duration_s) for band in x]) for x in (lows, highs))
-        turn = np.exp(2j * np.pi * np.outer(high - ratio * low, np.arange(n))[at] / n)
-        product = unit_a.conj() ** ratio * turn
-        coherence = np.abs(np.mean(unit_b * product, axis=1))
-        for i in np.flatnonzero(coherence >= LEAST_COHERENCE):
-            c = float(coherence[i])
-            if c >= CERTAIN_COHERENCE or _exceeds_chance(unit_b[i], product[i], c):
-                yield EstimatedSpeed(_speed(b[i], int(high[at[i]]), higher, duration_s), c, (lower, higher))
+    for n in map(int, np.unique(length)):
+        alike = np.flatnonzero(length == n)
+        for at in np.array_split(alike, -(-len(alike) * n // MAX_ELEMENTS)):
+            a = _analytic(lines, duration_s, [lows[k] for k in at], n)
+            b = _analytic(lines, duration_s, [highs[k] for k in at], n)
+            unit_a, unit_b = a / (np.abs(a) + 1e-300), b / (np.abs(b) + 1e-300)
+            turn = np.exp(2j * np.pi * np.outer((high - ratio * low)[at], np.arange(n)) / n)
+            product = unit_a.conj() ** ratio * turn
+            coherence = np.abs(np.mean(unit_b * product, axis=1))
+            for i in np.flatnonzero(coherence >= LEAST_COHERENCE):
+                c = float(coherence[i])
+                if c >= CERTAIN_COHERENCE or _exceeds_chance(unit_b[i], product[i], c):
+                    speed_hz = _speed(b[i], int(high[at[i]]), higher, duration_s)
+                    yield EstimatedSpeed(speed_hz, c, (lower, higher))
 
 
 def _speed(b: ComplexArray, line: int, order: int, duration_s: float) -> FloatArray:

@@ -60,7 +60,10 @@ class Sinusoid:
 
 def transform(y: FloatArray) -> ComplexArray:
     """Return the Fourier transforms of samples (n_channels, n_samples), missing ones (NaN) as zero."""
-    return np.asarray(fft.rfft(np.where(np.isfinite(y), y, 0.0), axis=1))
+    out = np.empty((len(y), y.shape[1] // 2 + 1), dtype=complex)
+    for row, lines in zip(y, out, strict=True):  # one at a time: copies of a day's channels take memory
+        lines[:] = fft.rfft(np.where(np.isfinite(row), row, 0.0))
+    return out
 
 
 def sinusoid(spectrum: ComplexArray, k: int) -> Sinusoid:

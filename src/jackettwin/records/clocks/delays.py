@@ -23,7 +23,7 @@ from itertools import pairwise
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
-from jackettwin.records.processing.spectra import hann_lines
+from jackettwin.records.processing.spectra import hann_lines, of_fast_length
 from jackettwin.signals import next_fast_len
 
 MIN_LINES = 4
@@ -137,8 +137,8 @@ def phases(y: FloatArray, sample_rate_hz: float, turn: ComplexArray) -> Phases |
     n = y.shape[1]
     if n < MIN_SAMPLES:
         return None
-    lines, used = hann_lines(y)
-    low_hz, high_hz = (edge * sample_rate_hz / used for edge in _band(lines))
+    used = of_fast_length(y).shape[1]
+    low_hz, high_hz = (edge * sample_rate_hz / used for edge in _band(y))
     most = min(low_hz / CYCLES_PER_WINDOW, (high_hz - low_hz) / (MIN_LINES * WANTED_BINS))
     windows = int(np.clip(n / sample_rate_hz * most, *WINDOWS))
     length = n // windows
@@ -160,14 +160,16 @@ def phases(y: FloatArray, sample_rate_hz: float, turn: ComplexArray) -> Phases |
     return Phases(f, coherency, weight, pairs, each * df, log_amplitude)
 
 
-def _band(lines: ComplexArray) -> tuple[float, float]:
+def _band(y: FloatArray) -> tuple[float, float]:
     """Return the edges, in lines, of the band that contains most of the power of every channel."""
-    power = np.abs(lines) ** 2
-    power = np.maximum(power - FLOOR * np.median(power, axis=1, keepdims=True), 0.0)
-    total = power.sum(axis=1, keepdims=True)
-    passed = np.cumsum(np.mean(power / np.where(total > 0.0, total, 1.0), axis=0))
-    low, high = (float(np.searchsorted(passed, share)) for share in BAND)
-    return BELOW * low, min(ABOVE * high, 0.9 * (lines.shape[1] - 1))
+    share: FloatArray | float = 0.0
+    for row in y:
+        power = np.abs(hann_lines(row[None])[0][0]) ** 2
+        power = np.maximum(power - FLOOR * np.median(power), 0.0)
+        share = share + power / max(float(power.sum()), np.finfo(float).tiny) / len(y)
+    passed = np.cumsum(share)
+    low, high = (float(np.searchsorted(passed, part)) for part in BAND)
+    return BELOW * low, min(ABOVE * high, 0.9 * (passed.size - 1))
 
 
 def _coherency(y: FloatArray, windows: int, kept: slice, each: int) -> tuple[ComplexArray, FloatArray]:
@@ -293,12 +295,12 @@ def band_lines(y: FloatArray, sample_rate_hz: float) -> BandLines | None:
     y : (n_channels, n_samples)
         Zero mean, without gaps.
     """
-    lines, used = hann_lines(y)
-    low, high = (round(edge) for edge in _band(lines))
+    low, high = (round(edge) for edge in _band(y))
     if high - low < SUB_BANDS * MIN_LINES:
         return None
-    lines = lines[:, low:high]
-    return BandLines(lines / np.where(np.abs(lines) > 0.0, np.abs(lines), 1.0), used / sample_rate_hz)
+    lines = np.array([hann_lines(row[None])[0][0, low:high] for row in y])
+    lines /= np.where(np.abs(lines) > 0.0, np.abs(lines), 1.0)
+    return BandLines(lines, of_fast_length(y).shape[1] / sample_rate_hz)
 
 
 def in_common(lines: BandLines, pairs: IntArray) -> tuple[FloatArray, Iterator[FloatArray]]:

@@ -97,8 +97,9 @@ def clocks_of(record: Record, slow_free: FloatArray) -> LoggerClocks:
     ]
     if len(rows) < 2:
         return LoggerClocks(stop=record.data.shape[1])
+    complete = len(rows) == len(slow_free) and bool(np.isfinite(slow_free).all())
     found = logger_clocks(
-        np.array([bridge(slow_free[i]) for i in rows]),
+        slow_free if complete else np.array([bridge(slow_free[i]) for i in rows]),
         record.sample_rate_hz,
         velocity=[record.channels[i].quantity == "velocity" for i in rows],
         places=[record.channels[i].node or record.channels[i].height_m for i in rows],

@@ -8,11 +8,16 @@ since the passed signal hardly changes over so short a time.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Literal
+
 import numpy as np
 from scipy import ndimage
 
 from jackettwin import signals
 from jackettwin.arrays import BoolArray, FloatArray
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 STOPBAND_DB = 80.0
 """Attenuation beyond the stop edge [dB]; the pass-band ripple is 1e-4."""
@@ -46,7 +51,8 @@ def _less_line(y: FloatArray) -> FloatArray:
     power = float(t @ t)
     out: FloatArray = y - y.mean(axis=1, keepdims=True) if y.size else y.copy()
     if power > 0.0:
-        out -= np.outer(out @ t / power, t)
+        for row, slope in zip(out, out @ t / power, strict=True):
+            row -= slope * t
     return out
 
 
@@ -66,14 +72,15 @@ def remove_slow(y: FloatArray, cutoff: float) -> FloatArray:
     sigma = np.sqrt(-np.log(1.0 - np.sqrt(0.5)) / 2.0) / (np.pi * cutoff)
     half = min(int(np.ceil(5.0 * sigma)), y.shape[1] - 1)
     kernel = np.exp(-0.5 * (np.arange(-half, half + 1) / sigma) ** 2)
-    x = remove_line(y)
-    finite = np.isfinite(x)
-    same = slice(half, half + y.shape[1])
-    total = signals.convolve(np.where(finite, x, 0.0), kernel)[:, same]
-    weight = signals.convolve((finite[:1] if finite.all() else finite).astype(float), kernel)[:, same]
-    # At a finite sample the weight is at least the kernel's centre, 1.
-    slow: FloatArray = total / np.where(finite, weight, 1.0)
-    return x - slow
+    out = remove_line(y)
+    same, summed = slice(half, half + y.shape[1]), signals.convolution(kernel, y.shape[1])
+    of_all = summed(np.ones(y.shape[1]))[same]
+    for x in out:  # row by row, as every term is as long as a channel
+        finite = np.isfinite(x)
+        weight = of_all if finite.all() else summed(finite.astype(float))[same]
+        # At a finite sample the weight is at least the kernel's centre, 1.
+        x -= summed(np.where(finite, x, 0.0))[same] / np.where(finite, weight, 1.0)
+    return out
 
 
 def lowpass_taps(pass_edge: float, stop_edge: float) -> FloatArray:
@@ -106,16 +113,16 @@ def resample(y: FloatArray, taps: FloatArray, up: int = 1, down: int = 1) -> Flo
     padded_taps = np.concatenate([np.zeros(lead), taps])
     kept = {"first": (pad * up + half + lead) // down, "n_out": (y.shape[1] - 1) * up // down + 1}
 
-    missing = _long_gaps(~np.isfinite(y), shortest=down // (2 * up) + 1)
-    bridged = np.pad(
-        np.apply_along_axis(bridge, 1, y), ((0, 0), (pad, pad)), mode="reflect", reflect_type="odd"
-    )
-    out = signals.resample(bridged, up * padded_taps, up, down, **kept)
-    if missing.any():
-        reflected = np.pad(missing, ((0, 0), (pad, pad)), mode="reflect").astype(float)
-        weight = up * np.abs(padded_taps) / np.abs(taps).sum()
-        lost = signals.resample(reflected, weight, up, down, **kept)
-        out = np.where(lost > MISSING_WEIGHT, np.nan, out)
+    def filtered(rows: Iterable[FloatArray], weights: FloatArray, kind: Literal["odd", "even"]) -> FloatArray:
+        padded = (np.pad(row, pad, mode="reflect", reflect_type=kind) for row in rows)
+        return signals.resample(padded, y.shape[1] + 2 * pad, weights, up, down, **kept)
+
+    out = filtered(map(bridge, y), up * padded_taps, "odd")
+    finite = np.isfinite(y)
+    if not finite.all():
+        missing = _long_gaps(~finite, shortest=down // (2 * up) + 1)
+        lost = filtered(missing.astype(float), up * np.abs(padded_taps) / np.abs(taps).sum(), "even")
+        out[lost > MISSING_WEIGHT] = np.nan
     return out
 
 

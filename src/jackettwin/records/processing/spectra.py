@@ -14,6 +14,8 @@ line's power over all frequencies; a gap spreads it to neighbouring lines.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
@@ -65,9 +67,11 @@ def welch_densities(
     >>> round(float(density.sum() * f[1]), 6)
     0.5
     """
-    f, x, norm = _transforms(y, sample_rate_hz, segment_length, less_mean=less_mean)
-    density = np.mean(x.real**2 + x.imag**2, axis=1) * norm[:, None] ** 2
-    return f, density * _one_sided(segment_length)
+    density = np.zeros((len(y), segment_length // 2 + 1))
+    for x in _transforms(y, segment_length, less_mean=less_mean):
+        density += x.real**2 + x.imag**2
+    scale = _norm(y, sample_rate_hz, segment_length)[:, None] ** 2
+    return _lines_hz(sample_rate_hz, segment_length), density * scale * _one_sided(segment_length)
 
 
 def spectral_matrix(
@@ -84,31 +88,36 @@ def spectral_matrix(
     -------
     (n_frequencies,), (n_frequencies, n_channels, n_channels)
     """
-    f, x, norm = _transforms(y, sample_rate_hz, segment_length)
-    x = x.transpose(2, 0, 1)
-    matrix = x @ x.conj().transpose(0, 2, 1) / x.shape[2]
+    matrix = np.zeros((segment_length // 2 + 1, len(y), len(y)), dtype=complex)
+    for x in _transforms(y, segment_length):
+        matrix += x.T[:, :, None] * x.T.conj()[:, None, :]
+    norm = _norm(y, sample_rate_hz, segment_length)
     matrix *= np.multiply.outer(norm, norm)
     matrix *= _one_sided(segment_length)[:, None, None]
-    return f, np.asarray(matrix)
+    return _lines_hz(sample_rate_hz, segment_length), matrix
 
 
-def _transforms(
-    y: FloatArray, sample_rate_hz: float, segment_length: int, *, less_mean: bool = False
-) -> tuple[FloatArray, ComplexArray, FloatArray]:
-    """Return frequencies, transforms (n_channels, n_segments, n_frequencies), and √density over amplitude."""
-    there = np.isfinite(y)
-    window, segments = hann(segment_length), _segments(np.where(there, y, 0.0), segment_length)
-    if less_mean:
-        known = _segments(there, segment_length)
-        mean = segments.sum(axis=-1, keepdims=True) / np.maximum(known.sum(axis=-1, keepdims=True), 1)
-        segments = segments - mean * known
-    x = np.fft.rfft(segments * window, axis=-1)
-    if there.all():
-        energy = np.full(len(y), np.sum(window**2))
-    else:
-        energy = np.mean(_segments(there, segment_length) @ window**2, axis=1)
-    norm = np.where(energy > 0.0, 1.0 / np.sqrt(sample_rate_hz * np.where(energy > 0.0, energy, 1.0)), 0.0)
-    return np.asarray(np.arange(segment_length // 2 + 1) * (sample_rate_hz / segment_length)), x, norm
+def _transforms(y: FloatArray, segment_length: int, *, less_mean: bool = False) -> Iterator[ComplexArray]:
+    """Yield the transforms of all channels in one segment after the other, (n_channels, n_frequencies)."""
+    window = hann(segment_length)
+    for segment in _segments(y, segment_length):
+        there = np.isfinite(segment)
+        x = segment if there.all() else np.where(there, segment, 0.0)
+        if less_mean:
+            x = x - x.sum(axis=1, keepdims=True) / np.maximum(there.sum(axis=1, keepdims=True), 1) * there
+        yield np.asarray(np.fft.rfft(x * window, axis=1))
+
+
+def _norm(y: FloatArray, sample_rate_hz: float, segment_length: int) -> FloatArray:
+    """Return √density over the root of the sum of squared amplitudes over segments, (n_channels,)."""
+    power, energy = hann(segment_length) ** 2, np.zeros(len(y))
+    for segment in _segments(y, segment_length):
+        energy += np.isfinite(segment) @ power
+    return np.where(energy > 0.0, 1.0 / np.sqrt(sample_rate_hz * np.where(energy > 0.0, energy, 1.0)), 0.0)
+
+
+def _lines_hz(sample_rate_hz: float, segment_length: int) -> FloatArray:
+    return np.asarray(np.arange(segment_length // 2 + 1) * (sample_rate_hz / segment_length))
 
 
 def _one_sided(segment_length: int) -> FloatArray:
@@ -120,6 +129,7 @@ def _one_sided(segment_length: int) -> FloatArray:
     return times
 
 
-def _segments(y: np.ndarray, length: int) -> np.ndarray:
-    windows = np.lib.stride_tricks.sliding_window_view(y, length, axis=1)
-    return np.asarray(windows[:, :: max(length // 2, 1)])
+def _segments(y: FloatArray, length: int) -> Iterator[FloatArray]:
+    """Yield half overlapping segments: one at a time, as those of a day are twice as large as the day."""
+    for start in range(0, y.shape[1] - length + 1, max(length // 2, 1)):
+        yield y[:, start : start + length]

@@ -3,7 +3,8 @@
 What lies above half the sample rate is then folded below it, peaks with the rest, and nothing in the record
 says which peak is in its place. A filter leaves a trace: just below half the sample rate nothing passes. A
 spectrum that does not fall there, and holds noticeable power beside it, was not filtered, or is that of
-noise.
+noise, or of accelerations under white forces. Only a peak tells these apart: a flat spectrum whose aliases
+do not stand out is not reported.
 """
 
 from __future__ import annotations

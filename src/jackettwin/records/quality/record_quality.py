@@ -91,8 +91,9 @@ def assess(record: Record, *, thorough: bool = True) -> Quality:
         Whether clocks are compared and changes within the record and missing filters are sought: two thirds
         of the time.
     """
-    unreadable = np.isinf(record.data) | (np.abs(record.data) > LARGEST)
-    record = replace(record, data=np.where(unreadable, np.nan, record.data))
+    unreadable = (record.data > LARGEST) | (record.data < -LARGEST)
+    if unreadable.any():
+        record = replace(record, data=np.where(unreadable, np.nan, record.data))
     held = [faults.hold_length(row) for row in record.data]
     spikes = [faults.spikes(row, hold=hold) for row, hold in zip(record.data, held, strict=True)]
     slow_free = _without_slow(record, spikes)
@@ -130,16 +131,17 @@ def shortest_stuck(sample_rate_hz: float) -> int:
 
 def _without_slow(record: Record, spikes: list[BoolArray]) -> FloatArray:
     """Return the data without mean and drift; spikes are removed first, as they would hide the drift."""
-    data = record.data.copy()
-    for row, mask in zip(data, spikes, strict=True):
-        row[mask] = np.nan
+    data = record.data
+    if any(mask.any() for mask in spikes):
+        data = np.where(spikes, np.nan, data)
     return filters.remove_slow(data, DRIFT_CYCLES / max(data.shape[1], 1))
 
 
 def _changed(record: Record, slow_free: FloatArray) -> dict[int, SensorChange]:
     """Return, by row, vibration channels that change during the record."""
     rows = [i for i, channel in enumerate(record.channels) if channel.quantity in VIBRATIONS]
-    return {rows[c.row]: replace(c, row=rows[c.row]) for c in changes(slow_free[rows])}
+    vibrating = slow_free if len(rows) == len(slow_free) else slow_free[rows]
+    return {rows[c.row]: replace(c, row=rows[c.row]) for c in changes(vibrating)}
 
 
 def _judge(

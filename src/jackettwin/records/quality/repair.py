@@ -36,8 +36,10 @@ def repair(record: Record, quality: Quality) -> Record:
         record.channel_names
     ):
         raise InputError("quality is of another record", file=record.name, remedy="assess this record first")
-    data = np.where(quality.suspect, np.nan, record.data)
     fixed = {(f.subject, f.code) for f in quality.findings if f.repaired}
+    data = record.data
+    if fixed or quality.suspect.any():
+        data = np.where(quality.suspect, np.nan, record.data)
     for i, name in enumerate(record.channel_names):
         if (name, "drift") in fixed:
             data[i : i + 1] = filters.remove_slow(data[i : i + 1], DRIFT_CYCLES / data.shape[1])
@@ -58,7 +60,7 @@ def repair(record: Record, quality: Quality) -> Record:
     done = [str(f) for f in quality.findings if f.repaired]
     return replace(
         record,
-        data=data[alive],
+        data=data if len(alive) == len(data) else data[alive],
         channels=tuple(record.channels[i] for i in alive),
         metadata={**record.metadata, "repair": done} if done else record.metadata,
     )

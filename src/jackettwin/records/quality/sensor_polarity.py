@@ -148,9 +148,10 @@ def strongest_line(spectra: ComplexArray) -> int:
         Transforms of accelerations, more than ``MIN_CYCLES`` lines.
     """
     k = np.arange(MIN_CYCLES, spectra.shape[1])
-    displacement = np.abs(spectra[:, MIN_CYCLES:] / k**2) ** 2
-    total = displacement.sum(axis=1, keepdims=True)
-    common = np.sum(displacement / np.where(total > 0.0, total, 1.0), axis=0)
+    common = np.zeros(k.size)
+    for row in spectra:
+        displacement = np.abs(row[MIN_CYCLES:] / k**2) ** 2
+        common += displacement / max(float(displacement.sum()), np.finfo(float).tiny)
     return int(k[np.argmax(np.convolve(common, np.ones(5), mode="same"))])
 
 
@@ -162,8 +163,8 @@ def around(spectra: ComplexArray, peak: float) -> ComplexArray:
 
 def windowed_spectra(y: FloatArray) -> ComplexArray:
     """Return the transforms of rows under a Hann window, with gaps bridged."""
-    x = np.apply_along_axis(bridge, 1, y)
-    return hann_lines(x - x.mean(axis=1, keepdims=True))[0]
+    bridged = map(bridge, y)  # one row at a time: copies of a day's channels take memory
+    return np.array([hann_lines((row - row.mean())[None])[0][0] for row in bridged])
 
 
 def against_majority(coherency: FloatArray) -> tuple[list[int], bool]:

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 SHORTEST = 0.5
 """A first or last piece shorter than this share of the others is left out."""
+SHORTEST_JOINED_S = 10.0
+"""Shortest piece of a record whose pieces are joined again [s]: its stamps must show the sample rate."""
 
 
 def read_record_pieces(
@@ -50,18 +52,37 @@ def read_record_pieces(
     InputError
         As ``read_record``; some pieces may have been yielded before.
     """
+    long = (record for _, record in placed_pieces(path, seconds, defaults, shortest_s=SHORTEST * seconds))
+    for number, record in enumerate(long, start=1):
+        start = record.start_utc
+        stamp = f"{number:04d}" if start is None else f"{_nearest_second(start):%Y%m%dT%H%M%S}"
+        yield replace(record, name=f"{path.stem}_{stamp}")
+
+
+def placed_pieces(
+    path: Path, seconds: float, defaults: FileDefaults | None = None, *, shortest_s: float = SHORTEST_JOINED_S
+) -> Iterator[tuple[float, Record]]:
+    """Yield the pieces of a record with the time of each since the record's first sample [s].
+
+    All have the sample rate of the first, with which later stamps must agree within a thousandth.
+
+    Raises
+    ------
+    InputError
+        As ``read_record``; some pieces may have been yielded before.
+    """
     beside, defaults = described_by(path), defaults or FileDefaults()
     with reading(path):
         tables = tables_of(path)
         first = next(tables)
         said = beside or first.description or Description()
-        for number, piece in enumerate(_split(chain([first], tables), said, defaults, seconds), start=1):
+        known = replace(said, start_utc=None)
+        for begin_s, piece in _split(chain([first], tables), said, defaults, seconds, shortest_s):
             if said.start_utc is not None:
                 piece = replace(piece, zone_said=True)
-            record = to_record(piece, replace(said, start_utc=None), path, defaults)
-            start = record.start_utc
-            stamp = f"{number:04d}" if start is None else f"{_nearest_second(start):%Y%m%dT%H%M%S}"
-            yield replace(record, name=f"{path.stem}_{stamp}")
+            record = to_record(piece, known, path, defaults)
+            known = replace(known, sample_rate_hz=record.sample_rate_hz)
+            yield begin_s, record
 
 
 @dataclass(frozen=True)
@@ -84,9 +105,9 @@ class _Timed:
 
 
 def _split(
-    tables: Iterable[ReadTable], said: Description, defaults: FileDefaults, seconds: float
-) -> Iterator[ReadTable]:
-    """Yield tables cut at the boundaries, each with the start of its first row."""
+    tables: Iterable[ReadTable], said: Description, defaults: FileDefaults, seconds: float, shortest_s: float
+) -> Iterator[tuple[float, ReadTable]]:
+    """Yield tables cut at the boundaries, each with the time [s] and the start of its first row."""
     held: _Timed | None = None
     origin: datetime | None = None
     end = seconds
@@ -98,10 +119,10 @@ def _split(
             held = held.followed_by(chunk)
         while len(held.t) and held.t[-1] >= end:
             cut = int(np.searchsorted(held.t, end))
-            yield from _long_enough(held.rows(0, cut), origin, seconds)
+            yield from _long_enough(held.rows(0, cut), origin, shortest_s)
             held, end = held.rows(cut), end + seconds
     if held is not None:
-        yield from _long_enough(held, origin, seconds)
+        yield from _long_enough(held, origin, shortest_s)
 
 
 def _timed(tables: Iterable[ReadTable], said: Description, defaults: FileDefaults) -> Iterator[_Timed]:
@@ -145,13 +166,15 @@ def _first_boundary(origin: datetime | None, seconds: float) -> float:
     return seconds - (origin - midnight).total_seconds() % seconds
 
 
-def _long_enough(piece: _Timed, origin: datetime | None, seconds: float) -> Iterator[ReadTable]:
-    """Yield a piece with the start of its first row, unless it is too short or empty."""
-    if len(piece.t) < 2 or piece.t[-1] - piece.t[0] < SHORTEST * seconds:
+def _long_enough(
+    piece: _Timed, origin: datetime | None, shortest_s: float
+) -> Iterator[tuple[float, ReadTable]]:
+    """Yield a piece with the time and the start of its first row, unless it is too short or empty."""
+    if len(piece.t) < 2 or piece.t[-1] - piece.t[0] < shortest_s:
         return
     start = None if origin is None else origin + timedelta(seconds=float(piece.t[0]))
     times = None if piece.table.times_s is None else piece.t - piece.t[0]
-    yield replace(piece.table, times_s=times, start_utc=start)
+    yield float(piece.t[0]), replace(piece.table, times_s=times, start_utc=start)
 
 
 def _nearest_second(time: datetime) -> datetime:
