@@ -139,6 +139,7 @@ def test_cycles_along_the_axis_weaken_sand_alone() -> None:
         (lambda: PileGroup(()), "a group has other piles"),
         (lambda: PileGroup(((1.9, 0.0),)).p_multiplier(D), "overlap"),
         (lambda: PileGroup(((0.0, 0.0),)).p_multiplier(D), "overlap"),
+        (lambda: PileGroup(((6.0, 0.0), (6.0, 1.0))).p_multiplier(D), "overlap"),
         (lambda: PileGroup(((np.nan, 3.0),)), "out of range"),
         (lambda: PileGroup(((1e6, 3.0),)), "out of range"),
         (lambda: PileGroup(((4.0, 3.0),), np.nan), "out of range"),

@@ -62,13 +62,15 @@ class PileGroup:
         """
         place = np.array(self.others_m)
         apart = np.hypot(place[:, 0], place[:, 1]) / diameter_m
-        require(
-            bool((apart >= 1.0).all()),
-            "piles of the group overlap",
-            field="others_m",
-            value=[float(v) for v in place[int(apart.argmin())]],
-            allowed=f"at least {diameter_m:g} m from this pile, which stands at 0, 0 and is not named",
-        )
+        for number, one in enumerate(place):
+            others = np.vstack([[0.0, 0.0], place[:number]])
+            require(
+                bool((np.hypot(*(others - one).T) >= diameter_m).all()),
+                "piles of the group overlap",
+                field="others_m",
+                value=[float(v) for v in one],
+                allowed=f"at least {diameter_m:g} m apart, and from this pile: at 0, 0 and not named",
+            )
         given = self.heading_deg
         heading = _HEADINGS if given is None else np.radians([given])
         along = np.cos(np.arctan2(place[:, 1], place[:, 0]) - heading[:, None])
@@ -160,8 +162,8 @@ class AxialCycles:
         require(
             self.friction_left > 0.0,
             "so many cycles leave no friction on the shaft in sand",
-            field="axial_cycles",
-            value={"amplitude": self.amplitude, "number": self.number},
+            field="amplitude, number",
+            value=[self.amplitude, self.number],
             allowed=f"at most {self.most:.4g} cycles of this amplitude",
             remedy="count the cycles of the storm that are as large, or lengthen the pile",
         )
@@ -175,10 +177,10 @@ class AxialCycles:
         >>> round(AxialCycles(0.3, 100.0).friction_left, 4)
         0.7998
         """
-        return min(1.0 + self.A * (self.B + self.amplitude) * self.number**self.C, 1.0)
+        return float(min(1.0 + self.A * (self.B + self.amplitude) * self.number**self.C, 1.0))
 
     @property
     def most(self) -> float:
         """Number of cycles that leave nothing; infinite where the amplitude does no harm."""
         lost = -self.A * (self.B + self.amplitude)
-        return lost ** (-1.0 / self.C) if lost > 0.0 and self.C > 0.0 else np.inf
+        return float(lost ** (-1.0 / self.C)) if lost > 0.0 and self.C > 0.0 else np.inf
