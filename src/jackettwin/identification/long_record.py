@@ -79,7 +79,7 @@ class _Seen:
     faults: list[Finding] = field(default_factory=list)
     spectra: int = 0
     frequencies_hz: FloatArray | None = None
-    density: FloatArray | float = 0.0
+    density: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
 
     def cleaned(self, pieces: Iterable[tuple[float, Record]]) -> Iterator[tuple[int, FloatArray]]:
         """Yield the number of the first sample of each piece, and its samples without damaged ones."""
@@ -88,9 +88,10 @@ class _Seen:
             self.pieces += 1
             self.faults += [f for f in quality.findings if f.code in (*SHARES, *OF_CHANNELS, "unreadable")]
             seen = spectrum_above(piece, self.edge_hz)
-            if seen is not None and (self.frequencies_hz is None or len(seen.density) == len(self.density)):
-                self.spectra, self.frequencies_hz = self.spectra + 1, seen.frequencies_hz
-                self.density = self.density + seen.density
+            if seen is not None and self.frequencies_hz is None:
+                self.spectra, self.frequencies_hz, self.density = 1, seen.frequencies_hz, seen.density
+            elif seen is not None and seen.density.shape == self.density.shape:
+                self.spectra, self.density = self.spectra + 1, self.density + seen.density
             yield round(begin_s * piece.sample_rate_hz), np.where(quality.suspect, np.nan, piece.data)
 
     @property
@@ -99,7 +100,7 @@ class _Seen:
         if self.frequencies_hz is None:
             return None
         f = self.frequencies_hz
-        return Spectrum(f, np.asarray(self.density) / self.spectra, np.empty((0, f.size)))
+        return Spectrum(f, self.density / self.spectra, np.empty((0, f.size)))
 
 
 def read_whole(

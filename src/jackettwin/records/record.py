@@ -154,11 +154,11 @@ def record_id(record: Record) -> str:
         for c in record.channels
     ]
     head = [float(record.sample_rate_hz), start, list(record.data.shape), channels]
-    samples = np.ascontiguousarray(record.data, dtype="<f8")
-    # readers may produce several kinds of NaN and zero, which must hash alike
-    samples = np.where(np.isnan(samples), np.nan, samples) + 0.0
     hashed = hashlib.sha256(json.dumps(head, ensure_ascii=False).encode())
-    hashed.update(samples.tobytes())
+    for row in record.data:  # one at a time: copies of a day's channels take memory
+        samples = np.ascontiguousarray(row, dtype="<f8")
+        # readers may produce several kinds of NaN and zero, which must hash alike
+        hashed.update((np.where(np.isnan(samples), np.nan, samples) + 0.0).tobytes())
     return hashed.hexdigest()[:DIGITS]
 
 
