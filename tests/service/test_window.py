@@ -477,6 +477,59 @@ def test_the_worst_record_is_named_with_its_reason(opened: Open) -> None:
     page.context.close()
 
 
+SAID = {
+    "comment",
+    "source_name",
+    "detail",
+    "text",
+    "statement",
+    "who",
+    "subject",
+    "reason",
+    "by",
+    "law",
+    "label",
+}
+"""Fields of answers that hold what strangers wrote, or names that they gave."""
+
+
+def test_whatever_strangers_wrote_is_text(opened: Open) -> None:
+    """Every comment, name and sentence of every answer is markup; no page makes elements of it."""
+
+    def poisoned(value: object, key: str = "") -> object:
+        if isinstance(value, dict):
+            return {k: poisoned(v, k) for k, v in value.items()} | (
+                {SCRIPT: SCRIPT} if key == "conditions" else {}
+            )
+        if isinstance(value, list):
+            return [poisoned(one, key) for one in value]
+        return SCRIPT if key in SAID and isinstance(value, str) else value
+
+    def answer(route: Route) -> None:
+        found = route.fetch()
+        if "application/json" in found.headers.get("content-type", ""):
+            return route.fulfill(response=found, json=poisoned(found.json()))
+        return route.fulfill(response=found)
+
+    page = opened.page("/docs?find=alarms")
+    page.route(re.compile(r"/api/v1/(?!events|openapi|me)"), answer)
+    record = f"/assets/wtg/records/{newest(opened.url)}"
+    for path in (
+        "/",
+        "/users",
+        "/assets/wtg",
+        "/assets/wtg/records",
+        record,
+        "/assets/wtg/alarms",
+        "/assets/wtg/model",
+    ):
+        opened.goto(page, path)
+        expect(page.get_by_text("onerror=").first).to_be_attached()
+        assert page.locator("main img, main script").count() == 0, path
+        assert page.title() != "injected", path
+    page.context.close()
+
+
 def test_a_report_is_framed_once_there_is_one(opened: Open, monkeypatch: pytest.MonkeyPatch) -> None:
     opened.said.clear()
     page = opened.page("/assets/wtg/reports")

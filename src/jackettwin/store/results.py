@@ -237,9 +237,10 @@ def list_modes(
 
     With ``least_known``, the mode whose frequency has the largest relative standard deviation comes first.
     """
-    doubt = (modes.c.frequency_std_hz / modes.c.frequency_hz).desc().nulls_last()
-    order = (doubt, modes.c.id) if least_known else (modes.c.id,)
-    query = select(modes).filter_by(asset=asset, model_hash=model_hash).order_by(*order).limit(limit)
+    query = select(modes).filter_by(asset=asset, model_hash=model_hash).limit(limit)
+    if least_known:
+        query = query.order_by((modes.c.frequency_std_hz / modes.c.frequency_hz).desc().nulls_last())
+    query = query.order_by(modes.c.id)
     if label is not None:
         query = query.where(modes.c.label == label)
     if after is not None:

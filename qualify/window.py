@@ -1,0 +1,192 @@
+"""How fast the window is with much: docs/verification/window.md.
+
+Usage: ``python qualify/window.py [--years 10] [--frames 60]``. The demonstration is given as many rows of
+modes as four modes of a ten-minute record have in these years, and a record of a day (nine channels at
+50 Hz), and is served by a process of its own. Chromium opens its pages, pans and zooms through all years at
+once, opens the day, and shows 24 channels of 50 Hz that stream in.
+
+Bars, on a machine whose 800×800 ``eig`` takes 0.47 s: first useful paint 1 s, 30 frames a second, a day's
+signal 1 s, 20 frames a second live. Frames are judged by the CPU time of the page's process, which a loaded
+machine does not stretch.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from datetime import UTC, datetime, time as clock, timedelta
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from common.pace import eigenvalue_seconds
+from common.page import write_page
+from playwright.sync_api import Browser, expect, sync_playwright
+from sqlalchemy import select
+from tests.service.conftest import Here
+from tests.service.servers import Server, opened
+
+from jackettwin.records import Channel, Record
+from jackettwin.service import ServiceSettings
+from jackettwin.service.context import Service
+from jackettwin.service.demonstration import ASSET, arrive, lay_out
+from jackettwin.service.story import UNTIL
+from jackettwin.store import Packet, assets, sqlite_url, streams, tables, writing
+
+REFERENCE_S = 0.47
+LABELS = {"side_side_1": 0.175, "fore_aft_1": 0.178, "torsion_1": 0.642, "side_side_2": 0.744}
+MOVES = """async ([frames, key]) => {
+    const box = document.querySelector("figure.plot [role=img]");
+    for (let k = 0; k < frames; k++) {
+        box.dispatchEvent(new KeyboardEvent("keydown", { key: key[k % key.length], bubbles: true }));
+        await new Promise(requestAnimationFrame);
+    }
+}"""
+
+
+def filled(store: Path, years: int) -> tuple[str, int]:
+    """Lay out the demonstration with many modes and a record of a day; return its number and the rows."""
+    settings = ServiceSettings(store=store)
+    for place in (store, settings.spool, settings.models, settings.inbox):
+        place.mkdir(parents=True, exist_ok=True)
+    rng = np.random.default_rng(0)
+    began = datetime.combine(UNTIL, clock(), UTC) + timedelta(days=1)
+    channels = tuple(Channel(f"acc_{k}_x", "acceleration", "m/s^2", 20.0 + k) for k in range(9))
+    day = Record(rng.standard_normal((9, 86_400 * 50)), 50.0, channels, began, name="day")
+    with opened(settings.database_url) as made:
+        service = Service(settings, made, cast(Any, Here()), "window", now=lambda: began + timedelta(days=1))
+        lay_out(service)
+        arrive(service, day)
+        with writing(made) as connection:
+            connection.execute(tables.work.delete())
+            connection.execute(tables.records.update().values(status="observed"))
+            own = tables.records.c.start_utc == began
+            number = connection.scalar(select(tables.records.c.record_id).where(own))
+            like = assets.found_version(connection, ASSET)
+            for year in range(years):
+                connection.execute(tables.modes.insert(), list(_modes(rng, like.model_hash, year)))
+    return str(number), years * 52_560 * len(LABELS)
+
+
+def _modes(rng: np.random.Generator, model_hash: str, year: int) -> Iterator[dict[str, Any]]:
+    """Yield the modes of a year's records, before the demonstration's days."""
+    same = {"asset": ASSET, "model_hash": model_hash, "model_version": 1, "status": "ok"}
+    first = datetime.combine(UNTIL, clock(), UTC) - timedelta(days=365 * (year + 3))
+    noise = rng.standard_normal((52_560, len(LABELS), 2))
+    for k in range(52_560):
+        at = {"record_id": f"{year:02d}{k:06d}", "time_utc": first + timedelta(minutes=10 * k)}
+        for (label, f), (x, y) in zip(LABELS.items(), noise[k], strict=True):
+            values = {"frequency_hz": f * (1.0 + 0.005 * x), "damping_ratio": 0.01 * math.exp(0.3 * y)}
+            yield {**same, **at, "label": label, **values, "frequency_std_hz": 0.005 * f}
+
+
+class Window:
+    """A page of the window in an empty browser, and what its process costs."""
+
+    def __init__(self, browser: Browser, url: str, wanted: str) -> None:
+        for old in browser.contexts:
+            old.close()
+        self.devtools = browser.new_browser_cdp_session()
+        self.page = browser.new_context(viewport={"width": 1440, "height": 900}).new_page()
+        before = time.perf_counter()
+        self.page.goto(url, wait_until="commit")
+        self.page.locator(wanted).first.wait_for(timeout=300_000)
+        self.opened_s, self.opened_cpu_s = time.perf_counter() - before, self.cpu_s()
+
+    def cpu_s(self) -> float:
+        """Return the CPU time of the page's process until now, its helping threads among it [s]."""
+        processes = self.devtools.send("SystemInfo.getProcessInfo")["processInfo"]
+        return sum(float(one["cpuTime"]) for one in processes if one["type"] == "renderer")
+
+    def frame_ms(self, keys: list[str], frames: int) -> float:
+        """Return the CPU time of a frame while all plots move together [ms]."""
+        before = self.cpu_s()
+        self.page.evaluate(MOVES, [frames, keys])
+        return 1e3 * (self.cpu_s() - before) / frames
+
+
+def live(window: Window, store: Path, seconds: int = 8) -> tuple[float, float]:
+    """Stream 24 channels of 50 Hz; return frames a second and the CPU time of a frame [ms]."""
+    frames = "Number(document.querySelector('canvas.lanes').dataset.frames)"
+    with opened(sqlite_url(store)) as made:
+        for second in range(30 + seconds):
+            now = datetime.now(UTC)
+            if second == 30:
+                drawn, cpu, at = window.page.evaluate(frames), window.cpu_s(), time.perf_counter()
+            t = time.time() + np.arange(50) / 50.0
+            packets = [Packet(ASSET, f"strain_{k:02d}", now, 50.0, np.sin((k + 1) * t)) for k in range(24)]
+            with writing(made) as connection:
+                streams.add_packets(connection, packets, now)
+            time.sleep(max(0.0, 1.0 - (datetime.now(UTC) - now).total_seconds()))
+    drawn = window.page.evaluate(frames) - drawn
+    return drawn / (time.perf_counter() - at), 1e3 * (window.cpu_s() - cpu) / drawn
+
+
+def main() -> None:
+    """Measure and write the page."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--years", type=int, default=10)
+    parser.add_argument("--frames", type=int, default=60)
+    given = parser.parse_args()
+    chromium = next(p for p in ("chromium", "chromium-browser", "google-chrome") if shutil.which(p))
+    scale = REFERENCE_S / eigenvalue_seconds()
+    rows: list[tuple[str, float, str, float]] = []
+
+    def tell(what: str, value: float, bar: str, scaled: float) -> None:
+        rows.append((what, value, bar, scaled))
+        print(rows[-1], file=sys.stderr, flush=True)
+
+    with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
+        store = Path(folder) / "store"
+        number, n = filled(store, given.years)
+        browser = playwright.chromium.launch(executable_path=shutil.which(chromium), args=["--no-sandbox"])
+        with Server(store, "--workers", "1") as server:
+            own = f"{server.url}/assets/{ASSET}"
+            for _ in range(2):  # what a server computes once, it has computed
+                first = Window(browser, own, ".figures dd")
+            tell("first useful paint of a turbine [s]", first.opened_s, "1", first.opened_cpu_s * scale)
+            for _ in range(2):
+                day = Window(browser, f"{own}/records/{number}", ".uplot canvas")
+            tell("a day's signal, three channels of 50 Hz [s]", day.opened_s, "1", day.opened_cpu_s * scale)
+            years = Window(browser, f"{own}/timeline", ".uplot canvas")
+            tell("all years of modes opened [s]", years.opened_s, "–", years.opened_cpu_s * scale)
+            expect(years.page.get_by_text("Bins of time")).to_be_visible()
+            for what, keys in (("panned", ["ArrowRight", "ArrowLeft"]), ("zoomed", ["+", "-"])):
+                took = years.frame_ms(keys, given.frames)
+                tell(f"a frame of all years {what} [ms]", took, "33", took * scale)
+            rate, took = live(Window(browser, f"{own}/live", "canvas.lanes"), store)
+            tell("24 live channels, frames a second", rate, "20 or more", 1e3 / (took * scale))
+            tell("a frame of 24 live channels [ms]", took, "50", took * scale)
+        browser.close()
+    write_page("window", page(rows, n, given, scale))
+
+
+Row = tuple[str, float, str, float]
+
+
+def page(rows: list[Row], n: int, given: argparse.Namespace, scale: float) -> list[str]:
+    """Return the lines of the page."""
+    return [
+        "# The window with much",
+        "",
+        f"`python qualify/window.py --years {given.years} --frames {given.frames}`: {n:,} rows of modes, and",
+        "a record of a day. Measured in Chromium without a graphics processor, beside other work; the last",
+        "column is the CPU time of the page's process (with its start; of frames a second, as many as one",
+        f"core could draw) times {scale:.2f}, to a machine whose 800×800 `eig` takes 0.47 s.",
+        "",
+        "| | measured | bar | by CPU, scaled |",
+        "|---|---|---|---|",
+        *[f"| {what} | {value:.3g} | {bar} | {scaled:.2g} |" for what, value, bar, scaled in rows],
+    ]
+
+
+if __name__ == "__main__":
+    main()
