@@ -141,7 +141,7 @@ FAULTS = (
     *_of("identification", rows=(
         ("deviations of SSI poles are 12 % too large", "return inside, outside + self.on_others @ ((others / near + turned) * weight[n:])", "return 1.12 * inside, 1.12 * (outside + self.on_others @ ((others / near + turned) * weight[n:]))"),
         ("fused modes are weighted by deviations, not variances", "weight = 1.0 / variances", "weight = 1.0 / np.sqrt(variances)"),
-        ("the periodogram is twice as large", "/ sample_rate_hz / np.sqrt(duration)", "/ sample_rate_hz / np.sqrt(0.5 * duration)"),
+        ("the periodogram is twice as large", "own /= sample_rate_hz * np.sqrt(duration * present.mean())", "own /= sample_rate_hz * np.sqrt(0.5 * duration * present.mean())"),
         ("MPC without square", "np.asarray(((s_xx - s_yy) ** 2 + 4.0 * s_xy**2) / (s_xx + s_yy) ** 2)", "np.asarray(((s_xx - s_yy) ** 2 + 2.0 * s_xy**2) / (s_xx + s_yy) ** 2)"),
         ("a decay's damping has the wrong sign", "omega * (-zeta + 1j * np.sqrt(1.0 - zeta**2))", "omega * (zeta + 1j * np.sqrt(1.0 - zeta**2))"),
         ("Student's factor is inverted", "wider = scipy.special.stdtrit(freedom, 0.975) / scipy.special.ndtri(0.975)", "wider = scipy.special.ndtri(0.975) / scipy.special.stdtrit(freedom, 0.975)"),
