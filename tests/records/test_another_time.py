@@ -38,6 +38,25 @@ def test_channels_that_hardly_stand_out_of_their_noise_are_not_accused(tower: Si
         assert alarms(replace(record, data=record.data + noise)) == []
 
 
+def test_a_nacelle_stands_at_any_angle_and_its_two_axes_see_all(tower: SimpleNamespace) -> None:
+    """Its y is not the tower's: weak crosswise motion of a symmetric tower is accused of nothing."""
+    record, other = tower.record(1), tower.record(2)
+    data = record.data.copy()
+    data[4:] *= 0.1
+    data += 0.02 * data[:4].std() * np.random.default_rng(3).standard_normal(data.shape)
+    c, s = np.cos(np.radians(40.0)), np.sin(np.radians(40.0))
+    data[[0, 4]] = np.array([[c, s], [-s, c]]) @ data[[0, 4]]
+    channels = list(record.channels)
+    for i in (0, 4):
+        channels[i] = replace(channels[i], frame="nacelle")
+    turned = replace(record, data=data, channels=tuple(channels))
+    assert alarms(turned) == []
+    data = data.copy()
+    data[[0, 4]] = other.data[[0, 4]]
+    found = alarms(replace(turned, data=data))
+    assert found == [("another_time", "acc_144_x, acc_144_y")]
+
+
 @pytest.mark.parametrize("rows", [[2], [0, 4], UPPER])
 def test_channels_of_another_day_are_named(rows: list[int], tower: SimpleNamespace) -> None:
     record, other = tower.record(1), tower.record(2)

@@ -8,6 +8,7 @@ them, unless they measure another direction.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy  # scipy.sparse is loaded where it is used
@@ -16,6 +17,9 @@ from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.records.clocks.channel_delays import connected
 from jackettwin.records.clocks.delays import BandLines, Phases, band_lines, long_delays
 from jackettwin.records.clocks.results import Strangers
+
+if TYPE_CHECKING:
+    from jackettwin.records.record import Channel
 
 MIN_COHERENCE_SUM = 75.0
 """Sum of ``long_delays`` above which two channels are coherent. That of independent channels exceeds a gamma
@@ -47,17 +51,30 @@ def spanning_pairs(seen: Phases) -> IntArray:
     )
 
 
-def comparable_channels(directions: Sequence[Sequence[float]], n: int) -> BoolArray:
+def channel_axes(channels: Sequence[Channel]) -> FloatArray:
+    """Return the directions of channels, (n, 5), zeros where unknown: x, y, z, and x, y of the nacelle.
+
+    The nacelle's horizontal axes are two of their own: at which angle they stand to the others is not known.
+
+    >>> from jackettwin.records.record import Channel
+    >>> channel_axes([Channel("a", direction=(0, 1, 0), frame="nacelle")]).tolist()
+    [[0.0, 0.0, 0.0, 0.0, 1.0]]
+    """
+    out = np.zeros((len(channels), 5))
+    for row, channel in zip(out, channels, strict=True):
+        x, y, row[2] = channel.direction
+        row[[3, 4] if channel.frame == "nacelle" else [0, 1]] = x, y
+    return out
+
+
+def comparable_channels(directions: FloatArray) -> BoolArray:
     """Return which channels must be coherent, (n, n): those not known to be perpendicular.
 
-    >>> comparable_channels([[1, 0, 0], [0, 1, 0], [0, 0, 0]], 3).astype(int).tolist()
+    >>> comparable_channels(np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]])).astype(int).tolist()
     [[1, 0, 1], [0, 1, 1], [1, 1, 1]]
     """
-    if not len(directions):
-        return np.ones((n, n), dtype=bool)
-    d = np.asarray(directions, dtype=float)
-    known = np.any(d != 0.0, axis=1)
-    return np.asarray((np.abs(d @ d.T) > MIN_PARALLEL_COSINE) | ~np.outer(known, known))
+    known = np.any(directions != 0.0, axis=1)
+    return np.asarray((np.abs(directions @ directions.T) > MIN_PARALLEL_COSINE) | ~np.outer(known, known))
 
 
 def strangers(
@@ -65,25 +82,22 @@ def strangers(
     sample_rate_hz: float,
     seen: Phases,
     tree: IntArray,
-    compared: BoolArray,
-    known: Sequence[bool],
+    directions: FloatArray,
     places: Sequence[object],
 ) -> tuple[Strangers, ...]:
     """Return channels that resemble the others but are not coherent with most of them.
 
     Where each shares its place with one of the others, or no place is known and they are not few, no two of
     them are stated to be parallel, and there are no more groups than directions in space, they may as well
-    measure across.
+    measure across. Channels along both horizontal axes of one frame see what those of another frame see.
 
     Parameters
     ----------
     y : (n_channels, n_samples)
     tree : (n_channels − 1, 2)
         Pairs that connect all channels.
-    compared : (n_channels, n_channels)
-        Which channels must be coherent.
-    known : (n_channels,) bool
-        Channels of which the direction is stated.
+    directions : (n_channels, 5)
+        From ``channel_axes``.
     places : (n_channels,)
         Place of each channel, None if unknown.
     """
@@ -96,7 +110,8 @@ def strangers(
     groups = sorted(
         _groups(looks, len(y), tree[common > MIN_COHERENCE_SUM]), key=lambda rows: (-len(rows), rows)
     )
-    alike, stated = _alike(seen), np.asarray(known, dtype=bool)
+    alike, stated = _alike(seen), np.asarray(directions.any(axis=1))
+    compared = comparable_channels(directions) | _between_frames(directions, groups)
     out: list[Strangers] = []
     for k, rows in enumerate(groups):
         larger = [i for group in groups[:k] for i in group]
@@ -124,6 +139,20 @@ def strangers(
         )
         out.append(Strangers(tuple(rows), turns, len(rows) < len(groups[0]), not blamed))
     return tuple(out)
+
+
+def _between_frames(directions: FloatArray, groups: Sequence[Sequence[int]]) -> BoolArray:
+    """Return which channels of fixed frame and nacelle must be coherent although their angle is unknown.
+
+    They must where groups of one frame alone measure along both of its horizontal axes.
+    """
+    fixed, turning = (np.asarray(directions[:, axes].any(axis=1)) for axes in ([0, 1], [3, 4]))
+    out = np.zeros((len(directions), len(directions)), dtype=bool)
+    for axes, own, others in (([0, 1], fixed, turning), ([3, 4], turning, fixed)):
+        alone = [i for rows in groups if not others[list(rows)].any() for i in rows if own[i]]
+        if np.linalg.matrix_rank(directions[np.ix_(alone, axes)]) == len(axes):
+            out |= np.outer(own, others) | np.outer(others, own)
+    return out
 
 
 def _record_and_halves(y: FloatArray, sample_rate_hz: float) -> list[BandLines | None]:

@@ -27,7 +27,12 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from jackettwin.arrays import IntArray
-from jackettwin.records.clocks.another_time import comparable_channels, spanning_pairs, strangers
+from jackettwin.records.clocks.another_time import (
+    channel_axes,
+    comparable_channels,
+    spanning_pairs,
+    strangers,
+)
 from jackettwin.records.clocks.channel_delays import (
     MIN_EXPLAINED_SHARE,
     REACH_RAD,
@@ -103,7 +108,7 @@ def clocks_of(record: Record, slow_free: FloatArray) -> LoggerClocks:
         record.sample_rate_hz,
         velocity=[record.channels[i].quantity == "velocity" for i in rows],
         places=[record.channels[i].node or record.channels[i].height_m for i in rows],
-        directions=[record.channels[i].direction for i in rows],
+        directions=channel_axes([record.channels[i] for i in rows]),
     )
     return found.of_rows(rows)
 
@@ -114,7 +119,7 @@ def logger_clocks(
     *,
     velocity: Sequence[bool],
     places: Sequence[object],
-    directions: Sequence[Sequence[float]] = (),
+    directions: FloatArray,
     losses: int = 2,
 ) -> LoggerClocks:
     """Return channels that are late, jump or drift relative to the others, or are of another time.
@@ -127,8 +132,8 @@ def logger_clocks(
         Channels a quarter of a period off, such as velocities.
     places : (n_channels,)
         Place of each channel, None if unknown.
-    directions : (n_channels, 3), optional
-        Direction of each channel; zeros if unknown.
+    directions : (n_channels, 5)
+        From ``channel_axes``.
     losses : int
         Most losses of time that are corrected.
     """
@@ -140,10 +145,9 @@ def logger_clocks(
     if first_look is None:
         return whole
     tree = spanning_pairs(first_look)
-    compared = comparable_channels(directions, len(y))
+    compared = comparable_channels(directions)
     again = partial(logger_clocks, sample_rate_hz=sample_rate_hz)
-    known = np.any(np.asarray(directions, dtype=float), axis=1) if len(directions) else np.zeros(len(y), bool)
-    found_apart = strangers(y, sample_rate_hz, first_look, tree, compared, known.tolist(), places)
+    found_apart = strangers(y, sample_rate_hz, first_look, tree, directions, places)
     apart = tuple(one for one in found_apart if not one.perhaps_across)
     if apart:
         return _without_strangers(y, apart, again, velocity, places, directions)
@@ -200,7 +204,7 @@ def _without_strangers(
     again: Callable[..., LoggerClocks],
     velocity: Sequence[bool],
     places: Sequence[object],
-    directions: Sequence[Sequence[float]],
+    directions: FloatArray,
 ) -> LoggerClocks:
     """Repeat the judgement with reversed channels turned and those of another time left out."""
     turned = [i for one in apart if one.backwards for i in one.rows]
@@ -212,7 +216,7 @@ def _without_strangers(
         y[rows],
         velocity=[velocity[i] for i in rows],
         places=[places[i] for i in rows],
-        directions=[directions[i] for i in rows] if len(directions) else (),
+        directions=directions[rows],
     ).of_rows(rows)
     return replace(found, strangers=(*apart, *found.strangers))
 
