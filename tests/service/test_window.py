@@ -10,6 +10,7 @@ import time
 from collections.abc import Iterator
 from datetime import timedelta
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import httpx
 import numpy as np
@@ -508,7 +509,10 @@ def test_whatever_strangers_wrote_is_text(opened: Open) -> None:
     def answer(route: Route) -> None:
         found = route.fetch()
         if "application/json" in found.headers.get("content-type", ""):
-            return route.fulfill(response=found, json=poisoned(found.json()))
+            told = found.json()
+            if urlsplit(route.request.url).path.endswith("/alarms") and not told["items"]:
+                told["items"] = [EXAMPLES["AlarmOut"]]  # whether there are any depends on the tests before
+            return route.fulfill(response=found, json=poisoned(told))
         return route.fulfill(response=found)
 
     page = opened.page("/docs?find=alarms")
