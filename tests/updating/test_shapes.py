@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -54,6 +55,21 @@ def test_the_residual_is_the_mac_of_the_full_model(problem: Problem, model: Supp
     for i, shape in enumerate(problem.states[0].shapes):
         expected = (1.0 - float(mac(shape.shape, H @ exact.shapes[:, i]))) / shape.std
         assert r[3 + i] == pytest.approx(expected, abs=0.02)  # 2e-4 of the MAC
+
+
+def test_of_a_double_pole_any_shape_of_its_plane_counts(problem: Problem, rng: np.random.Generator) -> None:
+    """The solver's two shapes of a symmetric jacket's pair stand at any angle to the measured ones."""
+    (state,) = problem.states
+    first = state.shapes[0]
+    n = first.at_sensors.shape[1]
+    x = rng.normal(size=(3, n)) + 1j * rng.normal(size=(3, n))
+    turned = replace(first, shape=first.at_sensors @ (0.6 * x[0] - 0.8j * x[1]))
+    state = replace(state, shapes=(turned,))
+    poles = np.array([[-0.01 + 1.0j, -0.01 + 1.0j, -0.02 + 3.0j], [-0.01 + 1.0j, -0.01 + 1.1j, -0.02 + 3.0j]])
+    modes = SimpleNamespace(poles=poles, shapes=np.stack([x, x]))
+    of_double, of_two = state.values(np.zeros((2, state.errors.shape[1])), modes, ())[:, -1]  # type: ignore[arg-type]
+    assert of_double == pytest.approx(0.0, abs=1e-9)
+    assert of_two > 10.0
 
 
 def test_gradients_are_differences(problem: Problem) -> None:

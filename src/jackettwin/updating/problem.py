@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from jackettwin.arrays import BoolArray, FloatArray
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.response import NumberedModes, Relaxation
 from jackettwin.soil import Parameter
 from jackettwin.updating.data.relaxations import RelaxationTarget
@@ -26,6 +26,8 @@ from jackettwin.updating.prior import Prior
 
 NEVER = -1e30
 """Log-likelihood where a target mode does not exist."""
+DOUBLE = 1e-6
+"""Relative distance of two poles below which they are one double pole, with any shapes in their plane."""
 _LOST = 10.0
 """Residual of a mode that is lost, larger than that of any mode that is found."""
 
@@ -79,18 +81,36 @@ class State:
 
     def values(self, z: FloatArray, modes: NumberedModes, relaxed: tuple[Relaxation, ...]) -> FloatArray:
         """Return the residuals (n, n_data) of points z (n, d) whose modes are known."""
-        of = self.residuals.modes.index
-        columns = [shape.values(modes.shapes[:, of(shape.mode)]) for shape in self.shapes]
+        columns = [
+            shape.values((self._weights(shape, modes)[:, None] @ modes.shapes)[:, 0]) for shape in self.shapes
+        ]
         columns += [r.values(found.rate) for r, found in zip(self.relaxations, relaxed, strict=True)]
         poles = self.residuals.values(modes.poles, shift=z @ self.errors.T)
         return np.concatenate([poles, *(column[:, None] for column in columns)], axis=1)
+
+    def _weights(self, shape: ShapeTarget, modes: NumberedModes) -> ComplexArray:
+        """Return weights (n, n_modes) on the modes' shapes: one on its own, or on both of an exact double.
+
+        The solver returns any two shapes of the plane of such a pair; the one most like the measured counts.
+        """
+        i, poles = self.residuals.modes.index(shape.mode), modes.poles
+        weights = np.zeros(poles.shape, dtype=np.complex128)
+        weights[:, i] = 1.0
+        double = np.abs(poles - poles[:, [i]]) < DOUBLE * np.abs(poles[:, [i]])
+        for j in np.flatnonzero(double.any(axis=0)):
+            if j != i:
+                pair = np.ix_(np.flatnonzero(double[:, j]), np.array([i, j]))
+                weights[pair] = shape.nearest(modes.shapes[pair])
+        return weights
 
     def jacobian(self, modes: NumberedModes, relaxed: tuple[Relaxation, ...]) -> FloatArray:
         """Return the derivatives (n_data, d) of the residuals at the first of the points."""
         own = [self.residuals.jacobian(modes.poles[0], modes.slopes[0])]
         for shape in self.shapes:
-            i = self.residuals.modes.index(shape.mode)
-            own.append(shape.jacobian(modes.shapes[0, i], modes.shape_slopes[0, i])[None])
+            # to first order the weights do not matter where they fit best
+            weights = self._weights(shape, modes)[0]
+            slopes = np.tensordot(weights, modes.shape_slopes[0], axes=1)
+            own.append(shape.jacobian(weights @ modes.shapes[0], slopes)[None])
         own += [r.jacobian(found)[None] for r, found in zip(self.relaxations, relaxed, strict=True)]
         rows = np.concatenate(own) @ self.weights
         rows[: self.residuals.count] += self.residuals.shift_jacobian(self.errors)

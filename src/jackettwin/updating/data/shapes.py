@@ -81,6 +81,11 @@ class ShapeTarget:
         """−log of the normal density at zero."""
         return log(sqrt(2.0 * pi) * self.std)
 
+    def nearest(self, planes: ComplexArray) -> ComplexArray:
+        """Return weights (n_sets, 2) on two shapes (n_sets, 2, n), together most like the measured one."""
+        motion = np.swapaxes(planes @ self.at_sensors.T, 1, 2)
+        return np.asarray(np.linalg.pinv(motion) @ self.shape)
+
     def values(self, x: ComplexArray) -> FloatArray:
         """Return the residuals (n_sets,) of shapes x (n_sets, n)."""
         return self._parts(x)[0]
