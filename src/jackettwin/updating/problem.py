@@ -81,36 +81,34 @@ class State:
 
     def values(self, z: FloatArray, modes: NumberedModes, relaxed: tuple[Relaxation, ...]) -> FloatArray:
         """Return the residuals (n, n_data) of points z (n, d) whose modes are known."""
-        columns = [
-            shape.values((self._weights(shape, modes)[:, None] @ modes.shapes)[:, 0]) for shape in self.shapes
-        ]
+        columns = [shape.values(self._of_mode(shape, modes, modes.shapes)) for shape in self.shapes]
         columns += [r.values(found.rate) for r, found in zip(self.relaxations, relaxed, strict=True)]
         poles = self.residuals.values(modes.poles, shift=z @ self.errors.T)
         return np.concatenate([poles, *(column[:, None] for column in columns)], axis=1)
 
-    def _weights(self, shape: ShapeTarget, modes: NumberedModes) -> ComplexArray:
-        """Return weights (n, n_modes) on the modes' shapes: one on its own, or on both of an exact double.
+    def _of_mode(self, shape: ShapeTarget, modes: NumberedModes, of: ComplexArray) -> ComplexArray:
+        """Return what belongs to a shape's mode (n, …) of all modes' (n, n_modes, …): shapes or their slopes.
 
-        The solver returns any two shapes of the plane of such a pair; the one most like the measured counts.
+        The solver returns any two shapes of the plane of an exactly double mode; the one most like the
+        measured counts. To first order its weights do not matter, as they fit best.
         """
         i, poles = self.residuals.modes.index(shape.mode), modes.poles
-        weights = np.zeros(poles.shape, dtype=np.complex128)
-        weights[:, i] = 1.0
+        own = of[:, i]
         double = np.abs(poles - poles[:, [i]]) < DOUBLE * np.abs(poles[:, [i]])
         for j in np.flatnonzero(double.any(axis=0)):
             if j != i:
-                pair = np.ix_(np.flatnonzero(double[:, j]), np.array([i, j]))
-                weights[pair] = shape.nearest(modes.shapes[pair])
-        return weights
+                at = np.flatnonzero(double[:, j])
+                pair = np.ix_(at, np.array([i, j]))
+                own = own.copy()
+                own[at] = np.einsum("kp,kp...->k...", shape.nearest(modes.shapes[pair]), of[pair])
+        return own
 
     def jacobian(self, modes: NumberedModes, relaxed: tuple[Relaxation, ...]) -> FloatArray:
         """Return the derivatives (n_data, d) of the residuals at the first of the points."""
         own = [self.residuals.jacobian(modes.poles[0], modes.slopes[0])]
         for shape in self.shapes:
-            # to first order the weights do not matter where they fit best
-            weights = self._weights(shape, modes)[0]
-            slopes = np.tensordot(weights, modes.shape_slopes[0], axes=1)
-            own.append(shape.jacobian(weights @ modes.shapes[0], slopes)[None])
+            x, slopes = (self._of_mode(shape, modes, of)[0] for of in (modes.shapes, modes.shape_slopes))
+            own.append(shape.jacobian(x, slopes)[None])
         own += [r.jacobian(found)[None] for r, found in zip(self.relaxations, relaxed, strict=True)]
         rows = np.concatenate(own) @ self.weights
         rows[: self.residuals.count] += self.residuals.shift_jacobian(self.errors)

@@ -351,21 +351,23 @@ def _in_noise(g: FloatArray, noise: FloatArray) -> tuple[FloatArray, FloatArray]
     freedom = max(2.0 * weight.sum() ** 2 / np.sum(weight**2) * n / size, 3.0)
     # the residual has one fewer: the fit removed the component along g
     variance *= freedom / (freedom - 1.0)
-    power = np.mean(noise**2, axis=1)
-    std = np.sqrt(np.maximum(variance, power * (g @ g)) * _concentration(g, noise, lines)) + 1e-300
+    power = noise**2
+    white = np.mean(power, axis=1) * (g @ g)
+    std = np.sqrt(np.maximum(variance, white) * _concentration(g, power, lines)) + 1e-300
     return std, np.full(len(noise), freedom - 1.0)
 
 
-def _concentration(g: FloatArray, noise: FloatArray, lines: FloatArray) -> FloatArray:
+def _concentration(g: FloatArray, power: FloatArray, lines: FloatArray) -> FloatArray:
     """Return the power of noise while g lasts over its mean where chance does not explain it, else 1.
 
     Parameters
     ----------
+    power : (n_channels, n_samples)
     lines : (n_channels, n_lines)
         The noise's spectrum: the narrower, the fewer independent samples g spans.
     """
     weight = g**2 / (g @ g)
-    ratio = (noise**2 @ weight) / (np.mean(noise**2, axis=1) + 1e-300)
+    ratio = (power @ weight) / (np.mean(power, axis=1) + 1e-300)
     independent = np.mean(lines, axis=1) ** 2 / (np.mean(lines**2, axis=1) + 1e-300) / (weight @ weight)
     freedom = np.maximum(2.0 * independent, 1.0)
     by_chance = scipy.special.chdtri(freedom, NOT_BY_CHANCE) / freedom

@@ -62,10 +62,24 @@ class ShapeTarget:
         shape: ComplexArray,
         std: float,
     ) -> Self:
-        """Return the target of a shape measured by sensors on the model's structure."""
+        """Return the target of a shape measured by sensors on the model's structure.
+
+        Raises
+        ------
+        InputError
+            If a profile is asked for and no two places have sensors that measure the same.
+        """
+        sensors, shape = cls._compared(sensors, shape)
         expansion = model.condensed.expansion(2j * pi * frequency_hz)
         at_sensors = np.asarray(observation_matrix(model.assembly, sensors) @ expansion)
         return cls(mode, at_sensors, shape, std, frequency_hz, sensors)
+
+    @staticmethod
+    def _compared(
+        sensors: tuple[Sensor, ...], shape: ComplexArray
+    ) -> tuple[tuple[Sensor, ...], ComplexArray]:
+        """Return the sensors of which the datum is made, and what they measured."""
+        return sensors, shape
 
     def on(self, model: SupportModel) -> Self:
         """Return the target on the coordinates of another model."""
@@ -120,26 +134,13 @@ class ProfileTarget(ShapeTarget):
         Standard deviation of that share.
     """
 
-    @classmethod
-    def seen(
-        cls,
-        model: SupportModel,
-        mode: int,
-        frequency_hz: float,
-        sensors: tuple[Sensor, ...],
-        shape: ComplexArray,
-        std: float,
-    ) -> Self:
-        """Return the target of a shape measured by sensors on the model's structure.
-
-        Raises
-        ------
-        InputError
-            If no two places have sensors that measure the same.
-        """
+    @staticmethod
+    def _compared(
+        sensors: tuple[Sensor, ...], shape: ComplexArray
+    ) -> tuple[tuple[Sensor, ...], ComplexArray]:
+        """Return the sensors of the two places, and what they measured."""
         pairs = _most_and_least(sensors, shape)
-        chosen = tuple(sensors[i] for i in pairs)
-        return super().seen(model, mode, frequency_hz, chosen, np.asarray(shape)[pairs], std)
+        return tuple(sensors[i] for i in pairs), np.asarray(shape)[pairs]
 
     @property
     def name(self) -> str:
