@@ -3,6 +3,7 @@
 import fatpack
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 from jackettwin.errors import InputError
 from jackettwin.fatigue import Counter, count, equivalent_range
@@ -97,3 +98,17 @@ def test_closed_cycles_are_given_once(rng: np.random.Generator) -> None:
         taken.append(counter.closed())
     assert counter.closed().size == 0
     np.testing.assert_array_equal(np.concatenate(taken), count(x).full)
+
+
+def test_a_whole_series_is_counted_as_its_pieces_are() -> None:
+    """The loop alone, which :func:`count` takes, and the detector: plateaus, single precision, any length."""
+    rng = np.random.default_rng(3)
+    for n in (1, 2, 3, 4, 9, 500):
+        for series in (rng.standard_normal(n), np.round(rng.standard_normal(n)), np.ones(n)):
+            pieces = Counter()
+            pieces.add(series)
+            once, found = pieces.ended(), count(series)
+            assert_array_equal(found.full, once.full)
+            assert_array_equal(found.half, once.half)
+            short = count(series.astype(np.float32))
+            assert_allclose(short.ranges, found.ranges, rtol=1e-6, atol=1e-6)

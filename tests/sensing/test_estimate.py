@@ -77,7 +77,7 @@ def drawn(model: MotionModel, seed: int) -> tuple[np.ndarray, SensorReadings]:
 
 @pytest.fixture(scope="module")
 def truth(model: MotionModel) -> tuple[np.ndarray, SensorReadings]:
-    return drawn(model, 1)
+    return drawn(model, 2)
 
 
 @pytest.fixture(scope="module")

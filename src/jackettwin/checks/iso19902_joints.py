@@ -6,6 +6,7 @@ Symbols and equation numbers are the standard's: chord D, T, brace d, t at an an
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -210,7 +211,9 @@ def joint_use(
     return JointUse(U, Q_u, Q_f)
 
 
-def load_path(axial: FloatArray, theta: FloatArray, across: FloatArray) -> FloatArray:
+def load_path(
+    axial: FloatArray, theta: FloatArray, across: FloatArray, of: Sequence[int] | None = None
+) -> FloatArray:
     """Return how much of every brace's force is a K, Y and X joint's, (3, n_braces, n), by 14.2.4.
 
     In each plane what pulls and what pushes on one side of the chord balances: K. Of what is left, what meets
@@ -221,12 +224,14 @@ def load_path(axial: FloatArray, theta: FloatArray, across: FloatArray) -> Float
     axial : (n_braces, n) tension positive [N]
     theta : (n_braces,) [rad]
     across : (n_braces, 3) unit vectors from the chord, normal to it
+    of : braces whose shares are returned; all of them without it
     """
     normal = axial * np.sin(theta)[:, None]
     cosines = across @ across.T
     beside, opposite = cosines > IN_PLANE, cosines < -IN_PLANE
-    shares = np.zeros((3, *axial.shape))
-    for i in range(len(axial)):
+    asked = range(len(axial)) if of is None else of
+    shares = np.zeros((3, len(asked), axial.shape[1]))
+    for at, i in enumerate(asked):
         pull, push = _both(normal[beside[i]])
         left = np.abs(pull - push)
         own = np.where(normal[i] >= 0.0, pull, push)
@@ -236,7 +241,7 @@ def load_path(axial: FloatArray, theta: FloatArray, across: FloatArray) -> Float
         other_pull, other_push = _both(normal[opposite[i]])
         like = np.where(normal[i] >= 0.0, other_pull - other_push, other_push - other_pull)
         through = free * np.minimum(np.maximum(like, 0.0) / np.maximum(left, 1e-300), 1.0)
-        shares[:, i] = 1.0 - free, free - through, through
+        shares[:, at] = 1.0 - free, free - through, through
     return shares
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -226,9 +227,14 @@ def brace_forces(
     )
 
 
-def joint_shares(plan: JointPlan, axial: FloatArray) -> FloatArray:
-    """Return how much of the braces' axial forces (n_braces, n_cases) [N] is a K, Y and X joint's."""
-    return load_path(axial, np.array([joint.theta for joint in plan.joints]), plan.across)
+def joint_shares(plan: JointPlan, axial: FloatArray, of: Sequence[int] | None = None) -> FloatArray:
+    """Return how much of the axial forces (n_braces, n_cases) [N] of braces is a K, Y and X joint's.
+
+    Parameters
+    ----------
+    of : braces whose shares are returned; all of them without it
+    """
+    return load_path(axial, np.array([joint.theta for joint in plan.joints]), plan.across, of)
 
 
 def _brace_forces(

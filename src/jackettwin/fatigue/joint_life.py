@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jackettwin.arrays import FloatArray
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.checks import IN_PLANE, JointPlan, brace_forces, joint_shares
 from jackettwin.fatigue.efthymiou import (
     BraceTube,
@@ -88,14 +88,33 @@ class JointStresses:
         ----------
         braces : those whose stresses are returned; all of the joint's without it
         """
+        of = range(len(self.welds)) if braces is None else braces
+        parts = self.parts(nominal[:, 0], nominal[list(of)], of)
+        return np.array([self.weld_stress(i, own) for i, own in zip(of, parts, strict=True)])
+
+    def parts(self, axial: FloatArray, nominal: FloatArray, of: Sequence[int]) -> FloatArray:
+        """Return K's, Y's and X's parts of the nominal stresses of some braces, (n, 9, n_cases).
+
+        Parameters
+        ----------
+        axial : (n_braces, n_cases) axial stress of all braces
+        nominal : (n, 3, n_cases) of those that are asked
+        """
         area = np.array([weld.per_force[0] for weld in self.welds])
-        shares = joint_shares(self.plan, nominal[:, 0] / area[:, None])
-        found = []
-        for i in range(len(self.welds)) if braces is None else braces:
-            weld, parts = self.welds[i], (shares[:, i, None] * nominal[i]).reshape(9, -1)
-            by_part = weld.matrices.transpose(1, 2, 0, 3).reshape(16, 9)
-            found.append((by_part @ parts).reshape(2, 8, -1))
-        return np.array(found)
+        shares = joint_shares(self.plan, axial / area[:, None], of).astype(nominal.dtype)
+        return np.asarray((shares.swapaxes(0, 1)[:, :, None] * nominal[:, None]).reshape(len(of), 9, -1))
+
+    def weld_stress(
+        self, brace: int, parts: FloatArray, side: int | None = None, points: IntArray | None = None
+    ) -> FloatArray:
+        """Return stresses (2 sides, 8 points, n) [Pa] of a weld, or of points of a side (n_points, n).
+
+        Parameters
+        ----------
+        parts : (9, n) of :meth:`parts`
+        """
+        by_part = self.welds[brace].matrices.transpose(1, 2, 0, 3).reshape(2, 8, 9)
+        return np.asarray((by_part if side is None else by_part[side, points]).astype(parts.dtype) @ parts)
 
 
 def joint_stresses(

@@ -9,7 +9,7 @@ import numpy as np
 import scipy.linalg as la
 
 from jackettwin.arrays import FloatArray
-from jackettwin.response import System
+from jackettwin.response import System, UndampedModes
 from jackettwin.sensing.latent_forces import wind_forces
 from jackettwin.sensing.levels import Levels, find_levels
 from jackettwin.sensing.motion_model import MotionModel, motion_model
@@ -77,8 +77,8 @@ class MotionEstimate:
         mean = self.mean() if mean is None else mean
         rng, s, T = np.random.default_rng(seed), self.smoother, self.to_coordinates
         for _ in range(number):
-            states, y = s.draw(len(mean), rng)
-            yield mean + states @ T.T - s.smooth(y, rows=T)[0]
+            drawn, y = s.draw(len(mean), rng, T)
+            yield mean + drawn - s.smooth(y, rows=T)[0]
 
 
 def estimate_motion(system: System, readings: SensorReadings, weather: Weather) -> MotionEstimate:
@@ -99,9 +99,11 @@ def sensed_model(system: System, weather: Weather) -> MotionModel:
     return _model_in(system, weather, SeaOnMembers.of(system.assembly, weather))
 
 
-def _model_in(system: System, weather: Weather, sea: SeaOnMembers) -> MotionModel:
+def _model_in(
+    system: System, weather: Weather, sea: SeaOnMembers, near: UndampedModes | None = None
+) -> MotionModel:
     forces = (*wind_forces(system.assembly, wind_m_s=weather.wind_m_s), *sea.forces())
-    model = motion_model(system, forces, below_hz=BAND_HZ, drag=sea.damping())
+    model = motion_model(system, forces, below_hz=BAND_HZ, drag=sea.damping(), near=near)
     return _pushed(_damped(model, weather), weather)
 
 
@@ -135,6 +137,7 @@ def likely_motions(
     weather: Weather,
     *,
     damped: Callable[[MotionModel], MotionModel] = lambda model: model,
+    near: UndampedModes | None = None,
     seed: int = 0,
 ) -> tuple[MotionEstimate, ...]:
     """Return the motion of each of some structures that are as likely as the first.
@@ -145,15 +148,24 @@ def likely_motions(
     Parameters
     ----------
     damped : what is known besides of the damping of a model's modes
+    near : modes of a structure similar to the first
     """
     first, *others = systems
     sea = SeaOnMembers.of(first.assembly, weather)
-    estimate = moved(_pushed(damped(_model_in(first, weather, sea)), weather), readings, draws=len(others))
+    estimate = moved(
+        _pushed(damped(_model_in(first, weather, sea, near)), weather), readings, draws=len(others)
+    )
     found, drag = [estimate], sea.damping()
     rng, away = np.random.default_rng(seed), np.zeros(3)
     for k, (system, forces) in enumerate(zip(others, estimate.levels.others, strict=True)):
         away = rng.standard_normal(3) if k % 2 == 0 else -away
-        model = motion_model(system, forces, below_hz=BAND_HZ, drag=np.exp(_DRAG_LOG_STD * away[0]) * drag)
+        model = motion_model(
+            system,
+            forces,
+            below_hz=BAND_HZ,
+            drag=np.exp(_DRAG_LOG_STD * away[0]) * drag,
+            near=estimate.model.computed,
+        )
         model = model.with_damping_beyond(_FIRST, float(np.exp(_DAMPING_LOG_STD * away[1])))
         model = damped(_damped(model, weather, away[2]))
         found.append(under(model, readings, estimate.levels))

@@ -6,7 +6,7 @@ disc averages them, so that its force falls with f⁻⁴ above U/D, and not its 
 their peak that is nothing at rest and falls with f⁻⁶, as short waves do not reach down:
 
 .. math:: S_{gust}(ω) = \frac{2a}{a^2 + ω^2}, \qquad
-          S_{wave}(ω) ∝ \frac{ω^2}{(ω_p^2 - ω^2)^2 + (2ζω_pω)^2} \, \frac{1}{(b^2 + ω^2)^2}
+          S_{wave}(ω) ∝ \frac{ω^2}{(ω_p^2 - ω^2)^2 + (2ζω_pω)^2} \, \frac{1}{(b^2 + ω^2)(c^2 + ω^2)}
 
 (two-sided, :math:`∫ S\,dω/2π = 1`; Särkkä & Solin 2019, sections 12.3 and 12.5). Both are states of linear
 equations driven by white noise.
@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import pi, sqrt
+from math import pi, prod, sqrt
 from typing import Literal
 
 import numpy as np
@@ -31,9 +31,16 @@ _INTEGRAL_SCALE_M = 340.2
 _USUAL_WIND_M_S = 10.0
 _BAND = 0.25
 """Damping ratio that makes a band as wide as a wind sea's."""
-_TAIL = 1.5
-"""Beyond which multiple of its peak a sea's band falls twice as fast."""
-_PASSED = _TAIL**3 * (_TAIL + _BAND) / (_TAIL**2 + 2.0 * _BAND * _TAIL + 1.0) ** 2
+_TAIL = (1.5 / 1.05, 1.5 * 1.05)
+"""Beyond which multiples of its peak a sea's band falls faster: apart, so that each decays for itself."""
+_PASSED = (
+    prod(b**2 for b in _TAIL)
+    / (_TAIL[1] ** 2 - _TAIL[0] ** 2)
+    * (
+        1.0 / (_TAIL[0] ** 2 + 2.0 * _BAND * _TAIL[0] + 1.0)
+        - 1.0 / (_TAIL[1] ** 2 + 2.0 * _BAND * _TAIL[1] + 1.0)
+    )
+)
 """Share of a band's variance that its tail leaves."""
 _SPACING_M = 4.0
 _DISC_CORNER, _DISC = 0.62, 12.0
@@ -102,10 +109,10 @@ class LatentForce:
             b = _DISC * a
             through = np.array([0.0, self.level * sqrt((a + b) / b)])
             return np.array([[-a, 0.0], [b, -b]]), np.diag([2.0 * a, 0.0]), through
-        b = _TAIL * a
+        b, c = _TAIL[0] * a, _TAIL[1] * a
         A = np.zeros((4, 4))
         A[0, 1], A[1, :2] = a, (-a, -2.0 * _BAND * a)
-        A[2, 1:3], A[3, 2:4] = (b, -b), (b, -b)
+        A[2, 1:3], A[3, 2:4] = (b, -b), (c, -c)
         return (
             A,
             np.diag([0.0, 4.0 * _BAND * a, 0.0, 0.0]),
@@ -123,7 +130,8 @@ class LatentForce:
         x = omega / a
         width = 2.0 * _BAND
         band = 2.0 * width * x**2 / ((1.0 - x**2) ** 2 + (width * x) ** 2) / a
-        return np.asarray(square / _PASSED * band * (_TAIL**2 / (_TAIL**2 + x**2)) ** 2)
+        passed = [b**2 / (b**2 + x**2) for b in _TAIL]
+        return np.asarray(square / _PASSED * band * passed[0] * passed[1])
 
     def with_level(self, level: float, rate: float | None = None) -> LatentForce:
         """Return the force at another level, and another corner or peak."""

@@ -12,7 +12,7 @@ a frequency, :math:`h_j^H S^{-1} h_j - |h_j^H S^{-1} y|^2`, and Fisher's informa
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import exp, log
 
 import numpy as np
@@ -110,6 +110,7 @@ class _Evidence:
     members : (n_groups, n_channels) 1 where a channel is of a group
     start, std : (n,) what is known of z beforehand
     prior : (n, n) from what z exceeds ``start`` to its parts that are known apart, in their deviations
+    last : what was computed last
     """
 
     Y: ComplexArray
@@ -123,6 +124,9 @@ class _Evidence:
     start: FloatArray
     std: FloatArray
     prior: FloatArray
+    last: dict[bytes, tuple[FloatArray, FloatArray, FloatArray, _Whittle]] = field(
+        default_factory=dict, init=False
+    )
 
     @classmethod
     def of(
@@ -206,8 +210,7 @@ class _Evidence:
 
     def cost(self, z: FloatArray) -> tuple[float, FloatArray]:
         """Return −ln of likelihood and prior, and its gradient."""
-        S_f, (white, r) = self.densities(z), self.noise(z)
-        value, slope, *_ = _whittle(self.Y, self.H, S_f, r)
+        S_f, white, r, (value, slope, *_) = self._seen_at(z)
         k = len(self.unit)
         of_rates = (slope[:, :k] * self._with_rate(z, S_f)).sum(axis=0)
         gradient = [
@@ -220,8 +223,7 @@ class _Evidence:
 
     def information(self, z: FloatArray) -> FloatArray:
         """Return Fisher's information of likelihood and prior, (n, n): the curvature that is expected."""
-        S_f, (white, r) = self.densities(z), self.noise(z)
-        _, _, h, seen, inverse = _whittle(self.Y, self.H, S_f, r)
+        S_f, white, r, (_, _, h, seen, inverse) = self._seen_at(z)
         # |c_i^H S⁻¹ c_j|² of columns c: those of forces, and unit vectors of noise
         forces, between, noise = (
             np.square(c.real) + np.square(c.imag) for c in (h.conj().transpose(0, 2, 1) @ seen, seen, inverse)
@@ -238,6 +240,18 @@ class _Evidence:
         )
         LL, LR, LN, RR, RN, NN = blocks
         return np.block([[LL, LR, LN], [LR.T, RR, RN], [LN.T, RN.T, NN]]) + self.prior.T @ self.prior
+
+    def _seen_at(self, z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, _Whittle]:
+        """Return densities of forces, of white noise and of all noise, and what they make of the record.
+
+        The last point is kept, as its cost and its curvature are asked one after the other.
+        """
+        key = z.tobytes()
+        if key not in self.last:
+            S_f, (white, r) = self.densities(z), self.noise(z)
+            self.last.clear()
+            self.last[key] = S_f, white, r, _whittle(self.Y, self.H, S_f, r)
+        return self.last[key]
 
     def _with_rate(self, z: FloatArray, S_f: FloatArray) -> FloatArray:
         """Return how ln of densities grows with ln of their rates, (n_frequencies, n_forces)."""
@@ -282,9 +296,10 @@ def _apart(forces: tuple[LatentForce, ...], std: FloatArray) -> FloatArray:
     return rows
 
 
-def _whittle(
-    Y: ComplexArray, H: ComplexArray, S_f: FloatArray, r: FloatArray
-) -> tuple[float, FloatArray, ComplexArray, ComplexArray, ComplexArray]:
+_Whittle = tuple[float, FloatArray, ComplexArray, ComplexArray, ComplexArray]
+
+
+def _whittle(Y: ComplexArray, H: ComplexArray, S_f: FloatArray, r: FloatArray) -> _Whittle:
     """Return −ln L, its slope, and in the noise's own scale h, S⁻¹h and S⁻¹.
 
     The slope (n, n_forces + m) is by the logarithms of the densities of forces S_f (n_forces, n) and of

@@ -18,7 +18,7 @@ import scipy.sparse as sp
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import require
-from jackettwin.response import System, static_displacement, undamped_modes
+from jackettwin.response import System, UndampedModes, static_displacement, undamped_modes
 from jackettwin.sensing.latent_forces import LatentForce
 from jackettwin.structure import Assembly
 
@@ -37,6 +37,7 @@ class MotionModel:
     damping : (n_modes, n_modes) [rad/s]
     forces : tuple of LatentForce
     flexibility : (n_dof, n_forces) displacement per unit of each force beyond the modes
+    computed : all modes that were computed, from which those of a similar structure are found soon
     """
 
     assembly: Assembly
@@ -45,6 +46,7 @@ class MotionModel:
     damping: FloatArray
     forces: tuple[LatentForce, ...]
     flexibility: FloatArray
+    computed: UndampedModes
 
     @property
     def n_modes(self) -> int:
@@ -162,20 +164,27 @@ class MotionModel:
 
 
 def motion_model(
-    system: System, forces: tuple[LatentForce, ...], *, below_hz: float, drag: sp.csr_array | None = None
+    system: System,
+    forces: tuple[LatentForce, ...],
+    *,
+    below_hz: float,
+    drag: sp.csr_array | None = None,
+    near: UndampedModes | None = None,
 ) -> MotionModel:
     """Return the modes of a supported structure below a frequency, and what forces do to it.
 
     Parameters
     ----------
     drag : (n_dof, n_dof) damping of the water besides that of supports and steel
+    near : modes of a similar structure
 
     Raises
     ------
     InputError
         If no mode lies below the frequency, or the structure cannot stand.
     """
-    modes, number = undamped_modes(system, _FIRST_GUESS), _FIRST_GUESS
+    number = _FIRST_GUESS if near is None else near.omega.size
+    modes = undamped_modes(system, number, near=near)
     while modes.frequency_hz[-1] < below_hz and modes.omega.size == number < system.free.size:
         number *= 2
         modes = undamped_modes(system, number)
@@ -193,7 +202,7 @@ def motion_model(
     damping = _damping(system, omega, shapes)
     if drag is not None:
         damping = damping + shapes.T @ (drag @ shapes)
-    return MotionModel(system.assembly, omega, shapes, damping, forces, flexibility)
+    return MotionModel(system.assembly, omega, shapes, damping, forces, flexibility, modes)
 
 
 def _damping(system: System, omega: FloatArray, shapes: FloatArray) -> FloatArray:

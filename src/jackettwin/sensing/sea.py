@@ -13,6 +13,7 @@ acceleration in it, of a JONSWAP sea. The same drag damps the motion of members,
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from math import cos, pi, sin, sqrt
 from typing import NamedTuple
@@ -105,14 +106,19 @@ class SeaOnMembers:
 
     def damping(self) -> sp.csr_array:
         """Return the linearised drag on the members' own motion, (n_dof, n_dof)."""
-        return sea_drag_damping(self.grid, self.state, self.depth_m)
+        return sea_drag_damping(self.grid, self.state, self.depth_m, self.speed_std)
+
+    @cached_property
+    def speed_std(self) -> FloatArray:
+        """Standard deviation of the water's velocity normal to the members, (n_points,) [m/s]."""
+        return velocity_std(self.grid, self.state, self.depth_m)
 
     def forces(self) -> tuple[LatentForce, ...]:
         """Return the forces of each band along and across the sea, at its crests and between them."""
         peak, heading, found = 2.0 * pi / self.state.Tp, self.state.direction, []
         spread = loads_along(self.assembly, self.grid)
         ways = (("along", heading, 1.0), ("across", heading + 0.5 * pi, _ACROSS))
-        speed = sqrt(8.0 / pi) * velocity_std(self.grid, self.state, self.depth_m)
+        speed = sqrt(8.0 / pi) * self.speed_std
         for band, level in zip(_BANDS, self._levels(), strict=True):
             omega = band.multiple * peak
             for way, angle, share in ways:

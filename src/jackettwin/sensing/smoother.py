@@ -9,23 +9,29 @@ With the covariance P of the one-step prediction at rest, K = P Cᵀ S⁻¹ and 
 
 (the backward pass of Rauch, Tung and Striebel in the form of Bryson and Frazier, which inverts no P: Bierman
 1973, eqs. (14)–(19)). A stream stops the backward pass ``lag`` samples after the one it wants: what lies
-further ahead counts by :math:`(L^T)^{lag}`. P solves the discrete Riccati equation, found by doubling
-(Anderson & Moore 1979, section 6.7), which takes twenty steps where a filter takes a million.
+further ahead counts by :math:`(L^T)^{lag}`. Both passes run in the eigenvectors of L, :math:`L = V Λ V^{-1}`,
+where a step is one product a state instead of one a pair of states. P solves the discrete Riccati equation,
+found by doubling (Anderson & Moore 1979, section 6.7): twenty steps where a filter takes a million.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg as la
 from numba import njit
 
-from jackettwin.arrays import FloatArray
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import NumericalError, require
 
 _MOST_DOUBLINGS = 60
 _GROWN = 1e60
+_APART = 1e-8
+"""Of L, by which its eigenvectors may miss it: they do where two motions decay as one."""
+_DRAWN = 1e-9
+"""Of the largest variance of what drives states, each in its own scale, below which nothing is drawn."""
 
 
 @dataclass(frozen=True)
@@ -52,27 +58,39 @@ class SteadySmoother:
     stationary: FloatArray
     information: FloatArray
 
-    @property
+    @cached_property
     def precision(self) -> FloatArray:
         """S⁻¹ of the innovations, (m, m)."""
         return np.asarray(la.inv(self.C @ self.P @ self.C.T + np.diag(self.R)))
 
-    @property
+    @cached_property
     def gain(self) -> FloatArray:
         """K of the filter, (n, m)."""
         return np.asarray(self.P @ self.C.T @ self.precision)
 
-    @property
+    @cached_property
     def closed_loop(self) -> FloatArray:
         """L, (n, n)."""
         return np.asarray(self.F @ (np.eye(self.F.shape[0]) - self.gain @ self.C))
 
+    @cached_property
+    def motions(self) -> _Motions:
+        """Motions of the closed loop, each of which decays for itself."""
+        return _Motions.of(self.closed_loop, self._scale)
+
+    @cached_property
+    def _drawn(self) -> tuple[_Motions, FloatArray, FloatArray]:
+        """Motions of the model itself, and roots of the covariances of its start and of what drives it."""
+        return _Motions.of(self.F, self._scale), _root(self.stationary), _root(self.Q)
+
+    @cached_property
+    def _scale(self) -> FloatArray:
+        return np.sqrt(np.maximum(np.diag(self.stationary), 1e-300))
+
     def predict(self, y: FloatArray, start: FloatArray | None = None) -> tuple[FloatArray, FloatArray]:
         """Return predictions x_{k|k−1} (N, n) and that after the last of readings y (N, m), (n,)."""
-        driven = y @ (self.F @ self.gain).T
-        x0 = np.zeros(self.F.shape[0]) if start is None else start
-        x = _forward(np.ascontiguousarray(self.closed_loop.T), x0, np.ascontiguousarray(driven))
-        return x[:-1], x[-1]
+        found = self.motions.forward(y, self.F @ self.gain, start) @ self.motions.states(np.eye(len(self.F)))
+        return found[:-1], found[-1]
 
     def smooth(
         self,
@@ -92,17 +110,19 @@ class SteadySmoother:
         rows : (k, n) what is returned of the states, (N − ahead, k); all of them without it
         """
         wanted = np.eye(self.F.shape[0]) if rows is None else rows
-        x, after, r, first = self._passes(y, np.zeros(self.F.shape[0]) if start is None else start)
-        kept = len(y) - ahead
-        seen = x[:kept] @ wanted.T + r[:kept] @ (self.P @ wanted.T)
+        own, kept = self.motions, len(y) - ahead
+        x = own.forward(y, self.F @ self.gain, start)
+        e = y - x[:-1] @ own.states(self.C)
+        r = own.backward(e, self.C.T @ self.precision)
+        seen = x[:kept] @ own.states(wanted)
         if start is None:
             # what begins otherwise decays by L in the predictions, of which a long record corrects P Λ
-            decay = _forward(
-                np.ascontiguousarray(self.closed_loop.T), self.beginning(first), np.zeros_like(x)
-            )
-            seen += decay[:kept] @ (wanted.T - self.information @ (self.P @ wanted.T))
-            x, after = x + decay[:-1], after + decay[-1]
-        return seen, (after if ahead == 0 else x[kept])
+            begun = self.beginning(r[0] @ own.costates(np.eye(len(self.F))))
+            first = own.decaying(begun, len(x))
+            seen += first[:kept] @ own.states(wanted - wanted @ self.P @ self.information)
+            x[kept] += first[kept]
+        seen += r[:kept] @ own.costates(wanted @ self.P)
+        return seen, x[kept] @ own.states(np.eye(len(self.F)))
 
     def beginning(self, first: FloatArray) -> FloatArray:
         """Return the state (n,) to begin with, from what the backward pass from rest leaves at the start.
@@ -114,28 +134,90 @@ class SteadySmoother:
         rest = self.stationary - self.P
         return np.asarray(rest @ la.solve(np.eye(len(rest)) + self.information @ rest, first))
 
-    def _passes(
-        self, y: FloatArray, start: FloatArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Return predictions, the one after the last sample, r_{k−1} (N, n), and r before the first (n,)."""
-        x, after = self.predict(y, start)
-        e = (y - x @ self.C.T) @ (self.precision @ self.C)
-        r = _forward(np.ascontiguousarray(self.closed_loop), np.zeros(x.shape[1]), e[::-1].copy())[1:][::-1]
-        return x, after, r, r[0]
+    def draw(
+        self, number: int, rng: np.random.Generator, rows: FloatArray | None = None
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return states (number, n) that the model makes of its own, and their readings (number, m).
 
-    def draw(self, number: int, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
-        """Return states (number, n) that the model makes of its own, and their readings (number, m)."""
-        start, drive = (
-            _root(matrix) @ rng.standard_normal((len(self.F), n))
-            for matrix, n in ((self.stationary, 1), (self.Q, number - 1))
-        )
-        x = _forward(np.ascontiguousarray(self.F.T), start[:, 0], np.ascontiguousarray(drive.T))
-        return x, x @ self.C.T + np.sqrt(self.R) * rng.standard_normal((number, self.R.size))
+        Parameters
+        ----------
+        rows : (k, n) what is returned of the states, (number, k); all of them without it
+        """
+        own, start, drive = self._drawn
+        first, pushed = rng.standard_normal(start.shape[1]), rng.standard_normal((number - 1, drive.shape[1]))
+        x = own.forward(pushed, drive, start @ first)
+        noise = np.sqrt(self.R) * rng.standard_normal((number, self.R.size))
+        wanted = np.eye(len(self.F)) if rows is None else rows
+        return x @ own.states(wanted), x @ own.states(self.C) + noise
 
     def filtered(self, y: FloatArray) -> FloatArray:
         """Return states given the past and the present only, (N, n)."""
         x, _ = self.predict(y)
         return np.asarray(x + (y - x @ self.C.T) @ self.gain.T)
+
+
+@dataclass(frozen=True)
+class _Motions:
+    """Motions of x⁺ = L x that decay each for itself, of conjugate pairs one; all of them where L has none.
+
+    Series of motions are real and imaginary parts side by side, (N, 2p).
+
+    Attributes
+    ----------
+    rates : (p,) eigenvalues of L
+    right : (n, p) its eigenvectors, twice those of pairs
+    left : (p, n) rows of their inverse
+    """
+
+    rates: ComplexArray
+    right: ComplexArray
+    left: ComplexArray
+
+    @classmethod
+    def of(cls, L: FloatArray, scale: FloatArray) -> _Motions:
+        """Return those of L, whose states have a scale (n,).
+
+        Raises
+        ------
+        NumericalError
+            If two motions are one and the same.
+        """
+        rates, V = np.linalg.eig(L / scale[:, None] * scale)
+        inverse = la.inv(V)
+        if not np.abs((V * rates) @ inverse - L / scale[:, None] * scale).max() < _APART:
+            raise NumericalError("two motions of the filter decay as one")
+        one = rates.imag >= 0.0
+        twice = np.where(rates.imag[one] > 0.0, 2.0, 1.0)
+        return cls(rates[one], twice * scale[:, None] * V[:, one], inverse[one] / scale)
+
+    def states(self, rows: FloatArray) -> FloatArray:
+        """Return what rows (k, n) see of states, by motions (2p, k)."""
+        return _parts((rows @ self.right).T)
+
+    def costates(self, rows: FloatArray) -> FloatArray:
+        """Return what rows (k, n) see of r, by its motions (2p, k)."""
+        twice = np.where(self.rates.imag > 0.0, 2.0, 1.0)[:, None]
+        return _parts(twice * (self.left @ rows.T))
+
+    def forward(self, u: FloatArray, G: FloatArray, start: FloatArray | None) -> FloatArray:
+        """Return x⁺ = L x + G u of inputs u (N, m) from a state (n,) or from rest, as motions (N + 1, 2p)."""
+        z0 = np.zeros(self.rates.size, dtype=complex) if start is None else self.left @ start
+        return _each(self.rates, z0, u @ (self.left @ G).T)
+
+    def backward(self, e: FloatArray, G: FloatArray) -> FloatArray:
+        """Return r⁻ = Lᵀ r + G e of inputs e (N, m), from rest at the end, as motions of Lᵀ (N, 2p)."""
+        twice = np.where(self.rates.imag > 0.0, 2.0, 1.0)
+        into = (self.right / twice).T @ G
+        return _each(self.rates, np.zeros(self.rates.size, dtype=complex), e[::-1] @ into.T)[:0:-1]
+
+    def decaying(self, start: FloatArray, number: int) -> FloatArray:
+        """Return how a state (n,) decays, (number, 2p)."""
+        still = np.zeros((number - 1, self.rates.size), dtype=complex)
+        return _each(self.rates, self.left @ start, still)
+
+
+def _parts(of_motions: ComplexArray) -> FloatArray:
+    return np.concatenate([of_motions.real, -of_motions.imag])
 
 
 def steady_smoother(F: FloatArray, Q: FloatArray, C: FloatArray, R: FloatArray) -> SteadySmoother:
@@ -151,15 +233,16 @@ def steady_smoother(F: FloatArray, Q: FloatArray, C: FloatArray, R: FloatArray) 
     require(
         bool((R > 0.0).all()), "must be positive", field="noise", value=R.min(initial=np.inf), allowed="> 0"
     )
-    scale = np.sqrt(np.maximum(np.diag(_stationary(F, Q)), 1e-300))
+    stationary = _stationary(F, Q)
+    scale = np.sqrt(np.maximum(np.diag(stationary), 1e-300))
     f, q, c = F / scale[:, None] * scale, Q / np.outer(scale, scale), C * scale
-    p, before = _riccati(f, q, c, R), _stationary(f, q)
+    p = _riccati(f, q, c, R)
     s = la.inv(c @ p @ c.T + np.diag(R))
     loop = f @ (np.eye(len(f)) - p @ c.T @ s @ c)
     known = _stationary(loop.T, c.T @ s @ c)
     size = np.outer(scale, scale)
-    P, smoothed, stationary = (size * 0.5 * (m + m.T) for m in (p, p - p @ known @ p, before))
-    return SteadySmoother(F, Q, C, R, P, smoothed, stationary, known / size)
+    P, smoothed = (size * 0.5 * (m + m.T) for m in (p, p - p @ known @ p))
+    return SteadySmoother(F, Q, C, R, P, smoothed, 0.5 * (stationary + stationary.T), known / size)
 
 
 def discrete(A: FloatArray, density: FloatArray, step_s: float) -> tuple[FloatArray, FloatArray]:
@@ -182,10 +265,11 @@ def discrete(A: FloatArray, density: FloatArray, step_s: float) -> tuple[FloatAr
 
 
 def _root(covariance: FloatArray) -> FloatArray:
-    """Return a matrix G (n, n) with G Gᵀ = covariance, which may be singular."""
+    """Return a matrix G (n, k) with G Gᵀ = covariance, which may be singular."""
     scale = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
     values, vectors = np.linalg.eigh(covariance / np.outer(scale, scale))
-    return np.asarray(scale[:, None] * vectors * np.sqrt(np.maximum(values, 0.0)))
+    some = values > _DRAWN * values[-1]
+    return np.asarray(scale[:, None] * vectors[:, some] * np.sqrt(values[some]))
 
 
 def _stationary(F: FloatArray, Q: FloatArray) -> FloatArray:
@@ -224,10 +308,15 @@ def _riccati(F: FloatArray, Q: FloatArray, C: FloatArray, R: FloatArray) -> Floa
 
 
 @njit(cache=True)
-def _forward(LT: FloatArray, x0: FloatArray, driven: FloatArray) -> FloatArray:
-    """Return x_{k+1} = x_k LT + d_k from x_0, (N + 1, n)."""
-    x = np.empty((driven.shape[0] + 1, x0.size))
-    x[0] = x0
+def _each(rates: ComplexArray, z0: ComplexArray, driven: ComplexArray) -> FloatArray:
+    """Return z_{k+1} = λ z_k + d_k from z_0 of each motion, real parts beside imaginary ones (N + 1, 2p)."""
+    p = rates.size
+    x = np.empty((driven.shape[0] + 1, 2 * p))
+    x[0, :p], x[0, p:] = z0.real, z0.imag
+    c, s = rates.real, rates.imag
     for k in range(driven.shape[0]):
-        x[k + 1] = np.dot(x[k], LT) + driven[k]
+        for j in range(p):
+            a, b = x[k, j], x[k, p + j]
+            x[k + 1, j] = c[j] * a - s[j] * b + driven[k, j].real
+            x[k + 1, p + j] = s[j] * a + c[j] * b + driven[k, j].imag
     return x

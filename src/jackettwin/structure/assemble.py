@@ -67,15 +67,16 @@ class Assembly:
         """
         if node not in self.structure.nodes:
             raise InputError("no such node", field="node", value=node, remedy="name a node of the structure")
-        rows = self.expand[self.mesh.node_dofs(node)]
-        if rows.nnz != DOFS_PER_NODE:
+        first, *_, last = self.mesh.node_dofs(node)
+        own = self.expand.indices[self.expand.indptr[first] : self.expand.indptr[last + 1]]
+        if own.size != DOFS_PER_NODE:
             raise InputError(
                 "node follows another by a rigid link",
                 field="node",
                 value=node,
                 remedy="name the link's leader",
             )
-        return np.asarray(rows.indices, dtype=np.intp)
+        return np.asarray(own, dtype=np.intp)
 
 
 def assemble(

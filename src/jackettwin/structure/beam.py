@@ -119,16 +119,16 @@ def geometric_stiffness(N: FloatArray, p: BeamProperties) -> FloatArray:
     return K
 
 
-def translation_shape(xi: float, L: float, Phi: float = 0.0) -> FloatArray:
-    """Return (3, 12): the local translation at ``xi`` = x/L from the end displacements."""
-    N = np.zeros((3, 12))
-    N[0, [0, 6]] = 1.0 - xi, xi
+def translation_shape(xi: FloatArray | float, L: FloatArray | float, Phi: float = 0.0) -> FloatArray:
+    """Return (..., 3, 12): the local translation at ``xi`` = x/L (...,) from the end displacements."""
+    N = np.zeros((*np.shape(xi), 3, 12))
+    N[..., 0, 0], N[..., 0, 6] = 1.0 - xi, xi
     first = (1.0 - 3.0 * xi**2 + 2.0 * xi**3 + Phi * (1.0 - xi)) / (1.0 + Phi)
     slope_1 = L * (xi - 2.0 * xi**2 + xi**3 + 0.5 * Phi * (xi - xi**2)) / (1.0 + Phi)
     slope_2 = L * (-(xi**2) + xi**3 - 0.5 * Phi * (xi - xi**2)) / (1.0 + Phi)
-    plane = np.array([first, slope_1, 1.0 - first, slope_2])
-    N[1, BENDING_XY] = plane
-    N[2, BENDING_XZ] = plane * _REVERSED
+    plane = np.stack([first, slope_1, 1.0 - first, slope_2], axis=-1)
+    N[..., 1, BENDING_XY] = plane
+    N[..., 2, BENDING_XZ] = plane * _REVERSED
     return N
 
 

@@ -73,11 +73,16 @@ def refined_modes(
     ------
     InputError
         If K has a negative eigenvalue among those of the shapes.
+    NumericalError
+        If M has one.
     """
     shifted = sp.csc_matrix(K - shift * M)
     moved = spla.splu(shifted).solve(np.asarray(M @ x))
     basis = np.linalg.qr(np.hstack([x, moved]))[0]
-    w, q = la.eigh(basis.T @ (K @ basis), basis.T @ (M @ basis), subset_by_index=[0, number - 1])
+    try:
+        w, q = la.eigh(basis.T @ (K @ basis), basis.T @ (M @ basis), subset_by_index=[0, number - 1])
+    except la.LinAlgError as error:
+        raise NumericalError(f"the mass of the structure is not positive: {error}") from error
     if w.min(initial=0.0) < 1e-3 * shift:
         raise _unstable()
     return np.sqrt(np.maximum(w, 0.0)), np.asarray(basis @ q)

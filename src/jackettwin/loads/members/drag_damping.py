@@ -30,15 +30,25 @@ def velocity_std(grid: MorisonPoints, sea: SeaState, depth: float) -> FloatArray
     f = np.arange(1, int(_HIGHEST / sea.Tp / _STEP_HZ) + 1, dtype=np.float64) * _STEP_HZ
     omega = 2.0 * np.pi * f
     power = jonswap(f, Hs=sea.Hs, Tp=sea.Tp, gamma=sea.gamma) * _STEP_HZ * omega**2
-    horizontal, vertical = depth_functions(
-        wave_number(omega, depth), np.minimum(grid.points[:, 2], 0.0), depth
+    # legs and braces of all faces share their levels
+    levels, level = np.unique(np.minimum(grid.points[:, 2], 0.0).round(6), return_inverse=True)
+    horizontal, vertical = (
+        (part**2 @ power)[level] for part in depth_functions(wave_number(omega, depth), levels, depth)
     )
     heading = np.array([np.cos(sea.direction), np.sin(sea.direction), 0.0])
     along = np.einsum("i,nij,j->n", heading, grid.normal, heading)
-    variance = along * (horizontal**2 @ power) + grid.normal[:, 2, 2] * (vertical**2 @ power)
+    variance = along * horizontal + grid.normal[:, 2, 2] * vertical
     return np.asarray(np.sqrt(0.5 * np.maximum(variance, 0.0)))
 
 
-def sea_drag_damping(grid: MorisonPoints, sea: SeaState, depth: float) -> sp.csr_array:
-    """Return the linearised drag damping (Borgman 1967) of members in a random sea, (n_dof, n_dof)."""
-    return drag_damping(grid, velocity_std(grid, sea, depth) * above_bed(grid, depth))
+def sea_drag_damping(
+    grid: MorisonPoints, sea: SeaState, depth: float, speed_std: FloatArray | None = None
+) -> sp.csr_array:
+    """Return the linearised drag damping (Borgman 1967) of members in a random sea, (n_dof, n_dof).
+
+    Parameters
+    ----------
+    speed_std : (n_points,) :func:`velocity_std`, if it is known
+    """
+    speed = velocity_std(grid, sea, depth) if speed_std is None else speed_std
+    return drag_damping(grid, speed * above_bed(grid, depth))

@@ -164,8 +164,7 @@ def distribution(assembly: Assembly, element: IntArray, xi: FloatArray) -> sp.cs
 def _shapes(mesh: Mesh, element: IntArray, xi: FloatArray) -> FloatArray:
     """Return the local translation at points on elements from their end displacements, (n, 3, 12)."""
     L = mesh.properties.L[element]
-    shapes = [beam.translation_shape(float(x), float(l_e)) for x, l_e in zip(xi, L, strict=True)]
-    return np.array(shapes).reshape(-1, 3, 12)
+    return beam.translation_shape(xi, L)
 
 
 def loads_along(assembly: Assembly, grid: MorisonPoints) -> sp.csr_array:
@@ -182,7 +181,7 @@ def loads_along(assembly: Assembly, grid: MorisonPoints) -> sp.csr_array:
 def _gauss(L: float, spacing: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return x/L of two Gauss points per segment, x/L of the middle of each half segment, and lengths [m]."""
     n = int(np.ceil(L / spacing))
-    x, _ = np.polynomial.legendre.leggauss(2)
+    x = np.array([-1.0, 1.0]) / np.sqrt(3.0)
     xi, middle = (((np.arange(n)[:, None] + 0.5 + 0.5 * at) / n).ravel() for at in (x, 0.5 * np.sign(x)))
     return xi, middle, np.full(xi.size, 0.5 * L / n)
 

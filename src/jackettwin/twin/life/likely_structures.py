@@ -18,7 +18,7 @@ tell of them what one record can.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -51,7 +51,7 @@ _COMMON_STD, _OWN_STD, _UPRIGHT = 1.5, 0.5, 0.7
 """Of ln k of all feet together, of each way alone, and how much stiffer feet are upright."""
 _WAYS = (np.diag([1.0, 1.0, 0.0, 0.0, 0.0, 0.0]), np.diag([0.0, 0.0, 1.0, 0.0, 0.0, 0.0]))
 _USUAL_RATIO = 0.01
-_EXTRA = 6
+_EXTRA = 8
 
 
 @dataclass(frozen=True)
@@ -82,9 +82,14 @@ class StressModel:
     coefficients: Coefficients | None = None
     at_work: Direction | None = None
     rotor: RotorByWind | None = None
+    _modes: dict[bytes, UndampedModes] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def working(self) -> StressModel:
         """Return the model with the rotor at work, whose stiffness is left open; as it is without a rotor."""
+        return self._working
+
+    @cached_property
+    def _working(self) -> StressModel:
         one = self.at_work
         if one is None or one.stiffness is None:
             return self
@@ -112,6 +117,14 @@ class StressModel:
     def curves(self) -> ModelsAtHeight:
         """Curves of the welds by elevation."""
         return self.settings.models
+
+    def modes_from(self, theta: FloatArray) -> UndampedModes:
+        """Return the modes at θ, from which all records that begin there go on: computed once."""
+        key = theta.tobytes()
+        if key not in self._modes:
+            self._modes.clear()
+            self._modes[key] = undamped_modes(self.system(theta), self.numbered.omega.size + _EXTRA)
+        return self._modes[key]
 
     def system(self, theta: FloatArray) -> System:
         """Return the structure with ln k of its feet and tolerances (n_ways + n_directions,)."""
@@ -181,12 +194,14 @@ class LikelyStructures:
     mean : (n,) ln k of the feet, then tolerances
     covariance : (n, n)
     ratios : {mode: damping ratio} as measured
+    near : modes of a structure near the likeliest; None where nothing was computed
     """
 
     model: StressModel
     mean: FloatArray
     covariance: FloatArray
     ratios: Mapping[int, float]
+    near: UndampedModes | None = None
 
     def systems(self, number: int, *, seed: int = 0) -> tuple[System, ...]:
         """Return the likeliest structure, then others as probable, in pairs about it."""
@@ -197,7 +212,8 @@ class LikelyStructures:
             away = root @ rng.standard_normal(values.size)
             found += [self.mean + away, self.mean - away]
         return tuple(
-            possible(lambda d: self.model.system(self.mean + d), t - self.mean) for t in found[:number]
+            possible(lambda d: self.model.system(self.mean + d), t - self.mean, near=self.near)
+            for t in found[:number]
         )
 
     def damped(self, motion: MotionModel) -> MotionModel:
@@ -235,7 +251,7 @@ def likely_structures(
     P0[: model.n_ways, : model.n_ways] *= _OWN_STD**2
     P0[: model.n_ways, : model.n_ways] += _COMMON_STD**2
     theta, P = prior, P0
-    near: UndampedModes | None = None
+    near = model.modes_from(prior) if measured else None
     for _ in range(_STEPS if measured else 0):
         H, r, R, near = _misfit(model, theta, measured, near, sensors)
         gain = P0 @ H.T @ np.linalg.inv(H @ P0 @ H.T + np.diag(R))
@@ -244,14 +260,14 @@ def likely_structures(
         P = P0 - gain @ H @ P0
         if np.abs(step).max() < _SETTLED:
             break
-    return LikelyStructures(model, theta, P, {m: mode.damping_ratio for m, mode in measured.items()})
+    return LikelyStructures(model, theta, P, {m: mode.damping_ratio for m, mode in measured.items()}, near)
 
 
 def _misfit(
     model: StressModel,
     theta: FloatArray,
     measured: Mapping[int, ModalEstimate],
-    near: UndampedModes | None,
+    near: UndampedModes,
     sensors: sp.csr_array | None,
 ) -> tuple[FloatArray, FloatArray, FloatArray, UndampedModes]:
     """Return slopes (m, n), what data exceed the model's by (m,), their variances (m,), and modes.
@@ -263,7 +279,7 @@ def _misfit(
     near : modes of the step before
     """
     system, numbered = model.system(theta), model.numbered
-    modes = undamped_modes(system, numbered.omega.size + _EXTRA, near=near)
+    modes = undamped_modes(system, near.omega.size, near=near)
     successor = track_modes(model.assembly.mass, numbered.omega, numbered.shapes, modes.shapes)
     known = [m for m in measured if successor[m - 1] >= 0]
     at = successor[[m - 1 for m in known]] if known else np.zeros(0, dtype=np.intp)

@@ -84,7 +84,7 @@ def sensed_damage(
         If the filter does not come to rest.
     """
     systems = likely.systems(structures)
-    estimates = likely_motions(systems, readings, weather, damped=likely.damped)
+    estimates = likely_motions(systems, readings, weather, damped=likely.damped, near=likely.near)
     told = likely.model
     chart = weld_map(systems[0], estimates[0].model, told.dry, told.joints)
     curves = _Curves.of(told.assembly.structure, told.joints, told.curves)
@@ -202,10 +202,12 @@ class _Curves:
         """
         welds, found = sides // len(SIDES), np.zeros((sides.size, len(POSITIONS)))
         first = np.concatenate([[0], np.cumsum(np.bincount(self.joint))])
+        # seven digits: a damage is kept to a hundredth
+        single = motion.astype(np.float32)
         for joint in np.unique(self.joint[welds]):
             here = np.flatnonzero(self.joint[welds] == joint)
-            braces = sorted({int(w) - int(first[joint]) for w in welds[here]})
-            stress = dict(zip(braces, chart.stress(int(joint), motion, braces), strict=True))
+            braces = sorted({int(w - first[joint]) for w in welds[here]})
+            parts = dict(zip(braces, chart.parts(int(joint), single, braces), strict=True))
             for i in here:
                 w, s = divmod(int(sides[i]), len(SIDES))
                 curve, t = self.models[w].curve, float(self.thickness_m[w, s])
@@ -213,7 +215,9 @@ class _Curves:
                 major = np.flatnonzero(known >= _MINOR)
                 if not major.size:
                     continue
-                cycles = [count(stress[w - int(first[joint])][s, p]) for p in major]
+                brace = w - int(first[joint])
+                stress = chart.joints[int(joint)].weld_stress(brace, parts[brace], s, major)
+                cycles = [count(series) for series in stress]
                 ranges = np.concatenate([c.ranges for c in cycles])
                 each = 1.0 / curve.cycles_to_failure(ranges, thickness_m=t)
                 of = np.repeat(major, [c.ranges.size for c in cycles])

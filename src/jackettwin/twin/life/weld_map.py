@@ -45,6 +45,17 @@ class WeldMap:
         nominal = self.rows[joint] @ motion.T + self.at_rest[joint][:, :, None]
         return self.joints[joint].stress_under(nominal, braces)
 
+    def parts(self, joint: int, motion: FloatArray, braces: Sequence[int]) -> FloatArray:
+        """Return K's, Y's and X's parts of the nominal stresses of some braces of a joint, (n_braces, 9, n).
+
+        They are as precise as the motion is.
+        """
+        rows, rest = (part.astype(motion.dtype) for part in (self.rows[joint], self.at_rest[joint]))
+        axial = rows[:, 0] @ motion.T + rest[:, :1]
+        bending = rows[braces, 1:] @ motion.T + rest[braces, 1:, None]
+        nominal = np.concatenate([axial[braces][:, None], bending], axis=1)
+        return self.joints[joint].parts(axial, nominal, braces)
+
     def cycles(self, motion: FloatArray) -> list[list[list[Cycles]]]:
         """Return the cycles at (welds, 2 sides, 8 points) of a motion."""
         return [

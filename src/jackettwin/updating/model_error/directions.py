@@ -20,7 +20,7 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.errors import InputError, NumericalError
-from jackettwin.response import Condensed, Matrix, NumberedModes, System, undamped_modes
+from jackettwin.response import Condensed, Matrix, NumberedModes, System, UndampedModes, undamped_modes
 from jackettwin.soil import Support, law_slope, law_stiffness
 from jackettwin.structure import Assembly, Structure
 
@@ -112,15 +112,22 @@ def moved_along(
     return replace(assembly, mass=mass, stiffness=stiffness), shares
 
 
-def possible(make: Callable[[FloatArray], System], amounts: FloatArray) -> System:
+def possible(
+    make: Callable[[FloatArray], System], amounts: FloatArray, *, near: UndampedModes | None = None
+) -> System:
     """Return the structure at drawn amounts, or at half of them, until it has modes.
 
     Drawn to first order, growth that is not there may take more mass from a thin brace than it has.
+
+    Parameters
+    ----------
+    near : modes of a similar structure, from which those of this one are found soon
     """
     for share in (1.0, 0.5, 0.25) if amounts.any() else ():
         system = make(share * amounts)
         try:
-            undamped_modes(system, min(_CHECKED, system.free.size))
+            number = min(_CHECKED, system.free.size) if near is None else near.omega.size
+            undamped_modes(system, number, near=near)
         except (InputError, NumericalError):
             continue
         return system
