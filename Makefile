@@ -43,6 +43,7 @@ $(VENV)/.live: requirements-service.lock $(VENV)/.core
 
 app: app/node_modules/.installed ## the window, a browser's pages of the service, from app/ (Node 20 or newer)
 	cd app && npm run --silent build
+	cd app/src && find . -type f ! -name schema.d.ts | LC_ALL=C sort | xargs cat | sha256sum > ../../src/jackettwin/service/window/source
 
 app/node_modules/.installed: app/package.json app/package-lock.json
 	cd app && npm ci --silent && touch node_modules/.installed

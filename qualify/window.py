@@ -40,6 +40,7 @@ from jackettwin.service.context import Service
 from jackettwin.service.demonstration import ASSET, arrive, lay_out
 from jackettwin.service.story import UNTIL
 from jackettwin.store import Packet, assets, sqlite_url, streams, tables, writing
+from jackettwin.store.mode_bins import keep_days
 
 REFERENCE_S = 0.47
 LABELS = {"side_side_1": 0.175, "fore_aft_1": 0.178, "torsion_1": 0.642, "side_side_2": 0.744}
@@ -73,6 +74,8 @@ def filled(store: Path, years: int) -> tuple[str, int]:
             like = assets.found_version(connection, ASSET)
             for year in range(years):
                 connection.execute(tables.modes.insert(), list(_modes(rng, like.model_hash, year)))
+            for _ in range(13 * (years + 3)):  # as records that arrive day by day have them kept
+                keep_days(connection, ASSET, like.model_hash, began)
     return str(number), years * 52_560 * len(LABELS)
 
 
@@ -156,6 +159,8 @@ def main() -> None:
             for _ in range(2):
                 day = Window(browser, f"{own}/records/{number}", ".uplot canvas")
             tell("a day's signal, three channels of 50 Hz [s]", day.opened_s, "1", day.opened_cpu_s * scale)
+            worst = Window(browser, f"{own}/records", "[aria-label='The worst first'] tbody tr")
+            tell("the worst records of all years [s]", worst.opened_s, "1", worst.opened_cpu_s * scale)
             years = Window(browser, f"{own}/timeline", ".uplot canvas")
             tell("all years of modes opened [s]", years.opened_s, "–", years.opened_cpu_s * scale)
             expect(years.page.get_by_text("Bins of time")).to_be_visible()

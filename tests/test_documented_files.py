@@ -74,3 +74,11 @@ def test_every_page_is_in_the_contents() -> None:
     docs = PAGE.parents[1]
     listed = set(re.findall(r"(\S+\.md)$", (docs.parent / "mkdocs.yml").read_text(), re.MULTILINE))
     assert listed == {page.relative_to(docs).as_posix() for page in docs.rglob("*.md")}
+
+
+def test_every_page_of_theory_begins_with_its_question_an_equation_and_a_picture() -> None:
+    for page in (PAGE.parents[1] / "theory").glob("*.md"):
+        question, *rest = page.read_text(encoding="utf-8").split("\n\n")[1:6]
+        assert re.fullmatch(r"\*[^*]+\?\*", question), page.name
+        assert any(part.startswith("$$") for part in rest), page.name
+        assert any(part.startswith("![") for part in rest), page.name

@@ -9,15 +9,7 @@ const plot: PlotData = {
   xName: "UTC",
   yName: "frequency [Hz]",
   series: [
-    {
-      name: "a, b",
-      colour: "blue",
-      kind: "points",
-      x: [0, 60],
-      y: [1, null],
-      low: [0.5, null],
-      high: [2, null],
-    },
+    { name: "a, b", colour: "blue", kind: "points", x: [0, 60], y: [1, null], low: [0.5, null], high: [2, null] },
   ],
   marks: [{ x: 30, words: "alarm", colour: "alarm" }],
 };
@@ -57,6 +49,7 @@ describe("a plot", () => {
   });
   test("has ticks in steps of 1, 2 or 5", () => {
     expect(ticksOf([0, 1], 5)).toEqual([0, 0.2, 0.4, 0.6, 0.8, 1]);
+    expect(ticksOf([-0.09, 0.09], 2)).toEqual([-0.05, 0, 0.05]); // not one alone
     expect(ticksOf([0.2, 30], 5, true)).toEqual([0.2, 0.5, 1, 2, 5, 10, 20]);
     expect(ticksOf([9.7e-9, 0.02], 5, true)).toEqual([1e-8, 1e-6, 1e-4, 1e-2]); // where uPlot's own search does not end
     expect(ticksOf([18, 46], 5, true)).toEqual([20, 30, 40]);

@@ -424,7 +424,7 @@ CATALOGUE: dict[str, Kind] = {
     "study_set_aside": Kind(
         "alarm",
         "the days could not be evaluated in {tries} attempts ({reason}): no change would be detected; remove "
-        "the cause, then POST /jobs/{job}/retry",
+        "the cause, then try job {job} again",
     ),
     "life_unknown": Kind("warning", "no damage at the welds: {reason}"),
     "life_share": Kind(

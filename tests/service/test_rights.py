@@ -288,7 +288,7 @@ def test_downloads_are_in_the_audit_log(customer: TestClient, users: Service) ->
     customer.get(f"/api/v1/records/{mine['record_id']}/signal", headers=arrow)
     with writing(users.database) as connection:
         results.put_knowledge(connection, "wtg", 1, {"known": {}}, gzip.compress(b"page"), NOON)
-    assert customer.get("/assets/wtg/report").text == "page"
+    assert customer.get("/assets/wtg/report").text.startswith("page")
     with reading(users.database) as connection:
         lines = [(a.who, a.subject) for a in people.read_audit(connection, 20) if a.action == "download"]
     assert sorted(lines) == [

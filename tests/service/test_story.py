@@ -16,7 +16,7 @@ from jackettwin.service import demonstration
 from jackettwin.service.demonstration import SAID, SHIPPED, arrive, lay_out, shipped_records, tell_story
 from jackettwin.service.story import DAYS, SCOUR_M, STORM, UNTIL, story
 from jackettwin.service.web.catalogue import one
-from jackettwin.store import assets, reading, records, results
+from jackettwin.store import assets, reading, records, results, work
 from jackettwin.twin import OBSERVATION, read_twin, twin_model
 
 TWIN = Path(__file__).parents[2] / "src" / "jackettwin" / "data" / "twins" / "openfast_pile.yaml"
@@ -99,7 +99,10 @@ def test_the_shipped_demonstration_is_of_this_program(
             assert results.find_stiffness(connection, "demo", 1)["stiffness_in_time"]
             page = gzip.decompress(results.find_report(connection, "demo", 1) or b"").decode()
             assert "Is the model right?" in page and len(page) > 1_500_000  # with the library of its plots
+            assert page.index('id="verdict"') < page.index('id="stiffness-through-time"')
         assert [arrive(service, record) for record in shipped_records()] == 4 * [False] + [True]
+        with reading(service.database) as connection:
+            assert len(work.list_jobs(connection, limit=9)) == 1  # what the first four say is not asked again
     assert told.name == kept.name
     for (mode, _), (other, _) in zip(told.modes.values(), kept.modes.values(), strict=True):
         assert other.frequency_hz == pytest.approx(mode.frequency_hz, rel=1e-5)  # six digits are told

@@ -6,9 +6,7 @@ import { connection, happened } from "./events";
 import type { paths } from "./schema";
 
 type Got<P> = P extends { get: { responses: { 200: { content: { "application/json": infer A } } } } } ? A : never;
-type OfRecord = keyof {
-  [P in keyof paths as P extends `/api/v1/records/{record_id}${infer S}` ? S : never]: 0;
-};
+type OfRecord = keyof { [P in keyof paths as P extends `/api/v1/records/{record_id}${infer S}` ? S : never]: 0 };
 type OfAsset = keyof { [P in keyof paths as P extends `/api/v1/assets/{asset}${infer S}` ? S : never]: 0 };
 
 export interface Answer<T> {

@@ -39,12 +39,7 @@ export class Problem extends Error {
 
 const KINDS: Record<number, Problem["kind"]> = { 401: "login", 403: "role", 404: "missing" };
 
-interface Said {
-  detail?: unknown;
-  remedy?: unknown;
-  field?: unknown;
-  allowed?: unknown;
-}
+type Said = { detail?: unknown; remedy?: unknown; field?: unknown; allowed?: unknown };
 
 /** Make a problem of an answer that is none. */
 export function problemOf(status: number, said: unknown): Problem {
@@ -56,11 +51,7 @@ export function problemOf(status: number, said: unknown): Problem {
   return new Problem(kind, detail + allowed, text(told.remedy), text(told.field));
 }
 
-interface Fetched<T> {
-  data?: T;
-  error?: unknown;
-  response: Response;
-}
+type Fetched<T> = { data?: T; error?: unknown; response: Response };
 
 /** Return what an answer holds; throws a Problem if it is none. */
 export async function told<T>(answer: Promise<Fetched<T>>): Promise<T> {
@@ -75,10 +66,7 @@ export async function told<T>(answer: Promise<Fetched<T>>): Promise<T> {
   throw problemOf(fetched.response.status, fetched.error);
 }
 
-interface Paged<T> {
-  items: T[];
-  next_cursor?: string | null;
-}
+type Paged<T> = { items: T[]; next_cursor?: string | null };
 
 /** Return a whole list, page by page, at most so many. */
 export async function everything<T>(

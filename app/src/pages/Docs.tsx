@@ -5,12 +5,7 @@ import { Card, Head } from "../parts/Bits";
 import { Shown } from "../parts/Shown";
 import { asked, keep } from "../shell/place";
 
-interface Parameter {
-  name: string;
-  in: string;
-  required?: boolean;
-  description?: string;
-}
+type Parameter = { name: string; in: string; required?: boolean; description?: string };
 interface Operation {
   tags?: string[];
   description?: string;
@@ -23,10 +18,7 @@ interface Described {
   info: { title: string; version: string; summary?: string };
   paths: Record<string, Record<string, Operation>>;
 }
-interface Row extends Operation {
-  method: string;
-  path: string;
-}
+type Row = Operation & { method: string; path: string };
 
 async function read(): Promise<Described> {
   const answer = await fetch("/api/v1/openapi.json").catch(() => null);

@@ -21,12 +21,14 @@ type OfBranch = (b: Branch, i: number) => number | null;
 const MOST_DAMPED = 0.3;
 const lively = (b: Branch, i: number): boolean => (b.damping_ratio[i] ?? 1) < MOST_DAMPED;
 
+type Name = (parameter: string) => string;
+
 /** Along the parameter: what a branch shows at each of its values, while it swings. */
-function along(locus: Locus, title: string, yName: string, of: OfBranch): PlotData {
+function along(locus: Locus, name: string, title: string, yName: string, of: OfBranch): PlotData {
   return {
     title,
     time: false,
-    xName: `${locus.parameter} [${locus.unit}]`,
+    xName: `${name} [${locus.unit}]`,
     yName,
     logX: true,
     log: title.startsWith("Damping"),
@@ -64,18 +66,18 @@ function poles(locus: Locus, index: number): PlotData {
   };
 }
 
-function Along({ locus }: { locus: Locus }) {
+function Along({ locus, name }: { locus: Locus; name: string }) {
   const [index, setIndex] = useState(locus.origin);
   const [range, setRange] = useState<Range | null>(null);
   const [value, median] = [locus.values[index] ?? 0, locus.values[locus.origin] ?? 1];
   const mark: Mark[] = [{ x: value, words: quantity(value, locus.unit), colour: "ink" }];
   const drawn = useMemo(
     () => [
-      along(locus, "Frequencies", "frequency over that at the median [%]", (b, i) => {
+      along(locus, name, "Frequencies", "frequency over that at the median [%]", (b, i) => {
         const [here, there] = [b.frequency_hz[i], b.frequency_hz[locus.origin]];
         return here && there ? 100 * (here / there) : null;
       }),
-      along(locus, "Damping ratios", "damping ratio [%]", (b, i) => 100 * (b.damping_ratio[i] ?? NaN) || null),
+      along(locus, name, "Damping ratios", "damping ratio [%]", (b, i) => 100 * (b.damping_ratio[i] ?? NaN) || null),
     ],
     [locus],
   );
@@ -83,13 +85,9 @@ function Along({ locus }: { locus: Locus }) {
   const plots = useMemo(() => drawn.map((plot) => ({ ...plot, marks: mark })), [drawn, value]);
   return (
     <>
-      <Card
-        title={`Along ${locus.parameter}`}
-        wide
-        note="One parameter moves, the others stay where the data put them."
-      >
+      <Card title={`Along the ${name}`} wide note="One parameter moves, the others stay where the data put them.">
         <Slide max={locus.values.length - 1} at={index} onMove={setIndex}>
-          {locus.parameter} <b>{quantity(value, locus.unit, 3)}</b>
+          {name} <b>{quantity(value, locus.unit, 3)}</b>
           {index === locus.origin ? " (median)" : ` (${quantity(value / median, "", 3)} × the median)`}
         </Slide>
         <div class="pair">
@@ -98,7 +96,7 @@ function Along({ locus }: { locus: Locus }) {
           ))}
         </div>
       </Card>
-      <Card title="Modes here" note={`At ${locus.parameter} = ${quantity(value, locus.unit, 3)}.`}>
+      <Card title="Modes here" note={`At a ${name} of ${quantity(value, locus.unit, 3)}.`}>
         <Table
           label="Frequencies and damping ratios"
           rows={locus.branches}
@@ -109,7 +107,7 @@ function Along({ locus }: { locus: Locus }) {
             number<Branch>("Damping ratio", "%", (b) => b.damping_ratio[index], { say: (v) => percent(v) }),
             {
               title: "Most damping",
-              unit: `% at ${locus.parameter}`,
+              unit: `% at ${name}`,
               numeric: true,
               show: ({ most_damped_at: at, most_damping_ratio: most }) =>
                 at == null ? "–" : `${percent(most)} at ${quantity(at, locus.unit)}`,
@@ -124,7 +122,7 @@ function Along({ locus }: { locus: Locus }) {
   );
 }
 
-function Sensitivity({ asset }: { asset: string }) {
+function Sensitivity({ asset, said }: { asset: string; said: Name }) {
   const found = useAsset(asset, "/sensitivity");
   return (
     <Card
@@ -141,7 +139,7 @@ function Sensitivity({ asset }: { asset: string }) {
             columns={[
               { title: "Mode", show: (m) => words(m.label) },
               ...Object.keys(data.items[0]?.frequency_sensitivity ?? {}).map((name) => ({
-                title: name,
+                title: said(name),
                 unit: "f ‰ · ζ 0.001 %",
                 numeric: true,
                 show: (m: Schemas["SensitivityOut"]) =>
@@ -155,7 +153,7 @@ function Sensitivity({ asset }: { asset: string }) {
   );
 }
 
-function Curves({ explored }: { explored: Explored }) {
+function Curves({ explored, said }: { explored: Explored; said: Name }) {
   const plot = useMemo(
     (): PlotData => ({
       title: "Cost along each parameter",
@@ -164,7 +162,7 @@ function Curves({ explored }: { explored: Explored }) {
       yName: "cost",
       log: true,
       series: (explored.curves ?? []).map(({ parameter: name, factor: x, cost: y }, i) => {
-        return { name, colour: paintOf(i), kind: "line", x, y };
+        return { name: said(name), colour: paintOf(i), kind: "line", x, y };
       }),
     }),
     [explored],
@@ -181,24 +179,29 @@ function Drawn({ asset, explored }: { asset: string; explored: Explored }) {
   const locus = loci.find((l) => l.parameter === asked("parameter")) ?? loci[0];
   const named = Object.fromEntries((explored.parameters ?? []).map((p) => [p.name, p]));
   const at = Object.fromEntries((explored.parameters ?? []).map((p) => [p.name, p.value]));
+  const said: Name = (name) => (named[name] ?? loci.find((l) => l.parameter === name))?.words ?? name;
   return (
     <>
       <div class="tools">
-        <Pick label="Parameter" kept="parameter" options={loci.map((l) => [l.parameter, l.parameter] as const)} />
+        <Pick
+          label="Parameter"
+          kept="parameter"
+          options={loci.map((l) => [l.parameter, said(l.parameter)] as const)}
+        />
         <span class="quiet">Law {explored.law}</span>
       </div>
       <div class="grid">
-        {locus && <Along key={locus.parameter} locus={locus} />}
+        {locus && <Along key={locus.parameter} locus={locus} name={said(locus.parameter)} />}
         {explored.surface && (
           <Card
             title="Where the data point"
             note="The cross is where the medians are; a long bright valley means that only a combination is known."
           >
-            <Surface surface={explored.surface} at={at} unit={(name) => named[name]?.unit ?? ""} />
+            <Surface surface={explored.surface} at={at} unit={(name) => named[name]?.unit ?? ""} said={said} />
           </Card>
         )}
-        <Curves explored={explored} />
-        <Sensitivity asset={asset} />
+        <Curves explored={explored} said={said} />
+        <Sensitivity asset={asset} said={said} />
       </div>
     </>
   );

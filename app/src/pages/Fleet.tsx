@@ -42,7 +42,9 @@ const COLUMNS: Column<Asset>[] = [
 function Nothing() {
   return (
     <Empty title="No turbine yet">
-      <p>Add one with its twin file, and give it records:</p>
+      <p>
+        <a href="/start">Add one</a> with its files, or on the command line:
+      </p>
       <pre>
         jackettwin asset add NAME TWIN --store STORE{"\n"}jackettwin intake RECORDS --asset NAME --store STORE
       </pre>

@@ -10,10 +10,7 @@ import { asked, assetUrl } from "../shell/place";
 type Job = Schemas["JobOut"];
 const WORDS: Record<string, string> = { queued: "waiting", leased: "under way" };
 const STATES = Object.entries({ "": "All", ...WORDS, done: "done", failed: "failed", set_aside: "set aside" });
-const KINDS: Record<string, string> = {
-  observe: "find the modes of a record",
-  know: "ask what all records say",
-};
+const KINDS: Record<string, string> = { observe: "find the modes of a record", know: "ask what all records say" };
 
 export default function Jobs() {
   const state = asked("state") ?? "";
@@ -34,7 +31,7 @@ export default function Jobs() {
         {deed.problem && <span class="error">{deed.problem.message}</span>}
       </div>
       <Card title="Newest first" wide>
-        <Shown of={jobs} lines={8} none={<Empty title="No job of this kind" />}>
+        <Shown of={jobs} lines={8} none={<Empty title={state ? "No job of this kind" : "No job yet"} />}>
           {(data) => (
             <Table
               label="Jobs"
@@ -53,10 +50,7 @@ export default function Jobs() {
                 },
                 { title: "Asked", show: (j) => <Ago at={j.created_utc} /> },
                 { title: "Tries", numeric: true, show: (j) => j.tries },
-                {
-                  title: "Reason",
-                  show: (j) => <span class="prose">{String(j.reason?.["detail"] ?? "")}</span>,
-                },
+                { title: "Reason", show: (j) => <span class="prose">{String(j.reason?.["detail"] ?? "")}</span> },
                 {
                   title: "Do",
                   show: (j) => {

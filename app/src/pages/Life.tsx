@@ -51,9 +51,7 @@ const COLUMNS: Column<Weld>[] = [
   number("Damage a year", "% of what is allowed", (w) => w.rate_per_year / w.budget_per_year, {
     say: (v) => percent(v, null, 0),
   }),
-  number("Fails in a year", "probability", (w) => w.failure_probability_per_year, {
-    say: (v) => scientific(v, 2),
-  }),
+  number("Fails in a year", "probability", (w) => w.failure_probability_per_year, { say: (v) => scientific(v, 2) }),
 ];
 
 /** The eight points around a weld, from its crown on; the worst is the one that counts. */

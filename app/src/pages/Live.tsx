@@ -12,12 +12,7 @@ import { seconds } from "../words/time";
 
 const SPANS_S = [10, 30, 120] as const;
 const PIECE_S = 60;
-interface Packet {
-  channel: string;
-  t0_utc: string;
-  rate_hz: number;
-  samples: (number | null)[];
-}
+type Packet = { channel: string; t0_utc: string; rate_hz: number; samples: (number | null)[] };
 
 /** Packets as they arrive; true once one did. */
 function useStream(asset: string, roll: Roll): boolean {
@@ -26,7 +21,7 @@ function useStream(asset: string, roll: Roll): boolean {
     const source = new EventSource(`/api/v1/assets/${encodeURIComponent(asset)}/live`);
     source.addEventListener("packet", (event: MessageEvent<string>) => {
       const { channel, t0_utc, rate_hz, samples } = JSON.parse(event.data) as Packet;
-      if (!roll.streams) roll.begin(seconds(t0_utc) + samples.length / rate_hz, true);
+      if (!roll.streams) roll.begin(seconds(t0_utc), true); // a packet behind, so that it rolls while the next comes
       roll.add(channel, seconds(t0_utc), 1 / rate_hz, samples);
       setStreams(true);
     });

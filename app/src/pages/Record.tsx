@@ -1,6 +1,6 @@
 // What one record holds: signals at any zoom, spectrum, stabilisation chart, and poles picked by hand.
 import { useMemo, useState } from "preact/hooks";
-import { type Answer, useAnswer, useRecord } from "../api/answer";
+import { type Answer, useAnswer, useAsset, useRecord } from "../api/answer";
 import { api, type Mode, type RecordOut, type Schemas, told } from "../api/client";
 import { Card, Choice, Facts, Light, Time, Pick } from "../parts/Bits";
 import { Heat } from "../parts/Heat";
@@ -160,6 +160,7 @@ function Spectrogram({ record }: { record: RecordOut }) {
             title={channel}
             unit={`dB of ${unit}`}
             cells={cells}
+            zName={`level [dB of ${unit}]`}
             width={1200}
             height={340}
             x={[(time_s[0] ?? 0) / 60, ((time_s.at(-1) ?? 0) + segment_s) / 60]}
@@ -191,14 +192,8 @@ export default function Record({ asset, id }: PageProps) {
   const record = useAnswer(asset, `record ${id}`, () =>
     told(api.GET("/api/v1/records/{record_id}", { params: { path: { record_id: id } } })),
   );
-  const start = record.data?.start_utc;
-  const modes = useAnswer(asset, `modes of ${id} ${start ?? ""}`, async () => {
-    if (!start) return [];
-    const to = new Date(Date.parse(start) + 1000).toISOString();
-    const query = { from: start, to, limit: 100 };
-    const found = await told(api.GET("/api/v1/assets/{asset}/modes", { params: { path: { asset }, query } }));
-    return found.items.filter((m) => m.record_id === id);
-  });
+  const modes = useAsset(asset, "/modes", { record: id, limit: 100 });
+  const found = modes.data?.items ?? [];
   if (record.data === undefined) return <Shown of={record}>{() => null}</Shown>;
   const data = record.data;
   const problem = data.problem?.["detail"];
@@ -213,11 +208,11 @@ export default function Record({ asset, id }: PageProps) {
       </div>
       <div class="grid">
         <Card title="Modes found">
-          <Shown of={modes} some={(rows) => rows.length} none={<p class="quiet">None yet.</p>}>
-            {(rows) => (
+          <Shown of={modes} none={<p class="quiet">None yet.</p>}>
+            {({ items }) => (
               <ModeTable
                 asset={asset}
-                modes={rows}
+                modes={items}
                 more={[{ title: "Status", show: (m) => <Light status={m.status} /> }]}
               />
             )}
@@ -229,9 +224,9 @@ export default function Record({ asset, id }: PageProps) {
         {data.raw_kept ? (
           <>
             <Signals record={data} />
-            <Spectrum record={data} modes={modes.data ?? []} />
+            <Spectrum record={data} modes={found} />
             <Spectrogram record={data} />
-            <Stabilisation record={data} modes={modes.data ?? []} again={record.again} />
+            <Stabilisation record={data} modes={found} again={record.again} />
           </>
         ) : (
           <p class="quiet">

@@ -45,11 +45,7 @@ export default function Records({ asset }: PageProps) {
   const status = asked("status") ?? "";
   const [limit, setLimit] = useState(MORE);
   const [from, to] = [asked("from"), asked("to")];
-  const query = {
-    limit,
-    ...(status ? { status: status as Status } : {}),
-    ...(from && to ? { from, to } : {}),
-  };
+  const query = { limit, ...(status ? { status: status as Status } : {}), ...(from && to ? { from, to } : {}) };
   const found = useAsset(asset, "/records", query);
   return (
     <>

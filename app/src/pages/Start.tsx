@@ -114,11 +114,7 @@ function Drafting({ files }: { files: readonly File[] }) {
   );
 }
 
-interface ConfirmingProps {
-  draft: Draft;
-  structure: File;
-  records: File[];
-}
+type ConfirmingProps = { draft: Draft; structure: File; records: File[] };
 
 function Confirming({ draft, structure, records }: ConfirmingProps) {
   const add = async (text: (name: string) => string): Promise<void> =>

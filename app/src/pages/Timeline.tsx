@@ -144,11 +144,7 @@ interface DrawnProps {
   open: (mode: Mode) => void;
 }
 
-interface Drawing {
-  label: string;
-  plot: PlotData;
-  pick: (index: number) => void;
-}
+type Drawing = { label: string; plot: PlotData; pick: (index: number) => void };
 
 function Drawn({ all, seen, marks, what, wanted, range, beside, asset, watch, open }: DrawnProps) {
   const key = marks.map((m) => m.words).join();

@@ -45,12 +45,7 @@ function Confirm({ asset, one, done }: { asset: string; one: Assumption; done: (
 /** So many are shown at first. */
 const FIRST = 4;
 
-interface ListProps {
-  asset: string;
-  known: Knowledge;
-  items: Assumption[];
-  done: (version: number) => void;
-}
+type ListProps = { asset: string; known: Knowledge; items: Assumption[]; done: (version: number) => void };
 
 const List = ({ asset, known, items, done }: ListProps) => (
   <ul class="list">

@@ -18,11 +18,7 @@ async function filesOf(entry: FileSystemEntry | null): Promise<File[]> {
   }
 }
 
-interface DropProps {
-  label: string;
-  onFiles: (files: File[]) => void;
-  children: ComponentChildren;
-}
+type DropProps = { label: string; onFiles: (files: File[]) => void; children: ComponentChildren };
 
 export function Drop({ label, onFiles, children }: DropProps) {
   const [over, setOver] = useState(false);

@@ -47,10 +47,7 @@ async function sent(f: Finding, act: Act, text: (name: string) => string): Promi
   return told(api.POST(`/api/v1/findings/{finding_id}/${act}`, { params, body } as never));
 }
 
-interface HandlingProps {
-  finding: Finding;
-  again: () => void;
-}
+type HandlingProps = { finding: Finding; again: () => void };
 
 /** Buttons, one of which opens a form. */
 export function Handling({ finding, again }: HandlingProps) {

@@ -1,5 +1,7 @@
 // A number for each cell of a grid, as a picture: brighter is more.
-import { useMemo, useState } from "preact/hooks";
+import { useMemo, useRef, useState } from "preact/hooks";
+import { colour, theme } from "../shell/theme";
+import { SaveMenu, sheetOf } from "./plot/SaveMenu";
 import { ticksOf } from "./plot/series";
 
 const [WIDTH, LEFT, RIGHT, TOP, BOTTOM] = [560, 66, 14, 10, 44];
@@ -10,6 +12,10 @@ type Ends = readonly [number, number];
 export interface HeatProps {
   title: string;
   unit: string;
+  /** What a cell holds, with its unit. */
+  zName: string;
+  /** Whether the axes count decades. */
+  decades?: boolean;
   /** Rows from the lowest y on. */
   cells: readonly (readonly (number | null)[])[];
   x: Ends;
@@ -44,13 +50,35 @@ function picture(cells: HeatProps["cells"]): string {
   return sheet.toDataURL();
 }
 
+/** One line a cell: its middle and what it holds. */
+function csvOf({ cells, x, y, decades, xName, yName, zName }: HeatProps): string {
+  const at = ([from, to]: Ends, k: number, n: number): number => {
+    const value = from + ((k + 0.5) / n) * (to - from);
+    return Number((decades ? 10 ** value : value).toPrecision(6));
+  };
+  const lines = cells.flatMap((row, j) =>
+    row.map((v, i) => [at(x, i, row.length), at(y, j, cells.length), v ?? ""].join(",")),
+  );
+  return [`"${xName}","${yName}","${zName}"`, ...lines].join("\n") + "\n";
+}
+
+async function sheet(svg: string, width: number, height: number): Promise<HTMLCanvasElement> {
+  const image = new Image();
+  image.src = `data:image/svg+xml,${encodeURIComponent(svg)}`;
+  await image.decode();
+  return sheetOf(image, 2 * width, 2 * height);
+}
+
 export function Heat(p: HeatProps) {
+  const drawn = useRef<SVGSVGElement>(null);
+  const [quiet] = [colour("quiet"), theme.value];
   const [read, setRead] = useState("");
   const href = useMemo(() => picture(p.cells), [p.cells]);
   const [width, height] = [p.width ?? WIDTH, p.height ?? 400];
   const [wide, high] = [width - LEFT - RIGHT, height - TOP - BOTTOM];
   const px = (v: number): number => LEFT + ((v - p.x[0]) / (p.x[1] - p.x[0] || 1)) * wide;
   const py = (v: number): number => height - BOTTOM - ((v - p.y[0]) / (p.y[1] - p.y[0] || 1)) * high;
+  const svg = (): string => (drawn.current ? new XMLSerializer().serializeToString(drawn.current) : "");
   const point = (event: MouseEvent): void => {
     const box = (event.currentTarget as Element).getBoundingClientRect();
     const [across, up] = [(event.clientX - box.left) / box.width, (box.bottom - event.clientY) / box.height];
@@ -63,8 +91,16 @@ export function Heat(p: HeatProps) {
         <b>{p.title}</b>
         <span class="unit">{p.unit}</span>
         <output>{read}</output>
+        <SaveMenu title={p.title} png={() => sheet(svg(), width, height)} svg={svg} csv={() => csvOf(p)} />
       </figcaption>
-      <svg class="surface" viewBox={`0 0 ${width} ${height}`} role="img" aria-label={`${p.title}, ${p.unit}`}>
+      <svg
+        ref={drawn}
+        class="surface"
+        {...{ width, height, viewBox: `0 0 ${width} ${height}` }}
+        {...{ fill: quiet, "font-size": 12, "font-family": "system-ui, sans-serif", "image-rendering": "pixelated" }}
+        role="img"
+        aria-label={`${p.title}, ${p.unit}`}
+      >
         <image
           {...{ href, x: LEFT, y: TOP, width: wide, height: high, preserveAspectRatio: "none" }}
           onMouseMove={point}
@@ -83,10 +119,18 @@ export function Heat(p: HeatProps) {
         <text x={width - RIGHT} y={height - 6} text-anchor="end">
           {p.xName} →
         </text>
-        <text x={LEFT + 6} y={TOP + 14} class="over">
+        <text x={LEFT + 6} y={TOP + 14} fill="#fff">
           ↑ {p.yName}
         </text>
-        {p.cross && <path class="cross" d={`M${px(p.cross[0]) - 9} ${py(p.cross[1])}h18m-9 -9v18`} />}
+        {p.cross && (
+          <path
+            class="cross"
+            stroke="#fff"
+            stroke-width="3"
+            fill="none"
+            d={`M${px(p.cross[0]) - 9} ${py(p.cross[1])}h18m-9 -9v18`}
+          />
+        )}
       </svg>
     </figure>
   );

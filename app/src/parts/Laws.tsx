@@ -28,6 +28,14 @@ const LAWS: Record<string, readonly Slider[]> = {
     ["f0", "Hz", -2, 1, -0.74],
   ],
 };
+const WORDS: Record<string, string> = {
+  k: "stiffness",
+  c: "dashpot",
+  k0: "static stiffness",
+  k1: "stiffness of the damping branch",
+  alpha: "springpot exponent",
+  f0: "reference frequency",
+};
 const numberOf = ([, unit]: Slider, at: number): number => (unit ? 10 ** at : at);
 
 function plotsOf(law: Schemas["LawOut"]): PlotData[] {
@@ -75,7 +83,7 @@ export function Laws() {
           at={at(s)}
           onMove={(to) => setPlaces({ ...places, [`${name} ${s[0]}`]: to })}
         >
-          {s[0]} <b>{quantity(numberOf(s, at(s)), s[1], 3)}</b>
+          {WORDS[s[0]]} {s[0]} <b>{quantity(numberOf(s, at(s)), s[1], 3)}</b>
         </Slide>
       ))}
       <Shown of={found}>

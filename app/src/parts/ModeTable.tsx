@@ -37,12 +37,7 @@ export function ModeTable<T extends SomeMode>({
           title: "Mode",
           show: (m) => <a href={`${assetUrl(asset, "timeline")}?mode=${m.label}`}>{words(m.label)}</a>,
         },
-        {
-          title: "Frequency",
-          unit: "Hz",
-          numeric: true,
-          show: (m) => frequency(m.frequency_hz, m.frequency_std_hz),
-        },
+        { title: "Frequency", unit: "Hz", numeric: true, show: (m) => frequency(m.frequency_hz, m.frequency_std_hz) },
         {
           title: "Damping ratio",
           unit: "%",

@@ -7,11 +7,7 @@ const KEPT_S = 240;
 const LANE_PX = [22, 56] as const;
 const NAMES_PX = 92;
 
-interface Piece {
-  from: number;
-  step: number;
-  values: readonly (number | null)[];
-}
+type Piece = { from: number; step: number; values: readonly (number | null)[] };
 
 /** What arrived of each channel, and the clock that it is shown by. */
 export class Roll {
@@ -33,42 +29,70 @@ export class Roll {
     this.channels.set(channel, pieces);
     pieces.push({ from, step, values });
     const end = from + step * values.length;
-    if (this.streams && Math.abs(end - this.now()) > 3) this.zero += end - this.now(); // a clock that jumped
+    if (this.streams && Math.abs(from - this.now()) > 3) this.zero += from - this.now(); // a clock that jumped
     while (pieces[0] && pieces[0].from + pieces[0].step * pieces[0].values.length < end - KEPT_S) pieces.shift();
   }
 }
 
 type Ink = CanvasRenderingContext2D;
-/** Draw a channel between its extremes, and say these. */
-function lane(ink: Ink, pieces: Piece[], now: number, span: number, box: number[]): string {
-  const [left = 0, top = 0, width = 0, height = 0] = box;
+type Sheet = { ink: Ink; now: number; span: number; left: number; right: number; ratio: number; quiet: string };
+interface Lane {
+  name: string;
+  paint: string;
+  low: number;
+  high: number;
+  /** The last sample that is drawn. */
+  until: number;
+}
+const SHRINKS = 0.7;
+
+/** Draw of a channel what came since the last frame; all of it, with its name, where its extremes are others. */
+function draw(on: Sheet, pieces: Piece[], lane: Lane, top: number, height: number): void {
+  const { ink, now, span, left, right, ratio } = on;
   let [least, most] = [Infinity, -Infinity];
-  const shown = pieces.map((p): [Piece, number, number] => [
-    p,
-    Math.max(0, Math.floor((now - span - p.from) / p.step)),
-    Math.min(p.values.length, Math.ceil((now - p.from) / p.step)),
-  ]);
-  for (const [p, a, b] of shown)
-    for (let i = a; i < b; i++) {
+  const place = (p: Piece, t: number): number =>
+    Math.min(p.values.length, Math.max(0, Math.floor((t - p.from) / p.step)));
+  for (const p of pieces)
+    for (let i = place(p, now - span), b = place(p, now); i < b; i++) {
       const v = p.values[i] ?? NaN;
       if (v < least) least = v;
       if (v > most) most = v;
     }
+  if (least < lane.low || most > lane.high || most - least < SHRINKS * (lane.high - lane.low)) {
+    [lane.low, lane.high, lane.until] = [least, most, -Infinity];
+    ink.clearRect(0, top, left, height);
+    ink.fillStyle = on.quiet;
+    ink.fillText(lane.name.slice(0, 13), 0, top + height / 2 + 4 * ratio);
+    const said = `${least.toPrecision(2)} to ${most.toPrecision(2)}`;
+    if (height > 40 * ratio && least < most) ink.fillText(said, 0, top + height / 2 + 18 * ratio);
+  }
+  const x = (t: number): number => right - ((right - left) * (now - t)) / span;
+  const edge = Math.max(left, Math.floor(x(lane.until)) - 1); // a line is wider than its samples
+  const from = now - ((right - edge) * span) / (right - left);
+  const scale = (0.9 * height) / (lane.high - lane.low || 1);
+  ink.save();
   ink.beginPath();
-  for (const [p, a, b] of shown) {
-    let pen = false;
-    for (let i = a; i < b; i++) {
+  ink.rect(edge, top, right, height);
+  ink.clip();
+  ink.clearRect(left, top, right, height);
+  ink.strokeStyle = lane.paint;
+  ink.beginPath();
+  let end = -Infinity;
+  for (const p of pieces) {
+    let pen = p.from - end < 1.5 * p.step;
+    for (let i = Math.max(0, place(p, from) - 1), b = place(p, now); i < b; i++) {
       const v = p.values[i];
-      const x = left + width * (1 - (now - p.from - i * p.step) / span);
-      if (typeof v === "number")
-        ink[pen ? "lineTo" : "moveTo"](x, top + height * (0.95 - (0.9 * (v - least)) / (most - least || 1)));
+      end = p.from + i * p.step;
+      if (typeof v === "number") ink[pen ? "lineTo" : "moveTo"](x(end), top + 0.95 * height - scale * (v - lane.low));
       pen = typeof v === "number";
     }
   }
   ink.stroke();
-  return least < most ? `${least.toPrecision(2)} to ${most.toPrecision(2)}` : "";
+  ink.restore();
+  if (end > lane.until) lane.until = end;
 }
 
+/** Signals that move to the left by whole pixels: of each frame only what is new is drawn. */
 export function Lanes({ roll, span }: { roll: Roll; span: number }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const dark = theme.value;
@@ -77,36 +101,40 @@ export function Lanes({ roll, span }: { roll: Roll; span: number }) {
     const ink = sheet?.getContext("2d");
     if (!sheet || !ink) return;
     const [quiet = "", ...paints] = ["quiet", ...PAINTS].map(colour); // asking costs a layout
-    let frame = 0;
-    let count = 0;
-    const draw = (): void => {
+    const ratio = devicePixelRatio;
+    const left = Math.round(NAMES_PX * ratio);
+    let [frame, count, column, was] = [0, 0, 0, ""];
+    let lanes: Lane[] = [];
+    const next = (): void => {
       const names = [...roll.channels.keys()];
-      const each = Math.max(LANE_PX[0], Math.min(LANE_PX[1], 620 / Math.max(names.length, 1)));
-      const [width, height] = [sheet.clientWidth, Math.max(each * names.length, 120)];
-      const ratio = devicePixelRatio;
-      if (sheet.width !== Math.round(width * ratio) || sheet.height !== Math.round(height * ratio)) {
-        [sheet.width, sheet.height] = [Math.round(width * ratio), Math.round(height * ratio)];
-        sheet.style.height = `${height}px`;
+      const each = Math.round(ratio * Math.max(LANE_PX[0], Math.min(LANE_PX[1], 620 / Math.max(names.length, 1))));
+      const [width, height] = [Math.round(sheet.clientWidth * ratio), Math.max(each * names.length, 120 * ratio)];
+      const step = span / (width - left);
+      const moved = Math.floor(roll.now() / step) - column;
+      column += moved;
+      const shown = [width, height, roll.streams, ...names].join();
+      if (shown !== was || moved < 0) {
+        [sheet.width, sheet.height, was] = [width, height, shown]; // which clears it
+        sheet.style.height = `${height / ratio}px`;
+        [ink.font, ink.lineWidth] = [`${12 * ratio}px system-ui, sans-serif`, ratio];
+        lanes = names.map((name, k) => {
+          return { name, paint: paints[k % paints.length] ?? quiet, low: 0, high: -1, until: -Infinity };
+        });
+      } else if (moved) {
+        ink.save();
+        ink.beginPath();
+        ink.rect(left, 0, width, height);
+        ink.clip();
+        ink.globalCompositeOperation = "copy";
+        ink.drawImage(sheet, -moved, 0);
+        ink.restore();
       }
-      ink.setTransform(ratio, 0, 0, ratio, 0, 0);
-      ink.clearRect(0, 0, width, height);
-      ink.font = "12px system-ui, sans-serif";
-      names.forEach((name, k) => {
-        ink.strokeStyle = paints[k % paints.length] ?? quiet;
-        const said = lane(ink, roll.channels.get(name) ?? [], roll.now(), span, [
-          NAMES_PX,
-          k * each,
-          width - NAMES_PX,
-          each,
-        ]);
-        ink.fillStyle = quiet;
-        ink.fillText(name.slice(0, 13), 0, (k + 0.5) * each + 4);
-        if (each > 40) ink.fillText(said, 0, (k + 0.5) * each + 18);
-      });
+      const on = { ink, now: column * step, span, left, right: width, ratio, quiet };
+      lanes.forEach((lane, k) => draw(on, roll.channels.get(lane.name) ?? [], lane, k * each, each));
       sheet.dataset["frames"] = String(++count);
-      frame = requestAnimationFrame(draw);
+      frame = requestAnimationFrame(next);
     };
-    draw();
+    next();
     return () => cancelAnimationFrame(frame);
   }, [roll, span, dark]);
   return <canvas class="lanes" ref={canvas} role="img" aria-label={`Signals of the last ${span} s`} />;

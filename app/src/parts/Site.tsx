@@ -45,13 +45,7 @@ function drawn(assets: readonly Asset[]) {
     return { asset, x: EDGE + column * STEP, y: below + EDGE + 8 + row * STEP };
   });
   const rows = Math.ceil(placed / across);
-  return {
-    marks,
-    scale: at.size > 1 ? scale : 0,
-    below,
-    placed,
-    height: below + (placed && rows * STEP + EDGE),
-  };
+  return { marks, scale: at.size > 1 ? scale : 0, below, placed, height: below + (placed && rows * STEP + EDGE) };
 }
 
 /** 1, 2 or 5 times a power of ten kilometres, as long as fits a fifth of the width. */

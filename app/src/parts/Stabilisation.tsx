@@ -26,12 +26,7 @@ function sorted(poles: Poles, picks: readonly Pick_[]): Record<(typeof KIND)[num
   return out;
 }
 
-interface ChartProps {
-  poles: Poles;
-  picks: Pick_[];
-  onPick: (i: number) => void;
-  modes: readonly Mode[];
-}
+type ChartProps = { poles: Poles; picks: Pick_[]; onPick: (i: number) => void; modes: readonly Mode[] };
 
 function Chart({ poles, picks, onPick, modes }: ChartProps) {
   const groups = useMemo(() => sorted(poles, picks), [poles, picks]);
@@ -70,11 +65,7 @@ const kept = (record: RecordOut): Pick_[] => {
   return Array.isArray(poles) ? (poles as Pick_[]) : [];
 };
 
-interface OfRecord {
-  record: RecordOut;
-  modes: readonly Mode[];
-  again: () => void;
-}
+type OfRecord = { record: RecordOut; modes: readonly Mode[]; again: () => void };
 
 export function Stabilisation(of: OfRecord) {
   const [open, setOpen] = useState(false);

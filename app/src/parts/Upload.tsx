@@ -4,12 +4,7 @@ import { me, problemOf } from "../api/client";
 import { assetUrl } from "../shell/place";
 import { Drop } from "./Drop";
 
-export interface Sent {
-  name: string;
-  said: string;
-  record?: string;
-  failed: boolean;
-}
+export type Sent = { name: string; said: string; record?: string; failed: boolean };
 
 export async function send(asset: string, file: File, description: File | undefined): Promise<Sent> {
   const form = new FormData();
@@ -23,11 +18,7 @@ export async function send(asset: string, file: File, description: File | undefi
     const body = (await answer.json().catch(() => ({}))) as { record_id?: string; records?: number };
     if (!answer.ok) {
       const problem = problemOf(answer.status, body);
-      return {
-        name: file.name,
-        said: [problem.message, problem.remedy].filter(Boolean).join(". "),
-        failed: true,
-      };
+      return { name: file.name, said: [problem.message, problem.remedy].filter(Boolean).join(". "), failed: true };
     }
     const said = answer.status === 200 ? "known already" : "taken; it is observed soon";
     return { name: file.name, said, failed: false, ...(body.record_id ? { record: body.record_id } : {}) };

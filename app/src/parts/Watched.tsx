@@ -18,11 +18,7 @@ const noon = (date: string): number => seconds(`${date}T12:00:00Z`);
 const title = (q: Schemas["WatchedQuantity"]): string =>
   words(q.label) + { frequency: "", damping: ", damping", angle: ", direction" }[q.kind];
 
-interface Planted {
-  by: number;
-  from: number;
-  name: string;
-}
+type Planted = { by: number; from: number; name: string };
 
 /** One quantity after its conditions; with a change planted from a day on. */
 export function restPlot(watch: Watch, index: number, marks: Mark[], planted?: Planted): PlotData {
@@ -63,12 +59,7 @@ const Column = ({ plots, together }: { plots: PlotData[]; together: string }) =>
   </>
 );
 
-interface RestsProps {
-  watch: Watch;
-  marks: Mark[];
-  kind: string;
-  label: string;
-}
+type RestsProps = { watch: Watch; marks: Mark[]; kind: string; label: string };
 
 export function Rests({ watch, marks, kind, label }: RestsProps) {
   const key = marks.map((m) => m.words).join();
@@ -116,14 +107,7 @@ function Drawn({ watch, marks }: { watch: Watch; marks: Mark[] }) {
       yName: "ln R",
       series: [
         { name: "ln R", colour: "blue", kind: "line", x, y: watch.ln_evidence },
-        {
-          name: "alarm",
-          colour: "alarm",
-          kind: "line",
-          dashed: true,
-          x,
-          y: x.map(() => watch.threshold_ln ?? null),
-        },
+        { name: "alarm", colour: "alarm", kind: "line", dashed: true, x, y: x.map(() => watch.threshold_ln ?? null) },
       ],
       marks,
     };

@@ -11,6 +11,7 @@ import { Turbine } from "../pages/Turbine";
 import { later } from "../parts/later";
 import { Empty } from "../parts/Shown";
 import { assetUrl, go, place, route, type PageProps } from "./place";
+import { printPage, savePage } from "./paper";
 import { switchTheme, theme } from "./theme";
 
 /** Pages with plots come when they are first asked for. */
@@ -77,8 +78,11 @@ function Top() {
           <span class={`link-state ${state}`} role="status" title={`Connection: ${state}`}>
             <span>{state === "live" ? "live" : state === "lost" ? "no connection" : "connecting"}</span>
           </span>
-          <button type="button" class="wide-only" onClick={() => print()}>
+          <button type="button" class="wide-only" onClick={printPage}>
             Print or PDF
+          </button>
+          <button type="button" class="wide-only" onClick={savePage}>
+            HTML
           </button>
           <button
             type="button"

@@ -2,10 +2,7 @@
 import { computed, signal } from "@preact/signals";
 
 /** What the address tells a page. */
-export interface PageProps {
-  asset: string;
-  id: string;
-}
+export type PageProps = { asset: string; id: string };
 
 const here = () => ({ path: location.pathname, query: new URLSearchParams(location.search) });
 export const place = signal(here());
@@ -59,11 +56,7 @@ document.addEventListener("click", (event) => {
   go(link.pathname + link.search);
 });
 
-export interface Route {
-  page: string;
-  asset: string;
-  id: string;
-}
+export type Route = { page: string; asset: string; id: string };
 
 /** /assets/wtg/records/1a2b is the page "record" of "wtg"; pages of no turbine have no asset. */
 export function routeOf(path: string): Route {

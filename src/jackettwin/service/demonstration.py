@@ -84,6 +84,8 @@ def arrive(service: Place, record: Record) -> bool:
     """Take a record as if it had been sent; return whether it is new. Of a known one the samples are kept."""
     parsed = stored(record, ASSET, service.settings.store)
     with writing(service.database) as connection:
+        if records.find_record(connection, ASSET, parsed.record_id) is not None:
+            return False  # what it says is shipped, too
         return accept(service.now(), connection, ASSET, parsed, record.name).new
 
 

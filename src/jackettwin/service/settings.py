@@ -109,6 +109,9 @@ class ServiceSettings(BaseSettings):
     it."""
     observe_limit_s: float = 600.0
     """Time limit for observing a record."""
+    study_limit_s: float = 3600.0
+    """The same for estimating what all records of a turbine say: two minutes of CPU time, which on a loaded
+    machine take many times as long."""
     worker_memory_bytes: int = 3 * 2**30
     """Memory limit of one worker, for reading a file and for observing; a worker above it is ended."""
 

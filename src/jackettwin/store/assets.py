@@ -72,13 +72,17 @@ def unpack(bundle: bytes) -> dict[str, bytes]:
 
 
 def lay_out(bundle: bytes, place: Path) -> None:
-    """Write the files of a bundle into a folder, completely or not at all."""
+    """Write the files of a bundle into a folder, completely or not at all, also if others do so at once."""
     with atomic_folder(place) as temporary:
         for name, content in unpack(bundle).items():
             (temporary / name).parent.mkdir(parents=True, exist_ok=True)
             (temporary / name).write_bytes(content)
-        temporary.rename(place)
-        temporary.mkdir()
+        try:
+            temporary.rename(place)
+        except OSError:
+            if not place.is_dir():
+                raise
+        temporary.mkdir(exist_ok=True)
 
 
 def add_version(

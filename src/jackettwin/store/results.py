@@ -232,8 +232,9 @@ def list_modes(
     limit: int | None = 1000,
     state: str | None = None,
     least_known: bool = False,
+    record_id: str | None = None,
 ) -> list[Mapping[str, Any]]:
-    """Return modes over time, in the order of their identification; of records in a state of operation.
+    """Return modes over time, in the order of their identification; of a record, or of a state of operation.
 
     With ``least_known``, the mode whose frequency has the largest relative standard deviation comes first.
     """
@@ -243,6 +244,8 @@ def list_modes(
     query = query.order_by(modes.c.id)
     if label is not None:
         query = query.where(modes.c.label == label)
+    if record_id is not None:
+        query = query.where(modes.c.record_id == record_id)
     if after is not None:
         query = query.where(modes.c.id > after)
     query = of_state(query, modes.c.record_id, asset, state)

@@ -4,9 +4,10 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { colour, theme } from "../../shell/theme";
 import { scientific } from "../../words/numbers";
-import { SaveMenu } from "./SaveMenu";
+import { SaveMenu, sheetOf } from "./SaveMenu";
 import type { PlotData, Range, Series } from "./series";
-import { extentOf, readX, spanOf, ticksOf } from "./series";
+import { csvOf, extentOf, readX, spanOf, ticksOf } from "./series";
+import { svgOf } from "./svg";
 import { MANY, under } from "./under";
 
 interface PlotProps {
@@ -95,13 +96,7 @@ function options(
       series.push({
         stroke: paint,
         paths: () => null,
-        points: {
-          show: n <= MANY,
-          size: n > 200 ? 4 : 6,
-          fill: paint,
-          stroke: paint,
-          width: 0,
-        },
+        points: { show: n <= MANY, size: n > 200 ? 4 : 6, fill: paint, stroke: paint, width: 0 },
       });
     } else {
       series.push({
@@ -122,10 +117,7 @@ function options(
     tzDate: (at) => uPlot.tzDate(new Date(at * 1e3), "Etc/UTC"),
     scales: {
       x: { time: data.time, distr: data.logX ? 3 : 1, range: () => shown() },
-      y: {
-        distr: data.log ? 3 : 1,
-        range: () => spanOf(data, shown()),
-      },
+      y: { distr: data.log ? 3 : 1, range: () => spanOf(data, shown()) },
     },
     axes: [
       { ...axis, space: 70, ...(data.time ? { values: TIMES } : ownTicks(data.logX)) },
@@ -272,7 +264,12 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
             ))}
         </span>
         <output>{read}</output>
-        <SaveMenu data={data} range={shown} canvas={() => chart.current?.ctx.canvas} />
+        <SaveMenu
+          title={data.title}
+          png={() => drawnOn(chart.current?.ctx.canvas)}
+          svg={() => svgOf(data, shown, colour)}
+          csv={() => csvOf(data)}
+        />
       </figcaption>
       <div
         ref={root}
@@ -284,6 +281,9 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
     </figure>
   );
 }
+
+const drawnOn = (sheet?: HTMLCanvasElement): HTMLCanvasElement | null =>
+  sheet ? sheetOf(sheet, sheet.width, sheet.height) : null;
 
 /** Where the wheel leads: sideways (or with shift) along, with control nearer or farther; else nowhere. */
 function wheeled(u: uPlot, event: WheelEvent): Range | null {
@@ -308,7 +308,9 @@ const ownTicks = (log = false): uPlot.Axis => ({
 });
 const axisNumber = (v: number): string =>
   v !== 0 && (Math.abs(v) < 1e-3 || Math.abs(v) >= 1e6)
-    ? scientific(v, 1).replace(/^1 × /, "")
+    ? scientific(v, 3)
+        .replace(/\.?0+ ×/, " ×")
+        .replace(/^1 × /, "")
     : String(Number(v.toPrecision(6)));
 const digits = (value: number): string => String(Number(value.toPrecision(5)));
 

@@ -1,44 +1,36 @@
 // A plot to take away: PNG as it is seen, SVG for documents, CSV for other programs.
+import { save } from "../../shell/paper";
 import { colour } from "../../shell/theme";
-import type { PlotData, Range } from "./series";
-import { csvOf } from "./series";
-import { svgOf } from "./svg";
 
-function save(content: Blob, name: string): void {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(content);
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+/** A picture on a sheet of our paper. */
+export function sheetOf(drawn: CanvasImageSource, width: number, height: number): HTMLCanvasElement {
+  const sheet = document.createElement("canvas");
+  [sheet.width, sheet.height] = [width, height];
+  const ink = sheet.getContext("2d");
+  if (!ink) return sheet;
+  ink.fillStyle = colour("paper");
+  ink.fillRect(0, 0, width, height);
+  ink.drawImage(drawn, 0, 0, width, height);
+  return sheet;
 }
 
 interface SaveMenuProps {
-  data: PlotData;
-  range: Range;
-  canvas: () => HTMLCanvasElement | undefined;
+  title: string;
+  png: () => Promise<HTMLCanvasElement> | HTMLCanvasElement | null;
+  svg: () => string;
+  csv: () => string;
 }
 
-export function SaveMenu({ data, range, canvas }: SaveMenuProps) {
-  const name = data.title.toLowerCase().replace(/[^a-z0-9]+/g, "-");
-  const png = (): void => {
-    const drawn = canvas();
-    const sheet = document.createElement("canvas");
-    if (!drawn) return;
-    [sheet.width, sheet.height] = [drawn.width, drawn.height];
-    const ink = sheet.getContext("2d");
-    if (!ink) return;
-    ink.fillStyle = colour("paper");
-    ink.fillRect(0, 0, sheet.width, sheet.height);
-    ink.drawImage(drawn, 0, 0);
-    sheet.toBlob((blob) => blob && save(blob, `${name}.png`));
-  };
+export function SaveMenu({ title, png, svg, csv }: SaveMenuProps) {
+  const name = title.toLowerCase().replace(/[^a-z0-9]+/g, "-");
+  const drawn = async (): Promise<void> => (await png())?.toBlob((blob) => blob && save(blob, `${name}.png`));
   const kinds: [string, () => void][] = [
-    ["PNG", png],
-    ["SVG", () => save(new Blob([svgOf(data, range, colour)], { type: "image/svg+xml" }), `${name}.svg`)],
-    ["CSV", () => save(new Blob([csvOf(data)], { type: "text/csv" }), `${name}.csv`)],
+    ["PNG", () => void drawn()],
+    ["SVG", () => save(new Blob([svg()], { type: "image/svg+xml" }), `${name}.svg`)],
+    ["CSV", () => save(new Blob([csv()], { type: "text/csv" }), `${name}.csv`)],
   ];
   return (
-    <span class="save" role="group" aria-label={`Save ${data.title}`}>
+    <span class="save" role="group" aria-label={`Save ${title}`}>
       {kinds.map(([kind, act]) => (
         <button type="button" key={kind} onClick={act}>
           {kind}

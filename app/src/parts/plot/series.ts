@@ -16,12 +16,7 @@ export interface Series {
 }
 
 /** A moment, or a stretch, that something is said of. */
-export interface Mark {
-  x: number;
-  to?: number;
-  words: string;
-  colour: string;
-}
+export type Mark = { x: number; to?: number; words: string; colour: string };
 
 export interface PlotData {
   title: string;
@@ -113,8 +108,11 @@ export function ticksOf([low, high]: Range, most: number, log = false): number[]
   }
   const raw = (high - low) / most;
   const size = 10 ** Math.floor(Math.log10(raw));
-  const step = size * ([1, 2, 5, 10].find((m) => m * size >= raw) ?? 10);
+  const count = (step: number): number => Math.floor(high / step + 1e-9) - Math.ceil(low / step) + 1;
+  const sizes = [0.5, 1, 2, 5, 10].map((m) => m * size);
+  const k = sizes.findIndex((one) => one >= raw);
+  const step = sizes[count(sizes[k] ?? size) < 2 ? k - 1 : k] ?? size; // one tick alone tells nothing of the scale
   const first = Math.ceil(low / step);
-  const many = Math.floor(high / step + 1e-9) - first + 1; // counted, not added up to: a step may be lost in what it is added to
+  const many = count(step); // counted, not added up to: a step may be lost in what it is added to
   return Array.from({ length: many }, (_, k) => Number(((first + k) * step).toPrecision(12)));
 }

@@ -53,8 +53,8 @@ def build_follow_page(followed: Followed, path: Path) -> Path:
 
 
 def stiffness_section(followed: Followed) -> PageSection:
-    """Return the section on stiffness through time, with which the report of a monitored twin begins."""
-    said = "The results below are of all records together, as if the stiffness had been the same on all days."
+    """Return the section on stiffness through time of a monitored twin, after the answers of its report."""
+    said = "All other results are of all records together, as if the stiffness had been the same on all days."
     return PageSection(
         "Stiffness through time", (Text((followed.stiffness_statement, said)), *_in_time(followed))
     )

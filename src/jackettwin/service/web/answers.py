@@ -51,6 +51,7 @@ def modes(
     limit: int,
     state: str | None,
     least_known: bool = False,
+    record: str | None = None,
 ) -> Page[ModeOut]:
     """Return a page of modes through time, or the modes that are known least, which have one page only."""
     chosen: dict[str, Any] = {
@@ -61,6 +62,7 @@ def modes(
         "limit": limit + 1,
         "state": state,
         "least_known": least_known,
+        "record_id": record,
     }
     rows = results.list_modes(connection, version.asset, version.model_hash, **chosen)
     return _page(rows[:limit] if least_known else rows, limit, _mode_out)

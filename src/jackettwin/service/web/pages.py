@@ -19,12 +19,14 @@ router = APIRouter(include_in_schema=False, route_class=Route)
 
 _SANDBOX = {
     "Content-Security-Policy": (
-        "sandbox allow-scripts allow-downloads; default-src 'none'; style-src 'unsafe-inline'; "
+        "sandbox allow-scripts allow-downloads allow-modals; default-src 'none'; style-src 'unsafe-inline'; "
         "script-src 'unsafe-inline' 'unsafe-eval' blob:; img-src data: blob:; font-src data:; "
         "worker-src blob:; frame-src blob: data: 'self'; frame-ancestors 'self'"
     ),
     "X-Frame-Options": "SAMEORIGIN",
 }
+_PRINTS = b"<script>onmessage = (asked) => asked.data === 'print' && print()</script>"
+"""Lets the page that frames a report print it whole: a browser prints of a frame what is in sight."""
 _KINDS = {"html": "text/html", "js": "text/javascript", "css": "text/css"}
 _FOR_EVER = {"Cache-Control": "public, max-age=31536000, immutable"}
 _UNBUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>jackettwin</title>
@@ -63,7 +65,7 @@ def report(
         people.note_down(
             noting, who.name, "download", f"report of {asset}/{known.version}", "ok", parts.now()
         )
-    return HTMLResponse(gzip.decompress(page), headers=_SANDBOX)
+    return HTMLResponse(gzip.decompress(page) + _PRINTS, headers=_SANDBOX)
 
 
 @router.get("/window/assets/{name}", responses=answers(404))

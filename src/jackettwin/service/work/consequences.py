@@ -236,7 +236,7 @@ def _alarm_unknown(connection: Connection, job: work.Job, reason: str, now: date
     journal.tell(connection, "finding", job.asset, row, now)
 
 
-_TRY_AGAIN = {"field": "record", "remedy": "try again with POST /jobs/{id}/retry"}
+_TRY_AGAIN = {"field": "record", "remedy": "try the job again, on the page of jobs"}
 
 
 def cancel(connection: Connection, service: Place, job: work.Job, by: str) -> bool:

@@ -262,8 +262,9 @@ class Dispatcher(Thread):
         return True
 
     def _end_overrun(self) -> None:
-        limit = self.service.settings.observe_limit_s
+        settings = self.service.settings
         for running in list(self._running.values()):
+            limit = settings.study_limit_s if running.job.kind == work.KNOW else settings.observe_limit_s
             if self.service.cluster.has_begun(running.future, limit) and not running.future.done():
                 reason = f"took longer than {limit:g} s"
                 self.service.cluster.end(running.future)

@@ -246,9 +246,9 @@ def _budget(mode: ModeAnswer) -> dict[str, Any]:
 
 
 def report(sections: Sequence[PageSection], followed: Followed | None, *, title: str, subtitle: str) -> bytes:
-    """Return the compressed page of some sections, beginning with the stiffness over time."""
+    """Return the compressed page of some sections, with the stiffness over time after the first one."""
     if followed is not None and followed.stiffness_statement:
-        sections = [stiffness_section(followed), *sections]
+        sections = [*sections[:1], stiffness_section(followed), *sections[1:]]
     text = page_text(sections, title=title, subtitle=f"{subtitle} · jackettwin {__version__}")
     return gzip.compress(text.encode(), mtime=0)
 

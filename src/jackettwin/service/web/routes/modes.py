@@ -61,6 +61,7 @@ def modes(
     label: Annotated[str | None, Query(max_length=64)] = None,
     since: Annotated[datetime | None, Query(alias="from")] = None,
     until: Annotated[datetime | None, Query(alias="to")] = None,
+    record: Annotated[str | None, Query(max_length=64, description="Only those of this record.")] = None,
     state: State = None,
     cursor: Cursor = None,
     limit: Limit = 1000,
@@ -69,7 +70,9 @@ def modes(
     """List the modes of every record, in the order in which they were found."""
     version = known_asset(connection, asset)
     window = (signals.with_zone(since, "from"), signals.with_zone(until, "to"))
-    return said.modes(connection, version, label, *window, cursor, limit, state, order == "least_known")
+    return said.modes(
+        connection, version, label, *window, cursor, limit, state, order == "least_known", record
+    )
 
 
 @router.get("/assets/{asset}/modes/bins", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))

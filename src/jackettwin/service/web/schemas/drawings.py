@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, computed_field
+
+from jackettwin.soil import parameter_words
 
 Drawn = list[float | None]
 """Values of a curve; null for missing ones."""
@@ -31,6 +33,12 @@ class LocusOut(BaseModel):
     values: list[float]
     origin: int
     branches: list[BranchOut]
+
+    @computed_field  # type: ignore[prop-decorator]
+    @property
+    def words(self) -> str:
+        """The parameter's name as text."""
+        return parameter_words(self.parameter)
 
 
 class AxisOut(BaseModel):
@@ -65,6 +73,12 @@ class ExploredValue(BaseModel):
     value: float
     low: float
     high: float
+
+    @computed_field  # type: ignore[prop-decorator]
+    @property
+    def words(self) -> str:
+        """Its name as text."""
+        return parameter_words(self.name)
 
 
 class ExploredOut(BaseModel):
