@@ -16,7 +16,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
 from sqlalchemy import Connection, select
 from sqlalchemy.exc import OperationalError
-from tests.service.conftest import description, hour, make_service, record_file, turn
+from tests.service.conftest import NOON, Done, description, hour, make_service, record_file, turn
 from tests.store.conftest import fresh
 
 from jackettwin.findings import Finding
@@ -361,3 +361,23 @@ def test_a_record_of_another_turbine_is_said_and_counts_nowhere(service: Service
         and "none of its modes" in newest.problem["detail"]
     )
     assert said["warning"] >= 1 and number == 1
+
+
+def test_a_study_may_take_longer_than_a_record(kept: Service, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of two that began 700 s ago the record is tried again, with its reason; the study goes on."""
+    monkeypatch.setattr(kept.cluster, "has_begun", lambda future, ago_s=0.0: ago_s <= 700.0)
+    monkeypatch.setattr(Done, "done", lambda self: False)
+    dispatcher = Dispatcher(kept)
+    with writing(kept.database) as connection:
+        version = assets.found_version(connection, "wtg")
+        for kind in (work.OBSERVE, work.KNOW):
+            work.enqueue(connection, version, "longest", NOON, kind=kind)
+            (job,) = work.lease(connection, kept.server_id, 1, NOON, kind=kind)
+            dispatcher._running[job.id] = dispatch._Running(job, Done(), 0.0)
+    dispatcher._end_overrun()
+    assert [running.job.kind for running in dispatcher._running.values()] == [work.KNOW]
+    with reading(kept.database) as connection:
+        study, record = work.list_jobs(connection, limit=2)
+    assert (study.state, record.state) == ("leased", "queued")
+    assert record.reason and record.reason["detail"] == "took longer than 600 s"
+    forget(kept)

@@ -117,8 +117,10 @@ def test_what_was_deleted_is_not_there(client: TestClient, what: str) -> None:
 
 def test_modes_are_asked_for_by_state_of_operation(client: TestClient, service: Service) -> None:
     """By the first word of it, in rows and in bins alike; a wildcard of the database is a letter."""
-    for k, state in enumerate(("parked, pitch 90 deg", "idling", "parked")):
-        upload(client, k, conditions={"state": state})
+    states = ("parked, pitch 90 deg", "idling", "parked")
+    uploaded = [
+        upload(client, k, conditions={"state": state}).json()["record_id"] for k, state in enumerate(states)
+    ]
     turn(service, 3)
     modes = "/api/v1/assets/wtg/modes"
 
@@ -133,6 +135,8 @@ def test_modes_are_asked_for_by_state_of_operation(client: TestClient, service: 
         (0, 0),
         (0, 0),
     ]
+    own = client.get(modes, params={"record": uploaded[1]}).json()["items"]
+    assert len(own) == 2 and {row["record_id"] for row in own} == {uploaded[1]}
 
 
 def test_members_are_coloured_by_the_worst_weld_of_their_side() -> None:

@@ -3,6 +3,7 @@
 import time
 from collections import Counter
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import Any
 
 from sqlalchemy import Connection, Engine
@@ -20,6 +21,14 @@ def asked(connection: Connection, record: str, model_hash: str = "m", **how: Any
 def with_asset(database: Engine) -> None:
     with writing(database) as c:
         assets.add_version(c, "wtg", {"twin.yaml": b""}, model_hash="m", settings_hash="s", by="me", now=NOW)
+
+
+def test_the_files_of_a_model_are_laid_out_by_two_at_once(tmp_path: Path) -> None:
+    """Who comes second finds a folder that is not empty, and leaves what is in it."""
+    for _ in range(2):
+        assets.lay_out(assets.pack({"twin.yaml": b"1", "soil/a.csv": b"2"}), tmp_path / "twin")
+    found = {path.name: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    assert found == {"twin.yaml": b"1", "a.csv": b"2"}
 
 
 def test_the_same_key_is_the_same_work(database: Engine) -> None:
