@@ -10,9 +10,10 @@ from jackettwin.files import validate
 from jackettwin.identification import IdentificationSettings, identify
 from jackettwin.identification.frequency_domain.plscf import plscf_poles
 from jackettwin.identification.mode_shapes import mac
+from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.subspace.ssi_cov import frequency_and_damping, order_poles
 from jackettwin.identification.subspace.ssi_dat import ssi_dat
-from jackettwin.identification.synthetic import simulate
+from jackettwin.identification.synthetic import ModalSystem, simulate
 
 RATE = 10.0
 F = np.array([0.5, 0.56, 1.7])
@@ -115,3 +116,32 @@ def test_bad_choices_are_refused(values, message):
 def test_a_reference_that_is_not_there_is_refused(tower, rng):
     with pytest.raises(InputError, match="no such channel"):
         identify(simulate(tower, rng), IdentificationSettings(reference_channels=("b0",)))
+
+
+@pytest.mark.parametrize("method", ["ssi-cov", "ssi-dat", "plscf"])
+def test_an_exactly_double_mode_is_two_modes_in_one_plane(method):
+    """A symmetric tower has no directions of its own: groups of poles by shape are fragments of the pair.
+
+    Wind along x drives one direction three times as much, as in the field.
+    """
+    bending = np.array([[1.0, 0.5, 0.15], [-0.6, 1.0, 0.8]])
+    shapes = np.kron(bending, np.eye(2))
+    pairs = ModalSystem(
+        frequency_hz=np.array([0.25, 0.25, 1.1, 1.1]),
+        damping_ratio=np.array([0.008, 0.008, 0.012, 0.012]),
+        mode_shapes=shapes,
+        force=np.diag([9.0, 1.0, 0.9, 0.1]),
+    )
+    record = simulate(pairs, np.random.default_rng(0))
+    result = identify(record, IdentificationSettings(method=method))
+    for k in (0, 2):
+        f, zeta = pairs.frequency_hz[k], pairs.damping_ratio[k]
+        limit = 6 * np.sqrt(zeta / (2 * np.pi * f * 600))
+        found = [m for m in result.modes if abs(m.frequency_hz / f - 1.0) < limit]
+        assert len(found) == 2
+        if method == "ssi-cov":
+            assert [m.status for m in found] == [ModeStatus.OK] * 2
+        plane = shapes[k : k + 2] / np.linalg.norm(shapes[k : k + 2], axis=1, keepdims=True)
+        for mode in found:
+            own = mode.mode_shape / np.linalg.norm(mode.mode_shape)
+            assert np.linalg.norm(plane @ own) ** 2 > 0.95

@@ -17,6 +17,16 @@ if TYPE_CHECKING:
     from jackettwin.identification.estimate import Stabilisation
 
 
+SAME_FREQUENCY = 4.0
+"""Distance of two clusters, in half bandwidths of the larger, within which they may be of a double mode."""
+SAME_DAMPING = 4.0
+"""Ratio of damping within which they may be."""
+OFTEN = 0.8
+"""Share of the model orders in which both members of a pair appear."""
+IN_PLANE = 0.95
+"""Least share of the shapes of a double mode, squared, that lies in one plane."""
+ACROSS = 0.1
+"""Least share along the second axis of the plane; shapes of one mode have one axis."""
 DIGITS = 9
 """Decimals of the distance of a pole from the median of its group."""
 
@@ -54,12 +64,16 @@ def clusters(
     scale : (n_channels,)
         Standard deviations of the channels. The MAC is computed with shapes divided by them, so that channels
         in other units or at places of little motion have the same weight.
+
+    Two modes of one frequency, as symmetric structures have, share a plane of shapes: each model order has
+    two poles with directions of its own in it, so that groups by shape are fragments. They become two.
     """
     n_poles = len(poles.order)
     if n_poles < 2:
         return []
     apart = _distances(poles, scale)
     found = [_cluster(poles, members, orders) for members in average_linkage(apart, distance)]
+    found = _double_modes_joined(poles, found, orders, scale)
     return sorted(found, key=lambda c: float(poles.frequency_hz[c.representative]))
 
 
@@ -69,6 +83,48 @@ def _distances(poles: Stabilisation, scale: FloatArray) -> FloatArray:
     size = np.maximum.outer(np.abs(lam), np.abs(lam))
     shapes = poles.mode_shape / scale
     return np.asarray(np.abs(lam[:, None] - lam) / size + 1.0 - mac(shapes, shapes))
+
+
+def _double_modes_joined(
+    poles: Stabilisation, found: list[Cluster], orders: Sequence[int], scale: FloatArray
+) -> list[Cluster]:
+    """Return the clusters with the fragments of every double mode joined into two, by frequency."""
+    left, out = sorted(found, key=lambda c: -len(c.poles)), list[Cluster]()
+    f, zeta = poles.frequency_hz, poles.damping_ratio
+    while left:
+        k = left[0].representative
+        at = np.array([c.representative for c in left])
+        near = np.abs(f[at] - f[k]) < SAME_FREQUENCY * zeta[k] * f[k]
+        near &= np.abs(np.log(zeta[at] / zeta[k])) < np.log(SAME_DAMPING)
+        family = [c for c, is_near in zip(left, near, strict=True) if is_near]
+        pair = _pair(poles, family, orders, scale) if len(family) > 2 else []
+        out += pair or left[:1]
+        left = [c for c, is_near in zip(left, near, strict=True) if not is_near] if pair else left[1:]
+    return out
+
+
+def _pair(
+    poles: Stabilisation, family: list[Cluster], orders: Sequence[int], scale: FloatArray
+) -> list[Cluster]:
+    """Return both members of the double mode that neighbouring clusters are fragments of; [] if of none."""
+    members = np.concatenate([c.poles for c in family])
+    by_order = [members[poles.order[members] == order] for order in orders]
+    twice = [k for k, own in enumerate(by_order) if len(own) > 1]
+    if not twice:
+        return []
+    since = [int(order) for order in orders[twice[0] :]]
+    whole = np.intersect1d(poles.order[family[0].poles], poles.order[family[1].poles])
+    if len(twice) < OFTEN * len(since) or len(whole) >= OFTEN * len(since):
+        return []
+    shapes = poles.mode_shape[members] / scale
+    shapes = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
+    along = np.linalg.svd(shapes, compute_uv=False) ** 2 / len(members)
+    if along[:2].sum() < IN_PLANE or along[1] < ACROSS:
+        return []
+    away = dict(zip(members.tolist(), _away(poles, members).tolist(), strict=True))
+    both = [sorted(sorted(by_order[k].tolist(), key=away.__getitem__)[:2]) for k in twice]
+    both = [sorted(two, key=lambda pole: float(poles.frequency_hz[pole])) for two in both]
+    return [_cluster(poles, np.array(one), orders) for one in zip(*both, strict=True)]
 
 
 def _cluster(poles: Stabilisation, members: Int64Array, orders: Sequence[int]) -> Cluster:
