@@ -11,6 +11,7 @@ import sys
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -53,7 +54,7 @@ class Case:
         return interval is not None and interval[0] < self.true_damping_ratio < interval[1]
 
 
-def truths(folder: Path) -> dict[str, dict[str, object]]:
+def truths(folder: Path) -> dict[str, dict[str, Any]]:
     """Return the documents of the records whose modes are known."""
     found = {p.stem: json.loads(p.read_text(encoding="utf-8")) for p in sorted(folder.glob("*.json"))}
     return {name: d for name, d in found.items() if d.get("true_modes")}

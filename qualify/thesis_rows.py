@@ -56,6 +56,7 @@ from jackettwin.response import (
 from jackettwin.simulate import read_scenario, simulate
 from jackettwin.soil import law_curves, read_foundation, read_law, read_supported
 from jackettwin.soil.piles.impedance import head_impedance
+from jackettwin.soil.support import ELASTIC
 from jackettwin.structure import element_weight
 from jackettwin.study import ExploreSettings, explore
 from jackettwin.updating import numbered_modes, stages
@@ -368,7 +369,7 @@ def exact_heads(case: ThesisCase) -> str:
     on the exact dynamic stiffness K(s) of a head, which Newton's method reaches.
     """
     ground = read_foundation(case.folder / "piles.yaml")
-    elastic = replace(ground, law=type(ground.law)(k0=1.0))
+    elastic = replace(ground, law=ELASTIC)
     piled, support = elastic.piled(case.structure)
     piled = piled.with_material("piles", density=0.0)
     heads = replace(elastic.heads(case.structure), masses=())

@@ -399,9 +399,10 @@ def informed(seed: int) -> dict[str, Any]:
     last = float(baseline.days[-1])
 
     def delay(told: tuple[Block, ...]) -> float | None:
+        empty = np.zeros(0)
         none = np.zeros((0, sum(len(block.kept) for block in told), 3))
         watch = Watch(
-            LABELS, design, lagged, told, PossibleOnsets(*np.zeros((3, 0)), none),
+            LABELS, design, lagged, told, PossibleOnsets(empty, empty, empty, none),
             last, float(np.floor(last)), last, 10.0,
         )  # fmt: skip
         watch = calibrated(watch, baseline)

@@ -210,8 +210,8 @@ def close(before: Any, after: Any, rtol: float) -> bool:
     if isinstance(before, str) and isinstance(after, str):
         for pattern in EXPECTED_TEXT:
             before, after = re.sub(pattern, "", before), re.sub(pattern, "", after)
-        numbers = [[float(n) for n in LONG_NUMBER.findall(text)] for text in (before, after)]
-        return LONG_NUMBER.sub("", before) == LONG_NUMBER.sub("", after) and close(*numbers, rtol)
+        old, new = ([float(n) for n in LONG_NUMBER.findall(text)] for text in (before, after))
+        return LONG_NUMBER.sub("", before) == LONG_NUMBER.sub("", after) and close(old, new, rtol)
     try:
         a, b = np.array(before), np.array(after)
     except ValueError:  # lists of different lengths
@@ -232,8 +232,8 @@ def compare(folders: tuple[Path, Path], rtol: float, reworded: bool) -> None:
     said = re.compile(r"^\S*$|\d+").findall  # a value or a word that stands alone; the numbers of a sentence
     for name in sorted({file.name for folder in folders for file in folder.glob("*.json")}):
         files = [folder / name for folder in folders]
-        answers = (json.loads(file.read_text("utf-8")) if file.exists() else NOTHING for file in files)
-        found = differences(*answers, name[:-5], rtol)
+        old, new = (json.loads(file.read_text("utf-8")) if file.exists() else NOTHING for file in files)
+        found = differences(old, new, name[:-5], rtol)
         notes = [NOTED.search(path) or reworded and said(str(a)) == said(str(b)) for path, a, b in found]
         failed += sum(not note for note in notes)
         for note, (path, *pair) in sorted(zip(notes, found, strict=True), key=lambda one: bool(one[0]))[:20]:

@@ -123,11 +123,11 @@ def _steel(e: float = 1.0, rho: float = 1.0, wall: float = 1.0) -> Callable[[Mem
     def change(member: Member) -> Member:
         m = member.material
         material = Material(m.youngs_modulus_pa * e, m.shear_modulus_pa * e, m.density_kg_m3 * rho)
-        ends = (
+        bottom, top = (
             Section(s.outer_diameter_m, s.thickness_m * wall)
             for s in (member.section_start, member.section_end)
         )
-        return Member(member.name, member.start, member.end, *ends, material, member.part)
+        return Member(member.name, member.start, member.end, bottom, top, material, member.part)
 
     return change
 

@@ -6,6 +6,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
@@ -62,15 +63,14 @@ def wave_theories() -> go.Figure:
     figure = _figure("time from the crest [s]", "surface elevation η [m]")
     t = np.linspace(-5.5, 5.5, 241)
     origin = np.zeros((1, 2))
-    theories = {
+    theories: dict[str, Any] = {
         "linear (Airy)": airy_wave(**wave),
         "stream function": regular_wave("stream-function", **wave),
         "Stokes, fifth order": regular_wave("stokes-5", **wave),
     }
-    for (name, theory), dash, colour in zip(
-        theories.items(), ("dot", "solid", "dash"), (_INK, _BLUE, _VERMILLION), strict=True
-    ):
-        eta = theory.elevation(origin, t)[:, 0]
+    looks = zip(("dot", "solid", "dash"), (_INK, _BLUE, _VERMILLION), strict=True)
+    for name, (dash, colour) in zip(theories, looks, strict=True):
+        eta = theories[name].elevation(origin, t)[:, 0]
         figure.add_scatter(x=t, y=eta, name=name, line={"dash": dash, "color": colour, "width": 2.5})
     return figure
 
