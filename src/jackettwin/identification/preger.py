@@ -134,7 +134,13 @@ def identify_setups(
     share = max(settings.min_order_share, MIN_PERSISTENCE)
     judged = candidates(
         poles,
-        clusters(poles, distance=settings.cluster_distance, orders=resolved.orders, scale=setups.scale),
+        clusters(
+            poles,
+            distance=settings.cluster_distance,
+            orders=resolved.orders,
+            scale=setups.scale,
+            share=share,
+        ),
         (),
         settings.model_copy(update={"min_order_share": share}),
         duration_s=duration_s,

@@ -62,7 +62,13 @@ def searched(ready: PreparedRecord, settings: IdentificationSettings) -> PoleSea
     """Return poles and candidates of the prepared samples."""
     poles = poles_of(ready, settings)
     resolved = ready.settings
-    found = clusters(poles, distance=settings.cluster_distance, orders=resolved.orders, scale=ready.scale)
+    found = clusters(
+        poles,
+        distance=settings.cluster_distance,
+        orders=resolved.orders,
+        scale=ready.scale,
+        share=settings.min_order_share,
+    )
     rate = resolved.sample_rate_hz
     if settings.quick:
         tones = Tones(frozenset(), (), tuple(ready.drifting), ready.y)

@@ -48,7 +48,7 @@ class Cluster:
 
 
 def clusters(
-    poles: Stabilisation, *, distance: float, orders: Sequence[int], scale: FloatArray
+    poles: Stabilisation, *, distance: float, orders: Sequence[int], scale: FloatArray, share: float = 0.5
 ) -> list[Cluster]:
     r"""Group poles by average-linkage clustering, frequency ascending.
 
@@ -64,6 +64,8 @@ def clusters(
     scale : (n_channels,)
         Standard deviations of the channels. The MAC is computed with shapes divided by them, so that channels
         in other units or at places of little motion have the same weight.
+    share : float
+        Share of the model orders in which a mode appears.
 
     Two modes of one frequency, as symmetric structures have, share a plane of shapes: each model order has
     two poles with directions of its own in it, so that groups by shape are fragments. They become two.
@@ -73,7 +75,7 @@ def clusters(
         return []
     apart = _distances(poles, scale)
     found = [_cluster(poles, members, orders) for members in average_linkage(apart, distance)]
-    found = _double_modes_joined(poles, found, orders, scale)
+    found = _double_modes_joined(poles, found, orders, scale, share)
     return sorted(found, key=lambda c: float(poles.frequency_hz[c.representative]))
 
 
@@ -86,7 +88,7 @@ def _distances(poles: Stabilisation, scale: FloatArray) -> FloatArray:
 
 
 def _double_modes_joined(
-    poles: Stabilisation, found: list[Cluster], orders: Sequence[int], scale: FloatArray
+    poles: Stabilisation, found: list[Cluster], orders: Sequence[int], scale: FloatArray, share: float
 ) -> list[Cluster]:
     """Return the clusters with the fragments of every double mode joined into two, by frequency."""
     left, out = sorted(found, key=lambda c: -len(c.poles)), list[Cluster]()
@@ -97,29 +99,32 @@ def _double_modes_joined(
         near = np.abs(f[at] - f[k]) < SAME_FREQUENCY * zeta[k] * f[k]
         near &= np.abs(np.log(zeta[at] / zeta[k])) < np.log(SAME_DAMPING)
         family = [c for c, is_near in zip(left, near, strict=True) if is_near]
-        pair = _pair(poles, family, orders, scale) if len(family) > 2 else []
-        out += pair or left[:1]
-        left = [c for c, is_near in zip(left, near, strict=True) if not is_near] if pair else left[1:]
+        pair = _pair(poles, family, orders, scale, share) if len(family) > 2 else []
+        out += pair or family
+        left = [c for c, is_near in zip(left, near, strict=True) if not is_near]
     return out
 
 
 def _pair(
-    poles: Stabilisation, family: list[Cluster], orders: Sequence[int], scale: FloatArray
+    poles: Stabilisation, family: list[Cluster], orders: Sequence[int], scale: FloatArray, share: float
 ) -> list[Cluster]:
-    """Return both members of the double mode that neighbouring clusters are fragments of; [] if of none."""
+    """Return both members of the double mode that neighbouring clusters are fragments of.
+
+    They are of none ([]) if two of them last, largest first: then their directions are their own.
+    """
     members = np.concatenate([c.poles for c in family])
     by_order = [members[poles.order[members] == order] for order in orders]
     twice = [k for k, own in enumerate(by_order) if len(own) > 1]
     if not twice:
         return []
     since = [int(order) for order in orders[twice[0] :]]
-    whole = np.intersect1d(poles.order[family[0].poles], poles.order[family[1].poles])
-    if len(twice) < OFTEN * len(since) or len(whole) >= OFTEN * len(since):
+    lasts = all(c.order_share >= share and len(c.poles) >= share * len(since) for c in family[:2])
+    if lasts or len(twice) < OFTEN * len(since):
         return []
     shapes = poles.mode_shape[members] / scale
     shapes = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
     along = np.linalg.svd(shapes, compute_uv=False) ** 2 / len(members)
-    if along[:2].sum() < IN_PLANE or along[1] < ACROSS:
+    if along[:2].sum() < IN_PLANE or along[1:2].sum() < ACROSS:  # one channel has no plane
         return []
     away = dict(zip(members.tolist(), _away(poles, members).tolist(), strict=True))
     both = [sorted(sorted(by_order[k].tolist(), key=away.__getitem__)[:2]) for k in twice]
