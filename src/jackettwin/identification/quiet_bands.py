@@ -3,7 +3,7 @@
 The amplitude of a tower's first modes may be a thousand times that of its fifth.
 Errors of their covariances then exceed the contribution of the fifth,
 although its peak is clear in the spectrum of a channel. For each clear peak that no candidate explains,
-the samples are high-passed and poles are sought in the octave that begins there.
+the samples are high-passed and poles are sought in the octave that begins there, at the rate that it needs.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.identification.estimate import Stabilisation
 from jackettwin.identification.mode_shapes import mac
 from jackettwin.identification.pole_methods import poles_of
-from jackettwin.identification.preparation.resolve import EDGE_BELOW_PEAK
+from jackettwin.identification.preparation.resolve import EDGE_BELOW_PEAK, GUARD, SAMPLES_PER_CYCLE
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.selection.candidates import Tones, candidates, find_tones
 from jackettwin.identification.selection.clustering import clusters
@@ -108,7 +108,8 @@ def with_quiet_bands(
             break
         above = OCTAVE * left[0]
         loud = replace(ready, y=out.tones.clean, drifting=out.tones.drifting)
-        out = _joined(out, _above(loud, EDGE_BELOW_PEAK * left[0]), above, settings)
+        octave = _octave(loud, EDGE_BELOW_PEAK * left[0], above)
+        out = _joined(out, octave, settings, ready.settings.sample_rate_hz)
     return out
 
 
@@ -126,16 +127,22 @@ def _explained(peak_hz: float, line_hz: float, search: PoleSearch, ready: Prepar
     return any(low < peak_hz < high for low, high in ranges)
 
 
-def _above(ready: PreparedRecord, low_hz: float) -> PreparedRecord:
-    """Return the samples high-passed at a band's lower edge, scaled to unit variance."""
-    rate = ready.settings.sample_rate_hz
+def _octave(ready: PreparedRecord, low_hz: float, high_hz: float) -> PreparedRecord:
+    """Return the samples of a band alone, scaled to unit variance, at the rate that it needs."""
+    rate, high_hz = ready.settings.sample_rate_hz, min(high_hz, ready.settings.highest_frequency_hz)
     fast = ready.y - resample(ready.y, lowpass_taps(TRANSITION * low_hz / rate, low_hz / rate))
+    down = max(int(rate / (SAMPLES_PER_CYCLE * GUARD * high_hz)), 1)
+    if down > 1:
+        fast = resample(fast, lowpass_taps(1.0 / (SAMPLES_PER_CYCLE * down), 0.5 / down), down=down)
+        rate /= down
     scale = np.sqrt(np.nanmean(fast**2, axis=1))
-    rows = min(int(np.ceil(WINDOW_CYCLES * rate / low_hz)), ready.settings.block_rows)
+    rows = min(int(np.ceil(WINDOW_CYCLES * rate / low_hz)), -(-ready.settings.block_rows // down))
     orders = tuple(n for n in ready.settings.orders if n <= (rows - 1) * len(fast))
     settings = replace(
         ready.settings,
         lowest_frequency_hz=low_hz,
+        highest_frequency_hz=high_hz,
+        sample_rate_hz=rate,
         block_rows=rows,
         orders=orders,
         lag_window_s=2.0 * rows / rate,
@@ -144,13 +151,13 @@ def _above(ready: PreparedRecord, low_hz: float) -> PreparedRecord:
 
 
 def _joined(
-    out: PoleSearch, ready: PreparedRecord, high_hz: float, settings: IdentificationSettings
+    out: PoleSearch, ready: PreparedRecord, settings: IdentificationSettings, rate_hz: float
 ) -> PoleSearch:
     """Return the search with those of another band; of two for one mode, the less doubtful is used."""
     more, offset = searched(ready, settings), len(out.poles.order)
     if not len(more.poles.order):
         return out
-    low_hz = ready.settings.lowest_frequency_hz
+    low_hz, high_hz = ready.settings.lowest_frequency_hz, ready.settings.highest_frequency_hz
     kept = list(out.judged)
     for c in more.judged:
         if c.objection is not None or not low_hz < c.mode.frequency_hz < high_hz:
@@ -163,18 +170,18 @@ def _joined(
     return PoleSearch(
         _together(out.poles, more.poles),
         sorted(kept, key=lambda c: c.mode.frequency_hz),
-        _tones(out.tones, more.tones, ready, offset),
+        _tones(out.tones, more.tones, rate_hz, offset),
         (*out.looks, second_look(ready.y, ready, (low_hz, high_hz))),
     )
 
 
-def _tones(known: Tones, more: Tones, ready: PreparedRecord, offset: int) -> Tones:
+def _tones(known: Tones, more: Tones, rate_hz: float, offset: int) -> Tones:
     """Return the tones of both searches, and all samples without the new ones."""
     clean, new = known.clean, [t for t in more.drifting if not any(t is k for k in known.drifting)]
     for tone in new:
         clean = less_phase(clean, tone.phase(clean.shape[1]))
     if more.steady_hz:
-        clean = without_tones(clean, ready.settings.sample_rate_hz, list(more.steady_hz))
+        clean = without_tones(clean, rate_hz, list(more.steady_hz))
     return Tones(
         known.representatives | {k + offset for k in more.representatives},
         (*known.steady_hz, *more.steady_hz),

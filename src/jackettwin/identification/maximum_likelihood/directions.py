@@ -47,9 +47,9 @@ def directions(
     lines = (band_hz[1] - band_hz[0]) * n_samples / sample_rate_hz
     if wanted >= n_channels or lines < MIN_LINES:
         return None
-    x = np.fft.rfft(np.nan_to_num(y), axis=1)
-    line = np.arange(x.shape[1]) * sample_rate_hz / n_samples
-    x = x[:, (line >= band_hz[0]) & (line <= band_hz[1])]
+    line = np.arange(n_samples // 2 + 1) * sample_rate_hz / n_samples
+    inside = (line >= band_hz[0]) & (line <= band_hz[1])
+    x = np.array([np.fft.rfft(np.nan_to_num(row))[inside] for row in y])
     x = x / np.linalg.norm(x, axis=0)  # every line has the same weight, whatever its power
     unit = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
     q, s, _ = np.linalg.svd(unit.T, full_matrices=False)
@@ -65,6 +65,8 @@ def project(y: FloatArray, basis: FloatArray) -> FloatArray:
     A sample that is missing in one channel is missing in all directions.
     """
     whole = np.isfinite(y).all(axis=0)
+    if whole.all():
+        return np.asarray(basis.T @ y)
     return np.asarray(np.where(whole, basis.T @ np.where(whole, y, 0.0), np.nan))
 
 

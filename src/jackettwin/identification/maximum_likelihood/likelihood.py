@@ -51,6 +51,8 @@ TOLERANCE = 0.1
 ln ζ of the fitted modes, and the gain it predicts is below ``EXPECTED_GAIN``."""
 EXPECTED_GAIN = 1.0
 """Predicted gain of log-likelihood below which the force and noise parameters have converged as well."""
+FIRST_RIDGE = 1e-3
+"""Ridge of the first step, as a share of the information."""
 FULL_STEP_RIDGE = 1e-4
 """Ridge of a step that counts as undamped, as a share of the information. It is not zero because the data
 hardly determine some directions of the parameters."""
@@ -89,33 +91,36 @@ class Evaluation:
 
 @dataclass(frozen=True)
 class Optimum:
-    """The parameters at which an optimisation ended, and whether it converged."""
+    """The parameters at which an optimisation ended, whether it converged, and the ridge of its next step."""
 
     parameters: Parameters
     value: float
     converged: bool
+    ridge: float
 
 
-def maximise(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Optimum:
-    """Maximise the posterior by damped Fisher scoring in at most ``most`` steps."""
+def maximise(
+    data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS, *, ridge: float = FIRST_RIDGE
+) -> Optimum:
+    """Maximise the posterior by damped Fisher scoring in at most ``most`` steps, the first with ``ridge``."""
     prior = prior_of(data, p)
-    at, ridge, idle = evaluate(data, prior, p), 1e-3, 0
+    at, idle = evaluate(data, prior, p), 0
     if at is None:
-        return Optimum(p, -np.inf, False)
+        return Optimum(p, -np.inf, False, ridge)
     for _ in range(most):
         score, fisher = scoring(data, prior, at)
         left, expected_gain = _remaining(at.parameters, score, fisher)
         if left < TOLERANCE and expected_gain < EXPECTED_GAIN:
-            return Optimum(at.parameters, at.value, True)
+            return Optimum(at.parameters, at.value, True, ridge)
         trial, used = _ascend(data, prior, at, score, fisher, ridge)
         if trial is None:
-            return Optimum(at.parameters, at.value, False)
+            return Optimum(at.parameters, at.value, False, ridge)
         gain = trial.value - at.value
         idle = idle + 1 if gain < (SMALL_GAIN if expected_gain < EXPECTED_GAIN else MIN_GAIN) else 0
         at, ridge = trial, max(used / 10.0, 1e-6)
         if idle == MAX_IDLE_STEPS or (used <= SHORT_STEP_RIDGE and gain < MIN_GAIN):
-            return Optimum(at.parameters, at.value, True)
-    return Optimum(at.parameters, at.value, False)
+            return Optimum(at.parameters, at.value, True, ridge)
+    return Optimum(at.parameters, at.value, False, ridge)
 
 
 def _ascend(

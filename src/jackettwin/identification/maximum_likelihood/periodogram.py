@@ -139,9 +139,9 @@ def group_starts(
     f: FloatArray, duration: float, frequency_hz: FloatArray, damping_ratio: FloatArray
 ) -> IntArray:
     """Return the first line of each group; groups are narrow where the spectrum of the modes curves."""
-    half_bandwidth = frequency_hz * damping_ratio
-    distance = np.abs(f[:, None] - frequency_hz)
-    width = np.min(half_bandwidth / LINES_IN_HALF_BANDWIDTH + distance / FAR_LINES, axis=1)
+    width = np.full(len(f), np.inf)
+    for own_f, half_bandwidth in zip(frequency_hz, frequency_hz * damping_ratio, strict=True):
+        np.minimum(width, half_bandwidth / LINES_IN_HALF_BANDWIDTH + np.abs(f - own_f) / FAR_LINES, out=width)
     lines = np.maximum(width * duration, 1.0)
     return np.flatnonzero(np.diff(np.floor(np.cumsum(1.0 / lines) + 1e-9), prepend=-1.0) > 0.0)
 

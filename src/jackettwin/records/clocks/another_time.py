@@ -101,8 +101,12 @@ def strangers(
     places : (n_channels,)
         Place of each channel, None if unknown.
     """
-    looks = _record_and_halves(y, sample_rate_hz)
-    common = _common(looks, tree)
+    whole = band_lines(y, sample_rate_hz)
+    common = _common([whole], tree)
+    if np.all(common > MIN_COHERENCE_SUM):
+        return ()
+    halves = _halves(y, sample_rate_hz)
+    looks, common = [whole, *halves], np.maximum(common, _common(halves, tree))
     reached = np.zeros(len(y))
     np.maximum.at(reached, tree, common[:, None])
     if reached.max(initial=0.0) < DECISIVE_FACTOR * MIN_COHERENCE_SUM:
@@ -124,7 +128,8 @@ def strangers(
             or reached[[likest, *rows]].max() < DECISIVE_FACTOR * MIN_COHERENCE_SUM
         ):
             continue
-        turned = _record_and_halves(np.concatenate([y, y[:, ::-1]]), sample_rate_hz)
+        both = np.concatenate([y, y[:, ::-1]])
+        turned = [band_lines(both, sample_rate_hz), *_halves(both, sample_rate_hz)]
         backwards = _common(turned, np.asarray(pairs + [0, len(y)], dtype=np.intp))
         turns = bool(np.any(backwards > MIN_COHERENCE_SUM))
         parallel = pairs[stated[pairs].all(axis=1)]
@@ -155,13 +160,13 @@ def _between_frames(directions: FloatArray, groups: Sequence[Sequence[int]]) -> 
     return out
 
 
-def _record_and_halves(y: FloatArray, sample_rate_hz: float) -> list[BandLines | None]:
-    """Return the lines of the record and of its halves.
+def _halves(y: FloatArray, sample_rate_hz: float) -> list[BandLines | None]:
+    """Return the lines of the halves of the record.
 
     A sign reversal in the middle destroys the coherence over the whole record.
     """
     half = y.shape[1] // 2
-    return [band_lines(part, sample_rate_hz) for part in (y, y[:, :half], y[:, half:])]
+    return [band_lines(part, sample_rate_hz) for part in (y[:, :half], y[:, half:])]
 
 
 def _common(looks: Sequence[BandLines | None], pairs: IntArray) -> FloatArray:

@@ -163,8 +163,8 @@ def phases(y: FloatArray, sample_rate_hz: float, turn: ComplexArray) -> Phases |
 def _band(y: FloatArray) -> tuple[float, float]:
     """Return the edges, in lines, of the band that contains most of the power of every channel."""
     share: FloatArray | float = 0.0
-    for row in y:
-        power = np.abs(hann_lines(row[None])[0][0]) ** 2
+    for lines in hann_lines(y):
+        power = np.abs(lines) ** 2
         power = np.maximum(power - FLOOR * np.median(power), 0.0)
         share = share + power / max(float(power.sum()), np.finfo(float).tiny) / len(y)
     passed = np.cumsum(share)
@@ -298,7 +298,7 @@ def band_lines(y: FloatArray, sample_rate_hz: float) -> BandLines | None:
     low, high = (round(edge) for edge in _band(y))
     if high - low < SUB_BANDS * MIN_LINES:
         return None
-    lines = np.array([hann_lines(row[None])[0][0, low:high] for row in y])
+    lines = np.array([row[low:high] for row in hann_lines(y)])
     lines /= np.where(np.abs(lines) > 0.0, np.abs(lines), 1.0)
     return BandLines(lines, of_fast_length(y).shape[1] / sample_rate_hz)
 

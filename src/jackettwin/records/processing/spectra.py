@@ -14,7 +14,7 @@ line's power over all frequencies; a gap spreads it to neighbouring lines.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -34,16 +34,13 @@ def of_fast_length(y: FloatArray) -> FloatArray:
     return y[..., : prev_fast_len(max(y.shape[-1], 1))]
 
 
-def hann_lines(y: FloatArray) -> tuple[ComplexArray, int]:
-    """Return transforms of rows under a Hann window, (n_channels, n_lines), and the samples used.
-
-    Parameters
-    ----------
-    y : (n_channels, n_samples)
-        Without gaps.
-    """
-    y = of_fast_length(y)
-    return np.asarray(np.fft.rfft(y * np.hanning(y.shape[1]), axis=1)), y.shape[1]
+def hann_lines(rows: Iterable[FloatArray]) -> Iterator[ComplexArray]:
+    """Yield the transforms of rows of one length under a Hann window, without gaps, one after another."""
+    window: FloatArray | None = None
+    for row in rows:
+        used = of_fast_length(row)
+        window = np.hanning(len(used)) if window is None else window
+        yield np.fft.rfft(used * window)
 
 
 def welch_densities(

@@ -69,7 +69,8 @@ def not_filtered(y: FloatArray) -> tuple[BoolArray, FloatArray]:
         return none
     x = of_fast_length(np.array([bridge(row) for row in y]))
     length = x.shape[1] // SEGMENTS // 2 * 2
-    f, density = welch_densities(x - x.mean(axis=1, keepdims=True), 2.0, length)
+    x -= x.mean(axis=1, keepdims=True)
+    f, density = welch_densities(x, 2.0, length)
     total = density.sum(axis=1)
     share = density[:, f > UPPER].sum(axis=1) / np.where(total > 0.0, total, 1.0)
     edge, beside = ((f > low) & (f < high) for low, high in (EDGE, BESIDE))

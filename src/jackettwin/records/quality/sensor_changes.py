@@ -126,7 +126,9 @@ def _envelopes(y: FloatArray) -> list[ComplexArray]:
     if n < 4 * MIN_CYCLES:
         return out
     taper = tukey(n, 1.0 / PARTS)
-    spectra = np.array([np.fft.rfft(np.where(np.isfinite(row), row, 0.0) * taper) for row in y])
+    spectra = np.empty((len(y), n // 2 + 1), dtype=complex)
+    for row, lines in zip(y, spectra, strict=True):
+        lines[:] = np.fft.rfft(np.where(np.isfinite(row), row, 0.0) * taper)
     low = max(int(strongest_line(spectra) / np.sqrt(2.0)), MIN_CYCLES)
     for _ in range(BANDS):
         lines = min(max(low // PARTS, LINES_PER_PART[0]), LINES_PER_PART[1]) * PARTS

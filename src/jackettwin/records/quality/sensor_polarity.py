@@ -164,7 +164,11 @@ def around(spectra: ComplexArray, peak: float) -> ComplexArray:
 def windowed_spectra(y: FloatArray) -> ComplexArray:
     """Return the transforms of rows under a Hann window, with gaps bridged."""
     bridged = map(bridge, y)  # one row at a time: copies of a day's channels take memory
-    return np.array([hann_lines((row - row.mean())[None])[0][0] for row in bridged])
+    out: ComplexArray | None = None
+    for i, lines in enumerate(hann_lines(row - row.mean() for row in bridged)):
+        out = np.empty((len(y), len(lines)), dtype=complex) if out is None else out
+        out[i] = lines
+    return np.zeros((0, 0), dtype=complex) if out is None else out
 
 
 def against_majority(coherency: FloatArray) -> tuple[list[int], bool]:
