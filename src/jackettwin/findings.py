@@ -300,6 +300,11 @@ CATALOGUE: dict[str, Kind] = {
         "a clear peak near it, at {frequency_hz:.4g} Hz, belongs to no mode: two modes may be identified as "
         "one",
     ),
+    "no_skirts": Kind(
+        "warning",
+        "its peak falls off faster than that of a mode: it may be an order of a rotor whose speed wanders; "
+        "add the rotor's speed as a channel [rpm]",
+    ),
     "steady_envelope": Kind(
         "warning",
         "its amplitude varies less than that of a mode of such low damping: it may be a tone",

@@ -128,7 +128,8 @@ def identify(
         )
     if screening_data is not None and not wanted:
         judged = clear_damping_doubts(judged, screening_data)
-    chosen = chosen_modes(judged, tones, ready, settings)
+    lines = None if screening_data is None else screening_data.lines
+    chosen = chosen_modes(judged, tones, ready, settings, lines)
     if screening_data is not None:
         chosen = screened_choice(chosen, judged, screening_data, rescue=not wanted, drifting=tones.drifting)
     chosen = _with_likelihoods(chosen, tones.clean, ready, settings)

@@ -26,6 +26,7 @@ from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.envelopes import is_suspiciously_steady
 from jackettwin.identification.tones.mains import is_mains
 from jackettwin.identification.tones.sinusoid import transform
+from jackettwin.identification.tones.skirts import has_no_skirts
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -74,9 +75,16 @@ class Choice:
 
 
 def chosen_modes(
-    judged: Sequence[Candidate], tones: Tones, ready: PreparedRecord, settings: IdentificationSettings
+    judged: Sequence[Candidate],
+    tones: Tones,
+    ready: PreparedRecord,
+    settings: IdentificationSettings,
+    lines: ComplexArray | None = None,
 ) -> Choice:
-    """Refine the candidates and return those that are modes inside the band."""
+    """Refine the candidates and return those that are modes inside the band.
+
+    ``lines`` are the transforms of the samples without tones if they are known.
+    """
     y, scale, resolved = tones.clean, ready.scale, ready.settings
     duration_s = y.shape[1] / resolved.sample_rate_hz
     open_to = [i for i, c in enumerate(judged) if c.objection is None]
@@ -99,14 +107,16 @@ def chosen_modes(
     tones_hz += [tone.swept_hz for tone in tones.drifting]
     found = _sorted(judged, modes, tones_hz, resolved, settings, findings)
     flagged = (beside_orders(mode, ready.rotor_orders) for mode in found.modes)
-    lines = transform(y)
+    lines = transform(y, np.complex64) if lines is None else lines
     flagged_modes = tuple(flagged)
     pairs = members_of_pairs(flagged_modes, ready.channels)
     steady = (
         mode if i in pairs else _steady(mode, lines, duration_s, scale)
         for i, mode in enumerate(flagged_modes)
     )
-    found = replace(found, modes=tuple(steady))
+    f = np.array([mode.frequency_hz for mode in flagged_modes])
+    skirted = (_skirted(mode, lines, duration_s, scale, np.delete(f, i)) for i, mode in enumerate(steady))
+    found = replace(found, modes=tuple(skirted))
     if settings.refine:
         found = replace(found, findings=(*found.findings, *_hidden(judged, found)))
         found = replace(found, modes=tuple(_widen_close_pair(m, found.modes) for m in found.modes))
@@ -128,6 +138,16 @@ def _steady(mode: ModalEstimate, lines: ComplexArray, duration_s: float, scale: 
     if not is_suspiciously_steady(lines, duration_s, mode.frequency_hz, mode.damping_ratio, shape):
         return mode
     return mode.flagged(ModeStatus.DOUBTFUL, Finding("steady_envelope"))
+
+
+def _skirted(
+    mode: ModalEstimate, lines: ComplexArray, duration_s: float, scale: FloatArray, others_hz: FloatArray
+) -> ModalEstimate:
+    """Flag a mode whose peak falls off faster than that of any mode."""
+    shape, f, zeta = mode.mode_shape / scale, mode.frequency_hz, mode.damping_ratio
+    if not has_no_skirts(lines, duration_s, f, zeta, shape, others_hz):
+        return mode
+    return mode.flagged(ModeStatus.DOUBTFUL, Finding("no_skirts"))
 
 
 def clear_damping_doubts(judged: Sequence[Candidate], known: Evidence) -> list[Candidate]:

@@ -20,6 +20,7 @@ from jackettwin.identification.maximum_likelihood.line_likelihood import (
 )
 from jackettwin.identification.selection.neighbours import apart
 from jackettwin.identification.status import ModeStatus
+from jackettwin.identification.tones.sinusoid import transform
 from jackettwin.intervals import NORMAL_95
 
 if TYPE_CHECKING:
@@ -81,14 +82,14 @@ def with_damping_likelihoods(
         if any(apart(mode, other) < CLOSE_DISTANCE for other in modes if other is not mode):
             continue
         if lines is None:
-            present = np.where(np.isfinite(y), y, 0.0)
-            lines = np.asarray(np.fft.rfft(present, axis=1) / sample_rate_hz / np.sqrt(duration_s))
+            lines = transform(y)
         line = _band(mode.frequency_hz, duration_s, lines.shape[1])
         own = _filter(modes, i, scale, float(len(line)) / duration_s)
         if own is None or len(line) < 2 * MIN_HALF_BAND_LINES:
             continue
         f = line / duration_s
-        x = own @ (lines[:, line] * (2j * np.pi * f) ** np.asarray(derivatives)[:, None])
+        density = lines[:, line] / (sample_rate_hz * np.sqrt(duration_s))
+        x = own @ (density * (2j * np.pi * f) ** np.asarray(derivatives)[:, None])
         out[i] = _with(mode, damping_log_likelihood(x, mode.frequency_hz, f, duration_s), duration_s)
     return tuple(out)
 

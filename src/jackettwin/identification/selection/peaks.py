@@ -84,7 +84,11 @@ def _lines_of(lines: ComplexArray, duration_s: float, mode: ModalEstimate) -> tu
 
 def _through(lines: ComplexArray, beside: BoolArray, shape: ComplexArray) -> ComplexArray:
     """Return the lines after the spatial filter of a shape against neighbouring lines, (n_lines,)."""
-    around = lines[:, beside]
+    around = lines[:, beside].astype(complex)
     matrix = around @ around.conj().T / beside.sum()
     matrix += ADDED_NOISE * np.trace(matrix).real / len(lines) * np.eye(len(lines))
-    return np.asarray(np.linalg.solve(matrix, shape).conj() @ lines)
+    weights = np.linalg.solve(matrix, shape).conj()
+    out = np.zeros(lines.shape[1], dtype=complex)
+    for weight, row in zip(weights, lines, strict=True):  # the lines of a day are of single precision
+        out += weight * row
+    return out

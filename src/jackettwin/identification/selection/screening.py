@@ -121,6 +121,7 @@ class Evidence:
     looks : tuple of SecondLook
         Second looks at all frequencies, and at those of each further band.
     lines : (n_channels, n_lines)
+        Fourier transforms of the channels, in single precision.
     scale : (n_channels,)
         Standard deviations by which the channels were divided.
     duration_s : float
@@ -182,7 +183,7 @@ def evidence(
     periods = [conditions[key] for key in PERIODS if isinstance(conditions.get(key), int | float)]
     return Evidence(
         looks=(second_look(y, ready), *looks),
-        lines=transform(y),
+        lines=transform(y, np.complex64),
         scale=ready.scale,
         duration_s=y.shape[1] / ready.settings.sample_rate_hz,
         peak_of_sea_hz=1.0 / periods[0] if periods and periods[0] > 0.0 else None,

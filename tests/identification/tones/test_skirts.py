@@ -1,0 +1,39 @@
+"""A peak without skirts is no mode's: that of a rotor's order whose speed wanders."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from jackettwin.identification.tones.skirts import has_no_skirts
+
+DURATION_S, F, HALF, NUMBER = 600.0, 0.9, 4.0, 60
+"""Half width of the peaks in lines."""
+
+
+def peaks(rng: np.random.Generator, *, mode: bool, level: float) -> int:
+    """Return how many of some random peaks have no skirts, in two channels."""
+    k = np.arange(1500)
+    x = (k - F * DURATION_S) / HALF
+    density = (1.0 / (1.0 + x**2) if mode else 2.0 ** -(x**2)) + level
+    found = 0
+    for _ in range(NUMBER):
+        drawn = np.sqrt(density) * (rng.standard_normal(k.size) + 1j * rng.standard_normal(k.size))
+        lines, shape = np.outer([1.0, 0.4], drawn), np.array([1.0 + 0j, 0.4])
+        zeta = HALF / (F * DURATION_S)
+        found += has_no_skirts(lines, DURATION_S, F, zeta, shape, np.array([0.3]))
+    return found
+
+
+def test_orders_are_told_from_modes_where_their_skirts_would_show(rng: np.random.Generator) -> None:
+    """Of 120 modes two would have no skirts by chance once in a thousand times."""
+    assert peaks(rng, mode=True, level=1e-3) + peaks(rng, mode=True, level=1e-2) <= 1
+    assert peaks(rng, mode=False, level=1e-3) > 0.9 * NUMBER
+    assert peaks(rng, mode=False, level=0.1) <= 2  # where nothing can be known, nothing is said
+
+
+@pytest.mark.parametrize(("zeta", "other"), [(0.05, 0.3), (0.0074, 0.92)])
+def test_a_broad_peak_and_one_beside_another_are_not_judged(zeta, other, rng: np.random.Generator) -> None:
+    x = (np.arange(1500) - F * DURATION_S) / HALF
+    lines = np.sqrt(2.0 ** -(x**2) + 1e-4) * np.exp(2j * np.pi * rng.random(1500))
+    assert not has_no_skirts(lines[None], DURATION_S, F, zeta, np.ones(1, dtype=complex), np.array([other]))
