@@ -79,6 +79,13 @@ def test_the_chance_rises_with_size_and_nothing_is_no_change(seen: tuple[Watch, 
     assert month.smallest(lambda x: alike(x, watch), 1e-5, 1e-4) is None
 
 
-def test_a_baseline_that_is_shorter_says_nothing(seen: tuple[Watch, History, Sight]) -> None:
-    watch, baseline, _ = seen
-    assert sight(watch, baseline, 365.0) is None
+def test_a_longer_horizon_is_projected_and_said_to_be(seen: tuple[Watch, History, Sight]) -> None:
+    """The records of seventy days come again and again, as those of a hundred would: the size is the same."""
+    watch, baseline, month = seen
+    ninety, projected = (sight(watch, b, 90.0) for b in (baseline, baseline.between(30.0, 100.0)))
+    assert ninety is not None and projected is not None
+    assert projected.projected and not ninety.projected and not month.projected
+    known, told = (s.smallest(lambda x: alike(x, watch), 1e-4, 0.05) for s in (ninety, projected))
+    assert known is not None and told is not None
+    np.testing.assert_allclose(told, known, rtol=0.1)
+    assert sight(watch, baseline.between(50.0, 100.0), 90.0) is None

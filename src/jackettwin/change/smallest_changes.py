@@ -32,6 +32,7 @@ class SmallestChange:
     size : the smallest that is, in ``unit``; None if none is. For a lost brace None
     found, of : number of braces whose loss would be found, and of all; None for what has a size
     step : change of each monitored quantity by this size: of logarithms, angles [rad]; empty without a size
+    projected : whether the baseline is shorter, so that its records are taken to come again and again
     """
 
     change: str
@@ -41,12 +42,13 @@ class SmallestChange:
     found: int | None = None
     of: int | None = None
     step: tuple[float, ...] = ()
+    projected: bool = False
 
 
 def smallest_changes(
     watch: Watch, baseline: History, causes: ModelCauses | None
 ) -> tuple[SmallestChange, ...]:
-    """Return what would be found within ``HORIZONS_DAYS``; a horizon longer than the baseline is left out.
+    """Return what would be found within ``HORIZONS_DAYS``; none after a baseline of less than some weeks.
 
     Parameters
     ----------
@@ -59,6 +61,7 @@ def smallest_changes(
         if seen is not None:
             now = _general(watch, baseline, seen) if causes is None else _of_structure(watch, seen, causes)
             sooner = {one.change: one for one in out}
+            now = (replace(one, projected=seen.projected) for one in now)
             out += [_with_sooner(one, sooner.get(one.change)) for one in now]
     return tuple(out)
 
@@ -113,8 +116,10 @@ def smallest_sentence(found: Sequence[dict[str, Any]]) -> str:
     """Return what would be found with 95 %, horizon by horizon; empty if nothing is known."""
     parts = []
     for days in dict.fromkeys(one["days"] for one in found):
-        own = ", ".join(_words(one) for one in found if one["days"] == days)
-        parts.append(f"within {days:.0f} days {own}")
+        named = [one for one in found if one["days"] == days]
+        own = ", ".join(map(_words, named))
+        beyond = " (projected from a shorter baseline)" if any(one.get("projected") for one in named) else ""
+        parts.append(f"within {days:.0f} days{beyond} {own}")
     return f"Would be found with {CHANCE:.0%} at this noise and promise: {'; '.join(parts)}." if parts else ""
 
 

@@ -27,6 +27,8 @@ _NEGLIGIBLE = -20.0
 """Logarithm of the weight below which a model is not evaluated."""
 _NO_WEIGHT = -1e9
 """Logarithm of the weight assigned to a model to exclude it."""
+_FEW_DAYS = 0.1
+"""Share of the days with several records an hour up to which the scatter of a quantity is not known."""
 _FEWEST, _STILL = 30, 1e-9
 """Fewest baseline values of a monitored quantity, and their smallest relative range: constants are
 excluded."""
@@ -325,10 +327,11 @@ def log_scatter(block: Block, spoken: DayResult) -> FloatArray:
 
 
 def scatter_freedom(block: Block, history: History, rows: FloatArray) -> FloatArray:
-    """Return the median degrees of freedom of a day's scatter within the hours, (m,)."""
+    """Return the median degrees of freedom of a day's scatter in hours, (m,); 0 if few days have any."""
     y, _, variance, _ = residuals(block, history, rows)
     hours = by_hour(history.days, history.states, np.nan_to_num(rows), y, variance, WINDOW_DAYS)
-    return np.asarray(np.median(_by_day(hours, block.memories[0])[1], axis=0))
+    days = _by_day(hours, block.memories[0])[1].T
+    return np.array([np.median(n[n > 0.0]) if np.mean(n > 0.0) > _FEW_DAYS else 0.0 for n in days])
 
 
 def thinned(block: Block, keep: BoolArray) -> Block:

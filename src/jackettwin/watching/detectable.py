@@ -8,7 +8,8 @@ s of all quantities of a kind is tested along directions u, with
 
 and raises an alarm if its prior weight times the Bayes factor of a and c reaches the threshold. Future
 records are assumed to be as many and as accurate as those of the same number of days at the end of the
-baseline.
+baseline. Of a horizon longer than the baseline the answer is projected: the baseline's records are taken to
+come again and again.
 """
 
 from __future__ import annotations
@@ -33,6 +34,8 @@ CHANCE = 0.95
 """Probability of detection that defines the smallest detectable change."""
 _WHOLE = 0.9
 """Share of the days considered that the end of a baseline must cover."""
+_LEAST_DAYS = 60.0
+"""Shortest baseline whose records are projected beyond its length [days]."""
 _LEAST = 0.01
 """Weight below which a model is ignored."""
 _Z = np.linspace(-4.0, 4.0, 65)
@@ -53,6 +56,7 @@ class Sight:
     info : for each block, (n_models, m, m) A of a step at the beginning of these days
     weights : for each block, (n_models,) weights of the models
     log_needed : ln of the Bayes factor that raises an alarm, divided by the power applied to the evidence
+    projected : whether the days are more than those of the baseline
     """
 
     days: float
@@ -61,6 +65,7 @@ class Sight:
     weights: tuple[FloatArray, ...]
     log_needed: float
     power: float
+    projected: bool = False
 
     def chance(self, step: FloatArray) -> float:
         """Return the probability that a step of all quantities (m_all,) is detected by its clearest kind."""
@@ -106,8 +111,9 @@ def sight(watch: Watch, baseline: History, days: float) -> Sight | None:
     ----------
     watch : state at the end of the baseline
     """
-    last = float(baseline.days[-1])
-    if last - float(baseline.days[0]) < _WHOLE * days or days <= watch.patience_days:
+    span = float(baseline.days[-1]) - float(baseline.days[0])
+    projected = span < _WHOLE * days
+    if (projected and span < _LEAST_DAYS) or days <= watch.patience_days:
         return None
     records = replayed(baseline, days)
     rows, _ = regressors(watch.design, records, watch.lagged)
@@ -121,14 +127,28 @@ def sight(watch: Watch, baseline: History, days: float) -> Sight | None:
         tuple(weights for _, weights in known),
         float(needed),
         watch.power,
+        projected,
     )
 
 
 def replayed(baseline: History, days: float) -> History:
-    """Return the records of a baseline's last days, as if they followed it."""
-    last = float(baseline.days[-1])
-    records = baseline.rows(baseline.days > last - days)
-    return replace(records, days=records.days + np.ceil(last) - np.floor(records.days[0]))
+    """Return the records of a baseline's last days, as if they followed it; more than it has come again.
+
+    Examples
+    --------
+    >>> none = np.full((3, 1), np.nan)
+    >>> days, state = np.array([0.5, 1.5, 2.5]), np.zeros(3, int)
+    >>> baseline = History(days, ("f",), none, none, none, none, none, ("t",), state)
+    >>> replayed(baseline, 5.0).days.tolist(), replayed(baseline, 1.5).days.tolist()
+    ([3.5, 4.5, 5.5, 6.5, 7.5], [3.5, 4.5])
+    """
+    first, end = float(np.floor(baseline.days[0])), float(np.ceil(baseline.days[-1]))
+    rounds = max(int(np.ceil(days / (end - first))), 1)
+    n = baseline.days.size
+    again = baseline.rows(np.tile(np.arange(n), rounds))
+    again = replace(again, days=again.days + np.repeat(np.arange(rounds), n) * (end - first))
+    records = again.rows(again.days > again.days[-1] - days)
+    return replace(records, days=records.days + end - np.floor(records.days[0]))
 
 
 def informed(

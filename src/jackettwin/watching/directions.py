@@ -45,8 +45,8 @@ _PATTERNED = 0.4
 """Share of the remaining weight given to the causes of a model, if there is one."""
 _ALIKE = 0.9
 """Cosine above which patterns are merged into one direction, with little effect on the Bayes factor."""
-_NOT_TESTED = -1e9
-"""Ln of the weight of a size that is not tested."""
+NOT_TESTED = -1e9
+"""Ln of the weight of what is not tested."""
 _MOVES = 0.1
 """Share of the largest change in a pattern below which a quantity counts as unchanged."""
 
@@ -82,7 +82,7 @@ class Directions:
 
     def testing(self, chosen: BoolArray) -> Directions:
         """Return the directions with some of the sizes (n − 1, n_sizes); no other gets their weight."""
-        return replace(self, log_size_weights=np.where(chosen, self.log_size_weights, _NOT_TESTED))
+        return replace(self, log_size_weights=np.where(chosen, self.log_size_weights, NOT_TESTED))
 
 
 @dataclass(frozen=True)

@@ -59,8 +59,8 @@ class History:
         value, std = getattr(self, kind), getattr(self, f"{kind}_std")
         return none if value is None else value, none if std is None else std
 
-    def rows(self, chosen: BoolArray) -> History:
-        """Return some of the rows."""
+    def rows(self, chosen: BoolArray | IntArray) -> History:
+        """Return some of the rows, by a mask or by their numbers."""
         arrays = (
             "days", "frequency", "frequency_std", "damping", "damping_std", "conditions", "states", "angle",
             "angle_std",

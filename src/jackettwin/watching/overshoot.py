@@ -13,7 +13,7 @@ the mean of R at the alarm is
 μ is that of the day on which a step of this size reaches the threshold: a large one on its first day, a small
 one after months, when unexplained variation leaves little new in a day. Steps that do not reach it in a year
 are not tested: they would raise R evenly by their weight, and no alarm, so that these came more rarely than
-promised at first and more often later.
+promised at first and more often later. Nor is the noise of a quantity without scatter within hours.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def overshoot_share(mu: FloatArray) -> FloatArray:
 
 
 def calibrated(watch: Watch, baseline: History) -> Watch:
-    """Return the state at the end of a baseline with Σ w ν, and without steps that would take over a year.
+    """Return the state at the end of a baseline with Σ w ν, and without what could not be found in a year.
 
     Unchanged if the baseline is too short, or the evidence is reduced.
     """
@@ -82,8 +82,10 @@ def calibrated(watch: Watch, baseline: History) -> Watch:
         share = np.einsum("k,kds,ds->d", weights, overshoot_share(mu), np.exp(directions.log_size_weights))
         found += float(own @ share)
         blocks.append(replace(block, directions=directions))
-    found += SHARES["scatter"] * _of_scatter(watch.blocks, records, rows)
-    return replace(watch, blocks=tuple(blocks), crossing=(1.0 - INSIDE) * found / watch.staked)
+    scatter, without = _of_scatter(watch.blocks, records, rows)
+    found += SHARES["scatter"] * scatter
+    crossing = (1.0 - INSIDE) * found / watch.staked
+    return replace(watch, blocks=tuple(blocks), crossing=crossing, without_scatter=without)
 
 
 def _reached(
@@ -111,17 +113,20 @@ def _reached(
     return np.asarray(over.any(axis=0)), np.asarray(mu)
 
 
-def _of_scatter(blocks: Sequence[Block], records: History, rows: FloatArray) -> float:
-    """Return the mean of ν over the tested factors of the noise; 1 for quantities without scatter."""
-    each = []
+def _of_scatter(
+    blocks: Sequence[Block], records: History, rows: FloatArray
+) -> tuple[float, tuple[bool, ...]]:
+    """Return the mean of ν over the factors of the noise, and the quantities without scatter (ν = 0)."""
+    each, without = [], []
     for block in blocks:
         freedom = scatter_freedom(block, records, rows)
         for n, steady in zip(freedom, block.steadiness, strict=True):
-            if n < 1.0:
-                each.append(np.ones(len(STRONGER)))
+            without.append(bool(n < 1.0))
+            if without[-1]:
+                each.append(np.zeros(len(STRONGER)))
                 continue
             ratio = n * np.array(STRONGER)[:, None] ** 2 * f_distribution.ppf(_POINTS, n, steady)
             shape = np.full(_POINTS.size, n), np.full(_POINTS.size, steady)
             mean = [log_ratios(x, *shape)[:, k].mean() for k, x in enumerate(ratio)]
             each.append(overshoot_share(np.sqrt(2.0 * np.maximum(mean, 0.0))))
-    return float(np.mean(each))
+    return float(np.mean(each)), tuple(without)

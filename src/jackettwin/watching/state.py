@@ -48,6 +48,7 @@ class Watch:
     patience_days : time that a change must last
     power : power applied to the evidence
     crossing : threshold over the mean of the statistic at an alarm, by which the threshold is corrected
+    without_scatter : (m_all,) quantities whose noise is not tested for want of scatter in hours; or empty
     """
 
     labels: tuple[str, ...]
@@ -62,6 +63,7 @@ class Watch:
     patience_days: float = 0.0
     power: float = 1.0
     crossing: float = 1.0
+    without_scatter: tuple[bool, ...] = ()
 
     @property
     def staked(self) -> float:

@@ -46,7 +46,7 @@ from jackettwin.watching.design import (
     regressors,
     with_slow_processes,
 )
-from jackettwin.watching.directions import SHARES, Pattern, directions_of
+from jackettwin.watching.directions import NOT_TESTED, SHARES, Pattern, directions_of
 from jackettwin.watching.history import History, Kind, typical
 from jackettwin.watching.hours import ENOUGH
 from jackettwin.watching.overshoot import calibrated
@@ -315,9 +315,11 @@ def _worth(watch: Watch) -> FloatArray:
     """
     scatter = watch.begins.log_scatter
     n, m, g = scatter.shape
-    share = np.log(SHARES["scatter"] / (m * g))
+    share = np.full(m, np.log(SHARES["scatter"] / (m * g)))
+    share[np.flatnonzero(watch.without_scatter)] = NOT_TESTED
     parts = [watch.power * log_evidence(block) + block.directions.log_weights for block in watch.blocks]
-    total = np.concatenate([*parts, watch.power * scatter.reshape(n, m * g) + share], axis=1)
+    louder = watch.power * scatter + share[:, None]
+    total = np.concatenate([*parts, louder.reshape(n, m * g)], axis=1)
     return np.asarray(total - np.log(watch.staked))
 
 

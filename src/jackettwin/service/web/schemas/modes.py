@@ -66,6 +66,7 @@ class SmallestChangeOut(BaseModel):
     found: int | None = None
     of: int | None = None
     step: list[float] = []
+    projected: bool = False
 
 
 class WatchOut(BaseModel):
