@@ -54,14 +54,15 @@ def test_a_step_is_found_dated_measured_and_named(stepped: History) -> None:
 def test_a_cause_that_the_model_expects_has_more_evidence(quiet: History) -> None:
     """A pair that parts is no mode alone, no pair alike and not all: only the pattern says it.
 
-    Both are found on one day, with ten times the evidence if the pattern is expected.
+    It is found no later, with thrice the evidence of that day if the pattern is expected.
     """
     parts = np.array([-1.0, 1.0])
     moved = quiet.frequency * np.exp(0.003 * parts * (quiet.days >= 120.0)[:, None])
     expected = (Pattern("brace", parts),)
     told, untold = (watched(replace(quiet, frequency=moved), patterns=p) for p in (expected, ()))
     assert told[2][0].day <= untold[2][0].day and told[2][0].direction == "brace"
-    assert told[2][0].log_r > untold[2][0].log_r + 2.0
+    (same_day,) = [look.log_r for look in untold[1] if look.day == told[2][0].day]
+    assert told[2][0].log_r > same_day + 1.1
     assert not watched(quiet, patterns=expected)[2]
 
 
@@ -90,10 +91,11 @@ def false_alarms(arl_days: float, seeds: range) -> int:
 def test_false_alarms_are_as_rare_as_promised_and_not_much_rarer() -> None:
     """R has the mean of the days watched where nothing changes, so that it reaches A at most once in A days.
 
-    Of 180 days at one alarm in 73 days, at most 2.5 are expected; at one in 7.3 days at most 25, and watches
+    Of 180 days at one alarm in 73 days, 2.5 are expected, and more than 6 once in sixty times; at one in 7.3
+    days at most 25, and watches
     of this kind (Shiryaev and Roberts) need hardly more than A / 0.3 days for the first.
     """
-    assert false_alarms(73.0, range(3)) <= 2
+    assert false_alarms(73.0, range(3)) <= 6
     assert false_alarms(7.3, range(3)) >= 3
 
 

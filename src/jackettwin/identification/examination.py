@@ -33,6 +33,7 @@ from jackettwin.identification.record_steps import (
 from jackettwin.identification.selection.candidates import beside_orders
 from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.identification.status import ModeStatus
+from jackettwin.processes import give_back
 from jackettwin.records import (
     Channel,
     FileDefaults,
@@ -143,6 +144,8 @@ def examine(
     ready, quality, findings, doubts = made_ready(
         source, places, thorough=not settings.quick, known=() if long is None else long.findings
     )
+    if long is not None:
+        give_back()
     in_axes = knows_yaw(source) or source.metadata.get("axes") == "rotor"
 
     def compute() -> Identified:

@@ -24,6 +24,7 @@ from jackettwin.identification.peaks_above import peaks_in, spectrum_above
 from jackettwin.identification.preparation.prepared_record import band_top_hz
 from jackettwin.identification.preparation.resolve import EDGE_BELOW_PEAK, GUARD, SAMPLES_PER_CYCLE
 from jackettwin.identification.record_steps import Findings, moving_channels
+from jackettwin.processes import give_back
 from jackettwin.records import Record, assess
 from jackettwin.records.processing.thinning import thinned
 from jackettwin.records.readers.pieces import placed_pieces
@@ -131,6 +132,7 @@ def read_whole(
     data = np.hstack(list(thinned(seen.cleaned(each), factor)))
     done = {"step": "decimate", "from_hz": head.sample_rate_hz, "to_hz": head.sample_rate_hz / factor}
     metadata = {**head.metadata, "preparation": [*head.metadata.get("preparation", []), done]}
+    give_back()
     record = replace(
         head, data=data, sample_rate_hz=head.sample_rate_hz / factor, name=path.stem, metadata=metadata
     )

@@ -67,10 +67,11 @@ def not_filtered(y: FloatArray) -> tuple[BoolArray, FloatArray]:
     none = np.zeros(len(y), dtype=np.bool_), np.zeros(len(y))
     if y.shape[1] < MIN_SAMPLES or not len(y):
         return none
-    x = of_fast_length(np.array([bridge(row) for row in y]))
-    length = x.shape[1] // SEGMENTS // 2 * 2
-    x -= x.mean(axis=1, keepdims=True)
-    f, density = welch_densities(x, 2.0, length)
+    used = of_fast_length(y)
+    length = used.shape[1] // SEGMENTS // 2 * 2
+    rows = (bridge(row)[None] for row in used)  # one at a time: copies of a day's channels take memory
+    each = [welch_densities(row - row.mean(), 2.0, length) for row in rows]
+    f, density = each[0][0], np.concatenate([own for _, own in each])
     total = density.sum(axis=1)
     share = density[:, f > UPPER].sum(axis=1) / np.where(total > 0.0, total, 1.0)
     edge, beside = ((f > low) & (f < high) for low, high in (EDGE, BESIDE))

@@ -7,7 +7,7 @@ import time
 from datetime import timedelta
 from typing import TYPE_CHECKING
 
-from jackettwin.service.workers.memory import give_back
+from jackettwin.processes import give_back
 from jackettwin.store import handling, journal, people, reading, records, results, settings, work, writing
 
 if TYPE_CHECKING:

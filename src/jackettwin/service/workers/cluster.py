@@ -24,10 +24,10 @@ from distributed.core import Status
 from distributed.utils import sync
 
 from jackettwin.errors import InputError
+from jackettwin.processes import give_back
 from jackettwin.service.settings import ServiceSettings
 from jackettwin.service.workers.certificates import given_security, own_security
 from jackettwin.service.workers.failures import NoWorker
-from jackettwin.service.workers.memory import give_back
 
 log = logging.getLogger(__name__)
 

@@ -1,4 +1,4 @@
-"""Memory of a process: limited while a file is read, and released afterwards."""
+"""Memory of a process: limited while a file is read, and in one heap."""
 
 from __future__ import annotations
 
@@ -37,13 +37,6 @@ def at_most(limit_bytes: int) -> Iterator[None]:
     finally:
         resource.setrlimit(resource.RLIMIT_DATA, (before, hard))
         pa.set_memory_pool(pool)
-
-
-def give_back() -> None:
-    """Return free memory to the system; glibc keeps all below the highest used block, and so grows."""
-    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
-    if trim is not None:  # only glibc has this function
-        trim(0)
 
 
 def one_heap() -> None:
