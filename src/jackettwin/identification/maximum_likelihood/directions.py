@@ -49,8 +49,10 @@ def directions(
         return None
     line = np.arange(n_samples // 2 + 1) * sample_rate_hz / n_samples
     inside = (line >= band_hz[0]) & (line <= band_hz[1])
-    x = np.array([np.fft.rfft(np.nan_to_num(row))[inside] for row in y])
-    x = x / np.linalg.norm(x, axis=0)  # every line has the same weight, whatever its power
+    x = np.empty((n_channels, int(inside.sum())), dtype=complex)
+    for row, own in zip(y, x, strict=True):
+        own[:] = np.fft.rfft(np.nan_to_num(row))[inside]
+    x /= np.linalg.norm(x, axis=0)  # every line has the same weight, whatever its power
     unit = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
     q, s, _ = np.linalg.svd(unit.T, full_matrices=False)
     own = q[:, s > 1e-3 * s[0]]

@@ -91,12 +91,22 @@ class Evaluation:
 
 @dataclass(frozen=True)
 class Optimum:
-    """The parameters at which an optimisation ended, whether it converged, and the ridge of its next step."""
+    """The end of an optimisation.
+
+    Attributes
+    ----------
+    converged : bool
+    ridge : float
+        That of a next step.
+    expected_gain : float
+        Gain of log-likelihood that the last step was expected to bring if it was not shortened.
+    """
 
     parameters: Parameters
     value: float
     converged: bool
     ridge: float
+    expected_gain: float = np.inf
 
 
 def maximise(
@@ -104,23 +114,23 @@ def maximise(
 ) -> Optimum:
     """Maximise the posterior by damped Fisher scoring in at most ``most`` steps, the first with ``ridge``."""
     prior = prior_of(data, p)
-    at, idle = evaluate(data, prior, p), 0
+    at, idle, expected_gain = evaluate(data, prior, p), 0, np.inf
     if at is None:
         return Optimum(p, -np.inf, False, ridge)
     for _ in range(most):
         score, fisher = scoring(data, prior, at)
         left, expected_gain = _remaining(at.parameters, score, fisher)
         if left < TOLERANCE and expected_gain < EXPECTED_GAIN:
-            return Optimum(at.parameters, at.value, True, ridge)
+            return Optimum(at.parameters, at.value, True, ridge, expected_gain)
         trial, used = _ascend(data, prior, at, score, fisher, ridge)
         if trial is None:
-            return Optimum(at.parameters, at.value, False, ridge)
+            return Optimum(at.parameters, at.value, False, ridge, expected_gain)
         gain = trial.value - at.value
         idle = idle + 1 if gain < (SMALL_GAIN if expected_gain < EXPECTED_GAIN else MIN_GAIN) else 0
         at, ridge = trial, max(used / 10.0, 1e-6)
         if idle == MAX_IDLE_STEPS or (used <= SHORT_STEP_RIDGE and gain < MIN_GAIN):
-            return Optimum(at.parameters, at.value, True, ridge)
-    return Optimum(at.parameters, at.value, False, ridge)
+            return Optimum(at.parameters, at.value, True, ridge, expected_gain)
+    return Optimum(at.parameters, at.value, False, ridge, expected_gain)
 
 
 def _ascend(

@@ -53,6 +53,9 @@ TRIAL_LIMIT = 1.5
 """A fit is abandoned after the trial steps if its lack of fit exceeds the accepted one by this factor."""
 MAX_STEPS, MIN_STEPS = 30, 8
 """Most and fewest steps after the trial; fits that converge usually take eight to twenty."""
+MOST_LEFT = 20.0
+"""A fit so costly that only the fewest steps are left is abandoned if more log-likelihood is to be gained;
+fits that converge have at most 12 left after the trial."""
 MAX_WORK = 4e9
 """Most products in these steps; fits that need more rarely converge."""
 MAX_STEP_WORK = 2e9
@@ -140,7 +143,7 @@ def refine(
         return _abandoned(np.full(len(sure), np.inf), unit.shape[1], np.inf)
     optimum = likelihood.maximise(data, first, FIRST_STEPS)
     if narrow is None and accuracy.lack_of_fit(data, optimum.parameters) > FIRST_LIMIT * max_lack_of_fit:
-        return _abandoned(np.full(len(sure), np.inf), unit.shape[1], np.inf)
+        return _abandoned(np.full(len(sure), np.inf), unit.shape[1], FIRST_LIMIT * max_lack_of_fit)
     optimum = _further(data, optimum, STEPS_BEFORE_ADMISSION - FIRST_STEPS)
     lack = accuracy.lack_of_fit(data, optimum.parameters)
     if narrow is None and _abandon_early(lack, accuracy.lack_of_fit(data, first), max_lack_of_fit):
@@ -155,7 +158,10 @@ def refine(
     if lack > TRIAL_LIMIT * max_lack_of_fit:
         return _abandoned(gain, unit.shape[1], lack)
     if not optimum.converged:
-        optimum = _further(data, optimum, _steps(data, optimum.parameters))
+        most = _steps(data, optimum.parameters)
+        if most == MIN_STEPS and optimum.expected_gain > MOST_LEFT:
+            return _abandoned(gain, unit.shape[1], lack)
+        optimum = _further(data, optimum, most)
         lack = accuracy.lack_of_fit(data, optimum.parameters)
     known = accuracy.accuracy_of(data, optimum.parameters)
     if optimum.converged and lack <= max_lack_of_fit:

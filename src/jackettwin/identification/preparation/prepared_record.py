@@ -113,13 +113,15 @@ def prepare(record: Record, settings: IdentificationSettings) -> PreparedRecord:
         level = replace(level, data=without)
         settings = _above_tones(level, settings, min([*tones, *(tone.swept_hz[0] for tone in drifting)]))
     resolved, reduced = resolve(level, settings)
+    del level, without  # of a day each copy takes fifty megabytes
     warnings += shortness(reduced, resolved, chosen=settings.lowest_frequency_hz is None)
     y = fill(reduced.data)
     filled = np.mean(np.isnan(reduced.data) & np.isfinite(y), axis=1)
     for channel, share in zip(usable.channels, filled, strict=True):
         if share > MIN_REPORTED_SHARE:
             warnings += (f"channel {channel.name}: {share:.1%} missing, predicted from the other channels",)
-    scale = np.sqrt(np.nanmean(y**2, axis=1))
+    del reduced
+    scale = np.array([np.sqrt(np.nanmean(row**2)) for row in y])
     references = _references(record, usable, settings)
     if settings.method == "plscf":
         resolved = replace(resolved, orders=_degrees(settings, len(references)))
