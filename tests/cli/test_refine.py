@@ -11,6 +11,7 @@ from click.testing import CliRunner
 from jackettwin.cli import main
 from jackettwin.decks import read_structure
 from jackettwin.structure import adjusted, assemble
+from jackettwin.study.refinement import refined_block
 from jackettwin.twin import read_twin
 from jackettwin.updating import numbered_modes, only_parts
 
@@ -42,6 +43,20 @@ def test_planted_steel_comes_back_stage_by_stage_and_a_twin_takes_it(tmp_path: P
     assert numbered_modes(assemble(refined), 1).frequency_hz[0] == pytest.approx(f[0], rel=1e-6)
 
 
+def test_the_block_to_paste_has_the_name_and_the_changes_of_the_file() -> None:
+    given = {"source": "jacket15", "steel": {"tower": {"density": 1.1}, "jacket": {"youngs_modulus": 0.9}}}
+    mass = {"body": "rna", "property": "mass", "value": 1.02}
+    found = {"steel": {"tower": {"density": 1.2, "youngs_modulus": 0.8}}, "adjusted": [mass]}
+    assert refined_block(given, found) == {
+        "source": "jacket15",
+        "steel": {
+            "tower": {"density": pytest.approx(1.32), "youngs_modulus": 0.8},
+            "jacket": {"youngs_modulus": 0.9},
+        },
+        "adjusted": [mass],
+    }
+
+
 def test_the_example_comes_nearer_at_every_stage() -> None:
     result = CliRunner().invoke(main, ["refine", str(EXAMPLE), "--json"])
     assert result.exit_code == 0, result.stderr
@@ -65,6 +80,7 @@ def test_a_mode_that_is_met_worse_than_before_is_named(tmp_path: Path) -> None:
     assert said.exit_code == 0, said.stderr
     words = " ".join(said.stdout.split())
     assert "mode 4 has a larger misfit than before: +0.00 % became +" in words
+    assert "structure: source: jacket15 steel:" in words
     assert "mode 1 has a larger misfit" not in words
 
 

@@ -106,6 +106,7 @@ def test_a_point_of_no_law_is_refused_in_the_file(twin: Path) -> None:
     assert "update.starts[0]: no fitted law has all parameters of this starting point" in " ".join(
         result.stderr.split()
     )
+    assert "allowed: kelvin-voigt: k, c\n" in result.stderr  # the law that is fitted, no other
 
 
 def test_all_laws_are_ranked_by_cost(tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 """Modes beside another program's: MAC, pairs of one frequency, nodes by name and place, tables."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -152,7 +153,7 @@ def test_commands_compare_and_draw(tmp_path: Path) -> None:
     def run(*words: str) -> str:
         answer = CliRunner().invoke(main, [*words])
         assert answer.exit_code == 0, answer.output
-        return answer.output
+        return answer.stdout
 
     table, page = str(tmp_path / "theirs.csv"), str(tmp_path / "page.html")
     run("modes", "jacket15", "--support", "pinned", "--number", "5", "--shapes", table)
@@ -161,7 +162,10 @@ def test_commands_compare_and_draw(tmp_path: Path) -> None:
     )
     assert "1.0000" in said
     assert Path(page).read_text().count("MAC 1.000") == 5
-    run("view", "jacket15", "--support", "pinned", "--modes", "3", "--against", table, "--out", page)
+    view = ["view", "jacket15", "--support", "pinned", "--modes", "3", "--against", table]
+    pairs = json.loads(run(*view, "--out", page, "--json"))["shapes"]["pairs"]
+    for pair in pairs:  # of the same elements as those of `modes`, however finely they are drawn
+        assert abs(pair["relative_error"]) < 1e-4
     assert "another program" in Path(page).read_text()
     rows = Path(table).read_text().splitlines()
     (tmp_path / "staged.csv").write_text(

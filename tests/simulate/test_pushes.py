@@ -73,6 +73,26 @@ def test_the_decrement_is_the_poles(tmp_path: Path, ratio: float) -> None:
     assert found.logarithmic_decrement == pytest.approx(2 * np.pi * pole.damping_ratio, rel=0.01)
 
 
+def test_what_no_mode_carries_has_no_decrement_and_far_pulls_are_said(tmp_path: Path) -> None:
+    keys = {"damping": {"rayleigh": {"ratio": 0.01, "frequency_hz": 0.18}}, "time": {"duration_s": 60.0}}
+    foot = {"node": "foot_1", "direction": [0, 1, 0], "displacement_m": 0.01}
+    done = simulate(read_scenario(written(tmp_path, start=foot, **keys)))
+    assert done.record.metadata["decrement"] is None
+    (note,) = done.notes
+    assert note.startswith("release of foot_1: no logarithmic decrement, since no mode carries 10 % of")
+    done = simulate(read_scenario(written(tmp_path, start=pull(displacement_m=40.0), **keys)))
+    assert done.record.metadata["decrement"] is not None
+    (note,) = done.notes
+    assert note.startswith("pull of tower_top: the structure turns by up to")
+
+
+def test_a_held_node_cannot_be_pulled(tmp_path: Path) -> None:
+    start = {"node": "foot_1", "direction": [0, 1, 0], "displacement_m": 0.01}
+    keys = {"support": "pinned", "start": start, "time": {"duration_s": 10.0}}
+    with pytest.raises(InputError, match=r"start\.node: is held in this direction"):
+        simulate(read_scenario(written(tmp_path, **keys)))
+
+
 def test_a_force_from_a_file_is_the_one_that_pulls(tmp_path: Path) -> None:
     """A force that grows slowly and stays is in the end the static one; both columns act."""
     (tmp_path / "f.csv").write_text(

@@ -10,7 +10,8 @@ from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
 from jackettwin.structure import Section, assemble, check
 from jackettwin.structure.check import rigid_body_motion
-from jackettwin.structure.model import STEEL, Material, PointMass
+from jackettwin.structure.model import STEEL, Beam, Material, PointMass
+from jackettwin.structure.two_node import BeamSection
 
 
 def test_reference_jacket() -> None:
@@ -99,3 +100,32 @@ def test_a_nacelle_in_tonnes_is_noticed() -> None:
     first, second = check(assemble(structure.with_masses((light,)))).warnings
     assert first.startswith("radius of gyration of 457 m")
     assert "next to nothing" in second
+
+
+def test_a_member_given_twice_is_named_with_its_twin() -> None:
+    base = monopile_structure()
+    first = base.members[0]
+    again = replace(first, name="again", start=first.end, end=first.start)
+    (warning,) = check(assemble(replace(base, members=(*base.members, again)))).warnings
+    assert warning == f"between the same two nodes (is it given twice?): {first.name} and again"
+
+
+@pytest.mark.parametrize(("I_x", "odd"), [(500.0, True), (0.4, False), (1e-7, True)])
+def test_a_section_that_cannot_be_is_named(I_x: float, *, odd: bool) -> None:
+    """0.3 m² with 500 m⁴ has a radius of gyration of 41 m, with 0.4 m⁴ one of 1.2 m."""
+    base = monopile_structure()
+    first = base.members[0]
+    section = BeamSection(0.3, 0.1, 0.1, I_x, 0.04, I_x + 0.04, 0.08)
+    beam = Beam("girder", first.start, first.end, section, STEEL)
+    warnings = check(assemble(replace(base, members=base.members[1:], beams=(beam,)))).warnings
+    assert bool(warnings) == odd
+    assert all("radius of gyration of the section" in w and w.endswith(": girder") for w in warnings)
+
+
+@pytest.mark.parametrize(("I_xx", "odd"), [(9.0e7, True), (4.0e7, False)])
+def test_an_inertia_that_no_mass_has_is_named(I_xx: float, *, odd: bool) -> None:
+    """About its principal axes: one moment is at most the sum of the others, as of a plate."""
+    structure = monopile_structure()
+    body = PointMass(structure.top_node, 2.6e5, inertia_kg_m2=(I_xx, 2.0e7, 2.0e7, 0.0, 0.0, 0.0))
+    warnings = check(assemble(structure.with_masses((body,)))).warnings
+    assert [w.startswith(f"inertia of the body on {structure.top_node}") for w in warnings] == [True] * odd

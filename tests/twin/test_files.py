@@ -63,6 +63,11 @@ def test_scientific_notation_without_sign_is_a_number(tmp_path: Path) -> None:
         ),
         (
             "targets:",
+            "update: {weights: {damping: {1: 2.0, 7: 4.0}}}\ntargets:",
+            r"update\.weights\.damping: weights of modes that are not fitted .got 7.; allowed: 1, 4;",
+        ),
+        (
+            "targets:",
             "update: {modes: [1, 99]}\ntargets:",
             r"update\.modes: measured modes are paired with the model's first 12.*\[99\].*as targets",
         ),

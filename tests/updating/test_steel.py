@@ -5,7 +5,7 @@ import pytest
 
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.updating import Factor, fit_stage, only_parts
+from jackettwin.updating import Factor, RefinementStage, fit_stage, only_parts, refine
 
 
 def test_planted_factors_come_back() -> None:
@@ -38,6 +38,19 @@ def test_more_factors_than_frequencies() -> None:
 def test_unknown_part() -> None:
     with pytest.raises(InputError, match="no such part .got 'monopile'"):
         only_parts(read_structure("jacket15"), ("monopile",))
+
+
+def test_parts_that_do_not_stand_together_are_refused_before_any_stage_is_fitted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    fitted: list[object] = []
+    monkeypatch.setattr("jackettwin.updating.refinement.fit_stage", lambda *given, **_: fitted.append(given))
+    factor = Factor("tower", "density", tolerance=0.1)
+    stages = RefinementStage((), {1: 0.18}, (factor,)), RefinementStage(("jacket", "tower"), {1: 0.18}, ())
+    message = r"stages\.1\.parts: .* every foot .got \['jacket', 'tower'\].; they leave out transition_piece"
+    with pytest.raises(InputError, match=message):
+        refine(read_structure("jacket15"), stages)
+    assert not fitted
 
 
 def _frequencies(structure) -> np.ndarray:

@@ -26,15 +26,15 @@ def refine_command(file: Path) -> Reply:
     masses and springs, each with bounds and a tolerance. No file is written; the result is printed as the
     structure: block of a twin file.
     """
-    from jackettwin.study.refinement import read_refinement, refinement_document
+    from jackettwin.study.refinement import read_refinement, refined_block, refinement_document
 
     config = read_refinement(file)
     with working(f"refine {config.structure.name}"):
         document = refinement_document(config.refine())
-    return Reply(document, lambda: _show(config.stages, document))
+    return Reply(document, lambda: _show(config.stages, document, refined_block(config.given, document)))
 
 
-def _show(stages: Sequence[RefinementStage], document: Mapping[str, Any]) -> None:
+def _show(stages: Sequence[RefinementStage], document: Mapping[str, Any], block: Mapping[str, Any]) -> None:
     for stage, entry in zip(stages, document["stages"], strict=True):
         what = " + ".join(stage.parts) or "the whole structure"
         changes = ", ".join(_change(f, entry) for f in stage.factors)
@@ -53,7 +53,6 @@ def _show(stages: Sequence[RefinementStage], document: Mapping[str, Any]) -> Non
                     f"warning: mode {m['mode']} of {what} has a larger misfit after all stages: "
                     f"{_from_to(m, 'after_hz', 'final_hz')}; a later stage changes these parts"
                 )
-    block = {"source": "…", **{key: document[key] for key in ("steel", "adjusted") if document[key]}}
     output.print(yaml.safe_dump({"structure": block}, sort_keys=False, allow_unicode=True), end="")
 
 

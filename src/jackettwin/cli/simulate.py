@@ -73,6 +73,7 @@ def simulate_command(
     notes = [
         *rotor_notes(chosen.air, chosen.turbine),
         *asset.support.notes,
+        *done.notes,
         *odd,
         *_operating_notes(at_work),
         *_unusual_shares(done, loops=asset.foundation is not None),

@@ -173,11 +173,14 @@ def _others(
 ) -> tuple[list[DrawnMotion], dict[str, Any] | None]:
     """Return the modes of another program's table as motions, and their comparison with the structure's."""
     from jackettwin.report.view.motions import undamped_motion
-    from jackettwin.response import expanded
+    from jackettwin.response import build_system, expanded
+    from jackettwin.structure import assemble
 
     if against is None:
         return [], None
-    found = compared_with(system, max(number, 1), against)
+    chosen = system.assembly.structure
+    own = build_system(assemble(chosen), system.support)  # the modes that `modes` and `stages` compare
+    found = compared_with(own, max(number, 1), against)
     shapes = expanded(system.assembly, found.other)
     mac = {pair.other: f", MAC {pair.mac:.3f} with mode {pair.own + 1}" for pair in found.pairs}
     drawn = [

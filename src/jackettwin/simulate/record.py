@@ -15,6 +15,7 @@ from jackettwin.quantities import quantity as quantity_of
 from jackettwin.records import Channel, Record
 from jackettwin.simulate.level import beyond_comparison, levels
 from jackettwin.simulate.motion.motion import Motion, simulate_motion
+from jackettwin.simulate.motion.pushes import pull_notes
 from jackettwin.simulate.scenario.asset import Asset
 from jackettwin.simulate.scenario.scenario import Instrument, Scenario, in_words_of
 from jackettwin.simulate.sensing import flawed, readings
@@ -36,6 +37,8 @@ class Simulation:
     record: Record
     seconds_simulated: float
     wall_s: float
+    notes: tuple[str, ...] = ()
+    """What is odd about a pull and its release."""
 
     def document(self) -> dict[str, Any]:
         """Return the document of ``jackettwin simulate``."""
@@ -65,6 +68,7 @@ def simulate(scenario: Scenario) -> Simulation:
     motion = simulate_motion(scenario)
     with in_words_of(scenario):
         clean = readings(motion, scenario)
+    notes = pull_notes(scenario, motion.model, motion.decrement)
     step = scenario.clock.step_s
     data = flawed(clean, scenario.instruments, step_s=step, seed=scenario.sensor_seed)
     signals = _signals(motion, scenario, clean.shape[1])
@@ -95,7 +99,7 @@ def simulate(scenario: Scenario) -> Simulation:
         },
         name=scenario.name,
     )
-    return Simulation(record, scenario.clock.total_s, perf_counter() - start)
+    return Simulation(record, scenario.clock.total_s, perf_counter() - start, notes)
 
 
 def _model(asset: Asset) -> dict[str, Any]:

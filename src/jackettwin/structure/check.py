@@ -14,12 +14,14 @@ from jackettwin.errors import require
 from jackettwin.structure.assemble import Assembly, assemble
 from jackettwin.structure.eigen import lowest_modes
 from jackettwin.structure.masses import rigid_transfer
-from jackettwin.structure.model import PILES, Member, Structure, Vector
+from jackettwin.structure.model import PILES, Beam, Member, Structure, Vector
 
 SLENDER_WALLS = (10.0, 300.0)
 """Diameter over wall of offshore tubes, from thick-walled piles to thin towers."""
 _WIDEST_BODY_M = 100.0
 """Radius of gyration; a rotor of 240 m has 20 m to 30 m about the tower top."""
+_COMPACT = (0.01, 5.0)
+"""Radius of gyration over the root of the area: a plate of 100 to 1 has 0.03 and 2.9, a thin tube 3.5."""
 _LIGHTEST_TOP = 0.002
 """Share of the whole mass; a rotor and nacelle have a few hundredths at least."""
 
@@ -110,9 +112,20 @@ def _warnings(structure: Structure) -> Iterator[str]:
         length = np.linalg.norm(np.subtract(structure.nodes[m.end], structure.nodes[m.start]))
         return bool(length < 0.5 * max(m.section_start.outer_diameter_m, m.section_end.outer_diameter_m))
 
+    def gyration(m: Member | Beam) -> bool:
+        if isinstance(m, Member):
+            return False
+        radii = [np.sqrt(inertia) / m.section.A for inertia in (m.section.I_x, m.section.I_y)]
+        return not _COMPACT[0] <= min(radii) <= max(radii) <= _COMPACT[1]
+
     oddities: tuple[tuple[str, Callable[[Any], bool]], ...] = (
         (f"diameter over wall thickness outside {low:g} to {high:g}", wall),
         ("shorter than half the diameter", stubby),
+        (
+            f"radius of gyration of the section outside {_COMPACT[0]:g} to {_COMPACT[1]:g} times the root of "
+            "its area (is it in m² and m⁴?)",
+            gyration,
+        ),
         ("Young's modulus below 1 GPa (is it in Pa?)", lambda m: m.material.youngs_modulus_pa < 1e9),
         (
             "density below 500 kg/m³ (is it in kg/m³?)",
@@ -126,16 +139,27 @@ def _warnings(structure: Structure) -> Iterator[str]:
         names = [member.name for member in every if is_odd(member)]
         if names:
             yield f"{what}: {few(names)}"
+    between: dict[frozenset[str], list[str]] = {}
+    for m in structure.bars:
+        between.setdefault(frozenset((m.start, m.end)), []).append(m.name)
+    if twice := [" and ".join(names) for names in between.values() if len(names) > 1]:
+        yield f"between the same two nodes (is it given twice?): {few(twice)}"
 
 
 def _bodies(structure: Structure, mass_kg: float) -> Iterator[str]:
     """Yield what is odd about rigid bodies; mostly their masses are in tonnes."""
     for body in structure.masses:
-        gyration = float(np.sqrt(np.linalg.eigvalsh(body.inertia_tensor).max() / max(body.mass_kg, 1e-9)))
+        about = np.linalg.eigvalsh(body.inertia_tensor)
+        gyration = float(np.sqrt(about[-1] / max(body.mass_kg, 1e-9)))
         if body.mass_kg > 0.0 and gyration > _WIDEST_BODY_M:
             yield (
                 f"radius of gyration of {gyration:.0f} m: the body of {body.mass_kg:g} kg on {body.node} "
                 "(is its mass in kg?)"
+            )
+        if about[-1] > 1.01 * about[:2].sum():
+            yield (
+                f"inertia of the body on {body.node} that no mass has: {about[-1]:.3g} kg·m² about one axis "
+                f"is more than {about[0]:.3g} and {about[1]:.3g} about the other two together"
             )
     top = sum(body.mass_kg for body in structure.masses if body.node == structure.top_node)
     if 0.0 < top < _LIGHTEST_TOP * mass_kg:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from math import pi
+from math import dist, pi, sqrt
 from typing import cast
 
 import numpy as np
@@ -12,8 +12,9 @@ import scipy.sparse as sp
 
 from jackettwin.errors import look_up, require
 from jackettwin.structure.assemble import Assembly
+from jackettwin.structure.check import few
 from jackettwin.structure.mesh import discretise
-from jackettwin.structure.model import Inertia, Member, PointMass, Section, Structure, Vector
+from jackettwin.structure.model import Beam, Inertia, Member, PointMass, Section, Structure, T, Vector
 from jackettwin.structure.two_node import Matrix
 
 GROWTH_KG_M3 = 1325.0
@@ -60,39 +61,26 @@ def adjusted(structure: Structure, of: str, name: str, what: str, value: float) 
 
 def _walls(structure: Structure, part: str, factor: float) -> Structure:
     """Return the part's walls times a factor, outer diameters as they are."""
+    _require_tubes(structure, part, "a wall")
 
     def thicker(section: Section) -> Section:
         return replace(section, thickness_m=section.thickness_m * factor)
 
     def changed(m: Member) -> Member:
+        if m.part != part:
+            return m
         return replace(m, section_start=thicker(m.section_start), section_end=thicker(m.section_end))
 
-    return _with_members(structure, part, changed)
+    return replace(structure, members=tuple(map(changed, structure.members)))
 
 
 def _added_mass(structure: Structure, part: str, mass_kg: float) -> Structure:
     """Return the part with a mass spread over its outer surface, as growth and water are, in its density."""
-    mesh = discretise(structure, subdivide=1)
-    p = mesh.properties
-    members = {m.name: i for i, m in enumerate(structure.members)}
-    chosen = [members[m.name] for m in _members(structure, part)]
-    wide = np.array([_width(structure.members[i]) for i in chosen])
-    surface = pi * wide * p.L[chosen]
-    density = mass_kg * surface / surface.sum() / (p.A[chosen] * p.L[chosen])
-    extra = {structure.members[i].name: float(rho) for i, rho in zip(chosen, density, strict=True)}
-
-    def changed(m: Member) -> Member:
-        rho = m.material.density_kg_m3 + extra[m.name]
-        require(
-            rho >= 0.0,
-            "takes off more than the part weighs",
-            field="added_mass_kg",
-            value=mass_kg,
-            remedy="raise the lower bound",
-        )
-        return replace(m, material=replace(m.material, density_kg_m3=rho))
-
-    return _with_members(structure, part, changed)
+    bars = _bars(structure, part)
+    surface = np.array([_width(bar) * _length(structure, bar) for bar in bars])
+    return _heavier(
+        structure, {b.name: m for b, m in zip(bars, mass_kg * surface / surface.sum(), strict=True)}
+    )
 
 
 def _growth(structure: Structure, part: str, thickness_m: float) -> Structure:
@@ -103,17 +91,38 @@ def _growth(structure: Structure, part: str, thickness_m: float) -> Structure:
     require(
         thickness_m >= 0.0, "growth is not negative", field="growth_m", value=thickness_m, allowed=">= 0 m"
     )
-    p = discretise(structure, subdivide=1).properties
-    places = {m.name: i for i, m in enumerate(structure.members)}
-
-    def changed(m: Member) -> Member:
+    _require_tubes(structure, part, "growth")
+    masses = {}
+    for m in _bars(structure, part):
         ends = (structure.nodes[m.start][2], structure.nodes[m.end][2])
-        layer = GROWTH_KG_M3 * pi * thickness_m * (_width(m) + thickness_m)
-        wet = _wet_share(*ends, structure.sea_level_z_m)
-        rho = m.material.density_kg_m3 + layer * wet / float(p.A[places[m.name]])
-        return replace(m, material=replace(m.material, density_kg_m3=rho))
+        wet_m = _wet_share(*ends, structure.sea_level_z_m) * _length(structure, m)
+        masses[m.name] = GROWTH_KG_M3 * pi * thickness_m * (_width(m) + thickness_m) * wet_m
+    return _heavier(structure, masses)
 
-    return _with_members(structure, part, changed)
+
+def _heavier(structure: Structure, added_kg: Mapping[str, float]) -> Structure:
+    """Return the structure with masses added to bars, by name, in their densities."""
+    mesh = discretise(structure)
+    p = mesh.properties
+    tubes = np.bincount(mesh.member, weights=p.A * p.L, minlength=len(structure.members)).tolist()
+    volumes = dict(zip((m.name for m in structure.members), tubes, strict=True))
+    volumes |= {b.name: b.section.A * _length(structure, b) for b in structure.beams}
+
+    def changed(bar: T) -> T:
+        if bar.name not in added_kg:
+            return bar
+        rho = bar.material.density_kg_m3 + added_kg[bar.name] / volumes[bar.name]
+        require(
+            rho >= 0.0,
+            "takes off more than the part weighs",
+            field="added_mass_kg",
+            value=sum(added_kg.values()),
+            remedy="raise the lower bound",
+        )
+        return replace(bar, material=replace(bar.material, density_kg_m3=rho))
+
+    members, beams = tuple(map(changed, structure.members)), tuple(map(changed, structure.beams))
+    return replace(structure, members=members, beams=beams)
 
 
 def _wet_share(a: float, b: float, surface: float) -> float:
@@ -128,18 +137,35 @@ def _wet_share(a: float, b: float, surface: float) -> float:
     return 0.0 if low >= surface else (surface - low) / (high - low)
 
 
-def _width(member: Member) -> float:
-    return 0.5 * (member.section_start.outer_diameter_m + member.section_end.outer_diameter_m)
+def _width(bar: Member | Beam) -> float:
+    """Return the mean diameter of a tube; of another section that of the thin tube of its polar radius."""
+    if isinstance(bar, Beam):
+        return 2.0 * sqrt(bar.section.I_p / bar.section.A)
+    return 0.5 * (bar.section_start.outer_diameter_m + bar.section_end.outer_diameter_m)
 
 
-def _members(structure: Structure, part: str) -> tuple[Member, ...]:
-    look_up({m.part: m for m in structure.members}, part, "part", field="part")
-    return tuple(m for m in structure.members if m.part == part)
+def _length(structure: Structure, bar: Member | Beam) -> float:
+    return dist(structure.nodes[bar.start], structure.nodes[bar.end])
 
 
-def _with_members(structure: Structure, part: str, changed: Callable[[Member], Member]) -> Structure:
-    _members(structure, part)
-    return replace(structure, members=tuple(changed(m) if m.part == part else m for m in structure.members))
+def _bars(structure: Structure, part: str) -> tuple[Member | Beam, ...]:
+    look_up({bar.part: bar for bar in structure.bars}, part, "part", field="part")
+    return tuple(bar for bar in structure.bars if bar.part == part)
+
+
+def _require_tubes(structure: Structure, part: str, what: str) -> None:
+    """Refuse a change of tubes for a part that has other sections, too."""
+    bars = _bars(structure, part)
+    others = [bar.name for bar in bars if isinstance(bar, Beam)]
+    weighs = any(bar.material.density_kg_m3 > 0.0 for bar in bars)
+    require(
+        not others,
+        f"only tubes have {what} to change, and this part has members of another section",
+        field="property",
+        value=few(others),
+        allowed="youngs_modulus, density, added_mass_kg" if weighs else "youngs_modulus, added_mass_kg",
+        remedy="change one of these, or give its tubes a part of their own",
+    )
 
 
 def _with_bodies(structure: Structure, name: str, changed: Callable[[PointMass], PointMass]) -> Structure:

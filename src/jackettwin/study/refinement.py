@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -63,6 +64,8 @@ class RefinementConfig:
     stages: tuple[RefinementStage, ...]
     gravity: bool = True
     own_feet: bool = False
+    given: Mapping[str, Any] = field(default_factory=dict)
+    """What its ``structure`` is, in the keys of a twin's."""
 
     def refine(self) -> Refinement:
         """Return the structure refined by the stages.
@@ -89,7 +92,8 @@ def read_refinement(path: Path | str) -> RefinementConfig:
     with located(file=path):
         structure = schema.structure.read(path.parent)
         stages = tuple(_stage(i, s) for i, s in enumerate(schema.stages))
-    return RefinementConfig(path, structure, stages, schema.gravity, schema.feet == "own")
+    given = schema.structure.model_dump(mode="json", by_alias=True, exclude_defaults=True)
+    return RefinementConfig(path, structure, stages, schema.gravity, schema.feet == "own", given)
 
 
 def _stage(index: int, schema: StageSchema) -> RefinementStage:
@@ -144,6 +148,16 @@ def refinement_document(result: Refinement) -> dict[str, Any]:
         "steel": steel,
         "adjusted": adjusted,
     }
+
+
+def refined_block(given: Mapping[str, Any], document: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the ``structure`` of a twin with the changes that were given, and then those of a refinement."""
+    steel = {part: dict(factors) for part, factors in given.get("steel", {}).items()}
+    for part, factors in document["steel"].items():
+        own = steel.setdefault(part, {})
+        own |= {what: own.get(what, 1.0) * factor for what, factor in factors.items()}
+    changes = {"steel": steel, "adjusted": [*given.get("adjusted", ()), *document["adjusted"]]}
+    return {**given, **{key: value for key, value in changes.items() if value}}
 
 
 def _further(after_hz: float, before_hz: float, target_hz: float) -> bool:

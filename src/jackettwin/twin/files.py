@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import replace
 from math import radians
 from pathlib import Path
@@ -336,7 +336,7 @@ def _check_ties(support: SupportSchema, update: UpdateSettings) -> None:
     require(not both, "a parameter cannot be both shared and scattered", field="scatter", value=both)
 
 
-def _check_update(update: UpdateSettings, given_modes: Container[int | None]) -> None:
+def _check_update(update: UpdateSettings, given_modes: Collection[int | None]) -> None:
     """Raise an error on unknown bounds and priors before any record is identified."""
     known = {p.name for law in (*DEFAULT_LAWS, *members(update.laws)) for p in family(law).parameters}
     for name in update.parameters:
@@ -348,6 +348,7 @@ def _check_update(update: UpdateSettings, given_modes: Container[int | None]) ->
             if not any(name.startswith(f"{k}_") for k in known):
                 look_up(dict.fromkeys(sorted(known)), name, "parameter of a law", field=f"{field}.{name}")
     _check_starts(update)
+    _check_weights(update, given_modes)
     for name, (low, high) in update.bounds.items():
         Parameter(name, low, high, "")
     beyond = [mode for mode in update.modes if mode > PAIRED_MODES and mode not in given_modes]
@@ -359,6 +360,22 @@ def _check_update(update: UpdateSettings, given_modes: Container[int | None]) ->
         allowed=f"1 to {PAIRED_MODES}",
         remedy="give higher ones as targets: {mode, frequency_hz, …}",
     )
+
+
+def _check_weights(update: UpdateSettings, given_modes: Collection[int | None]) -> None:
+    """Raise an error on weights of modes that are not fitted."""
+    fitted = sorted({m for m in given_modes if m is not None}) or sorted(update.modes)
+    for name in ("frequency", "damping"):
+        weights = getattr(update.weights, name, None)
+        strange = [mode for mode in weights if mode not in fitted] if isinstance(weights, dict) else []
+        require(
+            not strange,
+            "weights of modes that are not fitted",
+            field=f"weights.{name}",
+            value=strange[0] if len(strange) == 1 else strange,
+            allowed=", ".join(map(str, fitted)),
+            remedy="name modes of the targets" if given_modes else "name modes of update.modes",
+        )
 
 
 def _check_starts(update: UpdateSettings) -> None:
@@ -380,7 +397,7 @@ def _check_starts(update: UpdateSettings) -> None:
             "no fitted law has all parameters of this starting point",
             field=f"starts[{i}]",
             value=", ".join(point),
-            allowed="; ".join(f"{law}: {', '.join(own)}" for law, own in laws.items()),
+            allowed="; ".join(f"{law}: {', '.join(laws[law])}" for law in members(update.laws)),
         )
 
 

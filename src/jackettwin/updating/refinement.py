@@ -297,6 +297,12 @@ def refine(
     InputError
         If a stage names an unknown part or has more factors than frequencies; the field names the stage.
     """
+    for i, stage in enumerate(stages):  # a mistake in a later stage is not found after minutes
+        with located(field=f"stages.{i}"):
+            of_stage = stage.of(structure)
+            for j, factor in enumerate(stage.factors):
+                with located(field=f"free.{j}"):
+                    factor.on(of_stage, factor.value(0.0))
     fits: list[StageFit] = []
     changes: dict[str, tuple[Factor, float]] = {}
     for i, stage in enumerate(stages):

@@ -17,7 +17,7 @@ def only_parts(structure: Structure, parts: tuple[str, ...]) -> Structure:
     Raises
     ------
     InputError
-        If no member belongs to a part.
+        If no member belongs to a part, or the parts are not joined to each other and to every foot.
     """
     known = sorted({member.part for member in structure.bars})
     for part in parts:
@@ -25,16 +25,27 @@ def only_parts(structure: Structure, parts: tuple[str, ...]) -> Structure:
     members = tuple(member for member in structure.members if member.part in parts)
     beams = tuple(beam for beam in structure.beams if beam.part in parts)
     used = _nodes_of(structure, parts)
-    return replace(
-        structure,
-        nodes={name: xyz for name, xyz in structure.nodes.items() if name in used},
-        members=members,
-        beams=beams,
-        masses=tuple(mass for mass in structure.masses if mass.node in used),
-        rigid_links=tuple(link for link in structure.rigid_links if {link.leader, link.follower} <= used),
-        elements=tuple(e for e in structure.elements if {e.start, e.end} <= used),
-        interface_nodes=tuple(node for node in structure.interface_nodes if node in used),
-    )
+    try:
+        return replace(
+            structure,
+            nodes={name: xyz for name, xyz in structure.nodes.items() if name in used},
+            members=members,
+            beams=beams,
+            masses=tuple(mass for mass in structure.masses if mass.node in used),
+            rigid_links=tuple(link for link in structure.rigid_links if {link.leader, link.follower} <= used),
+            elements=tuple(e for e in structure.elements if {e.start, e.end} <= used),
+            interface_nodes=tuple(node for node in structure.interface_nodes if node in used),
+        )
+    except InputError as error:
+        left_out = ", ".join(part or "members of no named part" for part in known if part not in parts)
+        if not left_out:
+            raise
+        raise InputError(
+            "these parts are not joined to each other and to every foot",
+            field="parts",
+            value=list(parts),
+            remedy=f"they leave out {left_out}: add what joins them",
+        ) from error
 
 
 def _nodes_of(structure: Structure, parts: tuple[str, ...]) -> set[str]:

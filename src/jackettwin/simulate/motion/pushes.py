@@ -19,7 +19,13 @@ from jackettwin.structure import dense
 _SMALLEST = 0.02
 """Share of the first amplitude below which a decay is not followed."""
 _MOST_CYCLES = 50
+_STIFFEST = 1e-18
+"""Flexibility [m/N] of rounding."""
 _LEAST_CYCLES = 2
+_LEAST_SHARE = 0.1
+"""Share of the displacement in the pole that dominates a decay; with less the decay is no mode's."""
+_LARGEST_TURN = 0.1
+"""Rotation [rad] up to which displacements are linear in it within a per cent."""
 
 
 def pushed(scenario: Scenario, model: Model, n_steps: int) -> tuple[FloatArray, FloatArray]:
@@ -78,6 +84,13 @@ def _static(pull: Pull, model: Model) -> tuple[FloatArray, FloatArray]:
     K = dense(model.reduced.pencil.static_stiffness())
     per_newton = np.linalg.solve(K, along)  # what flows or falls over is refused before it is reduced
     flexibility = float(along @ per_newton)
+    require(
+        flexibility > _STIFFEST,
+        "is held in this direction: no force moves it",
+        field="start.node",
+        value=pull.node,
+        remedy="pull a node that moves",
+    )
     newtons = pull.force_n if pull.force_n is not None else float(pull.displacement_m or 0.0) / flexibility
     return newtons * along, np.asarray(newtons * per_newton)
 
@@ -120,12 +133,13 @@ class Decrement:
 
 
 def decrement(scenario: Scenario, model: Model, space: StateSpace, states: FloatArray) -> Decrement | None:
-    """Return the logarithmic decrement after the release; None without a pull, or under other loads.
+    """Return the logarithmic decrement after the release.
 
+    None without a pull, under other loads, or if no mode carries the displacement for some cycles.
     The first cycle is left out, in which modes die that the pull excites beside the first.
     """
     pull, clock = scenario.pull, scenario.clock
-    if pull is None or scenario.air is not None or scenario.forces is not None or _waves(scenario):
+    if pull is None or not _alone(scenario):
         return None
     first = round((pull.release_s + clock.discard_s) / clock.load_step_s) + (pull.release_s > 0.0)
     along = _along(pull, model)
@@ -139,6 +153,8 @@ def decrement(scenario: Scenario, model: Model, space: StateSpace, states: Float
     k, logs = 0.5 * np.arange(last), np.log(peaks[:last])
     slope, level = np.polyfit(k, logs, 1)
     f, zeta, share = _pole(space, states[first], along)
+    if abs(share) < _LEAST_SHARE:
+        return None
     return Decrement(
         pull.node,
         pull.direction,
@@ -153,8 +169,31 @@ def decrement(scenario: Scenario, model: Model, space: StateSpace, states: Float
     )
 
 
-def _waves(scenario: Scenario) -> bool:
-    return scenario.sea is not None and scenario.sea.waves is not None
+def pull_notes(scenario: Scenario, model: Model, found: Decrement | None) -> tuple[str, ...]:
+    """Return why a release has no decrement, and whether the pull goes beyond what a linear model knows."""
+    pull = scenario.pull
+    if pull is None:
+        return ()
+    notes = []
+    if found is None and _alone(scenario):
+        notes.append(
+            f"release of {pull.node}: no logarithmic decrement, since no mode carries "
+            f"{100 * _LEAST_SHARE:.0f} % of the displacement, or it dies within {_LEAST_CYCLES + 1} cycles"
+        )
+    moved = model.assembly.expand @ (model.reduced.basis @ _static(pull, model)[1])
+    turn = float(np.linalg.norm(moved.reshape(-1, 6)[:, 3:], axis=1).max())
+    if turn > _LARGEST_TURN:
+        notes.append(
+            f"pull of {pull.node}: the structure turns by up to {np.degrees(turn):.0f}°, beyond the small "
+            f"rotations (about {np.degrees(_LARGEST_TURN):.0f}°) of a linear model: pull less"
+        )
+    return tuple(notes)
+
+
+def _alone(scenario: Scenario) -> bool:
+    """Return whether nothing but a pull moves the asset."""
+    waves = scenario.sea is not None and scenario.sea.waves is not None
+    return scenario.air is None and scenario.forces is None and not waves
 
 
 def _peaks(u: FloatArray, step_s: float) -> tuple[FloatArray, FloatArray]:
