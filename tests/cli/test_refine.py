@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from jackettwin.cli import main
 from jackettwin.decks import read_structure
 from jackettwin.structure import adjusted, assemble
-from jackettwin.study.refinement import refined_block
+from jackettwin.study.refinement import RefinementConfig
 from jackettwin.twin import read_twin
 from jackettwin.updating import numbered_modes, only_parts
 
@@ -47,7 +47,8 @@ def test_the_block_to_paste_has_the_name_and_the_changes_of_the_file() -> None:
     given = {"source": "jacket15", "steel": {"tower": {"density": 1.1}, "jacket": {"youngs_modulus": 0.9}}}
     mass = {"body": "rna", "property": "mass", "value": 1.02}
     found = {"steel": {"tower": {"density": 1.2, "youngs_modulus": 0.8}}, "adjusted": [mass]}
-    assert refined_block(given, found) == {
+    config = RefinementConfig(Path(), read_structure("jacket15"), (), given=given)
+    assert config.block(found) == {
         "source": "jacket15",
         "steel": {
             "tower": {"density": pytest.approx(1.32), "youngs_modulus": 0.8},

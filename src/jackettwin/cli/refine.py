@@ -26,12 +26,12 @@ def refine_command(file: Path) -> Reply:
     masses and springs, each with bounds and a tolerance. No file is written; the result is printed as the
     structure: block of a twin file.
     """
-    from jackettwin.study.refinement import read_refinement, refined_block, refinement_document
+    from jackettwin.study.refinement import read_refinement, refinement_document
 
     config = read_refinement(file)
     with working(f"refine {config.structure.name}"):
         document = refinement_document(config.refine())
-    return Reply(document, lambda: _show(config.stages, document, refined_block(config.given, document)))
+    return Reply(document, lambda: _show(config.stages, document, config.block(document)))
 
 
 def _show(stages: Sequence[RefinementStage], document: Mapping[str, Any], block: Mapping[str, Any]) -> None:

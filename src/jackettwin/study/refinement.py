@@ -78,6 +78,15 @@ class RefinementConfig:
         with located(file=self.path):
             return refine(self.structure, self.stages, gravity=self.gravity, own_feet=self.own_feet)
 
+    def block(self, document: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the ``structure`` of a twin: what is given, then changed as a document says."""
+        steel = {part: dict(factors) for part, factors in self.given.get("steel", {}).items()}
+        for part, factors in document["steel"].items():
+            own = steel.setdefault(part, {})
+            own |= {what: own.get(what, 1.0) * factor for what, factor in factors.items()}
+        changes = {"steel": steel, "adjusted": [*self.given.get("adjusted", ()), *document["adjusted"]]}
+        return {**self.given, **{key: value for key, value in changes.items() if value}}
+
 
 def read_refinement(path: Path | str) -> RefinementConfig:
     """Read a refinement file.
@@ -148,16 +157,6 @@ def refinement_document(result: Refinement) -> dict[str, Any]:
         "steel": steel,
         "adjusted": adjusted,
     }
-
-
-def refined_block(given: Mapping[str, Any], document: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the ``structure`` of a twin with the changes that were given, and then those of a refinement."""
-    steel = {part: dict(factors) for part, factors in given.get("steel", {}).items()}
-    for part, factors in document["steel"].items():
-        own = steel.setdefault(part, {})
-        own |= {what: own.get(what, 1.0) * factor for what, factor in factors.items()}
-    changes = {"steel": steel, "adjusted": [*given.get("adjusted", ()), *document["adjusted"]]}
-    return {**given, **{key: value for key, value in changes.items() if value}}
 
 
 def _further(after_hz: float, before_hz: float, target_hz: float) -> bool:
