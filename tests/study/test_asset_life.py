@@ -119,7 +119,8 @@ def test_a_rate_beyond_the_budget_is_told_once_it_is_sure() -> None:
 
 
 def test_findings_keep_their_day_and_spare_welds_without_factors(model: StressModel) -> None:
-    days = [day({k: 0.4 for k in range(206)})] * 45
+    n = 2 * sum(len(joint.welds) for joint in model.joints)
+    days = [day({k: 0.4 for k in range(n + len(model.tubes))})] * 45
     early, late = asset_life(model, folded(days[:35])), asset_life(model, folded(days))
     assert [(d, str(f)) for d, f in early.findings()] == [(d, str(f)) for d, f in late.findings()]
     over = {one.number for one in late.welds if not one.weld.warnings}
@@ -132,6 +133,17 @@ def test_what_is_kept_does_not_grow_with_days_and_is_read_again() -> None:
     assert sizes[1] < 1.05 * sizes[0]
     so_far = folded(days[:57])
     assert LIFE_SO_FAR.load(json.loads(json.dumps(LIFE_SO_FAR.dump(so_far)))) == so_far
+
+
+def test_welds_around_tubes_have_a_life_and_alarms(model: StressModel) -> None:
+    """Numbered behind the sides of joints: a name, a place on their tube, a curve of butt welds."""
+    n = 2 * sum(len(joint.welds) for joint in model.joints)
+    found = asset_life(model, folded([day({5: 0.02, n + 1: 0.4})] * 45))
+    row, tube = found.rows()[0], model.tubes[1]
+    assert (row["joint"], row["side"], row["position"]) == (tube.name, "tube", "90°")
+    assert row["node_m"][2] == row["z_m"] == pytest.approx(tube.z_m)
+    assert row["rate_per_year"] == pytest.approx(0.4, rel=1e-6)
+    assert [f.subject for _, f in found.findings()] == [f"{tube.name}, tube"]
 
 
 def test_states_of_operation_share_the_damage(model: StressModel) -> None:

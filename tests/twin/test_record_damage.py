@@ -13,12 +13,14 @@ from numpy.testing import assert_allclose
 from observations import estimate, observation
 
 from jackettwin.decks import read_structure
+from jackettwin.fatigue import count
 from jackettwin.records import Channel, Record
 from jackettwin.response import Sensor, observation_matrix, undamped_modes
 from jackettwin.sensing import (
     Weather,
     discrete,
     readings_of,
+    section_rows,
     sensed_model,
     steady_smoother,
     stress_remainder,
@@ -38,7 +40,14 @@ from jackettwin.twin import (
 )
 from jackettwin.twin.life.damage_sums import weld_sums
 from jackettwin.twin.life.likely_structures import likely_structures
-from jackettwin.twin.life.sensed_damage import STEP, SensedDamage, damage_of, sensed_damage, steps_of
+from jackettwin.twin.life.sensed_damage import (
+    KEPT_TUBES,
+    STEP,
+    SensedDamage,
+    damage_of,
+    sensed_damage,
+    steps_of,
+)
 from jackettwin.updating import Direction, Tolerance, numbered_modes
 
 TOWER = tuple(
@@ -238,10 +247,16 @@ def sensed(stress_model: StressModel) -> tuple[SensedDamage, dict[int, np.ndarra
     lives, true = stress_model.settings.models, {}
     welds = [w for joint in chart.joints for w in joint.welds]
     cycles = chart.cycles(states @ to.T)
+    sea, rows = system.assembly.structure.sea_level_z_m, section_rows(known)
     for side in damage.sides:
-        weld, points = welds[side // 2], cycles[side // 2][side % 2]
-        z = system.assembly.structure.nodes[weld.node][2] - system.assembly.structure.sea_level_z_m
-        curve, t = lives(z)[1].curve, weld.thickness_m[side % 2]
+        if side >= 2 * len(welds):
+            tube = stress_model.tubes[side - 2 * len(welds)]
+            points = [count(series) for series in tube.stress(rows) @ (states @ to.T).T]
+            curve, t = tube.models(tube.z_m - sea)[1].curve, tube.section.thickness_m
+        else:
+            weld, points = welds[side // 2], cycles[side // 2][side % 2]
+            z = system.assembly.structure.nodes[weld.node][2] - sea
+            curve, t = lives(z)[1].curve, weld.thickness_m[side % 2]
         true[int(side)] = np.array([curve.damage(c.ranges, c.numbers, thickness_m=t) for c in points])
     return damage, true
 
@@ -265,8 +280,25 @@ def test_what_a_record_leaves_open_of_damage_has_at_least_its_remainder(
     damage, _ = sensed
     structure = stress_model.assembly.structure
     welds = [w for joint in planned_joints(stress_model.assembly) for w in joint.welds]
-    for side, steps in zip(damage.sides, damage.model, strict=True):
+    of_joints = damage.sides < 2 * len(welds)
+    for side, steps in zip(damage.sides[of_joints], damage.model[of_joints], strict=True):
         z = structure.nodes[welds[side // 2].node][2] - structure.sea_level_z_m
         curve = stress_model.settings.models(z)[1].curve
         assert STEP * steps > np.mean(curve.m) * stress_remainder(z) - STEP
         assert STEP * steps < np.log(10.0)
+
+
+def test_welds_around_tubes_are_told_beside_those_of_joints(
+    sensed: tuple[SensedDamage, dict[int, np.ndarray]], stress_model: StressModel
+) -> None:
+    """The tower's butt welds: numbered behind the sides of joints, their damage that of the motion."""
+    damage, true = sensed
+    n = 2 * sum(len(joint.welds) for joint in stress_model.joints)
+    tubes = [int(side) for side in damage.sides if side >= n]
+    assert len(tubes) == KEPT_TUBES < len(stress_model.tubes)
+    ratio = [
+        DAMAGE_UNIT * damage_of(own).max() / true[int(side)].max()
+        for own, side in zip(damage.points, damage.sides, strict=True)
+        if side >= n
+    ]
+    assert 0.5 < min(ratio) <= max(ratio) < 2.0

@@ -31,6 +31,7 @@ from .strain import (
 )
 from .tube_life import TubeLife as TubeLife, read_details as read_details, tube_lives as tube_lives
 from .tube_welds import (
+    TUBE_POSITIONS as TUBE_POSITIONS,
     TubeDetails as TubeDetails,
     TubeWeld as TubeWeld,
     butt_weld_factor as butt_weld_factor,

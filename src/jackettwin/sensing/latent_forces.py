@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import pi, prod, sqrt
+from math import pi, sqrt
 from typing import Literal
 
 import numpy as np
@@ -29,19 +29,8 @@ from jackettwin.structure import Assembly
 _INTEGRAL_SCALE_M = 340.2
 """8.1 Λ₁ of hubs above 60 m, IEC 61400-1 (2019) annex C."""
 _USUAL_WIND_M_S = 10.0
-_BAND = 0.25
-"""Damping ratio that makes a band as wide as a wind sea's."""
-_TAIL = (1.5 / 1.05, 1.5 * 1.05)
-"""Beyond which multiples of its peak a sea's band falls faster: apart, so that each decays for itself."""
-_PASSED = (
-    prod(b**2 for b in _TAIL)
-    / (_TAIL[1] ** 2 - _TAIL[0] ** 2)
-    * (
-        1.0 / (_TAIL[0] ** 2 + 2.0 * _BAND * _TAIL[0] + 1.0)
-        - 1.0 / (_TAIL[1] ** 2 + 2.0 * _BAND * _TAIL[1] + 1.0)
-    )
-)
-"""Share of a band's variance that its tail leaves."""
+_APART = 1.05
+"""Of the two corners of a band's tail from their mean: apart, so that each decays for itself."""
 _SPACING_M = 4.0
 _DISC_CORNER, _DISC = 0.62, 12.0
 """Lower corner of Kaimal's gusts averaged over a disc of 240 m over U/6L, and the upper one over the lower.
@@ -88,6 +77,7 @@ class LatentForce:
     level : standard deviation of the process that multiplies the pattern: what to expect, then what was found
     level_log_std, rate_log_std : how far the logarithms of level and rate may lie from what is expected
     beside : name of another force, at whose level over its expected one this one's is expected, too
+    width, tail : of waves: damping ratio of the band, and the corner of what falls beyond it over its peak
     """
 
     name: str
@@ -99,6 +89,15 @@ class LatentForce:
     level_log_std: float = 3.0
     rate_log_std: float = 0.2
     beside: str | None = None
+    width: float = 0.1
+    tail: float = 1.5
+
+    @property
+    def _tail(self) -> tuple[float, float, float]:
+        """Both corners of the tail over the peak, and the share of the band's variance that it leaves."""
+        b, c = self.tail / _APART, self.tail * _APART
+        rest = [1.0 / (x**2 + 2.0 * self.width * x + 1.0) for x in (b, c)]
+        return b, c, b**2 * c**2 / (c**2 - b**2) * (rest[0] - rest[1])
 
     def dynamics(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return A (s, s), the density G Gᵀ (s, s) of the noise that drives it, and h (s,): f = h x."""
@@ -109,14 +108,14 @@ class LatentForce:
             b = _DISC * a
             through = np.array([0.0, self.level * sqrt((a + b) / b)])
             return np.array([[-a, 0.0], [b, -b]]), np.diag([2.0 * a, 0.0]), through
-        b, c = _TAIL[0] * a, _TAIL[1] * a
+        b, c, passed = self._tail
         A = np.zeros((4, 4))
-        A[0, 1], A[1, :2] = a, (-a, -2.0 * _BAND * a)
-        A[2, 1:3], A[3, 2:4] = (b, -b), (c, -c)
+        A[0, 1], A[1, :2] = a, (-a, -2.0 * self.width * a)
+        A[2, 1:3], A[3, 2:4] = (b * a, -b * a), (c * a, -c * a)
         return (
             A,
-            np.diag([0.0, 4.0 * _BAND * a, 0.0, 0.0]),
-            np.array([0.0, 0.0, 0.0, self.level / sqrt(_PASSED)]),
+            np.diag([0.0, 4.0 * self.width * a, 0.0, 0.0]),
+            np.array([0.0, 0.0, 0.0, self.level / sqrt(passed)]),
         )
 
     def density(self, omega: FloatArray) -> FloatArray:
@@ -127,11 +126,10 @@ class LatentForce:
         if self.kind == "disc":
             b = _DISC * a
             return np.asarray(square * 2.0 * a * b * (a + b) / ((a**2 + omega**2) * (b**2 + omega**2)))
-        x = omega / a
-        width = 2.0 * _BAND
+        x, (b, c, passed) = omega / a, self._tail
+        width = 2.0 * self.width
         band = 2.0 * width * x**2 / ((1.0 - x**2) ** 2 + (width * x) ** 2) / a
-        passed = [b**2 / (b**2 + x**2) for b in _TAIL]
-        return np.asarray(square / _PASSED * band * passed[0] * passed[1])
+        return np.asarray(square / passed * band * b**2 / (b**2 + x**2) * c**2 / (c**2 + x**2))
 
     def with_level(self, level: float, rate: float | None = None) -> LatentForce:
         """Return the force at another level, and another corner or peak."""

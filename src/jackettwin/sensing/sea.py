@@ -41,14 +41,24 @@ from jackettwin.structure import Assembly
 
 
 class _Band(NamedTuple):
-    """Waves about a multiple of the peak frequency, and how far their own frequency may lie from it."""
+    """Waves about a multiple of the peak frequency, how far their own may lie from it, and their spectrum."""
 
     name: str
     multiple: float
     rate_log_std: float
+    width: float
+    tail: float
 
 
-_BANDS = (_Band("long", 1.0, 0.1), _Band("middle", 1.7, 0.05), _Band("short", 2.9, 0.05))
+_BANDS = (
+    _Band("long", 1.02, 0.1, 0.09, 1.25),
+    _Band("middle", 1.56, 0.05, 0.12, 0.87),
+    _Band("short", 2.85, 0.05, 0.15, 0.6),
+)
+"""Waves of each reach as deep as those at its multiple do, whatever their frequency, so that its tail must be
+short: chosen for the water's acceleration at 1, 8, 20, 30 and 42 m under JONSWAP's seas of 1.5 to 8 m, which
+it has within 8 % where it is not small, and its rate, too. As wide as a sea’s (a ratio of 0.25) it was 5
+to 14 % too large at 20 to 42 m, its rate 10 to 28 %, and twice to ten times where deep braces vibrate."""
 _SHORTEST = 5.0
 """Multiple of the peak frequency beyond which waves reach no member but at the surface."""
 _SPACING_M = 4.0
@@ -134,6 +144,8 @@ class SeaOnMembers:
                             share * level,
                             self.level_log_std,
                             band.rate_log_std,
+                            width=band.width,
+                            tail=band.tail,
                         )
                     )
         return tuple(found)

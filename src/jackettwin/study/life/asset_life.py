@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from jackettwin.fatigue import POSITIONS, SIDES, HotSpot, RemainingLife
+from jackettwin.fatigue import POSITIONS, SIDES, TUBE_POSITIONS, HotSpot, RemainingLife, TubeWeld
 from jackettwin.findings import Finding
 from jackettwin.intervals import NORMAL_90
 from jackettwin.structure import Structure
@@ -28,8 +28,8 @@ class AssetWeld:
     Attributes
     ----------
     number : of the side
-    weld : HotSpot
-    side, position : chord or brace; the point with most damage of all records together
+    weld : HotSpot, or TubeWeld for a weld around a tube
+    side, position : chord, brace or tube; the point with most damage of all records together
     sums : WeldSums
     environment : what corrodes it
     rate, rate_std : damage of a year by the design curve; of its logarithm, what the records leave open
@@ -39,7 +39,7 @@ class AssetWeld:
     """
 
     number: int
-    weld: HotSpot
+    weld: HotSpot | TubeWeld
     side: str
     position: str
     sums: WeldSums
@@ -64,7 +64,9 @@ class AssetLife:
         """Return what asks for a person, each with the day since when it does."""
         found, years = [], self.model.settings.years
         for one in self.welds:
-            subject = f"{one.weld.brace} at {one.weld.node}, {one.side}"
+            weld = one.weld
+            place = weld.name if isinstance(weld, TubeWeld) else f"{weld.brace} at {weld.node}"
+            subject = f"{place}, {one.side}"
             if one.number in self.so_far.departed:
                 day, ratio = self.so_far.departed[one.number]
                 days = BLOCK_DAYS * LAST
@@ -87,17 +89,10 @@ class AssetLife:
         median, spread = one.remaining.rate * years, exp(NORMAL_90 * sqrt(total))
         low, mid, high = (one.remaining.quantile(p) for p in (0.05, 0.5, 0.95))
         left_out = (self.time.n - sums.n) / self.time.n * self.time.beyond
-        return {
-            "joint": weld.node,
-            "chord": weld.chord,
-            "brace": weld.brace,
+        return _place(structure, weld) | {
             "side": one.side,
             "position": one.position,
-            "z_m": structure.nodes[weld.node][2],
-            "node_m": list(structure.nodes[weld.node]),
-            "brace_end_m": list(_other_end(structure, weld)),
             "environment": one.environment,
-            "scf": weld.scf,
             "beyond_validity": list(weld.warnings),
             "observed_s": self.time.seconds,
             "records": self.time.n,
@@ -125,12 +120,11 @@ def asset_life(model: StressModel, so_far: LifeSoFar) -> AssetLife:
     """Return the life of the welds that records named among their worst."""
     time, sums = so_far.total
     joints = planned_joints(model.assembly) if sums else ()
-    welds = [weld for joint in joints for weld in joint.welds]
+    welds: list[HotSpot | TubeWeld] = [w for joint in joints for w in joint.welds for _ in SIDES]
+    welds += model.tubes if sums else ()
     age = _age_years(model, so_far, time)
     found = [
-        _weld(model, so_far, side, welds[side // len(SIDES)], sums[side], time, age)
-        for side in sums
-        if sums[side].worst
+        _weld(model, so_far, side, welds[side], sums[side], time, age) for side in sums if sums[side].worst
     ]
     return AssetLife(model, so_far, time, tuple(sorted(found, key=lambda one: (-one.rate, one.number))))
 
@@ -139,13 +133,18 @@ def _weld(
     model: StressModel,
     so_far: LifeSoFar,
     side: int,
-    weld: HotSpot,
+    weld: HotSpot | TubeWeld,
     sums: WeldSums,
     time: SensedTime,
     age: float,
 ) -> AssetWeld:
     structure = model.assembly.structure
-    environment, own = model.settings.models(structure.nodes[weld.node][2] - structure.sea_level_z_m)
+    if isinstance(weld, TubeWeld):
+        curves, z, place, positions = weld.models, weld.z_m, "tube", TUBE_POSITIONS
+    else:
+        curves, z = model.settings.models, structure.nodes[weld.node][2]
+        place, positions = SIDES[side % len(SIDES)], POSITIONS
+    environment, own = curves(z - structure.sea_level_z_m)
     m, point = float(np.mean(own.curve.m)), int(np.argmax(sums.points))
     open_ = so_far.variances(side, time, sums)
     variances = {
@@ -158,7 +157,7 @@ def _weld(
     median = rate * 10.0 ** (-2.0 * own.curve.log_std)
     by_state = {op: s[side].points[point] / sums.worst for op, s in so_far.welds.items() if side in s}
     return AssetWeld(
-        side, weld, SIDES[side % len(SIDES)], POSITIONS[point], sums, environment, rate,
+        side, weld, place, positions[point], sums, environment, rate,
         sqrt(sum(open_.values())), RemainingLife(median, sqrt(sum(variances.values())), age), variances,
         by_state,
     )  # fmt: skip
@@ -174,9 +173,25 @@ def _age_years(model: StressModel, so_far: LifeSoFar, time: SensedTime) -> float
     return max(last - first, 1) / _DAYS_A_YEAR
 
 
-def _other_end(structure: Structure, weld: HotSpot) -> tuple[float, float, float]:
-    brace = next(member for member in structure.members if member.name == weld.brace)
-    return structure.nodes[brace.end if brace.start == weld.node else brace.start]
+def _place(structure: Structure, weld: HotSpot | TubeWeld) -> dict[str, Any]:
+    """Return where a weld is, and its factors; the joint of a weld around a tube is its name."""
+    members = {member.name: member for member in structure.members}
+    if isinstance(weld, TubeWeld):
+        member = members[weld.member]
+        start, end = (np.array(structure.nodes[node]) for node in (member.start, member.end))
+        at, ends = start + weld.position * (end - start), (weld.name, weld.member, weld.member)
+        scf, other = {weld.kind: {"nominal": {"around": weld.scf}}}, start if weld.position > 0.5 else end
+    else:
+        brace = members[weld.brace]
+        at = np.array(structure.nodes[weld.node])
+        other = np.array(structure.nodes[brace.end if brace.start == weld.node else brace.start])
+        ends, scf = (weld.node, weld.chord, weld.brace), weld.scf
+    return dict(zip(("joint", "chord", "brace"), ends, strict=True)) | {
+        "z_m": float(at[2]),
+        "node_m": at.tolist(),
+        "brace_end_m": other.tolist(),
+        "scf": scf,
+    }
 
 
 def _finite(value: float) -> float | None:

@@ -25,7 +25,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray, IntArray
-from jackettwin.fatigue import JointStresses, ModelsAtHeight
+from jackettwin.fatigue import JointStresses, ModelsAtHeight, TubeWeld, tube_welds
 from jackettwin.identification import ModalEstimate
 from jackettwin.loads import Coefficients
 from jackettwin.response import System, UndampedModes, build_system, track_modes, undamped_modes
@@ -112,6 +112,11 @@ class StressModel:
     def joints(self) -> tuple[JointStresses, ...]:
         """Joints of tubes with their welds."""
         return planned_joints(self.assembly)
+
+    @cached_property
+    def tubes(self) -> tuple[TubeWeld, ...]:
+        """Butt welds around tubes."""
+        return tube_welds(self.assembly, self.settings.details)[0]
 
     @cached_property
     def curves(self) -> ModelsAtHeight:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray, IntArray
-from jackettwin.fatigue import POSITIONS, SIDES, JointStresses, LifeModel, ModelsAtHeight, count
+from jackettwin.fatigue import POSITIONS, SIDES, LifeModel, count
 from jackettwin.sensing import MotionEstimate, SensorReadings, Weather, likely_motions, stress_remainder
-from jackettwin.structure import Structure
-from jackettwin.twin.life.likely_structures import LikelyStructures
+from jackettwin.twin.life.likely_structures import LikelyStructures, StressModel
 from jackettwin.twin.life.weld_map import WeldMap, weld_map
 
 DAMAGE_UNIT = 1e-11
@@ -22,6 +20,8 @@ _COUNTED = 24
 """Sides of welds whose cycles are counted: those whose stress varies most, for its curve."""
 _AGAIN = KEPT + 2
 """Sides that are counted in other motions, too: those with most damage in the likeliest."""
+KEPT_TUBES, _COUNTED_TUBES = 4, 6
+"""The same of welds around tubes."""
 STEP = 0.02
 """Of logarithms that are kept: a damage is known to a hundredth."""
 STRUCTURES = 2
@@ -38,7 +38,8 @@ class SensedDamage:
 
     Attributes
     ----------
-    sides : (n,) 2 · weld + side (0 chord, 1 brace), welds in the order of the structure's joints
+    sides : (n,) 2 · weld + side (0 chord, 1 brace), welds in the order of the structure's joints, and behind
+        them all the welds around tubes
     points : (n, 8) steps of ln(damage/DAMAGE_UNIT) at each point, 0 where there is less than that
     unseen, model : (n,) steps of the standard deviation of ln damage: of what sensors do not see, and of
         the structures that the record leaves likely
@@ -86,19 +87,19 @@ def sensed_damage(
     systems = likely.systems(structures)
     estimates = likely_motions(systems, readings, weather, damped=likely.damped, near=likely.near)
     told = likely.model
-    chart = weld_map(systems[0], estimates[0].model, told.dry, told.joints)
-    curves = _Curves.of(told.assembly.structure, told.joints, told.curves)
+    chart = weld_map(systems[0], estimates[0].model, told.dry, told.joints, tubes=told.tubes)
+    curves = _Curves.of(told)
     mean = estimates[0].mean()
     sides, guessed, largest_left = curves.worst(chart, mean, estimates[0].covariance)
     first = curves.damage(chart, mean, sides)
-    order = np.argsort(-first.max(axis=1), kind="stable")
-    rest, again = first[order[_AGAIN:]], order[:_AGAIN]
+    again, left = curves.most(first, sides, (_AGAIN, KEPT_TUBES))
+    rest = first[left]
     sides, first, guessed = sides[again], first[again], guessed[again]
     # what sensors do not see adds to the damage of every structure as it does to that of the first
     unseen = np.array(_drawn(curves, chart, estimates[0], mean, sides, first)) / np.maximum(first, 1e-300)
-    others, of = [], set(curves.joint[sides // len(SIDES)].tolist())
+    others, of = [], set(curves.joint[sides[sides < curves.n_sides] // len(SIDES)].tolist())
     for system, one in zip(systems[1:], estimates[1:], strict=True):
-        chart = weld_map(system, one.model, told.dry, told.joints, of=of)
+        chart = weld_map(system, one.model, told.dry, told.joints, of=of, tubes=told.tubes)
         others.append(curves.damage(chart, one.mean(), sides, like=first))
     mirrored = [first**2 / np.maximum(one, _LEAST * first + 1e-300) for one in others]
     damage = np.array([first, *others, *mirrored])[:, None] * unseen
@@ -106,7 +107,7 @@ def sensed_damage(
     bound = largest_left * float((worst / guessed).max(initial=0.0))
     grown = float((worst / np.maximum(first.max(axis=1), 1e-300)).max(initial=0.0))
     bound = max(bound, grown * float(rest.max(initial=0.0)))
-    return _kept(sides, damage, bound, curves.remainder[sides // len(SIDES)])
+    return _kept(curves, sides, damage, bound)
 
 
 def _drawn(
@@ -129,17 +130,16 @@ def _drawn(
     return damage, curves.damage(chart, other, sides, like=first)
 
 
-def _kept(sides: IntArray, damage: FloatArray, bound: float, remainder: FloatArray) -> SensedDamage:
+def _kept(curves: _Curves, sides: IntArray, damage: FloatArray, bound: float) -> SensedDamage:
     """Return what is kept of damages (n_structures, n_draws, n_sides, 8) of the sides that were counted."""
     mean = damage.mean(axis=(0, 1))
-    order = np.argsort(-mean.max(axis=1), kind="stable")
-    kept, rest = order[:KEPT], order[KEPT:]
+    kept, rest = curves.most(mean, sides, (KEPT, KEPT_TUBES))
     kept = kept[mean[kept].max(axis=1) >= DAMAGE_UNIT]
     at = mean[kept].argmax(axis=1)
     logs = np.log(np.maximum(damage[:, :, kept, at], DAMAGE_UNIT))
     unseen = logs.std(axis=1, ddof=1).mean(axis=0) if logs.shape[1] > 1 else np.zeros(kept.size)
     model = logs.mean(axis=1).std(axis=0, ddof=1) / _OF_PAIRS if len(logs) > 1 else np.zeros(kept.size)
-    model = np.hypot(model, remainder[kept])
+    model = np.hypot(model, curves.remainder[sides[kept]])
     left = max(bound, float(mean[rest].max(initial=0.0)))
     by_chance, shared = (np.rint(std / STEP).astype(np.intp) for std in (unseen, model))
     return SensedDamage(sides[kept], steps_of(mean[kept]), by_chance, shared, int(steps_of(np.array(left))))
@@ -147,9 +147,10 @@ def _kept(sides: IntArray, damage: FloatArray, bound: float, remainder: FloatArr
 
 @dataclass(frozen=True)
 class _Curves:
-    """The curve and thickness of every side of every weld; the joint it is of.
+    """The curve and thickness of every side of every weld and, behind them, of every weld around a tube.
 
-    ``remainder`` (n_welds,) is the standard deviation of ln damage that simplified waves and modes leave.
+    ``joint`` (n_welds,) is the joint that a weld is of, and ``remainder`` (n,) the standard deviation of ln
+    damage that simplified waves and modes leave.
     """
 
     models: tuple[LifeModel, ...]
@@ -158,14 +159,29 @@ class _Curves:
     remainder: FloatArray
 
     @classmethod
-    def of(cls, structure: Structure, joints: Sequence[JointStresses], models: ModelsAtHeight) -> _Curves:
+    def of(cls, told: StressModel) -> _Curves:
         """Return those of a structure's welds."""
-        welds = [weld for joint in joints for weld in joint.welds]
-        heights = [structure.nodes[w.node][2] - structure.sea_level_z_m for w in welds]
-        at = [models(z)[1] for z in heights]
+        structure = told.assembly.structure
+        welds = [weld for joint in told.joints for weld in joint.welds]
+        sides = [(structure.nodes[w.node][2], t, told.curves) for w in welds for t in w.thickness_m]
+        sides += [(tube.z_m, tube.section.thickness_m, tube.models) for tube in told.tubes]
+        heights = [z - structure.sea_level_z_m for z, _, _ in sides]
+        at = [curves(z)[1] for z, (_, _, curves) in zip(heights, sides, strict=True)]
         left = [stress_remainder(z) * float(np.mean(m.curve.m)) for z, m in zip(heights, at, strict=True)]
-        joint = np.repeat(np.arange(len(joints)), [len(j.welds) for j in joints])
-        return cls(tuple(at), np.array([w.thickness_m for w in welds]), joint, np.array(left))
+        joint = np.repeat(np.arange(len(told.joints)), [len(j.welds) for j in told.joints])
+        return cls(tuple(at), np.array([t for _, t, _ in sides]), joint, np.array(left))
+
+    @property
+    def n_sides(self) -> int:
+        """Number of the sides of welds of joints."""
+        return len(SIDES) * self.joint.size
+
+    def most(self, damage: FloatArray, sides: IntArray, number: tuple[int, int]) -> tuple[IntArray, IntArray]:
+        """Return which sides have most damage (n, …), so many of joints and of tubes, and the rest."""
+        order = np.argsort(-damage.reshape(len(damage), -1).max(axis=1), kind="stable")
+        of_tubes = sides[order] >= self.n_sides
+        first = np.concatenate([order[~of_tubes][: number[0]], order[of_tubes][: number[1]]])
+        return first, np.setdiff1d(order, first)
 
     def worst(
         self, chart: WeldMap, motion: FloatArray, unseen: FloatArray
@@ -177,18 +193,19 @@ class _Curves:
         unseen : (n_coordinates, n_coordinates) covariance of what the motion (n, n_coordinates) misses
         """
         seen = np.cov(motion.T) + unseen
-        size = np.concatenate([_spread(chart, j, seen) for j in range(len(chart.joints))])
+        size = np.concatenate(
+            [
+                *(_spread(chart, j, seen).ravel() for j in range(len(chart.joints))),
+                [float(np.sqrt(np.einsum("pi,ij,pj->p", rows, seen, rows).max())) for rows in chart.tubes],
+            ]
+        )
         per_cycle = np.array(
             [
-                [
-                    model.curve.damage(_TYPICAL * size[w, s : s + 1], np.ones(1), thickness_m=t)
-                    for s, t in enumerate(self.thickness_m[w])
-                ]
-                for w, model in enumerate(self.models)
+                model.curve.damage(_TYPICAL * size[s : s + 1], np.ones(1), thickness_m=float(t))
+                for s, (model, t) in enumerate(zip(self.models, self.thickness_m, strict=True))
             ]
-        ).ravel()
-        order = np.argsort(-per_cycle, kind="stable")
-        chosen, rest = order[:_COUNTED], order[_COUNTED:]
+        )
+        chosen, rest = self.most(per_cycle, np.arange(size.size), (_COUNTED, _COUNTED_TUBES))
         return chosen, np.maximum(per_cycle[chosen], 1e-300), float(per_cycle[rest].max(initial=0.0))
 
     def damage(
@@ -200,31 +217,40 @@ class _Curves:
         ----------
         like : damage of another motion; points that had little of it follow the side's worst, uncounted
         """
-        welds, found = sides // len(SIDES), np.zeros((sides.size, len(POSITIONS)))
+        found, welds = np.zeros((sides.size, len(POSITIONS))), sides // len(SIDES)
         first = np.concatenate([[0], np.cumsum(np.bincount(self.joint))])
         # seven digits: a damage is kept to a hundredth
-        single = motion.astype(np.float32)
-        for joint in np.unique(self.joint[welds]):
-            here = np.flatnonzero(self.joint[welds] == joint)
+        single, known = motion.astype(np.float32), np.ones_like(found)
+        if like is not None:
+            known = like / np.maximum(like.max(axis=1, keepdims=True), 1e-300)
+        of_joints = sides < self.n_sides
+        for joint in np.unique(self.joint[welds[of_joints]]):
+            here = np.flatnonzero(of_joints & (self.joint[np.minimum(welds, self.joint.size - 1)] == joint))
             braces = sorted({int(w - first[joint]) for w in welds[here]})
             parts = dict(zip(braces, chart.parts(int(joint), single, braces), strict=True))
             for i in here:
-                w, s = divmod(int(sides[i]), len(SIDES))
-                curve, t = self.models[w].curve, float(self.thickness_m[w, s])
-                known = np.ones(len(POSITIONS)) if like is None else like[i] / max(like[i].max(), 1e-300)
-                major = np.flatnonzero(known >= _MINOR)
-                if not major.size:
-                    continue
-                brace = w - int(first[joint])
-                stress = chart.joints[int(joint)].weld_stress(brace, parts[brace], s, major)
-                cycles = [count(series) for series in stress]
-                ranges = np.concatenate([c.ranges for c in cycles])
-                each = 1.0 / curve.cycles_to_failure(ranges, thickness_m=t)
-                of = np.repeat(major, [c.ranges.size for c in cycles])
-                numbers = np.concatenate([c.numbers for c in cycles])
-                found[i] = np.bincount(of, each * numbers, minlength=len(POSITIONS))
-                minor, worst = known < _MINOR, int(known.argmax())
-                found[i, minor] = known[minor] * found[i, worst]
+                brace, major = int(welds[i] - first[joint]), np.flatnonzero(known[i] >= _MINOR)
+                side = int(sides[i]) % len(SIDES)
+                stress = chart.joints[int(joint)].weld_stress(brace, parts[brace], side, major)
+                found[i] = self._counted(int(sides[i]), stress, major, known[i])
+        for i in np.flatnonzero(~of_joints):
+            major = np.flatnonzero(known[i] >= _MINOR)
+            rows = chart.tubes[int(sides[i]) - self.n_sides][major].astype(np.float32)
+            found[i] = self._counted(int(sides[i]), rows @ single.T, major, known[i])
+        return found
+
+    def _counted(self, side: int, stress: FloatArray, major: IntArray, known: FloatArray) -> FloatArray:
+        """Return the damage (8,) at the points of a side, of which some are counted (n, n_samples)."""
+        if not major.size:
+            return np.zeros(len(POSITIONS))
+        cycles, t = [count(series) for series in stress], float(self.thickness_m[side])
+        ranges = np.concatenate([c.ranges for c in cycles])
+        each = 1.0 / self.models[side].curve.cycles_to_failure(ranges, thickness_m=t)
+        of = np.repeat(major, [c.ranges.size for c in cycles])
+        numbers = np.concatenate([c.numbers for c in cycles])
+        found = np.bincount(of, each * numbers, minlength=len(POSITIONS))
+        minor = known < _MINOR
+        found[minor] = known[minor] * found[int(known.argmax())]
         return found
 
 

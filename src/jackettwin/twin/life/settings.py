@@ -7,7 +7,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from jackettwin.fatigue import ModelsAtHeight, models_at_height
+from jackettwin.fatigue import ModelsAtHeight, TubeDetails, models_at_height
 from jackettwin.files import Schema
 
 
@@ -17,6 +17,7 @@ class LifeSettings(Schema):
     Attributes
     ----------
     curve, edition : of the S-N curve; None takes the newest edition that comes with the package
+    butt_curve : of butt welds around tubes
     design_factor : design fatigue factor
     years : design life; with the factor it is the budget of damage of a year
     in_service : since when damage is done; None is since the first record
@@ -24,6 +25,7 @@ class LifeSettings(Schema):
 
     curve: str = "T"
     edition: str | None = None
+    butt_curve: str = "D"
     design_factor: Annotated[float, Field(ge=1.0, le=10.0)] = 1.0
     years: Annotated[float, Field(gt=0.0, le=200.0)] = 25.0
     in_service: date | None = None
@@ -37,7 +39,21 @@ class LifeSettings(Schema):
         InputError
             If there is no such curve or edition.
         """
-        return models_at_height(self.curve, design_factor=self.design_factor, edition=self.edition)
+        return self._models(self.curve)
+
+    @property
+    def details(self) -> TubeDetails:
+        """Butt welds around tubes and their curve.
+
+        Raises
+        ------
+        InputError
+            If there is no such curve or edition.
+        """
+        return TubeDetails(self._models(self.butt_curve))
+
+    def _models(self, curve: str) -> ModelsAtHeight:
+        return models_at_height(curve, design_factor=self.design_factor, edition=self.edition)
 
     @property
     def budget(self) -> float:

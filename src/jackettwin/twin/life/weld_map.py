@@ -10,7 +10,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.checks import joint_plans
 from jackettwin.errors import require
-from jackettwin.fatigue import Cycles, JointStresses, count, joint_stresses
+from jackettwin.fatigue import Cycles, JointStresses, TubeWeld, count, joint_stresses
 from jackettwin.response import System, self_weight, static_displacement
 from jackettwin.sensing import MotionModel, section_rows
 from jackettwin.structure import Assembly, SectionForces, element_weight, section_forces
@@ -29,11 +29,13 @@ class WeldMap:
     rows : for every joint, (n_braces, 3, n_coordinates) nominal stress at unit coordinates; no braces where
         stresses are not asked
     at_rest : likewise, (n_braces, 3) nominal stress under the steel's weight
+    tubes : for every weld around a tube, (8 points, n_coordinates) stress at unit coordinates
     """
 
     joints: tuple[JointStresses, ...]
     rows: tuple[FloatArray, ...]
     at_rest: tuple[FloatArray, ...]
+    tubes: tuple[FloatArray, ...] = ()
 
     def stress(self, joint: int, motion: FloatArray, braces: Sequence[int] | None = None) -> FloatArray:
         """Return stresses (n_braces, 2, 8, n) [Pa] of a joint, or of some of its braces.
@@ -77,6 +79,7 @@ def weld_map(
     joints: tuple[JointStresses, ...] | None = None,
     *,
     of: Collection[int] | None = None,
+    tubes: Sequence[TubeWeld] = (),
 ) -> WeldMap:
     """Return the map from a motion of the model to the stresses of the structure's welds.
 
@@ -85,6 +88,7 @@ def weld_map(
     dry : the assembly with the steel's mass only, whose weight divides forces between K, Y and X joints
     joints : of the structure, if they are planned already
     of : numbers of the joints whose stresses are asked; of all without it
+    tubes : welds around tubes
 
     Raises
     ------
@@ -96,9 +100,15 @@ def weld_map(
     weight = static_displacement(system, self_weight(dry))
     still = section_forces(model.assembly, weight[None], along=element_weight(dry)[None])
     # at rest is one coordinate more
-    forces = SectionForces(*(np.concatenate(pair) for pair in zip(section_rows(model), still, strict=True)))
+    unit = section_rows(model)
+    forces = SectionForces(*(np.concatenate(pair) for pair in zip(unit, still, strict=True)))
     asked, none = range(len(joints)) if of is None else of, np.zeros((0, 3, 1 + len(forces.axial)))
     nominal = [
         joint.nominal(model.assembly, forces) if j in asked else none for j, joint in enumerate(joints)
     ]
-    return WeldMap(joints, tuple(n[:, :, :-1] for n in nominal), tuple(n[:, :, -1] for n in nominal))
+    return WeldMap(
+        joints,
+        tuple(n[:, :, :-1] for n in nominal),
+        tuple(n[:, :, -1] for n in nominal),
+        tuple(weld.stress(unit) for weld in tubes),
+    )

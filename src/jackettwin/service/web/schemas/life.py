@@ -28,7 +28,8 @@ class LifeOut(BaseModel):
     ``damage`` is of the time that records tell of (``observed_s``), at the worst of the eight points of
     ``damage_by_point``; ``damage_interval_90`` is about the median by the mean of the tests. A year is as the
     records were. ``node_m`` and ``brace_end_m`` are where the weld is and where its brace leads, in the
-    structure's frame. ``scf``: factors by class (k, y, x), load and place. ``departed``: its share of the
+    structure's frame. ``scf``: factors by class (k, y, x), load and place. A weld around a
+    ``tube`` has its name for its joint and its tube for chord and brace. ``departed``: its share of the
     damage of all welds differs from its past; ``over_budget``: a year's damage exceeds what the design life
     allows, its interval included.
     """
@@ -36,7 +37,7 @@ class LifeOut(BaseModel):
     joint: str
     chord: str
     brace: str
-    side: Literal["chord", "brace"]
+    side: Literal["chord", "brace", "tube"]
     position: str
     z_m: float
     node_m: tuple[float, float, float]
