@@ -38,7 +38,8 @@ def test_the_damage_of_a_real_record_is_answered(
     assert client.post("/api/v1/assets/pile/records", **sent).status_code == 202
     turn(service, 6)
     told = client.get("/api/v1/assets/pile/life").json()["items"]
-    assert len(told) == 16 and all(row["records"] == 1 for row in told)
+    assert len(told) == 20 and all(row["records"] == 1 for row in told)
+    assert sum(row["side"] == "tube" for row in told) == 4
     lives = [row["life_years"] for row in told]
     assert lives == sorted(lives) and lives[0] > 0.0
     model = twin_model(read_twin("openfast_pile"))
