@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 from jackettwin.cli import main
-from jackettwin.cli.identify_tables import _print_findings
+from jackettwin.cli.identify_tables import _print_findings, _print_methods
 
 RECORDS = Path(str(files("jackettwin") / "data" / "records"))
 
@@ -149,3 +149,9 @@ def test_setups_are_joined_before_the_identification(tmp_path: Path) -> None:
         code, _, err = run(*arguments, "--merge", "preger")
         assert code == 2
         assert "Traceback" not in err
+
+
+def test_a_method_that_does_not_know_a_damping_says_so(capsys: pytest.CaptureFixture[str]) -> None:
+    mode = {"frequency_hz": 0.3159, "damping_ratio": None}
+    _print_methods({"modes": [mode], "methods": {"modes": {"ssi-cov": [mode], "efdd": [None]}, "refused": {}}})
+    assert "0.3159 / unknown" in capsys.readouterr().out

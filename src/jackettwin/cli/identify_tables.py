@@ -87,7 +87,10 @@ def _print_methods(document: Mapping[str, Any]) -> None:
 
 
 def _both(m: Mapping[str, Any] | None) -> str | None:
-    return None if m is None else f"{m['frequency_hz']:.4f} / {100 * m['damping_ratio']:.2f}"
+    if m is None:
+        return None
+    zeta = m["damping_ratio"]
+    return f"{m['frequency_hz']:.4f} / {'unknown' if zeta is None else f'{100 * zeta:.2f}'}"
 
 
 def show_many(document: Mapping[str, Any]) -> None:
