@@ -153,5 +153,7 @@ def test_setups_are_joined_before_the_identification(tmp_path: Path) -> None:
 
 def test_a_method_that_does_not_know_a_damping_says_so(capsys: pytest.CaptureFixture[str]) -> None:
     mode = {"frequency_hz": 0.3159, "damping_ratio": None}
-    _print_methods({"modes": [mode], "methods": {"modes": {"ssi-cov": [mode], "efdd": [None]}, "refused": {}}})
+    _print_methods(
+        {"modes": [mode], "methods": {"modes": {"ssi-cov": [mode], "efdd": [None]}, "refused": {}}}
+    )
     assert "0.3159 / unknown" in capsys.readouterr().out

@@ -23,16 +23,19 @@ from jackettwin.response import (
     state_matrix,
     static_displacement,
     undamped_modes,
+    with_inner_piles,
 )
 from jackettwin.simulate import read_scenario
 from jackettwin.simulate.motion.model import build_model
 from jackettwin.soil import Foundation, Pile, Support, read_foundation, read_supported
 from jackettwin.soil.piles.impedance import head_impedance
 from jackettwin.soil.piles.piles import linear_springs
+from jackettwin.soil.piles.radiation import Radiation
 from jackettwin.structure import (
     PILES,
     Material,
     Member,
+    Rayleigh,
     Reaction,
     Section,
     Structure,
@@ -120,6 +123,24 @@ def test_members_have_the_poles_of_the_exact_head_and_the_lumped_one_nearly() ->
     # 3e-4 in frequency, 2 % in damping: docs/theory/soil.md
     np.testing.assert_allclose(lumped.frequency_hz, members.frequency_hz, rtol=3e-4)
     np.testing.assert_allclose(lumped.damping_ratio, members.damping_ratio, rtol=0.02)
+
+
+WAVES = Radiation(density_kg_m3=1900.0, shear_wave_m_s=150.0, frequency_hz=0.8)
+
+
+@pytest.mark.parametrize("steel", [Rayleigh(), Rayleigh.minimum(0.01, 0.18)], ids=["no steel", "steel"])
+@pytest.mark.parametrize("ground", [GROUND, replace(GROUND, radiation=WAVES)], ids=["law", "radiation"])
+def test_heads_with_inner_piles_have_the_poles_of_members(ground: Foundation, steel: Rayleigh) -> None:
+    """All poles below 1.5 Hz, damping included, and undamped modes (docs/theory/soil.md)."""
+    piled, support = ground.piled(JACKET)
+    members = build_system(assemble(piled), support, rayleigh=steel)
+    heads = with_inner_piles(build_system(assemble(JACKET), ground.heads(JACKET), rayleigh=steel))
+    assert heads.pencil.n < 0.6 * members.pencil.n
+    wanted, found = (damped_modes(one, below_hz=1.5) for one in (members, heads))
+    assert wanted.eigenvalues.size > 8
+    np.testing.assert_allclose(found.eigenvalues, wanted.eigenvalues, rtol=1e-8)
+    at_rest = (undamped_modes(one, 12).omega for one in (members, heads))
+    np.testing.assert_allclose(*at_rest, rtol=1e-8)
 
 
 def test_frequencies_of_subdyn() -> None:

@@ -101,7 +101,7 @@ def modes_command(
     STRUCTURE is a shipped name, a YAML file, or a SubDyn .dat file.
     """
     from jackettwin.decks import read_structure
-    from jackettwin.response import build_system, modal_damping, own_damping
+    from jackettwin.response import build_system, modal_damping, own_damping, with_inner_piles
     from jackettwin.soil import Prony
     from jackettwin.soil.support import described
     from jackettwin.structure import assemble
@@ -123,7 +123,7 @@ def modes_command(
         with located(field="--mode-damping"):
             own_modes = modal_damping(assembly, ratios, steel)
         spread = (*spread, (own_modes, Prony(c=1.0)))
-    system = build_system(assembly, held, rayleigh=steel, spread=spread)
+    system = with_inner_piles(build_system(assembly, held, rayleigh=steel, spread=spread))
     own = f"the structure's own: {described(held)}"
     document = {**_document(system, number, bare), "support": own if support is None else support}
     document["warnings"] = [*document["warnings"], *held.notes]
@@ -266,7 +266,7 @@ def _document(system: System, number: int, bare: Assembly) -> dict[str, Any]:
         "mass_kg": books.mass_kg,
         "support_mass_kg": books.support_mass_kg,
         "center_of_mass_m": books.center_of_mass_m,
-        "n_dof": system.pencil.n,
+        "n_dof": system.free.size,
         "warnings": books.warnings,
         "modes": rows[:number],
         "overdamped_poles": others,

@@ -100,4 +100,10 @@ from .superelement.files import (
     require_format as require_format,
     write_superelement as write_superelement,
 )
-from .system import Group as Group, Matrix as Matrix, System as System, build_system as build_system
+from .system import (
+    Group as Group,
+    Matrix as Matrix,
+    System as System,
+    build_system as build_system,
+    with_inner_piles as with_inner_piles,
+)

@@ -31,7 +31,8 @@ class StateModel:
     B : (n_states, n_inputs)
     states : tuple of str
         ``NODE.ux_m`` … of the free degrees of freedom, their velocities ``NODE.ux_m/s`` …, then the internal
-        variables of Maxwell branches, ``NODE.ux_m~1`` …: displacements between spring and dashpot.
+        variables of Maxwell branches, ``NODE.ux_m~1`` …: displacements between spring and dashpot. Motions of
+        piles beside that of their heads are ``in_piles.q1`` ….
     inputs : tuple of str
         ``NODE.fx_n`` … of the same degrees of freedom.
     """
@@ -74,13 +75,17 @@ def state_model(system: System) -> StateModel:
         remedy="give its members a density or the node a body, or subdivide massless members less",
     )
     moved = [f"{node}.{DISPLACEMENTS[kind]}" for node, kind in zip(nodes, kinds, strict=True)]
+    pushed = [f"{node}.{_FORCES[kind]}" for node, kind in zip(nodes, kinds, strict=True)]
+    for k in range(1, 1 + pencil.n - free.size):
+        moved.append(f"in_piles.q{k}")
+        pushed.append(f"in_piles.p{k}")
     inner = [f"{moved[dof]}~{k}" for k, branch in enumerate(branches, start=1) for dof in branch.dofs]
     space = state_space(pencil)
     return StateModel(
         space.A,
         space.B,
         (*moved, *(f"{name}/s" for name in moved), *inner),
-        tuple(f"{node}.{_FORCES[kind]}" for node, kind in zip(nodes, kinds, strict=True)),
+        tuple(pushed),
     )
 
 

@@ -17,7 +17,9 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray, IntArray
+from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.errors import require
+from jackettwin.soil import Prony
 from jackettwin.structure import Rayleigh
 
 if TYPE_CHECKING:
@@ -104,9 +106,12 @@ class System:
         return f"System({self.assembly!r} on {self.support!r}, {self.free.size} free DOFs)"
 
     def expand(self, x: npt.NDArray[Any]) -> npt.NDArray[Any]:
-        """Return shapes (assembly.n_dof, ...) from shapes at the free DOFs; fixed DOFs are zero."""
+        """Return shapes (assembly.n_dof, ...) from shapes at the free DOFs; fixed DOFs are zero.
+
+        Coordinates inside piles, which follow the free DOFs, are left out.
+        """
         full = np.zeros((self.assembly.n_dof, *x.shape[1:]), dtype=x.dtype)
-        full[self.free] = x
+        full[self.free] = x[: self.free.size]
         return full
 
 
@@ -148,6 +153,51 @@ def build_system(
     groups = _groups(assembly, (*support.springs, *dashpots), number, free.size)
     everywhere = tuple(_spread(sp.csc_array(sp.csc_array(S)[free][:, free]), law) for S, law in spread)
     return System(assembly, support, Pencil(M, K, rayleigh or Rayleigh(), groups + everywhere), free)
+
+
+def with_inner_piles(system: System) -> System:
+    """Return the system with the own motions of the piles that its support lumps at their heads.
+
+    Its poles are those of piles as members. The coordinates inside the piles follow the free DOFs; loads and
+    motions in time are those of the system as it was.
+    """
+    piles, pencil = system.support.piles, system.pencil
+    if not piles:
+        return system
+    number = np.full(system.assembly.n_dof, -1, dtype=np.intp)
+    number[system.free] = np.arange(system.free.size)
+    n, places = pencil.n, []
+    for node, head in piles:
+        inside = np.arange(n, n + len(head.inner.steel) - DOFS_PER_NODE)
+        places.append(np.concatenate([number[system.assembly.dofs(node)], inside]))
+        n += inside.size
+
+    def placed(matrices: Sequence[FloatArray]) -> sp.csc_array:
+        used = [at[: len(matrix)] for at, matrix in zip(places, matrices, strict=True)]
+        rows = np.concatenate([np.repeat(at, at.size) for at in used])
+        columns = np.concatenate([np.tile(at, at.size) for at in used])
+        values = np.concatenate([matrix.ravel() for matrix in matrices])
+        return sp.coo_array((values, (rows, columns)), shape=(n, n)).tocsc()
+
+    inner, everywhere = [head.inner for _, head in piles], np.concatenate(places)
+    # steel is damped as that of members is, by its part of the Rayleigh damping
+    steel = placed([head.steel for _, head in piles])
+    K = _grown(pencil.K, n) + steel + placed([one.steel for one in inner])
+    M = _grown(pencil.M, n) + placed([one.mass for one in inner])
+    groups = [replace(group, S=_grown(group.S, n)) for group in pencil.groups]
+    groups += [
+        Group(Prony(k0=1.0), -steel, everywhere),
+        Group(piles[0][1].law, placed([one.soil for one in inner]), everywhere),
+        Group(Prony(c=1.0), placed([one.dashpots for one in inner]), everywhere),
+    ]
+    live = tuple(group for group in groups if group.S.nnz)
+    return replace(system, pencil=replace(pencil, M=M, K=K, groups=live))
+
+
+def _grown(matrix: Matrix, n: int) -> sp.csc_array:
+    """Return the matrix with zero rows and columns behind it, (n, n)."""
+    entries = sp.coo_array(matrix)
+    return sp.coo_array((entries.data, entries.coords), shape=(n, n)).tocsc()
 
 
 def _spread(S: sp.csc_array, law: Law) -> Group:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,6 +12,9 @@ from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.soil.laws.viscoelastic import Law, Prony
 from jackettwin.structure import Reaction, Structure
+
+if TYPE_CHECKING:
+    from jackettwin.soil.piles.impedance import PileHead
 
 TRANSLATIONS_ONLY = np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 ELASTIC = Prony(k0=1.0)
@@ -41,6 +45,8 @@ class Support:
     """(node, 6×6 mass that moves with it) pairs: piles."""
     notes: tuple[str, ...] = ()
     """Assumptions behind it, one sentence each."""
+    piles: tuple[tuple[str, PileHead], ...] = ()
+    """(node, pile lumped there by springs and mass) pairs, of which its own motions are known, too."""
 
     def __repr__(self) -> str:
         held = ", ".join(node for node, _ in self.fixed) or "nothing"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.linalg as la
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
@@ -15,6 +16,11 @@ from jackettwin.soil.mudline import feet_of
 from jackettwin.soil.piles.piles import Pile, PileSprings, pile_beams
 from jackettwin.soil.support import ELASTIC, Spring, Support
 from jackettwin.structure import Assembly, Structure, assemble
+
+_MOMENTS = 4
+"""Orders of moments of the ground; poles are then those of members within 1e-8 up to D(s) − 1 = 1."""
+_ALIKE = 1e-6
+"""Size of a motion, over the largest, below which it is a sum of others."""
 
 
 @dataclass(frozen=True)
@@ -90,6 +96,19 @@ def head_impedance(
 
 
 @dataclass(frozen=True)
+class InnerPile:
+    """Further coordinates of a pile beside those of its head, which follow it by static shapes.
+
+    Each matrix is (6 + m, 6 + m), the head's coordinates first; what is between these is in the head's own.
+    """
+
+    steel: FloatArray
+    soil: FloatArray
+    mass: FloatArray
+    dashpots: FloatArray
+
+
+@dataclass(frozen=True)
 class PileHead:
     """A pile lumped at its head: K* ≈ steel + D(s)·soil + s·dashpots + s²·mass, each 6×6."""
 
@@ -97,6 +116,8 @@ class PileHead:
     soil: FloatArray
     mass: FloatArray
     dashpots: FloatArray
+    inner: InnerPile
+    """What it does beside following its head."""
     law: Law = ELASTIC
 
     def impedance(self, s: ComplexArray | complex) -> ComplexArray:
@@ -114,21 +135,51 @@ def lumped_head(
     dashpots: PileSprings | None = None,
     above: Structure | None = None,
 ) -> PileHead:
-    """Return a pile reduced to its head by its static shapes (Guyan).
+    """Return a pile reduced to its head by its static shapes (Guyan), and its motions beside these.
 
-    Rayleigh's principle makes K* right to second order in D(s) − 1 and in (ω/ω_p)², ω_p the pile's own first
-    frequency with its head held: well above the structure's modes for any driven pile.
+    Rayleigh's principle makes K* of the head right to second order in D(s) − 1 and in (ω/ω_p)², ω_p the
+    pile's own first frequency with its head held: well above the structure's modes for any driven pile. With
+    the inner motions poles are those of piles as members.
     """
     m = pile_matrices(pile, springs, dashpots=dashpots, above=above)
     static = sp.csc_array(m.steel + m.soil)
-    inner = -spla.splu(sp.csc_matrix(static[6:, 6:])).solve(static[6:, :6].toarray())
-    T = np.vstack([np.eye(6), inner])
+    held = spla.splu(sp.csc_matrix(static[6:, 6:]))
+    T = np.vstack([np.eye(6), -held.solve(static[6:, :6].toarray())])
+    basis = np.hstack([T, _moments(m, held, T)])
+    steel, soil, mass, lost = (_reduced(matrix, basis) for matrix in (m.steel, m.soil, m.mass, m.dashpots))
+    head = (matrix[:6, :6].copy() for matrix in (steel, soil, mass, lost))
+    inner = InnerPile(*map(_beside_head, (steel, soil, mass, lost)))
+    return PileHead(*head, inner, law)
 
-    def reduced(matrix: sp.csc_array) -> FloatArray:
-        full = T.T @ (matrix @ T)
-        return np.asarray(0.5 * (full + full.T))
 
-    return PileHead(reduced(m.steel), reduced(m.soil), reduced(m.mass), reduced(m.dashpots), law)
+def _moments(m: PileMatrices, held: spla.SuperLU, T: FloatArray) -> FloatArray:
+    """Return orthonormal motions (n, k) of a pile with its head held that complete its static shapes T.
+
+    They are its first moments about rest in D(s) − 1, in s², and in the dashpots' s (model reduction by
+    Krylov subspaces, Freund 2003). As F is symmetric, poles are right to twice as many orders.
+    """
+    last = np.hstack([(matrix @ T)[6:] for matrix in (m.soil, m.mass, m.dashpots) if matrix.nnz])
+    found = []
+    for _ in range(_MOMENTS):
+        last = held.solve(last)
+        last /= np.maximum(np.linalg.norm(last, axis=0), 1e-300)
+        found.append(last)
+        last = m.soil[6:, 6:] @ last
+    U, size, _ = la.svd(np.hstack(found), full_matrices=False)
+    inner = U[:, size > _ALIKE * size[0]]
+    return np.vstack([np.zeros((6, inner.shape[1])), inner])
+
+
+def _reduced(matrix: sp.csc_array, basis: FloatArray) -> FloatArray:
+    full = basis.T @ (matrix @ basis)
+    return np.asarray(0.5 * (full + full.T))
+
+
+def _beside_head(matrix: FloatArray) -> FloatArray:
+    """Return the matrix without what the head has in its own."""
+    beside = matrix.copy()
+    beside[:6, :6] = 0.0
+    return beside
 
 
 def on_pile_heads(structure: Structure, head: PileHead) -> Support:
@@ -146,4 +197,5 @@ def on_pile_heads(structure: Structure, head: PileHead) -> Support:
         springs += [Spring(foot, head.steel), Spring(foot, head.soil, head.law)]
         if head.dashpots.any():
             springs.append(Spring(foot, head.dashpots, Prony(c=1.0)))
-    return Support(springs=tuple(springs), masses=tuple((foot, head.mass) for foot in feet))
+    masses = tuple((foot, head.mass) for foot in feet)
+    return Support(springs=tuple(springs), masses=masses, piles=tuple((foot, head) for foot in feet))
