@@ -183,12 +183,13 @@ class _Motions:
             If two motions are one and the same.
         """
         rates, V = np.linalg.eig(L / scale[:, None] * scale)
-        inverse = la.inv(V)
+        inverse: ComplexArray = la.inv(V)
         if not np.abs((V * rates) @ inverse - L / scale[:, None] * scale).max() < _APART:
             raise NumericalError("two motions of the filter decay as one")
         one = rates.imag >= 0.0
         twice = np.where(rates.imag[one] > 0.0, 2.0, 1.0)
-        return cls(rates[one], twice * scale[:, None] * V[:, one], inverse[one] / scale)
+        right = np.asarray(twice * scale[:, None] * V[:, one], dtype=np.complex128)
+        return cls(rates[one], right, np.asarray(inverse[one] / scale, dtype=np.complex128))
 
     def states(self, rows: FloatArray) -> FloatArray:
         """Return what rows (k, n) see of states, by motions (2p, k)."""

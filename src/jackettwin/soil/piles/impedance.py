@@ -147,9 +147,8 @@ def lumped_head(
     T = np.vstack([np.eye(6), -held.solve(static[6:, :6].toarray())])
     basis = np.hstack([T, _moments(m, held, T)])
     steel, soil, mass, lost = (_reduced(matrix, basis) for matrix in (m.steel, m.soil, m.mass, m.dashpots))
-    head = (matrix[:6, :6].copy() for matrix in (steel, soil, mass, lost))
-    inner = InnerPile(*map(_beside_head, (steel, soil, mass, lost)))
-    return PileHead(*head, inner, law)
+    inner = InnerPile(_beside_head(steel), _beside_head(soil), _beside_head(mass), _beside_head(lost))
+    return PileHead(steel[:6, :6], soil[:6, :6], mass[:6, :6], lost[:6, :6], inner, law)
 
 
 def _moments(m: PileMatrices, held: spla.SuperLU, T: FloatArray) -> FloatArray:

@@ -257,7 +257,9 @@ def likely_structures(
     P0[: model.n_ways, : model.n_ways] += _COMMON_STD**2
     theta, P = prior, P0
     near = model.modes_from(prior) if measured else None
-    for _ in range(_STEPS if measured else 0):
+    for _ in range(_STEPS):
+        if near is None:
+            break
         H, r, R, near = _misfit(model, theta, measured, near, sensors)
         gain = P0 @ H.T @ np.linalg.inv(H @ P0 @ H.T + np.diag(R))
         step = prior + gain @ (r + H @ (theta - prior)) - theta

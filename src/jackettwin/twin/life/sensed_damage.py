@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jackettwin.arrays import FloatArray, IntArray
+from jackettwin.arrays import AnyFloatArray, FloatArray, IntArray
 from jackettwin.fatigue import POSITIONS, SIDES, LifeModel, count
 from jackettwin.sensing import MotionEstimate, SensorReadings, Weather, likely_motions, stress_remainder
 from jackettwin.twin.life.likely_structures import LikelyStructures, StressModel
@@ -220,7 +220,8 @@ class _Curves:
         found, welds = np.zeros((sides.size, len(POSITIONS))), sides // len(SIDES)
         first = np.concatenate([[0], np.cumsum(np.bincount(self.joint))])
         # seven digits: a damage is kept to a hundredth
-        single, known = motion.astype(np.float32), np.ones_like(found)
+        single: AnyFloatArray = motion.astype(np.float32)
+        known = np.ones_like(found)
         if like is not None:
             known = like / np.maximum(like.max(axis=1, keepdims=True), 1e-300)
         of_joints = sides < self.n_sides
@@ -239,7 +240,7 @@ class _Curves:
             found[i] = self._counted(int(sides[i]), rows @ single.T, major, known[i])
         return found
 
-    def _counted(self, side: int, stress: FloatArray, major: IntArray, known: FloatArray) -> FloatArray:
+    def _counted(self, side: int, stress: AnyFloatArray, major: IntArray, known: FloatArray) -> FloatArray:
         """Return the damage (8,) at the points of a side, of which some are counted (n, n_samples)."""
         if not major.size:
             return np.zeros(len(POSITIONS))
@@ -248,7 +249,7 @@ class _Curves:
         each = 1.0 / self.models[side].curve.cycles_to_failure(ranges, thickness_m=t)
         of = np.repeat(major, [c.ranges.size for c in cycles])
         numbers = np.concatenate([c.numbers for c in cycles])
-        found = np.bincount(of, each * numbers, minlength=len(POSITIONS))
+        found = np.asarray(np.bincount(of, each * numbers, len(POSITIONS)), dtype=np.float64)
         minor = known < _MINOR
         found[minor] = known[minor] * found[int(known.argmax())]
         return found

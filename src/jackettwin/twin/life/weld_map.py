@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jackettwin.arrays import FloatArray
+from jackettwin.arrays import AnyFloatArray, FloatArray
 from jackettwin.checks import joint_plans
 from jackettwin.errors import require
 from jackettwin.fatigue import Cycles, JointStresses, TubeWeld, count, joint_stresses
@@ -47,7 +47,7 @@ class WeldMap:
         nominal = self.rows[joint] @ motion.T + self.at_rest[joint][:, :, None]
         return self.joints[joint].stress_under(nominal, braces)
 
-    def parts(self, joint: int, motion: FloatArray, braces: Sequence[int]) -> FloatArray:
+    def parts(self, joint: int, motion: AnyFloatArray, braces: Sequence[int]) -> FloatArray:
         """Return K's, Y's and X's parts of the nominal stresses of some braces of a joint, (n_braces, 9, n).
 
         They are as precise as the motion is.
