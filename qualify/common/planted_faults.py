@@ -182,8 +182,8 @@ FAULTS = (
         ("the mean stress of water is left out at rest", "load, along = load + wet.load, along + wet.along", "load, along = load, along + wet.along"),
     )),
     *_of("twin", rows=(
-        ("what simplified waves leave is no part of a record's interval", "np.hypot(model, remainder[kept])", "np.hypot(model, 0.0 * remainder[kept])"),
-        ("points with little damage take the worst point's", "found[i, minor] = known[minor] * found[i, worst]", "found[i, minor] = found[i, worst]"),
+        ("what simplified waves leave is no part of a record's interval", "np.hypot(model, curves.remainder[sides[kept]])", "np.hypot(model, 0.0 * curves.remainder[sides[kept]])"),
+        ("points with little damage take the worst point's", "found[minor] = known[minor] * found[int(known.argmax())]", "found[minor] = found[int(known.argmax())]"),
         ("steel's mass lowers no frequency", "found[:, j] -= omega**2", "found[:, j] += omega**2"),
         ("Birge's factor over days counts one day too many", "between / (days - 1)", "between / days"),
         ("Birge's factor over records counts one too many", "records / (n - 1)", "records / n"),
