@@ -18,7 +18,8 @@ from jackettwin.soil.laws.files import LawSchema
 from jackettwin.soil.laws.viscoelastic import Law
 from jackettwin.soil.piles.cyclic import CyclicPile, cyclic_pile
 from jackettwin.soil.piles.group import REACH
-from jackettwin.soil.piles.impedance import PileHead, lumped_head, on_pile_heads
+from jackettwin.soil.piles.impedance import lumped_head, on_pile_heads
+from jackettwin.soil.piles.pile_head import PileHead
 from jackettwin.soil.piles.piles import Pile, PileSprings, dashpots, linear_springs, with_piles
 from jackettwin.soil.piles.radiation import Radiation
 from jackettwin.soil.piles.reaction_curves import PileCurves, linearised, pile_curves

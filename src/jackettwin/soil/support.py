@@ -14,7 +14,7 @@ from jackettwin.soil.laws.viscoelastic import Law, Prony
 from jackettwin.structure import Reaction, Structure
 
 if TYPE_CHECKING:
-    from jackettwin.soil.piles.impedance import PileHead
+    from jackettwin.soil.piles.pile_head import PileHead
 
 TRANSLATIONS_ONLY = np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 ELASTIC = Prony(k0=1.0)

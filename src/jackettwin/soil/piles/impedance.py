@@ -13,6 +13,7 @@ from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError
 from jackettwin.soil.laws.viscoelastic import Law, Prony
 from jackettwin.soil.mudline import feet_of
+from jackettwin.soil.piles.pile_head import InnerPile, PileHead
 from jackettwin.soil.piles.piles import Pile, PileSprings, pile_beams
 from jackettwin.soil.support import ELASTIC, Spring, Support
 from jackettwin.structure import Assembly, Structure, assemble
@@ -93,38 +94,6 @@ def head_impedance(
             F[6:, :6].toarray()
         )
     return 0.5 * (result + result.transpose(0, 2, 1))
-
-
-@dataclass(frozen=True)
-class InnerPile:
-    """Further coordinates of a pile beside those of its head, which follow it by static shapes.
-
-    Each matrix is (6 + m, 6 + m), the head's coordinates first; what is between these is in the head's own.
-    """
-
-    steel: FloatArray
-    soil: FloatArray
-    mass: FloatArray
-    dashpots: FloatArray
-
-
-@dataclass(frozen=True)
-class PileHead:
-    """A pile lumped at its head: K* ≈ steel + D(s)·soil + s·dashpots + s²·mass, each 6×6."""
-
-    steel: FloatArray
-    soil: FloatArray
-    mass: FloatArray
-    dashpots: FloatArray
-    inner: InnerPile
-    """What it does beside following its head."""
-    law: Law = ELASTIC
-
-    def impedance(self, s: ComplexArray | complex) -> ComplexArray:
-        """Return the lumped K*(s), (n_s, 6, 6)."""
-        s = np.atleast_1d(np.asarray(s, dtype=np.complex128))[:, None, None]
-        soil = self.law.stiffness(s) * self.soil + s * self.dashpots
-        return np.asarray(self.steel + soil + s**2 * self.mass)
 
 
 def lumped_head(
