@@ -57,17 +57,6 @@ def give_back() -> None:
         trim(0)
 
 
-def large_arrays_apart() -> None:
-    """Let glibc return each array of a megabyte or more when it is freed; by default it keeps up to 32 MB."""
-    tune = getattr(ctypes.CDLL(None), "mallopt", None)
-    if tune is not None:
-        tune(_M_MMAP_THRESHOLD, 2**20)
-
-
-_M_MMAP_THRESHOLD = -3
-"""Parameter of glibc's ``mallopt``; other C libraries reject it."""
-
-
 @contextmanager
 def worker_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     """Start a pool of processes; they end with the block, at once if it ends by an error or Ctrl-C.

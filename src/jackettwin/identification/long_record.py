@@ -24,7 +24,7 @@ from jackettwin.identification.peaks_above import peaks_in, spectrum_above
 from jackettwin.identification.preparation.prepared_record import band_top_hz
 from jackettwin.identification.preparation.resolve import EDGE_BELOW_PEAK, GUARD, SAMPLES_PER_CYCLE
 from jackettwin.identification.record_steps import Findings, moving_channels
-from jackettwin.processes import give_back, large_arrays_apart
+from jackettwin.processes import give_back
 from jackettwin.records import Record, assess
 from jackettwin.records.processing.thinning import thinned
 from jackettwin.records.readers.pieces import placed_pieces
@@ -116,7 +116,6 @@ def read_whole(
     InputError
         If the file cannot be read.
     """
-    large_arrays_apart()
     pieces = placed_pieces(path, PIECE_S, defaults)
     first = deque(islice(pieces, FEWEST_PIECES))
     if len(first) < FEWEST_PIECES:
