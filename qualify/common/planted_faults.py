@@ -244,7 +244,7 @@ FAULTS = (
         ("tolerances are twice as large", "common = residuals.gains(", "common = 2.0 * residuals.gains("),
     )),
     *_of("identification/decays", "tests/identification/decays/test_modes_of_decay.py", "tests/identification/decays/test_relaxations.py", rows=(
-        ("close pairs of a decay are one mode", "if 1.0 - max(gains) < HALVED * (1.0 - alone) else []", "if False else []"),
+        ("close pairs of a decay are one mode", "if min(shares, default=1.0) < HALVED else []", "if False else []"),
         ("a relaxation beyond the tested rates is told", "if pole is not None and not rates[0] <= pole.rate_rad_s <= rates[-1]:", "if False:"),
     )),
 )  # fmt: skip

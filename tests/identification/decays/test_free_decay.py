@@ -199,6 +199,22 @@ def test_a_pull_that_still_swings_at_the_end_is_a_decay() -> None:
     assert abs(mode.damping_ratio / 0.02 - 1.0) < 0.05
 
 
+def test_a_clean_decay_is_identified_from_one_e_fold() -> None:
+    """A mode that dies at once is most of what the others leave, early on as a force would be."""
+    t = np.arange(600) / RATE
+    slow, fast = (
+        np.exp(2.0 * np.pi * f * (-zeta + 1j * np.sqrt(1.0 - zeta**2)) * t).real
+        for f, zeta in ((0.5, 0.0055), (1.9, 0.13))
+    )
+    noise = 1e-6 * np.random.default_rng(4).standard_normal((2, t.size))
+    (mode, *_) = identify(
+        record(np.array([[1.0], [0.6]]) * slow + np.array([[0.02], [-0.01]]) * fast + noise)
+    ).modes
+    assert (mode.method, mode.status) == ("decay", "ok")
+    assert abs(mode.frequency_hz / 0.5 - 1.0) < 1e-4
+    assert abs(mode.damping_ratio / 0.0055 - 1.0) < 0.02
+
+
 def test_a_pull_that_hardly_decays_is_refused_for_its_cycles() -> None:
     with pytest.raises(InputError, match=r"too few cycles.*12 cycles near 0.5 Hz.*free decay"):
         identify(short_pull(0.005, 24.0))

@@ -56,6 +56,9 @@ record before or after it."""
 FORCED_RATIO = 1.5
 """Ratio of the residual power in the first quarter of a fit to that in the rest above which forces still
 act."""
+NO_FORCES = 0.9999
+"""Share explained by damped cosines from which what they leave is too little for forces: modes that die at
+once leave it, and damping is known from little decay."""
 MAX_STARTS = 8
 """Number of initial instants of the decay that are tried, each two cycles later."""
 MIN_EXPLAINED_FIRST = 0.8
@@ -241,6 +244,8 @@ def _free_part(part: DecayPart, y: FloatArray, rate: float) -> _Decay | None:
 
 
 def _forces_act(fit: DampedCosines) -> bool:
+    if fit.explained > NO_FORCES:
+        return False
     power = np.mean((fit.residual / (fit.residual.std(axis=1, keepdims=True) + 1e-300)) ** 2, axis=0)
     quarter = len(power) // 4
     return bool(power[:quarter].mean() > FORCED_RATIO * power[quarter:].mean())
@@ -293,7 +298,7 @@ def _judged(
     if explained < MIN_EXPLAINED_INTERVALS:
         forced = Finding("decay_forced", params={"left": 1.0 - explained})
         mode = mode.flagged(ModeStatus.DOUBTFUL, forced)
-    if folds < MIN_MODE_FALL:
+    if folds < MIN_MODE_FALL and explained < NO_FORCES:
         mode = mode.flagged(ModeStatus.DOUBTFUL, Finding("decay_short", params={"folds": folds}))
     if mode.log_covariance is not None and mode.log_covariance[1, 1] > MAX_LOG_DAMPING_STD**2:
         spread = float(np.sqrt(mode.log_covariance[1, 1]))

@@ -128,14 +128,16 @@ def _pair_in_place_of(
     """Return two poles of one model order beside a pole that explain what it alone leaves, or nothing.
 
     A low order has one pole for both modes of a close pair, between them, and alone it explains the most.
+    What other modes explain is left out: their poles of the same order stand beside the pair, and the one.
     """
-    near = np.flatnonzero(np.abs(np.log(f / f[k])) < CLOSE)
-    pairs = [[int(i), int(j)] for i, j in combinations(near, 2) if order[i] == order[j]]
-    if not pairs:
-        return []
-    gains = [_explained(y, sample_rate_hz, f[pair], zeta[pair]) for pair in pairs]
-    alone = _explained(y, sample_rate_hz, f[[k]], zeta[[k]])
-    return [pairs[int(np.argmax(gains))]] if 1.0 - max(gains) < HALVED * (1.0 - alone) else []
+    close = np.abs(np.log(f / f[k])) < CLOSE
+    pairs = [[int(i), int(j)] for i, j in combinations(np.flatnonzero(close), 2) if order[i] == order[j]]
+    shares = []
+    for pair in pairs:
+        others = np.flatnonzero((order == order[pair[0]]) & ~close).tolist()
+        two, one = (_explained(y, sample_rate_hz, f[own + others], zeta[own + others]) for own in (pair, [k]))
+        shares.append((1.0 - two) / max(1.0 - one, 1e-300))
+    return [pairs[int(np.argmin(shares))]] if min(shares, default=1.0) < HALVED else []
 
 
 def _poles(
