@@ -6,10 +6,15 @@ from typing import Any
 
 from pydantic import BaseModel, Field, computed_field
 
-from jackettwin.soil import parameter_words
-
 Drawn = list[float | None]
 """Values of a curve; null for missing ones."""
+
+
+def _words(parameter: str) -> str:
+    """Return a parameter's name as text; what it needs is loaded with the first answer, not at the start."""
+    from jackettwin.soil import parameter_words
+
+    return parameter_words(parameter)
 
 
 class BranchOut(BaseModel):
@@ -38,7 +43,7 @@ class LocusOut(BaseModel):
     @property
     def words(self) -> str:
         """The parameter's name as text."""
-        return parameter_words(self.parameter)
+        return _words(self.parameter)
 
 
 class AxisOut(BaseModel):
@@ -78,7 +83,7 @@ class ExploredValue(BaseModel):
     @property
     def words(self) -> str:
         """Its name as text."""
-        return parameter_words(self.name)
+        return _words(self.name)
 
 
 class ExploredOut(BaseModel):
