@@ -175,22 +175,27 @@ def test_no_motion_is_driven_by_a_rotor(model: MotionModel) -> None:
 def test_section_forces_are_found_and_their_errors_are_as_said(
     model: MotionModel, truth: tuple[np.ndarray, SensorReadings], estimate: MotionEstimate
 ) -> None:
-    coordinates, _ = truth
+    """Over three motions, as one may be found better or worse than another."""
     names = [model.assembly.structure.members[m].name for m in model.assembly.mesh.member]
     base = names.index("tower_1")
     rows = section_rows(model)
-    for part in (rows.bending_y, rows.bending_z):
-        row = part[:, base, 0]
-        true, found = coordinates @ row, estimate.mean() @ row
-        error = (found - true).std()
-        assert error < 0.7 * true.std()
-        said = float(spread_of(row[None], estimate.covariance)[0])
-        # the mean over ten minutes of slow forces is in what is said, and in no range of stress
-        assert 0.2 < error / said < 2.0
-        # above 0.1 Hz, where the rotor pushes little, short waves that sensors hardly see are missed
-        fast = np.fft.rfftfreq(len(true), STEP_S) > 0.1
-        parts = [np.abs(np.fft.rfft(v)[fast]) ** 2 for v in (found - true[: len(found)], true)]
-        assert parts[0].sum() < 0.15**2 * parts[1].sum()
+    others = (drawn(model, seed) for seed in (1, 3))
+    motions = [(truth[0], estimate), *((own, moved(model, readings)) for own, readings in others)]
+    left, beside = [], []
+    for coordinates, known in motions:
+        for part in (rows.bending_y, rows.bending_z):
+            row = part[:, base, 0]
+            true, found = coordinates @ row, known.mean() @ row
+            error = (found - true).std()
+            left.append(error / true.std())
+            beside.append(error / float(spread_of(row[None], known.covariance)[0]))
+            # above 0.1 Hz, where the rotor pushes little, short waves that sensors hardly see are missed
+            fast = np.fft.rfftfreq(len(true), STEP_S) > 0.1
+            parts = [np.abs(np.fft.rfft(v)[fast]) ** 2 for v in (found - true[: len(found)], true)]
+            assert parts[0].sum() < 0.15**2 * parts[1].sum()
+    assert np.sqrt(np.mean(np.square(left))) < 0.75
+    # the mean over ten minutes of slow forces is in what is said, and in no range of stress
+    assert 0.6 < np.sqrt(np.mean(np.square(beside))) < 1.4
 
 
 def test_damage_is_neither_too_low_nor_too_high(
