@@ -90,7 +90,7 @@ FAULTS = (
     )),
     *_of("sensing", rows=(
         ("what is smoothed is what is predicted", "(p, p - p @ known @ p))", "(p, p + 0.0 * known))"),
-        ("a pair of motions counts twice on the way back", "into = (self.right / twice).T @ G", "into = self.right.T @ G"),
+        ("a pair of motions counts twice on the way back", "into = (self.right / _members(self.rates)).T @ G", "into = self.right.T @ G"),
         ("noise of a step is that of its end", "Q = F @ exact[:n, n:]", "Q = exact[:n, n:]"),
         ("a lightly damped mode leaks into slow forces", "taper = tukey(n, _TAPERED)", "taper = tukey(n, 0.0)"),
         ("short waves reach as deep as long ones", "push = self._push(omega, angle, turn, speed)", "push = self._push(peak, angle, turn, speed)"),

@@ -1,3 +1,4 @@
+from .clocks.another_time import channel_axes as channel_axes, comparable_channels as comparable_channels
 from .conditions import with_conditions as with_conditions
 from .processing.merge import merge as merge, shared_channels as shared_channels
 from .processing.prepare import bandpass as bandpass, decimate as decimate, detrend as detrend

@@ -173,22 +173,19 @@ def with_inner_piles(system: System) -> System:
         n += inside.size
 
     def placed(matrices: Sequence[FloatArray]) -> sp.csc_array:
-        used = [at[: len(matrix)] for at, matrix in zip(places, matrices, strict=True)]
-        rows = np.concatenate([np.repeat(at, at.size) for at in used])
-        columns = np.concatenate([np.tile(at, at.size) for at in used])
-        values = np.concatenate([matrix.ravel() for matrix in matrices])
-        return sp.coo_array((values, (rows, columns)), shape=(n, n)).tocsc()
+        blocks = [(at[: len(matrix)], matrix) for at, matrix in zip(places, matrices, strict=True)]
+        return _from_blocks(blocks, n)
 
-    inner, everywhere = [head.inner for _, head in piles], np.concatenate(places)
+    inner = [head.inner for _, head in piles]
     # steel is damped as that of members is, by its part of the Rayleigh damping
     steel = placed([head.steel for _, head in piles])
     K = _grown(pencil.K, n) + steel + placed([one.steel for one in inner])
     M = _grown(pencil.M, n) + placed([one.mass for one in inner])
     groups = [replace(group, S=_grown(group.S, n)) for group in pencil.groups]
     groups += [
-        Group(Prony(k0=1.0), -steel, everywhere),
-        Group(piles[0][1].law, placed([one.soil for one in inner]), everywhere),
-        Group(Prony(c=1.0), placed([one.dashpots for one in inner]), everywhere),
+        _spread(-steel, Prony(k0=1.0)),
+        _spread(placed([one.soil for one in inner]), piles[0][1].law),
+        _spread(placed([one.dashpots for one in inner]), Prony(c=1.0)),
     ]
     live = tuple(group for group in groups if group.S.nnz)
     return replace(system, pencil=replace(pencil, M=M, K=K, groups=live))
@@ -207,13 +204,17 @@ def _spread(S: sp.csc_array, law: Law) -> Group:
 def _ground_mass(assembly: Assembly, support: Support) -> sp.csc_array:
     """Return the mass of bodies of the ground (piles) on the assembly's DOFs."""
     blocks = [(assembly.dofs(node), matrix) for node, matrix in support.masses]
-    rows = [np.repeat(dofs, dofs.size) for dofs, _ in blocks]
-    columns = [np.tile(dofs, dofs.size) for dofs, _ in blocks]
-    values = [matrix.ravel() for _, matrix in blocks]
+    return _from_blocks(blocks, assembly.n_dof)
+
+
+def _from_blocks(blocks: Sequence[tuple[IntArray, FloatArray]], n: int) -> sp.csc_array:
+    """Return the sum (n, n) of square matrices, each on its own DOFs."""
     if not blocks:
-        return sp.csc_array((assembly.n_dof, assembly.n_dof))
-    triplets = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
-    return sp.coo_array(triplets, shape=(assembly.n_dof, assembly.n_dof)).tocsc()
+        return sp.csc_array((n, n))
+    rows = np.concatenate([np.repeat(dofs, dofs.size) for dofs, _ in blocks])
+    columns = np.concatenate([np.tile(dofs, dofs.size) for dofs, _ in blocks])
+    values = np.concatenate([matrix.ravel() for _, matrix in blocks])
+    return sp.coo_array((values, (rows, columns)), shape=(n, n)).tocsc()
 
 
 def _groups(assembly: Assembly, springs: tuple[Spring, ...], number: IntArray, n: int) -> tuple[Group, ...]:

@@ -85,7 +85,7 @@ class SteadySmoother:
 
     @cached_property
     def _scale(self) -> FloatArray:
-        return np.sqrt(np.maximum(np.diag(self.stationary), 1e-300))
+        return _scale_of(self.stationary)
 
     def predict(self, y: FloatArray, start: FloatArray | None = None) -> tuple[FloatArray, FloatArray]:
         """Return predictions x_{k|k−1} (N, n) and that after the last of readings y (N, m), (n,)."""
@@ -187,8 +187,7 @@ class _Motions:
         if not np.abs((V * rates) @ inverse - L / scale[:, None] * scale).max() < _APART:
             raise NumericalError("two motions of the filter decay as one")
         one = rates.imag >= 0.0
-        twice = np.where(rates.imag[one] > 0.0, 2.0, 1.0)
-        right = np.asarray(twice * scale[:, None] * V[:, one], dtype=np.complex128)
+        right = np.asarray(_members(rates[one]) * scale[:, None] * V[:, one], dtype=np.complex128)
         return cls(rates[one], right, np.asarray(inverse[one] / scale, dtype=np.complex128))
 
     def states(self, rows: FloatArray) -> FloatArray:
@@ -197,8 +196,7 @@ class _Motions:
 
     def costates(self, rows: FloatArray) -> FloatArray:
         """Return what rows (k, n) see of r, by its motions (2p, k)."""
-        twice = np.where(self.rates.imag > 0.0, 2.0, 1.0)[:, None]
-        return _parts(twice * (self.left @ rows.T))
+        return _parts(_members(self.rates)[:, None] * (self.left @ rows.T))
 
     def forward(self, u: FloatArray, G: FloatArray, start: FloatArray | None) -> FloatArray:
         """Return x⁺ = L x + G u of inputs u (N, m) from a state (n,) or from rest, as motions (N + 1, 2p)."""
@@ -207,14 +205,18 @@ class _Motions:
 
     def backward(self, e: FloatArray, G: FloatArray) -> FloatArray:
         """Return r⁻ = Lᵀ r + G e of inputs e (N, m), from rest at the end, as motions of Lᵀ (N, 2p)."""
-        twice = np.where(self.rates.imag > 0.0, 2.0, 1.0)
-        into = (self.right / twice).T @ G
+        into = (self.right / _members(self.rates)).T @ G
         return _each(self.rates, np.zeros(self.rates.size, dtype=complex), e[::-1] @ into.T)[:0:-1]
 
     def decaying(self, start: FloatArray, number: int) -> FloatArray:
         """Return how a state (n,) decays, (number, 2p)."""
         still = np.zeros((number - 1, self.rates.size), dtype=complex)
         return _each(self.rates, self.left @ start, still)
+
+
+def _members(rates: ComplexArray) -> FloatArray:
+    """Return 2 for a motion that stands for a conjugate pair, 1 for a real one, (p,)."""
+    return np.where(rates.imag > 0.0, 2.0, 1.0)
 
 
 def _parts(of_motions: ComplexArray) -> FloatArray:
@@ -235,7 +237,7 @@ def steady_smoother(F: FloatArray, Q: FloatArray, C: FloatArray, R: FloatArray) 
         bool((R > 0.0).all()), "must be positive", field="noise", value=R.min(initial=np.inf), allowed="> 0"
     )
     stationary = _stationary(F, Q)
-    scale = np.sqrt(np.maximum(np.diag(stationary), 1e-300))
+    scale = _scale_of(stationary)
     f, q, c = F / scale[:, None] * scale, Q / np.outer(scale, scale), C * scale
     p = _riccati(f, q, c, R)
     s = la.inv(c @ p @ c.T + np.diag(R))
@@ -265,9 +267,14 @@ def discrete(A: FloatArray, density: FloatArray, step_s: float) -> tuple[FloatAr
     return F, 0.5 * (Q + Q.T)
 
 
+def _scale_of(covariance: FloatArray) -> FloatArray:
+    """Return standard deviations (n,), by which states of any size are made alike."""
+    return np.asarray(np.sqrt(np.maximum(np.diag(covariance), 1e-300)))
+
+
 def _root(covariance: FloatArray) -> FloatArray:
     """Return a matrix G (n, k) with G Gᵀ = covariance, which may be singular."""
-    scale = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    scale = _scale_of(covariance)
     values, vectors = np.linalg.eigh(covariance / np.outer(scale, scale))
     some = values > _DRAWN * values[-1]
     return np.asarray(scale[:, None] * vectors[:, some] * np.sqrt(values[some]))

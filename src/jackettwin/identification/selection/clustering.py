@@ -127,8 +127,8 @@ def _pair(
     if along[:2].sum() < IN_PLANE or along[1:2].sum() < ACROSS:  # one channel has no plane
         return []
     away = dict(zip(members.tolist(), _away(poles, members).tolist(), strict=True))
-    both = [sorted(sorted(by_order[k].tolist(), key=away.__getitem__)[:2]) for k in twice]
-    both = [sorted(two, key=lambda pole: float(poles.frequency_hz[pole])) for two in both]
+    nearest = [sorted(by_order[k].tolist(), key=away.__getitem__)[:2] for k in twice]
+    both = [sorted(two, key=lambda pole: float(poles.frequency_hz[pole])) for two in nearest]
     return [_cluster(poles, np.array(one), orders) for one in zip(*both, strict=True)]
 
 

@@ -35,7 +35,7 @@ from jackettwin.identification.selection.peaks import clear_peaks_hz, contrast, 
 from jackettwin.identification.selection.second_look import SAME_SHAPE, SecondLook, second_look, seen_again
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.sinusoid import transform
-from jackettwin.records.clocks import another_time
+from jackettwin.records import channel_axes, comparable_channels
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -189,7 +189,7 @@ def evidence(
         peak_of_sea_hz=1.0 / periods[0] if periods and periods[0] > 0.0 else None,
         band_hz=(ready.settings.lowest_frequency_hz, ready.settings.highest_frequency_hz),
         peaks_hz=_peaks_hz(y, ready.settings.sample_rate_hz),
-        comparable=another_time.comparable_channels(another_time.channel_axes(ready.channels)),
+        comparable=comparable_channels(channel_axes(ready.channels)),
         sensors=sensors,
     )
 

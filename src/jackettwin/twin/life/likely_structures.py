@@ -256,10 +256,10 @@ def likely_structures(
     P0[: model.n_ways, : model.n_ways] *= _OWN_STD**2
     P0[: model.n_ways, : model.n_ways] += _COMMON_STD**2
     theta, P = prior, P0
-    near = model.modes_from(prior) if measured else None
+    if not measured:
+        return LikelyStructures(model, theta, P, {})
+    near = model.modes_from(prior)
     for _ in range(_STEPS):
-        if near is None:
-            break
         H, r, R, near = _misfit(model, theta, measured, near, sensors)
         gain = P0 @ H.T @ np.linalg.inv(H @ P0 @ H.T + np.diag(R))
         step = prior + gain @ (r + H @ (theta - prior)) - theta
