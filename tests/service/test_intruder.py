@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import cbor2
+import psutil
 import pytest
 from fastapi.testclient import TestClient
 from hypothesis import HealthCheck, given, settings, strategies as st
@@ -122,6 +123,16 @@ def test_files_are_confined_while_they_are_read(tmp_path: Path) -> None:
             with pytest.raises(InputError, match="not sent with it"):
                 path.read_text()
     assert outside.read_text() == "2"
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="only Linux tells of processes in files")
+def test_memory_is_watched_while_files_are_guarded(tmp_path: Path) -> None:
+    """Workers measure their memory in callbacks of the garbage collector, which comes at any time."""
+    process = psutil.Process()
+    with only_files_in(tmp_path):
+        assert process.memory_info().rss > 0
+        with pytest.raises(InputError, match="not sent with it"):
+            Path("/proc/self/environ").read_bytes()
 
 
 def test_text_that_no_database_can_keep_is_refused(

@@ -46,6 +46,8 @@ def _watch(event: str, arguments: tuple[Any, ...]) -> None:
         return
     path = Path(os.fsdecode(arguments[0])).resolve()
     known = any(path.is_relative_to(place) for place in (folder, *_SOFTWARE))
+    # a collection of garbage within the block asks how much memory this process uses
+    known = known or path == Path(f"/proc/{os.getpid()}/statm")
     if not known and path.parent.suffix not in _KNOWN_OF_MODULES:
         raise InputError(
             "it names a file that was not sent with it",
