@@ -305,6 +305,11 @@ CATALOGUE: dict[str, Kind] = {
         "its peak falls off faster than that of a mode: it may be an order of a rotor whose speed wanders; "
         "add the rotor's speed as a channel [rpm]",
     ),
+    "multiple_of_order": Kind(
+        "warning",
+        "lies at a multiple of a peak that falls off faster than that of a mode: both may be orders of a "
+        "rotor; add the rotor's speed as a channel [rpm]",
+    ),
     "steady_envelope": Kind(
         "warning",
         "its amplitude varies less than that of a mode of such low damping: it may be a tone",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from jackettwin.identification.tones.skirts import has_no_skirts
+from jackettwin.identification.tones.skirts import LESS_LIKELY, are_orders, missing_skirts
 
 DURATION_S, F, HALF, NUMBER = 600.0, 0.9, 4.0, 60
 """Half width of the peaks in lines."""
@@ -21,7 +21,8 @@ def peaks(rng: np.random.Generator, *, mode: bool, level: float) -> int:
         drawn = np.sqrt(density) * (rng.standard_normal(k.size) + 1j * rng.standard_normal(k.size))
         lines, shape = np.outer([1.0, 0.4], drawn), np.array([1.0 + 0j, 0.4])
         zeta = HALF / (F * DURATION_S)
-        found += has_no_skirts(lines, DURATION_S, F, zeta, shape, np.array([0.3]))
+        missing = missing_skirts(lines, DURATION_S, F, zeta, shape, np.array([0.3]))
+        found += missing is not None and missing > LESS_LIKELY
     return found
 
 
@@ -36,4 +37,13 @@ def test_orders_are_told_from_modes_where_their_skirts_would_show(rng: np.random
 def test_a_broad_peak_and_one_beside_another_are_not_judged(zeta, other, rng: np.random.Generator) -> None:
     x = (np.arange(1500) - F * DURATION_S) / HALF
     lines = np.sqrt(2.0 ** -(x**2) + 1e-4) * np.exp(2j * np.pi * rng.random(1500))
-    assert not has_no_skirts(lines[None], DURATION_S, F, zeta, np.ones(1, dtype=complex), np.array([other]))
+    shape, others = np.ones(1, dtype=complex), np.array([other])
+    assert missing_skirts(lines[None], DURATION_S, F, zeta, shape, others) is None
+
+
+def test_what_lies_at_a_multiple_of_an_order_is_one_unless_it_shows_skirts() -> None:
+    """An order at 0.5 Hz, its double as it is and with skirts, a mode elsewhere, a peak nothing is known of."""
+    f, zeta = np.array([0.5, 1.006, 1.0, 1.3, 1.5]), np.full(5, 0.006)
+    missing = np.array([8.0, 0.5, -3.0, 0.5, np.nan])
+    assert are_orders(f, zeta, missing).tolist() == [False, True, False, False, False]
+    assert not are_orders(f, zeta, np.append(4.0, missing[1:])).any()

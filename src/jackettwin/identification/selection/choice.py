@@ -26,7 +26,7 @@ from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.envelopes import is_suspiciously_steady
 from jackettwin.identification.tones.mains import is_mains
 from jackettwin.identification.tones.sinusoid import transform
-from jackettwin.identification.tones.skirts import has_no_skirts
+from jackettwin.identification.tones.skirts import LESS_LIKELY, are_orders, missing_skirts
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -114,9 +114,7 @@ def chosen_modes(
         mode if i in pairs else _steady(mode, lines, duration_s, scale)
         for i, mode in enumerate(flagged_modes)
     )
-    f = np.array([mode.frequency_hz for mode in flagged_modes])
-    skirted = (_skirted(mode, lines, duration_s, scale, np.delete(f, i)) for i, mode in enumerate(steady))
-    found = replace(found, modes=tuple(skirted))
+    found = replace(found, modes=_skirted(tuple(steady), lines, duration_s, scale))
     if settings.refine:
         found = replace(found, findings=(*found.findings, *_hidden(judged, found)))
         found = replace(found, modes=tuple(_widen_close_pair(m, found.modes) for m in found.modes))
@@ -141,13 +139,21 @@ def _steady(mode: ModalEstimate, lines: ComplexArray, duration_s: float, scale: 
 
 
 def _skirted(
-    mode: ModalEstimate, lines: ComplexArray, duration_s: float, scale: FloatArray, others_hz: FloatArray
-) -> ModalEstimate:
-    """Flag a mode whose peak falls off faster than that of any mode."""
-    shape, f, zeta = mode.mode_shape / scale, mode.frequency_hz, mode.damping_ratio
-    if not has_no_skirts(lines, duration_s, f, zeta, shape, others_hz):
-        return mode
-    return mode.flagged(ModeStatus.DOUBTFUL, Finding("no_skirts"))
+    modes: Sequence[ModalEstimate], lines: ComplexArray, duration_s: float, scale: FloatArray
+) -> tuple[ModalEstimate, ...]:
+    """Flag modes whose peaks fall off faster than those of any mode, and others at multiples of them."""
+    f, zeta = (np.array([getattr(m, name) for m in modes]) for name in ("frequency_hz", "damping_ratio"))
+    missing = np.array([
+        missing_skirts(lines, duration_s, f[i], zeta[i], mode.mode_shape / scale, np.delete(f, i))
+        for i, mode in enumerate(modes)
+    ], dtype=float)  # fmt: skip
+    orders = missing > LESS_LIKELY
+    codes = np.where(are_orders(f, zeta, missing), "multiple_of_order", "")
+    codes = np.where(orders, "no_skirts", codes)
+    return tuple(
+        mode.flagged(ModeStatus.DOUBTFUL, Finding(str(code))) if code else mode
+        for mode, code in zip(modes, codes, strict=True)
+    )
 
 
 def clear_damping_doubts(judged: Sequence[Candidate], known: Evidence) -> list[Candidate]:

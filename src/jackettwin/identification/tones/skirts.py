@@ -14,12 +14,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 
 LESS_LIKELY = 5.0
 """Excess of ln L of a peak without skirts above which it is none of a mode. Of 1440 simulated peaks of modes
 of 0.5 to 16 lines half width on sloping levels r of 0.001 to 0.05 one has more; of peaks without skirts 84 %
 have more at r = 0.001, 28 % at 0.01 and few at 0.05."""
+SHOWN = -1.0
+"""Excess below which a peak is taken to have skirts though it lies at a multiple of an order."""
+MULTIPLES = np.array([1 / 3, 1 / 2, 2 / 3, 3 / 2, 2.0, 3.0])
+"""Of 3P, 6P and 9P to each other."""
 REACH = 6.0
 """Distance from the peak that is compared, in half widths of the mode."""
 FEWEST_LINES, MOST_LINES = 16, 40
@@ -34,15 +38,19 @@ MAX_DAMPING_RATIO = 0.03
 """Damping ratio above which a peak is wider than that of an order."""
 
 
-def has_no_skirts(
+def missing_skirts(
     lines: ComplexArray,
     duration_s: float,
     frequency_hz: float,
     damping_ratio: float,
     shape: ComplexArray,
     others_hz: FloatArray,
-) -> bool:
-    """Tell whether a peak is that of an order of a rotor of varying speed rather than that of a mode.
+) -> float | None:
+    """Return how much more likely a peak is that of an order of a rotor of varying speed than that of a mode.
+
+    Returns
+    -------
+    The excess of ln L; None for a peak too broad for an order, or with too few lines of its own.
 
     Parameters
     ----------
@@ -53,17 +61,17 @@ def has_no_skirts(
         Other modes; lines nearer to one of them are not compared.
     """
     if damping_ratio > MAX_DAMPING_RATIO:
-        return False
+        return None
     half, middle = damping_ratio * frequency_hz * duration_s, frequency_hz * duration_s
     free = 0.5 * float(np.abs(others_hz - frequency_hz).min(initial=np.inf)) * duration_s
     wanted = np.clip(REACH * half, FEWEST_LINES, MOST_LINES)
     reach = min(wanted, free, middle - 1.0, lines.shape[1] - 1 - middle)
     if reach < FEWEST_LINES:
-        return False
+        return None
     k = np.arange(int(np.ceil(middle - reach)), int(middle + reach) + 1)
     power = np.abs(shape.conj() @ lines[:, k]) ** 2
     x = (k - middle) / WIDTHS[:, None, None] - MIDDLES[:, None]
-    return _best(power, 2.0 ** -(x**2)) - _best(power, 1.0 / (1.0 + x**2)) > LESS_LIKELY
+    return _best(power, 2.0 ** -(x**2)) - _best(power, 1.0 / (1.0 + x**2))
 
 
 def _best(power: FloatArray, peak: FloatArray) -> float:
@@ -71,3 +79,18 @@ def _best(power: FloatArray, peak: FloatArray) -> float:
     shape = peak[..., None, :] + LEVELS[:, None]
     log_likelihood = -np.log(shape).sum(axis=-1) - power.size * np.log((power / shape).mean(axis=-1))
     return float(log_likelihood.max())
+
+
+def are_orders(frequency_hz: FloatArray, damping_ratio: FloatArray, missing: FloatArray) -> BoolArray:
+    """Tell which peaks lie at a multiple of one without skirts, and do not show skirts themselves.
+
+    Parameters
+    ----------
+    frequency_hz, damping_ratio, missing : (n,)
+        ``missing`` as of :func:`missing_skirts`, NaN where it is unknown.
+    """
+    order = np.flatnonzero(missing > LESS_LIKELY)
+    ratio = frequency_hz[:, None, None] / (frequency_hz[order, None] * MULTIPLES)
+    width = np.hypot(damping_ratio[:, None], damping_ratio[order])[..., None]
+    near = (np.abs(np.log(ratio)) < width).any(axis=(1, 2))
+    return np.asarray(near & (missing > SHOWN))
