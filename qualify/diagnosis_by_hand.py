@@ -1,11 +1,11 @@
 """What a change was, where the truth is changed by hand, without any cause of ``jackettwin.change``.
 
-Usage: python qualify/diagnosis_by_hand.py [draws a change] [jacket…]
+Usage: python qualify/diagnosis_by_hand.py [models a jacket] [jacket…]
 
 Members are cut out, walls thinned, masses added on the drawing; scour is the pile's head stiffness from the
 soil's curves with the ground gone; the stiffness of every foot and member differs from the model's. Modes
-are solved before and after and paired by shape here; the change is seen with the noise of a month of seasons.
-Changes that would raise no alarm are left out.
+are solved before and after and paired by shape here; the change is seen with the noise of a month of seasons,
+and on the day on which it is just sufficient for an alarm. Changes that would raise no alarm are left out.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 from common.page import write_page
-from diagnosis import CONFIDENT, LEAST, STD, Case, calibration, jackets, seen_change
+from diagnosis import CONFIDENT, LEAST, STD, Case, calibration, jackets, on_the_day, seen_change
 from scipy.optimize import linear_sum_assignment
 
 from jackettwin.change.causes import model_causes, seen_causes
@@ -30,6 +30,9 @@ from jackettwin.structure import Material, Member, PointMass, Section, Structure
 from jackettwin.watching import Diagnosis, diagnose
 
 WATCHED, SOLVED = 5, 14
+SETS, SIGHTS = 4, 3
+"""Changes of every sort, of other sizes and at other places, judged by the causes of one model; and times
+that each is seen, with other noise."""
 LOSS = 0.08
 SCOUR_M, SOFTER, GROWTH_M, THINNER_M, HEAVIER = (
     (0.7, 2.0),
@@ -197,7 +200,8 @@ def right(wanted: str, cause: str, alike: tuple[str, ...]) -> bool:
     return wanted in names
 
 
-def judged(jacket: str, wanted: str, found: Diagnosis) -> Case:
+def judged(jacket: str, wanted: str, number: int, found: Diagnosis) -> Case:
+    """Return a case; its fourth entry tells changes of one sort apart."""
     first = found.verdicts[0]
     group = next((g for g in found.inseparable if first.cause in g), ())
     meant = {v.cause: v.alike for v in found.verdicts}
@@ -205,11 +209,13 @@ def judged(jacket: str, wanted: str, found: Diagnosis) -> Case:
     what = "a brace lost" if wanted.endswith(" lost") else "scour at one foot" if wanted.startswith(
         "scour at ") and wanted != "scour at all feet" else wanted  # fmt: skip
     good = right(wanted, first.cause, first.alike)
-    return jacket, what, first.cause, 1, first.probability, good, bool(group), inside
+    return jacket, what, first.cause, number, first.probability, good, bool(group), inside
 
 
-def cases(jacket: str, structure: Structure, draws: int) -> list[Case]:
-    rng, out = np.random.default_rng((47, len(jacket))), list[Case]()
+def cases(jacket: str, structure: Structure, draws: int) -> tuple[list[Case], list[Case]]:
+    """Return what became of all changes to one jacket: on the day of the alarm, and a month later."""
+    rng, later = (np.random.default_rng((k, len(jacket))) for k in (47, 53))
+    early, out = list[Case](), list[Case]()
     for draw in range(draws):
         feet = len(structure.reaction_nodes)
         common = np.exp(0.4 * rng.standard_normal(3))[[0, 0, 2]]
@@ -228,39 +234,62 @@ def cases(jacket: str, structure: Structure, draws: int) -> list[Case]:
         kinds = [kind for kind, _ in quantities]
         seen = seen_causes(model, quantities, labels)
         own = [kind for kind, known in zip(kinds, seen.known, strict=True) if known]
-        for wanted, changed in changes(site, rng):
+        every = [(SETS * draw + k, *one) for k in range(SETS) for one in changes(site, rng)]
+        for number, wanted, changed in every:
             after = solved(changed)
             at = paired(before, after, chosen)
             ln_f = np.log(after.frequency_hz[at] / before.frequency_hz[chosen])
             ln_z = np.log((0.006 + 0.5 * LOSS * after.soil_share[at]) / zeta)
-            known = seen_change(np.concatenate([ln_f, ln_z]), kinds, rng, False)
-            if known.by_mode.sum() < LEAST:
-                continue
-            out.append(judged(jacket, wanted, diagnose(known.restricted(seen.known), seen.causes, own)))
-            sys.stderr.write(f"{out[-1]} {np.round(100 * ln_f, 2)}\n")
-    return out
+            for _ in range(SIGHTS):
+                known = seen_change(np.concatenate([ln_f, ln_z]), kinds, rng, False)
+                if known.by_mode.sum() < LEAST:
+                    continue
+                for seen_now, of in ((known, out), *((first, early) for first in on_the_day(known, later))):
+                    found = diagnose(seen_now.restricted(seen.known), seen.causes, own)
+                    of.append(judged(jacket, wanted, number, found))
+            sys.stderr.write(f"{wanted} {out[-1]} {np.round(100 * ln_f, 2)}\n")
+    return early, out
 
 
 def share(good: int, of: int) -> str:
     return f"{good} of {of} ({100 * good / max(of, 1):.0f} %)"
 
 
-def page(found: list[Case], draws: int) -> list[str]:
-    error, chance, most = calibration(found)
-    confident = [c for c in found if c[4] > CONFIDENT and not c[5] and not c[7]]
-    lines = [
+def page(late: list[Case], early: list[Case], draws: int) -> list[str]:
+    """Return the page."""
+    return [
         "# Diagnosis of changes to the drawing",
         "",
         f"`python qualify/diagnosis_by_hand.py {draws}`: jackets whose feet and members all differ from the",
-        "model's, changed on the drawing: braces cut, walls thinned, masses added; scour by soil curves.",
-        "The truth does not use `jackettwin.change`. Five modes, changes known to 0.03 % and 2 % of",
-        "frequency and damping; the model's feet are fitted to the frequencies before. Changes too small for",
-        "an alarm are left out.",
+        f"model's, {draws} of each drawing, changed on the drawing: braces cut, walls thinned, masses added;",
+        f"scour by soil curves, {SETS} of each with other sizes and places, seen {SIGHTS} times with other",
+        "noise. The truth does not use `jackettwin.change`. Five modes; the model's feet are fitted to the",
+        "frequencies before. Changes too small for an alarm are left out.",
         "",
+        "## A month after the change",
+        "",
+        "Changes are known to 0.03 % and 2 % of frequency and damping.",
+        "",
+        *tables(late),
+        "## On the day of the alarm",
+        "",
+        "The same changes, with data just sufficient for the alarm.",
+        "",
+        *tables(early),
+    ]
+
+
+def tables(found: list[Case]) -> list[str]:
+    """Return shares, and what became of each jacket and change."""
+    error, chance, most = calibration(found, shared=True)
+    confident = [c for c in found if c[4] > CONFIDENT and not c[5] and not c[7]]
+    said = np.mean([c[4] for c in found])
+    lines = [
         "| | |",
         "|---|---|",
         f"| first place, or in its declared group | {share(sum(c[5] or c[7] for c in found), len(found))} |",
         f"| first place | {share(sum(c[5] for c in found), len(found))} |",
+        f"| probability of the first place, mean | {100 * said:.0f} % |",
         f"| wrong with more than {100 * CONFIDENT:.0f} % | {len(confident)} of {len(found)} |",
         f"| expected calibration error; by chance, mean and 95 of 100 below | {100 * error:.1f} %; "
         f"{100 * chance:.1f} %; {100 * most:.1f} % |",
@@ -291,11 +320,11 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         every = {jacket: structure for jacket, (structure, _) in jackets(Path(name)).items()}
     every["four legs, deck"] = read_structure(str(Path(__file__).parent / "decks/four_legs.yaml"))
-    found = [
-        c for jacket, s in every.items() if not sys.argv[2:] or jacket in sys.argv[2:]
-        for c in cases(jacket, s, draws)
-    ]  # fmt: skip
-    lines = page(found, draws)
+    both = [
+        cases(jacket, s, draws) for jacket, s in every.items() if not sys.argv[2:] or jacket in sys.argv[2:]
+    ]
+    early, late = ([c for found in both for c in found[k]] for k in (0, 1))
+    lines = page(late, early, draws)
     if sys.argv[2:]:
         sys.stdout.write("\n".join(lines))
     else:

@@ -5,6 +5,7 @@ Usage: python qualify/watching.py [quiet turbines a kind of seasons] [turbines a
        python qualify/watching.py speed
        python qualify/watching.py kinds [turbines a kind of seasons] [folder of pieces]
        python qualify/watching.py right [turbines]
+       python qualify/watching.py smallest [turbines a kind of seasons] [folder of pieces]
 
 Each turbine is a piece that is kept in a file; a run that was stopped goes on where it was. Pieces of other
 source code are not used.
@@ -26,10 +27,11 @@ import numpy as np
 from common.charts import daily, ewma, hotelling, pca_novelty, regressed
 from common.page import write_page
 from common.seasons import FREQUENCY_HZ, Kind, Seasons, ramp, seasons, step
-from scipy.stats import chi2, poisson
+from scipy.stats import beta, chi2, poisson
 
 from jackettwin import watching
 from jackettwin.change.causes import model_causes
+from jackettwin.change.smallest_changes import HORIZONS_DAYS, smallest_changes
 from jackettwin.decks import read_structure
 from jackettwin.response.modes.labels import LOCAL
 from jackettwin.watching import History, Look, Pattern, Watch, diagnose, general_causes
@@ -59,6 +61,8 @@ KINDS = {
     "storms that heal": Kind(storms=2e-3),
     "ground that warms": Kind(ground=1e-3),
 }
+BASELINES = 75.0, 365.0
+"""After which the smallest changes are told [days]: what lies beyond the shorter one is projected."""
 SLOW = tuple(KINDS)[-4:]
 """What moves modes over weeks and years and harms nobody."""
 TOLD = (
@@ -66,7 +70,7 @@ TOLD = (
     (OCTAVES, (1.0 / len(OCTAVES),) * len(OCTAVES)),
 )
 """Covariances of the kinds above: telegraph's is that of two days."""
-QUIET_SEEDS, CHANGE_SEEDS, UNTOLD_SEEDS, SCOUR_SEEDS = 20_000, 30_000, 40_000, 60_000
+QUIET_SEEDS, CHANGE_SEEDS, UNTOLD_SEEDS, SCOUR_SEEDS, SMALLEST_SEEDS = 20_000, 30_000, 40_000, 60_000, 80_000
 """Where the seeds of turbines begin; those below were used for development."""
 NAMING = "causes.py", "diagnosis.py", "next_look.py"
 """Of ``watching``: what only says which cause it was."""
@@ -385,6 +389,65 @@ def changes(pieces: dict[str, Any]) -> list[str]:
     return [*lines, ""]
 
 
+# the smallest changes that an owner is told
+
+
+def smallest(kind: str, baseline: float, seed: int) -> list[Any] | None:
+    """Return horizon, size, whether projected, and whether found, of every smallest change with a size.
+
+    None if there is an alarm before any change. Each change is planted by itself, 5 to 25 days after a
+    baseline of some days.
+    """
+    place = list(KINDS).index(kind)
+    begun = baseline + np.random.default_rng((10, place, seed)).uniform(5.0, 25.0)
+    s = seasons(SMALLEST_SEEDS + 100 * place + seed, begun + HORIZONS_DAYS[-1] + 1.0, KINDS[kind])
+    learning = history(s).between(0.0, baseline)
+    watch = watching.start(learning)
+    told = smallest_changes(watch, learning, None)
+    for day in history(s).between(baseline, np.floor(begun)).by_day():
+        watch, look = watching.step(watch, day)
+        if look.change is not None:
+            return None
+    out = []
+    for one in told:
+        found = False
+        if one.size is None:
+            continue
+        h = history(s.changed(step(s.days, begun, np.full(4, -one.size))))
+        now = watch
+        for day in h.between(np.floor(begun), begun + one.days).by_day():
+            now, look = watching.step(now, day)
+            found = look.change is not None
+            if found:
+                break
+        out.append([one.days, one.size, one.projected, found])
+    return out
+
+
+def smallest_found(pieces: dict[str, Any]) -> list[str]:
+    """Return the table of the smallest changes that were told and planted."""
+    lines = [
+        "| baseline [days] | within [days] | projected | size, median [%] | found | 95 % interval [%] |",
+        "|---|---|---|---|---|---|",
+    ]
+    for baseline in BASELINES:
+        turbines = [one for one in _of(pieces, f"smallest/{baseline:g}/") if one is not None]
+        for days in HORIZONS_DAYS:
+            told = [row for one in turbines for row in one if row[0] == days]
+            if not told:
+                continue
+            n, found = len(told), sum(row[3] for row in told)
+            low = beta.ppf(0.025, found, n - found + 1) if found else 0.0
+            high = beta.ppf(0.975, found + 1, n - found) if found < n else 1.0
+            size = 100.0 * np.median([row[1] for row in told])
+            lines.append(
+                f"| {baseline:g} | {days:g} | {'yes' if told[0][2] else 'no'} | {size:.2f} | "
+                f"{found} of {n} | {100 * low:.0f} to {100 * high:.0f} |"
+            )
+    early = sum(one is None for one in _of(pieces, "smallest/"))
+    return [*lines, "", f"Alarms before the change, not counted: {early}.", ""]
+
+
 # what the seasons' information allows
 
 
@@ -624,6 +687,17 @@ def main() -> None:
         return
     if sys.argv[1:2] == ["right"]:
         sys.stdout.write("\n".join(right_models(int(sys.argv[2]) if len(sys.argv) > 2 else 24)) + "\n")
+        return
+    if sys.argv[1:2] == ["smallest"]:
+        folder = Path(sys.argv[3] if len(sys.argv) > 3 else "out/qualify")
+        named = [
+            (f"smallest/{days:g}/{kind}/{seed}", lambda k=kind, d=days, s=seed: smallest(k, d, s))
+            for seed in range(int(sys.argv[2]) if len(sys.argv) > 2 else 3)
+            for days in BASELINES
+            for kind in KINDS
+            if kind not in SLOW
+        ]
+        sys.stdout.write("\n".join(smallest_found(computed(named, folder))))
         return
     if sys.argv[1:2] == ["kinds"]:
         folder = Path(sys.argv[3] if len(sys.argv) > 3 else "out/qualify")

@@ -115,7 +115,7 @@ def test_records_of_a_turning_rotor_keep_their_modes_alone(turning: Callable[[in
     speeds = (0.16, 0.18, 0.145, 0.16, 0.17, 0.18)
     found = [identify(turning(k, speed)) for k, speed in enumerate(speeds)]
     one_by_one = [m.frequency_hz for one in found for m in one.modes if m.status is ModeStatus.OK]
-    assert any(0.4 < f < 1.2 for f in one_by_one)  # what a single record cannot know
+    assert sum(0.4 < f < 1.2 for f in one_by_one) <= 2  # of twelve orders, before records are compared
     fused = fuse(found).modes
     modes = [m.frequency_hz for m in fused if m.status.is_a_mode]
     np.testing.assert_allclose(modes, [0.31, 0.318, 1.35, 1.42], rtol=0.01)

@@ -42,7 +42,7 @@ def test_a_broad_peak_and_one_beside_another_are_not_judged(zeta, other, rng: np
 
 
 def test_what_lies_at_a_multiple_of_an_order_is_one_unless_it_shows_skirts() -> None:
-    """An order at 0.5 Hz, its double as it is and with skirts, a mode elsewhere, a peak nothing is known of."""
+    """An order, its double as it is and with skirts, a mode elsewhere, and a peak too broad to judge."""
     f, zeta = np.array([0.5, 1.006, 1.0, 1.3, 1.5]), np.full(5, 0.006)
     missing = np.array([8.0, 0.5, -3.0, 0.5, np.nan])
     assert are_orders(f, zeta, missing).tolist() == [False, True, False, False, False]
