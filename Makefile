@@ -78,7 +78,7 @@ layers: $(VENV)/.dev
 	$(BIN)/lint-imports
 
 unit: $(VENV)/.dev servers
-	$(BIN)/pytest -n 2
+	$(BIN)/pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 servers: # PostgreSQL, mosquitto, Chromium for tests that use the real ones; skipped where they cannot be installed
 	@scripts/install-servers

@@ -250,8 +250,6 @@ def test_a_scenario_tells_the_life_of_every_weld(tmp_path: Path) -> None:
     assert low < high and sum(first["variance_shares"].values()) == pytest.approx(1.0)
     assert {row["environment"] for row in joints} == {"air", "cathodic", "free-corrosion"}
     assert any("crack growth" in one["what"] for one in found["left_out"])
-    stricter = answer("scenario", str(scenario), "--design-factor", "3")
-    assert stricter["joints"][0]["life_years"] == pytest.approx(first["life_years"] / 3.0, rel=1e-9)
 
 
 def test_details_that_cannot_be_are_refused_before_anything_is_simulated(tmp_path: Path) -> None:

@@ -191,6 +191,7 @@ def test_an_unknown_name_is_answered_with_what_the_package_adds(site: Path, fold
     method = command(site, "identify", folder / "r.xyz", "--method", "ours")
     for done, added in ((law, "lagging"), (method, "our-own")):
         assert done.returncode == 2 and added in done.stderr
+    assert "|our-own" in "".join(command(site, "identify", "--help").stdout.split())
 
 
 def test_all_of_them_by_the_api(
