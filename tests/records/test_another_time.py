@@ -23,12 +23,6 @@ def without_directions(record: Record) -> Record:
     return replace(record, channels=tuple(replace(c, direction=(0.0, 0.0, 0.0)) for c in record.channels))
 
 
-def test_channels_of_one_time_are_not_spoken_of(tower: SimpleNamespace) -> None:
-    """X and y have nothing in common here: they are known to be crosswise."""
-    for seed in range(10):
-        assert alarms(tower.record(seed)) == []
-
-
 def test_channels_that_hardly_stand_out_of_their_noise_are_not_accused(tower: SimpleNamespace) -> None:
     """In a calm only the upper sensors see more than one mode; 18 channels were named here once."""
     for seed in range(12):

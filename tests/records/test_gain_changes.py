@@ -47,13 +47,6 @@ def test_a_gain_that_grows_is_taken_back(factor: float, tower: SimpleNamespace) 
     assert np.exp(grows.rate) == pytest.approx(factor, rel=0.25)
 
 
-def test_sound_sensors_neither_turn_nor_grow(tower: SimpleNamespace) -> None:
-    for seed in range(10):
-        clocks = assess(tower.record(seed)).clocks
-        assert not clocks.gains
-        assert not clocks.growing
-
-
 def test_a_turn_that_pairs_tell_in_neighbouring_windows_is_taken_back_once() -> None:
     """Of channel 0 against three others, in ten windows: one pair tells it a window later."""
     pairs = np.stack(np.triu_indices(4, 1), axis=1)

@@ -43,11 +43,6 @@ def moved(record: Record, rows: list[int], samples: int, start: int = 0) -> Reco
     return replace(record, data=data)
 
 
-def test_clocks_in_step_are_not_spoken_of(tower: SimpleNamespace) -> None:
-    for seed in range(20):
-        assert said(tower.record(seed)) == []
-
-
 @pytest.mark.parametrize("share", [0.15, 0.4])
 def test_a_long_gap_says_nothing_of_clocks(share: float, tower: SimpleNamespace) -> None:
     for seed, channel in enumerate((0, 3, 5, 6)):
