@@ -109,6 +109,7 @@ def identify(
     whole = _with_picked_orders(prepare(record, settings), wanted)
     ready, basis = components(whole, settings)
     y, scale, resolved = ready.y, ready.scale, ready.settings
+    above = peaks_above(record, settings, resolved)  # here, where the least memory is held beside it
     say("poles")
     search = searched(ready, settings)
     if uncertain(settings):
@@ -150,7 +151,7 @@ def identify(
         duration_s=record.duration_s,
         warnings=(*ready.warnings, *missing, *map(str, chosen.findings)),
         findings=chosen.findings,
-        notes=peaks_above(record, settings, resolved),
+        notes=above,
         real_poles=relaxations(ready, settings) if settings.real_poles else (),
         picks=tuple(_pick(poles, c, record.name) for c in judged if c.objection is None),
     )

@@ -27,6 +27,7 @@ from jackettwin.identification.tones.drifting_tones import drifting_tones
 from jackettwin.identification.tones.rotor_speed import estimated_speed
 from jackettwin.identification.tones.steady_tones import steady_tones
 from jackettwin.records import decimate, detrend
+from jackettwin.signals import of_fast_length
 
 if TYPE_CHECKING:
     from jackettwin.identification.estimate import ResolvedSettings
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
     from jackettwin.records import Channel, Record
 
 
+LONG = 100_000
+"""Samples of a channel from which the memory of a transform is worth the few it may leave out."""
 TONE_RATE_RATIO = 2.0
 """Ratio of the sample rate at which tones are sought to the rate needed for a band that starts at the lowest
 peak, which may itself be a tone."""
@@ -102,7 +105,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> PreparedRecord:
     usable, warnings = usable_channels(record)
     level, differentiated = accelerated(detrend(usable))
     top = band_top_hz(level, settings) or np.inf
-    level = _decimated(level, top, settings)
+    level = _of_fast_length(_decimated(level, top, settings))
     rotor = None if settings.quick else estimated_speed(level.data, level.sample_rate_hz)
     tones, slowly_drifting, without = steady_tones(level.data, level.sample_rate_hz)
     drifting = slowly_drifting
@@ -113,6 +116,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> PreparedRecord:
         level = replace(level, data=without)
         settings = _above_tones(level, settings, min([*tones, *(tone.swept_hz[0] for tone in drifting)]))
     resolved, reduced = resolve(level, settings)
+    reduced = _of_fast_length(reduced)
     del level, without  # of a day each copy takes fifty megabytes
     warnings += shortness(reduced, resolved, chosen=settings.lowest_frequency_hz is None)
     y = fill(reduced.data)
@@ -162,6 +166,13 @@ def _decimated(level: Record, top_hz: float, settings: IdentificationSettings) -
     needed = TONE_RATE_RATIO * max(SAMPLES_PER_CYCLE * top_hz, settings.sample_rate_hz or 0.0)
     factor = int(level.sample_rate_hz / needed)
     return decimate(level, sample_rate_hz=level.sample_rate_hz / factor) if factor > 1 else level
+
+
+def _of_fast_length(record: Record) -> Record:
+    """Leave out the last few samples of a long record whose transform would take more memory than itself."""
+    if record.data.shape[1] <= LONG:
+        return record
+    return replace(record, data=of_fast_length(record.data))
 
 
 def _above_tones(level: Record, settings: IdentificationSettings, lowest_hz: float) -> IdentificationSettings:

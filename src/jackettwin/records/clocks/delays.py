@@ -23,8 +23,8 @@ from itertools import pairwise
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
-from jackettwin.records.processing.spectra import hann_lines, of_fast_length
-from jackettwin.signals import next_fast_len
+from jackettwin.records.processing.spectra import hann_lines
+from jackettwin.signals import next_fast_len, of_fast_length
 
 MIN_LINES = 4
 """Fewest lines over which a cross spectrum is averaged; the coherence of independent lines is then biased by

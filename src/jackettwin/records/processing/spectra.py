@@ -19,19 +19,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.signals import hann, prev_fast_len
-
-
-def of_fast_length(y: FloatArray) -> FloatArray:
-    """Return samples, along the last axis, without the few at the end that slow down the transform.
-
-    Ten minutes at 100 Hz, both ends included, are 60,001 = 29 · 2069 samples, whose transform takes ten times
-    as long as that of 60,000. For windowed data or the slowest lines, the last samples do not matter.
-
-    >>> of_fast_length(np.zeros((2, 60001))).shape
-    (2, 60000)
-    """
-    return y[..., : prev_fast_len(max(y.shape[-1], 1))]
+from jackettwin.signals import hann, of_fast_length
 
 
 def hann_lines(rows: Iterable[FloatArray]) -> Iterator[ComplexArray]:

@@ -13,8 +13,8 @@ import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.records.processing.filters import bridge
-from jackettwin.records.processing.spectra import of_fast_length, welch_densities
-from jackettwin.signals import running_median
+from jackettwin.records.processing.spectra import welch_densities
+from jackettwin.signals import of_fast_length, running_median
 
 SEGMENTS = 16
 """Segments of Welch's estimate, without overlap."""

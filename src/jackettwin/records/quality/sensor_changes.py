@@ -18,9 +18,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from jackettwin.records.processing.spectra import of_fast_length
 from jackettwin.records.quality.sensor_polarity import MIN_CYCLES, strongest_line
-from jackettwin.signals import tukey
+from jackettwin.signals import of_fast_length, tukey
 
 PARTS = 20
 """Parts of a record over which the gain is taken."""

@@ -14,8 +14,8 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.findings import Finding
 from jackettwin.records.processing.filters import bridge
-from jackettwin.records.processing.spectra import of_fast_length
 from jackettwin.records.record import Record
+from jackettwin.signals import of_fast_length
 
 SLOW = 20
 """Cycles in the record below which motion is slow."""
