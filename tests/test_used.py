@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 CALLED_BY_OTHERS = ("jackettwin.client", "jackettwin.store.asset_copy", "jackettwin.store.migrations")
 """Modules whose names users, scripts or Alembic call."""
+NAMED = re.compile(r"[\w.]+:\w+")
 
 
-def imports(tree: ast.Module) -> Iterator[tuple[str, str]]:
+def imports(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, str]]:
     """Yield (module, name) of everything that is imported, or named ``module:name`` in a table."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Constant) and re.fullmatch(r"[\w.]+:\w+", str(node.value)):
-            module, _, name = str(node.value).partition(":")
+    for node in nodes:
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and NAMED.fullmatch(node.value):
+            module, _, name = node.value.partition(":")
             yield module, name
-        if isinstance(node, ast.ImportFrom) and node.module:
+        elif isinstance(node, ast.ImportFrom) and node.module:
             yield from ((node.module, alias.name) for alias in node.names)
 
 
@@ -26,18 +28,8 @@ def offered(root: Path) -> Iterator[tuple[str, str]]:
     """Yield (module, name) of everything that a package's stub offers."""
     for path in root.rglob("__init__.pyi"):
         package = ".".join(path.relative_to(root).parent.parts)
-        yield from (
-            (f"{package}.{module}", name) for module, name in imports(ast.parse(path.read_text("utf-8")))
-        )
-
-
-def read(tree: ast.AST) -> set[str]:
-    """Return all names that are read, as such or as attributes."""
-    return {
-        n.id if isinstance(n, ast.Name) else n.attr
-        for n in ast.walk(tree)
-        if isinstance(n, ast.Name | ast.Attribute)
-    }
+        nodes = ast.walk(ast.parse(path.read_text("utf-8")))
+        yield from ((f"{package}.{module}", name) for module, name in imports(nodes))
 
 
 def unused(
@@ -47,17 +39,25 @@ def unused(
 
     What a door offers is imported from the module that the door names.
     """
-    imported = {*doors, *(pair for tree in trees.values() for pair in imports(tree))}
-    attributes = {n.attr for tree in trees.values() for n in ast.walk(tree) if isinstance(n, ast.Attribute)}
+    imported, attributes, readers, own_reads = set(doors), set(), Counter[tuple[str, str]](), {}
+    for module, tree in trees.items():
+        for place, statement in enumerate(tree.body):
+            nodes = list(ast.walk(statement))  # once: there are a million
+            imported.update(imports(nodes))
+            of_others = {n.attr for n in nodes if isinstance(n, ast.Attribute)}
+            names = of_others | {n.id for n in nodes if isinstance(n, ast.Name)}
+            attributes |= of_others
+            own_reads[module, place] = names
+            readers.update((module, name) for name in names)
     found = []
     for module, tree in trees.items():
         package, _, own = module.rpartition(".")
-        for node in tree.body:
+        for place, node in enumerate(tree.body):
             if not isinstance(node, ast.FunctionDef | ast.ClassDef) or node.name.startswith("_"):
                 continue
             if isinstance(node, ast.FunctionDef) and node.decorator_list:
                 continue  # a command or a route: the decorator hands it on
-            here = any(node.name in read(other) for other in tree.body if other is not node)
+            here = readers[module, node.name] > (node.name in own_reads[module, place])
             as_attribute = (package, own) in imported and node.name in attributes
             if not (here or as_attribute or (module, node.name) in imported or node.name in documented):
                 found.append(f"{module}.{node.name}")
