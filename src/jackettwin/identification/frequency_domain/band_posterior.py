@@ -30,6 +30,7 @@ from jackettwin.identification.mode_shapes import aligned
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    Cost = Callable[[FloatArray], tuple[float, FloatArray]]
 
 MOST_MODES = 3
 """Largest number of modes in a band."""
@@ -48,7 +49,7 @@ LEAST_NOISE = 1e-12
 WIDE = 7.0
 """Half range of the search about its start, in logarithms and in units of the shapes."""
 STEP = 1e-4
-"""Step of the finite differences for the curvature, in logarithms and in units of the shapes."""
+"""Step of the differences of the slope for the curvature, in logarithms and in units of the shapes."""
 MOST_STEPS = 10
 """Largest number of Newton steps after the search."""
 MIN_GAIN = 1e-3
@@ -136,6 +137,14 @@ def transfer(f: FloatArray, f_n: FloatArray, zeta: FloatArray) -> ComplexArray:
     return np.asarray(beta**2 / (beta**2 - 1.0 - 2j * zeta * beta))
 
 
+def _transfer_slopes(f: FloatArray, f_n: FloatArray, zeta: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+    """Return the derivatives of ``transfer`` with respect to ln f_n and ln ζ, (n_lines, n_modes) each."""
+    beta = np.divide.outer(f, f_n)
+    damped = 2j * zeta * beta**3
+    square = (beta**2 - 1.0 - 2j * zeta * beta) ** 2
+    return np.asarray((2.0 * beta**2 + damped) / square), np.asarray(damped / square)
+
+
 def _one_mode(lines: ComplexArray, f: FloatArray, start_hz: float) -> BandPosterior | None:
     """Return the most probable single mode: an eigenvector, and (ln f, ln ζ, ln S, ln Se)."""
     outer = np.real(np.einsum("ak,bk->kab", lines, lines.conj()))
@@ -160,12 +169,12 @@ def _one_mode(lines: ComplexArray, f: FloatArray, start_hz: float) -> BandPoster
         vectors[:, -1:],
         covariance[None, :2, :2],
         np.sqrt(spread)[:, None],
-        -cost(theta) - 0.5 * (4 + n - 1) * np.log(len(f)),
+        -cost(theta)[0] - 0.5 * (4 + n - 1) * np.log(len(f)),
     )
 
 
-def one_mode_cost(theta: FloatArray, outer: FloatArray, f: FloatArray) -> float:
-    """Return minus the log-posterior of (ln f, ln ζ, ln S, ln Se), maximised over the shape.
+def one_mode_cost(theta: FloatArray, outer: FloatArray, f: FloatArray) -> tuple[float, FloatArray]:
+    """Return minus the log-posterior of (ln f, ln ζ, ln S, ln Se), maximised over the shape, and its slope.
 
     Parameters
     ----------
@@ -174,14 +183,23 @@ def one_mode_cost(theta: FloatArray, outer: FloatArray, f: FloatArray) -> float:
         Real parts of the products of the lines.
     f : (n_lines,)
     """
-    s, noise = np.exp(theta[2]), np.exp(theta[3])
-    power = np.abs(transfer(f, np.exp(theta[:1]), np.exp(theta[1:2]))[:, 0]) ** 2
-    largest = float(np.linalg.eigvalsh(_weighted(theta, outer, f))[-1])
-    total = float(np.einsum("kaa->", outer))
-    n = outer.shape[1]
-    return float(
-        (n - 1) * len(f) * np.log(noise) + np.sum(np.log(s * power + noise)) + (total - largest) / noise
+    f_n, zeta, (s, noise) = np.exp(theta[:1]), np.exp(theta[1:2]), np.exp(theta[2:])
+    h = transfer(f, f_n, zeta)
+    signal = s * np.abs(h[:, 0]) ** 2
+    power = signal + noise
+    values, vectors = np.linalg.eigh(np.tensordot(signal / power, outer, axes=1))
+    along = np.einsum("a,kab,b->k", vectors[:, -1], outer, vectors[:, -1])
+    left = float(np.einsum("kaa->", outer)) - float(values[-1])
+    others = (outer.shape[1] - 1) * len(f)
+    # the shape is the best at every theta, so that its change has no effect on the cost
+    by_signal = (power - along) / power**2
+    by_f, by_zeta = (
+        2.0 * s * float(by_signal @ np.real(h.conj() * slope)[:, 0])
+        for slope in _transfer_slopes(f, f_n, zeta)
     )
+    by_noise = others - left / noise + noise * np.sum(1.0 / power) + np.sum(along * signal / power**2)
+    value = others * np.log(noise) + np.sum(np.log(power)) + left / noise
+    return float(value), np.array([by_f, by_zeta, by_signal @ signal, by_noise])
 
 
 def _weighted(theta: FloatArray, outer: FloatArray, f: FloatArray) -> FloatArray:
@@ -205,7 +223,7 @@ def _modes(lines: ComplexArray, f: FloatArray, starts_hz: list[float]) -> BandPo
     force = np.log([4.0 * START_DAMPING**2 * float(np.sum(np.abs(inner[:, k]) ** 2)) for k in nearest])
     before = [np.log(starts_hz), np.full(m, np.log(START_DAMPING)), 0.5 * force, np.zeros(m * (m - 1))]
     starts = [np.concatenate([*before, [np.log(noise)], v.T.ravel()]) for v in (at_peaks, np.eye(m))]
-    theta = min((_most_probable(cost, start, f, m) for start in starts), key=cost)
+    theta = min((_most_probable(cost, start, f, m) for start in starts), key=lambda one: cost(one)[0])
     alpha = theta[-m * m :].reshape(m, m).T
     alpha = alpha / np.linalg.norm(alpha, axis=0)
     # a search may shorten shapes, whose lengths have no effect, below the step of the differences
@@ -224,14 +242,17 @@ def _modes(lines: ComplexArray, f: FloatArray, starts_hz: list[float]) -> BandPo
         basis @ alpha,
         np.array([covariance[np.ix_(rows[[i, m + i]], rows[[i, m + i]])] for i in range(m)]),
         np.sqrt(np.maximum(np.array(shape_var).T, 0.0)),
-        -cost(theta) - 0.5 * free * np.log(count),
+        -cost(theta)[0] - 0.5 * free * np.log(count),
     )
 
 
 def several_modes_cost(
     theta: FloatArray, inner: ComplexArray, f: FloatArray, left: float, n_channels: int
-) -> float:
-    """Return minus the log-posterior of several modes in their subspace.
+) -> tuple[float, FloatArray]:
+    r"""Return minus the log-posterior of several modes in their subspace, and its slope.
+
+    With :math:`M = \Phi H F` and :math:`G = E^{-1} - E^{-1} x x^H E^{-1}` of every line, the cost changes by
+    :math:`2 \Re \mathrm{tr}(M^H G\, dM) + \mathrm{tr}(G)\, dS_e`.
 
     Parameters
     ----------
@@ -244,50 +265,71 @@ def several_modes_cost(
         Power outside the subspace.
     """
     m = len(inner)
-    noise = np.exp(theta[2 * m + m * m])
+    f_n, zeta, noise = np.exp(theta[:m]), np.exp(theta[m : 2 * m]), float(np.exp(theta[2 * m + m * m]))
     factor = np.diag(np.exp(theta[2 * m : 3 * m])).astype(complex)
     below = np.tril_indices(m, -1)
     real, imag = np.split(theta[3 * m : 2 * m + m * m], 2)
     factor[below] = real + 1j * imag
     alpha = theta[-m * m :].reshape(m, m).T
-    alpha = alpha / np.maximum(np.linalg.norm(alpha, axis=0), 1e-12)
-    h = transfer(f, np.exp(theta[:m]), np.exp(theta[m : 2 * m]))
-    moved = alpha[None] * h[:, None, :] @ factor
+    length = np.maximum(np.linalg.norm(alpha, axis=0), 1e-12)
+    alpha = alpha / length
+    h = transfer(f, f_n, zeta)
+    forced = h[:, :, None] * factor
+    moved = alpha @ forced
     matrix = moved @ moved.conj().transpose(0, 2, 1)
-    rounding = LEAST_NOISE * np.einsum("kaa->k", matrix).real[:, None, None]
-    matrix = matrix + (noise + rounding) * np.eye(m)
-    solved = np.linalg.solve(matrix, inner.T[:, :, None])[:, :, 0]
+    rounding = LEAST_NOISE * np.einsum("kaa->k", matrix).real
+    inverse = np.linalg.inv(matrix + (noise + rounding)[:, None, None] * np.eye(m))
+    solved = (inverse @ inner.T[:, :, None])[:, :, 0]
+    misfit = inverse - solved[:, :, None] * solved[:, None, :].conj()
+    trace = np.einsum("kaa->k", misfit).real
+    by_moved = misfit @ moved + LEAST_NOISE * trace[:, None, None] * moved
+    by_alpha = 2.0 * np.real(np.einsum("kaj,kbj->ab", by_moved.conj(), forced))
+    by_alpha = (by_alpha - alpha * np.sum(alpha * by_alpha, axis=0)) / length
+    in_modes = alpha.T @ by_moved
+    by_factor = 2.0 * np.einsum("ki,kij->ij", h.conj(), in_modes)
+    by_h = 2.0 * np.einsum("kij,ij->ki", in_modes.conj(), factor)
+    by_f, by_zeta = (np.real(np.sum(by_h * slope, axis=0)) for slope in _transfer_slopes(f, f_n, zeta))
+    others = (n_channels - m) * len(f)
     quadratic = float(np.sum(np.real(inner.T.conj() * solved)))
-    log_det = float(np.sum(np.linalg.slogdet(matrix)[1]))
-    return (n_channels - m) * len(f) * float(np.log(noise)) + left / float(noise) + log_det + quadratic
+    log_det = -float(np.sum(np.linalg.slogdet(inverse)[1]))
+    slope = [
+        by_f,
+        by_zeta,
+        np.diag(by_factor).real * np.exp(theta[2 * m : 3 * m]),
+        by_factor[below].real,
+        by_factor[below].imag,
+        [others - left / noise + noise * np.sum(trace)],
+        by_alpha.T.ravel(),
+    ]
+    return others * float(np.log(noise)) + left / noise + log_det + quadratic, np.concatenate(slope)
 
 
-def _most_probable(
-    cost: Callable[[FloatArray], float], start: FloatArray, f: FloatArray, n_modes: int
-) -> FloatArray:
+def _most_probable(cost: Cost, start: FloatArray, f: FloatArray, n_modes: int) -> FloatArray:
     """Return the parameters of least cost."""
     low, high = start - WIDE, start + WIDE
     low[: 2 * n_modes] = np.repeat(np.log([f[0], 1e-5]), n_modes)
     high[: 2 * n_modes] = np.repeat(np.log([f[-1], 0.5]), n_modes)
 
-    def within(theta: FloatArray) -> float:
+    def within(theta: FloatArray) -> tuple[float, FloatArray]:
         inside = np.clip(theta, low, high)
-        return cost(inside) + len(f) * float(np.sum((theta - inside) ** 2))
+        value, slope = cost(inside)
+        beyond = theta - inside
+        rise = 2.0 * len(f) * beyond
+        return value + len(f) * float(beyond @ beyond), np.where(beyond == 0.0, slope, rise)
 
     with np.errstate(all="ignore"):
-        found = scipy.optimize.minimize(within, start, method="BFGS", options={"gtol": 1e-2})
+        found = scipy.optimize.minimize(within, start, jac=True, method="BFGS", options={"gtol": 1e-2})
     best = np.clip(found.x, low, high)
     return np.asarray(best) if found.success else _polished(within, best)
 
 
-def _polished(cost: Callable[[FloatArray], float], theta: FloatArray) -> FloatArray:
+def _polished(cost: Cost, theta: FloatArray) -> FloatArray:
     """Return the minimum near a point by Newton steps along the eigenvectors of the curvature.
 
-    The preceding search may stop on the slope of a valley, since differences of a large cost are rounded.
+    The preceding search may stop on the slope of a valley, since a large cost is rounded.
     """
-    value, steps = cost(theta), STEP * np.eye(len(theta))
+    value, gradient = cost(theta)
     for _ in range(MOST_STEPS):
-        gradient = np.array([cost(theta + e) - cost(theta - e) for e in steps]) / (2.0 * STEP)
         curvature = _curvature(cost, theta)
         if not (np.isfinite(curvature).all() and np.isfinite(gradient).all()):
             break
@@ -298,23 +340,18 @@ def _polished(cost: Callable[[FloatArray], float], theta: FloatArray) -> FloatAr
             break
         move *= min(1.0, MOST_MOVE / float(np.abs(move).max()))
         tries = [theta + 0.5**k * move for k in range(HALVINGS)]
-        better = next((one for one in tries if cost(one) < value), None)
+        better = next((one for one in tries if cost(one)[0] < value), None)
         if better is None:
             break
-        theta, value = better, cost(better)
+        theta, (value, gradient) = better, cost(better)
     return np.asarray(theta)
 
 
-def _curvature(cost: Callable[[FloatArray], float], theta: FloatArray) -> FloatArray:
-    """Return the second derivatives of a cost by central differences."""
-    n = len(theta)
-    steps, out = STEP * np.eye(n), np.empty((n, n))
-    for i in range(n):
-        for j in range(i, n):
-            signs = ((1, 1), (1, -1), (-1, 1), (-1, -1))
-            four = [cost(theta + a * steps[i] + b * steps[j]) * a * b for a, b in signs]
-            out[i, j] = out[j, i] = sum(four) / (4.0 * STEP**2)
-    return out
+def _curvature(cost: Cost, theta: FloatArray) -> FloatArray:
+    """Return the second derivatives of a cost by central differences of its slope."""
+    steps = STEP * np.eye(len(theta))
+    out = np.array([cost(theta + e)[1] - cost(theta - e)[1] for e in steps]) / (2.0 * STEP)
+    return np.asarray(0.5 * (out + out.T))
 
 
 def _covariance(curvature: FloatArray, singular: int = 0) -> FloatArray | None:
