@@ -107,26 +107,31 @@ def _lines_near_modes(modes: Sequence[ModalEstimate], f: FloatArray, step: float
 
 def _fitted(measured: ComplexArray, motion: ComplexArray, near: BoolArray) -> ComplexArray:
     """Return E with the S and N that are most likely given the lines near the modes."""
+    n_modes = motion.shape[2]
     everywhere = np.einsum("fsia,fsjb->ijfab", motion, motion.conj(), optimize=True)
     measured, products = measured[near], everywhere[:, :, near]
     known = REGULARISATION * np.einsum("faa->fa", measured).real[:, :, None] * np.eye(measured.shape[1])
     power = np.einsum("faa->f", measured).real
     force = np.diag(power.max() / np.einsum("iifaa->if", products).real.max(axis=1)).astype(complex)
     noise = START_NOISE_SHARE * np.einsum("faa->a", measured).real / len(measured)
-    fitted = _spectrum(force, noise, products) + known
+    products = products.reshape(n_modes**2, -1)  # once: a hundred sums run over it
+
+    def spectrum() -> ComplexArray:
+        forced = (force.ravel() @ products).reshape(measured.shape)
+        return np.asarray(forced + np.diag(noise) + known)
+
+    def traces(matrices: ComplexArray) -> ComplexArray:
+        sums = products @ matrices.transpose(0, 2, 1).ravel()
+        return np.asarray(sums.reshape(n_modes, n_modes).T)
+
+    fitted = spectrum()
     for _ in range(ITERATIONS):
-        inverse = np.linalg.inv(fitted)
-        twice = inverse @ (measured + known) @ inverse
-        gain = np.einsum("fba,ijfab->ji", twice, products, optimize=True)
-        loss = np.einsum("fba,ijfab->ji", inverse, products, optimize=True)
-        force = _geometric_mean(loss, force @ gain @ force)
+        inverse: ComplexArray = np.asarray(np.linalg.inv(fitted))
+        twice: ComplexArray = np.asarray(inverse @ (measured + known) @ inverse)
+        force = _geometric_mean(traces(inverse), force @ traces(twice) @ force)
         noise = noise * np.sqrt(np.einsum("faa->a", twice).real / np.einsum("faa->a", inverse).real)
-        fitted = _spectrum(force, noise, products) + known
-    return _spectrum(force, noise, everywhere)
-
-
-def _spectrum(force: ComplexArray, noise: FloatArray, products: ComplexArray) -> ComplexArray:
-    return np.asarray(np.einsum("ij,ijfab->fab", force, products, optimize=True) + np.diag(noise))
+        fitted = spectrum()
+    return np.asarray(np.einsum("ij,ijfab->fab", force, everywhere, optimize=True) + np.diag(noise))
 
 
 def _geometric_mean(b: ComplexArray, c: ComplexArray) -> ComplexArray:
