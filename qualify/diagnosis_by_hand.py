@@ -2,8 +2,9 @@
 
 Usage: python qualify/diagnosis_by_hand.py [models a jacket] [jacket…]
 
-Members are cut out, walls thinned, masses added on the drawing; scour is the pile's head stiffness from the
-soil's curves with the ground gone; the stiffness of every foot and member differs from the model's. Modes
+Members are cut out, weakened and flooded, walls thinned, masses added on the drawing; scour is the pile's
+head stiffness from the soil's curves with the ground gone; sensors' clocks and the yaw are wrong, and what is
+something else changes at random. The stiffness of every foot and member differs from the model's. Modes
 are solved before and after and paired by shape here; the change is seen with the noise of a month of seasons,
 and on the day on which it is just sufficient for an alarm. Changes that would raise no alarm are left out.
 """
@@ -30,7 +31,7 @@ from jackettwin.structure import Material, Member, PointMass, Section, Structure
 from jackettwin.watching import Diagnosis, diagnose
 
 WATCHED, SOLVED = 5, 14
-SETS, SIGHTS = 4, 3
+SETS, SIGHTS = 3, 3
 """Changes of every sort, of other sizes and at other places, judged by the causes of one model; and times
 that each is seen, with other noise."""
 LOSS = 0.08
@@ -41,6 +42,14 @@ SCOUR_M, SOFTER, GROWTH_M, THINNER_M, HEAVIER = (
     (0.002, 0.005),
     (0.01, 0.04),
 )
+WEAKER, CLOCK, MISREAD_DEG, STRANGE = (
+    (0.2, 0.6),
+    (1e-3, 4e-3),
+    (8.0, 25.0),
+    {"frequency": 4e-3, "damping": 0.2},
+)
+"""Stiffness left to a brace, error of a clock, error of the yaw, and size of what is something else."""
+BRACES = " lost", " weakened", " flooded"
 
 
 @dataclass(frozen=True)
@@ -150,6 +159,32 @@ def stiffer(m: Member, by: float) -> Member:
     return replace(m, material=Material(by * x.youngs_modulus_pa, by * x.shear_modulus_pa, x.density_kg_m3))
 
 
+def inside(structure: Structure, m: Member) -> float:
+    """Return the mass of the water that fills a member [kg]."""
+    bore = m.section_start.outer_diameter_m - 2.0 * m.section_start.thickness_m
+    return 0.25 * np.pi * bore**2 * 1025.0 * length(structure, m)
+
+
+def strangers(
+    labels: tuple[str, ...], frequency_hz: np.ndarray, zeta: np.ndarray, rng: np.random.Generator
+) -> list[tuple[str, np.ndarray, np.ndarray]]:
+    """Return names and changes of ln f and ln ζ of wrong sensors and of something else, (n_modes,) each."""
+    none, mixed, damped = np.zeros(len(labels)), frequency_hz.copy(), zeta.copy()
+    part = np.sin(np.radians(rng.uniform(*MISREAD_DEG))) ** 2
+    for n in (1, 2):
+        pair = [labels.index(f"{way}_{n}") for way in ("fore_aft", "side_side") if f"{way}_{n}" in labels]
+        if len(pair) == 2:  # what is looked for along an axis is partly the other mode of the pair
+            other = pair[::-1]
+            mixed[pair] += part * (frequency_hz[other] - frequency_hz[pair])
+            damped[pair] += part * (zeta[other] - zeta[pair])
+    slow = rng.choice([-1.0, 1.0]) * rng.uniform(*CLOCK)
+    return [
+        ("sensor: clock", none + slow, none),
+        ("sensor: yaw misread", np.log(mixed / frequency_hz), np.log(damped / zeta)),
+        ("something else", *(size * rng.standard_normal(len(labels)) for size in STRANGE.values())),
+    ]
+
+
 def changes(site: Site, rng: np.random.Generator) -> list[tuple[str, Site]]:
     """Return changed sites, each with the beginning of the name that it ought to be given."""
     s, whole = site.structure, pile_head(0.0)
@@ -166,6 +201,15 @@ def changes(site: Site, rng: np.random.Generator) -> list[tuple[str, Site]]:
     braces = slanted(s)
     cut = brace_of(s, braces[int(rng.integers(len(braces)))])
     out.append((f"{'|'.join(m.name for m in cut)} lost", with_members(site, cut, lambda m: stiffer(m, 1e-4))))
+    for what in BRACES[1:]:
+        one = brace_of(s, braces[int(rng.integers(len(braces)))])
+        left, water = (
+            rng.uniform(*WEAKER),
+            [PointMass(n, 0.5 * inside(s, m)) for m in one for n in (m.start, m.end)],
+        )
+        hurt = with_members(site, one, lambda m, x=left: stiffer(m, x))  # type: ignore[misc]
+        wetter = replace(site, structure=s.with_masses((*s.masses, *water)))
+        out.append((f"{'|'.join(m.name for m in one)}{what}", hurt if what == " weakened" else wetter))
     thin = rng.uniform(*GROWTH_M)
 
     def ring(m: Member) -> float:
@@ -195,9 +239,10 @@ def changes(site: Site, rng: np.random.Generator) -> list[tuple[str, Site]]:
 def right(wanted: str, cause: str, alike: tuple[str, ...]) -> bool:
     """Tell whether a cause, or one that is said to do the same, is the wanted one."""
     names = [cause.split(" (or ")[0], *alike]
-    if wanted.endswith(" lost"):
-        return any(f"{n} lost" in names for n in wanted.removesuffix(" lost").split("|"))
-    return wanted in names
+    what = next((what for what in BRACES if wanted.endswith(what)), None)
+    return wanted in names if what is None else any(
+        n + what in names for n in wanted.removesuffix(what).split("|")
+    )  # fmt: skip
 
 
 def judged(jacket: str, wanted: str, number: int, found: Diagnosis) -> Case:
@@ -206,8 +251,9 @@ def judged(jacket: str, wanted: str, number: int, found: Diagnosis) -> Case:
     group = next((g for g in found.inseparable if first.cause in g), ())
     meant = {v.cause: v.alike for v in found.verdicts}
     inside = any(right(wanted, name, meant[name]) for name in group)
-    what = "a brace lost" if wanted.endswith(" lost") else "scour at one foot" if wanted.startswith(
-        "scour at ") and wanted != "scour at all feet" else wanted  # fmt: skip
+    what = next((f"a brace{what}" for what in BRACES if wanted.endswith(what)), wanted)
+    if wanted.startswith("scour at ") and wanted != "scour at all feet":
+        what = "scour at one foot"
     good = right(wanted, first.cause, first.alike)
     return jacket, what, first.cause, number, first.probability, good, bool(group), inside
 
@@ -234,12 +280,17 @@ def cases(jacket: str, structure: Structure, draws: int) -> tuple[list[Case], li
         kinds = [kind for kind, _ in quantities]
         seen = seen_causes(model, quantities, labels)
         own = [kind for kind, known in zip(kinds, seen.known, strict=True) if known]
-        every = [(SETS * draw + k, *one) for k in range(SETS) for one in changes(site, rng)]
-        for number, wanted, changed in every:
-            after = solved(changed)
-            at = paired(before, after, chosen)
-            ln_f = np.log(after.frequency_hz[at] / before.frequency_hz[chosen])
-            ln_z = np.log((0.006 + 0.5 * LOSS * after.soil_share[at]) / zeta)
+        every = []
+        for k in range(SETS):
+            for wanted, changed in changes(site, rng):
+                after = solved(changed)
+                at = paired(before, after, chosen)
+                ln_f = np.log(after.frequency_hz[at] / before.frequency_hz[chosen])
+                ln_z = np.log((0.006 + 0.5 * LOSS * after.soil_share[at]) / zeta)
+                every.append((SETS * draw + k, wanted, ln_f, ln_z))
+            odd = strangers(labels, before.frequency_hz[chosen], zeta, rng)
+            every += [(SETS * draw + k, *one) for one in odd]
+        for number, wanted, ln_f, ln_z in every:
             for _ in range(SIGHTS):
                 known = seen_change(np.concatenate([ln_f, ln_z]), kinds, rng, False)
                 if known.by_mode.sum() < LEAST:
@@ -247,7 +298,7 @@ def cases(jacket: str, structure: Structure, draws: int) -> tuple[list[Case], li
                 for seen_now, of in ((known, out), *((first, early) for first in on_the_day(known, later))):
                     found = diagnose(seen_now.restricted(seen.known), seen.causes, own)
                     of.append(judged(jacket, wanted, number, found))
-            sys.stderr.write(f"{wanted} {out[-1]} {np.round(100 * ln_f, 2)}\n")
+            sys.stderr.write(f"{jacket} {draw}: {len(out)} {wanted} {np.round(100 * ln_f, 2)}\n")
     return early, out
 
 
@@ -261,10 +312,11 @@ def page(late: list[Case], early: list[Case], draws: int) -> list[str]:
         "# Diagnosis of changes to the drawing",
         "",
         f"`python qualify/diagnosis_by_hand.py {draws}`: jackets whose feet and members all differ from the",
-        f"model's, {draws} of each drawing, changed on the drawing: braces cut, walls thinned, masses added;",
-        f"scour by soil curves, {SETS} of each with other sizes and places, seen {SIGHTS} times with other",
-        "noise. The truth does not use `jackettwin.change`. Five modes; the model's feet are fitted to the",
-        "frequencies before. Changes too small for an alarm are left out.",
+        f"model's, {draws} of each drawing, changed on the drawing: braces cut, weakened and flooded, walls",
+        "thinned, masses added; scour by soil curves; wrong clocks and yaw, and something else at random;",
+        f"{SETS} of each with other sizes and places, seen {SIGHTS} times with other noise. The truth does",
+        "not use `jackettwin.change`. Five modes; the model's feet are fitted to the frequencies before.",
+        "Changes too small for an alarm are left out.",
         "",
         "## A month after the change",
         "",
