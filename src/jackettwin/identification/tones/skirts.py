@@ -22,8 +22,8 @@ of 0.5 to 16 lines half width on sloping levels r of 0.001 to 0.05 one has more;
 have more at r = 0.001, 28 % at 0.01 and few at 0.05."""
 SHOWN = -1.0
 """Excess below which a peak is taken to have skirts though it lies at a multiple of an order."""
-MULTIPLES = np.array([1 / 3, 1 / 2, 2 / 3, 3 / 2, 2.0, 3.0])
-"""Of 3P, 6P and 9P to each other."""
+MULTIPLES = np.array([0.5, 2.0])
+"""Of 3P and 6P to each other; 9P is weaker, and the more multiples, the more modes lie at one by chance."""
 REACH = 6.0
 """Distance from the peak that is compared, in half widths of the mode."""
 FEWEST_LINES, MOST_LINES = 16, 40
@@ -82,7 +82,7 @@ def _best(power: FloatArray, peak: FloatArray) -> float:
 
 
 def are_orders(frequency_hz: FloatArray, damping_ratio: FloatArray, missing: FloatArray) -> BoolArray:
-    """Tell which peaks lie at a multiple of one without skirts, and do not show skirts themselves.
+    """Tell which peaks lie at half or twice one without skirts, and do not show skirts themselves.
 
     Parameters
     ----------
