@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from jackettwin.decks import read_structure
 from jackettwin.fatigue import LifeModel, TubeDetails, count, read_curve
 from jackettwin.fatigue.tube_welds import Detail
-from jackettwin.loads import read_rotor
+from jackettwin.loads import operating_point, read_rotor
 from jackettwin.records import Channel, Record
 from jackettwin.response import Sensor, System, build_system, static_displacement
 from jackettwin.sensing import (
@@ -26,6 +26,7 @@ from jackettwin.sensing import (
     spread_of,
     steady_smoother,
 )
+from jackettwin.sensing.estimate import under
 from jackettwin.sensing.latent_forces import gusts_std
 from jackettwin.soil import pinned
 from jackettwin.structure import Rayleigh, assemble, section_forces
@@ -162,6 +163,37 @@ def test_a_known_rotor_damps_and_pushes_as_its_blades_do(system: System, model: 
     # straight between computed winds, held at the ends of what the rotor works in
     assert rotor.at(13.5).damping == pytest.approx(0.5 * (rotor.at(12.0).damping + rotor.at(15.0).damping))
     assert rotor.at(60.0).thrust_slope == rotor.at(25.0).thrust_slope
+
+
+def test_blades_cut_gusts_as_they_pass(system: System) -> None:
+    """Moments of a known rotor have a band at three times its speed, of 0.72 of what its slow ones have."""
+    rotor, control = read_rotor("iea15")
+    weather = Weather.of(
+        {"state": "operating", "mean_wind_speed_m_s": 13.0}, 72.0, rotor=RotorByWind(rotor, control, 0.17)
+    )
+    forces = {f.name: f for f in sensed_model(system, weather).forces}
+    passing = forces["rotor My, passing"]
+    assert passing.rate == pytest.approx(3.0 * operating_point(rotor, control, 13.0).rotor_speed)
+    assert passing.level == pytest.approx(0.72 * forces["rotor My"].level)
+    omega = np.linspace(0.0, 10.0, 20001)
+    S = passing.density(omega)
+    near = np.abs(omega / passing.rate - 1.0) < 0.1
+    assert 0.5 < S[near].sum() / S.sum() < 0.9
+    assert not any("passing" in f.name for f in sensed_model(system, replace(weather, working=False)).forces)
+
+
+def test_drift_of_accelerometers_makes_no_slow_moment(
+    model: MotionModel, truth: tuple[np.ndarray, SensorReadings], estimate: MotionEstimate
+) -> None:
+    """Offsets of up to 1 mm/s² that drift by a tenth of it, which would move the top by metres."""
+    readings = truth[1]
+    n = readings.y.shape[1]
+    drift = (1e-3 + 1e-4 * np.cos(np.pi * np.arange(n) / n)) * np.array([[1.0, -0.6, 0.3, 0.8, -1.0, 0.5]]).T
+    found = under(estimate.model, replace(readings, y=readings.y + drift), estimate.levels)
+    names = [model.assembly.structure.members[m].name for m in model.assembly.mesh.member]
+    row = section_rows(model).bending_y[:, names.index("tower_1"), 0]
+    moved_by = (found.mean() - estimate.mean()) @ row
+    assert moved_by.std() < 0.5 * float(spread_of(row[None], estimate.covariance)[0])
 
 
 def test_no_motion_is_driven_by_a_rotor(model: MotionModel) -> None:

@@ -130,3 +130,8 @@ def test_a_level_beside_another_is_expected_in_proportion(rng: np.random.Generat
     H = np.concatenate([H, 1e-9 * H[:, :, :1]], axis=2)
     a, _, c = find_levels(y, STEP_S, H, which, (*start, hidden), (0, 0)).forces
     assert c.level / a.level == pytest.approx(20.0, rel=0.05)
+    # one that is nearly tied goes as far as the other
+    start = tuple(force.with_level(0.1) for force in forces)
+    tied = LatentForce("c", np.zeros(1), np.zeros((1, 12)), "gust", 0.7, 0.1, 0.05, 0.05, "a")
+    a, _, c = find_levels(y, STEP_S, H, which, (*start, tied), (0, 0)).forces
+    assert a.level > 1.0 and c.level / a.level == pytest.approx(1.0, rel=0.05)

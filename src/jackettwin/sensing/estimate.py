@@ -10,10 +10,10 @@ import scipy.linalg as la
 
 from jackettwin.arrays import FloatArray
 from jackettwin.response import System, UndampedModes
-from jackettwin.sensing.latent_forces import wind_forces
+from jackettwin.sensing.latent_forces import passing_forces, wind_forces
 from jackettwin.sensing.levels import Levels, find_levels
 from jackettwin.sensing.motion_model import MotionModel, motion_model
-from jackettwin.sensing.readings import SensorReadings, Weather, thinned
+from jackettwin.sensing.readings import ACCELERATION, SensorReadings, Weather, thinned
 from jackettwin.sensing.rotor_by_wind import damped_at_work, pushed_at_work
 from jackettwin.sensing.sea import SeaOnMembers
 from jackettwin.sensing.smoother import SteadySmoother, discrete, steady_smoother
@@ -28,6 +28,11 @@ _REMAINDERS = ((15.0, 0.08), (-15.0, 0.10), (-np.inf, 0.20))
 """The same of stress at welds, from these heights above the sea [m] on; deep braces vibrate of their own."""
 _FIRST, _DAMPING_LOG_STD = 2, 0.4
 """Modes whose damping records tell, and the logarithm's deviation of that of others: 0.3 to 1 % in steel."""
+_DRIFT_STD, _DRIFT_HZ = 1e-3, 0.01
+"""Offset of an accelerometer [m/s²], and the frequency below which its drift is more than its white noise.
+
+Integrated twice, an offset of a hundredth of that moves a tower top by a metre in eight minutes: with none
+of its own, what is left of a removed mean is read as a push, and slow moments are made of it."""
 BAND_HZ = 2.2
 """Modes up to here move with their own inertia; what is beyond follows the forces at once."""
 
@@ -55,8 +60,11 @@ class MotionEstimate:
     @property
     def to_coordinates(self) -> FloatArray:
         """Coordinates from the state, (n_coordinates, n_states)."""
-        own = np.eye(self.model.n_modes, self.smoother.F.shape[0])
-        return np.vstack([own, self.model.force_rows()])
+        rows = self.model.force_rows()
+        found = np.zeros((self.model.n_modes + len(rows), self.smoother.F.shape[0]))
+        found[: self.model.n_modes, : self.model.n_modes] = np.eye(self.model.n_modes)
+        found[self.model.n_modes :, : rows.shape[1]] = rows
+        return found
 
     @property
     def covariance(self) -> FloatArray:
@@ -102,7 +110,10 @@ def sensed_model(system: System, weather: Weather) -> MotionModel:
 def _model_in(
     system: System, weather: Weather, sea: SeaOnMembers, near: UndampedModes | None = None
 ) -> MotionModel:
-    forces = (*wind_forces(system.assembly, wind_m_s=weather.wind_m_s), *sea.forces())
+    wind = wind_forces(system.assembly, wind_m_s=weather.wind_m_s)
+    if weather.working and weather.rotor is not None and weather.rotor.passing_hz is not None:
+        wind = (*wind, *passing_forces(wind, weather.rotor.passing_hz))
+    forces = (*wind, *sea.forces())
     model = motion_model(system, forces, below_hz=BAND_HZ, drag=sea.damping(), near=near)
     return _pushed(_damped(model, weather), weather)
 
@@ -127,7 +138,9 @@ def moved(model: MotionModel, readings: SensorReadings, *, draws: int = 0) -> Mo
     which = thinned(n, h, min(0.9 * BAND_HZ, 0.4 / h))
     omega = np.asarray(2.0 * np.pi * np.fft.rfftfreq(n, h)[which], dtype=np.float64)
     seen = model.transfer(readings.rows, readings.tilt, readings.derivative, omega)
-    levels = find_levels(readings.y, h, seen, which, model.forces, readings.groups, draws=draws)
+    drifts = np.equal(readings.derivative, ACCELERATION)
+    slow = 1.0 + drifts * (2.0 * np.pi * _DRIFT_HZ / omega[:, None]) ** 2
+    levels = find_levels(readings.y, h, seen, which, model.forces, readings.groups, slow=slow, draws=draws)
     return under(model.with_forces(levels.forces), readings, levels)
 
 
@@ -174,9 +187,14 @@ def likely_motions(
 
 def under(model: MotionModel, readings: SensorReadings, levels: Levels) -> MotionEstimate:
     """Return the motion of a model whose forces have levels, whoever found them."""
-    F, Q = discrete(*model.dynamics(), readings.step_s)
+    h, (F, Q) = readings.step_s, discrete(*model.dynamics(), readings.step_s)
     C = model.motion_rows(readings.rows, readings.tilt, readings.derivative)
-    return MotionEstimate(model, steady_smoother(F, Q, C, levels.noise), readings, levels)
+    drifts = np.eye(len(C))[:, np.equal(readings.derivative, ACCELERATION)]
+    walk = levels.noise @ drifts * (2.0 * np.pi * _DRIFT_HZ * h) ** 2
+    kept = np.sqrt(np.maximum(1.0 - walk / _DRIFT_STD**2, 0.0))
+    F, Q = la.block_diag(F, np.diag(kept)), la.block_diag(Q, np.diag(_DRIFT_STD**2 * (1.0 - kept**2)))
+    smoother = steady_smoother(F, Q, np.hstack([C, drifts]), levels.noise)
+    return MotionEstimate(model, smoother, readings, levels)
 
 
 def stress_remainder(height_m: float) -> float:

@@ -19,7 +19,8 @@ from jackettwin.response import Sensor, observation_matrix
 from jackettwin.sensing.rotor_by_wind import RotorAtTop, RotorByWind
 from jackettwin.structure import Assembly
 
-_DERIVATIVE = {"acceleration": 2, "velocity": 1}
+ACCELERATION = 2
+_DERIVATIVE = {"acceleration": ACCELERATION, "velocity": 1}
 _MOST_MISSING = 0.02
 RATE_HZ = 10.0
 """At which motion is followed: of ranges at 1 Hz a sixtieth is lost in the mean."""

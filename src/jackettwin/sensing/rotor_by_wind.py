@@ -46,10 +46,12 @@ class RotorAtTop:
     ----------
     damping : (6, 6) at the first frequency, symmetric [N·s/m, N·s, N·m·s]
     thrust_slope : of the thrust by the wind's speed in slow gusts [N·s/m]
+    passing_hz : how often a blade passes; None if that is not known
     """
 
     damping: FloatArray
     thrust_slope: float
+    passing_hz: float | None = None
 
     def towards(self, heading_rad: float) -> FloatArray:
         """Return the damping (6, 6) of a rotor whose wind blows towards a heading."""
@@ -78,7 +80,8 @@ class RotorByWind:
     def at(self, wind_m_s: float) -> RotorAtTop:
         """Return what it does in a wind, straight between winds 3 m/s apart that are computed once."""
         low, high = self.control.wind_speeds_m_s or (3.0, 25.0)
-        k = min(max(wind_m_s, low), high) / _WINDS_M_S
+        wind = min(max(wind_m_s, low), high)
+        k = wind / _WINDS_M_S
         below = max(int(np.floor(k)), int(np.ceil(low / _WINDS_M_S)))
         above = max(min(below + 1, int(high / _WINDS_M_S)), below)
         share = min(max(k - below, 0.0), 1.0) if above > below else 0.0
@@ -86,6 +89,7 @@ class RotorByWind:
         return RotorAtTop(
             (1.0 - share) * a.damping + share * b.damping,
             (1.0 - share) * a.thrust_slope + share * b.thrust_slope,
+            operating_point(self.rotor, self.control, wind).rotor_speed * self.rotor.n_blades / (2.0 * np.pi),
         )
 
     def _at(self, number: int) -> RotorAtTop:

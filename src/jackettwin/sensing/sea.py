@@ -63,10 +63,12 @@ _SHORTEST = 5.0
 """Multiple of the peak frequency beyond which waves reach no member but at the surface."""
 _SPACING_M = 4.0
 _USUAL_HEIGHT_M, _USUAL_PERIOD_S = 1.5, 7.0
-_ACROSS = 0.5
-"""Of a sea that spreads as cos² about its mean direction, across it over along it, a little less."""
+_ALONG, _ACROSS = sqrt(0.75), 0.5
+"""Of the water's acceleration in a sea that spreads as cos² about its mean direction, along and across it."""
 _KNOWN, _UNKNOWN = 0.3, 1.5
 """Of the logarithm of a sea's level, whose height is stated or not."""
+_SAME = 0.05
+"""Of a level at crests over that between them: waves pass, so that both are one of a long record."""
 
 
 @dataclass(frozen=True)
@@ -127,11 +129,12 @@ class SeaOnMembers:
         """Return the forces of each band along and across the sea, at its crests and between them."""
         peak, heading, found = 2.0 * pi / self.state.Tp, self.state.direction, []
         spread = loads_along(self.assembly, self.grid)
-        ways = (("along", heading, 1.0), ("across", heading + 0.5 * pi, _ACROSS))
+        ways = (("along", heading, _ALONG), ("across", heading + 0.5 * pi, _ACROSS))
         speed = sqrt(8.0 / pi) * self.speed_std
         for band, level in zip(_BANDS, self._levels(), strict=True):
             omega = band.multiple * peak
             for way, angle, share in ways:
+                between = f"{band.name} waves {way}, between crests"
                 for place, turn in (("between crests", 0.0), ("at crests", 0.5 * pi)):
                     push = self._push(omega, angle, turn, speed).ravel()
                     found.append(
@@ -142,8 +145,9 @@ class SeaOnMembers:
                             "wave",
                             omega,
                             share * level,
-                            self.level_log_std,
+                            _SAME if turn else self.level_log_std,
                             band.rate_log_std,
+                            between if turn else None,
                             width=band.width,
                             tail=band.tail,
                         )
