@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shlex
 from collections import Counter
@@ -13,6 +14,7 @@ import click
 import numpy as np
 import pytest
 import yaml
+from click.testing import CliRunner
 
 from jackettwin.cli.main import main
 from jackettwin.decks import read_structure
@@ -146,3 +148,14 @@ def test_the_numbers_of_the_open_questions_are_those_that_verify_computes() -> N
     }
     assert fates["kelvin-voigt"] == {"solution": 9, "plateau": 7}
     assert fates["zener"] == {"solution": 5, "plateau": 9, "stalled": 2}
+
+
+def test_every_row_that_verify_checks_holds() -> None:
+    """Here, since the searches above are those it tells of."""
+    keys = {"id", "source", "quantity", "published", "computed", "relative_error", "tolerance", "ok"}
+    result = CliRunner().invoke(main, ["verify", "--json"])
+    assert result.exit_code == 0, result.stderr
+    rows = json.loads(result.stdout)["rows"]
+    assert all(set(row) >= keys for row in rows)
+    assert sum(row["ok"] is True for row in rows) >= 60
+    assert all((row["ok"] is None) == (row["tolerance"] is None) for row in rows)

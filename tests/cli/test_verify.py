@@ -1,6 +1,5 @@
 """``jackettwin verify``: keys, verdict and exit code."""
 
-import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,20 +9,10 @@ from click.testing import CliRunner
 from jackettwin.cli import main
 from jackettwin.verify import Row
 
-KEYS = {"id", "source", "quantity", "published", "computed", "relative_error", "tolerance", "ok"}
 ROWS = (
     Row("a", "Table 1", "f [Hz]", published=1.0, computed=1.001, tolerance=0.002),
     Row("b", "Table 1", "mass [kg]", published=1.0, computed=1.3, tolerance=None, note="no drawings"),
 )
-
-
-def test_every_checked_row_holds() -> None:
-    result = CliRunner().invoke(main, ["verify", "--json"])
-    assert result.exit_code == 0, result.stderr
-    rows = json.loads(result.stdout)["rows"]
-    assert all(set(row) >= KEYS for row in rows)
-    assert sum(row["ok"] is True for row in rows) >= 60
-    assert all((row["ok"] is None) == (row["tolerance"] is None) for row in rows)
 
 
 @pytest.fixture
