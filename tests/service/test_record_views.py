@@ -146,7 +146,8 @@ def test_members_are_coloured_by_the_worst_weld_of_their_side() -> None:
     welds = [
         {"chord": "leg", "brace": "brace", "side": "chord", "rate_per_year": 0.01, **left},
         {"chord": "leg", "brace": "other", "side": "chord", "rate_per_year": 0.02, **left},
+        {"chord": "tower", "brace": "tower", "side": "tube", "rate_per_year": 0.03, **left},
     ]
     life, damage = coloured_by_life(drawn, welds).quantities
-    assert life.values == [40.0, None, None] and damage.values == [0.02, None, None]
+    assert life.values == [40.0, None, 40.0] and damage.values == [0.02, None, 0.03]
     assert coloured_by_life(drawn, []) is drawn

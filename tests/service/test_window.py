@@ -9,23 +9,26 @@ import shutil
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import timedelta
 from importlib.resources import files
 from pathlib import Path
 from urllib.parse import urlsplit
+from xml.etree import ElementTree
 
 import httpx
 import numpy as np
 import pytest
 import uvicorn
 from playwright.sync_api import Browser, Locator, Page, Route, expect, sync_playwright
-from tests.service.conftest import NOON, PASSWORD, description, hour, make_service, record_file, turn
+from tests.service.conftest import NOON, PASSWORD, TWIN, description, hour, make_service, record_file, turn
 from tests.service.servers import CHROMIUM, free_port
 
 from jackettwin.files import find_file
 from jackettwin.service.context import Service
 from jackettwin.service.web import pages
 from jackettwin.service.web.app import EXAMPLES, create_app
+from jackettwin.service.web.catalogue import add_text_version
 from jackettwin.store import Packet, journal, people, results, streams, writing
 from jackettwin.store.tables import modes
 
@@ -85,18 +88,21 @@ class Open:
         expect(page.locator(".bones")).to_have_count(0)
 
 
+@contextmanager
 def served(service: Service) -> Iterator[str]:
-    """Serve from a thread of this process."""
+    """Serve from a thread of this process, which ends whatever happens: a thread that stays holds Python."""
     port = free_port()
     config = uvicorn.Config(create_app(service), port=port, log_level="error", timeout_graceful_shutdown=1)
     server = uvicorn.Server(config)
-    thread = threading.Thread(target=server.run)
+    thread = threading.Thread(target=server.run, daemon=True)
     thread.start()
     while not server.started:
         time.sleep(0.02)
-    yield f"http://127.0.0.1:{port}"
-    server.should_exit = True
-    thread.join(20.0)
+    try:
+        yield f"http://127.0.0.1:{port}"
+    finally:
+        server.should_exit = True
+        thread.join(20.0)
 
 
 @pytest.fixture(scope="module")
@@ -111,15 +117,24 @@ def browser() -> Iterator[Browser]:
         browser.close()
 
 
+@pytest.fixture(autouse=True)
+def left_open(browser: Browser) -> Iterator[None]:
+    """Close what a test leaves open, above all where it fails: a page holds its server."""
+    yield
+    for context in browser.contexts:
+        context.close()
+
+
 @pytest.fixture(scope="module")
 def opened(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterator[Open]:
     """A turbine with four records and an alarm whose words are markup."""
     patch = pytest.MonkeyPatch()
     for service in make_service(tmp_path_factory.mktemp("window"), None, patch):
-        for url in served(service):
+        with served(service) as url:
             for k in range(4):
                 send(url, k)
             turn(service, 4)
+            add_text_version(service, "bare", TWIN, {}, "test")
             alarm(service, url, SCRIPT)
             yield Open(url, service, browser)
     patch.undo()
@@ -147,10 +162,11 @@ def alarm(service: Service, url: str, text: str, *, day: int = 1) -> None:
 
 
 @pytest.mark.parametrize("path", PAGES)
-def test_a_page_is_whole_at_every_width_in_both_themes(opened: Open, path: str) -> None:
+def test_a_page_is_whole_at_every_width_in_both_themes_and_every_state(opened: Open, path: str) -> None:
     """Nothing wider than the window or the paper, no complaint of the browser, no serious finding of axe.
 
-    In the dark only colours are others.
+    In the dark only colours are others. Then its answers become old, are awaited, do not come, are not for
+    this reader, or hold nothing: each is said.
     """
     opened.said.clear()
     page = opened.page(path.replace("ID", newest(opened.url)))
@@ -164,7 +180,72 @@ def test_a_page_is_whole_at_every_width_in_both_themes(opened: Open, path: str) 
     page.set_viewport_size({"width": 688, "height": 900})
     assert widest_printed(page) <= 1.001, path
     assert opened.said == []
-    page.context.close()
+    if path in EMPTY:
+        page.emulate_media(media="screen")
+        says_what_it_lacks(opened, page, path)
+
+
+EMPTY = {
+    "/": "No turbine yet",
+    "/jobs": "No job yet",
+    "/users": "No user yet",
+    "/assets/wtg": "No record has been observed",
+    "/assets/wtg/live": "Nothing to show yet",
+    "/assets/wtg/timeline": "No mode yet",
+    "/assets/wtg/structure": "Nothing to draw yet",
+    "/assets/wtg/explore": "Nothing to explore yet",
+    "/assets/wtg/life": "No life yet",
+    "/assets/wtg/records": "No record of this kind",
+    "/assets/wtg/records/ID": "None yet.",
+    "/assets/wtg/alarms": "No alarm",
+    "/assets/wtg/model": "adopted",
+    "/assets/wtg/reports": "No report yet",
+}
+"""What each page says where there is nothing; that of a new turbine asks for nothing."""
+
+
+def says_what_it_lacks(opened: Open, page: Page, path: str) -> None:
+    """Check what a page says while answers are old, awaited, lost, refused to a viewer, and empty."""
+    mode, held = "lost", list[Route]()
+
+    def answer(route: Route) -> None:
+        if mode == "awaited":
+            held.append(route)
+        elif mode == "lost":
+            route.abort()
+        elif mode == "refused":
+            route.fulfill(status=403, json={"detail": "this needs the role admin; eva is viewer"})
+        elif "wtg/" in path and "ID" not in path:
+            route.continue_()
+        else:  # what this service has of these
+            told = (found := route.fetch()).json()
+            route.fulfill(response=found, json=told | {"items": []} if "items" in told else told)
+
+    def viewer(route: Route) -> None:
+        route.fulfill(json={**route.fetch().json(), "name": "eva", "role": "viewer"})
+
+    page.route(re.compile(r"/api/v1/(?!events|me|law)"), answer)
+    page.route("**/api/v1/me", viewer)
+    with writing(opened.service.database) as connection:
+        journal.tell(connection, "state", "wtg", {}, opened.service.now())
+    expect(page.get_by_text("Older than it should be").first, path).to_be_visible()
+    mode = "awaited"
+    page.reload(wait_until="commit")
+    expect(page.get_by_role("status", name="Reading").first, path).to_be_visible()
+    while not held:
+        page.wait_for_timeout(20)
+    mode = "lost"
+    for route in held:
+        route.abort()
+    expect(page.get_by_role("heading", name="No connection").first, path).to_be_visible()
+    mode = "refused"
+    page.get_by_role("button", name="Try again").first.click()
+    expect(page.get_by_role("heading", name="Not allowed").first, path).to_be_visible()
+    assert page.locator("main form, main input[type=file]").count() == 0, path
+    mode = "empty"
+    page.goto(path.replace("ID", newest(opened.url)) if "ID" in path else path.replace("wtg", "bare"))
+    expect(page.get_by_text(EMPTY[path]).first, path).to_be_visible()
+    expect(page.locator(".bones"), path).to_have_count(0)
 
 
 def widest_printed(page: Page) -> float:
@@ -200,7 +281,6 @@ def test_axe_finds_what_is_wrong(opened: Open) -> None:
     page.evaluate("""document.querySelector("main").innerHTML = "<input><p>pale</p>";
         document.querySelector("main p").style.color = "#ddd";""")
     assert {line.split(":")[0] for line in serious(page)} >= {"label", "color-contrast"}
-    page.context.close()
 
 
 def test_an_alarm_is_acknowledged_by_keyboard_and_another_reader_sees_it(opened: Open) -> None:
@@ -213,7 +293,6 @@ def test_an_alarm_is_acknowledged_by_keyboard_and_another_reader_sees_it(opened:
     for page in (mine, theirs):
         expect(page.get_by_text("<b>divers</b> looked")).to_be_visible()
         assert "injected" not in page.title()
-        page.context.close()
 
 
 def test_an_alarm_is_handed_on_muted_closed_and_opened_again(opened: Open) -> None:
@@ -242,7 +321,6 @@ def test_an_alarm_is_handed_on_muted_closed_and_opened_again(opened: Open) -> No
     act("Reopen", "")
     page.get_by_role("button", name="Open", exact=True).click()
     expect(one.get_by_text("reopened")).to_be_visible()
-    page.context.close()
 
 
 def test_two_acknowledge_at_once_and_read_the_same(opened: Open) -> None:
@@ -256,28 +334,16 @@ def test_two_acknowledge_at_once_and_read_the_same(opened: Open) -> None:
     for page in pages:
         expect(page.get_by_text("the second of two")).to_be_visible()
         expect(page.locator(".error")).to_have_count(0)
-        page.context.close()
-
-
-def test_without_a_connection_a_page_says_so_and_comes_back(opened: Open) -> None:
-    page = opened.page("/assets/wtg")
-    page.context.set_offline(True)
-    page.get_by_role("link", name="Timeline").click()
-    expect(page.get_by_role("heading", name="No connection").first).to_be_visible()
-    page.context.set_offline(False)
-    page.get_by_role("button", name="Try again").first.click()
-    expect(page.get_by_role("heading", name="Modes through time")).to_be_visible()
-    page.context.close()
 
 
 def test_a_record_that_arrives_is_seen_without_loading_again(opened: Open) -> None:
     page = opened.page("/")
-    observed = page.locator("tbody tr").first.locator("td[data-label^='Records']")
+    own = page.locator("tbody tr", has=page.get_by_role("link", name="wtg", exact=True))
+    observed = own.locator("td[data-label^='Records']")
     before = observed.inner_text()
     send(opened.url, int(before) + 20)
     turn(opened.service)
     expect(observed).to_have_text(str(int(before) + 1))
-    page.context.close()
 
 
 def test_a_record_is_uploaded_and_watched_until_its_state_appears(opened: Open) -> None:
@@ -294,7 +360,6 @@ def test_a_record_is_uploaded_and_watched_until_its_state_appears(opened: Open) 
         [{"name": "r.parquet", "mimeType": "application/octet-stream", "buffer": b"rubbish"}]
     )
     expect(page.get_by_label("Sent").locator("li.error")).to_be_visible()
-    page.context.close()
 
 
 def test_poles_are_picked_kept_and_taken_back(opened: Open) -> None:
@@ -309,7 +374,6 @@ def test_poles_are_picked_kept_and_taken_back(opened: Open) -> None:
     expect(page.get_by_text("Picked by local")).to_have_count(0)
     expect(page.get_by_role("button", name="Take 0 picked")).to_be_disabled()
     turn(opened.service)
-    page.context.close()
 
 
 def test_a_place_is_in_its_address(opened: Open) -> None:
@@ -322,7 +386,6 @@ def test_a_place_is_in_its_address(opened: Open) -> None:
     expect(page).to_have_url(re.compile(r"\?(?!.*show)(?=.*mode=mode_1)(?=.*from=)"))
     lines = saved(page)
     assert len(lines) >= 5 and lines[0].startswith("series,time_utc,")
-    page.context.close()
 
 
 def test_many_modes_are_drawn_in_bins_until_they_are_few(
@@ -330,7 +393,7 @@ def test_many_modes_are_drawn_in_bins_until_they_are_few(
 ) -> None:
     """Of 21,000 rows the extremes are drawn, of those of a month each row, and none is lost."""
     for service in make_service(tmp_path, None, monkeypatch):
-        for url in served(service):
+        with served(service) as url:
             model = httpx.get(f"{url}/api/v1/assets/wtg").json()["model_hash"]
             row = {"asset": "wtg", "model_hash": model, "model_version": 1, "status": "ok"}
             with writing(service.database) as connection:
@@ -348,7 +411,6 @@ def test_many_modes_are_drawn_in_bins_until_they_are_few(
             assert len(saved(page)) == 1 + 30 * 24 + 1
             page.locator("figure.plot [role=img]").press("0")
             expect(page.get_by_text("Bins of time")).to_be_visible()
-            page.context.close()
 
 
 def taken(where: Page | Locator, button: str) -> bytes:
@@ -385,24 +447,75 @@ def test_the_structure_moves_and_stops(opened: Open) -> None:
     assert picture.screenshot() == before
     page.get_by_role("button", name="Show in dark colours").click()
     wait_for_change(picture, before)
-    page.context.close()
+
+
+WELD = {name: value for name, value in EXAMPLES["LifeOut"].items() if name != "model_version"}
+BUTT = {"joint": "leg_1_2 to leg_1_3", "chord": "leg_1_2", "brace": "leg_1_2", "side": "tube"}
+WELDS = [
+    WELD,
+    {**WELD, "side": "brace"},
+    {**WELD, **BUTT, "position": "45°", "scf": {"butt weld": {"nominal": {"around": 1.24}}}},
+    {**WELD, "joint": "tp_top", "beyond_validity": ["brace 1: τ = 4.71 is not 0.2 to 1"]},
+]
+"""The example of the answer, its brace's side, a weld around a tube, and one beyond its factors."""
 
 
 def test_life_is_told_weld_by_weld(opened: Open, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The answer's own example; nothing of it is wider than a phone, nor serious to axe."""
-    weld = {name: value for name, value in EXAMPLES["LifeOut"].items() if name != "model_version"}
-    monkeypatch.setattr(results, "find_life", lambda *_: [weld, {**weld, "side": "brace"}])
+    """Nothing of it is wider than a phone, nor serious to axe."""
+    monkeypatch.setattr(results, "find_life", lambda *_: WELDS)
     with writing(opened.service.database) as connection:
         journal.tell(connection, "state", "wtg", {}, opened.service.now())
     page = opened.page("/assets/wtg/life")
     expect(page.get_by_text("The first weld has 130 years left (31 to 540).")).to_be_visible()
-    page.get_by_role("link", name="leg_1_3, brace_1_2_1, brace").click()
-    expect(page.get_by_role("heading", name="leg_1_3, brace_1_2_1, brace")).to_be_visible()
+    expect(page.get_by_text("Of 1 weld beyond the range of the factors nothing is certain")).to_be_visible()
+    expect(page.locator("tbody tr").last).to_contain_text("doubtful")
+    for name in ("leg_1_3, brace_1_2_1, brace", "leg_1_2 to leg_1_3, tube"):
+        page.get_by_role("link", name=name).click()
+        expect(page.get_by_role("heading", name=name)).to_be_visible()
+        expect(page.get_by_role("img", name=f"Damage around {name}")).to_be_visible()
+    expect(page.get_by_text("45°", exact=True)).to_be_visible()
     expect(page).to_have_url(re.compile("weld="))
     assert serious(page) == []
     page.set_viewport_size({"width": 390, "height": 900})
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
-    page.context.close()
+
+
+@pytest.mark.parametrize(
+    "path",
+    ["/", "", "/live", "/timeline", "/explore", "/life", "/records/ID", "/alarms"],
+)
+def test_every_plot_is_taken_away_as_png_svg_and_csv(opened: Open, path: str) -> None:
+    """Each thing that is drawn has three buttons, whose files stand alone; first and last are taken."""
+    told = {
+        "life": {"items": WELDS},
+        "watch": EXAMPLES["WatchOut"],
+        "supports": EXAMPLES["SupportsOut"],
+        "damping-budget": {"items": [EXAMPLES["BudgetOut"]]},
+    }
+    page = opened.page("/docs?find=nothing")
+    page.route(
+        re.compile(f"/api/v1/assets/wtg/({'|'.join(told)})$"),
+        lambda route: route.fulfill(json=told[route.request.url.rsplit("/", 1)[1]]),
+    )
+    opened.goto(page, path if path == "/" else f"/assets/wtg{path}".replace("ID", newest(opened.url)))
+    drawn, menus = page.locator(".uplot, .drawn"), page.locator(".save")
+    expect(drawn.first).to_be_visible()
+    if path == "/live":
+        expect(drawn.first).to_have_attribute("data-frames", re.compile(r"^\d\d+$"))
+    assert drawn.count() == menus.count(), path
+    for menu in (menus.nth(k) for k in sorted({0, menus.count() - 1})):
+        assert taken(menu, "PNG").startswith(b"\x89PNG")
+        svg = ElementTree.fromstring(taken(menu, "SVG"))
+        marks = {"path", "rect", "circle", "image", "line"}
+        assert svg.tag == f"{SVG}svg" and "class" not in {name for one in svg.iter() for name in one.attrib}
+        assert sum(one.tag.removeprefix(SVG) in marks for one in svg.iter()) > 1, menu.get_attribute(
+            "aria-label"
+        )
+        head, *lines = taken(menu, "CSV").decode().splitlines()
+        assert len(head.split(",")) > 1 and len(lines) > 0, menu.get_attribute("aria-label")
+
+
+SVG = "{http://www.w3.org/2000/svg}"
 
 
 def test_a_turbine_begins_with_answers_and_what_they_hang_on(opened: Open) -> None:
@@ -411,7 +524,6 @@ def test_a_turbine_begins_with_answers_and_what_they_hang_on(opened: Open) -> No
     expect(page.get_by_text("by 12 %; to settle it: weigh it")).to_be_visible()
     page.get_by_role("button", name="Confirm").click()
     expect(page.get_by_label("How it was settled")).to_be_visible()
-    page.context.close()
 
 
 def test_a_parameter_is_moved_by_keyboard_and_the_modes_follow(opened: Open) -> None:
@@ -421,11 +533,10 @@ def test_a_parameter_is_moved_by_keyboard_and_the_modes_follow(opened: Open) -> 
     page.get_by_role("slider").first.press("ArrowRight")
     expect(cell).to_have_text("0.1880")
     expect(page.get_by_text("4000 × the median")).to_be_visible()
-    page.context.close()
 
 
 def test_a_thousand_turbines_are_on_a_map_and_those_that_need_somebody_come_first(opened: Open) -> None:
-    (like,) = httpx.get(f"{opened.url}/api/v1/assets").json()["items"]
+    like = httpx.get(f"{opened.url}/api/v1/assets").json()["items"][-1]
     words = {"alarm": "a change since May", "warning": "records: 1 refused", "ok": ""}
 
     def turbine(k: int) -> dict[str, object]:
@@ -456,7 +567,6 @@ def test_a_thousand_turbines_are_on_a_map_and_those_that_need_somebody_come_firs
     page.get_by_role("button", name="Show all 1000").click()
     expect(rows).to_have_count(1000)
     assert opened.said == []
-    page.context.close()
 
 
 def test_any_page_is_printed_whole_for_the_stretch_that_it_shows(opened: Open) -> None:
@@ -468,7 +578,6 @@ def test_any_page_is_printed_whole_for_the_stretch_that_it_shows(opened: Open) -
     page.emulate_media(media="print")
     assert widest_printed(page) <= 1.001
     expect(page.locator(".tools").first).to_be_hidden()
-    page.context.close()
 
 
 def test_any_page_is_one_file_without_server_or_script(opened: Open, tmp_path: Path) -> None:
@@ -484,7 +593,6 @@ def test_any_page_is_one_file_without_server_or_script(opened: Open, tmp_path: P
     assert picture.evaluate("e => e.complete && e.naturalWidth > 300 && e.clientWidth > 300")
     assert page.locator("script, link, canvas").count() == 0
     assert opened.said == []
-    page.context.close()
 
 
 def test_a_part_that_a_newer_server_does_not_have_says_so(opened: Open) -> None:
@@ -492,7 +600,6 @@ def test_a_part_that_a_newer_server_does_not_have_says_so(opened: Open) -> None:
     page.route("**/window/assets/Life*", lambda route: route.fulfill(status=404))
     page.get_by_role("link", name="Life").click()
     expect(page.get_by_text("This page is older than its server.")).to_be_visible()
-    page.context.close()
 
 
 def test_the_worst_record_is_named_with_its_reason(opened: Open) -> None:
@@ -511,7 +618,6 @@ def test_the_worst_record_is_named_with_its_reason(opened: Open) -> None:
         connection.execute(modes.delete().where(modes.c.record_id == "badbadbad"))
         journal.tell(connection, "state", "wtg", {}, opened.service.now())
     expect(worst.first).not_to_contain_text("31.00")
-    page.context.close()
 
 
 SAID = {
@@ -567,7 +673,6 @@ def test_whatever_strangers_wrote_is_text(opened: Open) -> None:
         expect(page.get_by_text("onerror=").first).to_be_attached()
         assert page.locator("main img, main script").count() == 0, path
         assert page.title() != "injected", path
-    page.context.close()
 
 
 def test_a_report_is_framed_once_there_is_one(opened: Open, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -587,7 +692,6 @@ def test_a_report_is_framed_once_there_is_one(opened: Open, monkeypatch: pytest.
     expect(page.frame_locator("iframe.report").get_by_text("on paperon paper")).to_be_visible()
     assert b"five answers" in taken(page, "HTML")
     assert opened.said == []
-    page.context.close()
 
 
 def test_what_there_is_not_says_so(opened: Open) -> None:
@@ -596,7 +700,6 @@ def test_what_there_is_not_says_so(opened: Open) -> None:
     for path, words in (("/assets/none", "no such asset"), ("/assets/wtg/nothing", "no such page")):
         page.goto(path)
         expect(page.get_by_text(words)).to_be_visible()
-    page.context.close()
 
 
 def test_a_stranger_logs_in_and_comes_back_to_where_he_was(
@@ -604,7 +707,7 @@ def test_a_stranger_logs_in_and_comes_back_to_where_he_was(
 ) -> None:
     """And is sent to the login when the session ends; a viewer is told who may acknowledge."""
     for service in make_service(tmp_path / "store", None, monkeypatch):
-        for url in served(service):
+        with served(service) as url:
             alarm(service, url, "The structure changed.")
             with writing(service.database) as connection:
                 people.add_user(connection, people.User("eva", "viewer", password_hash, NOON))
@@ -620,6 +723,8 @@ def test_a_stranger_logs_in_and_comes_back_to_where_he_was(
             page.wait_for_url("**/assets/wtg")
             expect(page.get_by_text("Engineers acknowledge alarms.")).to_be_visible()
             assert page.get_by_role("button", name="Acknowledge").count() == 0
+            page.goto("/start")
+            expect(page.get_by_text("Engineers add turbines.")).to_be_visible()
             context.clear_cookies()
             page.goto("/assets/wtg/timeline")
             page.wait_for_url("**/login?next=*timeline")
@@ -649,7 +754,6 @@ def test_live_signals_roll_and_the_broker_comes_before_the_replay(opened: Open) 
         streams.add_packets(connection, packets, now)
     expect(page.get_by_text("as they arrive from the broker")).to_be_visible()
     expect(lanes).to_have_css("height", "624px")  # once all 24 are there: each comes by itself
-    page.context.close()
 
 
 def test_residuals_evidence_and_a_planted_change_are_drawn(
@@ -664,7 +768,6 @@ def test_residuals_evidence_and_a_planted_change_are_drawn(
     expect(page.get_by_text("Evidence, at most one false alarm in 10 years")).to_be_visible()
     expect(page.get_by_label("Planted change")).to_contain_text("scour at all feet of 0.34 m")
     assert serious(page) == []
-    page.context.close()
 
 
 def test_a_record_is_drawn_as_spectrogram_and_by_singular_values(opened: Open) -> None:
@@ -682,14 +785,12 @@ def test_a_record_is_drawn_as_spectrogram_and_by_singular_values(opened: Open) -
     drawn = page.locator("svg.surface image")
     expect(drawn).to_have_attribute("href", re.compile("^data:image/png"))
     save = page.get_by_role("group", name="Save acc_").last
-    assert taken(save, "PNG").startswith(b"\x89PNG")
-    assert all(part in taken(save, "SVG") for part in (b"xmlns", b"<image", b"minutes after its start"))
-    assert taken(save, "CSV").startswith(b'"minutes after its start","frequency [Hz]","level [dB of ')
+    assert all(part in taken(save, "SVG") for part in (b"<image", b"minutes after its start"))
+    assert taken(save, "CSV").startswith(b"minutes after its start,frequency [Hz],level [dB of ")
     page.get_by_role("button", name="Singular values").click()
     expect(page.get_by_text("largest", exact=True)).to_be_visible(timeout=30_000)
     expect(page).to_have_url(re.compile("spectrum=singular"))
     assert opened.said == []
-    page.context.close()
 
 
 def test_a_turbine_begins_from_a_deck_and_a_record_and_each_guess_is_confirmed(opened: Open) -> None:
@@ -717,4 +818,3 @@ def test_a_turbine_begins_from_a_deck_and_a_record_and_each_guess_is_confirmed(o
     page.wait_for_url("**/assets/begun/records")
     expect(page.locator("tbody tr")).to_have_count(1)
     httpx.delete(f"{opened.url}/api/v1/assets/begun?confirm=begun")
-    page.context.close()

@@ -10,16 +10,8 @@ import { sentence } from "../words/numbers";
 import type { PageProps } from "../shell/place";
 import { asked, assetUrl } from "../shell/place";
 
-const KINDS = [
-  ["", "All"],
-  ["warning", "warnings"],
-  ["info", "notes"],
-] as const;
-
-const STATES = [
-  ["", "Open"],
-  ["closed", "Closed"],
-] as const;
+const KINDS = Object.entries({ "": "All", warning: "warnings", info: "notes" });
+const STATES = Object.entries({ "": "Open", closed: "Closed" });
 
 export default function Alarms({ asset }: PageProps) {
   const [kind, state] = [asked("severity") ?? "", asked("state") ?? ""];

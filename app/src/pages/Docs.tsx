@@ -6,18 +6,9 @@ import { Shown } from "../parts/Shown";
 import { asked, keep } from "../shell/place";
 
 type Parameter = { name: string; in: string; required?: boolean; description?: string };
-interface Operation {
-  tags?: string[];
-  description?: string;
-  summary?: string;
-  parameters?: Parameter[];
-  requestBody?: { content: Record<string, unknown> };
-  responses: Record<string, { description: string }>;
-}
-interface Described {
-  info: { title: string; version: string; summary?: string };
-  paths: Record<string, Record<string, Operation>>;
-}
+type Said = { tags?: string[]; description?: string; summary?: string; parameters?: Parameter[] };
+type Operation = Said & { requestBody?: { content: object }; responses: object };
+type Described = { info: { title: string; version: string }; paths: Record<string, Record<string, Operation>> };
 type Row = Operation & { method: string; path: string };
 
 async function read(): Promise<Described> {
@@ -31,11 +22,9 @@ function Call({ row }: { row: Row }) {
   const refused = Object.keys(row.responses).filter((status) => status >= "400");
   return (
     <li>
-      <p>
-        <code>
-          <b>{row.method.toUpperCase()}</b> {row.path}
-        </code>
-      </p>
+      <code>
+        <b>{row.method.toUpperCase()}</b> {row.path}
+      </code>
       <p>{row.description ?? row.summary}</p>
       {asks.length > 0 && (
         <p class="quiet">
@@ -43,8 +32,7 @@ function Call({ row }: { row: Row }) {
             <span key={p.name}>
               {i > 0 && " · "}
               <code>{p.name}</code>
-              {p.required ? " (must be given)" : ""}
-              {p.description ? ` – ${p.description}` : ""}
+              {`${p.required ? " (must be given)" : ""}${p.description ? ` – ${p.description}` : ""}`}
             </span>
           ))}
         </p>

@@ -207,6 +207,12 @@ function Drawn({ asset, explored }: { asset: string; explored: Explored }) {
   );
 }
 
+const Nothing = () => (
+  <Empty title="Nothing to explore yet">
+    This comes with the first estimate of the ground, when no record waits.
+  </Empty>
+);
+
 export default function Explore({ asset }: PageProps) {
   const found = useAsset(asset, "/explore");
   return (
@@ -214,16 +220,7 @@ export default function Explore({ asset }: PageProps) {
       <Head title="Explore">
         What each parameter of the ground does to the modes, and how well the records tell it.
       </Head>
-      <Shown
-        of={found}
-        lines={12}
-        some={(data) => data.loci?.length}
-        none={
-          <Empty title="Nothing to explore yet">
-            This comes with the first estimate of the ground, when no record waits.
-          </Empty>
-        }
-      >
+      <Shown of={found} lines={12} some={(data) => data.loci?.length} none={<Nothing />}>
         {(data) => <Drawn asset={asset} explored={data} />}
       </Shown>
       <Laws />

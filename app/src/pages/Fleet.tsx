@@ -1,11 +1,12 @@
 // Which turbine needs me?
 import { useAnswer } from "../api/answer";
 import { api, type Asset, told } from "../api/client";
-import { Ago, Choice, Light } from "../parts/Bits";
+import { Ago, Choice, Head, Light } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import { type Column, number, Table } from "../parts/Table";
 import { asked, assetUrl, keep } from "../shell/place";
-import { Site } from "../parts/Site";
+import { SaveDrawn } from "../parts/plot/SaveMenu";
+import { mapCsv, Site } from "../parts/Site";
 import { count, sentence, years } from "../words/numbers";
 
 const URGENT = ["alarm", "warning", "no data", "ok"];
@@ -66,10 +67,9 @@ export function Fleet() {
   const [wanted, text] = [asked("status") ?? "", asked("find") ?? ""];
   return (
     <>
-      <div class="head">
-        <h1>Turbines</h1>
-        {assets.data && assets.data.items.length > 0 && <p class="said">{headline(assets.data.items)}</p>}
-      </div>
+      <Head title="Turbines" said>
+        {assets.data?.items.length ? headline(assets.data.items) : ""}
+      </Head>
       <Shown of={assets} none={<Nothing />} lines={6}>
         {(data) => {
           const rows = data.items.filter(
@@ -78,12 +78,9 @@ export function Fleet() {
           return (
             <section class="card" aria-label="All turbines">
               {data.items.length > 1 && <Site assets={data.items} />}
+              {data.items.length > 1 && <SaveDrawn title="Map" csv={() => mapCsv(data.items)} />}
               <div class="tools">
-                <Choice
-                  label="Status"
-                  kept="status"
-                  options={[["", `All ${data.items.length}`], ...URGENT.map((s) => [s, s] as const)]}
-                />
+                <Choice label="Status" kept="status" options={[["", `All ${data.items.length}`], ...URGENT]} />
                 <input
                   type="search"
                   aria-label="Find a turbine"

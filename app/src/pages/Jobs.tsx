@@ -2,7 +2,7 @@
 import { useAnswer } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
 import { may, useDeed } from "../api/do";
-import { Ago, Card, Choice, Light } from "../parts/Bits";
+import { Ago, Card, Choice, Head, Light } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import { Table } from "../parts/Table";
 import { asked, assetUrl } from "../shell/place";
@@ -23,9 +23,7 @@ export default function Jobs() {
   };
   return (
     <>
-      <div class="head">
-        <h1>Jobs</h1>
-      </div>
+      <Head title="Jobs">Every record and every estimate from all records is a job of a worker.</Head>
       <div class="tools">
         <Choice label="State" kept="state" options={STATES} />
         {deed.problem && <span class="error">{deed.problem.message}</span>}

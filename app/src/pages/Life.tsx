@@ -1,21 +1,27 @@
 // What life is left: the welds that records damage most, and how sure that is.
 import { useAsset } from "../api/answer";
 import { type Schemas } from "../api/client";
-import { Card, Facts, Light } from "../parts/Bits";
+import { Card, Facts, Head, Light } from "../parts/Bits";
+import { SaveDrawn } from "../parts/plot/SaveMenu";
+import { csvFrom } from "../parts/plot/series";
 import { Empty, Shown } from "../parts/Shown";
 import { type Column, number, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
 import { asked, keep } from "../shell/place";
-import { count, percent, scientific, years } from "../words/numbers";
+import { count, scientific, years } from "../words/numbers";
 import { day } from "../words/time";
 
 type Weld = Schemas["LifeOut"];
 const YEAR_S = 365.25 * 86_400;
 
 const key = (w: Weld): string => `${w.joint} ${w.brace} ${w.side}`;
-const named = (w: Weld): string => `${w.joint}, ${w.brace}, ${w.side}`;
-const state = (w: Weld): string =>
-  w.over_budget || w.departed ? "alarm" : (w.rate_interval_90[0] ?? 0) > w.budget_per_year ? "warning" : "ok";
+/** A weld around a tube is named by what it joins. */
+const named = (w: Weld): string => [w.joint, ...(w.side === "tube" ? [] : [w.brace]), w.side].join(", ");
+const state = (w: Weld): string => {
+  if (w.departed) return "alarm";
+  if (w.beyond_validity.length) return "doubtful";
+  return w.over_budget ? "alarm" : (w.rate_interval_90[0] ?? 0) > w.budget_per_year ? "warning" : "ok";
+};
 const largest = (shares: Record<string, number>): string =>
   Object.entries(shares)
     .toSorted(([, a], [, b]) => b - a)
@@ -48,28 +54,30 @@ const COLUMNS: Column<Weld>[] = [
       `${years(w.remaining_years.p50)} (${years(w.remaining_years.p05)} to ${years(w.remaining_years.p95)})`,
     by: (w) => w.remaining_years.p50,
   },
-  number("Damage a year", "% of what is allowed", (w) => w.rate_per_year / w.budget_per_year, {
-    say: (v) => percent(v, null, 0),
+  number("Damage a year", "times what is allowed", (w) => w.rate_per_year / w.budget_per_year, {
+    say: (v) => scientific(v, 2),
   }),
   number("Fails in a year", "probability", (w) => w.failure_probability_per_year, { say: (v) => scientific(v, 2) }),
 ];
+
+const points = ({ damage_by_point: found }: Weld): [number, number][] =>
+  found.map((damage, i) => [(360 * i) / found.length, damage]);
 
 /** The eight points around a weld, from its crown on; the worst is the one that counts. */
 function Around({ weld }: { weld: Weld }) {
   const most = Math.max(...weld.damage_by_point, 1e-300);
   return (
-    <svg class="around" viewBox="-60 -60 120 120" role="img" aria-label={`Damage around ${named(weld)}`}>
+    <svg class="around drawn" viewBox="-60 -60 120 120" role="img" aria-label={`Damage around ${named(weld)}`}>
       <circle r="50" />
       <circle r="25" />
-      {weld.damage_by_point.map((damage, i) => {
-        const angle = (2 * Math.PI * i) / weld.damage_by_point.length;
-        const r = (50 * damage) / most;
-        const [x, y] = [r * Math.sin(angle), -r * Math.cos(angle)];
+      {points(weld).map(([angle, damage]) => {
+        const [r, turn] = [(50 * damage) / most, (angle * Math.PI) / 180];
+        const [x, y] = [r * Math.sin(turn), -r * Math.cos(turn)];
         return (
-          <g key={i}>
+          <g key={angle}>
             <line x2={x} y2={y} />
             <path d={`M${x - 3} ${y}a3 3 0 1 0 6 0a3 3 0 1 0 -6 0`}>
-              <title>{`${Math.round((360 * i) / weld.damage_by_point.length)}°: ${scientific(damage, 2)}`}</title>
+              <title>{`${angle}°: ${scientific(damage, 2)}`}</title>
             </path>
           </g>
         );
@@ -84,12 +92,12 @@ function One({ weld }: { weld: Weld }) {
     ["Worst point", weld.position],
     ["Environment", weld.environment],
     ["Damage so far", `${scientific(weld.damage, 2)} (90 %: ${scientific(low, 2)} to ${scientific(high, 2)})`],
-    ["It rests on", `${count(weld.records, "record")}, ${(weld.observed_s / 86_400).toPrecision(2)} days`],
+    ["It rests on", `${count(weld.records, "record")}, ${span(weld.observed_s)}`],
     ["Life by the design curve", `${years(weld.life_years)} years, of which ${years(weld.age_years)} are gone`],
     ["What leaves it open", largest(weld.variance_shares)],
     ["By state of operation", largest(weld.damage_by_state)],
     ...(weld.beyond_validity.length
-      ? [["Beyond the range of its factors", weld.beyond_validity.join(", ")] as [string, string]]
+      ? [["Beyond the range of its factors", weld.beyond_validity.join("; ")] as [string, string]]
       : []),
     ...(weld.over_budget ? [["Over its budget since", day(weld.over_budget.since)] as [string, string]] : []),
     ...(weld.departed ? [["Departed from its past since", day(weld.departed.since)] as [string, string]] : []),
@@ -107,10 +115,9 @@ export default function Life({ asset }: PageProps) {
   const wanted = asked("weld");
   return (
     <>
-      <div class="head">
-        <h1>Life</h1>
-        {life.data?.items[0] && <p class="said">{headline(life.data.items)}</p>}
-      </div>
+      <Head title="Life" said>
+        {life.data && headline(life.data.items)}
+      </Head>
       <Shown of={life} lines={8} none={<Nothing />}>
         {(data) => {
           const weld = data.items.find((w) => key(w) === wanted) ?? data.items[0];
@@ -133,6 +140,9 @@ export default function Life({ asset }: PageProps) {
                 <Card
                   title={named(weld)}
                   wide
+                  more={
+                    <SaveDrawn title={named(weld)} csv={() => csvFrom([["degrees", "damage"], ...points(weld)])} />
+                  }
                   note="Damage at eight points around the weld; the worst is at the rim."
                 >
                   <One weld={weld} />
@@ -146,14 +156,27 @@ export default function Life({ asset }: PageProps) {
   );
 }
 
+/** How long records are, in words. */
+const span = (s: number): string =>
+  s < 7200
+    ? `${Math.round(s / 60)} minutes`
+    : s < 2 * 86_400
+      ? `${Math.round(s / 3600)} hours`
+      : `${Math.round(s / 86_400)} days`;
+
 function headline(welds: readonly Weld[]): string {
-  const worst = welds[0];
+  const [worst, beyond] = [welds[0], welds.filter((w) => w.beyond_validity.length).length];
   if (!worst) return "";
   const over = welds.filter((w) => w.over_budget).length;
-  const months = (worst.observed_s / YEAR_S) * 12;
-  const rests = months < 3 ? " It rests on little: less than three months of records." : "";
-  const left = `The first weld has ${years(worst.remaining_years.p50)} years left (${years(worst.remaining_years.p05)} to ${years(worst.remaining_years.p95)}).`;
-  return `${over ? `${count(over, "weld")} beyond what a year is allowed. ` : ""}${left}${rests}`;
+  const { p05, p50, p95 } = worst.remaining_years;
+  return [
+    over ? `${count(over, "weld")} beyond what a year is allowed.` : "",
+    `The first weld has ${years(p50)} years left (${years(p05)} to ${years(p95)}).`,
+    worst.observed_s < YEAR_S / 4 ? `It rests on little: ${span(worst.observed_s)} of records.` : "",
+    beyond
+      ? `Of ${count(beyond, "weld")} beyond the range of the factors nothing is certain: they are listed last.`
+      : "",
+  ].join(" ");
 }
 
 const Nothing = () => (

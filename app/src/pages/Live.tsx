@@ -3,8 +3,9 @@ import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { type View } from "../../../src/jackettwin/report/templates/view.js";
 import { useAnswer, useAsset } from "../api/answer";
 import { api, type RecordOut, type Schemas, told } from "../api/client";
-import { Card, Time, Pick } from "../parts/Bits";
+import { Card, Head, Time, Pick } from "../parts/Bits";
 import { InSpace } from "../parts/InSpace";
+import { SaveDrawn } from "../parts/plot/SaveMenu";
 import { Lanes, Roll } from "../parts/Roll";
 import { Empty, Shown } from "../parts/Shown";
 import type { PageProps } from "../shell/place";
@@ -84,20 +85,15 @@ export default function Live({ asset }: PageProps) {
   const structure = useAsset(asset, "/structure");
   return (
     <>
-      <div class="head">
-        <h1>Live</h1>
-        <p>
-          {streams ? (
-            "Samples as they arrive from the broker."
-          ) : record ? (
-            <>
-              Nothing streams in: the record of <Time at={record.start_utc} /> is played again, at its own pace.
-            </>
-          ) : (
-            "Nothing streams in."
-          )}
-        </p>
-      </div>
+      <Head title="Live">
+        {streams ? "Samples as they arrive from the broker." : "Nothing streams in"}
+        {!streams && record && (
+          <>
+            : the record of <Time at={record.start_utc} /> is played again, at its own pace
+          </>
+        )}
+        {!streams && "."}
+      </Head>
       <Shown of={listed} some={() => record || streams} none={<Nothing />}>
         {() => (
           <div class="grid">
@@ -105,13 +101,16 @@ export default function Live({ asset }: PageProps) {
               title="Signals"
               wide={!record || streams || !structure.data?.nodes.length}
               more={
-                <Pick
-                  label="Shown"
-                  bare
-                  value={String(span)}
-                  options={SPANS_S.map((s) => [String(s), `${s} s`] as const)}
-                  onChoose={(s) => setSpan(Number(s))}
-                />
+                <>
+                  <SaveDrawn title="Signals" csv={() => roll.csv(span)} />{" "}
+                  <Pick
+                    label="Shown"
+                    bare
+                    value={String(span)}
+                    options={SPANS_S.map((s) => [String(s), `${s} s`] as const)}
+                    onChoose={(s) => setSpan(Number(s))}
+                  />
+                </>
               }
             >
               <Lanes roll={roll} span={span} />

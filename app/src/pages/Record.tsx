@@ -1,5 +1,5 @@
 // What one record holds: signals at any zoom, spectrum, stabilisation chart, and poles picked by hand.
-import { useMemo, useState } from "preact/hooks";
+import { useEffect, useMemo, useState } from "preact/hooks";
 import { type Answer, useAnswer, useAsset, useRecord } from "../api/answer";
 import { api, type Mode, type RecordOut, type Schemas, told } from "../api/client";
 import { Card, Choice, Facts, Light, Time, Pick } from "../parts/Bits";
@@ -17,10 +17,7 @@ import { words } from "../words/numbers";
 import { seconds } from "../words/time";
 
 const POINTS = 1400;
-const SPECTRA = [
-  ["", "Channels"],
-  ["singular", "Singular values"],
-] as const;
+const SPECTRA = Object.entries({ "": "Channels", singular: "Singular values" });
 type Stretch = Schemas["StretchOut"];
 const UNITS: Record<string, string> = { m_s: "m/s", deg: "°", c: "°C", rpm: "1/min", m: "m", s: "s" };
 
@@ -30,7 +27,8 @@ export function condition(name: string): string {
   return own.replaceAll("_", " ") + (unit && ` [${UNITS[unit]}]`);
 }
 
-function Signals({ record }: { record: RecordOut }) {
+/** The signals, and once they are drawn what was said of their faults: workers do one thing after the other. */
+function Signals({ record, onDrawn }: { record: RecordOut; onDrawn: () => void }) {
   const names = record.channels.map((c) => String(c["name"]));
   const [chosen, setChosen] = useState(names.slice(0, 3));
   const begin = seconds(record.start_utc);
@@ -41,7 +39,12 @@ function Signals({ record }: { record: RecordOut }) {
     ...(range ? { from: Math.max(range[0] - begin, 0), to: Math.max(range[1] - begin, 0.1) } : {}),
   };
   const signal = useRecord(record.record_id, "/signal", query) as Answer<Schemas["Signal"]>;
-  const stretches = useRecord(record.record_id, "/stretches");
+  const there = Boolean(signal.data ?? signal.problem);
+  useEffect(() => void (there && onDrawn()), [there]);
+  const params = { path: { record_id: record.record_id } };
+  const stretches = useAnswer(null, `stretches ${record.record_id} ${there}`, async () =>
+    there ? told(api.GET("/api/v1/records/{record_id}/stretches", { params })) : null,
+  );
   const faults = stretches.data?.items ?? [];
   const switched = (name: string): void =>
     setChosen((old) =>
@@ -152,7 +155,7 @@ function Spectrogram({ record }: { record: RecordOut }) {
       title="Spectrogram"
       wide
       note="Segments of a minute that overlap by three quarters; a mode is a level line, what moves with the rotor is not."
-      more={<Pick label="Channel" bare kept="channel" options={names.map((name) => [name, name] as const)} />}
+      more={<Pick label="Channel" bare kept="channel" options={names} />}
     >
       <Shown of={found} lines={6}>
         {({ time_s, frequency_hz, segment_s, unit, level_db }) => (
@@ -179,14 +182,11 @@ function Spectrogram({ record }: { record: RecordOut }) {
   );
 }
 
-function About({ record }: { record: RecordOut }) {
-  const facts: [string, string][] = [
-    ["Length", `${record.duration_s.toFixed(0)} s at ${Number(record.sample_rate_hz.toPrecision(4))} Hz`],
-    ["Source", record.source_name],
-    ...Object.entries(record.conditions).map(([name, value]): [string, string] => [condition(name), String(value)]),
-  ];
-  return <Facts facts={facts} />;
-}
+const about = (record: RecordOut): [string, string][] => [
+  ["Length", `${record.duration_s.toFixed(0)} s at ${Number(record.sample_rate_hz.toPrecision(4))} Hz`],
+  ["Source", record.source_name],
+  ...Object.entries(record.conditions).map(([name, value]): [string, string] => [condition(name), String(value)]),
+];
 
 export default function Record({ asset, id }: PageProps) {
   const record = useAnswer(asset, `record ${id}`, () =>
@@ -194,6 +194,7 @@ export default function Record({ asset, id }: PageProps) {
   );
   const modes = useAsset(asset, "/modes", { record: id, limit: 100 });
   const found = modes.data?.items ?? [];
+  const [drawn, setDrawn] = useState(false);
   if (record.data === undefined) return <Shown of={record}>{() => null}</Shown>;
   const data = record.data;
   const problem = data.problem?.["detail"];
@@ -219,13 +220,13 @@ export default function Record({ asset, id }: PageProps) {
           </Shown>
         </Card>
         <Card title="What it is">
-          <About record={data} />
+          <Facts facts={about(data)} />
         </Card>
         {data.raw_kept ? (
           <>
-            <Signals record={data} />
-            <Spectrum record={data} modes={found} />
-            <Spectrogram record={data} />
+            <Signals record={data} onDrawn={() => setDrawn(true)} />
+            {drawn && <Spectrum record={data} modes={found} />}
+            {drawn && <Spectrogram record={data} />}
             <Stabilisation record={data} modes={found} again={record.again} />
           </>
         ) : (

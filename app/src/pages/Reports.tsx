@@ -6,6 +6,7 @@ import { Empty, Shown } from "../parts/Shown";
 import type { PageProps } from "../shell/place";
 import { count } from "../words/numbers";
 
+const EXPORT = "/api/v1/export.parquet?table=";
 const TABLES = ["modes", "findings", "records", "states", "conditions"];
 
 export default function Reports({ asset }: PageProps) {
@@ -16,12 +17,7 @@ export default function Reports({ asset }: PageProps) {
         <h1>Report</h1>
         <div class="end">
           {TABLES.map((table) => (
-            <a
-              key={table}
-              class="button"
-              download={`${table}.parquet`}
-              href={`/api/v1/export.parquet?table=${table}`}
-            >
+            <a key={table} class="button" download={`${table}.parquet`} href={EXPORT + table}>
               {table} (Parquet)
             </a>
           ))}

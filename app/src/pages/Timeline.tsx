@@ -89,11 +89,7 @@ export default function Timeline({ asset }: PageProps) {
         <Choice label="Quantity" kept="show" options={QUANTITIES} />
         <Choice label="State" kept="state" options={STATES} />
         {others.length > 0 && (
-          <Pick
-            label="Beside"
-            kept="beside"
-            options={[["", "no other turbine"], ...others.map((a) => [a.name, a.name] as const)]}
-          />
+          <Pick label="Beside" kept="beside" options={[["", "no other turbine"], ...others.map((a) => a.name)]} />
         )}
         {from && to && (
           <a href={`${assetUrl(asset, "records")}?${String(new URLSearchParams({ from, to }))}`}>

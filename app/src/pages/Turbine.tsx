@@ -6,11 +6,12 @@ import type { Knowledge, KnownMode } from "../api/shapes";
 import { AlarmList } from "../parts/AlarmList";
 import { Assumptions } from "../parts/Assumptions";
 import { Ago, Card, Light, Time } from "../parts/Bits";
-import { Budget } from "../parts/Budget";
+import { Budget, budgetCsv } from "../parts/Budget";
 import { Empty, Shown, Trouble } from "../parts/Shown";
 import { ModeTable } from "../parts/ModeTable";
 import { Table } from "../parts/Table";
 import { later } from "../parts/later";
+import { SaveDrawn } from "../parts/plot/SaveMenu";
 import type { PageProps } from "../shell/place";
 import { assetUrl } from "../shell/place";
 import { between, count, frequency, percent, quantity, sentence, words } from "../words/numbers";
@@ -24,44 +25,30 @@ function Figures({ twin, alarms }: { twin: Twin; alarms: readonly Alarm[] }) {
   const modes = twin.modes as unknown as KnownMode[];
   const known = twin.parameters as Knowledge;
   const first = ["fore_aft_1", "side_side_1"].flatMap((label) => modes.filter((m) => m.label === label));
-  const ground = Object.values(known.parameters ?? {})
-    .filter((p) => p.unit === "N/m")
-    .slice(0, 1);
+  const ground = Object.values(known.parameters ?? {}).find((p) => p.unit === "N/m");
   const open = alarms.filter((a) => !a.acknowledged_by && !a.closed_by && !a.muted_until_utc).length;
+  const figures: [string, string, string][] = first.map((m) => [
+    words(m.label),
+    `${frequency(m.frequency_hz)} Hz`,
+    `damping ${percent(m.damping_ratio, m.damping_ratio_std)} %`,
+  ]);
+  if (ground) {
+    const interval = ground.interval_90 ? `90 %: ${between(...ground.interval_90, ground.unit)}` : "no interval";
+    figures.push([ground.words, quantity(ground.median, ground.unit), interval]);
+  }
+  figures.push(["open alarms", String(open), `${count(alarms.length, "alarm")} in all`]);
+  figures.push(["known from", count(twin.records, "record"), `of ${count(twin.days, "day")}`]);
   return (
     <dl class="figures">
-      {first.map((m) => (
-        <div key={m.label}>
-          <dt>{words(m.label)}</dt>
+      {figures.map(([name, value, more]) => (
+        <div key={name}>
+          <dt>{name}</dt>
           <dd>
-            {frequency(m.frequency_hz)} Hz
-            <small>damping {percent(m.damping_ratio, m.damping_ratio_std)} %</small>
+            {value}
+            <small>{more}</small>
           </dd>
         </div>
       ))}
-      {ground.map((p) => (
-        <div key={p.words}>
-          <dt>{p.words}</dt>
-          <dd>
-            {quantity(p.median, p.unit)}
-            <small>{p.interval_90 ? `90 %: ${between(...p.interval_90, p.unit)}` : "no interval"}</small>
-          </dd>
-        </div>
-      ))}
-      <div>
-        <dt>open alarms</dt>
-        <dd>
-          {open}
-          <small>{count(alarms.length, "alarm")} in all</small>
-        </dd>
-      </div>
-      <div>
-        <dt>known from</dt>
-        <dd>
-          {count(twin.records, "record")}
-          <small>of {count(twin.days, "day")}</small>
-        </dd>
-      </div>
     </dl>
   );
 }
@@ -139,7 +126,7 @@ export function Turbine({ asset }: PageProps) {
   const known = twin.data?.parameters as Knowledge | undefined;
   return (
     <>
-      {own.data ? <Head asset={own.data} twin={twin.data} /> : <div class="head bones" />}
+      {own.data ? <Head asset={own.data} twin={twin.data} /> : <h1 class="head">{asset}</h1>}
       {twin.data && twin.data.records > 0 && <Figures twin={twin.data} alarms={alarms.data?.items ?? []} />}
       <div class="grid">
         <Card title="What changed, and why" more={<a href={assetUrl(asset, "alarms")}>All alarms</a>}>
@@ -160,7 +147,15 @@ export function Turbine({ asset }: PageProps) {
         <Suspense fallback={null}>
           <Stiffness asset={asset} />
         </Suspense>
-        <Card title="Damping by source" note="Damping ratio in %, of all records.">
+        <Card
+          title="Damping by source"
+          note="Damping ratio in %, of all records."
+          more={
+            budget.data?.items.length ? (
+              <SaveDrawn title="Damping by source" csv={() => budgetCsv(budget.data?.items ?? [])} />
+            ) : null
+          }
+        >
           <Shown of={budget} none={<NotYet />} lines={7}>
             {(data) => <Budget modes={data.items} />}
           </Shown>

@@ -1,6 +1,7 @@
 // Who may what, and who did what.
 import { useAnswer } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
+import { may } from "../api/do";
 import { Card, Field, Form, Head, Time } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import { Table } from "../parts/Table";
@@ -67,9 +68,11 @@ export default function Users() {
             )}
           </Shown>
         </Card>
-        <Card title="Add somebody" note="The first one should be an admin: yourself.">
-          <Add again={users.again} />
-        </Card>
+        {may("admin") && (
+          <Card title="Add somebody" note="The first one should be an admin: yourself.">
+            <Add again={users.again} />
+          </Card>
+        )}
         <Card title="Who did what" wide>
           <Shown of={audit} none={<Empty title="Nothing yet" />}>
             {(data) => (

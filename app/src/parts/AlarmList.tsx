@@ -46,13 +46,7 @@ export function AlarmList({ alarms, again, whole = false }: AlarmListProps) {
           ) : (
             alarm.acknowledged_by && (
               <p class="quiet">
-                {alarm.acknowledged_by}
-                {alarm.acknowledged_utc && (
-                  <>
-                    , <Time at={alarm.acknowledged_utc} />
-                  </>
-                )}
-                : {alarm.comment}
+                {alarm.acknowledged_by}, <Time at={alarm.acknowledged_utc ?? alarm.time_utc} />: {alarm.comment}
               </p>
             )
           )}

@@ -40,11 +40,11 @@ export function Ago({ at }: { at: string }) {
   );
 }
 
-export function Head({ title, children }: { title: string; children: ComponentChildren }) {
+export function Head({ title, said, children }: { title: string; said?: boolean; children: ComponentChildren }) {
   return (
     <div class="head">
       <h1>{title}</h1>
-      <p>{children}</p>
+      {children && <p class={said ? "said" : ""}>{children}</p>}
     </div>
   );
 }
@@ -72,7 +72,7 @@ export function Card({ title, note, wide, more, children }: CardProps) {
 
 interface ChoiceProps {
   label: string;
-  options: readonly (readonly [string, string])[];
+  options: readonly (string | readonly [string, string])[];
   /** The choice stands in the address under this name; the first option is the usual one. */
   kept?: string;
   value?: string;
@@ -80,7 +80,7 @@ interface ChoiceProps {
 }
 
 function choosing({ options, kept, value = "", onChoose }: ChoiceProps): [string, (value: string) => void] {
-  const usual = options[0]?.[0] ?? "";
+  const usual = pairs(options)[0]?.[0] ?? "";
   if (kept) return [asked(kept) ?? usual, (one) => keep({ [kept]: one === usual ? null : one })];
   return [value, (one) => onChoose?.(one)];
 }
@@ -91,7 +91,7 @@ export function Choice(props: ChoiceProps) {
   const [value, choose] = choosing(props);
   return (
     <span class="choice" role="group" aria-label={label}>
-      {options.map(([key, words]) => (
+      {pairs(options).map(([key, words]) => (
         <button type="button" key={key} aria-pressed={key === value} onClick={() => choose(key)}>
           {words}
         </button>
@@ -99,6 +99,9 @@ export function Choice(props: ChoiceProps) {
     </span>
   );
 }
+
+const pairs = (options: ChoiceProps["options"]): (readonly [string, string])[] =>
+  options.map((one) => (typeof one === "string" ? [one, one] : one));
 
 /** One of many things: a list to open, named beside it or only to who cannot see it. */
 export function Pick(props: ChoiceProps & { bare?: boolean }) {
@@ -108,7 +111,7 @@ export function Pick(props: ChoiceProps & { bare?: boolean }) {
     <label class="pick">
       {!bare && `${label} `}
       <select aria-label={label} value={value} onChange={(event) => choose(event.currentTarget.value)}>
-        {options.map(([key, words]) => (
+        {pairs(options).map(([key, words]) => (
           <option key={key} value={key}>
             {words}
           </option>

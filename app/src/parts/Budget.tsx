@@ -1,9 +1,12 @@
 // Whose damping a mode's is: a bar by source, the measured interval above it, what is unexplained in outline.
 import type { Schemas } from "../api/client";
 import { percent, words } from "../words/numbers";
+import { csvFrom } from "./plot/series";
 
 const SOURCES = ["structure", "soil", "rotor", "water"] as const;
 const PAINT: Record<string, string> = { structure: "grey", soil: "orange", rotor: "sky", water: "blue" };
+
+const paint = (source: string): string => `var(--${PAINT[source] ?? "grey"})`;
 
 function Row({ mode, most }: { mode: Schemas["BudgetOut"]; most: number }) {
   const parts = SOURCES.map((name) => ({ name, value: mode.sources[name]?.value ?? 0 }));
@@ -28,11 +31,8 @@ function Row({ mode, most }: { mode: Schemas["BudgetOut"]; most: number }) {
           return (
             <rect
               key={part.name}
-              x={x}
-              style={{ fill: `var(--${PAINT[part.name] ?? "grey"})` }}
-              y="4"
-              width={at(part.value)}
-              height="10"
+              style={{ fill: paint(part.name) }}
+              {...{ x, y: 4, width: at(part.value), height: 10 }}
             />
           );
         })}
@@ -52,23 +52,29 @@ function Row({ mode, most }: { mode: Schemas["BudgetOut"]; most: number }) {
   );
 }
 
+/** What is drawn, in per cent: a line a mode. */
+export const budgetCsv = (modes: readonly Schemas["BudgetOut"][]): string =>
+  csvFrom([
+    ["mode", ...SOURCES, "unexplained", "measured", "low", "high"],
+    ...modes.map(({ label, sources, unexplained, measured: m }) => [
+      words(label),
+      ...[...SOURCES.map((s) => sources[s]?.value), unexplained, m?.value, m?.low, m?.high].map((v) => v && 100 * v),
+    ]),
+  ]);
+
 export function Budget({ modes }: { modes: readonly Schemas["BudgetOut"][] }) {
-  const most = Math.max(
-    ...modes.map((m) =>
-      Math.max(
-        m.measured?.high ?? m.measured?.value ?? 0,
-        SOURCES.reduce((sum, s) => sum + (m.sources[s]?.value ?? 0), 0),
-      ),
-    ),
-    1e-6,
-  );
+  const ends = modes.map((m) => [
+    m.measured?.high ?? m.measured?.value ?? 0,
+    SOURCES.reduce((sum, s) => sum + (m.sources[s]?.value ?? 0), 0),
+  ]);
+  const most = Math.max(...ends.flat(), 1e-6);
   const used = SOURCES.filter((s) => modes.some((m) => (m.sources[s]?.value ?? 0) > 0));
   return (
-    <>
+    <div class="drawn">
       <p class="keys">
         {used.map((s) => (
           <span key={s}>
-            <i style={{ background: `var(--${PAINT[s] ?? "grey"})` }} aria-hidden="true" />
+            <i style={{ background: paint(s) }} aria-hidden="true" />
             {s}
           </span>
         ))}
@@ -83,6 +89,6 @@ export function Budget({ modes }: { modes: readonly Schemas["BudgetOut"][] }) {
           <Row key={mode.label} mode={mode} most={most} />
         ))}
       </div>
-    </>
+    </div>
   );
 }

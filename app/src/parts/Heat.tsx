@@ -1,8 +1,8 @@
 // A number for each cell of a grid, as a picture: brighter is more.
-import { useMemo, useRef, useState } from "preact/hooks";
+import { useMemo, useState } from "preact/hooks";
 import { colour, theme } from "../shell/theme";
-import { SaveMenu, sheetOf } from "./plot/SaveMenu";
-import { ticksOf } from "./plot/series";
+import { SaveDrawn } from "./plot/SaveMenu";
+import { csvFrom, ticksOf } from "./plot/series";
 
 const [WIDTH, LEFT, RIGHT, TOP, BOTTOM] = [560, 66, 14, 10, 44];
 /** Cividis (Nuñez, Anderton & Renslow 2018), as the report's. */
@@ -56,21 +56,11 @@ function csvOf({ cells, x, y, decades, xName, yName, zName }: HeatProps): string
     const value = from + ((k + 0.5) / n) * (to - from);
     return Number((decades ? 10 ** value : value).toPrecision(6));
   };
-  const lines = cells.flatMap((row, j) =>
-    row.map((v, i) => [at(x, i, row.length), at(y, j, cells.length), v ?? ""].join(",")),
-  );
-  return [`"${xName}","${yName}","${zName}"`, ...lines].join("\n") + "\n";
-}
-
-async function sheet(svg: string, width: number, height: number): Promise<HTMLCanvasElement> {
-  const image = new Image();
-  image.src = `data:image/svg+xml,${encodeURIComponent(svg)}`;
-  await image.decode();
-  return sheetOf(image, 2 * width, 2 * height);
+  const lines = cells.flatMap((row, j) => row.map((v, i) => [at(x, i, row.length), at(y, j, cells.length), v]));
+  return csvFrom([[xName, yName, zName], ...lines]);
 }
 
 export function Heat(p: HeatProps) {
-  const drawn = useRef<SVGSVGElement>(null);
   const [quiet] = [colour("quiet"), theme.value];
   const [read, setRead] = useState("");
   const href = useMemo(() => picture(p.cells), [p.cells]);
@@ -78,7 +68,6 @@ export function Heat(p: HeatProps) {
   const [wide, high] = [width - LEFT - RIGHT, height - TOP - BOTTOM];
   const px = (v: number): number => LEFT + ((v - p.x[0]) / (p.x[1] - p.x[0] || 1)) * wide;
   const py = (v: number): number => height - BOTTOM - ((v - p.y[0]) / (p.y[1] - p.y[0] || 1)) * high;
-  const svg = (): string => (drawn.current ? new XMLSerializer().serializeToString(drawn.current) : "");
   const point = (event: MouseEvent): void => {
     const box = (event.currentTarget as Element).getBoundingClientRect();
     const [across, up] = [(event.clientX - box.left) / box.width, (box.bottom - event.clientY) / box.height];
@@ -91,11 +80,10 @@ export function Heat(p: HeatProps) {
         <b>{p.title}</b>
         <span class="unit">{p.unit}</span>
         <output>{read}</output>
-        <SaveMenu title={p.title} png={() => sheet(svg(), width, height)} svg={svg} csv={() => csvOf(p)} />
+        <SaveDrawn title={p.title} csv={() => csvOf(p)} />
       </figcaption>
       <svg
-        ref={drawn}
-        class="surface"
+        class="surface drawn"
         {...{ width, height, viewBox: `0 0 ${width} ${height}` }}
         {...{ fill: quiet, "font-size": 12, "font-family": "system-ui, sans-serif", "image-rendering": "pixelated" }}
         role="img"

@@ -72,7 +72,7 @@ export function Laws() {
       note="What a support does in each law: move a parameter, and see what it stores, loses and how it creeps."
     >
       <div class="tools">
-        <Choice label="Law" kept="law" options={Object.keys(LAWS).map((n) => [n, n] as const)} />
+        <Choice label="Law" kept="law" options={Object.keys(LAWS)} />
       </div>
       {sliders.map((s) => (
         <Slide

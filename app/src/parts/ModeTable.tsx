@@ -19,33 +19,14 @@ interface ModeTableProps<T extends SomeMode> {
   more?: readonly Column<T>[];
 }
 
-export function ModeTable<T extends SomeMode>({
-  asset,
-  modes,
-  id = (m) => m.label,
-  first = [],
-  more = [],
-}: ModeTableProps<T>) {
-  return (
-    <Table
-      label="Modes"
-      rows={modes}
-      id={id}
-      columns={[
-        ...first,
-        {
-          title: "Mode",
-          show: (m) => <a href={`${assetUrl(asset, "timeline")}?mode=${m.label}`}>{words(m.label)}</a>,
-        },
-        { title: "Frequency", unit: "Hz", numeric: true, show: (m) => frequency(m.frequency_hz, m.frequency_std_hz) },
-        {
-          title: "Damping ratio",
-          unit: "%",
-          numeric: true,
-          show: (m) => percent(m.damping_ratio, m.damping_ratio_std),
-        },
-        ...more,
-      ]}
-    />
-  );
+export function ModeTable<T extends SomeMode>({ asset, modes, id, first = [], more = [] }: ModeTableProps<T>) {
+  const url = assetUrl(asset, "timeline");
+  const f = (m: T): string => frequency(m.frequency_hz, m.frequency_std_hz);
+  const zeta = (m: T): string => percent(m.damping_ratio, m.damping_ratio_std);
+  const columns: Column<T>[] = [
+    { title: "Mode", show: (m) => <a href={`${url}?mode=${m.label}`}>{words(m.label)}</a> },
+    { title: "Frequency", unit: "Hz", numeric: true, show: f },
+    { title: "Damping ratio", unit: "%", numeric: true, show: zeta },
+  ];
+  return <Table label="Modes" rows={modes} id={id ?? ((m) => m.label)} columns={[...first, ...columns, ...more]} />;
 }

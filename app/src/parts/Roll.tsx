@@ -2,6 +2,7 @@
 import { useEffect, useRef } from "preact/hooks";
 import { colour, theme } from "../shell/theme";
 import { PAINTS } from "./modes";
+import { csvFrom, stamp } from "./plot/series";
 
 const KEPT_S = 240;
 const LANE_PX = [22, 56] as const;
@@ -31,6 +32,18 @@ export class Roll {
     const end = from + step * values.length;
     if (this.streams && Math.abs(from - this.now()) > 3) this.zero += from - this.now(); // a clock that jumped
     while (pieces[0] && pieces[0].from + pieces[0].step * pieces[0].values.length < end - KEPT_S) pieces.shift();
+  }
+  /** The samples of the last seconds, a line each. */
+  csv(span: number): string {
+    const [until, time] = [this.now(), this.streams ? stamp : (t: number): number => Number(t.toFixed(4))];
+    const rows = [...this.channels].flatMap(([name, pieces]) =>
+      pieces.flatMap(({ from, step, values }) => values.map((v, i) => [name, from + i * step, v] as const)),
+    );
+    const shown = rows.filter(([, t]) => t > until - span && t <= until);
+    return csvFrom([
+      ["channel", this.streams ? "time_utc" : "seconds", "value"],
+      ...shown.map(([name, t, v]) => [name, time(t), v]),
+    ]);
   }
 }
 
@@ -137,5 +150,5 @@ export function Lanes({ roll, span }: { roll: Roll; span: number }) {
     next();
     return () => cancelAnimationFrame(frame);
   }, [roll, span, dark]);
-  return <canvas class="lanes" ref={canvas} role="img" aria-label={`Signals of the last ${span} s`} />;
+  return <canvas class="lanes drawn" ref={canvas} role="img" aria-label={`Signals of the last ${span} s`} />;
 }

@@ -2,6 +2,7 @@
 import type { Asset } from "../api/client";
 import { asked, assetUrl } from "../shell/place";
 import { sentence } from "../words/numbers";
+import { csvFrom } from "./plot/series";
 
 const [WIDTH, HIGH, EDGE, STEP, NAMED] = [1000, 300, 34, 28, 80];
 const KM_PER_DEGREE = 111.2;
@@ -58,13 +59,19 @@ function roundLength(scale: number): number {
 const alarmsLast = (a: { asset: Asset }, b: { asset: Asset }): number =>
   Number(a.asset.status === "alarm") - Number(b.asset.status === "alarm");
 
+export const mapCsv = (assets: readonly Asset[]): string =>
+  csvFrom([
+    ["turbine", "status", "latitude [°]", "longitude [°]"],
+    ...assets.map((a) => [a.name, a.status, a.latitude_deg, a.longitude_deg]),
+  ]);
+
 export function Site({ assets }: { assets: readonly Asset[] }) {
   const { marks, scale, below, placed, height } = drawn(assets);
   const length = scale && roundLength(scale);
   const chosen = asked("find")?.toLowerCase() ?? "";
   const size = marks.length > 200 ? 0.6 : 1;
   return (
-    <svg class="map" viewBox={`0 0 ${WIDTH} ${height}`} role="group" aria-label="Map of the turbines">
+    <svg class="map drawn" viewBox={`0 0 ${WIDTH} ${height}`} role="group" aria-label="Map of the turbines">
       {placed > 0 && (
         <text x={EDGE - 8} y={below + 18}>
           {placed === assets.length ? "No positions are known" : `${placed} without a position`}: jackettwin asset

@@ -41,13 +41,12 @@ export function Upload({ asset }: { asset: string }) {
   const [sent, setSent] = useState<Sent[]>([]);
   const [left, setLeft] = useState(0);
   const take = async (files: File[]): Promise<void> => {
-    const every = paired(files);
-    setLeft(every.length);
-    for (const [file, description] of every) {
+    for (const [i, [file, description]] of paired(files).entries()) {
+      setLeft(paired(files).length - i);
       const one = await send(asset, file, description);
       setSent((old) => [one, ...old]);
-      setLeft((n) => n - 1);
     }
+    setLeft(0);
   };
   return (
     <Drop label="Records to send" onFiles={(files) => void take(files)}>

@@ -59,6 +59,10 @@ const Column = ({ plots, together }: { plots: PlotData[]; together: string }) =>
   </>
 );
 
+const NotYet = () => (
+  <Empty title="Not watched yet">Days are judged once the baseline is whole, usually after a year.</Empty>
+);
+
 type RestsProps = { watch: Watch; marks: Mark[]; kind: string; label: string };
 
 export function Rests({ watch, marks, kind, label }: RestsProps) {
@@ -70,8 +74,7 @@ export function Rests({ watch, marks, kind, label }: RestsProps) {
       ),
     [watch, kind, label, key],
   );
-  if (!plots.length) return <Empty title="Not watched yet">Days are judged once the baseline is whole.</Empty>;
-  return <Column plots={plots} together="timeline" />;
+  return !plots.length ? <NotYet /> : <Column plots={plots} together="timeline" />;
 }
 
 /** The evidence of each day, and what an alarm would have looked like. */
@@ -83,13 +86,7 @@ export default function Evidence({ asset, marks }: { asset: string; marks: Mark[
       wide
       note="ln R of each day: an alarm is raised where it reaches the line, in the mean not more often than promised while nothing changes. After an alarm it begins anew."
     >
-      <Shown
-        of={found}
-        some={(data) => data.days.length}
-        none={
-          <Empty title="Not watched yet">Days are judged once the baseline is whole, usually after a year.</Empty>
-        }
-      >
+      <Shown of={found} some={(data) => data.days.length} none={<NotYet />}>
         {(data) => <Drawn watch={data} marks={marks} />}
       </Shown>
     </Card>

@@ -51,6 +51,8 @@ async function ask(): Promise<void> {
   }
 }
 
+void ask(); // beside the first answers of the page, not before them
+
 async function logOut(): Promise<void> {
   await api.POST("/api/v1/logout").catch(() => undefined);
   me.value = null;
@@ -116,7 +118,6 @@ function Top() {
 export function App() {
   const user = me.value;
   const { page, asset, id } = route.value;
-  useEffect(() => void ask(), []);
   useEffect(() => {
     if (user === null && page !== "login") go(`/login?next=${encodeURIComponent(place.value.path)}`, true);
     if (user) listen();
@@ -146,7 +147,7 @@ export function App() {
         </p>
       )}
       <main id="main" tabIndex={-1}>
-        {user && (
+        {user !== null && (
           <Suspense fallback={<div class="bones" role="status" aria-label="Loading" />}>
             {Page ? (
               <Page key={`${page} ${asset} ${id}`} asset={asset} id={id} />

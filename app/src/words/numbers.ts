@@ -13,20 +13,11 @@ type Number_ = number | null | undefined;
 
 const known = (value: Number_): value is number => typeof value === "number" && Number.isFinite(value);
 /** Round half to even where a decimal tie is exact, as Python does. */
-function rounded(value: number, decimals: number): string {
-  const text = value.toFixed(decimals);
-  const tie = Math.abs(value) * 10 ** decimals;
-  if (decimals <= 15 && tie % 1 === 0.5 && tie < 2 ** 52) {
-    const down = Math.floor(tie);
-    return ((Math.sign(value) * (down % 2 ? down + 1 : down)) / 10 ** decimals).toFixed(decimals);
-  }
-  return text;
-}
-
 export function fixed(value: Number_, decimals: number): string {
   if (!known(value)) return UNKNOWN;
-  const text = rounded(value, decimals);
-  return Number(text) === 0 ? text.replace("-", "") : text;
+  const digits = { minimumFractionDigits: decimals, maximumFractionDigits: decimals };
+  const how = { ...digits, useGrouping: false, roundingMode: "halfEven", signDisplay: "negative" } as const;
+  return value.toLocaleString("en", how);
 }
 
 function withStd(value: Number_, std: Number_, scale: number, decimals: number): string {

@@ -327,7 +327,7 @@ def find_watch(connection: Connection, asset: str, version: int) -> dict[str, An
 
 
 def find_life(connection: Connection, asset: str, version: int) -> list[dict[str, Any]]:
-    """Return the welds that records damage most with their life, the shortest first; empty if nothing yet."""
+    """Return the life of the welds that records damage most, in the order of `AssetLife`; empty if none."""
     return list(_part(connection, asset, version, "life"))
 
 

@@ -1,5 +1,5 @@
 // A plot: uPlot with our colours, UTC, intervals, marks, keyboard, and a copy to take away.
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { colour, theme } from "../../shell/theme";
@@ -31,12 +31,6 @@ const TIMES: uPlot.Axis.Values = [
 ];
 
 type Column = ArrayLike<number | null | undefined>;
-interface Joined {
-  table: uPlot.AlignedData;
-  /** Of each series, which of its points a place of the table is; null if all are. */
-  rows: (ArrayLike<number> | null)[];
-}
-
 const columnsOf = (s: Series, put: (values: Series["y"] | undefined) => Column): Column[] =>
   s.kind === "band" ? [put(s.high), put(s.low)] : [put(s.y)];
 const rising = (x: ArrayLike<number>): boolean => {
@@ -45,35 +39,34 @@ const rising = (x: ArrayLike<number>): boolean => {
 };
 
 /** One table for uPlot: x of all series, then y of each, the upper and lower ends of bands. */
-function joined(series: Series[]): Joined {
+function joined(series: Series[]): uPlot.AlignedData {
   const first = series[0]?.x ?? [];
-  if (series.every((s) => s.x === first) && rising(first)) {
-    const columns = series.flatMap((s) => columnsOf(s, (values) => values ?? []));
-    return { table: [first, ...columns] as uPlot.AlignedData, rows: series.map(() => null) };
-  }
+  if (series.every((s) => s.x === first) && rising(first))
+    return [first, ...series.flatMap((s) => columnsOf(s, (values) => values ?? []))] as uPlot.AlignedData;
   const every = [...new Set(series.flatMap((s) => Array.from(s.x)))].sort((a, b) => a - b);
   const place = new Map(every.map((x, i) => [x, i]));
-  const spread = (s: Series, values: ArrayLike<number | null> | undefined): Column => {
+  const spread = (s: Series, values: Series["y"] | undefined): Column => {
     const out: (number | null | undefined)[] = new Array(every.length).fill(undefined);
     for (let i = 0; i < s.x.length; i++) out[place.get(s.x[i] ?? NaN) ?? 0] = values?.[i] ?? null;
     return out;
   };
-  const columns = series.flatMap((s) => columnsOf(s, (values) => spread(s, values)));
-  const rows = series.map((s) => {
-    const out = new Int32Array(every.length).fill(-1);
-    for (let i = 0; i < s.x.length; i++) out[place.get(s.x[i] ?? NaN) ?? 0] = i;
-    return out;
-  });
-  return { table: [every, ...columns] as uPlot.AlignedData, rows };
+  return [every, ...series.flatMap((s) => columnsOf(s, (values) => spread(s, values)))] as uPlot.AlignedData;
 }
 
+/** What a chart is made for; of other data of the same form only the numbers are exchanged. */
+const formOf = ({ time, log, logX, series }: PlotData): string =>
+  JSON.stringify([time, log, logX, series.map((s) => [s.kind, s.colour, s.solid, s.dashed, sizeOf(s)])]);
+/** Points by how large they are drawn; of lines whether they are points, too. */
+const sizeOf = ({ kind, x }: Series): number =>
+  kind === "band" ? 0 : kind === "line" ? Number(x.length < 3) : x.length > MANY ? 0 : x.length > 200 ? 4 : 6;
+
 function options(
-  data: PlotData,
+  latest: { current: { data: PlotData; shown: Range } },
   width: number,
   height: number,
-  shown: () => Range,
   more: Partial<uPlot.Options>,
 ): uPlot.Options {
+  const { data } = latest.current;
   const [ink, line] = [colour("quiet"), colour("line")];
   const axis = {
     stroke: ink,
@@ -92,17 +85,17 @@ function options(
         { stroke: paint + (s.solid ? "" : "55"), width: 0.5, points: { show: false } },
       );
     } else if (s.kind === "points") {
-      const n = s.x.length;
+      const size = sizeOf(s);
       series.push({
         stroke: paint,
         paths: () => null,
-        points: { show: n <= MANY, size: n > 200 ? 4 : 6, fill: paint, stroke: paint, width: 0 },
+        points: { show: size > 0, size, fill: paint, stroke: paint, width: 0 },
       });
     } else {
       series.push({
         stroke: paint,
         width: 1.5,
-        points: { show: s.x.length < 3 },
+        points: { show: sizeOf(s) > 0 },
         spanGaps: true,
         ...(s.dashed ? { dash: [6, 4] } : {}),
       });
@@ -116,8 +109,8 @@ function options(
     legend: { show: false },
     tzDate: (at) => uPlot.tzDate(new Date(at * 1e3), "Etc/UTC"),
     scales: {
-      x: { time: data.time, distr: data.logX ? 3 : 1, range: () => shown() },
-      y: { distr: data.log ? 3 : 1, range: () => spanOf(data, shown()) },
+      x: { time: data.time, distr: data.logX ? 3 : 1, range: () => latest.current.shown },
+      y: { distr: data.log ? 3 : 1, range: () => spanOf(latest.current.data, latest.current.shown) },
     },
     axes: [
       { ...axis, space: 70, ...(data.time ? { values: TIMES } : ownTicks(data.logX)) },
@@ -140,13 +133,13 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
   const extent = extentOf(data);
   const shown = range ?? extent;
   const dark = theme.value;
-  const latest = useRef({ shown, onRange, onPick });
-  latest.current = { shown, onRange, onPick };
+  const table = useMemo(() => joined(data.series), [data]);
+  const latest = useRef({ data, shown, onRange, onPick });
+  latest.current = { data, shown, onRange, onPick };
 
   useEffect(() => {
     const box = root.current;
     if (!box) return;
-    const { table, rows } = joined(data.series);
     const columns = data.series.flatMap((s, i) => (s.kind === "band" ? [-1, -1] : [i]));
     const nearest = (u: uPlot): [number, number] | null => {
       let found: [number, number, number] | null = null;
@@ -154,23 +147,22 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
         const at = u.cursor.idxs?.[k + 1];
         if (series < 0 || at === null || at === undefined) return;
         const y = u.data[k + 1]?.[at];
-        const own = rows[series];
-        const index = own === null ? at : (own?.[at] ?? -1);
-        if (typeof y !== "number" || index < 0) return;
+        if (typeof y !== "number") return;
         const far = Math.abs(u.valToPos(y, "y") - (u.cursor.top ?? 0));
-        if (!found || far < found[2]) found = [series, index, far];
+        const own = latest.current.data.series[series]?.x ?? [];
+        if (!found || far < found[2]) found = [series, Array.prototype.indexOf.call(own, u.data[0][at]), far];
       });
       return found && [found[0], found[1]];
     };
     const u = new uPlot(
-      options(data, box.clientWidth, height, () => latest.current.shown, {
+      options(latest, box.clientWidth, height, {
         cursor: {
           drag: { x: true, y: false, setScale: false },
           points: { size: 7 },
           ...(together ? { sync: { key: together, scales: ["x", null] } } : {}),
-          dataIdx: (self, seriesIdx, at) => nearestIndex(self, seriesIdx, at),
+          hover: { skip: [undefined, null] },
         },
-        plugins: [under(data)],
+        plugins: [under(() => latest.current.data)],
         hooks: {
           setSelect: [
             (self) => {
@@ -187,14 +179,14 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
             (self) => {
               const hit = nearest(self);
               if (!hit || (self.cursor.left ?? -1) < 0) return setRead("");
+              const { data, shown } = latest.current;
               const s = data.series[hit[0]];
               if (!s) return;
               const [x, y, low, high] = [s.x[hit[1]] ?? 0, s.y[hit[1]], s.low?.[hit[1]], s.high?.[hit[1]]];
               const interval =
                 typeof low === "number" && typeof high === "number" ? ` (${digits(low)} to ${digits(high)})` : "";
-              const [from, to] = latest.current.shown;
               setRead(
-                `${readX(data, x, to - from)} · ${s.name} ${typeof y === "number" ? digits(y) : "–"}${interval}`,
+                `${readX(data, x, shown[1] - shown[0])} · ${s.name} ${typeof y === "number" ? digits(y) : "–"}${interval}`,
               );
             },
           ],
@@ -209,7 +201,7 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
               let down = 0;
               self.over.addEventListener("mousedown", (e) => (down = e.clientX));
               self.over.addEventListener("mouseup", (e) => {
-                const hit = Math.abs(e.clientX - down) < 4 ? closest(self, data) : null;
+                const hit = Math.abs(e.clientX - down) < 4 ? closest(self, latest.current.data) : null;
                 if (hit) latest.current.onPick?.(...hit);
               });
             },
@@ -228,11 +220,12 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
       u.destroy();
       chart.current = null;
     };
-  }, [data, height, dark, together]);
+  }, [formOf(data), height, dark, together]);
 
   useEffect(() => {
+    if (chart.current?.data !== table) chart.current?.setData(table, false);
     chart.current?.setScale("x", { min: shown[0], max: shown[1] });
-  }, [shown[0], shown[1]]);
+  }, [table, shown[0], shown[1]]);
 
   const move = (event: KeyboardEvent): void => {
     const [a, b] = shown;
@@ -331,13 +324,4 @@ function closest(u: uPlot, data: PlotData): [number, number] | null {
     }
   });
   return found;
-}
-
-/** The nearest place at which this series has a value, a few places around the cursor. */
-function nearestIndex(u: uPlot, series: number, at: number): number {
-  const values = u.data[series];
-  if (!values || series === 0) return at;
-  for (let far = 0; far < 60; far++)
-    for (const i of [at - far, at + far]) if (typeof values[i] === "number") return i;
-  return at;
 }

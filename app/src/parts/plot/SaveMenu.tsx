@@ -1,6 +1,7 @@
 // A plot to take away: PNG as it is seen, SVG for documents, CSV for other programs.
 import { save } from "../../shell/paper";
 import { colour } from "../../shell/theme";
+import { drawnAs } from "./drawn";
 
 /** A picture on a sheet of our paper. */
 export function sheetOf(drawn: CanvasImageSource, width: number, height: number): HTMLCanvasElement {
@@ -16,23 +17,41 @@ export function sheetOf(drawn: CanvasImageSource, width: number, height: number)
 
 interface SaveMenuProps {
   title: string;
-  png: () => Promise<HTMLCanvasElement> | HTMLCanvasElement | null;
-  svg: () => string;
+  /** Both are told the button that was pressed. */
+  png: (from: Element) => Promise<HTMLCanvasElement> | HTMLCanvasElement | null;
+  svg: (from: Element) => string;
   csv: () => string;
 }
 
+const near = (from: Element): ReturnType<typeof drawnAs> =>
+  drawnAs(from.closest("figure, .card")?.querySelector(".drawn") ?? from, colour("paper"));
+
+async function pictureNear(from: Element): Promise<HTMLCanvasElement> {
+  const [svg, width, height] = near(from);
+  const image = new Image();
+  image.src = `data:image/svg+xml,${encodeURIComponent(svg)}`;
+  await image.decode();
+  return sheetOf(image, 2 * width, 2 * height);
+}
+
+/** Of what is marked as drawn in the same figure or card. */
+export const SaveDrawn = (of: Pick<SaveMenuProps, "title" | "csv">) => (
+  <SaveMenu {...of} png={pictureNear} svg={(from) => near(from)[0]} />
+);
+
 export function SaveMenu({ title, png, svg, csv }: SaveMenuProps) {
   const name = title.toLowerCase().replace(/[^a-z0-9]+/g, "-");
-  const drawn = async (): Promise<void> => (await png())?.toBlob((blob) => blob && save(blob, `${name}.png`));
-  const kinds: [string, () => void][] = [
-    ["PNG", () => void drawn()],
-    ["SVG", () => save(new Blob([svg()], { type: "image/svg+xml" }), `${name}.svg`)],
+  const drawn = async (from: Element): Promise<void> =>
+    (await png(from))?.toBlob((blob) => blob && save(blob, `${name}.png`));
+  const kinds: [string, (from: Element) => void][] = [
+    ["PNG", (from) => void drawn(from)],
+    ["SVG", (from) => save(new Blob([svg(from)], { type: "image/svg+xml" }), `${name}.svg`)],
     ["CSV", () => save(new Blob([csv()], { type: "text/csv" }), `${name}.csv`)],
   ];
   return (
     <span class="save" role="group" aria-label={`Save ${title}`}>
       {kinds.map(([kind, act]) => (
-        <button type="button" key={kind} onClick={act}>
+        <button type="button" key={kind} onClick={(event) => act(event.currentTarget)}>
           {kind}
         </button>
       ))}

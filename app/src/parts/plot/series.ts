@@ -33,21 +33,22 @@ export interface PlotData {
 
 export type Range = [number, number];
 
-const stamp = (seconds: number): string => new Date(seconds * 1000).toISOString();
-const cell = (value: number | null | undefined): string =>
-  value === null || value === undefined ? "" : String(value);
+export const stamp = (seconds: number): string => new Date(seconds * 1000).toISOString();
+type Cell = string | number | null | undefined;
 const quoted = (text: string): string => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
 
+/** Rows as CSV, the first of which names the columns. */
+export const csvFrom = (rows: readonly (readonly Cell[])[]): string =>
+  rows.map((row) => row.map((cell) => quoted(String(cell ?? ""))).join(",") + "\n").join("");
+
 /** One line a point: series, x, y, low, high. */
-export function csvOf(plot: PlotData): string {
-  const head = ["series", plot.time ? "time_utc" : plot.xName, plot.yName, "low", "high"].map(quoted).join(",");
-  const lines = plot.series.flatMap((s) =>
-    Array.from(s.x, (x, i) =>
-      [quoted(s.name), plot.time ? stamp(x) : String(x), cell(s.y[i]), cell(s.low?.[i]), cell(s.high?.[i])].join(","),
+export const csvOf = ({ series, time, xName, yName }: PlotData): string =>
+  csvFrom([
+    ["series", time ? "time_utc" : xName, yName, "low", "high"],
+    ...series.flatMap((s) =>
+      Array.from(s.x, (x, i): Cell[] => [s.name, time ? stamp(x) : x, s.y[i], s.low?.[i], s.high?.[i]]),
     ),
-  );
-  return [head, ...lines].join("\n") + "\n";
-}
+  ]);
 
 const FEW = 30;
 /** Of more points, the widest intervals are cut off: a few short records would hide what all others show. */

@@ -98,9 +98,10 @@ function marks(u: uPlot, c: Canvas, data: PlotData): void {
   }
 }
 
-export function under(data: PlotData): uPlot.Plugin {
+export function under(of: () => PlotData): uPlot.Plugin {
   const draw = (u: uPlot): void => {
     const { ctx } = u;
+    const data = of();
     const { left, top, width, height } = u.bbox;
     const c: Canvas = {
       ctx,

@@ -71,11 +71,11 @@ def modes(
 def coloured_by_life(drawn: StructureOut, welds: Sequence[Mapping[str, Any]]) -> StructureOut:
     """Return a structure with the life and the damage of each member's worst weld; as it is without any.
 
-    A weld belongs to the member on whose side it is: the chord's or the brace's.
+    A weld belongs to the member on whose side it is: the chord's or the brace's; around a tube both are it.
     """
     worst: dict[str, Mapping[str, Any]] = {}
     for weld in welds:
-        name = weld[weld["side"]]
+        name = weld["brace" if weld["side"] == "brace" else "chord"]
         if name not in worst or weld["rate_per_year"] > worst[name]["rate_per_year"]:
             worst[name] = weld
     own = [worst.get(text.partition("<br>")[0].partition(" (")[0]) for text in drawn.text]

@@ -53,7 +53,11 @@ class AssetWeld:
 
 @dataclass(frozen=True)
 class AssetLife:
-    """Life of the welds of an asset, the shortest first; none before a record told of damage."""
+    """Life of the welds of an asset, the shortest first; none before a record told of damage.
+
+    Welds beyond the range of their factors come after all others: what is said of them is a guess, and the
+    first weld is the one that a headline names.
+    """
 
     model: StressModel
     so_far: LifeSoFar
@@ -126,7 +130,8 @@ def asset_life(model: StressModel, so_far: LifeSoFar) -> AssetLife:
     found = [
         _weld(model, so_far, side, welds[side], sums[side], time, age) for side in sums if sums[side].worst
     ]
-    return AssetLife(model, so_far, time, tuple(sorted(found, key=lambda one: (-one.rate, one.number))))
+    order = sorted(found, key=lambda one: (bool(one.weld.warnings), -one.rate, one.number))
+    return AssetLife(model, so_far, time, tuple(order))
 
 
 def _weld(

@@ -168,6 +168,8 @@ def watch(asset: AssetName, connection: ReadsAtVersion, version: AnyVersion = No
 def life(asset: AssetName, connection: ReadsAtVersion, version: AnyVersion = None) -> Page[LifeOut]:
     """Return the life of the welds that records damage most, the shortest first.
 
+    Welds beyond the range of their factors come last.
+
     Empty before a record told of damage, or if the twin does not ask for it (``life:``).
     """
     asked = known_version(connection, asset, version)
