@@ -107,13 +107,14 @@ def test_bad_input_is_said_with_its_remedy(arguments: tuple[str, ...], said: str
     assert said in found.stderr and "Traceback" not in found.stderr
 
 
-def test_pascals_taken_for_megapascals_are_refused(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("size", "unit"), [(4e7, "Pa"), (4e4, "kPa")])
+def test_pascals_taken_for_megapascals_are_refused(tmp_path: Path, size: float, unit: str) -> None:
     path = tmp_path / "stress.csv"
     t = np.arange(0.0, 60.0, 0.05)
-    np.savetxt(path, np.stack([t, 4e7 * np.sin(t)], axis=1), delimiter=",", header="time_s,leg", comments="")
+    np.savetxt(path, np.stack([t, size * np.sin(t)], axis=1), delimiter=",", header="time_s,leg", comments="")
     found = run("stress", str(path), "--column", "leg")
     assert found.exit_code == 2
-    assert "--unit" in found.stderr
+    assert f"--unit {unit}\n" in found.stderr
 
 
 def test_megapascals_taken_for_pascals_are_doubted(stress: Path) -> None:

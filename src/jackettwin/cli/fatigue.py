@@ -26,7 +26,7 @@ from jackettwin.cli.fatigue_series import strain_, stress_
 from jackettwin.cli.fatigue_site import site_
 from jackettwin.cli.weld_options import details_option, edition_option, joint_options
 from jackettwin.cli.weld_tables import OF_WELDS, lives_document, show_lives
-from jackettwin.errors import InputError, did_you_mean
+from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.report import Table
 
 if TYPE_CHECKING:
@@ -86,7 +86,8 @@ def scf(file: Path) -> Reply:
     from jackettwin.fatigue import concentration, factors_document, read_joint
 
     kind, joint = read_joint(file)
-    factors, warnings = concentration(joint, kind)
+    with located(file=file):
+        factors, warnings = concentration(joint, kind)
     rows = [factors_document(one, kind) for one in factors]
     document = {"class": kind, "braces": rows, "warnings": list(warnings)}
 

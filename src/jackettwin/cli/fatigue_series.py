@@ -23,6 +23,8 @@ _UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "N/mm^2": 1e6, "ksi": 6.89475729316
 _STRAIN_UNITS = {unit: to_si("strain", unit) for unit in known_units("strain")}
 _WEAKEST_PA = 1e4
 """Stress range below which the unit is probably wrong."""
+_USUAL_PA = (1e6, 1e9)
+"""Between which the largest range of a series usually lies."""
 _N_EQ = 1e7
 _ROSETTE = (1, 3, 4)
 """How many gauges may stand at one place."""
@@ -220,8 +222,7 @@ def _counted(
         file=file,
         field=column,
         value=f"in {unit}",
-        remedy="state the unit with --unit"
-        + (" Pa" if unit in _UNITS and 1e4 < widest / _UNITS[unit] < STRONGEST_PA else ""),
+        remedy=_other_unit(widest, unit),
     )
     warnings = [*warnings, *said]
     if 0.0 < widest < _WEAKEST_PA:
@@ -283,6 +284,15 @@ def _unit_of(
             remedy="omit the option",
         )
     return unit or stated or usual
+
+
+def _other_unit(widest_pa: float, unit: str) -> str:
+    """Return which unit would make a series that is too strong in one as strong as welds are."""
+    if unit not in _UNITS:
+        return "state the unit with --unit"
+    number = widest_pa / _UNITS[unit]
+    fitting = [name for name, size in _UNITS.items() if _USUAL_PA[0] < number * size < _USUAL_PA[1]]
+    return f"state its own unit, as --unit {fitting[0]}" if fitting else "convert it to a unit of --unit"
 
 
 def _across_gaps(values: FloatArray, file: Path, column: str) -> tuple[Cycles, float, list[str]]:
