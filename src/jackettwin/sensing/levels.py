@@ -16,7 +16,6 @@ from dataclasses import dataclass, field
 from math import exp, log
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
 from scipy.optimize import minimize
 from scipy.signal.windows import tukey
 
@@ -33,8 +32,9 @@ the model lacked did."""
 _TAPERED = 0.2
 """Share of a record over which it fades in and out. Cut off sharply, a lightly damped mode leaks into slow
 frequencies a hundred times what moves there, and slow forces are found three times too strong."""
-_SMOOTHED = 9
-"""Frequencies over which a channel's motion is averaged for it."""
+_SMOOTHED = 4
+"""Frequencies to each side over which a channel's motion is averaged for it, and no further than half of its
+own: accelerations rise with f², and slow ones would be lost among quicker ones."""
 _DELTA = 1e-4
 _SCORED = 4
 """Steps by which the search begins."""
@@ -150,7 +150,7 @@ class _Evidence:
         n = y.shape[1]
         taper = tukey(n, _TAPERED)
         whole = np.fft.rfft(taper * y, axis=1) * np.sqrt(step_s / (taper @ taper))
-        Y, power = whole[:, which].T, uniform_filter1d(np.abs(whole) ** 2, _SMOOTHED, axis=1)[:, which].T
+        Y, power = whole[:, which].T, _smoothed(np.abs(whole) ** 2)[:, which].T
         omega = np.asarray(2.0 * np.pi * np.fft.rfftfreq(n, step_s)[which], dtype=np.float64)
         bands = tuple(dict.fromkeys((f.kind, f.rate, f.rate_log_std) for f in forces))
         band = np.array([bands.index((f.kind, f.rate, f.rate_log_std)) for f in forces])
@@ -345,6 +345,15 @@ def _whittle(Y: ComplexArray, H: ComplexArray, S_f: FloatArray, r: FloatArray) -
     of_noise = np.diagonal(inverse, axis1=1, axis2=2).real - np.abs(solved) ** 2
     slope: FloatArray = np.concatenate([own - fit, of_noise], axis=1)
     return value, slope, h, seen, np.asarray(inverse)
+
+
+def _smoothed(power: FloatArray) -> FloatArray:
+    """Return powers (n_channels, n) averaged over the frequencies beside each."""
+    n = power.shape[1]
+    total = np.pad(np.cumsum(power, axis=1), ((0, 0), (1, 0)))
+    at = np.arange(n)
+    half = np.minimum(np.minimum(_SMOOTHED, at // 2), n - 1 - at)
+    return np.asarray((total[:, at + half + 1] - total[:, at - half]) / (2 * half + 1))
 
 
 def _floor(Y: ComplexArray, which: FloatArray) -> float:
