@@ -45,13 +45,25 @@ from jackettwin.store.mode_bins import keep_days
 
 REFERENCE_S = 0.47
 LABELS = {"side_side_1": 0.175, "fore_aft_1": 0.178, "torsion_1": 0.642, "side_side_2": 0.744}
-MOVES = """async ([frames, key]) => {
+MOVES = """async ([frames, key, rest]) => {
     const box = document.querySelector("figure.plot [role=img]");
     for (let k = 0; k < frames; k++) {
         box.dispatchEvent(new KeyboardEvent("keydown", { key: key[k % key.length], bubbles: true }));
         await new Promise(requestAnimationFrame);
+        if (rest && k % 4 === 2) await new Promise((done) => setTimeout(done, rest));
     }
 }"""
+ONE_AFTER_ANOTHER = """() => {
+    const every = ["navigation", "resource"].flatMap((kind) => performance.getEntriesByType(kind));
+    const ended = every.filter((e) => e.responseEnd > 0 && !/events|live$/.test(e.name));
+    const deep = ended.sort((a, b) => a.startTime - b.startTime).map((e) => ({ e, n: 1 }));
+    for (const one of deep)
+        for (const o of deep) if (o.e.responseEnd <= one.e.startTime) one.n = Math.max(one.n, o.n + 1);
+    return Math.max(...deep.map((one) => one.n));
+}"""
+"""The longest chain of requests each of which began after another one had ended."""
+REST_MS = 1000
+"""A reader who stands still so long sees the closer look that he asked for."""
 
 
 def filled(store: Path, years: int) -> tuple[str, int]:
@@ -107,16 +119,17 @@ class Window:
         self.page.goto(url, wait_until="commit")
         self.page.locator(wanted).first.wait_for(timeout=300_000)
         self.opened_s, self.opened_cpu_s = time.perf_counter() - before, self.cpu_s()
+        self.in_turn: int = self.page.evaluate(ONE_AFTER_ANOTHER)
 
     def cpu_s(self) -> float:
         """Return the CPU time of the page's process until now, its helping threads among it [s]."""
         processes = self.devtools.send("SystemInfo.getProcessInfo")["processInfo"]
         return sum(float(one["cpuTime"]) for one in processes if one["type"] == "renderer")
 
-    def frame_ms(self, keys: list[str], frames: int) -> float:
-        """Return the CPU time of a frame while all plots move together [ms]."""
+    def frame_ms(self, keys: list[str], frames: int, rest_ms: int = 0) -> float:
+        """Return the CPU time of a frame while all plots move together [ms], with a rest in every fourth."""
         before = self.cpu_s()
-        self.page.evaluate(MOVES, [frames, keys])
+        self.page.evaluate(MOVES, [frames, keys, rest_ms])
         return 1e3 * (self.cpu_s() - before) / frames
 
 
@@ -168,6 +181,10 @@ def main() -> None:
     paces: list[float] = []
     rows: list[tuple[str, float, str, float]] = []
 
+    def opens(what: str, window: Window, bar: str) -> None:
+        tell(f"{what} [s]", window.opened_s, bar, window.opened_cpu_s)
+        tell("its requests, one after another", window.in_turn, "–", math.nan)
+
     def tell(what: str, value: float, bar: str, cpu: float) -> None:
         paces.append(REFERENCE_S / eigenvalue_seconds())  # beside each: the machine's other work changes
         rows.append((what, value, bar, cpu * paces[-1]))
@@ -182,10 +199,10 @@ def main() -> None:
             for _ in range(2):  # what a server computes once, it has computed
                 first = Window(browser, own, ".figures dd")
             trial(browser, server.url)
-            tell("first useful paint of a turbine [s]", first.opened_s, "1", first.opened_cpu_s)
+            opens("first useful paint of a turbine", first, "1")
             for _ in range(2):
                 day = Window(browser, f"{own}/records/{number}", ".uplot canvas")
-            tell("a day's signal, three channels of 50 Hz [s]", day.opened_s, "1", day.opened_cpu_s)
+            opens("a day's signal, three channels of 50 Hz", day, "1")
             worst = Window(browser, f"{own}/records", "[aria-label='The worst first'] tbody tr")
             tell("the worst records of all years [s]", worst.opened_s, "1", worst.opened_cpu_s)
             years = Window(browser, f"{own}/timeline", ".uplot canvas")
@@ -194,6 +211,8 @@ def main() -> None:
             for what, keys in (("panned", ["ArrowRight", "ArrowLeft"]), ("zoomed", ["+", "-"])):
                 took = years.frame_ms(keys, given.frames)
                 tell(f"a frame of all years {what} [ms]", took, "33", took)
+                took = years.frame_ms(keys, given.frames, REST_MS)
+                tell("the same, a closer look with every fourth [ms]", took, "33", took)
             rate, took = live(Window(browser, f"{own}/live", "canvas.lanes"), store)
             tell("24 live channels, frames a second", rate, "20 or more", math.nan)
             tell("a frame of 24 live channels [ms]", took, "50", took)

@@ -793,18 +793,21 @@ def test_a_record_is_drawn_as_spectrogram_and_by_singular_values(opened: Open) -
     assert opened.said == []
 
 
-def test_a_turbine_begins_from_a_deck_and_a_record_and_each_guess_is_confirmed(opened: Open) -> None:
-    deck = find_file("jacket15", "structures").read_bytes()
-    given = (
-        ("jacket.yaml", deck),
-        ("r7.parquet", record_file(7)),
-        ("r7.json", description(hour(7)).encode()),
-    )
+def test_a_turbine_begins_from_a_dropped_folder_and_each_guess_is_confirmed(
+    opened: Open, tmp_path: Path
+) -> None:
+    """A deck and a record, dragged there as a folder; the first modes are seen."""
+    (tmp_path / "jacket.yaml").write_bytes(find_file("jacket15", "structures").read_bytes())
+    (tmp_path / "r7.parquet").write_bytes(record_file(7))
+    (tmp_path / "r7.json").write_text(description(hour(7)))
     page = opened.page("/start")
-    page.get_by_label("Files of the turbine").set_input_files(
-        [{"name": name, "mimeType": "text/plain", "buffer": content} for name, content in given]
-    )
-    page.get_by_role("button", name="Draft a twin").click()
+    drop_folder(page, tmp_path)
+    draft = page.get_by_role("button", name="Draft a twin")
+    page.route("**/drafts", lambda route: route.abort())
+    draft.click()
+    expect(page.get_by_role("heading", name="No connection")).to_be_visible()
+    page.unroute("**/drafts")
+    draft.click()
     expect(page.locator(".picture canvas")).to_be_visible()
     guesses = page.get_by_role("checkbox", name=re.compile("^acc_top_"))
     expect(guesses).to_have_count(2)
@@ -816,5 +819,21 @@ def test_a_turbine_begins_from_a_deck_and_a_record_and_each_guess_is_confirmed(o
     assert serious(page) == []
     page.get_by_role("button", name="Add", exact=True).click()
     page.wait_for_url("**/assets/begun/records")
-    expect(page.locator("tbody tr")).to_have_count(1)
+    turn(opened.service)
+    expect(page.get_by_role("region", name="Records", exact=True).locator("tbody tr")).to_contain_text(
+        "observed"
+    )
+    page.get_by_role("link", name="Turbine", exact=True).click()
+    expect(page.get_by_role("region", name="What it does now").locator("tbody tr")).to_have_count(2)
     httpx.delete(f"{opened.url}/api/v1/assets/begun?confirm=begun")
+
+
+def drop_folder(page: Page, folder: Path) -> None:
+    """Drag a folder from the desktop to where files are dropped."""
+    box = page.locator(".drop").bounding_box()
+    assert box
+    data = {"items": [], "files": [str(folder)], "dragOperationsMask": 1}
+    devtools = page.context.new_cdp_session(page)
+    for kind in ("dragEnter", "dragOver", "drop"):
+        at = {"x": box["x"] + 20.0, "y": box["y"] + 20.0}
+        devtools.send("Input.dispatchDragEvent", {"type": kind, **at, "data": data})

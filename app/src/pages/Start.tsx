@@ -8,7 +8,6 @@ import { InSpace } from "../parts/InSpace";
 import { Empty, Trouble } from "../parts/Shown";
 import { paired, send } from "../parts/Upload";
 import { assetUrl, go } from "../shell/place";
-import { sentence } from "../words/numbers";
 
 type Draft = Schemas["DraftOut"];
 const STRUCTURE = /\.(ya?ml|dat|inp|sacs?)$|^[^.]*$|sacinp/i;
@@ -139,7 +138,7 @@ function Confirming({ draft, structure, records }: ConfirmingProps) {
           {draft.missing.length > 0 && (
             <ul class="list">
               {draft.missing.map((said) => (
-                <li key={said}>{sentence(said)}</li>
+                <li key={said}>{said}</li>
               ))}
             </ul>
           )}
