@@ -4,6 +4,7 @@ Usage: python qualify/watching.py [quiet turbines a kind of seasons] [turbines a
        [of a kind without conditions] [folder of pieces]
        python qualify/watching.py speed
        python qualify/watching.py kinds [turbines a kind of seasons] [folder of pieces]
+       python qualify/watching.py scours [turbines a kind of seasons] [folder of pieces]
        python qualify/watching.py right [turbines]
        python qualify/watching.py smallest [turbines a kind of seasons] [folder of pieces]
 
@@ -699,10 +700,11 @@ def main() -> None:
         ]
         sys.stdout.write("\n".join(smallest_found(computed(named, folder))))
         return
-    if sys.argv[1:2] == ["kinds"]:
-        folder = Path(sys.argv[3] if len(sys.argv) > 3 else "out/qualify")
-        pieces = computed(pieces_of(int(sys.argv[2]), 0, 0), folder)
-        sys.stdout.write("\n".join([*scours(pieces), *false_alarms(pieces)]))
+    if sys.argv[1:2] in (["kinds"], ["scours"]):
+        folder, every = Path(sys.argv[3] if len(sys.argv) > 3 else "out/qualify"), sys.argv[1] == "kinds"
+        named = [p for p in pieces_of(int(sys.argv[2]), 0, 0) if every or p[0].startswith("scour/")]
+        pieces = computed(named, folder)
+        sys.stdout.write("\n".join([*scours(pieces), *(false_alarms(pieces) if every else ())]))
         return
     kinds, number, without = (int(x) for x in (*sys.argv[1:4], *("15", "20", "7")[len(sys.argv) - 1 :]))
     folder = Path(sys.argv[4] if len(sys.argv) > 4 else "out/qualify")
