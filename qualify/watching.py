@@ -63,7 +63,8 @@ KINDS = {
     "ground that warms": Kind(ground=1e-3),
 }
 BASELINES = 75.0, 365.0
-"""After which the smallest changes are told [days]: what lies beyond the shorter one is projected."""
+"""After which the smallest changes are told [days]: what lies beyond the shorter one is projected. A third as
+many turbines have the longer one."""
 SLOW = tuple(KINDS)[-4:]
 """What moves modes over weeks and years and harms nobody."""
 TOLD = (
@@ -691,10 +692,11 @@ def main() -> None:
         return
     if sys.argv[1:2] == ["smallest"]:
         folder = Path(sys.argv[3] if len(sys.argv) > 3 else "out/qualify")
+        number = int(sys.argv[2]) if len(sys.argv) > 2 else 3
         named = [
             (f"smallest/{days:g}/{kind}/{seed}", lambda k=kind, d=days, s=seed: smallest(k, d, s))
-            for seed in range(int(sys.argv[2]) if len(sys.argv) > 2 else 3)
-            for days in BASELINES
+            for days, turbines in zip(BASELINES, (number, number // 3), strict=True)
+            for seed in range(turbines)
             for kind in KINDS
             if kind not in SLOW
         ]
