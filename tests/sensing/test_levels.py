@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from jackettwin.sensing.latent_forces import LatentForce
-from jackettwin.sensing.levels import _Evidence, _whittle, find_levels
+from jackettwin.sensing.levels import _Evidence, _smoothed, _whittle, find_levels
 
 STEP_S, N = 0.1, 6000
 
@@ -135,3 +135,13 @@ def test_a_level_beside_another_is_expected_in_proportion(rng: np.random.Generat
     tied = LatentForce("c", np.zeros(1), np.zeros((1, 12)), "gust", 0.7, 0.1, 0.05, 0.05, "a")
     a, _, c = find_levels(y, STEP_S, H, which, (*start, tied), (0, 0)).forces
     assert a.level > 1.0 and c.level / a.level == pytest.approx(1.0, rel=0.05)
+
+
+def test_slow_motion_is_averaged_over_frequencies_near_it() -> None:
+    """Power that rises with f⁴ is kept within two; over nine, the first has a hundred times its own."""
+    power = np.arange(64.0)[None] ** 4
+    found = _smoothed(power)
+    assert_allclose(found[0, :2], power[0, :2])
+    assert (found[0, 2:-5] < 2.1 * power[0, 2:-5]).all()
+    assert_allclose(_smoothed(np.ones((2, 50))), 1.0)
+    assert _smoothed(power)[0, 30] == pytest.approx(power[0, 26:35].mean())
