@@ -46,7 +46,7 @@ function Row({ mode, most }: { mode: Schemas["BudgetOut"]; most: number }) {
       </svg>
       <span class="n">
         {measured ? percent(measured.value) : "–"}
-        {mode.unexplained ? <span class="error"> ({percent(mode.unexplained)} unexplained)</span> : ""}
+        {mode.unexplained ? <span class="error">{` (${percent(mode.unexplained)} unexplained)`}</span> : ""}
       </span>
     </div>
   );

@@ -27,19 +27,19 @@ export function drawnAs(root: Element, paper: string): [svg: string, width: numb
   const walk = document.createTreeWalker(root, NodeFilter.SHOW_ELEMENT | NodeFilter.SHOW_TEXT);
   const range = document.createRange();
   for (let node: Node | null = root; node; node = walk.nextNode()) {
-    const inside = node.parentElement?.closest("svg");
-    if (inside && root.contains(inside)) continue;
+    if (root.contains(node.parentElement?.closest("svg") ?? null)) continue;
     if (node instanceof SVGSVGElement) put(dressed(node), node.getBoundingClientRect());
     else if (node instanceof HTMLCanvasElement)
       put(document.createElementNS(NS, "image"), node.getBoundingClientRect(), { href: node.toDataURL() });
     else if (node instanceof HTMLElement && node.tagName === "I") {
-      const fill = getComputedStyle(node).backgroundColor;
-      put(document.createElementNS(NS, "rect"), node.getBoundingClientRect(), { fill });
+      const { borderStyle, borderTopColor: stroke, backgroundColor: fill } = getComputedStyle(node);
+      const look: Record<string, string> = borderStyle === "none" ? { fill } : { fill: "none", stroke };
+      put(document.createElementNS(NS, "rect"), node.getBoundingClientRect(), look);
     } else if (node instanceof Text && node.data.trim()) {
       range.selectNodeContents(node);
       const [at, look] = [range.getBoundingClientRect(), getComputedStyle(node.parentElement ?? root)];
       const words = document.createElementNS(NS, "text");
-      words.textContent = node.data;
+      words.textContent = node.data.replaceAll(" ", "\u00a0");
       put(words, at, { y: String(at.y - from.y + 0.78 * at.height), fill: look.color });
       for (const name of ["font-size", "font-family", "font-weight"])
         words.setAttribute(name, look.getPropertyValue(name));
