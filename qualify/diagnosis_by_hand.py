@@ -207,7 +207,7 @@ def changes(site: Site, rng: np.random.Generator) -> list[tuple[str, Site]]:
             rng.uniform(*WEAKER),
             [PointMass(n, 0.5 * inside(s, m)) for m in one for n in (m.start, m.end)],
         )
-        hurt = with_members(site, one, lambda m, x=left: stiffer(m, x))  # type: ignore[misc]
+        hurt = with_members(site, one, lambda m, x=left: stiffer(m, x))
         wetter = replace(site, structure=s.with_masses((*s.masses, *water)))
         out.append((f"{'|'.join(m.name for m in one)}{what}", hurt if what == " weakened" else wetter))
     thin = rng.uniform(*GROWTH_M)
