@@ -197,8 +197,8 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "beside_knock": Kind(
         "info",
-        "the response to one impact decays by {fall:.1f} e-folds; the modes are those of the other "
-        "{used_s:.4g} s",
+        "a response that decays by {fall:.1f} e-folds, as to an impact or a simulation's start, is left out; "
+        "the modes are those of the other {used_s:.4g} s",
     ),
     "transient": Kind(
         "warning",

@@ -381,3 +381,20 @@ def test_a_study_may_take_longer_than_a_record(kept: Service, monkeypatch: pytes
     assert (study.state, record.state) == ("leased", "queued")
     assert record.reason and record.reason["detail"] == "took longer than 600 s"
     forget(kept)
+
+
+def test_the_first_estimate_of_a_model_waits_for_no_rest(kept: Service) -> None:
+    """After another turbine's long estimate a new one would wait three times as long."""
+    dispatcher = Dispatcher(kept)
+    dispatcher._rest_until = float("inf")
+    with writing(kept.database) as connection:
+        number = work.enqueue(connection, assets.found_version(connection, "wtg"), "", NOON, kind=work.KNOW)
+    assert dispatcher._next_kind() == work.KNOW
+    with writing(kept.database) as connection:
+        work.lease(connection, kept.server_id, 1, NOON, kind=work.KNOW)
+        work.cancel(connection, number, NOON)
+        assert work.try_again(connection, number, NOON)
+    assert dispatcher._next_kind() is None
+    dispatcher._rest_until = 0.0
+    assert dispatcher._next_kind() == work.KNOW
+    forget(kept)

@@ -234,10 +234,17 @@ def jobs_of(connection: Connection, asset: str, record_id: str) -> list[Job]:
     return [Job(**row._mapping) for row in connection.execute(query)]
 
 
-def any_queued(connection: Connection, kind: str, *, gone: bool = False) -> bool:
-    """Return whether jobs of a kind are queued, with ``gone`` only of archived assets."""
+def any_queued(connection: Connection, kind: str, *, gone: bool = False, first: bool = False) -> bool:
+    """Return whether jobs of a kind are queued.
+
+    Parameters
+    ----------
+    gone : only those of archived assets, which are left out otherwise
+    first : only those that were never begun
+    """
     urgency = work.c.priority == GONE if gone else work.c.priority > GONE
     query = select(work.c.id).where(work.c.state == "queued", urgency, work.c.kind == kind).limit(1)
+    query = query.where(work.c.started_utc.is_(None)) if first else query
     return connection.scalar(query) is not None
 
 

@@ -152,6 +152,20 @@ def test_a_force_that_goes_on_for_a_while_puts_off_the_start() -> None:
         assert abs(mode.frequency_hz / f - 1.0) < 2e-3
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_the_start_of_a_simulation_is_left_out(seed: int) -> None:
+    """It rings from rest while wind already acts: neither a free decay nor stationary."""
+    wind = simulate(SYSTEM, np.random.default_rng(seed), duration_s=600.0, sample_rate_hz=RATE).data
+    found = identify(record(wind / wind.std() * 0.25 + let_go(0.0, (4.0, 1.5))))
+    assert any(f.code == "beside_knock" for f in found.findings)
+    assert 400.0 < found.duration_s < 560.0
+    assert [mode.status for mode in found.modes] == ["ok", "ok"]
+    for mode, f, zeta in zip(found.modes, F, ZETA, strict=True):
+        std_f, std_zeta = np.sqrt(np.diag(mode.log_covariance))
+        assert abs(np.log(mode.frequency_hz / f)) < 4.0 * std_f
+        assert abs(np.log(mode.damping_ratio / zeta)) < 4.0 * std_zeta
+
+
 def knock(at_s: float) -> np.ndarray:
     """Return what a blow does to a tower that swings four times as fast, (8 channels, n)."""
     omega, later = 2.0 * np.pi * LIVELY.frequency_hz[:, None], np.maximum(T - at_s, 0.0)

@@ -53,6 +53,8 @@ BRIEF_SHARE = 0.1
 MAX_IMPACT_FALL = 3.0
 """Fall in e-folds below which a brief decay counts as an impact; the modes are then identified from the
 record before or after it."""
+MIN_REST_CYCLES = 60.0
+"""Fewest cycles of the strongest frequency after a decay that are identified instead of the whole record."""
 FORCED_RATIO = 1.5
 """Ratio of the residual power in the first quarter of a fit to that in the rest above which forces still
 act."""
@@ -103,7 +105,7 @@ class Transient:
         Modes of the decay if damped cosines explain it; None if forces act on.
     beside : Record or None
         The longer part of the record before or after a decay that is so brief and shallow that it may come
-        from an impact.
+        from an impact, or the part after a decay that forces disturb, if it is most of the record.
     """
 
     fall: float
@@ -122,7 +124,7 @@ def transient(record: Record, settings: IdentificationSettings, *, impacts: bool
     Parameters
     ----------
     impacts : bool
-        Whether a decay that may come from an impact is identified too.
+        Whether a decay is identified too that may come from an impact, or that forces disturb.
 
     Raises
     ------
@@ -150,8 +152,11 @@ def transient(record: Record, settings: IdentificationSettings, *, impacts: bool
     if beside is not None and not impacts:
         return Transient(part.fall, None, beside)
     decay = _free_part(part, level.data, rate)
+    rest = None if impacts else _rest_after(record, part, level)
     if decay is None:
-        return Transient(part.fall, None) if part.ended else None
+        return Transient(part.fall, None, rest) if part.ended else None
+    if rest is not None and decay.modes_fit.fit.explained < MIN_EXPLAINED_INTERVALS:
+        return Transient(part.fall, None, rest)
     part = decay.part
     finding = Finding(
         "free_decay",
@@ -189,21 +194,32 @@ def transient(record: Record, settings: IdentificationSettings, *, impacts: bool
 def _part_beside_impact(record: Record, part: DecayPart, level: Record) -> Record | None:
     """Return the longer part before or after a decay that may come from an impact, else None.
 
-    A decay without motion before it is no impact. As much time as the decay lasts is left out after it,
-    since the structure still rings.
+    A decay without motion before it is no impact.
     """
     # the highest point is that of a mean over cycles, so the decay begins earlier
     begin = max(part.first - round(2.0 * CYCLES * level.sample_rate_hz / part.strongest_hz), 0)
     times = record.sample_rate_hz / level.sample_rate_hz
-    first, last = int(begin * times), int((2 * part.last - part.first) * times)
+    first = int(begin * times)
     brief = part.last - part.first < BRIEF_SHARE * level.data.shape[1]
     before = level.data[:, :begin]
     if part.fall > MAX_IMPACT_FALL or not brief or before.shape[1] < FEWEST_SAMPLES:
         return None
     if lowest_peak_hz(welch(before, level.sample_rate_hz)) is None:
         return None
-    if first >= record.data.shape[1] - last:
-        return replace(record, data=record.data[:, :first])
+    after = _after(record, part, level)
+    return replace(record, data=record.data[:, :first]) if first >= after.data.shape[1] else after
+
+
+def _rest_after(record: Record, part: DecayPart, level: Record) -> Record | None:
+    """Return what follows a decay if it is most of a long record, as after the start of a simulation."""
+    after = _after(record, part, level)
+    most = after.data.shape[1] > 0.5 * record.data.shape[1]
+    return after if part.ended and most and after.duration_s * part.strongest_hz > MIN_REST_CYCLES else None
+
+
+def _after(record: Record, part: DecayPart, level: Record) -> Record:
+    """Return the record from as long after a decay as it lasts, since the structure still rings."""
+    last = int((2 * part.last - part.first) * record.sample_rate_hz / level.sample_rate_hz)
     start = record.start_utc and record.start_utc + timedelta(seconds=last / record.sample_rate_hz)
     return replace(record, data=record.data[:, last:], start_utc=start)
 

@@ -205,14 +205,14 @@ class Dispatcher(Thread):
     def _next_kind(self) -> str | None:
         """Return the kind of job to lease: records first, those of archived assets last.
 
-        Estimations are leased only after their idle time.
+        Estimations are leased one at a time and only after their idle time, but for the first of a model.
         """
         with reading(self.service.database) as connection:
             if work.any_queued(connection, work.OBSERVE):
                 return work.OBSERVE
             asking = any(running.job.kind == work.KNOW for running in self._running.values())
-            rests = asking or time.monotonic() < self._rest_until
-            if not rests and work.any_queued(connection, work.KNOW):
+            rests = time.monotonic() < self._rest_until
+            if not asking and work.any_queued(connection, work.KNOW, first=rests):
                 return work.KNOW
             return work.OBSERVE if work.any_queued(connection, work.OBSERVE, gone=True) else None
 
