@@ -60,11 +60,12 @@ class MotionEstimate:
     @property
     def to_coordinates(self) -> FloatArray:
         """Coordinates from the state, (n_coordinates, n_states)."""
-        rows = self.model.force_rows()
-        found = np.zeros((self.model.n_modes + len(rows), self.smoother.F.shape[0]))
-        found[: self.model.n_modes, : self.model.n_modes] = np.eye(self.model.n_modes)
-        found[self.model.n_modes :, : rows.shape[1]] = rows
-        return found
+        own = self.of_state(self.model.force_rows())
+        return np.vstack([np.eye(self.model.n_modes, own.shape[1]), own])
+
+    def of_state(self, rows: FloatArray) -> FloatArray:
+        """Return rows (k, n) of the model's state as rows of the smoother's, behind which drifts follow."""
+        return np.pad(rows, ((0, 0), (0, self.smoother.F.shape[0] - rows.shape[1])))
 
     @property
     def covariance(self) -> FloatArray:

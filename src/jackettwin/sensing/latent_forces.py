@@ -214,6 +214,7 @@ def wind_forces(assembly: Assembly, *, wind_m_s: float | None = None) -> tuple[L
 
 def passing_forces(forces: tuple[LatentForce, ...], passing_hz: float) -> tuple[LatentForce, ...]:
     """Return the moments of gusts that blades cut as they pass, beside the slow ones of the same rotor."""
+    moments = {name for name, of in _TOP.values() if of is not None}
     return tuple(
         replace(
             f,
@@ -227,7 +228,7 @@ def passing_forces(forces: tuple[LatentForce, ...], passing_hz: float) -> tuple[
             width=_PASSING_WIDTH,
         )
         for f in forces
-        if f.name in {name for name, of in _TOP.values() if of is not None}
+        if f.name in moments
     )
 
 

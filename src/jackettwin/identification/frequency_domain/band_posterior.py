@@ -137,12 +137,13 @@ def transfer(f: FloatArray, f_n: FloatArray, zeta: FloatArray) -> ComplexArray:
     return np.asarray(beta**2 / (beta**2 - 1.0 - 2j * zeta * beta))
 
 
-def _transfer_slopes(f: FloatArray, f_n: FloatArray, zeta: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-    """Return the derivatives of ``transfer`` with respect to ln f_n and ln ζ, (n_lines, n_modes) each."""
+def _log_slopes(
+    h: ComplexArray, f: FloatArray, f_n: FloatArray, zeta: FloatArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return the derivatives of ln h, of ``transfer``, by ln f_n and by ln ζ, (n_lines, n_modes) each."""
     beta = np.divide.outer(f, f_n)
-    damped = 2j * zeta * beta**3
-    square = (beta**2 - 1.0 - 2j * zeta * beta) ** 2
-    return np.asarray((2.0 * beta**2 + damped) / square), np.asarray(damped / square)
+    damped = np.asarray(2j * zeta * h / beta)
+    return np.asarray(2.0 * h / beta**2 + damped), damped
 
 
 def _one_mode(lines: ComplexArray, f: FloatArray, start_hz: float) -> BandPosterior | None:
@@ -158,8 +159,7 @@ def _one_mode(lines: ComplexArray, f: FloatArray, start_hz: float) -> BandPoster
     covariance = _covariance(curvature)
     if covariance is None or not _credible(theta[:1], theta[1:2], f, covariance[1:2, 1:2]):
         return None
-    a = _weighted(theta, outer, f)
-    values, vectors = np.linalg.eigh(a)
+    _, _, values, vectors = _weighted(theta, outer, f)
     apart = 2.0 * (values[-1] - values[:-1]) / np.exp(theta[3])
     spread = vectors[:, :-1] ** 2 @ (1.0 / np.maximum(apart, 1e-12))
     n = len(lines)
@@ -183,30 +183,37 @@ def one_mode_cost(theta: FloatArray, outer: FloatArray, f: FloatArray) -> tuple[
         Real parts of the products of the lines.
     f : (n_lines,)
     """
-    f_n, zeta, (s, noise) = np.exp(theta[:1]), np.exp(theta[1:2]), np.exp(theta[2:])
-    h = transfer(f, f_n, zeta)
-    signal = s * np.abs(h[:, 0]) ** 2
+    h, signal, values, vectors = _weighted(theta, outer, f)
+    noise = np.exp(theta[3])
     power = signal + noise
-    values, vectors = np.linalg.eigh(np.tensordot(signal / power, outer, axes=1))
     along = np.einsum("a,kab,b->k", vectors[:, -1], outer, vectors[:, -1])
     left = float(np.einsum("kaa->", outer)) - float(values[-1])
     others = (outer.shape[1] - 1) * len(f)
     # the shape is the best at every theta, so that its change has no effect on the cost
     by_signal = (power - along) / power**2
     by_f, by_zeta = (
-        2.0 * s * float(by_signal @ np.real(h.conj() * slope)[:, 0])
-        for slope in _transfer_slopes(f, f_n, zeta)
+        2.0 * float((by_signal * signal) @ slope[:, 0].real)
+        for slope in _log_slopes(h, f, np.exp(theta[:1]), np.exp(theta[1:2]))
     )
     by_noise = others - left / noise + noise * np.sum(1.0 / power) + np.sum(along * signal / power**2)
     value = others * np.log(noise) + np.sum(np.log(power)) + left / noise
     return float(value), np.array([by_f, by_zeta, by_signal @ signal, by_noise])
 
 
-def _weighted(theta: FloatArray, outer: FloatArray, f: FloatArray) -> FloatArray:
-    """Return the sum of the products of lines, weighted by the mode's share of their power."""
-    signal = np.exp(theta[2]) * np.abs(transfer(f, np.exp(theta[:1]), np.exp(theta[1:2]))[:, 0]) ** 2
+def _weighted(
+    theta: FloatArray, outer: FloatArray, f: FloatArray
+) -> tuple[ComplexArray, FloatArray, FloatArray, FloatArray]:
+    """Return what a mode's shape is an eigenvector of: products weighted by the mode's share of the power.
+
+    Returns
+    -------
+    h, signal : (n_lines, 1), (n_lines,) the mode's transfer function and power
+    values, vectors : (n_channels,), (n_channels, n_channels) of the sum of the weighted products
+    """
+    h = transfer(f, np.exp(theta[:1]), np.exp(theta[1:2]))
+    signal = np.exp(theta[2]) * np.abs(h[:, 0]) ** 2
     share = signal / (signal + np.exp(theta[3]))
-    return np.asarray(np.tensordot(share, outer, axes=1))
+    return h, np.asarray(signal), *np.linalg.eigh(np.tensordot(share, outer, axes=1))
 
 
 def _modes(lines: ComplexArray, f: FloatArray, starts_hz: list[float]) -> BandPosterior | None:
@@ -288,7 +295,7 @@ def several_modes_cost(
     in_modes = alpha.T @ by_moved
     by_factor = 2.0 * np.einsum("ki,kij->ij", h.conj(), in_modes)
     by_h = 2.0 * np.einsum("kij,ij->ki", in_modes.conj(), factor)
-    by_f, by_zeta = (np.real(np.sum(by_h * slope, axis=0)) for slope in _transfer_slopes(f, f_n, zeta))
+    by_f, by_zeta = (np.real(np.sum(by_h * h * slope, axis=0)) for slope in _log_slopes(h, f, f_n, zeta))
     others = (n_channels - m) * len(f)
     quadratic = float(np.sum(np.real(inner.T.conj() * solved)))
     log_det = -float(np.sum(np.linalg.slogdet(inverse)[1]))

@@ -114,24 +114,28 @@ def _fitted(measured: ComplexArray, motion: ComplexArray, near: BoolArray) -> Co
     power = np.einsum("faa->f", measured).real
     force = np.diag(power.max() / np.einsum("iifaa->if", products).real.max(axis=1)).astype(complex)
     noise = START_NOISE_SHARE * np.einsum("faa->a", measured).real / len(measured)
-    products = products.reshape(n_modes**2, -1)  # once: a hundred sums run over it
-
-    def spectrum() -> ComplexArray:
-        forced = (force.ravel() @ products).reshape(measured.shape)
-        return np.asarray(forced + np.diag(noise) + known)
-
-    def traces(matrices: ComplexArray) -> ComplexArray:
-        sums = products @ matrices.transpose(0, 2, 1).ravel()
-        return np.asarray(sums.reshape(n_modes, n_modes).T)
-
-    fitted = spectrum()
+    flat = products.reshape(n_modes**2, -1)  # once: a hundred sums run over it
+    fitted = _spectrum(force, noise, flat) + known
     for _ in range(ITERATIONS):
         inverse: ComplexArray = np.asarray(np.linalg.inv(fitted))
         twice: ComplexArray = np.asarray(inverse @ (measured + known) @ inverse)
-        force = _geometric_mean(traces(inverse), force @ traces(twice) @ force)
+        loss, gain = (_traces(matrices, flat, n_modes) for matrices in (inverse, twice))
+        force = _geometric_mean(loss, force @ gain @ force)
         noise = noise * np.sqrt(np.einsum("faa->a", twice).real / np.einsum("faa->a", inverse).real)
-        fitted = spectrum()
-    return np.asarray(np.einsum("ij,ijfab->fab", force, everywhere, optimize=True) + np.diag(noise))
+        fitted = _spectrum(force, noise, flat) + known
+    return _spectrum(force, noise, everywhere.reshape(n_modes**2, -1))
+
+
+def _spectrum(force: ComplexArray, noise: FloatArray, products: ComplexArray) -> ComplexArray:
+    """Return E (n_frequencies, n_channels, n_channels) of products (n_modes², all of its entries)."""
+    forced = (force.ravel() @ products).reshape(-1, len(noise), len(noise))
+    return np.asarray(forced + np.diag(noise))
+
+
+def _traces(matrices: ComplexArray, products: ComplexArray, n_modes: int) -> ComplexArray:
+    """Return the sums over all lines of tr(A Pᵢⱼ), at (j, i)."""
+    sums = products @ matrices.transpose(0, 2, 1).ravel()
+    return np.asarray(sums.reshape(n_modes, n_modes).T)
 
 
 def _geometric_mean(b: ComplexArray, c: ComplexArray) -> ComplexArray:

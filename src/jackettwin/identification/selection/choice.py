@@ -142,18 +142,19 @@ def _skirted(
     modes: Sequence[ModalEstimate], lines: ComplexArray, duration_s: float, scale: FloatArray
 ) -> tuple[ModalEstimate, ...]:
     """Flag modes whose peaks fall off faster than those of any mode, and others at multiples of them."""
-    f, zeta = (np.array([getattr(m, name) for m in modes]) for name in ("frequency_hz", "damping_ratio"))
+    f = np.array([m.frequency_hz for m in modes])
+    zeta = np.array([m.damping_ratio for m in modes])
     missing = np.array([
         missing_skirts(lines, duration_s, f[i], zeta[i], mode.mode_shape / scale, np.delete(f, i))
         for i, mode in enumerate(modes)
     ], dtype=float)  # fmt: skip
-    orders = missing > LESS_LIKELY
-    codes = np.where(are_orders(f, zeta, missing), "multiple_of_order", "")
-    codes = np.where(orders, "no_skirts", codes)
-    return tuple(
-        mode.flagged(ModeStatus.DOUBTFUL, Finding(str(code))) if code else mode
-        for mode, code in zip(modes, codes, strict=True)
-    )
+    found = []
+    for mode, order, multiple in zip(modes, missing > LESS_LIKELY, are_orders(f, zeta, missing), strict=True):
+        if order or multiple:
+            code = "no_skirts" if order else "multiple_of_order"
+            mode = mode.flagged(ModeStatus.DOUBTFUL, Finding(code))
+        found.append(mode)
+    return tuple(found)
 
 
 def clear_damping_doubts(judged: Sequence[Candidate], known: Evidence) -> list[Candidate]:

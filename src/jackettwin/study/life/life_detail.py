@@ -83,9 +83,7 @@ def with_one_more(
     for name, sensor in sensors.items():
         seen = observation_matrix(model.assembly, (sensor,)).toarray()
         derivative = 2 if sensor.quantity == "motion" else 0
-        row = np.zeros((1, len(smoother.F)))
-        own = model.motion_rows(seen, np.zeros_like(seen), (derivative,))
-        row[:, : own.shape[1]] = own
+        row = estimate.of_state(model.motion_rows(seen, np.zeros_like(seen), (derivative,)))
         noise = {"inclination": _TILT_STD_RAD, "strain": _STRAIN_STD}.get(sensor.quantity)
         variance = float(smoother.R.min()) if noise is None else noise**2
         try:
