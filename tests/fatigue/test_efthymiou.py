@@ -9,7 +9,7 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.fatigue import BraceTube, ConcentrationFactors, TubularJoint, concentration, hot_spot_matrix
-from jackettwin.fatigue.efthymiou import read_joint
+from jackettwin.fatigue.efthymiou import JointClass, read_joint
 
 
 def joint(*angles_deg: float, d: float = 0.6, t: float = 0.02, L: float = 9.0, **kw: float) -> TubularJoint:
@@ -129,8 +129,19 @@ def test_beyond_the_ranges_the_larger_factor_is_taken_and_said() -> None:
     at_limit = TubularJoint(1.2, 1.2 / 64.0, 9.0, (BraceTube(0.6, 0.6 / 64.0, radians(60.0)),))
     (beyond,), warnings = concentration(thin, "y")
     (limit,), none = concentration(at_limit, "y")
-    assert none == () and len(warnings) == 1 and "γ = 40 is not 8 to 32" in warnings[0]
+    assert none == () and len(warnings) == 1 and "γ = 40 is not 8 to 32" in warnings[0].text
     assert all(a >= b * (1 - 1e-12) for a, b in zip(beyond, limit, strict=True))
+
+
+@pytest.mark.parametrize("kind", ["y", "x"])
+def test_a_longer_chord_than_any_tested_is_on_the_safe_side_a_shorter_one_is_not(kind: JointClass) -> None:
+    """α = 50 beyond 40: no factor is below that at α = 40; at α = 3 the ends stiffen more than was tested."""
+    (longer,), (long,) = concentration(joint(45.0, L=30.0), kind)
+    (limit,), none = concentration(joint(45.0, L=24.0), kind)
+    assert long.safe and "α = 50" in long.text and none == ()
+    assert all(a >= b for a, b in zip(longer, limit, strict=True))
+    _, (short,) = concentration(joint(45.0, L=1.8), kind)
+    assert not short.safe and "α = 3 is not 4 to 40" in short.text
 
 
 def test_the_eight_points_are_the_sums_of_the_practice() -> None:

@@ -87,9 +87,10 @@ def scf(file: Path) -> Reply:
 
     kind, joint = read_joint(file)
     with located(file=file):
-        factors, warnings = concentration(joint, kind)
+        factors, outside = concentration(joint, kind)
+    warnings = [one.text for one in outside]
     rows = [factors_document(one, kind) for one in factors]
-    document = {"class": kind, "braces": rows, "warnings": list(warnings)}
+    document = {"class": kind, "braces": rows, "warnings": warnings}
 
     def show() -> None:
         for warning in warnings:

@@ -28,12 +28,26 @@ RANGES = {
     "θ": (radians(20.0), 0.5 * pi),
 }
 """Ranges of validity; and −0.6 β/sin θ ≤ ζ ≤ 1."""
+_NAMES = ("β", "γ", "τ", "α", "θ")
+"""Of the ratios of :class:`_Shape`, in their order."""
 _SHORT = 12.0
 """Chords with a smaller α are short: their ends stiffen the saddle."""
 _LARGER = "the larger of the factors there and at the limit is taken"
 _OF_KT = 3
 _FIXED = 0.5
 """Chord-end fixity C of a chord whose ends are clamped."""
+
+
+@dataclass(frozen=True)
+class OutOfRange:
+    """A ratio outside its range, as a sentence.
+
+    ``safe`` if the factors are then larger than the joint's own: those at crossings do not depend on the
+    chord's length, others rise with it, so that a longer chord than any tested is on the safe side.
+    """
+
+    text: str
+    safe: bool
 
 
 @dataclass(frozen=True)
@@ -108,8 +122,8 @@ class _Shape(NamedTuple):
 
 def concentration(
     joint: TubularJoint, kind: JointClass
-) -> tuple[tuple[ConcentrationFactors, ...], tuple[str, ...]]:
-    """Return the factors of every brace, and a sentence for each ratio outside its range.
+) -> tuple[tuple[ConcentrationFactors, ...], tuple[OutOfRange, ...]]:
+    """Return the factors of every brace, and each ratio outside its range.
 
     Raises
     ------
@@ -141,16 +155,16 @@ def concentration(
     # of the narrower brace: the gap's range is its own
     deepest = max(-0.6 * s.beta / sin(s.theta) for s in limited)
     near = tuple(min(max(zeta, deepest), 1.0) for zeta in zetas)
-    warnings = _warnings(shapes, zetas, deepest)
+    outside = _out_of_range(shapes, zetas, deepest)
     own = _factors(shapes, kind, joint.fixity, zetas)
-    if not warnings:
+    if not outside:
         return own, ()
     at_limit = _factors(limited, kind, joint.fixity, near)
     larger = tuple(
         ConcentrationFactors(*(max(a, b) for a, b in zip(x, y, strict=True)))
         for x, y in zip(own, at_limit, strict=True)
     )
-    return larger, warnings
+    return larger, outside
 
 
 def _shape(joint: TubularJoint, brace: BraceTube) -> _Shape:
@@ -162,24 +176,27 @@ def _shape(joint: TubularJoint, brace: BraceTube) -> _Shape:
 
 
 def _limited(shape: _Shape) -> _Shape:
-    values = zip(shape, ("β", "γ", "τ", "α", "θ"), strict=True)
+    values = zip(shape, _NAMES, strict=True)
     return _Shape(*(min(max(value, RANGES[name][0]), RANGES[name][1]) for value, name in values))
 
 
-def _warnings(shapes: tuple[_Shape, ...], zetas: tuple[float, ...], deepest: float) -> tuple[str, ...]:
+def _out_of_range(
+    shapes: tuple[_Shape, ...], zetas: tuple[float, ...], deepest: float
+) -> tuple[OutOfRange, ...]:
     found = []
     for i, shape in enumerate(shapes, start=1):
-        for value, name in zip(shape, ("β", "γ", "τ", "α", "θ"), strict=True):
+        for value, name in zip(shape, _NAMES, strict=True):
             low, high = RANGES[name]
             if not low * (1.0 - 1e-9) <= value <= high * (1.0 + 1e-9):
                 scale, unit = (180.0 / pi, "°") if name == "θ" else (1.0, "")
-                found.append(
+                said = (
                     f"brace {i}: {name} = {scale * value:.3g}{unit} is not {scale * low:g} to "
                     f"{scale * high:g}{unit}: {_LARGER}"
                 )
+                found.append(OutOfRange(said, safe=name == "α" and value > high))
     for zeta in zetas:
         if not deepest - 1e-9 <= zeta <= 1.0 + 1e-9:
-            found.append(f"ζ = {zeta:.3g} is not {deepest:.2g} to 1: {_LARGER}")
+            found.append(OutOfRange(f"ζ = {zeta:.3g} is not {deepest:.2g} to 1: {_LARGER}", safe=False))
     return tuple(found)
 
 

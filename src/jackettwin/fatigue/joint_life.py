@@ -13,6 +13,7 @@ from jackettwin.fatigue.efthymiou import (
     BraceTube,
     ConcentrationFactors,
     JointClass,
+    OutOfRange,
     TubularJoint,
     concentration,
     factors_document,
@@ -36,7 +37,7 @@ class HotSpot:
     matrices : (3 classes, 2 sides, 8 points, 3 components) hot-spot over nominal stress
     thickness_m : (chord, brace)
     per_force : (3,) nominal stress per axial force [Pa/N], in-plane and out-of-plane moment [Pa/(N·m)]
-    warnings : what lies outside the ranges of the factors
+    out_of_range : what lies outside the ranges of the factors
     """
 
     node: str
@@ -46,7 +47,17 @@ class HotSpot:
     matrices: FloatArray
     thickness_m: tuple[float, float]
     per_force: FloatArray
-    warnings: tuple[str, ...]
+    out_of_range: tuple[OutOfRange, ...]
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What lies outside the ranges of the factors, in sentences."""
+        return tuple(one.text for one in self.out_of_range)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Those of the warnings whose factors may be too small."""
+        return tuple(one.text for one in self.out_of_range if not one.safe)
 
     @property
     def scf(self) -> dict[str, dict[str, dict[str, float]]]:
@@ -144,7 +155,7 @@ def _weld(plan: JointPlan, i: int, length: float, fixity: float) -> HotSpot:
     alone = TubularJoint(shape.D, shape.T, length, (braces[i],), fixity)
     beside, three = _nearest(plan, i), _three(plan, i)
     factors: dict[str, ConcentrationFactors] = {}
-    warnings: list[str] = []
+    outside: list[OutOfRange] = []
     for kind in _CLASSES:
         joint, by, mine = alone, kind, 0
         if kind == "k" and three is not None:
@@ -159,7 +170,7 @@ def _weld(plan: JointPlan, i: int, length: float, fixity: float) -> HotSpot:
             by = "y"
         found, said = concentration(joint, by)
         factors[kind] = found[mine]
-        warnings += said
+        outside += said
     D, d = shape.d, shape.d - 2.0 * shape.t
     area, modulus = 0.25 * np.pi * (D**2 - d**2), np.pi * (D**4 - d**4) / (32.0 * D)
     return HotSpot(
@@ -170,7 +181,7 @@ def _weld(plan: JointPlan, i: int, length: float, fixity: float) -> HotSpot:
         np.array([hot_spot_matrix(factors[kind]) for kind in _CLASSES]),
         (shape.T, shape.t),
         np.array([1.0 / area, 1.0 / modulus, 1.0 / modulus]),
-        tuple(dict.fromkeys(warnings)),
+        tuple(dict.fromkeys(outside)),
     )
 
 

@@ -118,6 +118,11 @@ class TubeWeld:
     share: float
     warnings: tuple[str, ...] = ()
 
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """The warnings: outside its range a factor may be too small."""
+        return self.warnings
+
     def stress(self, forces: SectionForces) -> FloatArray:
         """Return stresses (8 points, n) [Pa] under section forces (n, n_elements, 2), linear in them.
 

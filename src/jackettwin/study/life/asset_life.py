@@ -97,7 +97,7 @@ class AssetLife:
             "side": one.side,
             "position": one.position,
             "environment": one.environment,
-            "beyond_validity": list(_of_another_shape(weld)),
+            "beyond_validity": list(weld.doubts),
             "observed_s": self.time.seconds,
             "records": self.time.n,
             "damage": DAMAGE_UNIT * sums.worst,
@@ -130,16 +130,8 @@ def asset_life(model: StressModel, so_far: LifeSoFar) -> AssetLife:
     found = [
         _weld(model, so_far, side, welds[side], sums[side], time, age) for side in sums if sums[side].worst
     ]
-    order = sorted(found, key=lambda one: (bool(_of_another_shape(one.weld)), -one.rate, one.number))
+    order = sorted(found, key=lambda one: (bool(one.weld.doubts), -one.rate, one.number))
     return AssetLife(model, so_far, time, tuple(order))
-
-
-def _of_another_shape(weld: HotSpot | TubeWeld) -> tuple[str, ...]:
-    """Return what makes a joint unlike those that were tested; a longer chord, as in most jackets, does not.
-
-    Factors at crossings do not depend on the chord's length, others rise with it, to the safe side.
-    """
-    return tuple(text for text in weld.warnings if " α = " not in text)
 
 
 def _weld(
