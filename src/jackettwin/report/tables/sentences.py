@@ -434,8 +434,9 @@ def _law(a: Answers) -> list[str]:
     open_ = bool(others) and best >= 0.1 * law.probability
     verdict = "the data do not distinguish the laws" if open_ else "all other laws are much less probable"
     if not others:
-        verdict = "all others lock a damper" if len(a.laws) > 1 else "no other was tried"
-        return [f"Recommended law: {law.law} ({why}); {verdict}."]
+        if len(a.laws) == 1:
+            return [f"Law: {law.law} ({why}); no other was tried."]
+        return [f"Recommended law: {law.law} ({why}); all others lock a damper."]
     more = next((one for one in others if one.probability == best and best > law.probability), None)
     than = "" if more is None else f", {more.law} {100 * best:.0f} %"
     first = "" if more is None else ", the twin's first"
