@@ -4,6 +4,7 @@ import json
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 from click.testing import CliRunner
@@ -170,6 +171,31 @@ def test_what_was_planted_comes_back_and_a_twin_takes_it(
     (tmp_path / "t.yaml").write_text(yaml.safe_dump(twin))
     refined = read_twin(tmp_path / "t.yaml").structure
     assert numbered_modes(assemble(refined), 5).frequency_hz.tolist() == pytest.approx(f, rel=1e-6)
+
+
+def test_another_turbine_on_top_is_refined_and_a_twin_takes_both(tmp_path: Path) -> None:
+    """The turbine of a ``structure`` was not looked at, and replaced a turbine that had been changed."""
+    rna = {"mass_kg": 6.0e5, "cg_offset_m": [0.0, 0.0, 2.0]}
+    (tmp_path / "lighter.yaml").write_text(
+        JACKET15.read_text(encoding="utf-8").replace("mass_kg: 809000.0", "mass_kg: 540000.0")
+        .replace("[-3.5, 0.0, 4.0]", "[0.0, 0.0, 2.0]")
+        .replace("[4.84e8, 2.78e8, 2.79e8, 0.0, 0.0, 0.0]", "[0.0, 0.0, 0.0, 0.0, 0.0, 0.0]")
+    )  # fmt: skip
+    f = numbered_modes(assemble(read_structure(tmp_path / "lighter.yaml")), 3).frequency_hz.tolist()
+    structure = {"source": "jacket15", "rna": rna}
+    free = {"body": "rna", "property": "mass"}
+    stages = [{"frequency_hz": dict(enumerate(f, start=1)), "free": [free]}]
+    text = yaml.safe_dump({"structure": structure, "gravity": False, "stages": stages})
+    (tmp_path / "r.yaml").write_text(text)
+    result = CliRunner().invoke(main, ["refine", str(tmp_path / "r.yaml"), "--json"])
+    assert result.exit_code == 0, result.stderr
+    (change,) = json.loads(result.stdout)["adjusted"]
+    assert change["value"] == pytest.approx(0.9, rel=1e-5)
+    twin = {"structure": {**structure, "adjusted": [change]}, "targets": [{"mode": 1, "frequency_hz": 0.18}]}
+    (tmp_path / "t.yaml").write_text(yaml.safe_dump(twin))
+    assert numbered_modes(assemble(read_twin(tmp_path / "t.yaml").structure), 3).frequency_hz == (
+        pytest.approx(np.array(f), rel=1e-6)
+    )
 
 
 def test_a_later_stage_that_spoils_an_earlier_one_is_named(tmp_path: Path) -> None:

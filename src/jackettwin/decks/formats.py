@@ -73,15 +73,17 @@ class StructureChoice(Schema):
     steel: dict[str, SteelSchema] = {}
     adjusted: list[AdjustedSchema] = []
 
-    def read(self, folder: Path | None) -> Structure:
-        """Return the structure, changed; its rotor–nacelle assembly is left to the caller.
+    def read(self, folder: Path | None, rna: RnaSchema | None = None) -> Structure:
+        """Return the structure with its rotor–nacelle assembly, or with ``rna`` in its place, changed.
 
         Raises
         ------
         InputError
             If it is not given in just one way, or its file is missing or wrong.
         """
-        return changed_structure(self._unchanged(folder), self.steel, self.adjusted)
+        structure, rna = self._unchanged(folder), rna or self.rna
+        structure = structure if rna is None else rna.stand_on(structure, folder=folder)
+        return changed_structure(structure, self.steel, self.adjusted)
 
     def _unchanged(self, folder: Path | None) -> Structure:
         one = (self.source is None) != (self.foundation is None)

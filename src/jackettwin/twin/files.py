@@ -407,9 +407,7 @@ def _dashpots(update: UpdateSettings) -> tuple[str, ...]:
 
 
 def _structure(schema: TwinSchema, folder: Path) -> Structure:
-    structure = schema.structure.read(folder)
-    rna = schema.rna or schema.structure.rna
-    structure = structure if rna is None else rna.stand_on(structure, folder=folder)
+    structure = schema.structure.read(folder, schema.rna)
     return tied_at_mudline(structure) if schema.support.tie == MUDLINE else structure
 
 

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from jackettwin.decks import RnaSchema, StructureChoice, read_structure
+from jackettwin.decks import RnaSchema, StructureChoice
 from jackettwin.errors import InputError, located, require
 from jackettwin.files import Placed, Schema
 from jackettwin.response import build_system, undamped_modes
@@ -139,9 +139,7 @@ def _check_loops(foundation: Foundation, model: PileModel | None) -> None:
 
 def _structure(schema: AssetSchema, folder: Path) -> Structure:
     choice = schema.structure
-    structure = read_structure(choice, folder=folder) if isinstance(choice, str) else choice.read(folder)
-    rna = schema.rna or (None if isinstance(choice, str) else choice.rna)
-    return structure if rna is None else rna.stand_on(structure, folder=folder)
+    return (StructureChoice(source=choice) if isinstance(choice, str) else choice).read(folder, schema.rna)
 
 
 def _foundation(schema: AssetSchema, folder: Path) -> Foundation | None:
