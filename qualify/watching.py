@@ -44,7 +44,7 @@ from jackettwin.watching.learning import OCTAVES, learn
 from jackettwin.watching.memory import empty_bank, filtered
 from jackettwin.watching.overshoot import calibrated
 from jackettwin.watching.state import PossibleOnsets
-from jackettwin.watching.watch import KINDS as KINDS_OF_QUANTITIES, STEADY_DAYS
+from jackettwin.watching.watch import KINDS as KINDS_OF_QUANTITIES, STEADY_DAYS, learnt
 
 LABELS = ("bending_1", "bending_2", "bending_3", "bending_4")
 BASELINE, YEARS = 365.0, 3
@@ -118,18 +118,15 @@ def begun_watch(h: History, arl: float) -> Watch:
 
 
 def quiet(kind: str, seed: int, first_seed: int = QUIET_SEEDS) -> dict[str, Any]:
-    """Return whether and after how many years a quiet turbine crosses each threshold."""
+    """Return whether and after how many years a watch on a quiet turbine gives an alarm, by its ARL."""
     place = list(KINDS).index(kind)
     h = history(seasons(first_seed + 100 * place + seed, YEARS * 365.0, KINDS[kind]))
     h = untold(h) if first_seed == UNTOLD_SEEDS else h
-    begun = begun_watch(h, ARLS[-1])
-    _, looks = watched(h, begun)
-    out = {}
+    baseline, out = h.between(0.0, BASELINE), {}
+    before = learnt(baseline, ARLS[0], patterns())
     for arl in ARLS:
-        threshold = calibrated(replace(begun, arl_years=arl), h.between(0.0, BASELINE)).log_threshold
-        first = next((k for k in looks if k.log_r >= threshold), None)
-        end = looks[-1].day if first is None else first.day
-        out[f"{arl:g}"] = [first is not None, (end - BASELINE) / 365.25]
+        _, looks = watched(h, calibrated(replace(before, arl_years=arl), baseline))
+        out[f"{arl:g}"] = [looks[-1].change is not None, (looks[-1].day - BASELINE) / 365.25]
     return out
 
 
@@ -148,15 +145,15 @@ def one_mode(days: np.ndarray, ln_f: np.ndarray) -> History:
     )  # fmt: skip
 
 
-def right(seed: int, learnt: Watch, baseline: History) -> dict[str, Any]:
-    """Return as ``quiet`` for a mode whose days are drawn from what the watch itself predicts for them.
+def right(seed: int, watch: Watch) -> list[Any]:
+    """Return whether and after how many years a watch alarms whose days are drawn from what it predicts.
 
     Its models, their weights and the uncertainty of its baseline are then right, so that E[R_t] is the prior
     weight of t days.
     """
-    rng, watch, logs = np.random.default_rng((78, seed)), learnt, []
+    rng = np.random.default_rng((78, seed))
     days = BASELINE + 0.5 + np.arange(int((YEARS - 1) * 365.25))
-    weights, considered = learnt.blocks[0].log_weights, learnt.considered
+    weights, considered = watch.blocks[0].log_weights, watch.considered
     model = rng.choice(weights.size, p=np.exp(weights) / np.exp(weights).sum())
     for day in days:
         block = watch.blocks[0]
@@ -167,7 +164,6 @@ def right(seed: int, learnt: Watch, baseline: History) -> dict[str, Any]:
         ahead = filtered(block.memories[model], belief, empty_bank(1, belief.mean.size), hour, watch.last_day)
         ln_f = rng.normal(-ahead.innovation[0, 0], np.sqrt(ahead.spread[0, 0]))
         watch, look = watching.step(watch, one_mode(np.array([day]), ln_f + np.log(block.typical / 0.3)))
-        logs.append(look.log_r)
         if look.change is not None:
             break
         # a share of the weights returns to those of the baseline, now and then
@@ -175,15 +171,7 @@ def right(seed: int, learnt: Watch, baseline: History) -> dict[str, Any]:
         considered, weights = watch.considered, watch.blocks[0].log_prior
         if rng.random() < back:
             model = rng.choice(weights.size, p=np.exp(weights) / np.exp(weights).sum())
-    out = {}
-    for arl in ARLS:
-        threshold = calibrated(replace(learnt, arl_years=arl), baseline).log_threshold
-        over = np.flatnonzero(np.array(logs) >= threshold)
-        out[f"{arl:g}"] = [
-            over.size > 0,
-            float(days[over[0] if over.size else len(logs) - 1] - BASELINE) / 365.25,
-        ]
-    return out
+    return [look.change is not None, float(day - BASELINE) / 365.25]
 
 
 def right_models(turbines: int) -> list[str]:
@@ -196,8 +184,8 @@ def right_models(turbines: int) -> list[str]:
             for _ in days[1:]:
                 slow.append(keep * slow[-1] + np.sqrt(1.0 - keep**2) * rng.standard_normal())
             baseline = one_mode(days, 1e-3 * (np.array(slow) + rng.standard_normal(days.size)))
-            learnt = watching.start(baseline, arl_years=ARLS[-1])
-        found.append(right(seed, learnt, baseline))
+            begun = {f"{arl:g}": watching.start(baseline, arl_years=arl) for arl in ARLS}
+        found.append({arl: right(seed, watch) for arl, watch in begun.items()})
         sys.stderr.write(f"right {seed}\n")
     return [
         "| model | ARL [years] | alarms | years watched | promised | ratio | chance |",

@@ -140,6 +140,13 @@ def start(
     InputError
         If the baseline is too short to learn from.
     """
+    return calibrated(learnt(baseline, arl_years, patterns, slopes), baseline)
+
+
+def learnt(
+    baseline: History, arl_years: float, patterns: Sequence[Pattern] = (), slopes: Sequence[Slope] = ()
+) -> Watch:
+    """Return what :func:`start` does before its threshold is corrected and its changes are selected."""
     kept = columns_to_watch(baseline)
     design = with_slow_processes(design_of(baseline), baseline)
     rows, lagged = regressors(design, baseline, fresh(design, baseline))
@@ -158,7 +165,7 @@ def start(
     total = sum(len(block.kept) for block in blocks)
     last = float(baseline.days[-1])
     span = last - float(baseline.days[0])
-    learnt = Watch(
+    return Watch(
         baseline.labels,
         design,
         lagged,
@@ -171,7 +178,6 @@ def start(
         min(PATIENCE * span, MOST_PATIENCE_DAYS) if design.hidden else 0.0,
         GUARDED if design.hidden and span > WHOLE_YEAR_DAYS else 1.0,
     )
-    return calibrated(learnt, baseline)
 
 
 def _no_begins(m: int) -> PossibleOnsets:
