@@ -1,5 +1,6 @@
 """Samples are kept to the last bit, as int16 where the sensor's step allows."""
 
+import json
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -7,9 +8,16 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
+from jackettwin.errors import InputError
 from jackettwin.records import Channel, Record
 from jackettwin.records.record import record_id
-from jackettwin.store import read_waveform, waveform_path, without_false_digits, write_waveform
+from jackettwin.store import (
+    read_extremes,
+    read_waveform,
+    waveform_path,
+    without_false_digits,
+    write_waveform,
+)
 from jackettwin.store.waveforms import packed_samples
 
 START = datetime(2025, 3, 1, 12, tzinfo=UTC)
@@ -122,3 +130,49 @@ def test_a_value_that_no_integer_or_single_float_is_stays_whole() -> None:
     packed, step = packed_samples(x)
     np.testing.assert_array_equal(packed, x)
     assert step is None
+
+
+@pytest.mark.parametrize(
+    ("since_s", "until_s", "points"),
+    [(0.0, None, 100), (0.0, None, 7), (4321.0, 9000.0, 40), (100.3, 100.9, 50), (9.9e5, None, 10)],
+)
+def test_extremes_are_those_of_the_samples_between_their_edges(
+    tmp_path: Path, since_s: float, until_s: float | None, points: int
+) -> None:
+    """Of kept blocks where bins are long, of the samples where they are short; two hours, none in a third."""
+    data = np.cumsum(np.random.default_rng(5).standard_normal((3, 200_000)), axis=1)
+    data[0, 60_000:130_000] = np.nan
+    write_waveform(record(data), tmp_path / "x.parquet")
+    found = read_extremes(tmp_path / "x.parquet", ["a2", "a0"], since_s, until_s, points)
+    assert found.names == ("a2", "a0") and found.low.shape == found.high.shape == (2, found.time_s.size)
+    last = 10_000.0 if until_s is None else until_s
+    assert found.time_s.size <= points
+    if since_s < last:
+        bin_s = (last - since_s) / points
+        assert found.time_s.size >= points / 1.3 - 1 or bin_s < 0.05
+        assert since_s - 0.25 * bin_s - 0.05 <= found.time_s[0] <= since_s
+    edges = np.round(20.0 * found.time_s).astype(int)
+    ends = np.append(edges[1:], int(np.ceil(20.0 * last)))[: edges.size]
+    for row, low, high in zip(data[[2, 0]], found.low, found.high, strict=True):
+        for k, (first, end) in enumerate(zip(edges, ends, strict=True)):
+            samples = row[first:end]
+            if k == edges.size - 1:  # the last bin ends with a block
+                assert low[k] <= np.nanmin(samples) and high[k] >= np.nanmax(samples)
+            elif np.isnan(samples).all():
+                assert np.isnan(low[k]) and np.isnan(high[k])
+            else:
+                assert (low[k], high[k]) == (np.nanmin(samples), np.nanmax(samples))
+    with pytest.raises(InputError, match="channel"):
+        read_extremes(tmp_path / "x.parquet", ["none"], 0.0, None, 10)
+
+
+def test_a_file_without_extremes_is_drawn_from_its_samples(tmp_path: Path) -> None:
+    """As files were written before."""
+    data = np.random.default_rng(6).standard_normal((1, 50_000))
+    write_waveform(record(data), tmp_path / "new")
+    table = pq.read_table(tmp_path / "new")
+    about = {**json.loads(table.schema.metadata[b"jackettwin"])}
+    del about["block"]
+    pq.write_table(table.replace_schema_metadata({b"jackettwin": json.dumps(about)}), tmp_path / "old")
+    new, old = (read_extremes(tmp_path / name, None, 0.0, None, 5) for name in ("new", "old"))
+    assert (new.low.min(), new.high.max()) == (data.min(), data.max()) == (old.low.min(), old.high.max())

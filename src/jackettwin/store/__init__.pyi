@@ -12,6 +12,7 @@ from .results import StoredObservation as StoredObservation
 from .streams import Packet as Packet
 from .waveforms import (
     is_waveform as is_waveform,
+    read_extremes as read_extremes,
     read_waveform as read_waveform,
     waveform_path as waveform_path,
     without_false_digits as without_false_digits,

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import io
 from datetime import UTC, datetime
-from math import ceil, isfinite
+from math import isfinite
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jackettwin.errors import InputError
@@ -57,38 +58,42 @@ def samples(service: Service, record_id: str, who: Who, names: list[str] | None 
     """Return the samples of a record, or of some of its channels; answers 404 if they were deleted."""
     from jackettwin.store import read_waveform
 
+    record, path = _kept(service, record_id, who)
+    known = {channel["name"] for channel in record.channels}
+    return read_waveform(path, names if known.issuperset(names or ()) else None)
+
+
+def _kept(service: Service, record_id: str, who: Who) -> tuple[StoredRecord, Path]:
+    """Return a record and the file of its samples; answers 404 if they were deleted."""
     with reading(service.database) as connection:
         record = known_record(connection, record_id, who)
     path = None if record.waveform is None else service.settings.store / record.waveform
     if path is None or not path.exists():
         raise ApiError(404, "the samples of this record were deleted", field="record_id")
-    known = {channel["name"] for channel in record.channels}
-    return read_waveform(path, names if known.issuperset(names or ()) else None)
+    return record, path
 
 
 def extremes(
-    record: Record, names: list[str] | None, since: float, until: float | None, points: int
+    service: Service,
+    record_id: str,
+    who: Who,
+    names: list[str] | None,
+    since: float,
+    until: float | None,
+    points: int,
 ) -> Signal:
     """Return minimum and maximum of each of ``points`` bins between two times [s after the start]."""
-    import numpy as np
+    from jackettwin.store import read_extremes
 
-    chosen = record if names is None else record.select(names)
-    first = min(int(since * record.sample_rate_hz), chosen.data.shape[1])
-    data = chosen.data[:, first : None if until is None else ceil(until * record.sample_rate_hz)]
-    size = max(ceil(data.shape[1] / points), 1)
-    edges = np.arange(0, data.shape[1], size)
-    if edges.size:
-        low, high = np.fmin.reduceat(data, edges, axis=1), np.fmax.reduceat(data, edges, axis=1)
-    else:
-        low = high = np.empty((data.shape[0], 0))
-    assert record.start_utc is not None
+    _, path = _kept(service, record_id, who)
+    found = read_extremes(path, names, since, until, points)
     return Signal(
-        sample_rate_hz=record.sample_rate_hz,
-        start_utc=record.start_utc,
-        time_s=((first + edges) / record.sample_rate_hz).tolist(),
+        sample_rate_hz=found.sample_rate_hz,
+        start_utc=found.start_utc,
+        time_s=found.time_s.tolist(),
         channels={
-            channel.name: {"min": _listed(a), "max": _listed(b)}
-            for channel, a, b in zip(chosen.channels, low, high, strict=True)
+            name: {"min": _listed(low), "max": _listed(high)}
+            for name, low, high in zip(found.names, found.low, found.high, strict=True)
         },
     )
 

@@ -125,7 +125,7 @@ def signal(
     accept: Annotated[str, Header()] = "application/json",
 ) -> Any:
     """Return the extremes of each bin of time [s after the start], as JSON or Arrow."""
-    found = signals.extremes(signals.samples(parts, record_id, who, channels), channels, since, until, points)
+    found = signals.extremes(parts, record_id, who, channels, since, until, points)
     if "application/vnd.apache.arrow.stream" in accept:
         with writing(parts.database) as connection:
             people.note_down(connection, who.name, "download", f"samples of {record_id}", "ok", parts.now())
