@@ -117,7 +117,7 @@ def read_waveform(path: Path, names: Collection[str] | None = None) -> Record:
 
 
 @dataclass(frozen=True)
-class Extremes:
+class SampleExtremes:
     """Smallest and largest samples of a record's bins of equal length.
 
     Attributes
@@ -139,7 +139,7 @@ class Extremes:
 
 def read_extremes(
     path: Path, names: Sequence[str] | None, since_s: float, until_s: float | None, points: int
-) -> Extremes:
+) -> SampleExtremes:
     """Return the extremes of at most ``points`` bins between two times after a record's start.
 
     A long stretch is drawn from extremes that were kept with the samples, so that a day opens as quickly as
@@ -170,7 +170,7 @@ def read_extremes(
             low, high = _extremes(_samples(file, about, wanted, first, last), size)
             at = first + size * np.arange(low.shape[1])
     start = datetime.fromisoformat(about["start_utc"])
-    return Extremes(start, rate, tuple(names or places), at / rate, low, high)
+    return SampleExtremes(start, rate, tuple(names or places), at / rate, low, high)
 
 
 def _extremes(data: FloatArray, size: int) -> FloatArray:
