@@ -153,7 +153,7 @@ def live(window: Window, store: Path, seconds: int = 8) -> tuple[float, float]:
 ANSWERS = {
     "Why is the side-side damping high?": "Side-side 1 has a measured damping of",
     "When did the soil change, and how sure is that?": "The stiffness fell by",
-    "Why?": "most likely scour",
+    "Why?": "most likely soil softening, scour at all feet",
     "What to install next?": "Measure at the feet",
 }
 

@@ -28,7 +28,7 @@ from jackettwin.soil import read_support, with_static_reactions
 from jackettwin.structure import Structure
 from jackettwin.structure.cut import at_interface
 
-DISCARD_S, DURATION_S, STEP_S = 30.0, 300.0, 0.05
+DISCARD_S, DURATION_S, STEP_S = 30.0, 600.0, 0.05
 FEATHERED_DEG, IDLING_RPM = 90.0, 0.3
 GAUGES = (26, 7)
 """Nodes of the tower near 77 and 41 m."""

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -11,11 +13,14 @@ from tests.change.test_judge import CHANGED, MODEL, SIXTY, days_of
 
 from jackettwin.change import corrections
 from jackettwin.change.judge import JUDGED, StoredMonitoring, judge
-from jackettwin.change.watch_document import corrected_sentence, with_later_look
+from jackettwin.change.watch_document import corrected_sentence, either, likeliest_of, with_later_look
+from jackettwin.watching import CauseVerdict, Diagnosis
 
 
-def document(time: str, cause: str, size: float) -> dict[str, object]:
-    verdict = {"time_utc": time, "cause": cause, "probability": 0.9}
+def document(
+    time: str, cause: str, size: float, probability: float = 0.9, named: tuple[str, ...] = ()
+) -> dict[str, object]:
+    verdict = {"time_utc": time, "cause": cause, "probability": probability, "named": list(named or (cause,))}
     return {
         "time_utc": time, "verdicts": [verdict], "causes": [verdict], "size": size, "ln_evidence": size,
         "quantities": ["bending_1"], "at_alarm": None,
@@ -40,6 +45,39 @@ def test_another_cause_corrects_the_first_and_the_same_does_not() -> None:
     said = corrected_sentence(found)
     assert said == "was: sensor: more scatter (90%, 2025-03-01); now: brace_1 lost (90%, 2025-03-04)"
     assert not corrected_sentence(looks[0]) and not corrections(looks[0])
+
+
+def test_what_was_never_clear_or_is_not_distinguished_is_no_correction() -> None:
+    """The demonstration said in turn one foot, a clock, a foot, growth and soil, at 15 to 44 % each."""
+    soil = document("2025-03-09", "soil softening or scour", 4.0, 0.9, ("soil softening", "scour"))
+    found = document("2025-03-01", "scour", 1.0, 0.2)
+    for later in (document("2025-03-02", "sensor: clock", 2.0, 0.3), soil):
+        found = with_later_look(found, later)
+    (was, now) = found["verdicts"]
+    assert (was["cause"], now["cause"]) == ("sensor: clock", "soil softening or scour")
+    found = with_later_look(soil, document("2025-03-10", "scour", 5.0, 0.8))
+    (one,) = found["verdicts"]
+    assert (one["cause"], one["probability"], one["time_utc"]) == ("scour", 0.8, "2025-03-09")
+
+
+def test_causes_that_are_not_distinguished_are_named_together() -> None:
+    verdict = partial(CauseVerdict, size=1.0, interval_90=(0.5, 2.0), unit="-")
+    soil, all_feet, foot, growth = (
+        verdict(name, p)
+        for name, p in (
+            ("soil softening", 0.41),
+            ("scour", 0.29),
+            ("scour at foot_1", 0.18),
+            ("growth", 0.12),
+        )
+    )
+    group = ("soil softening", "scour", "scour at foot_1")
+    found = likeliest_of(Diagnosis((soil, all_feet, foot, growth), (group,)))
+    assert [one.cause for one in found] == list(group)
+    clear = replace(soil, probability=0.6)
+    assert likeliest_of(Diagnosis((clear, all_feet), (group,))) == (clear,)
+    assert either(["a"]) == "a" and either(["a", "b"]) == "a or b"
+    assert either(list("abcdef")) == "a, b, c or 3 more" and either(list("abcd")) == "a, b, c or d"
 
 
 def test_a_later_look_knows_a_change_better() -> None:

@@ -283,16 +283,16 @@ _NAMED = 0.01
 
 def finding_of(alarm: Mapping[str, Any]) -> Finding:
     """Return the finding on an alarm."""
-    best = alarm["causes"][0]
+    now = alarm["verdicts"][-1]
     low, high = alarm["size_interval_90"]
     began_low, began_high = (text[:10] for text in alarm["began_interval_90"])
     params = {
         "time_utc": alarm["time_utc"], "began": alarm["began_utc"][:10], "began_low": began_low,
-        "began_high": began_high, "size": alarm["size"], "low": low, "high": high, "cause": best["cause"],
-        "probability": best["probability"], "by_mode": sizes_by_mode(alarm),
+        "began_high": began_high, "size": alarm["size"], "low": low, "high": high, "cause": now["cause"],
+        "probability": now["probability"], "by_mode": sizes_by_mode(alarm),
         "causes": {of["cause"]: of["probability"] for of in alarm["causes"] if of["probability"] >= _NAMED},
     }  # fmt: skip
-    sensor = best["cause"].startswith("sensor") or alarm["kind"] == "scatter"
+    sensor = now["cause"].startswith("sensor") or alarm["kind"] == "scatter"
     turned = "structure_turned" if alarm.get("unit") == "deg" else "structure_changed"
     return Finding("sensor_changed" if sensor else turned, ", ".join(alarm["quantities"]), params)
 

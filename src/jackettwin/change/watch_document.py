@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from datetime import datetime
 from functools import reduce
@@ -13,10 +13,12 @@ import numpy as np
 from jackettwin.change.reversals import Z90, taken_back
 from jackettwin.change.smallest_changes import smallest_documents
 from jackettwin.change.table_monitoring import Alarm, MonitoredTable
-from jackettwin.watching import CauseVerdict, Watch
+from jackettwin.watching import CLEAR, CauseVerdict, Diagnosis, Watch
 
 _NAMED, _LIKELY = 3, 0.001
 """Number of causes in a sentence if none is clear, and the smallest probability of a listed cause."""
+_WITH = 0.05
+"""Smallest probability of a cause that is named with one from which the data do not distinguish it."""
 
 
 def watched_document(watched: MonitoredTable) -> dict[str, Any]:
@@ -65,21 +67,26 @@ def with_later_look(before: Mapping[str, Any], later: Mapping[str, Any]) -> dict
     """Return the document of an alarm that was looked at again.
 
     Its size, begin and causes are those of the later look; its time and evidence stay those of the alarm.
-    ``verdicts`` holds what was called likeliest, from when on; ``at_alarm`` the document of the alarm's day.
+    ``verdicts`` holds what was called likeliest, from when on; the last is today's. A look corrects another
+    if either was clear and they name no cause together. ``at_alarm`` is the document of the alarm's day.
     """
-    was, now = before["verdicts"], later["verdicts"][-1]
+    *earlier, was = before["verdicts"]
+    now = later["verdicts"][-1]
+    same = not set(was["named"]).isdisjoint(now["named"])
+    same |= max(was["probability"], now["probability"]) < CLEAR
     first = before["at_alarm"] or {key: value for key, value in before.items() if key != "at_alarm"}
     return {
         **later,
         "time_utc": before["time_utc"],
         "ln_evidence": before["ln_evidence"],
         "at_alarm": first,
-        "verdicts": [*was, *([now] if now["cause"] != was[-1]["cause"] else [])],
+        "verdicts": [*earlier, *([{**now, "time_utc": was["time_utc"]}] if same else [was, now])],
     }
 
 
 def _looked_document(watch: Watch, time: Callable[[float], datetime], alarm: Alarm) -> dict[str, Any]:
-    change, best = alarm.change, alarm.diagnosis.verdicts[0]
+    change, diagnosis = alarm.change, alarm.diagnosis
+    named = likeliest_of(diagnosis)
     low, high = change.began_interval_90
     names = [quantity_name(watch, key) for key in watch.quantities]
     members = np.flatnonzero(change.members)
@@ -103,8 +110,9 @@ def _looked_document(watch: Watch, time: Callable[[float], datetime], alarm: Ala
         "verdicts": [
             {
                 "time_utc": time(change.day).isoformat(),
-                "cause": best.cause,
-                "probability": best.probability,
+                "cause": either([one.cause for one in named]),
+                "probability": sum(one.probability for one in named),
+                "named": [one.cause for one in named],
             }
         ],
         "causes": [_cause(v) for v in alarm.diagnosis.verdicts if v.probability > _LIKELY],
@@ -116,6 +124,24 @@ def _looked_document(watch: Watch, time: Callable[[float], datetime], alarm: Ala
         ],
         "ln_evidence": change.log_r,
     }
+
+
+def likeliest_of(diagnosis: Diagnosis) -> tuple[CauseVerdict, ...]:
+    """Return the likeliest cause, with those that the data do not distinguish from it unless it is clear.
+
+    Softer soil at 41 % is no verdict where scour of all feet has 29 % and of one 18 %.
+    """
+    best, *others = diagnosis.verdicts
+    if best.probability >= CLEAR:
+        return (best,)
+    group = next((group for group in diagnosis.inseparable if best.cause in group), ())
+    return (best, *(one for one in others if one.cause in group and one.probability >= _WITH))
+
+
+def either(names: Sequence[str]) -> str:
+    """Return names with "or" before the last one, of many the first."""
+    told = [*names[:_NAMED], f"{len(names) - _NAMED} more"] if len(names) > _NAMED + 1 else list(names)
+    return " or ".join([", ".join(told[:-1]), told[-1]]) if told[1:] else told[0]
 
 
 def alike_sentence(alarm: Mapping[str, Any]) -> str:
@@ -130,9 +156,7 @@ def corrected_sentence(alarm: Mapping[str, Any]) -> str:
     if not was:
         return ""
     told = ", then ".join(f"{v['cause']} ({v['probability']:.0%}, {v['time_utc'][:10]})" for v in was)
-    return (
-        f"was: {told}; now: {now['cause']} ({alarm['causes'][0]['probability']:.0%}, {now['time_utc'][:10]})"
-    )
+    return f"was: {told}; now: {now['cause']} ({now['probability']:.0%}, {now['time_utc'][:10]})"
 
 
 def _doubt(alarm: Alarm) -> float:
@@ -185,11 +209,13 @@ def quantity_name(watch: Watch, key: tuple[str, int]) -> str:
     return watch.labels[mode] + {"frequency": "", "damping": " damping", "angle": " direction"}[kind]
 
 
-def _likeliest(alarm: Alarm) -> str:
-    """Return the cause if one is likelier than not, else the first few."""
-    named = [f"{v.cause} ({100.0 * v.probability:.0f} %)" for v in alarm.diagnosis.verdicts[:_NAMED]]
-    clear = alarm.diagnosis.verdicts[0].is_clear
-    return f"most likely {named[0]}" if clear else f"cause not clear: {', '.join(named)}"
+def likeliest(alarm: Mapping[str, Any]) -> str:
+    """Return the likeliest cause of an alarm's document in words, or the first few if none is clear."""
+    now = alarm["verdicts"][-1]
+    if now["probability"] >= CLEAR:
+        return f"most likely {now['cause']} ({100.0 * now['probability']:.0f} %)"
+    named = [f"{one['cause']} ({100.0 * one['probability']:.0f} %)" for one in alarm["causes"][:_NAMED]]
+    return f"cause not clear: {', '.join(named)}"
 
 
 def statement(watched: MonitoredTable) -> str:
@@ -212,7 +238,7 @@ def statement(watched: MonitoredTable) -> str:
         began = [table.time(day) for day in (change.began, *change.began_interval_90)]
         parts.append(
             f"{table.time(alarm.day):%Y-%m-%d}: {what} {sizes_by_mode(doc)}, began "
-            f"{began[0]:%Y-%m-%d} ({began[1]:%Y-%m-%d} to {began[2]:%Y-%m-%d}); {_likeliest(alarm)}"
+            f"{began[0]:%Y-%m-%d} ({began[1]:%Y-%m-%d} to {began[2]:%Y-%m-%d}); {likeliest(doc)}"
             f"{f'; {corrected}' if (corrected := corrected_sentence(doc)) else ''}"
             f"{'' if back is None else f'; takes back the change of {_alarmed(watched, back)}'}."
         )

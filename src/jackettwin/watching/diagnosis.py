@@ -25,6 +25,8 @@ from jackettwin.watching.scatter import STRONGER
 
 INSEPARABLE = 2.0
 """Distance in standard deviations of data and model below which causes cannot be distinguished."""
+CLEAR = 0.5
+"""Probability of a cause from which it is at least as likely as all others together."""
 _OTHER_PRIOR = 1.0
 TAIL = {1.0: 0.68, 3.0: 0.22, 9.0: 0.1}
 """Errors of a model's directions, as multiples of the usual error, and their probabilities. Of some five
@@ -53,11 +55,6 @@ class CauseVerdict:
     interval_90: tuple[float, float]
     unit: str
     alike: tuple[str, ...] = ()
-
-    @property
-    def is_clear(self) -> bool:
-        """Whether it is at least as likely as all others together."""
-        return self.probability >= 0.5
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,10 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from jackettwin.change import Alarm, MonitoredTable
+from jackettwin.change import Alarm, MonitoredTable, alarm_document
 from jackettwin.report.figures import style
 from jackettwin.report.tables.numbers import words
-from jackettwin.watching import CauseVerdict
+from jackettwin.watching import CLEAR
 
 _BAND = 1.645
 _CAUSE_WIDTH = 18
@@ -87,10 +87,12 @@ def _mark(figure: go.Figure, watched: MonitoredTable, alarm: Alarm, i: int, row:
     figure.add_vrect(x0=low, x1=high, fillcolor=style.ORANGE, opacity=0.25, line_width=0, row=row, col=1)
     figure.add_vline(x=at, line={"color": style.VERMILLION, "width": 2}, row=row, col=1)
     if named:
-        best = alarm.diagnosis.verdicts[0]
+        now = alarm_document(watched.watch, table.time, alarm)["verdicts"][-1]
+        clear = now["probability"] >= CLEAR
+        said = f"{now['cause']}, {100.0 * now['probability']:.0f} %" if clear else "cause not clear"
         figure.add_annotation(
             x=at, y=1.0, yref="y domain", xanchor="left", yanchor="top", xshift=6, showarrow=False,
-            bgcolor="white", align="left", text=_cause(best), row=row, col=1,
+            bgcolor="white", align="left", text="<br>".join(wrap(said, _CAUSE_WIDTH)), row=row, col=1,
         )  # fmt: skip
     if change.kind == "scatter" or not change.members[i]:
         return
@@ -101,12 +103,6 @@ def _mark(figure: go.Figure, watched: MonitoredTable, alarm: Alarm, i: int, row:
         line={"color": style.VERMILLION, "width": 2}, name="change found", legendgroup="change",
         showlegend=named, row=row, col=1,
     )  # fmt: skip
-
-
-def _cause(best: CauseVerdict) -> str:
-    """Return the cause in short lines, since the alarm may be at the end of the axis of a small figure."""
-    text = f"{best.cause}, {100.0 * best.probability:.0f} %" if best.is_clear else "cause not clear"
-    return "<br>".join(wrap(text, _CAUSE_WIDTH))
 
 
 def evidence_through_time(watched: MonitoredTable) -> go.Figure:
