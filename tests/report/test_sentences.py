@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from jackettwin.answers import Answers, Span
 from jackettwin.answers.result import (
@@ -66,6 +67,25 @@ def test_the_headline_tells_the_story() -> None:
     assert "The ground's damping is not determined by these 5 records." in lines
     assert any("the ground gives 58 % in fore-aft 1" in line for line in lines)
     assert lines[-1].startswith("The ground's damping would be determined by motion measured at the feet")
+
+
+@pytest.mark.parametrize(
+    ("state", "label", "why"),
+    [
+        ("parked", "side_side_1", "flat sides"),
+        ("operating", "fore_aft_1", "thrust"),
+        (None, "side_side_1", ""),
+    ],
+)
+def test_why_a_rotor_damps_is_said_where_it_is_the_largest_source(
+    state: str | None, label: str, why: str
+) -> None:
+    sources = {"structure": Span(0.005), "soil": Span(0.001), "rotor": Span(0.02)}
+    mode = replace(MODE, label=label, measured_damping=Span(0.026, 0.02, 0.03), sources=sources)
+    said = sentences(replace(ANSWERS, modes=(mode,), clearances=(), rotor_state=state, wind_m_s=11.6))
+    told = next(q.short for q in said.questions if q.title == "Whose damping is it?")
+    found = [text for text in told if text.startswith("Why the rotor")]
+    assert len(found) == bool(why) and all(why in text and "11.6 m/s" in text for text in found)
 
 
 def test_damping_that_no_source_explains_is_shared_out_to_none() -> None:

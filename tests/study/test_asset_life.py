@@ -142,6 +142,7 @@ def test_welds_around_tubes_have_a_life_and_alarms(model: StressModel) -> None:
     row, tube = found.rows()[0], model.tubes[1]
     assert (row["joint"], row["side"], row["position"]) == (tube.name, "tube", "90°")
     assert row["node_m"][2] == row["z_m"] == pytest.approx(tube.z_m)
+    assert row["above_sea_m"] == pytest.approx(tube.z_m - model.assembly.structure.sea_level_z_m)
     assert row["rate_per_year"] == pytest.approx(0.4, rel=1e-6)
     assert [f.subject for _, f in found.findings()] == [f"{tube.name}, tube"]
 

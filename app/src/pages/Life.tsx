@@ -45,7 +45,7 @@ const COLUMNS: Column<Weld>[] = [
     ),
     by: key,
   },
-  number("Height", "m", (w) => w.z_m, { say: (v) => v.toFixed(1) }),
+  number("Above the sea", "m", (w) => w.above_sea_m, { say: (v) => v.toFixed(1) }),
   {
     title: "Left",
     unit: "years, 5 to 95 %",

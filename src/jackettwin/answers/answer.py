@@ -50,6 +50,8 @@ def answer(result: TwinResult) -> Answers:
         modes=modes,
         clearances=() if speed is None else tuple(_clearances(modes, speed, result.blades)),
         rotor_speed_hz=speed,
+        rotor_state=result.rotor_state,
+        wind_m_s=result.wind_m_s,
         blades=result.blades,
         ground=ground,
         next_steps=()

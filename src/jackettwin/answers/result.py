@@ -256,6 +256,9 @@ class Answers:
     probability_from : {"evidence", "approximation", ""}
         Sampled evidence of every law, or Laplace's approximation at the best fits.
     rotor_speed_hz : (lowest, highest) or None
+    rotor_state : {"parked", "operating"} or None
+    wind_m_s : float or None
+        Mean wind speed of the records.
     usable : float
         Longest interval, as a factor, of a parameter that counts as identified.
     records, minutes : of measurements
@@ -284,6 +287,8 @@ class Answers:
     fit: FitAnswer | None = None
     scrutiny: Scrutiny | None = None
     averaged: tuple[AveragedGround, ...] = ()
+    rotor_state: str | None = None
+    wind_m_s: float | None = None
 
     @property
     def fits(self) -> bool:

@@ -80,6 +80,8 @@ class TwinResult:
         Real poles that the supports were fitted to, by rate.
     rotor_speed_hz : (lowest, highest) or None
         Of the rotor in operation, if the twin or its rotor states it.
+    rotor_state : "parked" or "operating" in these records, if the twin has a rotor
+    wind_m_s : mean wind speed of the records, if they state it
     blades : int
     in_all : (number, seconds), optional
         Number and total duration of all records, if ``observations`` are only some of them.
@@ -101,6 +103,8 @@ class TwinResult:
     warnings: tuple[str, ...]
     relaxations: tuple[MeasuredRelaxation, ...] = ()
     rotor_speed_hz: tuple[float, float] | None = None
+    rotor_state: str | None = None
+    wind_m_s: float | None = None
     blades: int = 3
     in_all: tuple[int, float] | None = None
     scrutiny: tuple[Scrutiny, ...] = ()

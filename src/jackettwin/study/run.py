@@ -180,6 +180,8 @@ def updated_twin(
         ),
         relaxations=relaxations,
         rotor_speed_hz=speed,
+        rotor_state=None if config.update.rotor is None else config.update.rotor_state,
+        wind_m_s=wind,
         blades=blades,
         in_all=None if found is None else found.in_all,
         scrutiny=checked,

@@ -461,6 +461,7 @@ def _averaged(a: Answers) -> list[str]:
 
 def _owners(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     short = [_budget_words(m) for m in _firsts(a) if m.sources and m.measured_damping is not None]
+    short += _of_rotor(a)
     unexplained = set()
     for m in _firsts(a):
         beyond = m.unexplained or 0.0
@@ -477,6 +478,24 @@ def _owners(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     if missing and any(m.sources for m in a.modes):
         short.append(f"Not modelled: {listed(missing)}; its damping is attributed to the other sources.")
     return tuple(short), ()
+
+
+def _of_rotor(a: Answers) -> list[str]:
+    """Return why the rotor damps a first bending mode of which it is the largest source."""
+    owners = {m.label: max(m.sources, key=lambda s: m.sources[s].value) for m in _firsts(a) if m.sources}
+    damped = [label for label, owner in owners.items() if owner == "rotor"]
+    wind = "" if a.wind_m_s is None else f" ({a.wind_m_s:.3g} m/s on average in these records)"
+    if a.rotor_state == "parked" and any(label.startswith("side_side") for label in damped):
+        return [
+            "Why the rotor: feathered blades move with their flat sides through the air in side-side motion, "
+            f"and edgewise in fore-aft motion; their drag damps in proportion to the wind{wind}."
+        ]
+    if a.rotor_state == "operating" and any(label.startswith("fore_aft") for label in damped):
+        return [
+            "Why the rotor: at work its thrust grows when the tower moves into the wind and falls when it "
+            f"moves with it; side-side motion changes it little{wind}."
+        ]
+    return []
 
 
 def _budget_words(m: ModeAnswer) -> str:

@@ -193,6 +193,7 @@ def _place(structure: Structure, weld: HotSpot | TubeWeld) -> dict[str, Any]:
         ends, scf = (weld.node, weld.chord, weld.brace), weld.scf
     return dict(zip(("joint", "chord", "brace"), ends, strict=True)) | {
         "z_m": float(at[2]),
+        "above_sea_m": float(at[2]) - structure.sea_level_z_m,
         "node_m": at.tolist(),
         "brace_end_m": other.tolist(),
         "scf": scf,
