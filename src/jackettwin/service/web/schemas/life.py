@@ -40,7 +40,7 @@ class LifeOut(BaseModel):
     side: Literal["chord", "brace", "tube"]
     position: str
     z_m: float
-    above_sea_m: float
+    above_sea_m: float | None = None
     node_m: tuple[float, float, float]
     brace_end_m: tuple[float, float, float]
     environment: Literal["air", "cathodic", "free-corrosion"]
