@@ -18,6 +18,7 @@ from tests.service.conftest import HERE, Done, description, hour, record_file, t
 from jackettwin.files import find_file
 from jackettwin.service.context import Service
 from jackettwin.service.web import pages
+from jackettwin.store import journal, results, writing
 
 
 def test_a_record_is_taken_observed_and_asked_for(client: TestClient, service: Service) -> None:
@@ -230,6 +231,22 @@ def test_signals_come_as_extremes_in_json_and_arrow(client: TestClient) -> None:
     assert client.get(path + "&channels=nope").status_code == 422
     spectrum = client.get(f"/api/v1/records/{record_id}/spectrum").json()
     assert spectrum["units"]["acc_top_x"] == "(m/s^2)^2/Hz"
+
+
+def test_a_twin_whose_model_does_not_fit_is_not_in_order(client: TestClient, service: Service) -> None:
+    """The report called it not reliable, and the turbine's light said that there was nothing to do."""
+    upload(client, 1)
+    assert client.get("/api/v1/assets/wtg").json()["status"] == "ok"
+    for reliable, status in ((False, "warning"), (True, "ok"), (None, "ok")):
+        known = {} if reliable is None else {"reliable": reliable}
+        with writing(service.database) as connection:
+            results.put_knowledge(connection, "wtg", 1, {"known": known}, None, service.now())
+            journal.tell(connection, "state", "wtg", {}, service.now())
+        found = client.get("/api/v1/assets/wtg").json()
+        assert found["status"] == status
+        assert ("cannot reproduce" in found["reason"]) is (status == "warning")
+    (listed,) = client.get("/api/v1/assets").json()["items"]
+    assert listed["status"] == "ok"
 
 
 def test_an_unchanged_answer_is_not_sent_again(client: TestClient) -> None:

@@ -359,13 +359,31 @@ def open_alarms(connection: Connection, asset: str | None = None) -> dict[str, l
     return found
 
 
-def shortest_lives(connection: Connection, asset: str | None = None) -> dict[str, float]:
-    """Return the median of the years left to the weld that fails first, {asset: years}, where known."""
+@dataclass(frozen=True)
+class Estimated:
+    """What a turbine's estimate says in short.
+
+    Attributes
+    ----------
+    remaining_years : median of the years left to the weld that fails first, where known
+    reliable : False if the model cannot reproduce the measurements
+    """
+
+    remaining_years: float | None = None
+    reliable: bool = True
+
+
+def estimated(connection: Connection, asset: str | None = None) -> dict[str, Estimated]:
+    """Return what the estimates of the adopted versions say in short, {asset: …}, where there is one."""
     years = knowledge.c.document["life"][0]["remaining_years"]["p50"]
+    reliable = knowledge.c.document["known"]["reliable"].as_boolean()
     known = (knowledge.c.asset == assets.c.name) & (knowledge.c.version == assets.c.adopted_version)
-    query = select(assets.c.name, years).join(knowledge, known)
+    query = select(assets.c.name, years, reliable).join(knowledge, known)
     query = query if asset is None else query.where(assets.c.name == asset)
-    return {name: float(found) for name, found in connection.execute(query) if found is not None}
+    return {
+        name: Estimated(None if left is None else float(left), meets is not False)
+        for name, left, meets in connection.execute(query)
+    }
 
 
 def find_finding(connection: Connection, finding_id: int) -> Mapping[str, Any] | None:

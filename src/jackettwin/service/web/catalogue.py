@@ -200,16 +200,17 @@ def overview(
     The number of queries does not depend on the number of assets.
     """
     counts, said = records.count_by_status(connection, name), results.count_findings(connection, name)
-    unseen, lives = results.open_alarms(connection, name), results.shortest_lives(connection, name)
+    unseen, known = results.open_alarms(connection, name), results.estimated(connection, name)
     return [
         AssetOut(
             **vars(row),
-            **_status(row, counts.get(row.name, {}), unseen.get(row.name, [])),
+            **_status(row, counts.get(row.name, {}), unseen.get(row.name, []), estimate.reliable),
             records=counts.get(row.name, {}),
             findings=said.get(row.name, {}),
-            remaining_years=lives.get(row.name),
+            remaining_years=estimate.remaining_years,
         )
         for row in assets.summaries(connection, name, archived=archived)
+        for estimate in [known.get(row.name, results.Estimated())]
         if seen is None or row.name in seen
     ]
 
@@ -251,10 +252,18 @@ _LEFT_OUT = {"refused": "refused", "mismatched": "of another structure", "set_as
 """Sentences about records of each status, if there are any."""
 
 
-def _status(row: assets.Summary, counts: dict[str, int], unseen: list[str]) -> dict[str, Any]:
-    """Return what the light of a turbine shows, and why: the newest open alarm, or records left out."""
+_UNRELIABLE = "the model cannot reproduce the measurements: what the twin says of the ground is not reliable"
+
+
+def _status(row: assets.Summary, counts: dict[str, int], unseen: list[str], reliable: bool) -> dict[str, Any]:
+    """Return what the light of a turbine shows, and why.
+
+    It is the newest open alarm; or a model that does not reproduce the measurements, or records left out.
+    """
     left_out = [f"{counts[status]} {words}" for status, words in _LEFT_OUT.items() if counts.get(status)]
-    status = "alarm" if unseen else "warning" if left_out else "ok"
+    warnings = [] if reliable else [_UNRELIABLE]
+    warnings += [f"records: {', '.join(left_out)}"] if left_out else []
+    status = "alarm" if unseen else "warning" if warnings else "ok"
     status = "no data" if row.last_record_utc is None else status
-    reasons = {"alarm": unseen[-1:], "warning": [f"records: {', '.join(left_out)}"]}.get(status, [])
+    reasons = {"alarm": unseen[-1:], "warning": ["; ".join(warnings)]}.get(status, [])
     return {"status": status, "open_alarms": len(unseen), "reason": "".join(reasons)}

@@ -190,6 +190,7 @@ def known(
     return {
         "law": u.law,
         "status": status if meets else CANNOT_MEET,
+        "reliable": meets,
         "records": in_all[0],
         "until_utc": None if sums.last_utc is None else sums.last_utc.isoformat(),
         "parameters": {
