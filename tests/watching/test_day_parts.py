@@ -41,6 +41,14 @@ def test_quiet_days_and_single_outliers_are_whole(rng: np.random.Generator) -> N
         assert divided(rest, variance()) is None
 
 
+@pytest.mark.parametrize("rows", [[-3, -2], [-2, -1], [0, 1]])
+def test_two_outliers_of_a_mode_are_no_part_of_a_day(rng: np.random.Generator, rows: list[int]) -> None:
+    """Two of the last three records made a part of their own, and a step of 31 standard deviations in it."""
+    rest = day(rng)
+    rest[rows, 1] -= [0.02, 0.06]
+    assert divided(rest, variance()) is None
+
+
 def test_too_few_records_and_none_at_all_are_whole(rng: np.random.Generator) -> None:
     assert divided(day(rng, 5, -0.05, 2), variance(5)) is None
     assert divided(np.full((24, 4), np.nan), variance()) is None

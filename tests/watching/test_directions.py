@@ -8,7 +8,8 @@ from scipy.stats import f as fisher, norm
 
 from jackettwin.watching.diagnosis import expected_information
 from jackettwin.watching.directions import SIZE_WEIGHTS, SIZES, Pattern, directions_of, log_bayes_factors
-from jackettwin.watching.scatter import STRONGER, log_ratios, steadiness
+from jackettwin.watching.hours import OUTLIER
+from jackettwin.watching.scatter import STRONGER, log_outlier_ratios, log_ratios, steadiness
 
 LABELS, HZ = ("a", "b", "c"), np.array([0.30, 0.31, 1.0])
 
@@ -97,6 +98,16 @@ def test_scatter_ratios_have_mean_one() -> None:
     ratio = np.exp(log_ratios(n * x, np.full(x.size, n), np.full(x.size, nu)))
     mean = np.trapezoid(ratio * fisher.pdf(x, n, nu)[:, None], x, axis=0)
     np.testing.assert_allclose(mean, 1.0, rtol=1e-5)  # of the grid
+
+
+def test_scatter_ratios_have_mean_one_with_outliers() -> None:
+    """One value in 250 is an outlier. Counted as noise at the limit of rejection, their mean was 14."""
+    share = 0.004
+    z = np.linspace(-OUTLIER, OUTLIER, 20_001)
+    kept = np.exp(log_ratios(z**2, np.ones(z.size), np.full(z.size, 1e6)))
+    mean = (1.0 - share) * np.trapezoid(kept * norm.pdf(z)[:, None], z, axis=0)
+    mean += share * np.exp(log_outlier_ratios(np.array([share]))[0])
+    np.testing.assert_allclose(mean, 1.0, rtol=2e-3)  # of outliers among louder noise
 
 
 def test_restless_noise_is_not_steady(rng: np.random.Generator) -> None:

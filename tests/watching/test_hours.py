@@ -33,3 +33,13 @@ def test_a_value_apart_is_set_aside_and_a_step_is_not(rng: np.random.Generator) 
     assert np.flatnonzero(apart[:, 0]).tolist() == [3]
     shifted, *_ = outliers(today + 50.0, np.ones((8, 1)), tail)
     assert np.array_equal(shifted, apart)
+
+
+def test_two_outliers_of_four_values_are_set_aside_alone(rng: np.random.Generator) -> None:
+    """The middle of the four lay between both pairs, so that all were rejected and counted as loud noise."""
+    tail, today = rng.standard_normal((NEIGHBOURS, 1)), rng.standard_normal((4, 1))
+    today[[1, 2], 0] -= [15.0, 21.0]
+    apart, *_ = outliers(today, np.ones((4, 1)), tail)
+    assert np.flatnonzero(apart[:, 0]).tolist() == [1, 2]
+    shifted, *_ = outliers(rng.standard_normal((4, 1)) - 15.0, np.ones((4, 1)), tail)
+    assert not shifted.any()

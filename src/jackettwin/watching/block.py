@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -11,10 +11,10 @@ from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.watching.design import Design, Slope
 from jackettwin.watching.directions import Directions, log_bayes_factors
 from jackettwin.watching.history import History, Kind, deviations, middles, std_power
-from jackettwin.watching.hours import ENOUGH, NEIGHBOURS, OUTLIER, Hours, by_hour, outliers
+from jackettwin.watching.hours import ENOUGH, NEIGHBOURS, Hours, by_hour, outliers
 from jackettwin.watching.learning import learn
 from jackettwin.watching.memory import Bank, Belief, Filtered, Memory, empty_bank, filtered
-from jackettwin.watching.scatter import log_ratios, steadiness
+from jackettwin.watching.scatter import log_outlier_ratios, log_ratios, steadiness
 
 WINDOW_DAYS = 1.0 / 24.0
 """Length of the averaging window: one clock hour [days]."""
@@ -29,6 +29,8 @@ _NO_WEIGHT = -1e9
 """Logarithm of the weight assigned to a model to exclude it."""
 _FEW_DAYS = 0.1
 """Share of the days with several records an hour up to which the scatter of a quantity is not known."""
+_OUTLYING = 0.004
+"""Share of values that are outliers, for states stored before it was learnt."""
 _FEWEST, _STILL = 30, 1e-9
 """Fewest baseline values of a monitored quantity, and their smallest relative range: constants are
 excluded."""
@@ -53,6 +55,7 @@ class Block:
     steadiness : (m,) ν of :mod:`jackettwin.watching.scatter`
     reference : (m, p) coefficients at the end of the baseline, from which plotted residuals are computed
     directions : directions of steps that are tested
+    outlying : (m,) share of the baseline's values that were rejected
     """
 
     kind: Kind
@@ -71,6 +74,7 @@ class Block:
     steadiness: FloatArray
     reference: FloatArray
     directions: Directions
+    outlying: FloatArray = field(default_factory=lambda: np.full(1, _OUTLYING))
 
 
 @dataclass(frozen=True)
@@ -82,6 +86,7 @@ class DayResult:
     rest : (m,) the day's mean minus the part explained by conditions with the baseline's coefficients
     rest_std : (m,) its standard deviation if nothing has changed
     chi2, freedom : (m,) scatter in units of the noise's variance, and its degrees of freedom
+    apart : (m,) number of values rejected by comparison with others of the day
     z : (n_hours, m) innovations of the most likely model over their standard deviations
     """
 
@@ -89,6 +94,7 @@ class DayResult:
     rest_std: FloatArray
     chi2: FloatArray
     freedom: FloatArray
+    apart: FloatArray
     z: FloatArray
 
 
@@ -124,7 +130,7 @@ def begin(
     y[apart] = np.nan
     hours = by_hour(baseline.days, baseline.states, x, y, variance * doubt, WINDOW_DAYS)
     day = np.floor(baseline.days)
-    beside = np.stack([_rejected_by_others(apart[day == d], rest[day == d]) for d in np.unique(day)])
+    beside = sum(_rejected_by_others(apart[day == d], rest[day == d]) for d in np.unique(day))
     spread = np.maximum(np.nanstd(hours.values, axis=0), 0.1 * usual_std)
     learnt = learn(hours, design.coefficients(spread, slopes), hidden=design.hidden)
     m, p = len(kept), rows.shape[1]
@@ -142,16 +148,17 @@ def begin(
         log_prior=learnt.log_weights,
         louder=np.ones(m),
         tail=tail,
-        steadiness=_steady(hours, learnt.memories[0], beside),
+        steadiness=_steady(hours, learnt.memories[0]),
         reference=learnt.beliefs[0].mean[: m * p].reshape(m, p),
         directions=directions,
+        outlying=(beside + 1.0) / (np.isfinite(rest).sum(axis=0) + 1.0),
     )
     return block, hours
 
 
-def _steady(hours: Hours, memory: Memory, beside: FloatArray) -> FloatArray:
+def _steady(hours: Hours, memory: Memory) -> FloatArray:
     """Return the steadiness of the scatter of each quantity."""
-    chi2, freedom = _with_outliers(*_by_day(hours, memory), beside)
+    chi2, freedom = _by_day(hours, memory)
     return np.array([steadiness(chi2[:, q], freedom[:, q]) for q in range(chi2.shape[1])])
 
 
@@ -161,11 +168,6 @@ def _by_day(hours: Hours, memory: Memory) -> tuple[FloatArray, FloatArray]:
     np.add.at(out[0], day, hours.chi2 / memory.scale**2)
     np.add.at(out[1], day, hours.freedom)
     return out[0], out[1]
-
-
-def _with_outliers(chi2: FloatArray, freedom: FloatArray, apart: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return scatter including rejected outliers, each counted at the rejection limit."""
-    return chi2 + OUTLIER**2 * apart, freedom + apart
 
 
 def _usual_std(
@@ -299,7 +301,7 @@ def _spoken(block: Block, hours: Hours, apart: FloatArray, done: Filtered) -> Da
     chi2 = hours.chi2.sum(axis=0) / memory.scale**2 + np.sum(pull * (nu - shared) ** 2, axis=0)
     total_share = np.maximum(share.sum(axis=0), 1e-300)
     freedom = hours.freedom.sum(axis=0) + total_share - np.sum(share**2, axis=0) / total_share
-    return DayResult(mean, std, *_with_outliers(chi2, freedom, apart), z)
+    return DayResult(mean, std, chi2, freedom, apart, z)
 
 
 def with_weights_reset(block: Block, share: float) -> Block:
@@ -323,7 +325,8 @@ def log_evidence(block: Block) -> FloatArray:
 
 def log_scatter(block: Block, spoken: DayResult) -> FloatArray:
     """Return ln of the likelihood ratios of increased noise, (m, n_factors)."""
-    return log_ratios(spoken.chi2, spoken.freedom, block.steadiness)
+    rejected = spoken.apart[:, None] * log_outlier_ratios(block.outlying)
+    return log_ratios(spoken.chi2, spoken.freedom, block.steadiness) + rejected
 
 
 def scatter_freedom(block: Block, history: History, rows: FloatArray) -> FloatArray:

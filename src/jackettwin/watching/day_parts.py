@@ -5,7 +5,8 @@ day is therefore divided at the record where the squared distance between both p
 
 .. math:: d^2(k) = \sum_q \frac{(\bar y_{q,>k} - \bar y_{q,\le k})^2}{v_q (1/n_{\le k} + 1/n_{>k})}
 
-provided that their medians, which single outliers do not affect, differ as well.
+provided that their medians, which single outliers do not affect, differ as well. Of a part of a few records
+all have to differ: the place is chosen, so that two outliers of a day would otherwise be a part's majority.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ _CLIPPED = 8.0
 """Distance from the day's median, in standard deviations, to which larger ones are limited."""
 _MEDIAN_VARIANCE = 0.5 * np.pi
 """Ratio of the variance of a median to that of the mean of as many normal values."""
+_FEW = 5
+"""Number of a part's values below which each has to differ: three outliers in a day are rare."""
 INSIDE = 0.1
 """Share of a day's prior weight that is assigned to an onset within it."""
 
@@ -56,7 +59,8 @@ def divided(rest: FloatArray, variance: FloatArray) -> tuple[int, int] | None:
         x, good = rest[:, q] * np.sign(gap[place, q]), seen[:, q]
         low, high = np.sort(x[:cut][good[:cut]]), np.sort(x[cut:][good[cut:]])
         # the middle value nearer to zero, so that at most half of a part is off by chance
-        between = max(high[(high.size - 1) // 2] - low[low.size // 2], 0.0)
+        above = high[0 if high.size < _FEW else (high.size - 1) // 2]
+        between = max(above - low[-1 if low.size < _FEW else low.size // 2], 0.0)
         spread = std[q] ** 2 * _MEDIAN_VARIANCE * (1.0 / low.size + 1.0 / high.size)
         distance += float(between**2 / spread)
     return (cut, n - 2 * ENOUGH + 1) if distance > APART + chosen.size else None

@@ -22,7 +22,7 @@ NEIGHBOURS = 9
 ENOUGH = 3
 """Fewest values of a day that are compared with each other. Fewer values are compared with earlier days.
 Since a step is distant from these too, a rejection then does not count as scatter, and after five values the
-neighbours are replaced."""
+neighbours are replaced. So are values of which half would be rejected, as of two outliers of four."""
 
 
 @dataclass(frozen=True)
@@ -79,14 +79,17 @@ def outliers(
         today = rest[seen, q]
         if not seen.size:
             continue
-        before = tail[np.isfinite(tail[:, q]), q]
-        few = seen.size < ENOUGH
-        around = np.concatenate([before[-(NEIGHBOURS - seen.size) :], today]) if few else today
-        if around.size >= ENOUGH:
-            middle = _running_median(around)[-seen.size :]
-            distance = np.abs(today - middle) / np.sqrt(variance[seen, q])
-            apart[seen, q] = distance > OUTLIER
-            doubt[seen, q] = np.maximum(distance / DOUBTED, 1.0) ** 2
+        before = tail[np.isfinite(tail[:, q]), q][-max(NEIGHBOURS - seen.size, 1) :]
+        std = np.sqrt(variance[seen, q])
+        distance = np.zeros(seen.size)
+        if seen.size >= ENOUGH:
+            distance = np.abs(today - _running_median(today)) / std
+        if seen.size < ENOUGH or 2 * np.sum(distance > OUTLIER) >= seen.size:  # the middle itself is in doubt
+            around = np.concatenate([before, today])
+            if around.size >= ENOUGH:
+                distance = np.abs(today - _running_median(around)[-seen.size :]) / std
+        apart[seen, q] = distance > OUTLIER
+        doubt[seen, q] = np.maximum(distance / DOUBTED, 1.0) ** 2
         after[:, q] = np.concatenate([tail[:, q], today])[-NEIGHBOURS:]
     return apart, doubt, after
 

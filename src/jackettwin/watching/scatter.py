@@ -6,14 +6,18 @@ Fisher's distribution F(n, ν), and a noise standard deviation increased by the 
 ratio
 
 .. math:: \ln L = -\tfrac{n}{2} \ln g^2 - \tfrac{n + ν}{2} \ln \frac{1 + χ^2/(ν g^2)}{1 + χ^2/ν}
+
+A rejected outlier is none of this noise, of which one value in 150,000 is rejected. Its likelihood ratio is
+that of being rejected: 1 + 2Φ(−4.5/g) over the share of the baseline's values that were rejected.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from scipy.special import gammaln
+from scipy.special import gammaln, ndtr
 
 from jackettwin.arrays import FloatArray
+from jackettwin.watching.hours import OUTLIER
 
 STRONGER = (1.6, 2.5, 4.0)
 """Tested factors on the standard deviation of the noise."""
@@ -51,3 +55,15 @@ def log_ratios(chi2: FloatArray, freedom: FloatArray, nu: FloatArray) -> FloatAr
     g2 = np.array(STRONGER) ** 2
     x, n, v = chi2[:, None], freedom[:, None], nu[:, None]
     return np.asarray(-0.5 * n * np.log(g2) - 0.5 * (n + v) * (np.log1p(x / (v * g2)) - np.log1p(x / v)))
+
+
+def log_outlier_ratios(share: FloatArray) -> FloatArray:
+    """Return ln L of one rejected value by the share of the baseline's that were rejected, (m, n_factors).
+
+    Examples
+    --------
+    >>> log_outlier_ratios(np.array([0.004])).round(1)
+    array([[0.8, 2.9, 4.2]])
+    """
+    louder = 2.0 * ndtr(-OUTLIER / np.array(STRONGER))
+    return np.asarray(np.log1p(louder / share[:, None]))
