@@ -72,7 +72,7 @@ def test_the_headline_tells_the_story() -> None:
 @pytest.mark.parametrize(
     ("state", "label", "why"),
     [
-        ("parked", "side_side_1", "flat sides"),
+        ("parked", "side_side_1", "their lift, in proportion"),
         ("operating", "fore_aft_1", "thrust"),
         (None, "side_side_1", ""),
     ],

@@ -488,7 +488,8 @@ def _of_rotor(a: Answers) -> list[str]:
     if a.rotor_state == "parked" and any(label.startswith("side_side") for label in damped):
         return [
             "Why the rotor: feathered blades move with their flat sides through the air in side-side motion, "
-            f"and edgewise in fore-aft motion; their drag damps in proportion to the wind{wind}."
+            "which turns the wind that they feel and so their lift, in proportion to the wind"
+            f"{wind}; in fore-aft motion they move edgewise, where only their small drag damps."
         ]
     if a.rotor_state == "operating" and any(label.startswith("fore_aft") for label in damped):
         return [
