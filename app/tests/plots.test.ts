@@ -52,6 +52,8 @@ describe("a plot", () => {
     expect(ticksOf([-0.09, 0.09], 2)).toEqual([-0.05, 0, 0.05]); // not one alone
     expect(ticksOf([0.2, 30], 5, true)).toEqual([0.2, 0.5, 1, 2, 5, 10, 20]);
     expect(ticksOf([9.7e-9, 0.02], 5, true)).toEqual([1e-8, 1e-6, 1e-4, 1e-2]); // where uPlot's own search does not end
+    expect(ticksOf([0.01, 10], 2, true)).toEqual([0.01, 1]); // a narrow window: not 5 and 10 alone
+    expect(ticksOf([0.015, 15], 2, true)).toEqual([0.1, 10]);
     expect(ticksOf([18, 46], 5, true)).toEqual([20, 30, 40]);
     expect(ticksOf([1e9, 1e9 + 1e-7], 5).length).toBeLessThan(9);
     for (const none of [ticksOf([0, 1], 5, true), ticksOf([1, 1], 5), ticksOf([0, Infinity], 5)])

@@ -5,8 +5,7 @@ export type Theme = "light" | "dark";
 const system = matchMedia("(prefers-color-scheme: dark)");
 const systemDark = signal(system.matches);
 const chosen = signal(localStorage.getItem("theme"));
-/** Paper is white. */
-const onPaper = signal(false);
+export const onPaper = signal(false); // paper is white
 window.addEventListener("beforeprint", () => (onPaper.value = true));
 window.addEventListener("afterprint", () => (onPaper.value = false));
 export const theme = computed<Theme>(() =>

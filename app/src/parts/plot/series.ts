@@ -98,14 +98,14 @@ export function ticksOf([low, high]: Range, most: number, log = false): number[]
   if (!(high > low) || !Number.isFinite(high - low) || (log && low <= 0)) return []; // as before there are data
   if (log) {
     const decades = Math.log10(high / low);
-    const every = Math.max(Math.ceil(decades / most), 1);
+    const every = Math.max(Math.min(Math.ceil(decades / most), Math.floor((decades + 1) / 2)), 1);
     const found = [];
-    for (let p = Math.floor(Math.log10(low) / every) * every; p <= Math.log10(high); p += every)
+    for (let p = Math.ceil(Math.log10(low) - Number(every < 2)); p <= Math.log10(high); p += every)
       for (const m of decades < most / 2 ? [1, 2, 5] : [1]) {
         const value = Number(`${m}e${p}`);
         if (value >= low && value <= high) found.push(value);
       }
-    if (found.length > 2) return found;
+    if (found.length > 2 || decades > 2) return found;
   }
   const raw = (high - low) / most;
   const size = 10 ** Math.floor(Math.log10(raw));
