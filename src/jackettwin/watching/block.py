@@ -10,7 +10,15 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.watching.design import Design, Slope
 from jackettwin.watching.directions import Directions, log_bayes_factors
-from jackettwin.watching.history import History, Kind, deviations, middles, std_power
+from jackettwin.watching.history import (
+    History,
+    Kind,
+    Neighbours,
+    deviations,
+    middles,
+    neighbours,
+    std_power,
+)
 from jackettwin.watching.hours import ENOUGH, NEIGHBOURS, Hours, by_hour, outliers
 from jackettwin.watching.learning import learn
 from jackettwin.watching.memory import Bank, Belief, Filtered, Memory, empty_bank, filtered
@@ -56,6 +64,7 @@ class Block:
     reference : (m, p) coefficients at the end of the baseline, from which plotted residuals are computed
     directions : directions of steps that are tested
     outlying : (m,) share of the baseline's values that were rejected
+    near : of directions, the other mode of each pair
     """
 
     kind: Kind
@@ -75,6 +84,7 @@ class Block:
     reference: FloatArray
     directions: Directions
     outlying: FloatArray = field(default_factory=lambda: np.full(1, _OUTLYING))
+    near: Neighbours | None = None
 
 
 @dataclass(frozen=True)
@@ -121,7 +131,8 @@ def begin(
     middle = middles(baseline, kind, kept)
     # the noise of a frequency is too small for its dependence on the value to matter
     power = std_power(baseline, kind, kept) if kind == "damping" else np.ones(len(kept))
-    y, relative = deviations(baseline, kind, kept, middle, power)
+    near = neighbours(baseline, kept) if kind == "angle" else None
+    y, relative = deviations(baseline, kind, kept, middle, power, near)
     y[~np.isfinite(rows).all(axis=1)] = np.nan
     x = np.nan_to_num(rows)
     usual_std, rest = _usual_std(baseline.days, x, y, relative, design)
@@ -152,6 +163,7 @@ def begin(
         reference=learnt.beliefs[0].mean[: m * p].reshape(m, p),
         directions=directions,
         outlying=(beside + 1.0) / (np.isfinite(rest).sum(axis=0) + 1.0),
+        near=near,
     )
     return block, hours
 
@@ -237,7 +249,7 @@ def residuals(
 
     The variance within a day includes that of the noise.
     """
-    y, relative = deviations(history, block.kind, block.kept, block.typical, block.std_power)
+    y, relative = deviations(history, block.kind, block.kept, block.typical, block.std_power, block.near)
     y[~np.isfinite(rows).all(axis=1)] = np.nan
     x = np.nan_to_num(rows)
     variance = _variance(relative, block.usual_std) * block.louder**2

@@ -86,12 +86,48 @@ def middles(history: History, kind: Kind, kept: IntArray) -> FloatArray:
     return typical(value)
 
 
+@dataclass(frozen=True)
+class Neighbours:
+    """The mode nearest in frequency to each of m modes, and how far it is.
+
+    Attributes
+    ----------
+    mode : (m,) index of its column in the history
+    gap : (m,) typical absolute ln of the ratio of both frequencies
+    """
+
+    mode: IntArray
+    gap: FloatArray
+
+
+def neighbours(history: History, kept: IntArray) -> Neighbours:
+    """Return the modes nearest to those of some columns; the gap is NaN where no record has both."""
+    ln_f = np.log(typical(history.frequency))
+    away = np.abs(ln_f - ln_f[kept, None])
+    away[range(len(kept)), kept] = np.nan
+    mode = np.argmin(np.where(np.isfinite(away), away, np.inf), axis=1)
+    gaps = [x[np.isfinite(x)] for x in _gaps(history, kept, mode).T]
+    return Neighbours(mode, np.array([np.median(x) if x.size else np.nan for x in gaps]))
+
+
+def _gaps(history: History, kept: IntArray, mode: IntArray) -> FloatArray:
+    return np.asarray(np.abs(np.log(history.frequency[:, kept] / history.frequency[:, mode])))
+
+
 def deviations(
-    history: History, kind: Kind, kept: IntArray, typical: FloatArray, power: FloatArray
+    history: History,
+    kind: Kind,
+    kept: IntArray,
+    typical: FloatArray,
+    power: FloatArray,
+    near: Neighbours | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Return ln of the ratios to typical values, and relative standard deviations, both (n, m).
 
     For directions it returns the rotation from the typical direction [rad], at most a right angle.
+    Uncertain frequencies mix the modes of a pair by the ratio of their standard deviation to the distance of
+    the pair, which a record can only state with its own distance. Records in which noise moves the pair apart
+    would gain weight: this part of the variance, too, is evaluated at the typical distance.
 
     A stated standard deviation may depend on its value: that of ζ is proportional to √ζ by Au's law (2014),
     or to ζ if a coefficient of variation was stated. So that a record whose ζ happens to be low gains no
@@ -102,13 +138,26 @@ def deviations(
     kept : (m,) indices of columns
     typical : (m,) typical values over the baseline
     power : (m,) power of the value to which stated standard deviations are proportional
+    near : of directions, the other mode of each pair; None to take standard deviations as stated
     """
     value, std = (x[:, kept] for x in history.seen(kind))
     if kind == "angle":
-        return 0.5 * np.angle(np.exp(2j * (value - typical))), np.where(std > 0.0, std, np.nan)
+        std = np.where(std > 0.0, std, np.nan)
+        std = std if near is None else _at_typical_gap(history, kept, std, near)
+        return 0.5 * np.angle(np.exp(2j * (value - typical))), std
     good = np.where(value > 0.0, value, np.nan)
     relative = std / (good**power * typical ** (1.0 - power))
     return np.log(good / typical), np.where(relative > 0.0, relative, np.nan)
+
+
+def _at_typical_gap(history: History, kept: IntArray, std: FloatArray, near: Neighbours) -> FloatArray:
+    """Return the standard deviations of directions as if each pair were as far apart as usual, (n, m)."""
+    relative = history.frequency_std / history.frequency
+    mixed = np.hypot(relative[:, kept], relative[:, near.mode])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shape = np.maximum(std**2 - (mixed / _gaps(history, kept, near.mode)) ** 2, 0.0)
+        usual = np.sqrt(shape + (mixed / near.gap) ** 2)
+    return np.where(np.isfinite(usual), usual, std)
 
 
 def std_power(history: History, kind: Kind, kept: IntArray) -> FloatArray:
