@@ -1,8 +1,14 @@
 """Spectra of a record."""
 
-import numpy as np
+from dataclasses import replace
 
-from jackettwin.identification.preparation.spectra import densities, welch
+import numpy as np
+import pytest
+
+from jackettwin.identification import IdentificationSettings, identify
+from jackettwin.identification.preparation.spectra import densities, lowest_motion_hz, welch
+from jackettwin.identification.synthetic import ModalSystem, simulate
+from jackettwin.records import Record
 
 
 def test_densities_alone_are_those_of_the_matrices() -> None:
@@ -16,3 +22,43 @@ def test_densities_alone_are_those_of_the_matrices() -> None:
     # fifteen segments of noise: the integral is right to a few per cent
     power = alone.density.sum(axis=1) * alone.frequencies_hz[1]
     np.testing.assert_allclose(power, np.nanvar(y, axis=1), rtol=0.1)
+
+
+def jacket(seed: int, pair_hz: tuple[float, float], duration_s: float, waves: float = 0.0) -> Record:
+    """Return six channels with a bending pair and modes above 1 Hz, in wind and in waves of 8 s.
+
+    ``waves`` is the ratio of the rms of the response to waves to that of the response to wind.
+    """
+    rng = np.random.default_rng((7, seed))
+    first, second, third = [1.0, 0.6, 0.25], [-0.4, 0.6, 0.7], [0.25, -0.5, 0.6]
+    x, y = np.array([1.0, 0.05]), np.array([-0.05, 1.0])
+    profiles = ((first, x), (first, y), (second, x), (second, y), (third, x))
+    shapes = np.array([np.kron(*profile) for profile in profiles])
+    f, zeta = np.array([*pair_hz, 1.02, 1.1, 2.3]), np.full(5, 0.012)
+    wind = ModalSystem(f, zeta, shapes, np.diag([1.0, 1.0, 0.5, 0.5, 0.3]))
+    record = simulate(wind, rng, duration_s=duration_s, sample_rate_hz=20.0)
+    line = np.maximum(np.fft.rfftfreq(4 * record.data.shape[1], 0.05), 1e-6)
+    sharp = 8.0 * line
+    swell = sharp**-5.0 * np.exp(-1.25 * sharp**-4.0) * 3.3 ** np.exp(-0.5 * ((sharp - 1.0) / 0.08) ** 2)
+    force = np.sqrt(swell) * (rng.standard_normal((2, len(line))) + 1j * rng.standard_normal((2, len(line))))
+    pair = f[:2, None]
+    response = line**2 / (pair**2 - line**2 + 2j * zeta[:2, None] * pair * line) * force
+    sea = np.fft.irfft(shapes[:2].T @ response)[:, : record.data.shape[1]]
+    return replace(record, data=record.data + waves * record.data.std() / sea.std() * sea)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_band_includes_a_pair_that_few_long_segments_show(seed: int) -> None:
+    """Eight segments of 180 s do not resolve 0.17 and 0.185 Hz: the band began at 0.7 Hz, and was silent."""
+    record = jacket(seed, (0.17, 0.185), 180.0)
+    assert 0.15 < lowest_motion_hz(record.data, record.sample_rate_hz) < 0.21
+    found = identify(record, IdentificationSettings(blocks=0, refine=False)).modes
+    assert {round(m.frequency_hz, 1) for m in found} >= {0.2, 1.0, 1.1}
+
+
+@pytest.mark.parametrize(("duration_s", "waves"), [(120.0, 1.0), (180.0, 1.0), (180.0, 3.0), (300.0, 1.0)])
+def test_waves_do_not_open_the_band(duration_s: float, waves: float) -> None:
+    """A wave spectrum is too broad for a clear peak, in few long segments too."""
+    for seed in range(4):
+        record = jacket(seed, (0.9, 0.96), duration_s, waves)
+        assert 0.8 < lowest_motion_hz(record.data, record.sample_rate_hz) < 1.2

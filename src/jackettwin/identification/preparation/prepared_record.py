@@ -21,7 +21,7 @@ from jackettwin.identification.preparation.resolve import (
     shortness,
     usable_channels,
 )
-from jackettwin.identification.preparation.spectra import lowest_peak_hz, welch
+from jackettwin.identification.preparation.spectra import lowest_motion_hz
 from jackettwin.identification.preparation.whitening import accelerated
 from jackettwin.identification.tones.drifting_tones import drifting_tones
 from jackettwin.identification.tones.rotor_speed import estimated_speed
@@ -157,7 +157,7 @@ def band_top_hz(level: Record, settings: IdentificationSettings) -> float | None
     few = level.data[:: -(-len(level.data) // PEAK_CHANNELS)]
     if few.shape[1] < FEWEST_SAMPLES:
         return None
-    peak = lowest_peak_hz(welch(few, level.sample_rate_hz))
+    peak = lowest_motion_hz(few, level.sample_rate_hz)
     return None if peak is None else GUARD * BAND_RATIO * peak
 
 
@@ -177,7 +177,7 @@ def _of_fast_length(record: Record) -> Record:
 
 def _above_tones(level: Record, settings: IdentificationSettings, lowest_hz: float) -> IdentificationSettings:
     """Return settings whose band starts below the tones if there is no other clear peak."""
-    if settings.lowest_frequency_hz is not None or lowest_peak_hz(welch(level.data, level.sample_rate_hz)):
+    if settings.lowest_frequency_hz is not None or lowest_motion_hz(level.data, level.sample_rate_hz):
         return settings
     return settings.model_copy(update={"lowest_frequency_hz": EDGE_BELOW_PEAK * lowest_hz})
 

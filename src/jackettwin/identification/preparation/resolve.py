@@ -9,7 +9,7 @@ import numpy as np
 
 from jackettwin.errors import InputError
 from jackettwin.identification.estimate import ResolvedSettings
-from jackettwin.identification.preparation.spectra import FEWEST_CYCLES, densities, lowest_peak_hz, welch
+from jackettwin.identification.preparation.spectra import FEWEST_CYCLES, densities, lowest_motion_hz, welch
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import Record, decimate
 from jackettwin.records.quality.repair import without_stuck
@@ -206,7 +206,7 @@ def _band(record: Record, settings: IdentificationSettings) -> tuple[float, floa
     nyquist = 0.5 * record.sample_rate_hz
     low = settings.lowest_frequency_hz
     if low is None:
-        peak = lowest_peak_hz(welch(record.data, record.sample_rate_hz))
+        peak = lowest_motion_hz(record.data, record.sample_rate_hz)
         if peak is None:
             raise _without_peak(record)
         low = EDGE_BELOW_PEAK * peak

@@ -19,18 +19,27 @@ CLEAR_PEAK = 8.0
 """Smallest ratio of a peak to the median of the two octaves around it."""
 
 FEWEST_CYCLES = 20.0
-"""Fewest cycles in eight segments of a frequency that is considered."""
+"""Fewest cycles in the record of a frequency that is considered."""
+
+RESOLVED_LINES = 6
+"""Line of a spectrum of eight segments below which the two octaves around a peak are mostly the peak itself
+under the window: there half as many segments, of twice the length, show it."""
 
 
-def welch(y: FloatArray, sample_rate_hz: float, segment_length: int | None = None) -> Spectrum:
+def welch(
+    y: FloatArray, sample_rate_hz: float, segment_length: int | None = None, *, below_hz: float = np.inf
+) -> Spectrum:
     """Return the spectra of a record by Welch's method (``records.processing.spectra``).
 
     Parameters
     ----------
     y : (n_channels, n_samples)
         Zero-mean samples; NaN marks a missing one.
+    below_hz : float
+        Frequency above which nothing is needed.
     """
     f, matrix = spectral_matrix(y, sample_rate_hz, segment_length or _length(y, sample_rate_hz))
+    f, matrix = f[f <= below_hz], matrix[f <= below_hz]
     density = np.asarray(np.einsum("faa->af", matrix).real)
     scale = np.sqrt([np.nanmean(row**2) for row in y])
     # for a positive Hermitian matrix these are the singular values, at a third of their cost
@@ -49,16 +58,31 @@ def _length(y: FloatArray, sample_rate_hz: float) -> int:
     return max(min(int(y.shape[1]) // SEGMENTS, int(LONGEST_SEGMENT_S * sample_rate_hz)), 16)
 
 
+def lowest_motion_hz(y: FloatArray, sample_rate_hz: float) -> float | None:
+    """Return the lowest frequency at which samples of zero mean have a clear peak, in a short record too."""
+    spectrum = welch(y, sample_rate_hz)
+    lowest = lowest_peak_hz(spectrum)
+    limit = RESOLVED_LINES * float(spectrum.frequencies_hz[1])
+    if _length(y, sample_rate_hz) >= int(LONGEST_SEGMENT_S * sample_rate_hz):
+        return lowest
+    finer = welch(y, sample_rate_hz, 2 * _length(y, sample_rate_hz), below_hz=2.0 * limit)
+    low = _lowest(finer, 2.0 * FEWEST_CYCLES / SEGMENTS, float(spectrum.singular_values[0, 1:].max()))
+    return low if low is not None and low < min(limit, lowest or np.inf) else lowest
+
+
 def lowest_peak_hz(spectrum: Spectrum) -> float | None:
     """Return the lowest frequency at which the largest singular value has a clear peak."""
+    return _lowest(spectrum, FEWEST_CYCLES / SEGMENTS, float(spectrum.singular_values[0, 1:].max()))
+
+
+def _lowest(spectrum: Spectrum, lowest_line: float, strongest: float) -> float | None:
+    """Return the lowest clear peak of the lower part of a spectrum whose highest value is ``strongest``."""
     f = spectrum.frequencies_hz
     s = spectrum.singular_values[0]
-    candidates = local_peaks(s)
-    lowest = FEWEST_CYCLES / SEGMENTS * f[1]
-    for k in candidates:
+    for k in local_peaks(s):
         around = (f > f[k] / np.sqrt(2.0)) & (f < f[k] * np.sqrt(2.0))
         wider = (f > f[k] / 2.0) & (f < f[k] * 2.0)
         prominent = s[k] == s[around].max() and s[k] > CLEAR_PEAK * np.median(s[wider])
-        if f[k] >= lowest and prominent and s[k] > 1e-4 * s[1:].max():
+        if k >= lowest_line and prominent and s[k] > 1e-4 * strongest:
             return float(f[k])
     return None
