@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from datetime import UTC, datetime
+from collections.abc import Iterable
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import numpy as np
@@ -12,10 +13,10 @@ import pyarrow.parquet as pq
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.records import read_record
+from jackettwin.records import Record, read_record
 from jackettwin.records.readers import read_record_pieces
 from jackettwin.records.readers.channels import FileDefaults
-from jackettwin.records.readers.stamps import TWICE, in_utc, read_zone
+from jackettwin.records.readers.stamps import NEVER, PASSED, TWICE, in_utc, read_zone
 
 LOCAL = datetime(2025, 6, 1, 14, 0, 0)
 TWELVE = datetime(2025, 6, 1, 12, tzinfo=UTC)
@@ -84,6 +85,47 @@ def test_an_hour_that_is_there_twice_is_said(tmp_path: Path) -> None:
     assert record.start_utc == datetime(2025, 10, 26, 0, tzinfo=UTC)
     assert TWICE in record.metadata["remarks"]
     assert TWICE not in read_record(path, FileDefaults(timezone="+02:00")).metadata.get("remarks", ())
+
+
+def at_night(path: Path, shown: Iterable[datetime]) -> Record:
+    """Return a record of one sample a second, written with the times that a clock in Berlin showed."""
+    path.write_text("time,acc_x [g]\n" + "".join(f"{t:%Y-%m-%d %H:%M:%S},{t.second % 7}\n" for t in shown))
+    return read_record(path, FileDefaults(timezone="Europe/Berlin"))
+
+
+def seconds_from(begin: datetime) -> list[datetime]:
+    return [begin + timedelta(seconds=k) for k in range(600)]
+
+
+def test_a_clock_that_is_put_forward_loses_no_hour(tmp_path: Path) -> None:
+    """The stamps jump by an hour at two on the 30th of March 2025: the record had an hour without samples."""
+    two, hour = datetime(2025, 3, 30, 2), timedelta(hours=1)
+    shown = [t if t < two else t + hour for t in seconds_from(datetime(2025, 3, 30, 1, 55))]
+    record = at_night(tmp_path / "a.csv", shown)
+    assert record.start_utc == datetime(2025, 3, 30, 0, 55, tzinfo=UTC)
+    assert record.duration_s == 600.0 and np.isfinite(record.data).all()
+    assert "remarks" not in record.metadata
+
+
+@pytest.mark.parametrize("begin", [(1, 55), (2, 10), (2, 55)])
+def test_an_hour_that_is_never_there_is_said(begin: tuple[int, int], tmp_path: Path) -> None:
+    """Clocks went from two to three: a logger that shows 02:10 was not put forward, 02:10 is 01:10 UTC."""
+    record = at_night(tmp_path / "a.csv", seconds_from(datetime(2025, 3, 30, *begin)))
+    assert record.metadata["remarks"] == [NEVER]
+    assert record.start_utc == datetime(2025, 3, 30, begin[0] - 1, begin[1], tzinfo=UTC)
+    assert record.duration_s == 600.0
+
+
+def test_a_clock_that_is_not_put_back_is_said(tmp_path: Path) -> None:
+    record = at_night(
+        tmp_path / "a.csv",
+        [
+            t
+            for k in range(9)
+            for t in seconds_from(datetime(2025, 10, 26, 1, 55) + k * timedelta(minutes=10))
+        ],
+    )
+    assert record.metadata["remarks"] == [PASSED]
 
 
 def test_the_statistics_of_stamps_stay_metadata(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ A stamp is a date with a time, in one column or two, or a time of day alone.
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
 from contextlib import suppress
 from datetime import UTC, datetime, timedelta, timezone, tzinfo
 from pathlib import Path
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
+    from jackettwin.arrays import FloatArray
 
 # Day and month with strokes between them stand in either order: 31/01/2025 shows which, 01/02/2025 does not.
 _NO_MONTH = r"(?:1[3-9]|2\d|3[01])"
@@ -179,8 +181,20 @@ UNSAID = (
 )
 """Remark on a record whose stamps have no zone."""
 
-TWICE = "the clock's zone has this hour twice, or never: taken as the first (summer time); state start_utc"
-"""Remark on a record that begins in an hour in which clocks are put back or forward."""
+TWICE = "the clock's zone has this hour twice: taken as the first (summer time); state start_utc"
+"""Remark on a record that begins in an hour in which clocks are put back."""
+
+NEVER = (
+    "the clock's zone never has this hour, over which clocks are put forward: the logger's clock was not, "
+    "and its time is taken as winter time; state the offset of its clock (--timezone +01:00) or start_utc"
+)
+"""Remark on a record with stamps in an hour over which clocks are put forward."""
+
+PASSED = (
+    "the logger's clock was not put back in the hour that its zone has twice: its time is taken as summer "
+    "time; state the offset of its clock (--timezone +01:00) or start_utc"
+)
+"""Remark on a record with stamps that go on after an hour in which clocks are put back."""
 
 
 def read_zone(text: str, *, field: str = "clock") -> tzinfo:
@@ -219,3 +233,50 @@ def read_zone(text: str, *, field: str = "clock") -> tzinfo:
 def in_utc(time: datetime, zone: tzinfo) -> datetime:
     """Return what a clock in a zone shows as UTC; an hour that is there twice is the first."""
     return time.replace(tzinfo=zone).astimezone(UTC)
+
+
+def steady(
+    begin: datetime, times_s: FloatArray | None, zone: tzinfo
+) -> tuple[datetime, FloatArray | None, tuple[str, ...]]:
+    """Return the start in UTC and the times since then of a local clock, and remarks on its summer time.
+
+    Parameters
+    ----------
+    begin : datetime
+        What the clock shows at the start; its own zone is ignored.
+    times_s : (n_samples,) array, optional
+        Times since then as the clock shows them [s], from 0 on. An hour over which the clock is put forward
+        is taken out.
+    """
+    local, start = begin.replace(tzinfo=None), in_utc(begin, zone)
+    if _skipped(local, zone):
+        return start, times_s, (NEVER,)
+    if start != in_utc(local.replace(fold=1), zone):
+        return start, times_s, (TWICE,)
+    if times_s is None or not len(times_s):
+        return start, times_s, ()
+    shown = np.fmax.accumulate(times_s)  # missing and disordered stamps are for the clock to judge
+
+    def at(k: int) -> datetime:
+        return local + timedelta(seconds=float(shown[k]))
+
+    def put_forward_s(k: int) -> float:
+        return float(shown[k]) - (in_utc(at(k), zone) - start).total_seconds()
+
+    last, never = len(shown) - 1, (start, times_s, (NEVER,))
+    forward_s = put_forward_s(last)
+    if _skipped(at(last), zone):
+        return never
+    if forward_s < -1.0:
+        return start, times_s, (PASSED,)
+    if forward_s < 1.0:
+        return start, times_s, ()
+    after = bisect_left(range(len(shown)), 1.0, key=put_forward_s)
+    if _skipped(at(after - 1), zone):
+        return never
+    return start, np.where(np.arange(len(shown)) < after, times_s, times_s - forward_s), ()
+
+
+def _skipped(time: datetime, zone: tzinfo) -> bool:
+    """Tell whether clocks in a zone never show a time because they are put forward over it."""
+    return in_utc(time, zone).astimezone(zone).replace(tzinfo=None) != time.replace(tzinfo=None)

@@ -26,12 +26,11 @@ from jackettwin.records.readers.channels import (
 )
 from jackettwin.records.readers.description import ChannelEntry, Description
 from jackettwin.records.readers.stamps import (
-    TWICE,
     UNSAID,
     ambiguous_date,
-    in_utc,
     read_zone,
     refuse_ambiguous,
+    steady,
 )
 from jackettwin.records.record import LARGEST, Record
 
@@ -255,16 +254,16 @@ def to_record(
             allowed="at least 2 samples",
             remedy="export the record again",
         )
-    if table.times_s is not None:
-        spread = between_ticks(table.times_s)
-        data, clock = regularise(table.times_s if spread is None else spread, data, sample_rate_hz=stated)
+    start_utc, times_s, unzoned = _start(table, said, defaults)
+    if times_s is not None:
+        spread = between_ticks(times_s)
+        data, clock = regularise(times_s if spread is None else spread, data, sample_rate_hz=stated)
         stated = clock.sample_rate_hz
         if spread is not None:
             metadata["remarks"] = [*metadata.get("remarks", ()), f"{COARSE} {stated:g} Hz"]
         metadata["clock"] = asdict(clock)
     stated = stated or defaults.sample_rate_hz
     stated = known_rate(table, stated, path.with_suffix(".json").name)
-    start_utc, unzoned = _start(table, said, defaults)
     metadata["remarks"] = [*metadata.get("remarks", ()), *unzoned]
     described = _described(names, table, said, defaults)
     with np.errstate(over="ignore"):  # what overflows is as unreadable as infinity: missing
@@ -288,15 +287,16 @@ def to_record(
 
 def _start(
     table: ReadTable, said: Description, defaults: FileDefaults
-) -> tuple[datetime | None, tuple[str, ...]]:
-    """Return the start in UTC, and the remark that the clock's zone is not known."""
+) -> tuple[datetime | None, FloatArray | None, tuple[str, ...]]:
+    """Return the start in UTC, the times since then, and remarks on the clock's zone and summer time."""
     if said.start_utc is not None or table.start_utc is None or table.zone_said:
-        return said.start_utc or table.start_utc, ()
+        return said.start_utc or table.start_utc, table.times_s, ()
     zone = said.clock or defaults.timezone
     if zone is None:
-        return table.start_utc, (UNSAID,)
-    start = in_utc(table.start_utc, read_zone(zone, field="clock" if said.clock else "--timezone"))
-    return start, (TWICE,) if in_utc(table.start_utc.replace(fold=1), read_zone(zone)) != start else ()
+        return table.start_utc, table.times_s, (UNSAID,)
+    return steady(
+        table.start_utc, table.times_s, read_zone(zone, field="clock" if said.clock else "--timezone")
+    )
 
 
 def _described(
