@@ -3,13 +3,25 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from math import pi, sqrt
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from jackettwin.decks import read_structure
-from jackettwin.loads import Coefficients, GrowthBand, SeaState, jonswap, sea_drag_damping, wave_number
+from jackettwin.loads import (
+    Coefficients,
+    GrowthBand,
+    SeaState,
+    airy_wave,
+    jonswap,
+    nodal_loads,
+    point_forces,
+    sea_drag_damping,
+    wave_number,
+    wetness,
+)
 from jackettwin.sensing import Weather
 from jackettwin.sensing.sea import SeaOnMembers
 from jackettwin.structure import Assembly, assemble, rigid_body_motion
@@ -81,3 +93,34 @@ def test_drag_of_a_rough_sea_is_in_the_forces_out_of_phase(assembly: Assembly) -
     )
     assert without < with_drag < without + no_mass
     assert with_drag == pytest.approx(np.hypot(without, no_mass), rel=0.05)
+
+
+@pytest.mark.parametrize("heading", [0.0, 2.3])
+def test_both_places_of_a_band_have_the_cross_spectrum_of_a_wave_that_runs_so(
+    assembly: Assembly, heading: float
+) -> None:
+    """Drag follows inertia by a quarter of a wave in the direction of the waves, not against it.
+
+    Two equally strong patterns p and q of unknown history have the cross-spectrum p pᵀ + q qᵀ: that of the
+    forces of an Airy wave a quarter of a period apart, whose drag is linear. A wave in the other direction
+    has the same inertia and the same drag, but not their products between places.
+    """
+    state = {"wave_height_m": 6.0, "wave_period_s": 10.0, "wave_direction_rad": heading}
+    one = sea(assembly, Coefficients(), **state)
+    first, second = (f.load for f in one.forces()[:2])
+    omega = 1.02 * 2.0 * pi / 10.0
+    grid, wet = one.grid, wetness(one.grid, np.zeros(one.grid.weight.size))
+    linear = sqrt(8.0 / pi) * one.speed_std * wet * grid.weight
+    linear = 0.5 * grid.density_kg_m3 * grid.drag * grid.diameter * linear
+
+    def spectrum(towards: float) -> np.ndarray:
+        wave = airy_wave(height=2.0 / omega**2, period=2.0 * pi / omega, depth=DEPTH_M, direction=towards)
+        u, du = wave.motion(grid.points, np.array([0.0, 0.5 * pi / omega]))
+        drag = linear[:, None] * np.einsum("nij,tnj->tni", grid.normal, u)
+        forces = nodal_loads(grid, point_forces(grid, np.zeros_like(u), du, wet=wet) + drag)
+        return np.asarray(forces.T @ forces)
+
+    own, there = np.outer(first, first) + np.outer(second, second), spectrum(heading)
+    size = np.abs(there).max()
+    assert_allclose(own, there, atol=1e-9 * size, rtol=0.0)
+    assert np.abs(spectrum(heading + pi) - there).max() > 0.05 * size

@@ -172,8 +172,8 @@ class SeaOnMembers:
         grid, d = self.grid, np.array([cos(angle), sin(angle), 0.0])
         k, z = wave_number(np.array([omega]), self.depth_m), np.minimum(self.grid.points[:, 2], 0.0)
         across, up = (part[:, 0, None] for part in depth_functions(k, z, self.depth_m))
-        turned = np.exp(1j * (float(k[0]) * (grid.points @ d) + turn))[:, None]
-        water = turned * (across * d - 1j * up * [0.0, 0.0, 1.0])
+        turned = np.exp(1j * (turn - float(k[0]) * (grid.points @ d)))[:, None]
+        water = turned * (across * d + 1j * up * [0.0, 0.0, 1.0])
         wet = wetness(grid, np.zeros(grid.weight.size))
         inertia = point_forces(grid, np.zeros(water.shape), water.real, wet=wet)
         drag = 0.5 * grid.density_kg_m3 * grid.drag * grid.diameter * speed * grid.weight * wet
