@@ -77,6 +77,7 @@ FAULTS = (
         ("out-of-plane strength has half the exponent", "3.2 * gamma ** (0.5 * beta**2)", "3.2 * gamma ** (beta**2)"),
     )),
     *_of("fatigue", rows=(
+        ("anodes protect above the water", "\"cathodic\" if z_m < low", "\"cathodic\" if z_m > low"),
         ("the second slope begins at ten times the range", "many = S < 1e-6 * self.knee_pa", "many = S < 1e-5 * self.knee_pa"),
         ("bending about z stresses the other side of a tube", "-np.cos(angle) / modulus", "np.cos(angle) / modulus"),
         ("thicker walls leave more of a butt weld's eccentricity", "+ float((T_m / t_m) **", "+ float((t_m / T_m) **"),
@@ -89,6 +90,11 @@ FAULTS = (
         ("the median is that of the design curve", "10.0 ** (-2.0 * self.curve.log_std)", "10.0 ** (-0.0 * self.curve.log_std)"),
     )),
     *_of("sensing", rows=(
+        ("drag of a sea runs against its waves", "turn - float(k[0])", "turn + float(k[0])"),
+        ("gravity pulls on a leaning accelerometer the other way", "np.asarray(-GRAVITY_M_S2 * share", "np.asarray(GRAVITY_M_S2 * share"),
+        ("a rotor is turned against its heading", "turn @ self.damping @ turn.T", "turn.T @ self.damping @ turn"),
+        ("modes damp each other at the frequency of one of them", ".imag / between * S", ".imag / omega[:, None] * S"),
+        ("an offset walks ten times the variance", "(2.0 * np.pi * _DRIFT_HZ * h) ** 2", "(2.0 * np.pi * _DRIFT_HZ) ** 2 * h"),
         ("what is smoothed is what is predicted", "(p, p - p @ known @ p))", "(p, p + 0.0 * known))"),
         ("a pair of motions counts twice on the way back", "into = (self.right / _members(self.rates)).T @ G", "into = self.right.T @ G"),
         ("noise of a step is that of its end", "Q = F @ exact[:n, n:]", "Q = exact[:n, n:]"),
@@ -100,6 +106,7 @@ FAULTS = (
         ("levels are scored with half their curvature", "4.0 * forces.sum(axis=0)", "2.0 * forces.sum(axis=0)"),
     )),
     *_of("soil", rows=(
+        ("clay above a layer's top is as strong as where it is asked", "(first * h + within)", "(here * h + within)"),
         ("a caisson's side push lifts its base's moment the other way", "K[0, 4] = K[4, 0] = 0.4 * d * K_H", "K[0, 4] = K[4, 0] = -0.4 * d * K_H"),
         ("a conic's curvature counts twice", "a, b = 1.0 - 2.0 * self.n", "a, b = 1.0 - self.n"),
         ("clay's bearing factor is 8", "J * strength_pa * z, 9.0 * strength_pa * D)", "J * strength_pa * z, 8.0 * strength_pa * D)"),
@@ -110,6 +117,7 @@ FAULTS = (
         ("radiation: another exponent", "(0.25 * np.pi) ** 0.75 * a0**-0.25", "(0.25 * np.pi) ** 0.75 * a0**0.25"),
     )),
     *_of("loads", rows=(
+        ("heave radiates against sway", "+ 1j * across[:, 2:] * vertical", "- 1j * across[:, 2:] * vertical"),
         ("drag without one half", "0.5 * rho * grid.drag * D", "rho * grid.drag * D"),
         ("waves run the other way", "np.exp(-1j * self.k * along)", "np.exp(1j * self.k * along)"),
         ("the JONSWAP peak is twice as narrow", "gamma ** np.exp(-0.5 * ((f / fp - 1.0) / sigma) ** 2)", "gamma ** np.exp(-2.0 * ((f / fp - 1.0) / sigma) ** 2)"),
@@ -139,6 +147,8 @@ FAULTS = (
         ("a half amplitude passes for half power", "middle = np.argmax(passed >= 0.5 * passed[:, -1:], axis=1)", "middle = np.argmax(passed >= 0.9 * passed[:, -1:], axis=1)"),
     )),
     *_of("identification", rows=(
+        ("scatter between records correlates", "float(within / np.sqrt(variance_f * relative[1]))", "float(np.sqrt(variance_f * relative[1]) / within)"),
+        ("deviations of shapes stay in units of the scale", "mode_shape_std=found.shape_std[:, i] * scale", "mode_shape_std=found.shape_std[:, i]"),
         ("deviations of SSI poles are 12 % too large", "return inside, outside + self.on_others @ ((others / near + turned) * weight[n:])", "return 1.12 * inside, 1.12 * (outside + self.on_others @ ((others / near + turned) * weight[n:]))"),
         ("fused modes are weighted by deviations, not variances", "weight = 1.0 / variances", "weight = 1.0 / np.sqrt(variances)"),
         ("the periodogram is twice as large", "own /= sample_rate_hz * np.sqrt(duration * present.mean())", "own /= sample_rate_hz * np.sqrt(0.5 * duration * present.mean())"),
@@ -152,6 +162,9 @@ FAULTS = (
         ("bias of low damping is added", "np.exp(p.log_zeta[mode] - bias[:, 1])", "np.exp(p.log_zeta[mode] + bias[:, 1])"),
     )),
     *_of("watching", rows=(
+        ("an effect is by unit of the regressor, times it", "float(per_scale) / column.scale", "float(per_scale) * column.scale"),
+        ("a jump's deviation is its variance", "(chance / len(JUMPS), jump**2)", "(chance / len(JUMPS), jump)"),
+        ("a level counts half of what it shares with its reference", "apart = var - 2.0 * self.cov[:, LEVEL, REFERENCE]", "apart = var - self.cov[:, LEVEL, REFERENCE]"),
         ("the threshold of alarms is divided by ten", "np.log(self.arl_years * YEAR_DAYS * self.crossing)", "np.log(self.arl_years * YEAR_DAYS * self.crossing / 10.0)"),
         ("steps exceed the threshold as if a day moved them twice as far", "half = 0.5 * np.maximum(mu, 1e-6)", "half = np.maximum(mu, 1e-6)"),
         ("learning forgets to shrink the covariance", "row[j] -= part * g[j]", "row[j] -= 0.5 * part * g[j]"),
@@ -161,6 +174,8 @@ FAULTS = (
         ("processes age with the square root of time", "np.exp(-gaps[r] * rates[k])", "np.exp(-np.sqrt(gaps[r] * rates[k]))"),
     )),
     *_of("updating", rows=(
+        ("an addition's deviation is in tolerances", "float(s * f.scale)", "float(s)"),
+        ("only the last stage's changes are told", "before * value if factor.is_factor else before + value", "value"),
         ("a symmetric pair is turned across the measured direction", "across = np.array([-np.sin(angle), np.cos(angle)])", "across = np.array([np.cos(angle), np.sin(angle)])"),
         ("a shape's noise counts all sensors", "expected = (1.0 - k / n) * float(m.std @ m.std) / square", "expected = float(m.std @ m.std) / square"),
         ("what is unseen moves the ground the other way", "np.asarray(inverse - inverse @ rows.J @ moved), np.asarray(-moved)", "np.asarray(inverse - inverse @ rows.J @ moved), np.asarray(moved)"),

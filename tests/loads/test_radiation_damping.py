@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import h1vp
 
-from jackettwin.loads import radiation_damping, wave_number
+from jackettwin.loads import airy_wave, nodal_loads, point_forces, radiation_damping, wave_number
 from jackettwin.loads.members.morison import MorisonPoints, morison_points
 from jackettwin.structure import Assembly, Material, Member, Reaction, Section, Structure, assemble
 
@@ -44,3 +44,30 @@ def test_it_depends_on_the_motion_and_not_on_the_place() -> None:
     # a column that turns about its own axis moves no water
     yaw = np.tile([0, 0, 0, 0, 0, 1.0], here[0].n_dof // 6)
     assert radiation_damping(here[1], yaw, 1.5, DEPTH) == 0.0
+
+
+def test_heave_and_sway_of_an_inclined_member_by_the_forces_of_waves() -> None:
+    """Haskind's relation with the inertia forces that the sea's own waves exert, a quarter of a period apart.
+
+    A slender brace that moves up as it moves sideways: its parts add with the phases of the water's two
+    components, which are a quarter of a wave apart.
+    """
+    tube = Section(0.2, 0.01)
+    member = Member("brace", "low", "high", tube, tube, Material(), "jacket")
+    nodes = {"low": (0.0, 0.0, -8.0), "high": (9.0, 3.0, -2.0)}
+    assembly = assemble(Structure("brace", nodes, (member,), reactions=(Reaction("low"),)))
+    grid = morison_points(assembly, highest_z=0.0, spacing=0.2)
+    shape = np.zeros(assembly.n_dof)
+    for node, moved in (("low", (1.0, 0.0, 0.4)), ("high", (0.3, -0.5, 1.0))):
+        shape[assembly.dofs(node)[:3]] = moved
+    omega = 1.3
+    k = float(wave_number(omega, DEPTH))
+    group = 0.5 * omega / k * (1.0 + 2.0 * k * DEPTH / np.sinh(2.0 * k * DEPTH))
+    square = []
+    for heading in np.arange(72) * 2.0 * np.pi / 72:
+        wave = airy_wave(height=2.0, period=2.0 * np.pi / omega, depth=DEPTH, direction=float(heading))
+        _, du = wave.motion(grid.points, np.array([0.0, 0.5 * np.pi / omega]))
+        square.append(np.sum((nodal_loads(grid, point_forces(grid, 0.0 * du, du)) @ shape) ** 2))
+    found = radiation_damping(grid, shape, omega, DEPTH)
+    # the factor of MacCamy and Fuchs at ka = 0.02
+    assert found == pytest.approx(k / (4.0 * RHO * G * group) * np.mean(square), rel=5e-3)

@@ -196,6 +196,22 @@ def test_drift_of_accelerometers_makes_no_slow_moment(
     assert moved_by.std() < 0.5 * float(spread_of(row[None], estimate.covariance)[0])
 
 
+def test_an_accelerometer_drifts_as_its_white_noise_at_a_hundredth_of_a_hertz(
+    estimate: MotionEstimate,
+) -> None:
+    """An offset xₖ₊₁ = k xₖ + w has the density q/|1 − k e^(−iωh)|² over the rate, white noise σ².
+
+    The offset alone is bounded by 1 mm/s², which its variance q/(1 − k²) keeps.
+    """
+    s, kinds = estimate.smoother, np.array(estimate.readings.derivative)
+    drifts = np.flatnonzero(kinds == 2) - kinds.size
+    keep, q = np.diag(s.F)[drifts], np.diag(s.Q)[drifts]
+    turn = np.exp(-2j * np.pi * 0.01 * estimate.readings.step_s)
+    # at 0.01 Hz its finite memory takes a part of the density
+    assert_allclose(q / np.abs(1.0 - turn) ** 2, s.R[kinds == 2], rtol=1e-3)
+    assert_allclose(q / (1.0 - keep**2), 1e-6, rtol=1e-9)
+
+
 def test_no_motion_is_driven_by_a_rotor(model: MotionModel) -> None:
     """Negative damping of one motion leaves at least the ratio that is asked."""
     C = np.zeros((6, 6))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.soil.ground.layering import equivalent_depths
+from jackettwin.soil.ground.layering import equivalent_depths, equivalent_points
 from jackettwin.soil.ground.profile import Clay, Layer, Point, Sand, Scour, SoilProfile
 from jackettwin.soil.ground.py_curves import sand_coefficients
 from jackettwin.soil.piles.piles import Pile
@@ -79,3 +79,24 @@ def test_what_has_no_equivalent_depth_is_refused() -> None:
     nothing = (Layer(5.0, 9e3, Sand(35.0)), Layer(40.0, 0.0, clay=Clay((0.0, 0.0))))
     with pytest.raises(InputError, match="no equivalent depth"):
         pile_curves(PILE, SoilProfile(nothing), GEORGIADIS)
+
+
+def test_the_mean_strength_counts_from_the_equivalent_surface() -> None:
+    """Above the layer's top its clay is as strong as there: (s h + ∫ s_u dz)/(h + z − top)."""
+    upper, lower, H, t = 100e3, 220e3, 5.0, 12.0
+    soft = Layer(H, 8e3, clay=Clay((15e3, 15e3)))
+    ground = SoilProfile((soft, Layer(t, 9e3, clay=Clay((upper, lower), 0.005, stiff=True))))
+
+    def resistance(point: Point) -> float:
+        return point.strength_pa * point.depth_m
+
+    _, h = equivalent_depths(ground, resistance)
+    points = [
+        one for one in equivalent_points(ground, np.array([9.0, 14.0]), [1, 1], resistance) if one is not None
+    ]
+    for z, point in zip((9.0, 14.0), points, strict=True):
+        here = upper + (lower - upper) * (z - H) / t
+        assert point.depth_m == pytest.approx(h + z - H)
+        assert point.strength_pa == pytest.approx(here)
+        wanted = (upper * h + 0.5 * (upper + here) * (z - H)) / (h + z - H)
+        assert point.mean_strength_pa == pytest.approx(wanted)

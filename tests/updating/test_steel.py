@@ -98,3 +98,33 @@ def fit_share(structure, part: str) -> float:
     stiffer = np.log(_frequencies(structure.with_material(part, youngs_modulus=1.001))[0])
     softer = np.log(_frequencies(structure.with_material(part, youngs_modulus=0.999))[0])
     return float((stiffer - softer) / 0.001)
+
+
+def test_what_frequencies_do_not_tell_keeps_its_tolerance_in_its_own_unit() -> None:
+    factors = (
+        Factor("tower", "density", tolerance=0.03),
+        Factor("transition_piece", "added_mass_kg", tolerance=2e5),
+        Factor("rna", "cg_shift_z_m", tolerance=0.5, of="body"),
+    )
+    fit = fit_stage(read_structure("jacket15"), factors, {1: 0.18}, frequency_std=1e3)
+    assert list(fit.std.values()) == pytest.approx([0.03, 2e5, 0.5], rel=1e-6)
+
+
+def test_changes_of_all_stages_make_the_refined_structure() -> None:
+    """Factors of stages are multiplied and additions are summed, whichever stage changed what."""
+    structure = read_structure("jacket15")
+    f = _frequencies(structure)
+    density = Factor("jacket", "density", tolerance=0.1)
+    heavier = Factor("transition_piece", "added_mass_kg", -4e5, 4e5, tolerance=1e5)
+    stages = tuple(
+        RefinementStage((), {1: share * f[0], 3: share * f[2]}, (density, heavier)) for share in (0.99, 0.97)
+    )
+    found = refine(structure, stages)
+    again = structure
+    for factor, value in found.changes:
+        again = factor.on(again, value)
+    np.testing.assert_allclose(_frequencies(again), _frequencies(found.structure), rtol=1e-9)
+    first, second = (stage.factors["jacket.density"] for stage in found.stages)
+    assert abs(np.log(first)) > 1e-4 and abs(np.log(second)) > 1e-4
+    values = {factor.name: value for factor, value in found.changes}
+    assert values["jacket.density"] == pytest.approx(first * second)

@@ -11,6 +11,7 @@ from jackettwin.watching import level as module
 from jackettwin.watching.level import (
     FAST_DAYS,
     Hypotheses,
+    Mixture,
     Readings,
     after_row,
     forecast,
@@ -70,6 +71,9 @@ def test_filter_and_smoother_are_the_regression_on_all_data(
     np.testing.assert_allclose([m.shift[0] for m in half], less @ mean[:n], rtol=1e-5, atol=1e-9)
     variance = np.diag(less @ cov[:n, :n] @ less.T)
     np.testing.assert_allclose([m.shift_std[0] ** 2 for m in half], variance, rtol=1e-4)
+    now = last.mixture
+    assert now.shift[best] == pytest.approx((less @ mean[:n])[-1], rel=1e-5)
+    assert now.shift_std[best] ** 2 == pytest.approx(variance[-1], rel=1e-4)
 
 
 def of_all_data(
@@ -157,3 +161,19 @@ def test_what_is_forecast_gets_wider(rng: np.random.Generator) -> None:
     ]
     assert spans[0] < spans[1] < spans[2]
     assert forecast(every[-1], 30.0).weights.sum() == pytest.approx(1.0)
+
+
+def test_a_forecast_has_the_variance_of_its_walk_and_its_jumps(rng: np.random.Generator) -> None:
+    """Of a random walk and of one jump that comes at a known rate and is equally likely of each size."""
+    every, _ = followed(no_rows(SLOPES, COEFFICIENTS), readings(rng, 40, np.zeros(40)))
+    last, days = every[-1], 200.0
+
+    def variance(m: Mixture) -> tuple[float, float]:
+        level, shift = (w @ (s**2 + v**2) - (w @ v) ** 2 for w, v, s in (
+            (m.weights, m.level, m.level_std), (m.weights, m.shift, m.shift_std)))  # fmt: skip
+        return float(level), float(shift)
+
+    walked = last.weights @ module._GRID[last.model, 1] ** 2 * days
+    jumped = (1.0 - np.exp(-module.JUMPS_A_DAY * days)) * np.mean(np.square(module.JUMPS))
+    more = np.subtract(variance(forecast(last, days)), variance(last.mixture))
+    np.testing.assert_allclose(more, walked + jumped, rtol=1e-9)

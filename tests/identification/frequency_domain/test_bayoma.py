@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 
@@ -164,3 +165,19 @@ def test_the_first_pair_of_a_record_without_noise_is_found(name: str, pair_hz: t
         low, high = mode.frequency_interval_95 or (0.0, 0.0)
         assert low < f < high
         assert high / low < 1.1
+
+
+def test_shapes_and_their_deviations_are_in_the_units_of_the_record(
+    tower: ModalSystem, rng: np.random.Generator
+) -> None:
+    """A channel in a tenth of its unit has ten times the entry, and ten times its deviation."""
+    record = simulate(tower, rng, duration_s=1200.0, sample_rate_hz=10.0)
+    small = np.ones(len(record.channels))
+    small[-1] = 0.1
+    settings = IdentificationSettings(method="bayoma")
+    plain, scaled = (
+        identify(replace(record, data=record.data * units[:, None]), settings).modes[0]
+        for units in (np.ones_like(small), small)
+    )
+    relative = [mode.mode_shape_std / np.abs(mode.mode_shape) for mode in (plain, scaled)]
+    np.testing.assert_allclose(relative[1], relative[0], rtol=1e-3)

@@ -10,7 +10,8 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.findings import Finding
 from jackettwin.identification import fuse, identify, mac
-from jackettwin.identification.many_records.fusion import random_effects
+from jackettwin.identification.many_records.fusion import Average, average, random_effects
+from jackettwin.identification.many_records.sightings import Sightings
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.synthetic import simulate
 
@@ -122,3 +123,24 @@ def test_order_of_records_does_not_matter(results):
 def test_nothing_to_fuse_is_refused():
     with pytest.raises(InputError, match="nothing to fuse"):
         fuse([])
+
+
+def test_the_covariance_of_ln_f_and_ln_zeta_is_that_within_records() -> None:
+    """Scatter between records widens both deviations and adds nothing to their product."""
+    n, own, rho = 8, np.array([1e-3, 0.1]), 0.6
+    covariance = np.outer(own, own) * np.array([[1.0, rho], [rho, 1.0]])
+    nodes = np.full((n, 3), np.nan)
+
+    def averaged(scatter: float) -> Average:
+        moved = scatter * np.array([1.0, -1.0] * (n // 2))
+        record, zero = np.arange(n), np.zeros(n, dtype=np.int64)
+        seen = Sightings(
+            record, zero, 0.3 * np.exp(moved), np.full(n, 0.01), np.full(n, 600.0),
+            np.tile(covariance, (n, 1, 1)), zero, nodes,
+        )  # fmt: skip
+        return average(seen)
+
+    still, moving = averaged(0.0), averaged(0.02)
+    assert still.log_covariance == pytest.approx(covariance / n, rel=1e-6)
+    assert moving.log_std[0] > 5.0 * still.log_std[0]
+    assert moving.log_covariance[0, 1] == pytest.approx(still.log_covariance[0, 1], rel=0.01)
