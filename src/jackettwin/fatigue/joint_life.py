@@ -128,31 +128,29 @@ class JointStresses:
         return np.asarray((by_part if side is None else by_part[side, points]).astype(parts.dtype) @ parts)
 
 
-def joint_stresses(
-    structure: Structure, plans: tuple[JointPlan, ...], *, fixity: float = 0.7
-) -> tuple[JointStresses, ...]:
+def joint_stresses(structure: Structure, plans: tuple[JointPlan, ...]) -> tuple[JointStresses, ...]:
     """Return the welds of planned joints, with the factors of each class.
 
     A chord is as long as the distance between the middles of the bays on its two sides. The K joint is that
     with the nearest brace in the same plane on the same side, a KT joint where there are two of them; a brace
     without one has a Y joint's factors.
     """
-    return tuple(JointStresses(plan, _welds(structure, plan, fixity)) for plan in plans)
+    return tuple(JointStresses(plan, _welds(structure, plan)) for plan in plans)
 
 
-def _welds(structure: Structure, plan: JointPlan, fixity: float) -> tuple[HotSpot, ...]:
+def _welds(structure: Structure, plan: JointPlan) -> tuple[HotSpot, ...]:
     length = 0.0
     for end in plan.chord:
         ends = (np.array(structure.nodes[node]) for node in (end.member.start, end.member.end))
         length += 0.5 * float(np.linalg.norm(np.subtract(*ends)))
     length *= 2.0 / len(plan.chord) if len(plan.chord) == 1 else 1.0
-    return tuple(_weld(plan, i, length, fixity) for i in range(len(plan.braces)))
+    return tuple(_weld(plan, i, length) for i in range(len(plan.braces)))
 
 
-def _weld(plan: JointPlan, i: int, length: float, fixity: float) -> HotSpot:
+def _weld(plan: JointPlan, i: int, length: float) -> HotSpot:
     end, shape = plan.braces[i], plan.joints[i]
     braces = tuple(BraceTube(j.d, j.t, j.theta) for j in plan.joints)
-    alone = TubularJoint(shape.D, shape.T, length, (braces[i],), fixity)
+    alone = TubularJoint(shape.D, shape.T, length, (braces[i],))
     beside, three = _nearest(plan, i), _three(plan, i)
     factors: dict[str, ConcentrationFactors] = {}
     outside: list[OutOfRange] = []
@@ -161,11 +159,11 @@ def _weld(plan: JointPlan, i: int, length: float, fixity: float) -> HotSpot:
         if kind == "k" and three is not None:
             order, gaps = three
             of = tuple(braces[j] for j in order)
-            joint = TubularJoint(shape.D, shape.T, length, of, fixity, gaps_m=gaps)
+            joint = TubularJoint(shape.D, shape.T, length, of, gaps_m=gaps)
             by, mine = "kt", order.index(i)
         elif kind == "k" and beside is not None:
             pair = (braces[i], braces[beside])
-            joint = TubularJoint(shape.D, shape.T, length, pair, fixity, float(shape.gap))
+            joint = TubularJoint(shape.D, shape.T, length, pair, gap_m=float(shape.gap))
         elif kind == "k":
             by = "y"
         found, said = concentration(joint, by)

@@ -59,7 +59,7 @@ def named(value: object, *names: str) -> dict[str, Any]:
     return {name: encode(getattr(value, name)) for name in names}
 
 
-def decode(kind: type[T], plain: Any, *, field: str = "") -> T:
+def decode(kind: type[T], plain: Any) -> T:
     """Return the value of a type from what :func:`encode` made of it.
 
     Raises
@@ -68,9 +68,9 @@ def decode(kind: type[T], plain: Any, *, field: str = "") -> T:
         If the data are not of this type; names the field.
     """
     try:
-        decoded: T = _decoded(kind, plain, field)
+        decoded: T = _decoded(kind, plain, "")
     except (TypeError, ValueError, AttributeError, KeyError, IndexError) as error:
-        raise InputError("not what was stored here", field=field or None, value=str(error)) from None
+        raise InputError("not what was stored here", value=str(error)) from None
     return decoded
 
 

@@ -129,7 +129,6 @@ def follow_days(
     *,
     same: int = 0,
     prior: Followed | None = None,
-    progress: Progress = SILENT,
 ) -> tuple[Followed | None, Followed]:
     """Return the result after all days but the last, which may still receive records, and after all days.
 
@@ -162,10 +161,10 @@ def follow_days(
         raise InputError("no mode of the model has been seen", file=config.path, field="records")
     question = question_of(config, model, total, mean_wind(config, first), prior=prior)
     past = replace(every, identities={own: every.identities[own] for own in dates[:-1]})
-    in_time = question.after_days(past, same, before, progress)
+    in_time = question.after_days(past, same, before, SILENT)
     known = question.followed(in_time, until, to_go_on=True) if in_time.days else None
     in_time = replace(in_time, track=replace(in_time.track, every=every))
-    whole = question.after_day(in_time, dates[-1], every.load(dates[-1]), total, progress)
+    whole = question.after_day(in_time, dates[-1], every.load(dates[-1]), total, SILENT)
     return known, question.followed(whole, total)
 
 

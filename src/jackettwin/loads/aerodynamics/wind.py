@@ -79,13 +79,13 @@ def coherence(wind: Wind, frequency_hz: FloatArray | float, distance_m: FloatArr
     return np.asarray(np.exp(-DECAY * np.hypot(f / wind.speed_m_s, SCALE_TERM / L) * r))
 
 
-def tower_drag(grid: MorisonPoints, wind: FloatArray, *, velocity: FloatArray | None = None) -> FloatArray:
+def tower_drag(grid: MorisonPoints, wind: FloatArray) -> FloatArray:
     """Return drag on members above water (..., n, 3) [N]: Morison's equation in air (no inertia).
 
     ``grid`` comes from ``morison_points`` with air's density; ``wind`` (..., n, 3) [m/s].
     """
     # the grid in air has no inertia, so that the acceleration argument (here the wind again) has no effect
-    return point_forces(grid, wind, wind, velocity=velocity)
+    return point_forces(grid, wind, wind)
 
 
 def tower_drag_damping(grid: MorisonPoints, wind: FloatArray) -> sp.csr_array:

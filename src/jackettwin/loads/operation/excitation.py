@@ -23,6 +23,9 @@ PLACES = 96
 """Azimuths in a blade's share of a turn: 1.25° apart, a metre and a half at the tip of 120 m."""
 _PASSING = 0.1
 """Half width of the band about the blades' passing, as a share of its frequency."""
+_ORDERS = 2
+_DURATION_S, _STEP_S = 600.0, 0.1
+"""Of the turbulence whose loads are told."""
 
 
 class TowerOutline(NamedTuple):
@@ -45,21 +48,19 @@ def passing_loads(
     wind: Wind,
     *,
     tower: TowerOutline | None = None,
-    orders: int = 2,
-    density: float = AIR_KG_M3,
 ) -> FloatArray:
-    """Return amplitudes (orders, 6) of the loads at the tower top at 1, 2, … times the blades' passing.
+    """Return amplitudes (2, 6) of the loads at the tower top at once and twice the blades' passing.
 
     Of sheared, steady wind that the tower holds up: potential flow about its section at each height. The wake
     is frozen; blades alike, so that nothing is left at the rotor's own frequency.
     """
-    compiled = _at_work(rotor, operation, density=density)
+    compiled = _at_work(rotor, operation)
     turn = 2.0 * np.pi / rotor.n_blades
     angles = turn * np.arange(PLACES) / PLACES
     arms = elements(rotor, operation.pitch).arm.reshape(-1, 3)
     places = np.stack([rotor.hub + arms @ rotation(rotor.shaft, float(angle)).T for angle in angles])
     loads = compiled.loads(_steady_wind(places, wind, rotor, tower), np.zeros((PLACES, 6)), angles)
-    return np.asarray(2.0 * np.abs(np.fft.rfft(loads, axis=0))[1 : orders + 1] / PLACES)
+    return np.asarray(2.0 * np.abs(np.fft.rfft(loads, axis=0))[1 : _ORDERS + 1] / PLACES)
 
 
 def turbulent_loads(
@@ -68,30 +69,27 @@ def turbulent_loads(
     wind: Wind,
     *,
     seed: int,
-    duration: float = 600.0,
-    step: float = 0.1,
-    density: float = AIR_KG_M3,
 ) -> Turbulent:
     """Return what turbulence makes of the loads at a tower top at rest; speed, pitch and wake are held."""
-    field = rotor_wind(wind, rotor, duration=duration, step=step, seed=seed, azimuth=None)
-    angle = operation.rotor_speed * step * np.arange(field.n_times, dtype=np.float64)
+    field = rotor_wind(wind, rotor, duration=_DURATION_S, step=_STEP_S, seed=seed, azimuth=None)
+    angle = operation.rotor_speed * _STEP_S * np.arange(field.n_times, dtype=np.float64)
     seen, shares = field.seen(rotor, angle)
-    compiled = _at_work(rotor, operation, density=density).seeing(shares)
+    compiled = _at_work(rotor, operation).seeing(shares)
     loads = compiled.loads(seen, np.zeros((field.n_times, 6)), angle)
     lines = np.abs(np.fft.rfft(loads - loads.mean(axis=0), axis=0)) / field.n_times
-    f = np.fft.rfftfreq(field.n_times, step)
+    f = np.fft.rfftfreq(field.n_times, _STEP_S)
     passing = rotor.n_blades * operation.rotor_speed / (2.0 * np.pi)
     near = np.abs(f - passing) <= _PASSING * passing
     return Turbulent(*(np.sqrt(2.0 * (lines[band] ** 2).sum(axis=0)) for band in (f > 0.0, near)))
 
 
-def _at_work(rotor: Rotor, operation: OperatingPoint, *, density: float) -> CompiledRotor:
+def _at_work(rotor: Rotor, operation: OperatingPoint) -> CompiledRotor:
     return compiled_rotor(
         rotor,
         pitch=operation.pitch,
         rotor_speed=operation.rotor_speed,
         induced=operation.induced,
-        density=density,
+        density=AIR_KG_M3,
     )
 
 

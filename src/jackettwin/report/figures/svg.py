@@ -17,14 +17,12 @@ class Canvas:
         self._parts: list[str] = []
 
     def line(
-        self, x1: float, y1: float, x2: float, y2: float, *, colour: str = style.INK, width: float = 1.0,
-        dash: str = "",
-    ) -> None:  # fmt: skip
+        self, x1: float, y1: float, x2: float, y2: float, *, colour: str = style.INK, width: float = 1.0
+    ) -> None:
         """Draw a straight line."""
-        dashed = f' stroke-dasharray="{dash}"' if dash else ""
         self._parts.append(
             f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" stroke="{colour}" '
-            f'stroke-width="{width:g}"{dashed}/>'
+            f'stroke-width="{width:g}"/>'
         )
 
     def box(
@@ -37,20 +35,19 @@ class Canvas:
             f'fill="{colour}" fill-opacity="{opacity:g}" stroke="{edge}"/>'
         )
 
-    def dot(self, x: float, y: float, *, colour: str = style.INK, radius: float = 4.0) -> None:
+    def dot(self, x: float, y: float, *, radius: float = 4.0) -> None:
         """Draw a filled circle."""
-        self._parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius:g}" fill="{colour}"/>')
+        self._parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius:g}" fill="{style.INK}"/>')
 
     def polygon(self, points: Sequence[tuple[float, float]], *, colour: str, opacity: float = 1.0) -> None:
         """Fill a polygon."""
         corners = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
         self._parts.append(f'<polygon points="{corners}" fill="{colour}" fill-opacity="{opacity:g}"/>')
 
-    def path(self, d: str, *, colour: str, width: float, opacity: float = 1.0) -> None:
+    def path(self, d: str, *, colour: str, width: float) -> None:
         """Draw a path of SVG commands."""
         self._parts.append(
-            f'<path d="{d}" fill="none" stroke="{colour}" stroke-width="{width:g}" '
-            f'stroke-opacity="{opacity:g}" stroke-linecap="round"/>'
+            f'<path d="{d}" fill="none" stroke="{colour}" stroke-width="{width:g}" stroke-linecap="round"/>'
         )
 
     def text(

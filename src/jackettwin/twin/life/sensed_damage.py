@@ -65,11 +65,7 @@ def steps_of(damage: FloatArray) -> IntArray:
 
 
 def sensed_damage(
-    likely: LikelyStructures,
-    readings: SensorReadings,
-    weather: Weather,
-    *,
-    structures: int = STRUCTURES,
+    likely: LikelyStructures, readings: SensorReadings, weather: Weather
 ) -> SensedDamage | None:
     """Return the damage of a record at the worst of a structure's welds; None without welds of tubes.
 
@@ -84,7 +80,7 @@ def sensed_damage(
     NumericalError
         If the filter does not come to rest.
     """
-    systems = likely.systems(structures)
+    systems = likely.systems(STRUCTURES)
     estimates = likely_motions(systems, readings, weather, damped=likely.damped, near=likely.near)
     told = likely.model
     chart = weld_map(systems[0], estimates[0].model, told.dry, told.joints, tubes=told.tubes)
