@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from click.testing import CliRunner
 
 from jackettwin.cli import main
 from jackettwin.cli.identify_tables import _print_findings, _print_methods
+from jackettwin.records import read_record, write_record
 
 RECORDS = Path(str(files("jackettwin") / "data" / "records"))
 
@@ -132,6 +134,41 @@ def test_modes_are_laid_beside_a_structure(tmp_path: Path) -> None:
     assert {"side_side_1", "fore_aft_1"} <= best
     code, _, message = run(record, "--quick", "--model", "no_such_structure")
     assert code == 2 and "no_such_structure" in message
+
+
+def without_directions(folder: Path) -> Path:
+    """Return a record whose channels do not say where they point."""
+    record = read_record(RECORDS / "kv_U12_s311.parquet")
+    bare = tuple(
+        replace(channel, name=f"a{i}", direction=(0.0, 0.0, 0.0)) for i, channel in enumerate(record.channels)
+    )
+    write_record(replace(record, channels=bare), folder / "bare.parquet")
+    return folder / "bare.parquet"
+
+
+def test_shapes_without_directions_are_refused_before_the_computation(tmp_path: Path) -> None:
+    record, out = without_directions(tmp_path), tmp_path / "m.uff"
+    code, text, err = run(str(record), "--band", "90,91", "--json", "--out", str(out))
+    assert code == 2 and "shapes in UFF need channels" in err and text == ""
+    assert not out.exists()
+
+
+def test_what_cannot_be_written_is_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Directions may be found wanting after the computation, whose result was lost with them."""
+    record, out = without_directions(tmp_path), tmp_path / "m.uff"
+    monkeypatch.setattr("jackettwin.cli.identify._refuse_shapes", lambda *_: None)
+    code, text, err = run(str(record), "--quick", "--json", "--out", str(out))
+    assert code == 2 and "shapes in UFF need channels" in err
+    assert json.loads(text)["modes"] and not out.exists()
+
+
+def test_a_table_gives_95_percent_intervals_of_frequency_and_damping() -> None:
+    """One standard deviation of the frequency stood beside an interval of 95 % of the damping."""
+    code, out, _ = run(str(RECORDS / "pile_U12_s301.parquet"))
+    _, text, _ = run(str(RECORDS / "pile_U12_s301.parquet"), "--json")
+    low, high = json.loads(text)["modes"][0]["frequency_interval_95"]
+    assert code == 0 and f"{low:.4f} – {high:.4f}" in out
+    assert "95 % of f [Hz]" in out and "95 % of ζ [%]" in out and "±" not in out
 
 
 def test_setups_are_joined_before_the_identification(tmp_path: Path) -> None:

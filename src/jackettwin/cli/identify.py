@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -145,6 +146,7 @@ def identify_command(
     if merge == "preger":
         _refuse_preger(len(files), {"--report": report, "--picks": picks_file})
     how: dict[str, Any] = {"picks": picks, "defaults": _unsaid(sample_rate, unit, gain, zone)}
+    _refuse_shapes(out, files[0], how["defaults"])
     for path in (out, report):
         if path is not None:
             check_room(path)
@@ -210,14 +212,16 @@ def _deliver(
 ) -> None:
     if model is not None:
         document = {**document, "model": _beside(document, model)}
-    if out is not None:
-        _export(document, out)
-    if as_json:
-        print_json(document)
-    else:
-        show(document)
-        if model is not None:
-            show_comparison(document["model"], model)
+    try:
+        if out is not None:
+            _export(document, out)
+    finally:  # what cannot be written is shown
+        if as_json:
+            print_json(document)
+        else:
+            show(document)
+            if model is not None:
+                show_comparison(document["model"], model)
 
 
 def _beside(document: Mapping[str, Any], model: str) -> dict[str, Any]:
@@ -411,3 +415,17 @@ def _refuse_format(out: Path | None) -> None:
 
     if out is not None and not _folder(out) and out.suffix.lower() not in WRITERS:
         export_modes({}, out)
+
+
+def _refuse_shapes(out: Path | None, file: Path, defaults: FileDefaults) -> None:
+    """Raise an error if the first record has no directions, which UFF needs, before the computation."""
+    from jackettwin.records import read_record_pieces
+    from jackettwin.study.many_records.shapes_uff import pointing
+
+    if out is None or out.suffix.lower() != ".uff":
+        return
+    piece = None
+    with suppress(InputError):  # what cannot be read is refused where it is identified
+        piece = next(read_record_pieces(file, defaults=defaults), None)
+    if piece is not None:
+        pointing({c.name: {"quantity": c.quantity, "direction": c.direction} for c in piece.channels})

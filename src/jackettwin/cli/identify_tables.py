@@ -140,7 +140,13 @@ def _print_fused(title: str, modes: Sequence[Mapping[str, Any]], n_records: int)
     _print_reasons(modes)
 
 
-def _interval(m: Mapping[str, Any]) -> str:
+def _frequency_interval(m: Mapping[str, Any]) -> str:
+    """Return the 95 % interval of f."""
+    interval = m["frequency_interval_95"]
+    return "–" if interval is None else f"{interval[0]:.4f} – {interval[1]:.4f}"
+
+
+def _damping_interval(m: Mapping[str, Any]) -> str:
     """Return the 95 % interval of ζ, or its upper limit."""
     interval, most = m["damping_ratio_interval_95"], m.get("damping_ratio_at_most")
     if interval is None:
@@ -150,9 +156,9 @@ def _interval(m: Mapping[str, Any]) -> str:
 
 _NUMBERS = (
     TableColumn("f [Hz]", "frequency_hz", ".4f"),
-    TableColumn("± f [Hz]", "frequency_std_hz", ".2g"),
+    TableColumn("95 % of f [Hz]", _frequency_interval),
     TableColumn("ζ [%]", "damping_ratio", ".2f", 100.0),
-    TableColumn("95 % interval of ζ [%]", _interval),
+    TableColumn("95 % of ζ [%]", _damping_interval),
 )
 
 

@@ -119,7 +119,7 @@ def identified_table(found: Identification, names: Sequence[str], *, folded: boo
         "orders\n[%]",
         "method",
     )
-    caption = f"Modes identified in {', '.join(found.records)}."
+    caption = f"Modes identified in {', '.join(found.records)}. ± is one standard deviation."
     if not folded:
         caption += (
             " Least ±: smallest attainable value for this length of record, by the long-data law √(1/2πζfT) "

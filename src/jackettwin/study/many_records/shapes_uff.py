@@ -30,18 +30,7 @@ def write_shapes_uff(document: Mapping[str, Any], path: Path) -> None:
     InputError
         If no channel of motion says in which direction it points.
     """
-    channels = {
-        name: about
-        for name, about in document["channels"].items()
-        if about["quantity"] in QUANTITIES and any(about["direction"])
-    }
-    require(
-        channels,
-        "no channel of motion says in which direction it points",
-        field="channels",
-        value=list(document["channels"]),
-        remedy='state "direction" of each in the JSON beside the record',
-    )
+    channels = pointing(document["channels"])
     places: dict[tuple[Any, Any], list[str]] = {}
     for name, about in channels.items():
         places.setdefault((about["node"], about["height_m"]), []).append(name)
@@ -55,6 +44,29 @@ def write_shapes_uff(document: Mapping[str, Any], path: Path) -> None:
         ]
         lines += _mode(mode, number, kind, [(node, u) for node, u in moved if u is not None])
     path.write_text("".join(f"{line}\n" for line in lines), encoding="ascii", errors="replace")
+
+
+def pointing(channels: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the channels of motion, by name with quantity and direction, that say where they point.
+
+    Raises
+    ------
+    InputError
+        If none does.
+    """
+    known = {
+        name: about
+        for name, about in channels.items()
+        if about["quantity"] in QUANTITIES and any(about["direction"])
+    }
+    require(
+        known,
+        "shapes in UFF need channels that say in which direction they point",
+        field="channels",
+        value=list(channels),
+        remedy='state "direction" of each in the JSON beside the record, or choose .json, .csv or .nc',
+    )
+    return known
 
 
 def _translation(
