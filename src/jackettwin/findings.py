@@ -148,9 +148,9 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "not_filtered": Kind(
         "warning",
-        "{channels}: the spectrum does not fall towards half the sample rate, has a peak and {share:.1%} "
-        "of its power near it: was it sampled or decimated without an anti-aliasing filter? Peaks may be "
-        "aliases",
+        "{channels}: the spectrum does not fall towards half the sample rate, {half_hz:.3g} Hz, has a peak "
+        "at {peak_hz:.3g} Hz and {share:.1%} of its power in the upper third of the band: was it sampled or "
+        "decimated without an anti-aliasing filter? Peaks may be aliases",
     ),
     "axes_crossed": Kind(
         "warning",

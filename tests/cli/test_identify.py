@@ -12,7 +12,8 @@ import pytest
 from click.testing import CliRunner
 
 from jackettwin.cli import main
-from jackettwin.cli.identify_tables import _print_findings, _print_methods
+from jackettwin.cli.identify_tables import _print_findings, _print_methods, show_one
+from jackettwin.findings import Finding
 from jackettwin.records import read_record, write_record
 
 RECORDS = Path(str(files("jackettwin") / "data" / "records"))
@@ -118,6 +119,26 @@ def test_findings_of_many_records_are_counted(capsys: pytest.CaptureFixture[str]
         "quality: acc_20_y, 2 of 3 records: it is 9.81 times too small",
         "quality: record, 1 of 3 records: vectors of another length are left out: wind (6)",
     ]
+
+
+def test_a_fault_of_the_whole_record_is_said_once(capsys: pytest.CaptureFixture[str]) -> None:
+    """The resolution of every channel was said for it, as a warning, and as the doubt of every mode."""
+    found = [Finding("coarse_quantiser", name, {"steps": steps}) for name, steps in (("a", 1.4), ("b", 2.1))]
+    mode = dict.fromkeys(("frequency_interval_95", "damping_ratio_interval_95", "damping_ratio"))
+    mode |= {"frequency_hz": 0.32, "mpc": 1.0, "status": "doubtful", "status_reason": found[0].text}
+    show_one(
+        {
+            **dict.fromkeys(("modes", "real_poles", "rejected", "notes"), ()),
+            "records": ["r"],
+            "modes": [mode],
+            "warnings": [f"{f.subject}: {f.text}" for f in found],
+            "quality": {"findings": [f.document for f in found]},
+        }
+    )
+    said = capsys.readouterr().out
+    assert said.count("the resolution is") == 1
+    assert "quality: a, b: the resolution is 1.4 to 2.1 times its rms" in said
+    assert "0.3200 Hz is doubtful: the record's quality, below" in said
 
 
 def test_a_report_under_another_name_than_that_of_a_page_is_refused(tmp_path: Path) -> None:

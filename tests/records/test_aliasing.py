@@ -59,3 +59,14 @@ def test_gaps_spikes_and_repeats_are_not_taken_for_folding(tower: SimpleNamespac
     assert flagged(replace(record, data=lost)) == ""
     struck = np.where(rng.random(record.data.shape) < 0.002, 30.0 * record.data.std(), record.data)
     assert flagged(replace(record, data=struck)) == ""
+
+
+def test_a_folded_peak_is_said_where_it_is(tower: SimpleNamespace) -> None:
+    """A mode of 7.8 Hz at 10 Hz shows at 2.2 Hz, which is not near 5 Hz."""
+    record = tower.record(3)
+    far = tower.oscillator(np.random.default_rng(1).normal(size=24_000), 7.8, 0.01, 20.0)[12_000:]
+    moved = replace(record, data=record.data + 0.3 * record.data.std() / far.std() * far)
+    findings = assess(replace(moved, data=moved.data[:, ::2], sample_rate_hz=10.0)).findings
+    (found,) = (f for f in findings if f.code == "not_filtered")
+    assert abs(found.params["peak_hz"] - 2.2) < 0.1 and found.params["half_hz"] == 5.0
+    assert "has a peak at 2.2" in found.text and "near" not in found.text

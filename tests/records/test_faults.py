@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy import signal
+from scipy import ndimage, signal
 
 from jackettwin.records.quality import faults
 
@@ -112,6 +112,19 @@ def test_the_first_motion_after_a_release_is_no_spike(rng: np.random.Generator) 
         assert not faults.spikes(y).any()
         y[1500] += 20.0
         assert np.flatnonzero(faults.spikes(y)).tolist() == [1500]
+
+
+@pytest.mark.parametrize("step", [1.5, 2.5, 4.0])
+def test_a_step_of_a_coarse_reading_is_no_spike(step: float, rng: np.random.Generator) -> None:
+    """Most samples round to one level, so that the scatter is zero and every other level was a spike."""
+    t = np.arange(12_000) / 20.0
+    modes = [(0.33, 1.0), (1.1, 0.7), (2.3, 0.4)]
+    noise = ndimage.gaussian_filter1d(rng.normal(size=(3, 12_000)), 60.0, axis=1)
+    y = sum(a * row / row.std() * np.sin(2 * np.pi * f * t) for (f, a), row in zip(modes, noise, strict=True))
+    coarse = np.round(y / (step * y.std()))
+    assert not faults.spikes(coarse).any()
+    coarse[5000] += 12.0
+    assert np.flatnonzero(faults.spikes(coarse)).tolist() == [5000]
 
 
 def test_a_coarse_reading_is_told_by_its_levels(rng: np.random.Generator) -> None:

@@ -18,7 +18,8 @@ def show_one(document: Mapping[str, Any]) -> None:
     """Print the modes of one record, what was rejected, and what to beware of."""
     columns = (*_NUMBERS, TableColumn("MPC", "mpc", ".3f"), TableColumn("status", "status"))
     show_table(Table(", ".join(document["records"]), columns, document["modes"]))
-    _print_reasons(document["modes"])
+    quality = document["quality"]["findings"]
+    _print_reasons(document["modes"], [finding["text"] for finding in quality])
     if "methods" in document:
         _print_methods(document)
     for pole in document["real_poles"]:
@@ -27,22 +28,37 @@ def show_one(document: Mapping[str, Any]) -> None:
     if "real_pole_limits" in document:
         _print_limits(document["real_pole_limits"], bool(document["real_poles"]))
     _print_rejected(document["rejected"])
-    quality = document["quality"]["findings"]
-    for finding in quality:
-        say(f"quality: {finding['subject'] or 'record'}: {finding['text']}")
-    told = {finding["text"] for finding in quality}
+    _print_quality(quality)
+    told = {text for f in quality for text in (f["text"], f"{f['subject']}: {f['text']}")}
     say_all(document["notes"], "note")
     say_all((text for text in document["warnings"] if text not in told), "warning")
 
 
-def _print_reasons(modes: Iterable[Mapping[str, Any]]) -> None:
-    """Print the reasons that modes are not ok, each once with all frequencies concerned."""
+def _print_quality(findings: Iterable[Mapping[str, Any]]) -> None:
+    """Print what was found in the record, once for all channels in which it differs in numbers only."""
+    alike: dict[tuple[str, str], list[tuple[str, str]]] = {}
+    for f in findings:
+        about = (f["code"], _NUMBER.sub("", f["text"]))
+        alike.setdefault(about, []).append((f["subject"] or "record", f["text"]))
+    for group in alike.values():
+        names, texts = zip(*group, strict=True)
+        more = " …" if len(names) > _SHOWN else ""
+        say(f"quality: {', '.join(names[:_SHOWN])}{more}: {_spanned(texts)}")
+
+
+def _print_reasons(modes: Iterable[Mapping[str, Any]], told: Iterable[str] = ()) -> None:
+    """Print the reasons that modes are not ok, each once with all frequencies concerned.
+
+    Reasons that are ``told`` with the record's quality are those of the whole record.
+    """
     alike: dict[tuple[str, str], list[str]] = {}
     for m in modes:
         if m["status_reason"] is not None:
             about = (m["status"], m["status_reason"])
             alike.setdefault(about, []).append(f"{m['frequency_hz']:.4f}")
     for (status, reason), f in alike.items():
+        for text in told:
+            reason = reason.replace(text, "the record's quality, below")
         say(f"{', '.join(f)} Hz {'is' if len(f) == 1 else 'are'} {status}: {reason}")
 
 

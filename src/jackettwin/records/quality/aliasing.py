@@ -43,10 +43,11 @@ MIN_AROUND = 9
 """Fewest lines of that band."""
 
 
-def not_filtered(y: FloatArray) -> tuple[BoolArray, FloatArray]:
-    """Tell which channels do not fall towards half the sample rate but have a peak near it.
+def not_filtered(y: FloatArray) -> tuple[BoolArray, FloatArray, FloatArray]:
+    """Tell which channels do not fall towards half the sample rate but have a peak in the band below it.
 
-    The second result is their share of power in the upper third of the band.
+    The further results are their share of power in the upper third of the band, and the place of their
+    clearest peak over half the sample rate.
 
     Parameters
     ----------
@@ -55,7 +56,7 @@ def not_filtered(y: FloatArray) -> tuple[BoolArray, FloatArray]:
 
     Returns
     -------
-    (n_channels,) bool, (n_channels,)
+    (n_channels,) bool, (n_channels,), (n_channels,)
 
     Examples
     --------
@@ -64,7 +65,7 @@ def not_filtered(y: FloatArray) -> tuple[BoolArray, FloatArray]:
     >>> not_filtered(noise)[0].tolist()
     [False, True]
     """
-    none = np.zeros(len(y), dtype=np.bool_), np.zeros(len(y))
+    none = np.zeros(len(y), dtype=np.bool_), np.zeros(len(y)), np.zeros(len(y))
     if y.shape[1] < MIN_SAMPLES or not len(y):
         return none
     used = of_fast_length(y)
@@ -79,5 +80,7 @@ def not_filtered(y: FloatArray) -> tuple[BoolArray, FloatArray]:
     width = max(len(f) // AROUND, MIN_AROUND)
     median = running_median(density, width)
     ratio = density / np.where(median > 0.0, median, np.inf)
-    peaked = ratio[:, (f > PEAKS[0]) & (f < PEAKS[1])].max(axis=1) > PEAK_RATIO
-    return np.asarray(flat & peaked & (share > LEAST_POWER)), np.asarray(share)
+    sought = (f > PEAKS[0]) & (f < PEAKS[1])
+    at = f[sought][np.argmax(ratio[:, sought], axis=1)]
+    peaked = ratio[:, sought].max(axis=1) > PEAK_RATIO
+    return np.asarray(flat & peaked & (share > LEAST_POWER)), np.asarray(share), np.asarray(at)

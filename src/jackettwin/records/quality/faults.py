@@ -50,6 +50,8 @@ MAX_UNSTEADINESS = 1e9
 
 MAX_LEVELS = 64
 """Most levels of a coarsely quantised channel."""
+ROUNDING = 1.0 / (1.4826 * np.sqrt(12.0))
+"""Scatter of rounding errors over the quantisation step, as a median departure."""
 MIN_SAMPLES_PER_LEVEL = 20
 """Fewest samples per level; with fewer, a channel may have few levels by chance."""
 
@@ -93,7 +95,8 @@ def spikes(y: FloatArray, *, hold: int = 1) -> BoolArray:
     the running median, both of the whole channel and of the surroundings (neither a gust nor the first
     motion after a release is a spike);
     ``CREST_SIGMAS`` of the window (nor is the crest of a smooth wave, whose flanks the median follows);
-    and one robust standard deviation of the signal, as smaller ones are harmless.
+    and one robust standard deviation of the signal, as smaller ones are harmless. The rounding of a
+    coarsely quantised channel has a standard deviation of 0.29 steps, below which no scatter is taken.
     ``hold`` is the number of samples for which each value is repeated.
     """
     finite = np.isfinite(y)
@@ -105,11 +108,13 @@ def spikes(y: FloatArray, *, hold: int = 1) -> BoolArray:
     usual = np.maximum(_surroundings(departure, SPIKE_BLOCK, 0.5), np.median(departure[finite]))
     brief = _surroundings(departure, ONSET_BLOCK * hold, ONSET_SHARE)
     usual = np.where(brief > ONSET_RATIO * usual, brief, usual)
+    rounding = ROUNDING * quantiser_step(y)
+    usual = np.maximum(usual, rounding)
     quartiles = np.percentile(y[finite], [25.0, 75.0])
     least = max(float(quartiles[1] - quartiles[0]) / 1.349, 1e-12 * float(np.ptp(y[finite])))
     far: BoolArray = finite & (departure > np.maximum(SPIKE_SIGMAS * 1.4826 * usual, least))
     at = np.flatnonzero(far)
-    far[at] = departure[at] > CREST_SIGMAS * 1.4826 * _spread_around(x, at, hold)
+    far[at] = departure[at] > CREST_SIGMAS * 1.4826 * np.maximum(_spread_around(x, at, hold), rounding)
     return far
 
 

@@ -251,10 +251,13 @@ def _folded(record: Record, channels: tuple[ChannelQuality, ...], slow_free: Flo
         for i, q in enumerate(channels)
         if record.channels[i].quantity in VIBRATIONS and not q.dead and q.hold_length == 1
     ]
-    flat, share = not_filtered(slow_free[rows])
+    flat, share, peak = not_filtered(slow_free[rows])
     if flat.any():
         names = ", ".join(channels[i].name for i, one in zip(rows, flat, strict=True) if one)
-        yield Finding("not_filtered", params={"channels": names, "share": float(share[flat].max())})
+        half_hz = 0.5 * record.sample_rate_hz
+        most = int(np.argmax(np.where(flat, share, 0.0)))
+        where = {"half_hz": half_hz, "peak_hz": float(peak[most]) * half_hz}
+        yield Finding("not_filtered", params={"channels": names, "share": float(share[most]), **where})
 
 
 def _clock(record: Record) -> Iterator[Finding]:
