@@ -177,6 +177,11 @@ CATALOGUE: dict[str, Kind] = {
         "sought there, --band {widen} widens the band",
     ),
     "not_refined": Kind("warning", "modes at {frequencies_hz} Hz are not refined: {obstacle}"),
+    "one_channel": Kind(
+        "info",
+        "one channel cannot tell two modes closer than their bandwidths from one broader mode: bending modes "
+        "often come in such pairs, and a channel across tells them apart",
+    ),
     "hidden_mode": Kind(
         "warning",
         "there may be a second mode near {frequency_hz:.4g} Hz: poles of another shape at {other_hz:.4g} Hz, "
@@ -187,8 +192,8 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "tone_passes": Kind(
         "warning",
-        "a drifting tone, between {low_hz:.4g} and {high_hz:.4g} Hz, crosses this frequency: distrust the "
-        "damping",
+        "a drifting tone, as of a rotor's order, between {low_hz:.4g} and {high_hz:.4g} Hz, crosses this "
+        "frequency: distrust the damping",
     ),
     "free_decay": Kind(
         "info",
@@ -293,7 +298,8 @@ CATALOGUE: dict[str, Kind] = {
     "no_peak": Kind(
         "warning",
         "in the direction of its shape the spectrum has no clear peak: it is {ratio:.2g} times the "
-        "neighbouring level, whereas a single mode has 17 times",
+        "neighbouring level, whereas a single mode has 17 times; noise, or an order of a rotor whose speed "
+        "wanders, looks so",
     ),
     "second_peak": Kind(
         "warning",
@@ -312,7 +318,8 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "steady_envelope": Kind(
         "warning",
-        "its amplitude varies less than that of a mode of such low damping: it may be a tone",
+        "its amplitude varies less than that of a mode of such low damping: it may be a tone, or an order of "
+        "a rotor whose speed wanders; add the rotor's speed as a channel [rpm]",
     ),
     "rotor_order_passes": Kind(
         "warning", "{order}P of the rotor crosses this frequency: distrust the damping"

@@ -151,7 +151,7 @@ def identify(
         duration_s=record.duration_s,
         warnings=(*ready.warnings, *missing, *map(str, chosen.findings)),
         findings=chosen.findings,
-        notes=above,
+        notes=(*above, *((str(Finding("one_channel")),) if len(ready.channels) == 1 else ())),
         real_poles=relaxations(ready, settings) if settings.real_poles else (),
         picks=tuple(_pick(poles, c, record.name) for c in judged if c.objection is None),
     )

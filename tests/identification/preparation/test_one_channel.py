@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from jackettwin.findings import Finding
 from jackettwin.identification import Identification, IdentificationSettings, identify
 from jackettwin.identification.synthetic import ModalSystem, simulate
+from jackettwin.records import Channel
 
 PAIR = (2.41, 2.69)
+CHANNELS = (Channel("a"), Channel("b"))
 
 
 def alone(share: float, seed: int, **chosen: int) -> Identification:
@@ -36,3 +41,17 @@ def test_one_pole_for_two_peaks_is_doubtful() -> None:
     assert merged.damping_ratio > 0.03
     assert merged.status == "doubtful"
     assert [reason.code for reason in merged.reasons] == ["second_peak"]
+
+
+def test_a_channel_alone_says_that_it_may_merge_a_pair() -> None:
+    """A close pair may be one mode of one channel, twice as broad and ``ok``."""
+    system = ModalSystem(
+        np.array([0.33, 0.337]), np.full(2, 0.015), np.array([[1.0], [0.8]]), np.eye(2), noise_ratio=0.05
+    )
+    record = simulate(system, np.random.default_rng(1), duration_s=600.0, sample_rate_hz=5.0)
+    found = identify(record, IdentificationSettings(blocks=0, refine=False))
+    assert str(Finding("one_channel")) in found.notes
+    two = replace(record, data=np.vstack([record.data, np.roll(record.data, 9)]), channels=CHANNELS)
+    assert (
+        str(Finding("one_channel")) not in identify(two, IdentificationSettings(blocks=0, refine=False)).notes
+    )

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
+from jackettwin.findings import Finding
 from jackettwin.identification import identify
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.identification.tones.drifting_tones import tones_at
@@ -49,6 +50,19 @@ def test_a_tone_as_strong_as_the_channel_is_not_a_mode(tower, rng, ratio):
         assert "tone" in nearest.status_reason
         low, high = nearest.damping_ratio_interval_95
         assert low < tower.damping_ratio[np.argmin(np.abs(tower.frequency_hz - mode.frequency_hz))] < high
+
+
+@pytest.mark.parametrize(
+    "doubt",
+    [
+        Finding("steady_envelope"),
+        Finding("no_peak", params={"ratio": 3.0}),
+        Finding("tone_passes", params={"low_hz": 0.49, "high_hz": 0.51}),
+    ],
+)
+def test_what_looks_like_a_wandering_order_of_a_rotor_is_called_so(doubt: Finding) -> None:
+    """A wandering 3P is doubted by these codes, whose sentences spoke of tones and noise alone."""
+    assert "rotor" in doubt.text and "order" in doubt.text
 
 
 @pytest.mark.parametrize("drift", [0.03, 0.08])
