@@ -133,6 +133,11 @@ def test_a_pair_of_which_the_air_damps_one_is_a_pair(rng):
     assert broad(rng, [0.2400, 0.2465], [0.06, 0.009], PAIR) == [[]]
 
 
+def test_a_first_pair_that_the_air_damps_is_not_taken_for_waves(rng):
+    """No sea is stated and none is there: both were doubtful, because each is as broad as waves may be."""
+    assert broad(rng, [0.2, 0.23], [0.05, 0.055], PAIR) == [[], []]
+
+
 def test_a_broad_third_beside_a_light_pair_is_doubted(rng):
     """It follows waves in another profile over the height than the pair has."""
     follows = np.kron([1.0, 0.7, 0.5], [0.8, 0.6])

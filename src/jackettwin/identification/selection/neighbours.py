@@ -116,14 +116,18 @@ def _outside(modes: Sequence[ModalEstimate], i: int, beside: Sequence[int], scal
     """Return the share of a shape outside the span of others; 1 if there are none or too many of them."""
     if not beside:
         return 1.0
-    shapes = np.array([modes[j].mode_shape / scale for j in beside]).T
-    u, s, _ = np.linalg.svd(shapes / np.linalg.norm(shapes, axis=0), full_matrices=False)
+    inside, dimensions = share_in_span(
+        modes[i].mode_shape / scale, [modes[j].mode_shape / scale for j in beside]
+    )
+    return 1.0 if dimensions > len(scale) - MIN_FREE_DIMENSIONS else 1.0 - inside
+
+
+def share_in_span(shape: ComplexArray, others: Sequence[ComplexArray]) -> tuple[float, int]:
+    """Return the share of a shape in the span of others (one or more), and the dimensions of that."""
+    shapes = np.array([other / np.linalg.norm(other) for other in others]).T
+    u, s, _ = np.linalg.svd(shapes, full_matrices=False)
     basis: ComplexArray = u[:, s > _DISTINCT]
-    if basis.shape[1] > len(scale) - MIN_FREE_DIMENSIONS:
-        return 1.0
-    shape = modes[i].mode_shape / scale
-    inside = float(np.sum(np.abs(basis.conj().T @ shape) ** 2) / np.sum(np.abs(shape) ** 2))
-    return 1.0 - inside
+    return float(np.sum(np.abs(basis.conj().T @ shape) ** 2) / np.sum(np.abs(shape) ** 2)), basis.shape[1]
 
 
 def members_of_pairs(modes: Sequence[ModalEstimate], channels: Sequence[Channel]) -> set[int]:

@@ -29,7 +29,12 @@ from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.findings import Finding
 from jackettwin.identification.mode_shapes import mac
 from jackettwin.identification.preparation.spectra import welch
-from jackettwin.identification.selection.neighbours import apart, combinations_of_neighbours, identified_twice
+from jackettwin.identification.selection.neighbours import (
+    apart,
+    combinations_of_neighbours,
+    identified_twice,
+    share_in_span,
+)
 from jackettwin.identification.selection.one_sensor import MIN_OTHER_SENSORS, of_one_sensor
 from jackettwin.identification.selection.peaks import clear_peaks_hz, contrast, share_of_one_part
 from jackettwin.identification.selection.second_look import SAME_SHAPE, SecondLook, second_look, seen_again
@@ -71,6 +76,12 @@ SEA_BAND_HZ = (0.04, 0.4)
 BROAD_DAMPING = 0.04
 """Damping ratio above which a peak is as broad as a wave spectrum: JONSWAP with γ = 3.3,
 transferred to acceleration, is identified with 5 to 10 %."""
+NO_SEA_CONTRAST = 10.0
+"""The same ratio where no sea is stated: of 24 first modes of 5 % damping the least has 11."""
+FIRST_MODES, FOLLOWED_SHARE = 2.5, 0.7
+"""Largest ratio of frequencies, and least share of a shape in the span of the modes within it, from which a
+broad peak may be that of waves that the structure follows in the shape of its first modes. A first mode that
+the air damps is the only one of its shape there."""
 TOP_OF_SEA = 0.25
 """Relative distance from 1/Tp within which a broad peak is attributed to the sea."""
 BESIDE_SEA = 0.1
@@ -263,7 +274,7 @@ def _same(mode: ModalEstimate, other: ModalEstimate, scale: FloatArray) -> bool:
 def _judged(mode: ModalEstimate, others: Sequence[ModalEstimate], known: Evidence) -> ModalEstimate:
     close = [m for m in others if apart(mode, m) < CLOSE_DISTANCE]
     for status, finding in (
-        *_forces(mode, close, known.peak_of_sea_hz),
+        *_forces(mode, close, others, known),
         *_shape(mode, close, known),
         *_agreement(mode, close, known),
         *_damping(mode, known),
@@ -273,7 +284,10 @@ def _judged(mode: ModalEstimate, others: Sequence[ModalEstimate], known: Evidenc
     return mode
 
 
-def _forces(mode: ModalEstimate, close: Sequence[ModalEstimate], peak_hz: float | None) -> Iterator[Verdict]:
+def _forces(
+    mode: ModalEstimate, close: Sequence[ModalEstimate], others: Sequence[ModalEstimate], known: Evidence
+) -> Iterator[Verdict]:
+    peak_hz = known.peak_of_sea_hz
     f, zeta = mode.frequency_hz, mode.damping_ratio
     percent = {"damping_percent": 100.0 * zeta}
     lighter = sum(m.damping_ratio < BROAD_DAMPING for m in close)
@@ -286,10 +300,26 @@ def _forces(mode: ModalEstimate, close: Sequence[ModalEstimate], peak_hz: float 
         yield ModeStatus.DOUBTFUL, Finding("follows_the_sea", params={**percent, "period_s": 1.0 / peak_hz})
     elif peak_hz is None and SEA_BAND_HZ[0] < f < SEA_BAND_HZ[1] and zeta > BROAD_DAMPING:
         # aerodynamic damping may make one of a pair broad, but not a third mode beside two
-        if lighter != 1:
+        if lighter != 1 and _may_be_waves(mode, others, known):
             yield ModeStatus.DOUBTFUL, Finding("broad_as_waves", params=percent)
     if zeta > MAX_CLEAR_DAMPING:
         yield ModeStatus.DOUBTFUL, Finding("broad", params=percent)
+
+
+def _may_be_waves(mode: ModalEstimate, others: Sequence[ModalEstimate], known: Evidence) -> bool:
+    """Tell whether a broad peak is no clear one, or moves in the shape of other first modes.
+
+    A close mode as broad as it is the other member of its pair.
+    """
+    if contrast(known.lines, known.duration_s, mode, mode.mode_shape / known.scale)[0] < NO_SEA_CONTRAST:
+        return True
+    first = [
+        m.mode_shape / known.scale
+        for m in others
+        if 1.0 / FIRST_MODES < m.frequency_hz / mode.frequency_hz < FIRST_MODES
+        and (m.damping_ratio < BROAD_DAMPING or apart(mode, m) > CLOSE_DISTANCE)
+    ]
+    return bool(first) and share_in_span(mode.mode_shape / known.scale, first)[0] > FOLLOWED_SHARE
 
 
 def _may_reach(mode: ModalEstimate, damping_ratio: float) -> bool:
