@@ -47,6 +47,13 @@ describe("a plot", () => {
     expect(drawn).not.toContain("<b>");
     expect(drawn.match(/<circle/g)).toHaveLength(1);
   });
+  test("has true minus signs at its axes", () => {
+    const below = [{ name: "a", colour: "blue", kind: "line" as const, x: [-3, 3], y: [-2, 2] }];
+    const drawn = svgOf({ ...plot, time: false, marks: [], series: below }, [-3, 3], () => "#123456");
+    expect(drawn).toContain(">−1</text>");
+    expect(drawn).toContain(">−2</text>");
+    expect(drawn).not.toMatch(/>-\d/);
+  });
   test("has ticks in steps of 1, 2 or 5", () => {
     expect(ticksOf([0, 1], 5)).toEqual([0, 0.2, 0.4, 0.6, 0.8, 1]);
     expect(ticksOf([-0.09, 0.09], 2)).toEqual([-0.05, 0, 0.05]); // not one alone

@@ -8,7 +8,7 @@ import { Empty, Shown } from "../parts/Shown";
 import { type Column, number, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
 import { asked, keep } from "../shell/place";
-import { count, scientific, years } from "../words/numbers";
+import { count, fixed, scientific, years } from "../words/numbers";
 import { day } from "../words/time";
 
 type Weld = Schemas["LifeOut"];
@@ -45,7 +45,7 @@ const COLUMNS: Column<Weld>[] = [
     ),
     by: key,
   },
-  number("Above the sea", "m", (w) => w.above_sea_m, { say: (v) => v.toFixed(1) }),
+  number("Above the sea", "m", (w) => w.above_sea_m, { say: (v) => fixed(v, 1) }),
   {
     title: "Left",
     unit: "years, 5 to 95 %",

@@ -13,7 +13,7 @@ import { ModeTable } from "../parts/ModeTable";
 import type { PageProps } from "../shell/place";
 import { asked } from "../shell/place";
 import { InTime, rangeKept } from "../parts/Stiffness";
-import { words } from "../words/numbers";
+import { fixed, short, words } from "../words/numbers";
 import { seconds } from "../words/time";
 
 const POINTS = 1400;
@@ -173,7 +173,7 @@ function Spectrogram({ record }: { record: RecordOut }) {
             sayX={String}
             sayY={String}
             say={(j, i) =>
-              `${((time_s[i] ?? 0) / 60).toFixed(1)} min, ${(frequency_hz[j] ?? 0).toFixed(3)} Hz: ${level_db[i]?.[j]?.toFixed(1) ?? "–"} dB`
+              `${((time_s[i] ?? 0) / 60).toFixed(1)} min, ${(frequency_hz[j] ?? 0).toFixed(3)} Hz: ${fixed(level_db[i]?.[j], 1)} dB`
             }
           />
         )}
@@ -185,7 +185,10 @@ function Spectrogram({ record }: { record: RecordOut }) {
 const about = (record: RecordOut): [string, string][] => [
   ["Length", `${record.duration_s.toFixed(0)} s at ${Number(record.sample_rate_hz.toPrecision(4))} Hz`],
   ["Source", record.source_name],
-  ...Object.entries(record.conditions).map(([name, value]): [string, string] => [condition(name), String(value)]),
+  ...Object.entries(record.conditions).map(([name, value]): [string, string] => [
+    condition(name),
+    typeof value === "number" ? short(value, 6) : String(value),
+  ]),
 ];
 
 export default function Record({ asset, id }: PageProps) {

@@ -1,6 +1,7 @@
 // Signals that roll: samples by channel, the newest at the right, drawn with every frame of the screen.
 import { useEffect, useRef } from "preact/hooks";
 import { colour, theme } from "../shell/theme";
+import { minus } from "../words/numbers";
 import { PAINTS } from "./modes";
 import { csvFrom, stamp } from "./plot/series";
 
@@ -76,7 +77,7 @@ function draw(on: Sheet, pieces: Piece[], lane: Lane, top: number, height: numbe
     ink.clearRect(0, top, left, height);
     ink.fillStyle = on.quiet;
     ink.fillText(lane.name.slice(0, 13), 0, top + height / 2 + 4 * ratio);
-    const said = `${least.toPrecision(2)} to ${most.toPrecision(2)}`;
+    const said = minus(`${least.toPrecision(2)} to ${most.toPrecision(2)}`);
     if (height > 40 * ratio && least < most) ink.fillText(said, 0, top + height / 2 + 18 * ratio);
   }
   const x = (t: number): number => right - ((right - left) * (now - t)) / span;

@@ -12,12 +12,14 @@ const PREFIXES: readonly (readonly [number, string])[] = [
 type Number_ = number | null | undefined;
 
 const known = (value: Number_): value is number => typeof value === "number" && Number.isFinite(value);
+/** With the true minus sign, which is as wide as a digit. */
+export const minus = (text: string): string => text.replaceAll("-", "−");
 /** Round half to even where a decimal tie is exact, as Python does. */
 export function fixed(value: Number_, decimals: number): string {
   if (!known(value)) return UNKNOWN;
   const digits = { minimumFractionDigits: decimals, maximumFractionDigits: decimals };
   const how = { ...digits, useGrouping: false, roundingMode: "halfEven", signDisplay: "negative" } as const;
-  return value.toLocaleString("en", how);
+  return minus(value.toLocaleString("en", how));
 }
 
 function withStd(value: Number_, std: Number_, scale: number, decimals: number): string {
@@ -38,13 +40,21 @@ export function scientific(value: Number_, digits = 3): string {
   const [mantissa = "0", exponent = "0"] = value.toExponential(digits - 1).split("e");
   const power = Number(exponent);
   if (power >= -3 && power <= digits)
-    return Number(value.toPrecision(digits)).toFixed(Math.max(digits - 1 - power, 0));
+    return minus(Number(value.toPrecision(digits)).toFixed(Math.max(digits - 1 - power, 0)));
   const raised = [...String(power)].map((c) => (c === "-" ? "⁻" : (SUPERSCRIPT[Number(c)] ?? c))).join("");
-  return `${mantissa} × 10${raised}`;
+  return `${minus(mantissa)} × 10${raised}`;
 }
 
 /** Significant digits without an exponent or trailing zeros. */
-const short = (value: number, digits: number): string => String(Number(value.toPrecision(digits)));
+export const short = (value: number, digits: number): string => minus(String(Number(value.toPrecision(digits))));
+
+/** A number beside an axis. */
+export const onAxis = (v: number): string =>
+  v !== 0 && (Math.abs(v) < 1e-3 || Math.abs(v) >= 1e6)
+    ? scientific(v, 3)
+        .replace(/\.?0+ ×/, " ×")
+        .replace(/^1 × /, "")
+    : short(v, 6);
 
 /** A number of any size with its unit and the prefix that suits. */
 export function quantity(value: Number_, unit: string, digits = 2): string {

@@ -3,7 +3,7 @@ import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { colour, theme } from "../../shell/theme";
-import { scientific } from "../../words/numbers";
+import { onAxis, short } from "../../words/numbers";
 import { SaveMenu, sheetOf } from "./SaveMenu";
 import type { PlotData, Range, Series } from "./series";
 import { csvOf, extentOf, readX, spanOf, ticksOf } from "./series";
@@ -80,17 +80,11 @@ function options(
     const paint = colour(s.colour);
     if (s.kind === "band") {
       bands.push({ series: [series.length, series.length + 1], fill: paint + (s.solid ? "cc" : "33") });
-      series.push(
-        { stroke: paint + (s.solid ? "" : "55"), width: 0.5, points: { show: false } },
-        { stroke: paint + (s.solid ? "" : "55"), width: 0.5, points: { show: false } },
-      );
+      const edge = () => ({ stroke: paint + (s.solid ? "" : "55"), width: 0.5, points: { show: false } });
+      series.push(edge(), edge());
     } else if (s.kind === "points") {
-      const size = sizeOf(s);
-      series.push({
-        stroke: paint,
-        paths: () => null,
-        points: { show: size > 0, size, fill: paint, stroke: paint, width: 0 },
-      });
+      const [size, one] = [sizeOf(s), { fill: paint, stroke: paint, width: 0 }];
+      series.push({ stroke: paint, paths: () => null, points: { ...one, show: size > 0, size } });
     } else {
       series.push({
         stroke: paint,
@@ -167,10 +161,8 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
           setSelect: [
             (self) => {
               if (self.select.width < 4) return;
-              const [a, b] = [
-                self.posToVal(self.select.left, "x"),
-                self.posToVal(self.select.left + self.select.width, "x"),
-              ];
+              const { left, width } = self.select;
+              const [a, b] = [self.posToVal(left, "x"), self.posToVal(left + width, "x")];
               self.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
               latest.current.onRange([a, b]);
             },
@@ -297,15 +289,9 @@ const ownTicks = (log = false): uPlot.Axis => ({
     return ticksOf([low, high], Math.max(room, 2), log);
   },
   filter: (_u, ticks) => ticks,
-  values: (_u, ticks) => ticks.map(axisNumber),
+  values: (_u, ticks) => ticks.map(onAxis),
 });
-const axisNumber = (v: number): string =>
-  v !== 0 && (Math.abs(v) < 1e-3 || Math.abs(v) >= 1e6)
-    ? scientific(v, 3)
-        .replace(/\.?0+ ×/, " ×")
-        .replace(/^1 × /, "")
-    : String(Number(v.toPrecision(6)));
-const digits = (value: number): string => String(Number(value.toPrecision(5)));
+const digits = (value: number): string => short(value, 5);
 
 const REACH_PX = 14;
 

@@ -1,4 +1,5 @@
 // What a plot is given, and the same as CSV and SVG.
+import { short } from "../../words/numbers";
 import { day, utc } from "../../words/time";
 
 export interface Series {
@@ -91,7 +92,7 @@ export function extentOf(plot: PlotData): Range {
 }
 
 export const readX = (plot: PlotData, x: number, span: number): string =>
-  !plot.time ? `${Number(x.toPrecision(5))}` : span > 40 * 86_400 ? day(stamp(x)) : `${utc(stamp(x))} UTC`;
+  !plot.time ? short(x, 5) : span > 40 * 86_400 ? day(stamp(x)) : `${utc(stamp(x))} UTC`;
 
 /** Places of an axis that people count in. */
 export function ticksOf([low, high]: Range, most: number, log = false): number[] {

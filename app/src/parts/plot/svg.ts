@@ -1,5 +1,6 @@
 // A plot as a drawing of its own, for documents: the same series, marks and range as on the page.
 import type { PlotData, Range, Series } from "./series";
+import { onAxis } from "../../words/numbers";
 import { readX, spanOf, ticksOf } from "./series";
 
 const [WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM] = [900, 360, 70, 16, 40, 46];
@@ -20,7 +21,7 @@ export function svgOf(plot: PlotData, range: Range, paint: (name: string) => str
     parts.push(`<text x="${at(x)}" y="${at(y)}" text-anchor="${anchor}">${escaped(words)}</text>`);
   for (const v of ticksOf(span, 5, plot.log)) {
     parts.push(`<path d="M${LEFT} ${at(py(v))}H${WIDTH - RIGHT}" stroke="${paint("line")}"/>`);
-    text(LEFT - 6, py(v) + 4, String(v), "end");
+    text(LEFT - 6, py(v) + 4, onAxis(v), "end");
   }
   for (const v of ticksOf(range, 6, plot.logX))
     text(px(v), HEIGHT - BOTTOM + 18, readX(plot, v, range[1] - range[0]), "middle");

@@ -7,6 +7,8 @@ import math
 from jackettwin.intervals import NORMAL_95
 
 UNKNOWN = "–"
+_MINUS = str.maketrans("-", "−")
+"""The true minus sign is as wide as a digit."""
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _WIDE = 0.2
 """Relative width of an interval above which two digits distinguish its ends."""
@@ -20,13 +22,14 @@ def known(value: float | None) -> bool:
 def fixed(value: float | None, decimals: int, *, sign: bool = False) -> str:
     """Return a number with a given number of decimals.
 
-    >>> fixed(-0.00001, 2), fixed(None, 2)
-    ('0.00', '–')
+    >>> fixed(-0.00001, 2), fixed(-1.5, 1), fixed(None, 2)
+    ('0.00', '−1.5', '–')
     """
     if value is None or not math.isfinite(value):
         return UNKNOWN
     rounded = round(float(value), decimals) + 0.0
-    return f"{rounded:+.{decimals}f}" if sign and rounded else f"{rounded:.{decimals}f}"
+    text = f"{rounded:+.{decimals}f}" if sign and rounded else f"{rounded:.{decimals}f}"
+    return text.translate(_MINUS)
 
 
 def frequency(value: float | None, std: float | None = None) -> str:
@@ -86,8 +89,8 @@ def scientific(value: float | None, digits: int = 3) -> str:
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
     power = int(exponent)
     if -3 <= power <= digits:
-        return f"{float(f'{mantissa}e{exponent}'):.{max(digits - 1 - power, 0)}f}"
-    return f"{mantissa} × 10{str(power).translate(_SUPERSCRIPT)}"
+        return f"{float(f'{mantissa}e{exponent}'):.{max(digits - 1 - power, 0)}f}".translate(_MINUS)
+    return f"{mantissa.translate(_MINUS)} × 10{str(power).translate(_SUPERSCRIPT)}"
 
 
 def log_interval_95(value: float, std: float) -> tuple[float, float]:
@@ -137,11 +140,11 @@ def quantity(value: float, unit: str, *, digits: int = 2) -> str:
     if not math.isfinite(value):
         return UNKNOWN
     if unit in ("", "-"):
-        return f"{value:.{digits}g}"
+        return f"{value:.{digits}g}".translate(_MINUS)
     value = float(f"{value:.{digits}g}")
     scale, prefix = next(((s, p) for s, p in _PREFIXES if abs(value) >= s), (1.0, ""))
     text = f"{value / scale:.{digits}g}"
-    return f"{float(text):g} {prefix}{unit}"
+    return f"{float(text):g}".translate(_MINUS) + f" {prefix}{unit}"
 
 
 def digits_of(low: float, high: float) -> int:
