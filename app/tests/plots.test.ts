@@ -41,6 +41,18 @@ describe("a plot", () => {
     expect(from).toBeLessThan(-0.1);
     expect(to).toBeGreaterThan(1);
   });
+  test("is scaled by what is known as well as most, and by all where nothing else is shown", () => {
+    const x = Array.from({ length: 100 }, (_, i) => i);
+    const y = x.map((i) => (i < 98 ? i % 2 : 50));
+    const wide = x.map((i) => (i < 98 ? 0.1 : 60));
+    const [low, high] = [-1, 1].map((side) => y.map((v, i) => v + side * (wide[i] ?? 0)));
+    const series = [{ name: "a", colour: "blue", kind: "points" as const, x, y, low, high }] as PlotData["series"];
+    const odd = { ...plot, marks: [], series };
+    expect(spanOf(odd, null)[1]).toBeLessThan(2);
+    expect(spanOf(odd, [97.5, 100])[1]).toBeGreaterThan(50);
+    const heights = [...svgOf(odd, [0, 100], () => "#123456").matchAll(/cy="(\d+)/g)].map((m) => Number(m[1]));
+    expect(Math.min(...heights)).toBe(40); // at the edge, not above the plot
+  });
   test("is drawn without letting a name become markup", () => {
     const drawn = svgOf(plot, [0, 60], () => "#123456");
     expect(drawn).toContain("side-side &quot;1&quot; &lt;b&gt;");

@@ -469,7 +469,7 @@ def test_life_is_told_weld_by_weld(opened: Open, monkeypatch: pytest.MonkeyPatch
     expect(page.get_by_text("The first weld has 130 years left (31 to 540).")).to_be_visible()
     expect(page.get_by_text("Of 1 weld beyond the range of the factors nothing is certain")).to_be_visible()
     expect(page.locator("tbody tr").last).to_contain_text("doubtful")
-    for name in ("leg_1_3, brace_1_2_1, brace", "leg_1_2 to leg_1_3, tube"):
+    for name in ("leg_1_3 – brace_1_2_1, brace", "leg_1_2 to leg_1_3, tube"):
         page.get_by_role("link", name=name).click()
         expect(page.get_by_role("heading", name=name)).to_be_visible()
         expect(page.get_by_role("img", name=f"Damage around {name}")).to_be_visible()
@@ -580,6 +580,52 @@ def test_any_page_is_printed_whole_for_the_stretch_that_it_shows(opened: Open) -
     expect(page.locator(".tools").first).to_be_hidden()
 
 
+def test_before_it_prints_a_dark_page_is_drawn_light_and_as_wide_as_paper(opened: Open) -> None:
+    """A browser's own menu gives no time: what it prints is what stands there when `beforeprint` was told."""
+    page = opened.page("/assets/wtg/timeline", theme="dark")
+    plot = page.locator(".uplot canvas").first
+    expect(plot).to_be_visible()
+    look = "e => [e.clientWidth, e.width / devicePixelRatio, e.toDataURL()]"
+    wide, _, dark = plot.evaluate(look)
+    drawn = """async (e) => {
+        dispatchEvent(new Event("beforeprint"));
+        for (let i = 0; i < 50; i++) await null; // no frame comes between
+        const sheet = document.querySelector(".uplot canvas");
+        return [sheet.clientWidth, sheet.width / devicePixelRatio, sheet.toDataURL()];
+    }"""
+    shown, own, light = plot.evaluate(drawn)
+    assert 600 < shown == own <= 687 < wide and light != dark
+    assert page.evaluate("document.documentElement.dataset.theme") == "light"
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+    expect(page.locator(".uplot").first).to_have_css("width", f"{wide}px")
+    assert page.evaluate("document.documentElement.dataset.theme") == "dark"
+
+
+def test_on_paper_columns_have_their_titles_and_nothing_asks_for_input(opened: Open) -> None:
+    page = opened.page("/assets/wtg/records")
+    page.emulate_media(media="print")
+    expect(page.get_by_role("columnheader", name="Began")).to_contain_text("Began")
+    expect(page.get_by_role("button", name="Began")).to_be_visible()
+    expect(page.locator("main input").first).to_be_hidden()
+    expect(page.locator(".where")).to_be_visible()  # of which turbine it is
+    opened.goto(page, "/assets/wtg/explore")
+    assert page.locator("main input:visible").count() == 0
+
+
+def test_an_empty_list_says_that_the_demonstration_is_being_laid_out(opened: Open) -> None:
+    page = opened.page("/")
+    nothing = {"items": [], "next_cursor": None}
+    page.route(re.compile(r"/api/v1/assets$"), lambda route: route.fulfill(json=nothing))
+    page.reload()
+    expect(page.get_by_text("No turbine yet")).to_be_visible()
+    opened.service.laying_out = True
+    try:
+        page.reload()
+        expect(page.get_by_text("Being laid out")).to_be_visible()
+    finally:
+        opened.service.laying_out = False
+
+
 def test_any_page_is_one_file_without_server_or_script(opened: Open, tmp_path: Path) -> None:
     opened.said.clear()
     page = opened.page("/assets/wtg/timeline?show=damping")
@@ -612,7 +658,7 @@ def test_the_worst_record_is_named_with_its_reason(opened: Open) -> None:
         journal.tell(connection, "state", "wtg", {}, opened.service.now())
     page = opened.page("/assets/wtg/records")
     worst = page.get_by_role("region", name="The worst first").locator("tbody tr")
-    expect(worst.first).to_contain_text("fore-aft 10.2500 ± 0.020031.00 ± 10.00")
+    expect(worst.first).to_contain_text("fore-aft 10.2500 ± 0.032931.00 ± 16.45")
     assert worst.first.get_by_role("link").first.get_attribute("href") == "/assets/wtg/records/badbadbad"
     with writing(opened.service.database) as connection:
         connection.execute(modes.delete().where(modes.c.record_id == "badbadbad"))
@@ -759,14 +805,23 @@ def test_live_signals_roll_and_the_broker_comes_before_the_replay(opened: Open) 
 def test_residuals_evidence_and_a_planted_change_are_drawn(
     opened: Open, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(results, "find_watch", lambda *_: EXAMPLES["WatchOut"])
+    years = EXAMPLES["WatchOut"] | {"days": ["2026-03-02", "2028-03-02"]}  # in which two marks are near
+    monkeypatch.setattr(results, "find_watch", lambda *_: years)
     with writing(opened.service.database) as connection:
         journal.tell(connection, "state", "wtg", {}, opened.service.now())
     page = opened.page("/assets/wtg/timeline?show=left")
     expect(page.get_by_text("90 % if nothing changes")).to_be_visible()
+    page.add_init_script("""window.told = {};
+        const write = CanvasRenderingContext2D.prototype.fillText;
+        CanvasRenderingContext2D.prototype.fillText = function (words, x, y) {
+            window.told[words] = y;
+            write.call(this, words, x, y);
+        };""")
     opened.goto(page, "/assets/wtg/alarms")
     expect(page.get_by_text("Evidence, at most one false alarm in 10 years")).to_be_visible()
     expect(page.get_by_label("Planted change")).to_contain_text("scour at all feet of 0.34 m")
+    told = page.evaluate("told")
+    assert told["found by now, with 95 %"] > next(y for words, y in told.items() if "planted" in words)
     assert serious(page) == []
 
 

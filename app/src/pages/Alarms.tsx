@@ -1,14 +1,12 @@
 // What asked for a person, what was worth saying, and who looked.
 import { useAsset } from "../api/answer";
 import { AlarmList } from "../parts/AlarmList";
-import { Card, Choice, Light, Time, Head } from "../parts/Bits";
-import { Handling, History, standing } from "../parts/Handling";
+import { Card, Choice, Head } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import Evidence from "../parts/Watched";
 import { alarmMarks } from "../parts/modes";
-import { sentence } from "../words/numbers";
 import type { PageProps } from "../shell/place";
-import { asked, assetUrl } from "../shell/place";
+import { asked } from "../shell/place";
 
 const KINDS = Object.entries({ "": "All", warning: "warnings", info: "notes" });
 const STATES = Object.entries({ "": "Open", closed: "Closed" });
@@ -44,22 +42,7 @@ export default function Alarms({ asset }: PageProps) {
             none={<Empty title="Nothing else" />}
           >
             {(data) => (
-              <ul class="list">
-                {data.items
-                  .filter((f) => f.severity !== "alarm")
-                  .map((f) => (
-                    <li key={f.id}>
-                      <p class="meta">
-                        <Light status={standing(f)} />
-                        <Time at={f.time_utc} />
-                        {f.record_id && <a href={assetUrl(asset, "records", f.record_id)}>the record</a>}
-                      </p>
-                      <p>{sentence(f.text)}</p>
-                      {(f.assigned_to ?? f.muted_until_utc ?? f.closed_by) && <History finding={f} />}
-                      {f.severity === "warning" && <Handling finding={f} again={said.again} />}
-                    </li>
-                  ))}
-              </ul>
+              <AlarmList alarms={data.items.filter((f) => f.severity !== "alarm")} again={said.again} whole />
             )}
           </Shown>
         </Card>

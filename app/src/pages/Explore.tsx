@@ -2,17 +2,17 @@
 import { useMemo, useState } from "preact/hooks";
 import { useAsset } from "../api/answer";
 import { type Schemas } from "../api/client";
-import { Card, Head, Pick, Slide } from "../parts/Bits";
+import { Card, Choice, Head, Pick, Slide } from "../parts/Bits";
 import { modeColour, paintOf } from "../parts/modes";
 import { Plot } from "../parts/plot/Plot";
 import type { Mark, PlotData, Range, Series } from "../parts/plot/series";
 import { Empty, Shown } from "../parts/Shown";
 import { Laws } from "../parts/Laws";
-import { Surface } from "../parts/Surface";
+import { Heat } from "../parts/Heat";
 import { number, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
 import { asked } from "../shell/place";
-import { fixed, frequency, percent, quantity, words } from "../words/numbers";
+import { fixed, frequency, percent, quantity, scientific, short, words } from "../words/numbers";
 
 type Explored = Schemas["ExploredOut"];
 type Locus = Schemas["LocusOut"];
@@ -21,7 +21,12 @@ type OfBranch = (b: Branch, i: number) => number | null;
 const MOST_DAMPED = 0.3;
 const lively = (b: Branch, i: number): boolean => (b.damping_ratio[i] ?? 1) < MOST_DAMPED;
 
+const OF = Object.entries({ "": "Frequencies", damping: "Damping ratios" });
 type Name = (parameter: string) => string;
+type Named = Record<string, Schemas["ExploredValue"]>;
+type Grid = Schemas["SurfaceOut"];
+/** First and last of some values, in decades. */
+const ends = (v: readonly number[]): [number, number] => [Math.log10(v[0] ?? 1), Math.log10(v.at(-1) ?? 10)];
 
 /** Along the parameter: what a branch shows at each of its values, while it swings. */
 function along(locus: Locus, name: string, title: string, yName: string, of: OfBranch): PlotData {
@@ -124,11 +129,14 @@ function Along({ locus, name }: { locus: Locus; name: string }) {
 
 function Sensitivity({ asset, said }: { asset: string; said: Name }) {
   const found = useAsset(asset, "/sensitivity");
+  const of = asked("sensitivity") ? "damping_sensitivity" : "frequency_sensitivity";
+  const [unit, scale] = asked("sensitivity") ? ["0.001 %", 1e3] : ["‰", 10];
   return (
     <Card
       title="Sensitivities"
       wide
-      note="Change of the mode if the parameter grows by one per cent: of its frequency in ‰, of its damping ratio in 0.001 %."
+      note="Change of each mode if the parameter grows by one per cent: of its frequency in ‰, of its damping ratio in 0.001 %."
+      more={<Choice label="Of" kept="sensitivity" options={OF} />}
     >
       <Shown of={found} none={<Empty title="Not estimated yet" />}>
         {(data) => (
@@ -138,13 +146,11 @@ function Sensitivity({ asset, said }: { asset: string; said: Name }) {
             id={(m) => m.label}
             columns={[
               { title: "Mode", show: (m) => words(m.label) },
-              ...Object.keys(data.items[0]?.frequency_sensitivity ?? {}).map((name) => ({
-                title: said(name),
-                unit: "f ‰ · ζ 0.001 %",
-                numeric: true,
-                show: (m: Schemas["SensitivityOut"]) =>
-                  `${fixed(10 * (m.frequency_sensitivity[name] ?? NaN), 2)} · ${fixed(1e3 * (m.damping_sensitivity[name] ?? NaN), 1)}`,
-              })),
+              ...Object.keys(data.items[0]?.[of] ?? {}).map((name) =>
+                number<Schemas["SensitivityOut"]>(said(name), unit, (m) => scale * (m[of][name] ?? NaN), {
+                  say: (v) => fixed(v, 2),
+                }),
+              ),
             ]}
           />
         )}
@@ -177,8 +183,7 @@ function Curves({ explored, said }: { explored: Explored; said: Name }) {
 function Drawn({ asset, explored }: { asset: string; explored: Explored }) {
   const loci = explored.loci ?? [];
   const locus = loci.find((l) => l.parameter === asked("parameter")) ?? loci[0];
-  const named = Object.fromEntries((explored.parameters ?? []).map((p) => [p.name, p]));
-  const at = Object.fromEntries((explored.parameters ?? []).map((p) => [p.name, p.value]));
+  const named: Named = Object.fromEntries((explored.parameters ?? []).map((p) => [p.name, p]));
   const said: Name = (name) => (named[name] ?? loci.find((l) => l.parameter === name))?.words ?? name;
   return (
     <>
@@ -197,13 +202,40 @@ function Drawn({ asset, explored }: { asset: string; explored: Explored }) {
             title="Where the data point"
             note="The cross is where the medians are; a long bright valley means that only a combination is known."
           >
-            <Surface surface={explored.surface} at={at} unit={(name) => named[name]?.unit ?? ""} said={said} />
+            <Surface surface={explored.surface} named={named} said={said} />
           </Card>
         )}
         <Curves explored={explored} said={said} />
         <Sensitivity asset={asset} said={said} />
       </div>
     </>
+  );
+}
+
+/** The cost over two parameters, in decades; brighter is nearer to what was measured. */
+function Surface({ surface: { x, y, cost }, named, said }: { surface: Grid; named: Named; said: Name }) {
+  const cells = useMemo(() => cost.map((row) => row.map((v) => (v ? -Math.log10(v) : null))), [cost]);
+  const at = (axis: Grid["x"], v?: number): string => quantity(v, named[axis.parameter]?.unit ?? "");
+  const known = cost.flat().filter((v): v is number => v !== null && v > 0);
+  const [ax, ay] = [named[x.parameter]?.value, named[y.parameter]?.value];
+  return (
+    <Heat
+      title="Cost over two parameters"
+      unit={`from ${short(Math.min(...known), 2)} (bright) to ${short(Math.max(...known), 2)} (dark)`}
+      cells={cells}
+      zName="-log10 of the cost"
+      decades
+      x={ends(x.values)}
+      y={ends(y.values)}
+      xName={said(x.parameter)}
+      yName={said(y.parameter)}
+      sayX={(v) => at(x, 10 ** v)}
+      sayY={(v) => at(y, 10 ** v)}
+      say={(j, i) =>
+        `${said(x.parameter)} ${at(x, x.values[i])}, ${said(y.parameter)} ${at(y, y.values[j])}: cost ${scientific(cost[j]?.[i])}`
+      }
+      cross={ax && ay ? [Math.log10(ax), Math.log10(ay)] : null}
+    />
   );
 }
 

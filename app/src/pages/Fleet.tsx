@@ -1,6 +1,6 @@
 // Which turbine needs me?
 import { useAnswer } from "../api/answer";
-import { api, type Asset, told } from "../api/client";
+import { api, type Asset, me, told } from "../api/client";
 import { Ago, Choice, Head, Light } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import { type Column, number, Table } from "../parts/Table";
@@ -41,6 +41,7 @@ const COLUMNS: Column<Asset>[] = [
 ];
 
 function Nothing() {
+  if (me.value?.laying_out) return <Empty title="Being laid out">The demonstration is here in a few seconds.</Empty>;
   return (
     <Empty title="No turbine yet">
       <p>

@@ -16,17 +16,17 @@ const YEAR_S = 365.25 * 86_400;
 
 const key = (w: Weld): string => `${w.joint} ${w.brace} ${w.side}`;
 /** A weld around a tube is named by what it joins. */
-const named = (w: Weld): string => [w.joint, ...(w.side === "tube" ? [] : [w.brace]), w.side].join(", ");
+const named = (w: Weld): string => (w.side === "tube" ? `${w.joint}, ` : `${w.joint} – ${w.brace}, `) + w.side;
 const state = (w: Weld): string => {
   if (w.departed) return "alarm";
   if (w.beyond_validity.length) return "doubtful";
   return w.over_budget ? "alarm" : (w.rate_interval_90[0] ?? 0) > w.budget_per_year ? "warning" : "ok";
 };
-const largest = (shares: Record<string, number>): string =>
+const largest = (shares: Record<string, number>): string[] =>
   Object.entries(shares)
     .toSorted(([, a], [, b]) => b - a)
-    .map(([name, share]) => `${name} ${Math.round(100 * share)} %`)
-    .join(", ");
+    .filter(([, share]) => share >= 0.005)
+    .map(([name, share]) => `${Math.round(100 * share)} % ${name}`);
 
 const COLUMNS: Column<Weld>[] = [
   { title: "Status", show: (w) => <Light status={state(w)} />, by: state },
@@ -48,10 +48,10 @@ const COLUMNS: Column<Weld>[] = [
   number("Above the sea", "m", (w) => w.above_sea_m, { say: (v) => fixed(v, 1) }),
   {
     title: "Left",
-    unit: "years, 5 to 95 %",
+    unit: "years, 90 %",
     numeric: true,
-    show: (w) =>
-      `${years(w.remaining_years.p50)} (${years(w.remaining_years.p05)} to ${years(w.remaining_years.p95)})`,
+    show: ({ remaining_years: { p05, p50, p95 } }) =>
+      years(p05) === years(p95) ? years(p50) : `${years(p50)} (${years(p05)} to ${years(p95)})`,
     by: (w) => w.remaining_years.p50,
   },
   number("Damage a year", "times what is allowed", (w) => w.rate_per_year / w.budget_per_year, {
@@ -88,7 +88,7 @@ function Around({ weld }: { weld: Weld }) {
 
 function One({ weld }: { weld: Weld }) {
   const [low, high] = weld.damage_interval_90;
-  const facts: [string, string][] = [
+  const facts: [string, string | string[]][] = [
     ["Worst point", weld.position],
     ["Environment", weld.environment],
     ["Damage so far", `${scientific(weld.damage, 2)} (90 %: ${scientific(low, 2)} to ${scientific(high, 2)})`],
@@ -96,16 +96,14 @@ function One({ weld }: { weld: Weld }) {
     ["Life by the design curve", `${years(weld.life_years)} years, of which ${years(weld.age_years)} are gone`],
     ["What leaves it open", largest(weld.variance_shares)],
     ["By state of operation", largest(weld.damage_by_state)],
-    ...(weld.beyond_validity.length
-      ? [["Beyond the range of its factors", weld.beyond_validity.join("; ")] as [string, string]]
-      : []),
-    ...(weld.over_budget ? [["Over its budget since", day(weld.over_budget.since)] as [string, string]] : []),
-    ...(weld.departed ? [["Departed from its past since", day(weld.departed.since)] as [string, string]] : []),
+    ["Beyond the range of its factors", weld.beyond_validity],
+    ["Over its budget since", day(weld.over_budget?.since ?? "")],
+    ["Departed from its past since", day(weld.departed?.since ?? "")],
   ];
   return (
     <div class="weld">
       <Around weld={weld} />
-      <Facts facts={facts} />
+      <Facts facts={facts.filter(([, said]) => said.length)} />
     </div>
   );
 }

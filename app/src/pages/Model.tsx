@@ -101,7 +101,7 @@ export default function Model({ asset }: PageProps) {
                 columns={[
                   { title: "Version", show: (v) => v.version },
                   { title: "Counts", show: (v) => (v.adopted ? <b>adopted</b> : "") },
-                  { title: "Made", show: (v) => <Time at={v.created_utc} /> },
+                  { title: "Made", show: (v) => <Time at={v.created_utc} short /> },
                   { title: "By", show: (v) => v.created_by },
                   { title: "Why", show: (v) => <span class="prose">{v.comment}</span> },
                   { title: "Observed", unit: "records", numeric: true, show: (v) => v.observations },

@@ -164,8 +164,6 @@ function Spectrogram({ record }: { record: RecordOut }) {
             unit={`dB of ${unit}`}
             cells={cells}
             zName={`level [dB of ${unit}]`}
-            width={1200}
-            height={340}
             x={[(time_s[0] ?? 0) / 60, ((time_s.at(-1) ?? 0) + segment_s) / 60]}
             y={[0, frequency_hz.at(-1) ?? 1]}
             xName="minutes after its start"

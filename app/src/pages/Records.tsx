@@ -39,7 +39,7 @@ const COLUMNS: Column<RecordOut>[] = [
   { title: "Source", show: (r) => r.source_name, by: (r) => r.source_name },
   { title: "Remark", show: (r) => <span class="prose">{detail(r)}</span> },
 ];
-const MORE = 50;
+const MORE = 20;
 
 export default function Records({ asset }: PageProps) {
   const status = asked("status") ?? "";
@@ -49,9 +49,7 @@ export default function Records({ asset }: PageProps) {
   const found = useAsset(asset, "/records", query);
   return (
     <>
-      <Head title="Records">
-        Ten minutes each; every one is observed once, and its modes go into the state of its day.
-      </Head>
+      <Head title="Records">Every record is observed once, and its modes go into the state of its day.</Head>
       {may("engineer") && <Upload asset={asset} />}
       <div class="tools below">
         <Choice label="Status" kept="status" options={STATUSES} />

@@ -20,7 +20,7 @@ const SPANS = Object.entries({ 30: "30 days", 90: "90 days", 365: "1 year", "": 
 const DAY_S = 86_400;
 const REST_MS = 150;
 /** Of so many rows each is drawn. */
-const ROWS = 20_000;
+const ROWS = 8000;
 const POINTS = 1000;
 
 interface Seen {
@@ -191,11 +191,11 @@ function Drawn({ all, seen, marks, what, wanted, range, beside, asset, watch, op
           {watch && <Rests watch={watch} marks={marks} kind={kind} label={wanted} />}
         </Card>
       )}
-      {PLAIN.has(what) && (
+      {(what === "frequency" || what === "damping") && (
         <Card
           title={what === "damping" ? "Damping ratios" : "Frequencies"}
           wide
-          note={simulated > 0 && `${simulated} of ${countOf(all)} points are simulated: nobody measured these days.`}
+          note={`${simulated > 0 ? `${simulated} of ${countOf(all)} points are simulated: nobody measured these days. ` : ""}Triangles lie beyond the scale, and are known much less than most.`}
         >
           {!seen.rows && <p class="quiet">Bins of time; choose one, or zoom, to see its records.</p>}
           {shown.map(({ label, plot, pick }) => (
@@ -213,8 +213,6 @@ function Drawn({ all, seen, marks, what, wanted, range, beside, asset, watch, op
     </>
   );
 }
-
-const PLAIN = new Set(["frequency", "damping"]);
 
 /** A mode's plot with the medians of another turbine's mode of the same name. */
 function withOther(plot: PlotData, other: DrawnProps["beside"], label: string, what: string): PlotData {

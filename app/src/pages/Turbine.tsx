@@ -1,11 +1,11 @@
 // One screen: what the foundation does now, what changed and why, and how sure that is.
 import { Suspense } from "preact/compat";
-import { type Answer, useAsset } from "../api/answer";
+import { useAsset } from "../api/answer";
 import { type Alarm, type Asset, type Schemas } from "../api/client";
-import type { Knowledge, KnownMode } from "../api/shapes";
+import type { Knowledge, KnownMode, KnownParameter } from "../api/shapes";
 import { AlarmList } from "../parts/AlarmList";
 import { Assumptions } from "../parts/Assumptions";
-import { Ago, Card, Light, Time } from "../parts/Bits";
+import { Ago, Card, Light } from "../parts/Bits";
 import { Budget, budgetCsv } from "../parts/Budget";
 import { Empty, Shown, Trouble } from "../parts/Shown";
 import { ModeTable } from "../parts/ModeTable";
@@ -14,7 +14,7 @@ import { later } from "../parts/later";
 import { SaveDrawn } from "../parts/plot/SaveMenu";
 import type { PageProps } from "../shell/place";
 import { assetUrl } from "../shell/place";
-import { between, count, frequency, percent, quantity, sentence, words } from "../words/numbers";
+import { between, count, frequency, percent, quantity, sentence, words, Z90 } from "../words/numbers";
 
 const Stiffness = later(() => import("../parts/Stiffness"));
 type Twin = Schemas["TwinOut"];
@@ -30,11 +30,11 @@ function Figures({ twin, alarms }: { twin: Twin; alarms: readonly Alarm[] }) {
   const figures: [string, string, string][] = first.map((m) => [
     words(m.label),
     `${frequency(m.frequency_hz)} Hz`,
-    `damping ${percent(m.damping_ratio, m.damping_ratio_std)} %`,
+    `damping ${percent(m.damping_ratio, m.damping_ratio_std && Z90 * m.damping_ratio_std)} % (90 %)`,
   ]);
   if (ground) {
-    const interval = ground.interval_90 ? `90 %: ${between(...ground.interval_90, ground.unit)}` : "no interval";
-    figures.push([ground.words, quantity(ground.median, ground.unit), interval]);
+    const interval = ground.interval_90 ? `${between(...ground.interval_90, ground.unit)} (90 %)` : "no interval";
+    figures.push([`${ground.words}, ${of(ground)}`, quantity(ground.median, ground.unit), interval]);
   }
   figures.push(["open alarms", String(open), `${count(alarms.length, "alarm")} in all`]);
   figures.push(["known from", count(twin.records, "record"), `of ${count(twin.days, "day")}`]);
@@ -53,11 +53,13 @@ function Figures({ twin, alarms }: { twin: Twin; alarms: readonly Alarm[] }) {
   );
 }
 
+/** What an estimate is of: ground that changes is told as on its newest day. */
+const of = (p: KnownParameter): string => p.day ?? "all records";
+
 function Supports({ known }: { known: Knowledge }) {
   const rows = Object.entries(known.parameters ?? {});
   return (
     <>
-      {known.statement && <p class="note">{sentence(known.statement)}</p>}
       <Table
         label="Supports"
         rows={rows}
@@ -65,7 +67,7 @@ function Supports({ known }: { known: Knowledge }) {
         columns={[
           { title: "Parameter", show: ([, p]) => <span class="prose">{p.words}</span> },
           { title: "Median and 90 % interval", show: ([, p]) => <span class="prose">{p.text}</span> },
-          { title: "Of", show: ([, p]) => p.day ?? "all records" },
+          { title: "Of", show: ([, p]) => of(p) },
         ]}
       />
       <p class="quiet">
@@ -76,15 +78,37 @@ function Supports({ known }: { known: Knowledge }) {
   );
 }
 
+/** The first sentence; the others are folded where the page is narrow. */
+const Said = ({ sentences: [first, ...others] }: { sentences: string[] }) => (
+  <>
+    {first}
+    {others.length > 0 && (
+      <details class="others">
+        <summary>{count(others.length, "more sentence")}</summary>
+        {others.map((one) => (
+          <p key={one}>{one}</p>
+        ))}
+      </details>
+    )}
+  </>
+);
+
 /** The report's first page in short, where a reader begins. */
 function Answers({ asset, known }: { asset: string; known: Knowledge }) {
   return (
-    <Card title="What is known, and what to do" wide more={<a href={assetUrl(asset, "reports")}>Report</a>}>
+    <Card
+      title="What is known, and what to do"
+      wide
+      more={<a href={assetUrl(asset, "reports")}>Report</a>}
+      note="Of all records together; in brackets 90 % intervals. What changes with time is told above and below."
+    >
       <dl class="answers">
         {known.answers?.map(({ question, answer }) => (
           <div key={question}>
             <dt>{question}</dt>
-            <dd>{answer}</dd>
+            <dd>
+              <Said sentences={answer.split(/(?<=\.) (?=[A-Z])/)} />
+            </dd>
           </div>
         ))}
       </dl>
@@ -130,14 +154,14 @@ export function Turbine({ asset }: PageProps) {
       {twin.data && twin.data.records > 0 && <Figures twin={twin.data} alarms={alarms.data?.items ?? []} />}
       <div class="grid">
         <Card title="What changed, and why" more={<a href={assetUrl(asset, "alarms")}>All alarms</a>}>
-          <Shown of={alarms} none={<Unchanged own={own} />} lines={3}>
+          <Shown of={alarms} none={<Unchanged />} lines={3}>
             {(data) => <AlarmList alarms={mostUrgent(data.items).slice(0, 3)} again={alarms.again} />}
           </Shown>
         </Card>
         <Card
           title="What it does now"
           more={<a href={assetUrl(asset, "timeline")}>Through time</a>}
-          note="Mean of all records, ± one standard deviation."
+          note="Mean of all records."
         >
           <Shown of={twin} some={(data) => data.records} none={<NoRecord asset={asset} />} lines={7}>
             {(data) => <ModeTable asset={asset} modes={data.modes as unknown as KnownMode[]} more={RECORDS} />}
@@ -175,18 +199,7 @@ export function Turbine({ asset }: PageProps) {
 const mostUrgent = (alarms: readonly Alarm[]): Alarm[] =>
   alarms.toSorted((a, b) => Number(Boolean(a.closed_by)) - Number(Boolean(b.closed_by)));
 
-function Unchanged({ own }: { own: Answer<Asset> }) {
-  return (
-    <Empty title="No change was found">
-      Changes are watched for once a baseline is whole.{" "}
-      {own.data?.last_record_utc && (
-        <>
-          The last record began <Time at={own.data.last_record_utc} />.
-        </>
-      )}
-    </Empty>
-  );
-}
+const Unchanged = () => <Empty title="No change was found">Changes are watched for once a baseline is whole.</Empty>;
 
 const NoRecord = ({ asset }: { asset: string }) => (
   <Empty title="No record has been observed">

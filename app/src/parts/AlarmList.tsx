@@ -1,5 +1,5 @@
 // Findings that ask for a person, what is known of each, and the way to say that one has looked.
-import type { Alarm } from "../api/client";
+import type { Finding } from "../api/client";
 import { sentence } from "../words/numbers";
 import { assetUrl } from "../shell/place";
 import { Light, Time } from "./Bits";
@@ -7,8 +7,9 @@ import { Handling, History, standing } from "./Handling";
 
 const ROOM_MS = 60 * 86_400_000;
 
-/** The days before and after: what a reader looks at first. */
-function evidence(alarm: Alarm): string {
+/** The record, or the days before and after: what a reader looks at first. */
+function evidence(alarm: Finding): string {
+  if (alarm.record_id) return assetUrl(alarm.asset, "records", alarm.record_id);
   const began = alarm.params["began_low"];
   const first = typeof began === "string" ? Date.parse(began) : Date.parse(alarm.time_utc);
   const at = (ms: number): string => encodeURIComponent(new Date(ms).toISOString());
@@ -17,7 +18,7 @@ function evidence(alarm: Alarm): string {
 }
 
 interface AlarmListProps {
-  alarms: readonly Alarm[];
+  alarms: readonly (Finding & { comment?: string | null })[];
   again: () => void;
   /** Whether what people did is shown line by line. */
   whole?: boolean;
@@ -37,20 +38,18 @@ export function AlarmList({ alarms, again, whole = false }: AlarmListProps) {
                 until <Time at={alarm.muted_until_utc} />
               </span>
             )}
-            <a href={evidence(alarm)}>the days around it</a>
+            <a href={evidence(alarm)}>{alarm.record_id ? "the record" : "the days around it"}</a>
           </p>
           <p>{sentence(alarm.text)}</p>
           <Causes causes={alarm.params["causes"] as Record<string, number> | undefined} />
-          {whole ? (
-            <History finding={alarm} />
-          ) : (
-            alarm.acknowledged_by && (
-              <p class="quiet">
-                {alarm.acknowledged_by}, <Time at={alarm.acknowledged_utc ?? alarm.time_utc} />: {alarm.comment}
-              </p>
-            )
-          )}
-          <Handling finding={alarm} again={again} />
+          {whole
+            ? (alarm.severity === "alarm" || standing(alarm) !== alarm.severity) && <History finding={alarm} />
+            : alarm.acknowledged_by && (
+                <p class="quiet">
+                  {alarm.acknowledged_by}, <Time at={alarm.acknowledged_utc ?? alarm.time_utc} />: {alarm.comment}
+                </p>
+              )}
+          {alarm.severity !== "info" && <Handling finding={alarm} again={again} />}
         </li>
       ))}
     </ul>

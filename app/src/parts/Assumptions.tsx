@@ -65,7 +65,10 @@ export function Assumptions({ asset, known }: { asset: string; known: Knowledge 
   const [version, setVersion] = useState<number | null>(null);
   const found = useAsset(asset, "/assumptions");
   return (
-    <Card title="Open assumptions" note="What the answers hang on and nobody has settled, the weightiest first.">
+    <Card
+      title="Open assumptions"
+      note="What the answers hang on and nobody has settled, the weightiest first; ± is one standard deviation."
+    >
       {version !== null && (
         <p class="said-done" role="status">
           Version {version} takes it as settled. <a href={assetUrl(asset, "model")}>Adopt it</a> once its records are

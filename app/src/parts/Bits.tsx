@@ -141,14 +141,16 @@ export function Slide({ children, min = 0, max, step = 1, at, onMove }: SlidePro
   );
 }
 
-/** Names and values, a row each. */
-export function Facts({ facts }: { facts: readonly (readonly [string, string])[] }) {
+/** Names and values, a row each; of several values each has its own. */
+export function Facts({ facts }: { facts: readonly (readonly [string, string | string[]])[] }) {
   return (
     <dl class="facts">
       {facts.map(([name, value]) => (
         <div key={name}>
           <dt>{name}</dt>
-          <dd>{value}</dd>
+          {[value].flat().map((one) => (
+            <dd key={one}>{one}</dd>
+          ))}
         </div>
       ))}
     </dl>

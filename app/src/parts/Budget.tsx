@@ -39,9 +39,10 @@ function Row({ mode, most }: { mode: Schemas["BudgetOut"]; most: number }) {
         {mode.unexplained ? (
           <rect class="unexplained" x={at(sum)} y="4" width={at(mode.unexplained)} height="10" />
         ) : null}
-        {measured && <line x1={at(measured.value)} x2={at(measured.value)} y1="0" y2="18" />}
         {measured && (
-          <line x1={at(measured.low ?? measured.value)} x2={at(measured.high ?? measured.value)} y1="1" y2="1" />
+          <path
+            d={`M${at(measured.value)} 0v18M${at(measured.low ?? measured.value)} 1H${at(measured.high ?? measured.value)}`}
+          />
         )}
       </svg>
       <span class="n">

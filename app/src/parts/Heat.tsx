@@ -1,10 +1,12 @@
 // A number for each cell of a grid, as a picture: brighter is more.
-import { useMemo, useState } from "preact/hooks";
+import { useMemo, useRef, useState } from "preact/hooks";
+import { raised } from "../words/numbers";
 import { colour, theme } from "../shell/theme";
 import { SaveDrawn } from "./plot/SaveMenu";
 import { csvFrom, ticksOf } from "./plot/series";
+import { useWidth } from "./width";
 
-const [WIDTH, LEFT, RIGHT, TOP, BOTTOM] = [560, 66, 14, 10, 44];
+const [LEFT, RIGHT, TOP, BOTTOM] = [66, 14, 24, 44];
 /** Cividis (Nuñez, Anderton & Renslow 2018), as the report's. */
 const CIVIDIS = ["#002255", "#123570", "#3b496c", "#575d6d", "#707173", "#8a8678", "#a59c74", "#c3b369", "#e1cc55", "#fee838"]; // prettier-ignore
 
@@ -22,14 +24,10 @@ export interface HeatProps {
   y: Ends;
   xName: string;
   yName: string;
-  xTicks?: readonly number[];
-  yTicks?: readonly number[];
   sayX: (x: number) => string;
   sayY: (y: number) => string;
   say: (row: number, column: number) => string;
   cross?: Ends | null;
-  height?: number;
-  width?: number;
 }
 
 /** The grid as an image of one pixel a cell. */
@@ -50,6 +48,9 @@ function picture(cells: HeatProps["cells"]): string {
   return sheet.toDataURL();
 }
 
+const whole = ([low, high]: Ends): number[] =>
+  Array.from({ length: Math.floor(high) - Math.ceil(low) + 1 }, (_, k) => Math.ceil(low) + k);
+
 /** One line a cell: its middle and what it holds. */
 function csvOf({ cells, x, y, decades, xName, yName, zName }: HeatProps): string {
   const at = ([from, to]: Ends, k: number, n: number): number => {
@@ -64,8 +65,9 @@ export function Heat(p: HeatProps) {
   const [quiet] = [colour("quiet"), theme.value];
   const [read, setRead] = useState("");
   const href = useMemo(() => picture(p.cells), [p.cells]);
-  const [width, height] = [p.width ?? WIDTH, p.height ?? 400];
-  const [wide, high] = [width - LEFT - RIGHT, height - TOP - BOTTOM];
+  const root = useRef<HTMLElement>(null);
+  const [width, height] = [useWidth(root), 360];
+  const [wide, high] = [Math.max(width - LEFT - RIGHT, 0), height - TOP - BOTTOM];
   const px = (v: number): number => LEFT + ((v - p.x[0]) / (p.x[1] - p.x[0] || 1)) * wide;
   const py = (v: number): number => height - BOTTOM - ((v - p.y[0]) / (p.y[1] - p.y[0] || 1)) * high;
   const point = (event: MouseEvent): void => {
@@ -75,10 +77,10 @@ export function Heat(p: HeatProps) {
     setRead(p.cells[row]?.[column] === undefined ? "" : p.say(row, column));
   };
   return (
-    <figure class="plot">
+    <figure class="plot" ref={root}>
       <figcaption>
         <b>{p.title}</b>
-        <span class="unit">{p.unit}</span>
+        <span class="unit">{raised(p.unit)}</span>
         <output>{read}</output>
         <SaveDrawn title={p.title} csv={() => csvOf(p)} />
       </figcaption>
@@ -94,12 +96,12 @@ export function Heat(p: HeatProps) {
           onMouseMove={point}
           onMouseLeave={() => setRead("")}
         />
-        {(p.xTicks ?? ticksOf([...p.x], 6)).map((v) => (
+        {(p.decades ? whole(p.x) : ticksOf([...p.x], 6)).map((v) => (
           <text key={v} x={px(v)} y={height - BOTTOM + 18} text-anchor="middle">
             {p.sayX(v)}
           </text>
         ))}
-        {(p.yTicks ?? ticksOf([...p.y], 5)).map((v) => (
+        {(p.decades ? whole(p.y) : ticksOf([...p.y], 5)).map((v) => (
           <text key={v} x={LEFT - 6} y={py(v) + 4} text-anchor="end">
             {p.sayY(v)}
           </text>
@@ -107,7 +109,7 @@ export function Heat(p: HeatProps) {
         <text x={width - RIGHT} y={height - 6} text-anchor="end">
           {p.xName} →
         </text>
-        <text x={LEFT + 6} y={TOP + 14} fill="#fff">
+        <text x={LEFT} y={TOP - 9}>
           ↑ {p.yName}
         </text>
         {p.cross && (

@@ -1,5 +1,5 @@
 // A structure to turn: the report's widget on a page.
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import { show, type View } from "../../../src/jackettwin/report/templates/view.js";
 import "../../../src/jackettwin/report/templates/view.css";
 import type { Schemas } from "../api/client";
@@ -26,6 +26,6 @@ export function InSpace({ drawn, view }: { drawn: Schemas["StructureOut"]; view?
       made.gone();
     };
   }, [drawn]);
-  useEffect(() => own.current?.repaint(), [dark]);
+  useLayoutEffect(() => own.current?.repaint(), [dark]);
   return <div class="in-space" ref={root} />;
 }

@@ -51,7 +51,7 @@ function plotsOf(law: Schemas["LawOut"]): PlotData[] {
   return [
     one("Storage", "N/m", false, true, law.storage_n_m),
     one("Loss", "N/m", false, true, law.loss_n_m),
-    one("Loss factor", "–", false, false, law.loss_factor),
+    one("Loss factor", "ratio", false, false, law.loss_factor),
     one("Creep", "m/N", true, true, law.creep_m_n),
   ];
 }

@@ -1,6 +1,6 @@
 // Modes in a table: the same columns wherever modes stand.
 import { assetUrl } from "../shell/place";
-import { frequency, percent, words } from "../words/numbers";
+import { frequency, percent, words, Z90 } from "../words/numbers";
 import { type Column, Table } from "./Table";
 
 interface SomeMode {
@@ -21,12 +21,12 @@ interface ModeTableProps<T extends SomeMode> {
 
 export function ModeTable<T extends SomeMode>({ asset, modes, id, first = [], more = [] }: ModeTableProps<T>) {
   const url = assetUrl(asset, "timeline");
-  const f = (m: T): string => frequency(m.frequency_hz, m.frequency_std_hz);
-  const zeta = (m: T): string => percent(m.damping_ratio, m.damping_ratio_std);
+  const f = (m: T): string => frequency(m.frequency_hz, m.frequency_std_hz && Z90 * m.frequency_std_hz);
+  const zeta = (m: T): string => percent(m.damping_ratio, m.damping_ratio_std && Z90 * m.damping_ratio_std);
   const columns: Column<T>[] = [
     { title: "Mode", show: (m) => <a href={`${url}?mode=${m.label}`}>{words(m.label)}</a> },
-    { title: "Frequency", unit: "Hz", numeric: true, show: f },
-    { title: "Damping ratio", unit: "%", numeric: true, show: zeta },
+    { title: "Frequency", unit: "Hz, 90 %", numeric: true, show: f },
+    { title: "Damping ratio", unit: "%, 90 %", numeric: true, show: zeta },
   ];
   return <Table label="Modes" rows={modes} id={id ?? ((m) => m.label)} columns={[...first, ...columns, ...more]} />;
 }

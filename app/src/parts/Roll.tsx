@@ -1,5 +1,5 @@
 // Signals that roll: samples by channel, the newest at the right, drawn with every frame of the screen.
-import { useEffect, useRef } from "preact/hooks";
+import { useLayoutEffect, useRef } from "preact/hooks";
 import { colour, theme } from "../shell/theme";
 import { minus } from "../words/numbers";
 import { PAINTS } from "./modes";
@@ -110,7 +110,7 @@ function draw(on: Sheet, pieces: Piece[], lane: Lane, top: number, height: numbe
 export function Lanes({ roll, span }: { roll: Roll; span: number }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const dark = theme.value;
-  useEffect(() => {
+  useLayoutEffect(() => {
     const sheet = canvas.current;
     const ink = sheet?.getContext("2d");
     if (!sheet || !ink) return;

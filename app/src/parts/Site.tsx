@@ -2,7 +2,7 @@
 import type { Asset } from "../api/client";
 import { asked, assetUrl } from "../shell/place";
 import { sentence } from "../words/numbers";
-import { csvFrom } from "./plot/series";
+import { csvFrom, ticksOf } from "./plot/series";
 
 const [WIDTH, HIGH, EDGE, STEP, NAMED] = [1000, 300, 34, 28, 80];
 const KM_PER_DEGREE = 111.2;
@@ -49,13 +49,6 @@ function drawn(assets: readonly Asset[]) {
   return { marks, scale: at.size > 1 ? scale : 0, below, placed, height: below + (placed && rows * STEP + EDGE) };
 }
 
-/** 1, 2 or 5 times a power of ten kilometres, as long as fits a fifth of the width. */
-function roundLength(scale: number): number {
-  const most = WIDTH / 5 / scale;
-  const decade = 10 ** Math.floor(Math.log10(most));
-  return decade * ([5, 2, 1].find((n) => n * decade <= most) ?? 1);
-}
-
 const alarmsLast = (a: { asset: Asset }, b: { asset: Asset }): number =>
   Number(a.asset.status === "alarm") - Number(b.asset.status === "alarm");
 
@@ -67,7 +60,7 @@ export const mapCsv = (assets: readonly Asset[]): string =>
 
 export function Site({ assets }: { assets: readonly Asset[] }) {
   const { marks, scale, below, placed, height } = drawn(assets);
-  const length = scale && roundLength(scale);
+  const length = (scale && ticksOf([0, WIDTH / 5 / scale], 1).at(-1)) || 0; // kilometres that a fifth of the width holds
   const chosen = asked("find")?.toLowerCase() ?? "";
   const size = marks.length > 200 ? 0.6 : 1;
   return (
@@ -79,12 +72,10 @@ export function Site({ assets }: { assets: readonly Asset[] }) {
         </text>
       )}
       {scale > 0 && (
-        <path class="rule" d={`M${WIDTH - EDGE} ${below - 12}h${-length * scale}m0-4v8m${length * scale} 0v-8`} />
-      )}
-      {scale > 0 && (
-        <text x={WIDTH - EDGE} y={below - 20} text-anchor="end">
-          {`${length} km · north is up`}
-        </text>
+        <g>
+          <path class="rule" d={`M${WIDTH - EDGE} ${below - 12}h${-length * scale}m0-4v8m${length * scale} 0v-8`} />
+          <text x={WIDTH - EDGE} y={below - 20} text-anchor="end">{`${length} km · north is up`}</text>
+        </g>
       )}
       {marks.toSorted(alarmsLast).map(({ asset, x, y }) => (
         <g key={asset.name} transform={`translate(${x.toFixed(1)} ${y.toFixed(1)})`}>

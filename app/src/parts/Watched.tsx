@@ -2,7 +2,7 @@
 import { useMemo, useState } from "preact/hooks";
 import { useAsset } from "../api/answer";
 import type { Schemas } from "../api/client";
-import { quantity, words } from "../words/numbers";
+import { quantity, words, Z90 } from "../words/numbers";
 import { seconds } from "../words/time";
 import { Card, Pick, Slide } from "./Bits";
 import { modeColour } from "./modes";
@@ -12,8 +12,6 @@ import { InTime } from "./Stiffness";
 
 export type Watch = Schemas["WatchOut"];
 type Smallest = Schemas["SmallestChangeOut"];
-/** Of a normal scatter, 90 % lie within so many standard deviations. */
-const Z90 = 1.645;
 const noon = (date: string): number => seconds(`${date}T12:00:00Z`);
 const title = (q: Schemas["WatchedQuantity"]): string =>
   words(q.label) + { frequency: "", damping: ", damping", angle: ", direction" }[q.kind];

@@ -1,6 +1,6 @@
 // How modes look: the colour by kind, as in the report, and their plots through time.
 import type { Alarm, Mode, Schemas } from "../api/client";
-import { words } from "../words/numbers";
+import { words, Z90 } from "../words/numbers";
 import { day, seconds } from "../words/time";
 import type { Mark, PlotData } from "./plot/series";
 
@@ -9,17 +9,17 @@ export const PAINTS = ["blue", "vermillion", "green", "purple", "orange", "sky",
 export const paintOf = (k: number): string => PAINTS[k % PAINTS.length] ?? "blue";
 export type Bins = Schemas["ModeBinsOut"];
 
+const Z95 = 1.96;
 const KINDS: Record<string, string> = {
   fore_aft: "blue",
   side_side: "vermillion",
   torsion: "green",
   heave: "purple",
 };
-const OTHERS = ["blue", "vermillion", "green", "purple", "orange", "sky"];
 
 export function modeColour(label: string): string {
   const [, kind = "", number = "0"] = /^(.*)_(\d+)$/.exec(label) ?? [];
-  return KINDS[kind] ?? OTHERS[Number(number) % OTHERS.length] ?? "grey";
+  return KINDS[kind] ?? paintOf(Number(number) % 6);
 }
 
 /** Modes through time by label. */
@@ -41,14 +41,15 @@ export function modePlot(label: string, modes: readonly Mode[], what: string, ma
   const damping = what === "damping";
   const value = (m: Mode): number | null => (damping ? m.damping_ratio && 100 * m.damping_ratio : m.frequency_hz);
   const end = (m: Mode, i: 0 | 1): number | null => {
-    if (damping) return m.damping_ratio_interval_95 && 100 * (m.damping_ratio_interval_95[i] ?? NaN);
-    return m.frequency_std_hz === null ? null : m.frequency_hz + (i ? 1.96 : -1.96) * m.frequency_std_hz;
+    const [zeta, at95] = [m.damping_ratio, m.damping_ratio_interval_95?.[i]];
+    if (damping) return zeta && at95 ? 100 * zeta * (at95 / zeta) ** (Z90 / Z95) : null;
+    return m.frequency_std_hz === null ? null : m.frequency_hz + (i ? Z90 : -Z90) * m.frequency_std_hz;
   };
   return {
     title: words(label),
     time: true,
     xName: "UTC",
-    yName: damping ? "damping ratio [%], 95 % intervals" : "frequency [Hz], 95 % intervals",
+    yName: damping ? "damping ratio [%], 90 % intervals" : "frequency [Hz], 90 % intervals",
     log: damping,
     series: [
       {

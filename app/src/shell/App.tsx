@@ -62,8 +62,7 @@ function Top() {
   const { asset, page } = route.value;
   const { path } = place.value;
   const here = page === "turbine" ? "" : page === "record" ? "records" : page;
-  const state = connection.value;
-  const user = me.value;
+  const [state, user] = [connection.value, me.value];
   return (
     <header class="top">
       <div class="row">
@@ -126,12 +125,8 @@ export function App() {
   useEffect(() => {
     const here = document.querySelector(".tabs [aria-current]"); // on a phone the row is longer than the screen
     here?.scrollIntoView({ inline: "center", block: "nearest" });
-  }, [asset, page]);
-  useEffect(() => {
-    document.title = [asset, page]
-      .filter((part) => part && part !== "turbine")
-      .concat("jackettwin")
-      .join(" – ");
+    const parts = [asset, page === "turbine" ? "" : page, "jackettwin"];
+    document.title = parts.filter(Boolean).join(" – ");
   }, [asset, page]);
   if (page === "login") return <Login />;
   const Page = PAGES[page];

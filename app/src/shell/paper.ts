@@ -1,5 +1,4 @@
 // The page on paper, and pages and plots as files that need no server.
-import { onPaper } from "./theme";
 export function save(content: Blob | string, name: string): void {
   const link = document.createElement("a");
   link.href = typeof content === "string" ? content : URL.createObjectURL(content);
@@ -13,8 +12,8 @@ const framed = (): HTMLIFrameElement | null => document.querySelector("iframe.re
 /** A framed report prints itself, whole; of any other page what is shown. */
 export function printPage(): void {
   const report = framed()?.contentWindow;
-  onPaper.value = !report; // what is drawn is painted anew, which takes a frame or two
-  setTimeout(() => (report ? report.postMessage("print", "*") : print()), report ? 0 : 200);
+  if (report) report.postMessage("print", "*");
+  else print();
 }
 
 document.addEventListener("keydown", (event) => {

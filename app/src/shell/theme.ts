@@ -5,9 +5,10 @@ export type Theme = "light" | "dark";
 const system = matchMedia("(prefers-color-scheme: dark)");
 const systemDark = signal(system.matches);
 const chosen = signal(localStorage.getItem("theme"));
-export const onPaper = signal(false); // paper is white
+export const onPaper = signal(false); // paper is white, and what is drawn is as wide as it is
 window.addEventListener("beforeprint", () => (onPaper.value = true));
 window.addEventListener("afterprint", () => (onPaper.value = false));
+onPaper.subscribe((now) => document.documentElement.toggleAttribute("data-paper", now));
 export const theme = computed<Theme>(() =>
   !onPaper.value && (chosen.value === "dark" || (chosen.value === null && systemDark.value)) ? "dark" : "light",
 );

@@ -30,6 +30,8 @@ function withStd(value: Number_, std: Number_, scale: number, decimals: number):
   return `${fixed(scale * value, digits)} ± ${fixed(scale * std, digits)}`;
 }
 
+/** Every interval of the window holds 90 %: of a normal scatter so many standard deviations to each side. */
+export const Z90 = 1.645;
 /** Hertz with four decimals. */
 export const frequency = (value: Number_, std?: Number_): string => withStd(value, std, 1, 4);
 /** A ratio in per cent, without the sign. */
@@ -41,8 +43,8 @@ export function scientific(value: Number_, digits = 3): string {
   const power = Number(exponent);
   if (power >= -3 && power <= digits)
     return minus(Number(value.toPrecision(digits)).toFixed(Math.max(digits - 1 - power, 0)));
-  const raised = [...String(power)].map((c) => (c === "-" ? "⁻" : (SUPERSCRIPT[Number(c)] ?? c))).join("");
-  return `${minus(mantissa)} × 10${raised}`;
+  const above = [...String(power)].map((c) => (c === "-" ? "⁻" : (SUPERSCRIPT[Number(c)] ?? c))).join("");
+  return `${minus(mantissa)} × 10${above}`;
 }
 
 /** Significant digits without an exponent or trailing zeros. */
@@ -55,6 +57,9 @@ export const onAxis = (v: number): string =>
         .replace(/\.?0+ ×/, " ×")
         .replace(/^1 × /, "")
     : short(v, 6);
+
+/** m/s^2: m/s². */
+export const raised = (unit: string): string => unit.replaceAll("^2", "²");
 
 /** A number of any size with its unit and the prefix that suits. */
 export function quantity(value: Number_, unit: string, digits = 2): string {
@@ -87,7 +92,7 @@ const LONG_YEARS = 1000;
 /** Years without digits that nobody knows. */
 export const years = (value: number | null): string =>
   value === null || !Number.isFinite(value) || value > LONG_YEARS
-    ? "over 1000"
+    ? "> 1000"
     : String(Number(value.toPrecision(value < 10 ? 1 : 2)));
 /** A sentence of the server with modes and numbers as the pages write them. */
 export const sentence = (text: string): string =>

@@ -77,6 +77,7 @@ def serve_command(
     start_logging(log_level, as_json=log_json)
 
     def ready(service: Service) -> None:
+        service.laying_out = demo
         scheme = "https" if service.settings.tls_certificate else "http"
         messages.print(f"jackettwin serves {store} at {scheme}://{options['host']}:{options['port']}/")
         messages.print(

@@ -59,6 +59,8 @@ class Service:
     """Whether this server, of several on a store, handles the inbox and the broker."""
     on_lost: list[Callable[[], None]] = field(default_factory=list)
     """Functions called when the database is lost, after which another server may take over."""
+    laying_out: bool = False
+    """Whether the demonstration is being laid out, before which there is no turbine."""
     broker_connected: Callable[[], bool | None] = lambda: None
     packets_refused: Callable[[], int] = lambda: 0
 

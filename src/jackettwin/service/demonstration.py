@@ -62,8 +62,11 @@ def demonstrate(service: Service) -> Thread:
 
 def _arrive(service: Service) -> None:
     try:
-        if not lay_out(service):
-            tell_story(service)
+        try:
+            if not lay_out(service):
+                tell_story(service)
+        finally:
+            service.laying_out = False
         service.wake()
         for record in shipped_records():
             if arrive(service, record):

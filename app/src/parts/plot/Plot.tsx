@@ -1,14 +1,15 @@
 // A plot: uPlot with our colours, UTC, intervals, marks, keyboard, and a copy to take away.
-import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { colour, theme } from "../../shell/theme";
-import { onAxis, short } from "../../words/numbers";
+import { onAxis, raised, short } from "../../words/numbers";
+import { useWidth } from "../width";
 import { SaveMenu, sheetOf } from "./SaveMenu";
 import type { PlotData, Range, Series } from "./series";
 import { csvOf, extentOf, readX, spanOf, ticksOf } from "./series";
 import { svgOf } from "./svg";
-import { MANY, under } from "./under";
+import { under } from "./under";
 
 interface PlotProps {
   data: PlotData;
@@ -58,7 +59,7 @@ const formOf = ({ time, log, logX, series }: PlotData): string =>
   JSON.stringify([time, log, logX, series.map((s) => [s.kind, s.colour, s.solid, s.dashed, sizeOf(s)])]);
 /** Points by how large they are drawn; of lines whether they are points, too. */
 const sizeOf = ({ kind, x }: Series): number =>
-  kind === "band" ? 0 : kind === "line" ? Number(x.length < 3) : x.length > MANY ? 0 : x.length > 200 ? 4 : 6;
+  kind === "band" ? 0 : kind === "line" ? Number(x.length < 3) : x.length > 200 ? 4 : 6;
 
 function options(
   latest: { current: { data: PlotData; shown: Range } },
@@ -122,6 +123,7 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
   const own = useState(given.range ?? null);
   const [range, onRange] = given.onRange ? [given.range ?? null, given.onRange] : own;
   const root = useRef<HTMLDivElement>(null);
+  const width = useWidth(root);
   const chart = useRef<uPlot | null>(null);
   const [read, setRead] = useState("");
   const extent = extentOf(data);
@@ -131,9 +133,9 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
   const latest = useRef({ data, shown, onRange, onPick });
   latest.current = { data, shown, onRange, onPick };
 
-  useEffect(() => {
+  useLayoutEffect(() => {
     const box = root.current;
-    if (!box) return;
+    if (!box || !width) return;
     const columns = data.series.flatMap((s, i) => (s.kind === "band" ? [-1, -1] : [i]));
     const nearest = (u: uPlot): [number, number] | null => {
       let found: [number, number, number] | null = null;
@@ -149,7 +151,7 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
       return found && [found[0], found[1]];
     };
     const u = new uPlot(
-      options(latest, box.clientWidth, height, {
+      options(latest, width, height, {
         cursor: {
           drag: { x: true, y: false, setScale: false },
           points: { size: 7 },
@@ -205,16 +207,14 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
     );
     u.setScale("x", { min: latest.current.shown[0], max: latest.current.shown[1] });
     chart.current = u;
-    const observer = new ResizeObserver(() => u.setSize({ width: box.clientWidth, height }));
-    observer.observe(box);
     return () => {
-      observer.disconnect();
       u.destroy();
       chart.current = null;
     };
-  }, [formOf(data), height, dark, together]);
+  }, [formOf(data), height, dark, together, width > 0]);
 
-  useEffect(() => {
+  useLayoutEffect(() => chart.current?.setSize({ width, height }), [width, height]);
+  useLayoutEffect(() => {
     if (chart.current?.data !== table) chart.current?.setData(table, false);
     chart.current?.setScale("x", { min: shown[0], max: shown[1] });
   }, [table, shown[0], shown[1]]);
@@ -238,7 +238,7 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
     <figure class="plot">
       <figcaption>
         <b>{data.title}</b>
-        <span class="unit">{data.time ? data.yName : `${data.yName} by ${data.xName}`}</span>
+        <span class="unit">{raised(data.time ? data.yName : `${data.yName} by ${data.xName}`)}</span>
         <span class="legend">
           {data.series.length > 1 &&
             data.series.map((s) => (
@@ -251,7 +251,7 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
         <output>{read}</output>
         <SaveMenu
           title={data.title}
-          png={() => drawnOn(chart.current?.ctx.canvas)}
+          png={() => chart.current && sheetOf(chart.current.ctx.canvas)}
           svg={() => svgOf(data, shown, colour)}
           csv={() => csvOf(data)}
         />
@@ -266,9 +266,6 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
     </figure>
   );
 }
-
-const drawnOn = (sheet?: HTMLCanvasElement): HTMLCanvasElement | null =>
-  sheet ? sheetOf(sheet, sheet.width, sheet.height) : null;
 
 /** Where the wheel leads: sideways (or with shift) along, with control nearer or farther; else nowhere. */
 function wheeled(u: uPlot, event: WheelEvent): Range | null {

@@ -4,9 +4,9 @@ import { colour } from "../../shell/theme";
 import { drawnAs } from "./drawn";
 
 /** A picture on a sheet of our paper. */
-export function sheetOf(drawn: CanvasImageSource, width: number, height: number): HTMLCanvasElement {
+export function sheetOf(drawn: HTMLCanvasElement | HTMLImageElement, times = 1): HTMLCanvasElement {
   const sheet = document.createElement("canvas");
-  [sheet.width, sheet.height] = [width, height];
+  const [width, height] = ([sheet.width, sheet.height] = [times * drawn.width, times * drawn.height]);
   const ink = sheet.getContext("2d");
   if (!ink) return sheet;
   ink.fillStyle = colour("paper");
@@ -27,11 +27,11 @@ const near = (from: Element): ReturnType<typeof drawnAs> =>
   drawnAs(from.closest("figure, .card")?.querySelector(".drawn") ?? from, colour("paper"));
 
 async function pictureNear(from: Element): Promise<HTMLCanvasElement> {
-  const [svg, width, height] = near(from);
+  const [svg] = near(from);
   const image = new Image();
   image.src = `data:image/svg+xml,${encodeURIComponent(svg)}`;
   await image.decode();
-  return sheetOf(image, 2 * width, 2 * height);
+  return sheetOf(image, 2);
 }
 
 /** Of what is marked as drawn in the same figure or card. */

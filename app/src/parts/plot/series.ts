@@ -55,8 +55,22 @@ const FEW = 30;
 /** Of more points, the widest intervals are cut off: a few short records would hide what all others show. */
 const ROOM = 0.25;
 
+/** Of more points, those whose intervals are so many times wider than most do not set the scale. */
+const VAGUE = 4;
+const usual = new WeakMap<Series, number>();
+
+/** Width of an interval that most of many points have. */
+function usualWidth(s: Series): number {
+  const found = usual.get(s);
+  if (found !== undefined) return found;
+  const all = Array.from(s.x, (_, i) => (s.high?.[i] ?? NaN) - (s.low?.[i] ?? NaN)).filter((w) => w >= 0);
+  const width = s.x.length > FEW ? (all.sort((a, b) => a - b)[all.length >> 1] ?? Infinity) : Infinity;
+  usual.set(s, width);
+  return width;
+}
+
 /** The extremes of what is shown between two places of x; of positive numbers only if logarithmic. */
-export function spanOf(plot: PlotData, range: Range | null): Range {
+export function spanOf(plot: PlotData, range: Range | null, vague = VAGUE): Range {
   let [low, high] = [Infinity, -Infinity];
   const see = (value: number | null | undefined): void => {
     if (value === null || value === undefined || (plot.log && value <= 0)) return;
@@ -67,11 +81,13 @@ export function spanOf(plot: PlotData, range: Range | null): Range {
     for (let i = 0; i < s.x.length; i++) {
       const x = s.x[i] ?? NaN;
       if (range && (x < range[0] || x > range[1])) continue;
+      if (s.kind === "points" && (s.high?.[i] ?? 0) - (s.low?.[i] ?? 0) > vague * usualWidth(s)) continue;
       see(s.y[i]);
       if (s.kind === "points" && s.x.length > FEW) continue;
       see(s.low?.[i]);
       see(s.high?.[i]);
     }
+  if (low > high && vague < Infinity) return spanOf(plot, range, Infinity);
   if (low > high) return plot.log ? [0.1, 1] : [0, 1];
   if (plot.log) return [low / 1.3, high * 1.3];
   const cut = plot.series.some((s) => s.kind === "points" && s.x.length > FEW && s.low);

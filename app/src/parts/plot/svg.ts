@@ -14,7 +14,10 @@ export function svgOf(plot: PlotData, range: Range, paint: (name: string) => str
   const along = plot.logX ? Math.log10 : (v: number) => v;
   const [x0, x1] = [along(range[0]), along(range[1])];
   const px = (x: number): number => LEFT + ((along(x) - x0) / (x1 - x0)) * (WIDTH - LEFT - RIGHT);
-  const py = (y: number): number => HEIGHT - BOTTOM - ((scale(y) - y0) / (y1 - y0)) * (HEIGHT - TOP - BOTTOM);
+  const py = (y: number): number => {
+    const up = ((scale(y) - y0) / (y1 - y0)) * (HEIGHT - TOP - BOTTOM);
+    return Math.min(Math.max(HEIGHT - BOTTOM - up, TOP), HEIGHT - BOTTOM); // what is beyond the scale: at its edge
+  };
   const at = (v: number): string => v.toFixed(1);
   const parts: string[] = [];
   const text = (x: number, y: number, words: string, anchor = "start"): number =>

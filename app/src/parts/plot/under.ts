@@ -1,10 +1,7 @@
-// What stands behind and beside the lines of a plot: intervals, many points, marks.
+// What stands behind and beside the lines of a plot: intervals, what is beyond the scale, marks.
 import type uPlot from "uplot";
 import { colour } from "../../shell/theme";
 import type { PlotData, Series } from "./series";
-
-/** More points than this are squares without intervals of their own: each pixel is painted once. */
-export const MANY = 1500;
 
 interface Canvas {
   ctx: CanvasRenderingContext2D;
@@ -30,20 +27,7 @@ function intervals(c: Canvas, s: Series): void {
   c.ctx.strokeStyle = colour(s.colour) + (s.x.length > 300 ? "3a" : "77");
   c.ctx.lineWidth = devicePixelRatio;
   c.ctx.beginPath();
-  if (s.x.length <= MANY) {
-    for (let i = 0; i < s.x.length; i++) bar(c, c.px(s.x[i] ?? NaN), s.low[i], s.high[i]);
-  } else {
-    const width = Math.ceil(c.width) + 1;
-    const [low, high] = [new Float64Array(width).fill(Infinity), new Float64Array(width).fill(-Infinity)];
-    for (let i = 0; i < s.x.length; i++) {
-      const column = Math.round(c.px(s.x[i] ?? NaN) - c.left);
-      const [a, b] = [s.low[i], s.high[i]];
-      if (!(column >= 0 && column < width) || typeof a !== "number" || typeof b !== "number") continue;
-      if (a < (low[column] ?? 0)) low[column] = a;
-      if (b > (high[column] ?? 0)) high[column] = b;
-    }
-    for (let k = 0; k < width; k++) if (high[k] !== -Infinity) bar(c, c.left + k, low[k], high[k]);
-  }
+  for (let i = 0; i < s.x.length; i++) bar(c, c.px(s.x[i] ?? NaN), s.low[i], s.high[i]);
   c.ctx.stroke();
 }
 
@@ -53,25 +37,25 @@ function bar(c: Canvas, x: number, low: number | null | undefined, high: number 
   c.ctx.lineTo(x, c.py(high));
 }
 
-function squares(c: Canvas, s: Series): void {
-  const size = Math.max(Math.round(2 * devicePixelRatio), 2);
-  const [width, height] = [Math.ceil(c.width) + 1, Math.ceil(c.height) + 1];
-  const painted = new Uint8Array(width * height);
+/** Points beyond the scale: triangles at its edge. */
+function beyond(c: Canvas, s: Series): void {
+  const [r, bottom] = [4 * devicePixelRatio, c.top + c.height];
   c.ctx.fillStyle = colour(s.colour);
+  c.ctx.beginPath();
   for (let i = 0; i < s.x.length; i++) {
-    const y = s.y[i];
-    if (typeof y !== "number") continue;
-    const [left, top] = [Math.round(c.px(s.x[i] ?? NaN) - c.left), Math.round(c.py(y) - c.top)];
-    if (!(left >= 0 && left < width && top >= 0 && top < height) || painted[top * width + left]) continue;
-    painted[top * width + left] = 1;
-    c.ctx.fillRect(c.left + left - size / 2, c.top + top - size / 2, size, size);
+    const [x, y] = [c.px(s.x[i] ?? NaN), c.py(s.y[i] ?? NaN)];
+    if (!(x >= c.left && x <= c.left + c.width) || !(y < c.top || y > bottom)) continue;
+    const [edge, foot] = y < c.top ? [c.top, c.top + 2 * r] : [bottom, bottom - 2 * r];
+    c.ctx.moveTo(x, edge);
+    for (const side of [x - r, x + r]) c.ctx.lineTo(side, foot);
   }
+  c.ctx.fill();
 }
 
 function marks(u: uPlot, c: Canvas, data: PlotData): void {
   const ratio = devicePixelRatio;
   c.ctx.font = `${12 * ratio}px system-ui, sans-serif`;
-  let free = -Infinity;
+  const free = [-Infinity, -Infinity, -Infinity]; // where each line of words ends
   for (const mark of data.marks?.toSorted((a, b) => a.x - b.x) ?? []) {
     const px = u.valToPos(mark.x, "x", true);
     const paint = colour(mark.colour);
@@ -89,11 +73,12 @@ function marks(u: uPlot, c: Canvas, data: PlotData): void {
     c.ctx.setLineDash([]);
     const width = c.ctx.measureText(mark.words).width;
     const turned = px + width + 8 * ratio > c.left + c.width;
-    if (px >= c.left && px <= c.left + c.width && px > free) {
+    const line = free.findIndex((end) => (turned ? px - width : px) > end);
+    if (px >= c.left && px <= c.left + c.width && line >= 0) {
       c.ctx.fillStyle = paint;
       c.ctx.textAlign = turned ? "right" : "left";
-      c.ctx.fillText(mark.words, px + (turned ? -5 : 5) * ratio, c.top + 13 * ratio);
-      free = px + (turned ? 0 : width);
+      c.ctx.fillText(mark.words, px + (turned ? -5 : 5) * ratio, c.top + (13 + 15 * line) * ratio);
+      free[line] = px + (turned ? 0 : width + 8 * ratio);
     }
   }
 }
@@ -119,7 +104,7 @@ export function under(of: () => PlotData): uPlot.Plugin {
     for (const s of data.series) {
       if (s.kind !== "points") continue;
       intervals(c, s);
-      if (s.x.length > MANY) squares(c, s);
+      beyond(c, s);
     }
     marks(u, c, data);
     ctx.restore();
