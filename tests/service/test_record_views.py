@@ -17,6 +17,7 @@ from jackettwin.service.web.schemas.drawings import StructureOut
 from jackettwin.service.web.signals import spectra, spectrogram
 from jackettwin.service.workers import engine, record_views
 from jackettwin.store import Packet, open_database, reading, streams, write_waveform, writing
+from jackettwin.store.tables import records
 
 RATE = 20.0
 SHIPPED = Path(engine.__file__).parents[2] / "data" / "records" / "pile_U12_s301.parquet"
@@ -108,6 +109,23 @@ def test_packets_are_handed_on_once(tmp_path: Path) -> None:
     assert none == [] and [p.t0_utc for p in new] == [p.t0_utc for p in packets[1:]]
     assert again == (last, [])
     database.dispose()
+
+
+def test_what_examination_set_aside_is_found_once(
+    client: TestClient, service: Service, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Who looks again is told the same, without a worker; of samples that were deleted nothing is told."""
+    given = upload(client, 0).json()["record_id"]
+    asked, submit = [], service.cluster.submit
+    monkeypatch.setattr(
+        service.cluster, "submit", lambda task, *more, **how: asked.append(task) or submit(task, *more, **how)
+    )
+    first, again = (client.get(f"/api/v1/records/{given}/stretches").json() for _ in range(2))
+    assert first == again
+    assert asked == [record_views.stretches]
+    with writing(service.database) as connection:
+        connection.execute(records.update().values(waveform=None))
+    assert client.get(f"/api/v1/records/{given}/stretches").status_code == 404
 
 
 @pytest.mark.parametrize("what", ["spectrogram", "motion", "stretches"])

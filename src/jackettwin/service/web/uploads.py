@@ -12,6 +12,7 @@ from fastapi import UploadFile
 from sqlalchemy import Connection
 
 from jackettwin.errors import InputError
+from jackettwin.service.answer_cache import Answer
 from jackettwin.service.intake.bundles import twin_folder
 from jackettwin.service.intake.files import Accepted, discard, parse_here, spooled, take_file
 from jackettwin.service.web.dependencies import known_record, living_asset
@@ -144,19 +145,30 @@ def drafted(
     return cast("dict[str, Any]", found)
 
 
-def by_worker(service: Service, record_id: str, who: Who, task: Callable[..., Any], *more: Any) -> Any:
-    """Return what a worker finds in a record; the task is given the twin's folder and the samples' file."""
+def by_worker(
+    service: Service, record_id: str, who: Who, task: Callable[..., Any], *more: Any, keep: bool = False
+) -> Any:
+    """Return what a worker finds in a record; the task is given the twin's folder and the samples' file.
+
+    What it finds in samples alone, which do not change, may be kept for who looks again.
+    """
     with reading(service.database) as connection:
         record = known_record(connection, record_id, who)
         if record.waveform is None:
             raise ApiError(404, "the samples of this record were deleted", field="record_id")
         folder = twin_folder(connection, service, record.asset)
+    asked = f"{task.__name__} {record.waveform}"
+    if keep and (kept := service.answers.find(asked, 0)):
+        return json.loads(kept.body)
     waveform = str(service.settings.store / record.waveform)
     future = service.cluster.submit(task, str(folder), waveform, *more, priority=50)
     try:
-        return service.cluster.result(future, service.settings.observe_limit_s)
+        found = service.cluster.result(future, service.settings.observe_limit_s)
     except TimeoutError:
         raise ApiError(503, "it takes too long") from None
+    if keep:
+        service.answers.keep(asked, Answer.of(0, json.dumps(found).encode()))
+    return found
 
 
 def _limited(stream: BinaryIO, most: int) -> Iterator[bytes]:
