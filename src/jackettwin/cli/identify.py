@@ -354,6 +354,10 @@ def _settings(
         raise InputError("needs the uncertainty that --quick omits", field="--real-poles", remedy="omit one")
     if quick:
         messages.print("quick identification: modes are not checked, ok means only that the poles are stable")
+    elif settings.method != "ssi-cov":
+        messages.print(
+            f"{settings.method}: modes are not checked as those of ssi-cov, ok means that it finds them"
+        )
     update: dict[str, Any] = {"real_poles": True} if real_poles else {}
     update |= {"blocks": 0, "refine": False} if quick else {}
     update |= _band(band)
