@@ -46,19 +46,20 @@ def test_it_depends_on_the_motion_and_not_on_the_place() -> None:
     assert radiation_damping(here[1], yaw, 1.5, DEPTH) == 0.0
 
 
-def test_heave_and_sway_of_an_inclined_member_by_the_forces_of_waves() -> None:
+def test_heave_beside_sway_by_the_forces_of_waves() -> None:
     """Haskind's relation with the inertia forces that the sea's own waves exert, a quarter of a period apart.
 
-    A slender brace that moves up as it moves sideways: its parts add with the phases of the water's two
-    components, which are a quarter of a wave apart.
+    A slender column sways towards a level brace that heaves some 7 m away: waves of one add to those of the
+    other with the quarter of a wave by which the water's two components differ.
     """
     tube = Section(0.2, 0.01)
-    member = Member("brace", "low", "high", tube, tube, Material(), "jacket")
-    nodes = {"low": (0.0, 0.0, -8.0), "high": (9.0, 3.0, -2.0)}
-    assembly = assemble(Structure("brace", nodes, (member,), reactions=(Reaction("low"),)))
+    column = Member("column", "low", "knee", tube, tube, Material(), "jacket")
+    brace = Member("brace", "knee", "far", tube, tube, Material(), "jacket")
+    nodes = {"low": (0.0, 0.0, -8.0), "knee": (0.0, 0.0, -2.0), "far": (10.0, 0.0, -2.0)}
+    assembly = assemble(Structure("knee", nodes, (column, brace), reactions=(Reaction("low"),)))
     grid = morison_points(assembly, highest_z=0.0, spacing=0.2)
     shape = np.zeros(assembly.n_dof)
-    for node, moved in (("low", (1.0, 0.0, 0.4)), ("high", (0.3, -0.5, 1.0))):
+    for node, moved in (("low", (1.0, 0.0, 0.0)), ("knee", (1.0, 0.0, 0.0)), ("far", (1.0, 0.0, 1.0))):
         shape[assembly.dofs(node)[:3]] = moved
     omega = 1.3
     k = float(wave_number(omega, DEPTH))
