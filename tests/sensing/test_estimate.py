@@ -240,7 +240,7 @@ def test_section_forces_are_found_and_their_errors_are_as_said(
             # above 0.1 Hz, where the rotor pushes little, short waves that sensors hardly see are missed
             fast = np.fft.rfftfreq(len(true), STEP_S) > 0.1
             parts = [np.abs(np.fft.rfft(v)[fast]) ** 2 for v in (found - true[: len(found)], true)]
-            assert parts[0].sum() < 0.15**2 * parts[1].sum()
+            assert parts[0].sum() < 0.17**2 * parts[1].sum()
     assert np.sqrt(np.mean(np.square(left))) < 0.75
     # the mean over ten minutes of slow forces is in what is said, and in no range of stress
     assert 0.6 < np.sqrt(np.mean(np.square(beside))) < 1.4

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from math import pi, sqrt
+from math import pi
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from jackettwin.decks import read_structure
+from jackettwin.fatigue import count, equivalent_range
 from jackettwin.loads import (
     Coefficients,
     GrowthBand,
@@ -23,7 +24,7 @@ from jackettwin.loads import (
     wetness,
 )
 from jackettwin.sensing import Weather
-from jackettwin.sensing.sea import SeaOnMembers
+from jackettwin.sensing.sea import _DRAG, SeaOnMembers
 from jackettwin.structure import Assembly, assemble, rigid_body_motion
 
 DEPTH_M = 72.0
@@ -110,7 +111,7 @@ def test_both_places_of_a_band_have_the_cross_spectrum_of_a_wave_that_runs_so(
     first, second = (f.load for f in one.forces()[:2])
     omega = 1.02 * 2.0 * pi / 10.0
     grid, wet = one.grid, wetness(one.grid, np.zeros(one.grid.weight.size))
-    linear = sqrt(8.0 / pi) * one.speed_std * wet * grid.weight
+    linear = _DRAG * one.speed_std * wet * grid.weight
     linear = 0.5 * grid.density_kg_m3 * grid.drag * grid.diameter * linear
 
     def spectrum(towards: float) -> np.ndarray:
@@ -124,3 +125,14 @@ def test_both_places_of_a_band_have_the_cross_spectrum_of_a_wave_that_runs_so(
     size = np.abs(there).max()
     assert_allclose(own, there, atol=1e-9 * size, rtol=0.0)
     assert np.abs(spectrum(heading + pi) - there).max() > 0.05 * size
+
+
+def test_linear_drag_does_the_damage_of_that_of_the_square(rng: np.random.Generator) -> None:
+    """Of a narrow sea's velocity u, ranges of c σ u and of u|u| have the same third moment."""
+    t, df = np.arange(0.0, 40_000.0, 0.5), 1.0 / 40_000.0
+    f = 0.1 + df * np.arange(-60, 61)
+    wave = np.exp(2j * np.pi * np.outer(t, f)) @ (rng.standard_normal((f.size, 2)) @ [1.0, 1j])
+    u = wave.real / wave.real.std()
+    square, linear = (equivalent_range(count(x), 3.0, 1.0) for x in (u * np.abs(u), _DRAG * u))
+    assert linear == pytest.approx(square, rel=0.1)  # 240 independent waves: 6 % of the ratio
+    assert equivalent_range(count(np.sqrt(8.0 / np.pi) * u), 3.0, 1.0) < 0.75 * square
