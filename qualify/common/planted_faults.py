@@ -128,6 +128,7 @@ FAULTS = (
         ("x and y of a wave's direction are swapped", "np.stack([u * np.cos(self.direction), u * np.sin(self.direction), w], axis=1)", "np.stack([u * np.sin(self.direction), u * np.cos(self.direction), w], axis=1)"),
     )),
     *_of("response", "tests/response", "tests/structure/test_rotor_modes.py", rows=(
+        ("forces of the motion are not extrapolated", "guess = 2.0 * g[k] - before", "guess = g[k]"),
         ("damped frequencies are imaginary parts", "return np.abs(self.eigenvalues) / (2.0 * pi)", "return self.eigenvalues.imag / (2.0 * pi)"),
         ("MAC without normalisation of one side", "cross / np.outer(own, np.einsum(\"ij,ij->j\", x.conj(), Mx).real)", "cross / np.outer(own, np.ones(x.shape[1]))"),
         ("a superelement's damping takes mass for stiffness", "damping.alpha * element.M[b, b] + damping.beta * element.K[b, b]", "damping.beta * element.M[b, b] + damping.alpha * element.K[b, b]"),
@@ -162,6 +163,8 @@ FAULTS = (
         ("bias of low damping is added", "np.exp(p.log_zeta[mode] - bias[:, 1])", "np.exp(p.log_zeta[mode] + bias[:, 1])"),
     )),
     *_of("watching", rows=(
+        ("kinds that are not monitored take a share of the promise", "+ np.log(watch.staked)", "- np.log(watch.staked)"),
+        ("a doubted value keeps part of its distance", "np.maximum(distance / DOUBTED, 1.0) ** 2", "np.maximum(distance / DOUBTED, 1.0)"),
         ("an effect is by unit of the regressor, times it", "float(per_scale) / column.scale", "float(per_scale) * column.scale"),
         ("a jump's deviation is its variance", "(chance / len(JUMPS), jump**2)", "(chance / len(JUMPS), jump)"),
         ("a level counts half of what it shares with its reference", "apart = var - 2.0 * self.cov[:, LEVEL, REFERENCE]", "apart = var - self.cov[:, LEVEL, REFERENCE]"),

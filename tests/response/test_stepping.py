@@ -107,6 +107,21 @@ def test_feedback_converges_with_the_second_order_on_scipys_solution() -> None:
     assert errors[-1] < 1e-4 * np.linalg.norm(exact)
 
 
+def test_a_feedback_that_grows_evenly_is_extrapolated() -> None:
+    """A mass that moves on at v, as a load k v t holds off a spring k of the feedback.
+
+    Without extrapolation every step would begin with the force of the last, and stay k v h³/3 behind.
+    """
+    k, v, h, n = 4.0, 1.0, 0.05, 200
+    hold = first_order_hold(np.array([[0.0, 1.0], [0.0, 0.0]]), np.array([[0.0], [1.0]]), h)
+    t = h * np.arange(n + 1)
+    x, _ = march_with_feedback(
+        hold, hold, np.array([0.0, v]), k * v * t[:, None], lambda _, state: -k * state[:1]
+    )
+    # the first step has nothing to extrapolate from
+    assert np.abs(x[:, 0] - v * t).max() < 0.1 * k * v * h**3 / 3.0
+
+
 def test_feedback_may_hold_part_of_the_stiffness() -> None:
     """A spring of one tenth left to the feedback: the whole spring's motion, to second order."""
     whole, most = sdof(1.0, kelvin_voigt(4.0, 0.1)), sdof(1.0, kelvin_voigt(3.6, 0.1))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.stats import binom
@@ -77,6 +79,17 @@ def test_the_chance_rises_with_size_and_nothing_is_no_change(seen: tuple[Watch, 
     assert chance == sorted(chance) and chance[0] < 0.01 and chance[-1] > 0.99
     assert month.chance(-alike(0.01, watch)) > 0.99
     assert month.smallest(lambda x: alike(x, watch), 1e-5, 1e-4) is None
+
+
+def test_kinds_that_are_not_monitored_leave_their_share_to_the_others(
+    seen: tuple[Watch, History, Sight],
+) -> None:
+    """Frequency and scatter have 0.7 and 0.1 of the weights: alone, 0.8 of the evidence raises an alarm."""
+    watch, baseline, month = seen
+    assert watch.staked == pytest.approx(1.0)
+    alone = sight(replace(watch, blocks=watch.blocks[:1]), baseline, DAYS)
+    assert alone is not None
+    assert alone.log_needed - month.log_needed == pytest.approx(np.log(0.8))
 
 
 def test_a_longer_horizon_is_projected_and_said_to_be(seen: tuple[Watch, History, Sight]) -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from jackettwin.watching.hours import NEIGHBOURS, by_hour, outliers
+from jackettwin.watching.hours import DOUBTED, NEIGHBOURS, by_hour, outliers
 
 
 def test_an_hour_is_a_weighted_mean_and_its_scatter() -> None:
@@ -43,3 +43,16 @@ def test_two_outliers_of_four_values_are_set_aside_alone(rng: np.random.Generato
     assert np.flatnonzero(apart[:, 0]).tolist() == [1, 2]
     shifted, *_ = outliers(rng.standard_normal((4, 1)) - 15.0, np.ones((4, 1)), tail)
     assert not shifted.any()
+
+
+def test_a_doubted_value_stands_at_the_limit_of_doubt() -> None:
+    """With its own variance times the factor no value that is kept is more than 2.2 deviations away."""
+    tail, std = np.tile([[0.0], [0.1], [-0.1]], (3, 1)), 0.5
+    today = np.array([[0.0], [1.5], [0.1], [-1.9], [0.0], [1.0], [-0.1], [0.1]])
+    apart, doubt, _ = outliers(today, np.full(today.shape, std**2), tail)
+    assert not apart.any()
+    # the median of the day is 0.05, of which half of a tenth is the most by which one of a window differs
+    distance = np.abs(today - 0.05) / np.sqrt(std**2 * doubt)
+    far = np.abs(today[:, 0]) > 1.2
+    np.testing.assert_allclose(distance[far], DOUBTED, atol=0.1 / std)
+    np.testing.assert_array_equal(doubt[~far], 1.0)

@@ -63,8 +63,8 @@ def outliers(
     """Return which values of a day are outliers, factors on variances, and the neighbours of the next day.
 
     A common step of all neighbours does not affect rejection, so that no change is hidden. The variance of a
-    distant value that is not rejected is multiplied by a factor that limits its influence to that at
-    ``DOUBTED`` (Huber 1964).
+    distant value that is not rejected is multiplied by a factor that puts it at ``DOUBTED`` deviations: it
+    then says less of the level than by Huber's weight, and the less the more distant it is.
 
     Parameters
     ----------
