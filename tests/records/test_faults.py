@@ -131,4 +131,6 @@ def test_a_coarse_reading_is_told_by_its_levels(rng: np.random.Generator) -> Non
     y = rng.standard_normal(6_000)
     assert faults.quantiser_step(np.round(y)) == 1.0
     assert faults.quantiser_step(0.25 * np.round(4.0 * y)) == 0.25
+    impulse = np.where(np.arange(6000) == 500, 1.0, 0.0)
+    assert faults.quantiser_step(impulse) == 0.0 and faults.spikes(impulse).sum() == 1
     assert faults.quantiser_step(y) == 0.0

@@ -57,7 +57,7 @@ MIN_SAMPLES_PER_LEVEL = 20
 
 
 def quantiser_step(y: FloatArray) -> float:
-    """Return the quantisation step of a channel with few levels, else 0.
+    """Return the quantisation step of a channel with few levels, else 0, as of one that hardly leaves one.
 
     >>> float(quantiser_step(np.tile([0.0, 0.5, 1.0, 2.0], 100)))
     0.5
@@ -66,8 +66,9 @@ def quantiser_step(y: FloatArray) -> float:
     most = min(MAX_LEVELS, len(finite) / MIN_SAMPLES_PER_LEVEL)
     if len(np.unique(finite[: 4 * MAX_LEVELS])) > most:
         return 0.0
-    levels = np.unique(finite)
-    return float(np.min(np.diff(levels))) if 2 <= len(levels) <= most else 0.0
+    levels, samples = np.unique(finite, return_counts=True)
+    told = 2 <= len(levels) <= most and len(finite) - samples.max() >= MIN_SAMPLES_PER_LEVEL
+    return float(np.min(np.diff(levels))) if told else 0.0
 
 
 def runs(mask: BoolArray) -> Int64Array:
