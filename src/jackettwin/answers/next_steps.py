@@ -15,6 +15,7 @@ import numpy as np
 from jackettwin.answers.result import NextStep
 from jackettwin.arrays import FloatArray
 from jackettwin.intervals import NORMAL_90
+from jackettwin.response import damping_ratio
 from jackettwin.study import MeasuredMode
 from jackettwin.updating import DASHPOTS, USABLE, Problem, Residuals, State, Target, Update, information
 
@@ -131,7 +132,7 @@ def _with_modes(problem: Problem, modes: tuple[int, ...], z: FloatArray) -> Prob
     first = problem.states[0]
     reaching = problem.on(problem.model.reaching(max(modes)))
     pole = reaching.model.predict_many(reaching.vectors(z[None], first), modes).poles[0]
-    f, zeta = np.abs(pole) / (2.0 * np.pi), -pole.real / np.abs(pole)
+    f, zeta = np.abs(pole) / (2.0 * np.pi), damping_ratio(pole)
     known = first.residuals.targets
     of_f = [_share(t.frequency_std_hz, t.frequency_hz) for t in known if t.frequency_hz]
     of_zeta = [_share(t.damping_ratio_std, t.damping_ratio) for t in known if t.damping_ratio]

@@ -33,6 +33,7 @@ from .modes.modal import (
 from .modes.modal_damping import modal_damping as modal_damping
 from .modes.multiple import aligned as aligned, aligned_coordinates as aligned_coordinates
 from .modes.own_damping import own_damping as own_damping
+from .modes.poles import damping_ratio as damping_ratio
 from .modes.tracking import near_degenerate as near_degenerate, track_modes as track_modes
 from .motion.passage import Passage as Passage, wave_passage as wave_passage
 from .motion.playback import Playback as Playback, playback as playback, record_sensors as record_sensors
@@ -78,7 +79,6 @@ from .state_model import (
 )
 from .superelement.accuracy import (
     ReducedModes as ReducedModes,
-    damping_ratio as damping_ratio,
     default_band_hz as default_band_hz,
     hertz as hertz,
     reduced_modes as reduced_modes,

@@ -10,6 +10,7 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import require
+from jackettwin.response.modes.poles import damping_ratio
 from jackettwin.response.motion.time import first_order_hold, march, state_space
 from jackettwin.response.state import state_matrix
 from jackettwin.response.system import Group, Pencil
@@ -101,7 +102,7 @@ def free_vibration(
         found,
         "underdamped" if pair is not None else _regime(found),
         None if pair is None else float(abs(pair)) / (2.0 * pi),
-        None if pair is None else float(-pair.real / abs(pair)),
+        None if pair is None else float(damping_ratio(np.array(pair))),
         np.arange(n, dtype=np.float64) * step,
         motion,
     )

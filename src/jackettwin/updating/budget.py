@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.response import NumberedModes, Points
+from jackettwin.response import NumberedModes, Points, damping_ratio
 from jackettwin.soil import law_stiffness
 from jackettwin.updating.model import SupportModel
 
@@ -115,6 +115,6 @@ def _ratios(model: SupportModel, points: Points, found: NumberedModes) -> FloatA
     steel = a * m + b * k + sum(of_matrices.values())
     lost = np.stack([steel, soil, rotor, *([] if drag is None else [drag])], axis=-1)
     # M and K of the coordinates lack the contribution of truncated modes (1e-4): scale the sum to ζ
-    zeta = -pole.real / np.abs(pole)
+    zeta = damping_ratio(pole)
     ratio = lost * (zeta / lost.sum(axis=-1))[..., None]
     return np.where(known[..., None], ratio, np.nan)

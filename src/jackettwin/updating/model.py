@@ -20,6 +20,7 @@ from jackettwin.response import (
     System,
     build_system,
     damped_modes,
+    damping_ratio,
     law_response,
     numbered_poles,
     track_modes,
@@ -278,4 +279,4 @@ class ExactModes:
     @property
     def damping_ratio(self) -> FloatArray:
         """−Re λ/|λ|."""
-        return np.asarray(-self.poles.real / np.abs(self.poles))
+        return damping_ratio(self.poles)

@@ -23,6 +23,7 @@ from jackettwin.identification.preparation.prepared_record import prepare
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.preparation.whitening import as_measured
 from jackettwin.identification.settings import IdentificationSettings
+from jackettwin.intervals import NORMAL_95
 from jackettwin.records import spectral_matrix
 
 if TYPE_CHECKING:
@@ -35,8 +36,6 @@ BAND_SHARE = 0.08
 """Half width of a mode's band as a share of its frequency: eight half bandwidths at one per cent damping."""
 MIN_HALF_LINES = 12
 """Fewest spectral lines on either side of a mode."""
-NORMAL_95 = 1.959964
-"""Half width of a 95 % interval in standard deviations."""
 
 
 def bayoma(record: Record, settings: IdentificationSettings | None = None) -> Identification:

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
-from jackettwin.response import Passage, Playback, Sensor, observation_matrix, sensor_positions
+from jackettwin.response import Passage, Playback, Sensor, damping_ratio, observation_matrix, sensor_positions
 from jackettwin.structure import Assembly, section_forces, tube_radius
 
 _MOTION = "motion"
@@ -139,7 +139,7 @@ def damped_motion(
     f = abs(eigenvalue) / (2.0 * np.pi)
     theta = 2.0 * np.pi * np.arange(_FRAMES) / _FRAMES
     parts = np.stack([shape.real, -shape.imag])
-    zeta = -eigenvalue.real / abs(eigenvalue)
+    zeta = float(damping_ratio(np.array(eigenvalue)))
     return DrawnMotion(
         name,
         f"{f:.4f} Hz, ζ = {100 * zeta:.2f} %",

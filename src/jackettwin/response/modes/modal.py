@@ -10,7 +10,7 @@ import numpy as np
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import require
 from jackettwin.response.modes.multiple import aligned
-from jackettwin.response.modes.poles import REAL, poles_below
+from jackettwin.response.modes.poles import REAL, damping_ratio, poles_below
 from jackettwin.response.system import System
 from jackettwin.structure import AT_REST, below_zero, lowest_modes, refined_modes
 
@@ -74,7 +74,7 @@ class DampedModes:
     @property
     def damping_ratio(self) -> FloatArray:
         """−Re λ/|λ|."""
-        return -self.eigenvalues.real / np.abs(self.eigenvalues)
+        return damping_ratio(self.eigenvalues)
 
 
 def undamped_modes(system: System, number: int, *, near: UndampedModes | None = None) -> UndampedModes:

@@ -55,6 +55,11 @@ _CLUSTER = 1e-5
 """Poles nearer than this (relative) are refined together, so that none falls on its neighbour."""
 
 
+def damping_ratio(poles: ComplexArray) -> FloatArray:
+    """Return the damping ratios −Re λ/|λ| of poles [rad/s], thesis (3.6), in their shape."""
+    return np.asarray(-np.real(poles) / np.abs(poles))
+
+
 def poles_below(pencil: Pencil, radius: float) -> list[Pair]:
     """Return every pole with |λ| ≤ radius [rad/s] and Im λ ≥ 0, by |λ|.
 

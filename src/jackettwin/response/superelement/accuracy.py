@@ -11,7 +11,7 @@ from scipy.optimize import linear_sum_assignment
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.axes import DOFS_PER_NODE
-from jackettwin.response.modes.poles import poles_below
+from jackettwin.response.modes.poles import damping_ratio, poles_below
 from jackettwin.response.superelement.craig_bampton import (
     INTERFACE,
     Superelement,
@@ -50,11 +50,6 @@ class ReducedModes:
     def damping_error(self) -> FloatArray:
         """Error of the damping ratio, as a difference."""
         return damping_ratio(self.reduced) - damping_ratio(self.full)
-
-
-def damping_ratio(pole: ComplexArray) -> FloatArray:
-    """Return −Re λ/|λ|."""
-    return np.asarray(-pole.real / np.abs(pole))
 
 
 def reduced_modes(

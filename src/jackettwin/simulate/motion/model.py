@@ -24,6 +24,7 @@ from jackettwin.response import (
     Reduced,
     aligned,
     build_system,
+    damping_ratio,
     mode_kinds,
     mode_labels,
     own_damping,
@@ -205,7 +206,7 @@ def true_modes(model: Model, *, below_hz: float, heading_rad: float = 0.0) -> tu
         TrueMode(
             label,
             float(abs(v)) / (2.0 * pi),
-            float(-v.real / abs(v)),
+            float(damping_ratio(v)),
             damping_by_source(model, complex(v), states[: pencil.n, i]),
         )
         for label, v, i in zip(labels, values[order], order, strict=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import require
-from jackettwin.response import StateSpace, maxwell_branches
+from jackettwin.response import StateSpace, damping_ratio, maxwell_branches
 from jackettwin.simulate.motion.model import Model
 from jackettwin.simulate.scenario.pushes import GivenForces, Pull
 from jackettwin.simulate.scenario.scenario import Scenario, SimulationClock
@@ -213,4 +213,4 @@ def _pole(space: StateSpace, x: FloatArray, along: FloatArray) -> tuple[float, f
     best = int(np.argmax(np.abs(part)))
     s = values[best]
     total = abs(float(x[: space.n] @ along))
-    return float(abs(s) / (2.0 * pi)), float(-s.real / abs(s)), float(2.0 * part[best].real / total)
+    return float(abs(s) / (2.0 * pi)), float(damping_ratio(s)), float(2.0 * part[best].real / total)

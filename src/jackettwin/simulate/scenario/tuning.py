@@ -19,7 +19,15 @@ import scipy.linalg as la
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, NumericalError
-from jackettwin.response import Group, Reduced, aligned, aligned_coordinates, mode_kinds, state_matrix
+from jackettwin.response import (
+    Group,
+    Reduced,
+    aligned,
+    aligned_coordinates,
+    damping_ratio,
+    mode_kinds,
+    state_matrix,
+)
 from jackettwin.soil import Prony
 from jackettwin.structure import Assembly
 
@@ -89,7 +97,7 @@ def first_ratios(assembly: Assembly, small: Reduced, damping: FloatArray) -> Flo
     shapes = aligned(assembly, poles, small.basis @ states[: small.n, lowest])
     kinds = mode_kinds(assembly, shapes, np.abs(poles) / (2.0 * np.pi))
     found = values[lowest[list(_first_of(kinds))]]
-    return np.asarray(-found.real / np.abs(found))
+    return damping_ratio(found)
 
 
 def _first_of(kinds: tuple[str, ...]) -> tuple[int, int]:

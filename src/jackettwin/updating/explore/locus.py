@@ -9,7 +9,7 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import did_you_mean, require
-from jackettwin.response import NumberedModes
+from jackettwin.response import NumberedModes, damping_ratio
 from jackettwin.soil import Parameter
 from jackettwin.updating.explore.branches import branches
 from jackettwin.updating.model import SupportModel
@@ -44,7 +44,7 @@ class Locus:
     @property
     def damping_ratio(self) -> FloatArray:
         """−Re λ/|λ|, (n, n_modes)."""
-        return np.asarray(-self.poles.real / np.abs(self.poles))
+        return damping_ratio(self.poles)
 
     def most_damped(self, branch: int) -> tuple[float, float]:
         """Return the value at the largest damping ratio of a branch, and the ratio; NaN without one."""

@@ -8,6 +8,7 @@ from math import pi
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.response import damping_ratio
 from jackettwin.soil import Parameter
 from jackettwin.updating.data.targets import polar
 from jackettwin.updating.model import SupportModel
@@ -56,7 +57,7 @@ def sensitivity(model: SupportModel, theta: FloatArray, modes: tuple[int, ...]) 
     steps = _STEP * np.concatenate([np.eye(theta.size), -np.eye(theta.size)])
     near = model.predict_many(theta * np.exp(steps), modes, near=found, slopes=False)
     ln_f = np.log(np.abs(near.poles))
-    ratio = -near.poles.real / np.abs(near.poles)
+    ratio = damping_ratio(near.poles)
     by_f, by_zeta = ((a[: theta.size] - a[theta.size :]).T / (2.0 * _STEP) for a in (ln_f, ratio))
     apart = np.concatenate([np.abs(by_f - frequency), np.abs(by_zeta - damping)])
     known = apart[np.isfinite(apart)]

@@ -12,6 +12,7 @@ import scipy  # scipy.stats is loaded where it is used: half a second
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError, require
 from jackettwin.progress import SILENT, Progress
+from jackettwin.response import damping_ratio
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.search.clusters import SAME, extent, gather
 from jackettwin.updating.search.descent import End, descend, descend_simplex, settle
@@ -356,7 +357,7 @@ def _solution(problem: Problem, end: End, found: int) -> Solution:
         cost=end.cost,
         frequency_hz=damped,
         undamped_hz=undamped,
-        damping_ratio=np.asarray(-poles.real / np.abs(poles)),
+        damping_ratio=damping_ratio(poles),
         rates=np.array([found.rate[0] for found in problem.relaxed(end.z[None], problem.states[0])]),
         locked_damper=_locked(poles, undamped),
         locks_within=any(_locked(*_damped_and_undamped(problem, z)) for z in points),
