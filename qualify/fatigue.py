@@ -529,8 +529,9 @@ def introduction(n: int, lost: int) -> list[str]:
         "# Stress at welds from a few accelerometers",
         "",
         f"`python qualify/fatigue.py {' '.join(sys.argv[1:])}`: {n} simulated ten-minute records of "
-        f"{-(-n // len(STATES))} assets like jacket15; feet, damping, mass, growth, coefficients of the water and weather are drawn and "
-        "unknown to the twin but for mean wind and sea. It updates its feet with two other records of the "
+        f"{-(-n // len(STATES))} assets like jacket15; feet, damping, mass, growth, coefficients of the "
+        "water and weather are drawn and unknown to "
+        "the twin but for mean wind and sea. It updates its feet with two other records of the "
         f"asset{f' ({lost} records gave no result and are left out)' if lost else ''}.",
         f"Damage-equivalent range (m = {M:g}) over the true one, less one, in per cent: median (5 to 95 % of "
         "records), then the median size of the error. Moments in the direction that is loaded most; hot "
