@@ -193,7 +193,7 @@ FAULTS = (
         ("a kernel's density lacks its root", "- np.log(np.diag(root)).sum()", "+ np.log(np.diag(root)).sum()"),
     )),
     *_of("simulate", rows=(
-        ("damping is tuned on half the ratio", "np.asarray(-found.real / np.abs(found))", "np.asarray(-2.0 * found.real / np.abs(found))"),
+        ("damping is tuned on half the ratio", "return damping_ratio(found)", "return 2.0 * damping_ratio(found)"),
         ("noise of sensors is a tenth", "instrument.noise * rng.standard_normal(row.size)", "0.1 * instrument.noise * rng.standard_normal(row.size)"),
         ("a gap of a sensor is counted in seconds", "round(rng.exponential(instrument.dropout_s) / step_s)", "round(rng.exponential(instrument.dropout_s))"),
         ("velocities are read from displacements", "C[k, n : 2 * n] = row", "C[k, :n] = row"),
