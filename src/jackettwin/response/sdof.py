@@ -102,7 +102,7 @@ def free_vibration(
         found,
         "underdamped" if pair is not None else _regime(found),
         None if pair is None else float(abs(pair)) / (2.0 * pi),
-        None if pair is None else float(damping_ratio(np.array(pair))),
+        None if pair is None else float(damping_ratio(pair)),
         np.arange(n, dtype=np.float64) * step,
         motion,
     )

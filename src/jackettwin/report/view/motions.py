@@ -139,7 +139,7 @@ def damped_motion(
     f = abs(eigenvalue) / (2.0 * np.pi)
     theta = 2.0 * np.pi * np.arange(_FRAMES) / _FRAMES
     parts = np.stack([shape.real, -shape.imag])
-    zeta = float(damping_ratio(np.array(eigenvalue)))
+    zeta = float(damping_ratio(eigenvalue))
     return DrawnMotion(
         name,
         f"{f:.4f} Hz, ζ = {100 * zeta:.2f} %",

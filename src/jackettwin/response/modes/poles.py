@@ -55,9 +55,10 @@ _CLUSTER = 1e-5
 """Poles nearer than this (relative) are refined together, so that none falls on its neighbour."""
 
 
-def damping_ratio(poles: ComplexArray) -> FloatArray:
+def damping_ratio(poles: ComplexArray | complex) -> FloatArray:
     """Return the damping ratios −Re λ/|λ| of poles [rad/s], thesis (3.6), in their shape."""
-    return np.asarray(-np.real(poles) / np.abs(poles))
+    z = np.asarray(poles)
+    return np.asarray(-z.real / np.abs(z))
 
 
 def poles_below(pencil: Pencil, radius: float) -> list[Pair]:

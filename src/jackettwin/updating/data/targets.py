@@ -10,6 +10,7 @@ import numpy as np
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.errors import InputError, require
+from jackettwin.response import damping_ratio
 
 _LEAST = 1e-9
 """Damping ratios below this, or negative, are set to it, so that the logarithm exists."""
@@ -171,7 +172,7 @@ class Residuals:
             Added to the logarithms of the model's values, to represent errors of the model.
         """
         size = np.abs(poles)
-        pairs = np.stack([size / (2.0 * pi), -poles.real / size], axis=-1)
+        pairs = np.stack([size / (2.0 * pi), damping_ratio(poles)], axis=-1)
         model = pairs.reshape(len(poles), 2 * len(self.used))[:, self._places]
         ratio = np.maximum(model, _LEAST) / self._measured
         deviation = np.where(self._logarithmic, np.log(ratio), model / self._measured - 1.0)
@@ -223,6 +224,6 @@ def polar(poles: ComplexArray, slopes: ComplexArray) -> tuple[FloatArray, FloatA
     slopes : (..., n, n_z) dλ
     """
     size = np.abs(poles)
-    zeta, column = -poles.real / size, size[..., None]
+    zeta, column = damping_ratio(poles), size[..., None]
     radial = (np.conj(poles)[..., None] * slopes).real / column
     return size, zeta, radial, -slopes.real / column - zeta[..., None] * radial / column
