@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from jackettwin.watching.history import History, deviations, neighbours
+from jackettwin.watching.history import History, deviations, nearest_modes
 
 KEPT, NONE = np.array([0]), np.zeros((400, 0))
 
@@ -24,13 +24,13 @@ def pair(rng: np.random.Generator) -> History:
 
 
 def test_the_other_mode_of_a_pair_is_the_nearest_one(pair: History) -> None:
-    near = neighbours(pair, KEPT)
+    near = nearest_modes(pair, KEPT)
     assert near.mode.tolist() == [1]
     assert near.gap == pytest.approx(np.log(0.303 / 0.300), rel=0.05)
 
 
 def test_a_pair_that_noise_moves_apart_gains_no_weight(pair: History) -> None:
-    near = neighbours(pair, KEPT)
+    near = nearest_modes(pair, KEPT)
     _, std = deviations(pair, "angle", KEPT, np.array([0.3]), np.ones(1), near)
     assert std[:, 0] == pytest.approx(
         np.full(400, np.hypot(0.003 * np.sqrt(2.0) / near.gap[0], 0.05)), rel=1e-6
@@ -40,7 +40,7 @@ def test_a_pair_that_noise_moves_apart_gains_no_weight(pair: History) -> None:
 
 
 def test_without_both_frequencies_a_direction_is_taken_as_stated(pair: History) -> None:
-    near = neighbours(pair, KEPT)
+    near = nearest_modes(pair, KEPT)
     pair.frequency[:5, 1] = np.nan
     _, std = deviations(pair, "angle", KEPT, np.array([0.3]), np.ones(1), near)
     assert pair.angle_std is not None

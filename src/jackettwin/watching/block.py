@@ -13,10 +13,10 @@ from jackettwin.watching.directions import Directions, log_bayes_factors
 from jackettwin.watching.history import (
     History,
     Kind,
-    Neighbours,
+    NearestModes,
     deviations,
     middles,
-    neighbours,
+    nearest_modes,
     std_power,
 )
 from jackettwin.watching.hours import ENOUGH, NEIGHBOURS, Hours, by_hour, outliers
@@ -84,7 +84,7 @@ class Block:
     reference: FloatArray
     directions: Directions
     outlying: FloatArray = field(default_factory=lambda: np.full(1, _OUTLYING))
-    near: Neighbours | None = None
+    near: NearestModes | None = None
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ def begin(
     middle = middles(baseline, kind, kept)
     # the noise of a frequency is too small for its dependence on the value to matter
     power = std_power(baseline, kind, kept) if kind == "damping" else np.ones(len(kept))
-    near = neighbours(baseline, kept) if kind == "angle" else None
+    near = nearest_modes(baseline, kept) if kind == "angle" else None
     y, relative = deviations(baseline, kind, kept, middle, power, near)
     y[~np.isfinite(rows).all(axis=1)] = np.nan
     x = np.nan_to_num(rows)

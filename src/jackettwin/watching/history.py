@@ -87,7 +87,7 @@ def middles(history: History, kind: Kind, kept: IntArray) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class Neighbours:
+class NearestModes:
     """The mode nearest in frequency to each of m modes, and how far it is.
 
     Attributes
@@ -100,14 +100,14 @@ class Neighbours:
     gap: FloatArray
 
 
-def neighbours(history: History, kept: IntArray) -> Neighbours:
+def nearest_modes(history: History, kept: IntArray) -> NearestModes:
     """Return the modes nearest to those of some columns; the gap is NaN where no record has both."""
     ln_f = np.log(typical(history.frequency))
     away = np.abs(ln_f - ln_f[kept, None])
     away[range(len(kept)), kept] = np.nan
     mode = np.argmin(np.where(np.isfinite(away), away, np.inf), axis=1)
     gaps = [x[np.isfinite(x)] for x in _gaps(history, kept, mode).T]
-    return Neighbours(mode, np.array([np.median(x) if x.size else np.nan for x in gaps]))
+    return NearestModes(mode, np.array([np.median(x) if x.size else np.nan for x in gaps]))
 
 
 def _gaps(history: History, kept: IntArray, mode: IntArray) -> FloatArray:
@@ -120,7 +120,7 @@ def deviations(
     kept: IntArray,
     typical: FloatArray,
     power: FloatArray,
-    near: Neighbours | None = None,
+    near: NearestModes | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Return ln of the ratios to typical values, and relative standard deviations, both (n, m).
 
@@ -150,7 +150,7 @@ def deviations(
     return np.log(good / typical), np.where(relative > 0.0, relative, np.nan)
 
 
-def _at_typical_gap(history: History, kept: IntArray, std: FloatArray, near: Neighbours) -> FloatArray:
+def _at_typical_gap(history: History, kept: IntArray, std: FloatArray, near: NearestModes) -> FloatArray:
     """Return the standard deviations of directions as if each pair were as far apart as usual, (n, m)."""
     relative = history.frequency_std / history.frequency
     mixed = np.hypot(relative[:, kept], relative[:, near.mode])

@@ -60,12 +60,13 @@ def _length(y: FloatArray, sample_rate_hz: float) -> int:
 
 def lowest_motion_hz(y: FloatArray, sample_rate_hz: float) -> float | None:
     """Return the lowest frequency at which samples of zero mean have a clear peak, in a short record too."""
-    spectrum = welch(y, sample_rate_hz)
+    length = _length(y, sample_rate_hz)
+    spectrum = welch(y, sample_rate_hz, length)
     lowest = lowest_peak_hz(spectrum)
-    limit = RESOLVED_LINES * float(spectrum.frequencies_hz[1])
-    if _length(y, sample_rate_hz) >= int(LONGEST_SEGMENT_S * sample_rate_hz):
+    if length >= int(LONGEST_SEGMENT_S * sample_rate_hz):
         return lowest
-    finer = welch(y, sample_rate_hz, 2 * _length(y, sample_rate_hz), below_hz=2.0 * limit)
+    limit = RESOLVED_LINES * float(spectrum.frequencies_hz[1])
+    finer = welch(y, sample_rate_hz, 2 * length, below_hz=2.0 * limit)
     low = _lowest(finer, 2.0 * FEWEST_CYCLES / SEGMENTS, float(spectrum.singular_values[0, 1:].max()))
     return low if low is not None and low < min(limit, lowest or np.inf) else lowest
 

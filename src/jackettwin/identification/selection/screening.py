@@ -311,7 +311,8 @@ def _may_be_waves(mode: ModalEstimate, others: Sequence[ModalEstimate], known: E
 
     A close mode as broad as it is the other member of its pair.
     """
-    if contrast(known.lines, known.duration_s, mode, mode.mode_shape / known.scale)[0] < NO_SEA_CONTRAST:
+    shape = mode.mode_shape / known.scale
+    if contrast(known.lines, known.duration_s, mode, shape)[0] < NO_SEA_CONTRAST:
         return True
     first = [
         m.mode_shape / known.scale
@@ -319,7 +320,7 @@ def _may_be_waves(mode: ModalEstimate, others: Sequence[ModalEstimate], known: E
         if 1.0 / FIRST_MODES < m.frequency_hz / mode.frequency_hz < FIRST_MODES
         and (m.damping_ratio < BROAD_DAMPING or apart(mode, m) > CLOSE_DISTANCE)
     ]
-    return bool(first) and share_in_span(mode.mode_shape / known.scale, first)[0] > FOLLOWED_SHARE
+    return bool(first) and share_in_span(shape, first)[0] > FOLLOWED_SHARE
 
 
 def _may_reach(mode: ModalEstimate, damping_ratio: float) -> bool:
