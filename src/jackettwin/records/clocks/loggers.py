@@ -66,6 +66,9 @@ MIN_WEIGHT = 20.0
 """Smallest sum of the weights of an informative pair: two bins of full coherence, or twenty of half."""
 MIN_DELAY_SHARE = 0.6
 """Smallest share of the weight that a change of delay must explain."""
+MIN_STEADY_SHARE = 0.9
+"""The same for the median window of a pair: the phases of close modes along two axes change as by no clock
+and no sign. Of 5,100 parallel pairs of random towers 19 in 20 have more."""
 NEAR_S, NEAR_SHARE = 2.0, 0.6
 """Delays up to this, and up to this share of the longest one sought, are determined from phases."""
 MIN_WINDOWS = 4
@@ -274,5 +277,6 @@ def _series(seen: _Compared) -> tuple[FloatArray, FloatArray, FloatArray]:
     sign : (n_windows, n_pairs)
     """
     delay, explained, sign = trajectories(seen.phases)
-    weight = np.where(seen.network.informative & (explained > MIN_DELAY_SHARE), seen.phases.total, 0.0)
+    steady = seen.network.informative & (np.median(explained[1:], axis=0) > MIN_STEADY_SHARE)
+    weight = np.where(steady & (explained > MIN_DELAY_SHARE), seen.phases.total, 0.0)
     return weight, by_channel(seen.network, delay, weight), sign

@@ -22,6 +22,9 @@ from jackettwin.records.clocks.results import LostTime
 
 MIN_CONTINUING_SHARE = 0.75
 """Share of the phases between two groups that short delays explain while clocks run."""
+MIN_STEADY_SHARE = 0.9
+"""The same over the pairs between the groups for a loss of unknown amount, since the phases of close modes
+along two axes fall out of step by themselves."""
 MIN_FALL = 0.15
 """Smallest fall of that share after a loss; none of forty intact records of random systems had it."""
 MIN_PAIR_WEIGHT = 10.0
@@ -47,6 +50,7 @@ class _Separation:
     rows: tuple[int, ...]
     others: tuple[int, ...]
     window: int
+    steady: bool
 
 
 def lost_time(
@@ -78,7 +82,7 @@ def lost_time(
         if tried is not None and tried[1] > go_on and abs(tried[0].samples) > least:
             best, go_on = tried
     # a single channel that separates and is not found at another delay may have gone silent
-    return best, best is not None or len(parting.rows) > 1
+    return best, best is not None or (len(parting.rows) > 1 and parting.steady)
 
 
 def _separation(seen: Phases, same_place: IntArray) -> _Separation | None:
@@ -107,7 +111,12 @@ def _separation(seen: Phases, same_place: IntArray) -> _Separation | None:
     for group in (g for g in groups if g is not main):
         if np.any(weight[_between(seen.pairs, group, main)] > MIN_PAIR_WEIGHT):
             apart.append(group)
-    return _Separation(tuple(largest(apart)), tuple(main), k) if apart else None
+    if not apart:
+        return None
+    rows = largest(apart)
+    across = _between(seen.pairs, rows, main)
+    before = float(np.average(_before(explained, k)[across], weights=weight[across]))
+    return _Separation(tuple(rows), tuple(main), k, before > MIN_STEADY_SHARE)
 
 
 def _continuing_groups(
