@@ -218,6 +218,11 @@ CATALOGUE: dict[str, Kind] = {
         "warning",
         "the damping changes with the amplitude: {early:.2%} of critical at first, {late:.2%} at the end",
     ),
+    "unchecked": Kind(
+        "info",
+        "found by {method}, whose modes are not checked for tones, waves, noise and one peak found twice, as "
+        "those of ssi-cov with its uncertainty are",
+    ),
     "damping_unknown": Kind(
         "warning",
         "the record does not determine the damping: its logarithm has a standard deviation of {log_std:.2g}",

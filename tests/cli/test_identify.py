@@ -38,7 +38,8 @@ def test_one_record_as_json() -> None:
 def test_another_method_prints_a_table_and_few_lines() -> None:
     code, out, err = run(str(RECORDS / "pile_U12_s301.parquet"), "--method", "plscf")
     assert code == 0
-    assert "plscf: modes are not checked" in err  # its ok says less than that of ssi-cov
+    assert "plscf: modes are not checked" in err
+    assert "unchecked" in out
     assert "0.17" in out
     # rejected candidates are counted by reason, not listed
     rejected = [line for line in out.splitlines() if line.startswith("rejected")]

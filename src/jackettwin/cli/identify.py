@@ -353,11 +353,9 @@ def _settings(
     if quick and real_poles:
         raise InputError("needs the uncertainty that --quick omits", field="--real-poles", remedy="omit one")
     if quick:
-        messages.print("quick identification: modes are not checked, ok means only that the poles are stable")
+        messages.print("quick identification: modes are not checked, their poles are stable")
     elif settings.method != "ssi-cov":
-        messages.print(
-            f"{settings.method}: modes are not checked as those of ssi-cov, ok means that it finds them"
-        )
+        messages.print(f"{settings.method}: modes are not checked as those of ssi-cov are")
     update: dict[str, Any] = {"real_poles": True} if real_poles else {}
     update |= {"blocks": 0, "refine": False} if quick else {}
     update |= _band(band)

@@ -156,7 +156,14 @@ def identify(
         picks=tuple(_pick(poles, c, record.name) for c in judged if c.objection is None),
     )
     identified = identified if basis is None else expand_to_all_channels(identified, whole, basis)
-    return _with_release(identified, record, settings)
+    return _with_release(_as_checked(identified, settings), record, settings)
+
+
+def _as_checked(found: Identification, settings: IdentificationSettings) -> Identification:
+    """Return the identification; modes without an uncertainty were not screened."""
+    if uncertain(settings):
+        return found
+    return found.unchecked("a quick look" if settings.quick else settings.method)
 
 
 def _with_release(found: Identification, record: Record, settings: IdentificationSettings) -> Identification:
@@ -180,7 +187,7 @@ def _decay(
         found = identify(decay.beside, settings, progress=progress)
     except InputError:
         return transient(record, settings, impacts=True)
-    if not any(mode.status is ModeStatus.OK for mode in found.modes):
+    if not any(mode.status in (ModeStatus.OK, ModeStatus.UNCHECKED) for mode in found.modes):
         return transient(record, settings, impacts=True)
     finding = Finding("beside_knock", params={"fall": decay.fall, "used_s": decay.beside.duration_s})
     found = replace(found, findings=(finding, *found.findings), warnings=(str(finding), *found.warnings))

@@ -51,7 +51,7 @@ class ModalEstimate:
         Log-likelihood of a lightly damped mode at the nodes ``LOG_ZETA`` of ``line_likelihood.py``;
         then the interval of ζ is the likelihood's, not symmetric on the logarithm.
     status : ModeStatus
-        ``"ok"``, ``"damping unknown"``, ``"doubtful"`` or ``"not a mode: …"``.
+        ``"ok"``, ``"damping unknown"``, ``"unchecked"``, ``"doubtful"`` or ``"not a mode: …"``.
     reasons : tuple of Finding
         Why the status is not ``"ok"``.
     """
@@ -236,6 +236,11 @@ class Identification:
         shown = (f"{m.frequency_hz:.4g} Hz {100 * m.damping_ratio:.2g} %" for m in self.modes[:_SHOWN])
         records = ", ".join(self.records[:_SHOWN])
         return f"Identification({records}; {len(self.modes)} modes: {', '.join(shown)})"
+
+    def unchecked(self, method: str) -> Identification:
+        """Return the same with the modes flagged as those of a method that does not check them."""
+        reason = Finding("unchecked", params={"method": method})
+        return replace(self, modes=tuple(m.flagged(ModeStatus.UNCHECKED, reason) for m in self.modes))
 
     @property
     def without_figures(self) -> Identification:

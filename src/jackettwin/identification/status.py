@@ -19,6 +19,8 @@ class ModeStatus(StrEnum):
     """A mode by all criteria: frequency and damping are known to their intervals."""
     DAMPING_UNKNOWN = "damping unknown"
     """A mode of known frequency, whose damping the record does not determine."""
+    UNCHECKED = "unchecked"
+    """A mode by the poles or peaks of a method whose modes are not checked against tones, waves and noise."""
     DOUBTFUL = "doubtful"
     """Possibly a mode; the reasons state the objections."""
     WAVE = "not a mode: wave"

@@ -23,3 +23,4 @@ def test_separate_modes_are_found(rng):
         assert mode.damping_ratio == pytest.approx(zeta, rel=0.5)
         assert mac(shape, mode.mode_shape) > 0.98
         assert mode.method == "efdd"
+        assert (mode.status, [reason.code for reason in mode.reasons]) == ("unchecked", ["unchecked"])

@@ -9,11 +9,14 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.findings import Finding
-from jackettwin.identification import fuse, identify, mac
+from jackettwin.identification import IdentificationSettings, fuse, identify, mac
 from jackettwin.identification.many_records.fusion import Average, average, random_effects
 from jackettwin.identification.many_records.sightings import Sightings
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.synthetic import simulate
+from jackettwin.study.many_records.document import fused_mode_document
+
+RNG = np.random.default_rng
 
 
 @pytest.fixture(scope="module")
@@ -110,6 +113,19 @@ def test_a_record_that_does_not_tell_the_damping_tells_the_frequency(results):
     (mode,) = fuse([*clear[:10], *vague]).modes
     assert mode.damping_ratio == pytest.approx(fuse(clear[:10]).modes[0].damping_ratio, rel=1e-12)
     assert mode.frequency_std_hz < 0.9 * fuse(clear[:10]).modes[0].frequency_std_hz
+
+
+def test_a_quick_look_at_several_records_states_no_intervals(results):
+    """Its modes are not checked, and no record states an uncertainty that could be fused."""
+    quick = IdentificationSettings(blocks=0, refine=False)
+    fused = fuse(identify(simulate(results[0], rng, sample_rate_hz=3.0), quick) for rng in map(RNG, (1, 2)))
+    assert fused.modes
+    names = [channel.name for channel in fused.channels]
+    for mode in fused.modes:
+        document = fused_mode_document(mode, names)
+        assert document["status"] == "unchecked"
+        assert document["frequency_hz"] == mode.frequency_hz
+        assert document["frequency_interval_95"] is document["damping_ratio_std"] is None
 
 
 def test_order_of_records_does_not_matter(results):

@@ -75,7 +75,7 @@ def bayoma(record: Record, settings: IdentificationSettings | None = None) -> Id
         settings=resolved,
         duration_s=record.duration_s,
         warnings=ready.warnings,
-    )
+    ).unchecked("bayoma")
 
 
 def _bands(peaks_hz: list[float], duration_s: float) -> list[tuple[float, float, list[float]]]:

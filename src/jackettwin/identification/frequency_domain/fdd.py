@@ -66,7 +66,7 @@ def fdd(record: Record, settings: IdentificationSettings | None = None) -> Ident
         settings=resolved,
         duration_s=record.duration_s,
         warnings=ready.warnings,
-    )
+    ).unchecked("efdd")
 
 
 def principal(matrix: ComplexArray) -> tuple[FloatArray, ComplexArray]:

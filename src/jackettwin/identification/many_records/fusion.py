@@ -132,6 +132,11 @@ class FusedMode:
         return None if self.objection is None else sentence([self.objection.reason])
 
     @property
+    def uncertainty_known(self) -> bool:
+        """Whether any record states an uncertainty; if none does, intervals are made of lower limits."""
+        return bool(np.isfinite(self.sightings.log_covariance).any())
+
+    @property
     def records_ok(self) -> int:
         """Number of records in which the mode is ``OK``."""
         return int(np.sum(self.sightings.severity == ModeStatus.OK.severity))

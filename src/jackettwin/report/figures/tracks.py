@@ -62,9 +62,10 @@ def tracks(modes: Sequence[tuple[str, FusedMode]], records: Sequence[str]) -> go
             )
             _draw(figure, label, _thinned(points), row=row, col=col)
             colour = style.rgba(style.mode_look(label).colour, 0.25)
-            figure.add_hrect(
-                y0=scale * low, y1=scale * high, fillcolor=colour, line_width=0, row=row, col=col
-            )
+            if mode.uncertainty_known:
+                figure.add_hrect(
+                    y0=scale * low, y1=scale * high, fillcolor=colour, line_width=0, row=row, col=col
+                )
         figure.update_yaxes(title_text=f"{words(label)}<br>{style.title('f', 'Hz')}", row=row, col=1)
         figure.update_yaxes(title_text=style.title("ζ", "%"), rangemode="tozero", row=row, col=2)
     figure.update_xaxes(title_text=style.title("record, in the order given", "-"), row=n)

@@ -53,11 +53,11 @@ def _modes(fused: FusedIdentification) -> list[Block]:
     if len(fused.records) > MOST_POINTS:
         followed += " Dots are medians of neighbouring records, bars the range of nine in ten."
     shrinking = "Damping ratios with 95 % intervals as records are fused, in their order."
-    histories = [(label, convergence(mode)) for label, mode in named]
+    histories = [(label, convergence(mode)) for label, mode in named if mode.uncertainty_known]
     return [
         _mode_table(named, len(fused.records)),
         Plot("tracks", followed, tracks(named, fused.records)),
-        Plot("interval_history", shrinking, interval_history(histories)),
+        *([Plot("interval_history", shrinking, interval_history(histories))] if histories else []),
     ]
 
 
@@ -128,6 +128,8 @@ def _failures(failed: tuple[Failed, ...]) -> Table:
 
 
 def _numbers(mode: FusedMode) -> tuple[str, ...]:
+    if not mode.uncertainty_known:
+        return fixed(mode.frequency_hz, 4), UNKNOWN, fixed(100.0 * mode.damping_ratio, 2), UNKNOWN
     return (
         frequency(mode.frequency_hz, mode.frequency_std_hz),
         interval(mode.frequency_interval_95, 1.0, 4),
@@ -137,6 +139,8 @@ def _numbers(mode: FusedMode) -> tuple[str, ...]:
 
 
 def _scatter(mode: FusedMode) -> tuple[str, str]:
+    if not mode.uncertainty_known:
+        return UNKNOWN, UNKNOWN
     return fixed(100.0 * mode.scatter_frequency, 2), fixed(100.0 * mode.scatter_damping_ratio, 0)
 
 

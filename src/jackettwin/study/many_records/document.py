@@ -50,7 +50,7 @@ def _modes(fused: FusedIdentification) -> list[dict[str, Any]]:
     return [
         {
             **fused_mode_document(mode, names),
-            "convergence": [asdict(step) for step in convergence(mode)],
+            "convergence": [asdict(step) for step in convergence(mode)] if mode.uncertainty_known else [],
         }
         for mode in fused.modes
     ]
@@ -69,11 +69,18 @@ def _rejected(batch: Batch) -> Iterator[dict[str, Any]]:
 
 
 def fused_mode_document(mode: FusedMode, channels: Sequence[str]) -> dict[str, Any]:
-    """Return one fused mode; the scatter is that between records in excess of their uncertainty."""
-    return {
+    """Return one fused mode; the scatter is that between records in excess of their uncertainty.
+
+    Where no record states its uncertainty, intervals and scatter are None.
+    """
+    numbers = {
         **named(mode, *MODAL, "frequency_interval_95", "damping_ratio_interval_95"),
         "relative_scatter_frequency": mode.scatter_frequency,
         "relative_scatter_damping_ratio": mode.scatter_damping_ratio,
+    }
+    known = ("frequency_hz", "damping_ratio")
+    return {
+        **{k: v if mode.uncertainty_known or k in known else None for k, v in numbers.items()},
         "status": mode.status.value,
         "status_reason": mode.status_reason,
         "records_with_mode": len(mode.sightings),
