@@ -2,7 +2,8 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import Any
 
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")  # before NumPy: two BLAS threads make small matrices ten times slower
@@ -25,6 +26,29 @@ def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         del os.environ["XDG_CACHE_HOME"]
     else:
         os.environ["XDG_CACHE_HOME"] = before
+
+
+@pytest.fixture(scope="session", autouse=True)
+def each_identification_is_computed_once() -> Iterator[None]:
+    """Scores of tests examine the same few shipped records: what keeps nothing on disk is remembered here."""
+    from jackettwin.files import NOT_KEPT
+    from jackettwin.identification import examination
+
+    computed: dict[str, Any] = {}
+    whole = examination.kept
+
+    def remembered(keep: Any, schema: Any, key: str, compute: Callable[[], Any]) -> Any:
+        if keep is not NOT_KEPT:
+            return whole(keep, schema, key, compute)
+        if key not in computed:
+            if len(computed) >= 24:
+                del computed[next(iter(computed))]
+            computed[key] = compute()
+        return computed[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(examination, "kept", remembered)
+        yield
 
 
 @pytest.fixture

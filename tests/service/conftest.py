@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import io
 import json
+import pickle
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -26,8 +29,8 @@ from jackettwin.service.web.app import EXAMPLES, create_app
 from jackettwin.service.web.catalogue import add_text_version
 from jackettwin.service.work.dispatch import Dispatcher
 from jackettwin.service.workers import engine, verdict
-from jackettwin.store import open_database, people, read_waveform, work, writing
-from jackettwin.twin import OBSERVATION
+from jackettwin.store import open_database, people, read_waveform, sqlite_url, work, writing
+from jackettwin.twin import OBSERVATION, TwinConfig, TwinModel, twin_model
 
 TWIN = "structure: jacket15\n"
 HERE = ("127.0.0.1", 50000)
@@ -182,9 +185,33 @@ def known(twin: Any, sums: Any, newest: Any, in_all: tuple[int, float]) -> tuple
     return {**found, "sensitivity": [moved], **drawn}, None
 
 
+@pytest.fixture(scope="session", autouse=True)
+def each_model_is_built_once() -> Iterator[None]:
+    """Twins of the same text have the same model, and hundreds of tests have one of a few."""
+    built: dict[bytes, TwinModel] = {}
+
+    def remembered(config: TwinConfig) -> TwinModel:
+        key = pickle.dumps(replace(config, path=Path()))
+        if key not in built:
+            built[key] = twin_model(config)
+        return built[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(engine, "twin_model", remembered)
+        yield
+
+
 @pytest.fixture
 def service(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Service]:
     yield from make_service(tmp_path / "store", None, monkeypatch)
+
+
+@cache
+def empty_database() -> bytes:
+    """Return a database of the newest schema, which takes longer to come to than most tests."""
+    with TemporaryDirectory() as folder:
+        open_database(sqlite_url(Path(folder))).dispose()
+        return (Path(folder) / "jackettwin.sqlite").read_bytes()
 
 
 def make_service(
@@ -194,6 +221,8 @@ def make_service(
     settings = ServiceSettings(store=store, database=database, **changes)
     for folder in (settings.store, settings.spool, settings.models):
         folder.mkdir(parents=True, exist_ok=True)
+    if database is None and not (store / "jackettwin.sqlite").exists():
+        (store / "jackettwin.sqlite").write_bytes(empty_database())
     monkeypatch.setattr(engine, "observed", quick)
     monkeypatch.setattr(verdict, "known", known)
     monkeypatch.setattr(verdict, "watched", lambda twin, days, *_: ({"days": len(days)}, (), {}))

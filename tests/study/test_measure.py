@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from dataclasses import replace
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 
@@ -21,14 +22,21 @@ from jackettwin.twin.model import twin_model
 module = import_module("jackettwin.twin.observe_files")
 
 
+@cache
+def twin() -> tuple[TwinConfig, TwinModel]:
+    """Return two records' twin without the life of its welds, and its model."""
+    whole = read_twin("openfast_pile")
+    config = replace(whole, records=whole.records[:2], life=None)
+    return config, twin_model(config)
+
+
 def measured(config: TwinConfig) -> Measured:
-    return measure(config, twin_model(config))
+    return measure(config, twin()[1])
 
 
 @pytest.fixture
 def config() -> TwinConfig:
-    twin = read_twin("openfast_pile")
-    return replace(twin, records=twin.records[:2])
+    return twin()[0]
 
 
 def test_a_record_that_fails_is_left_out_and_said_to_be(config: TwinConfig, tmp_path: Path) -> None:

@@ -79,7 +79,8 @@ def test_every_step_holds_modes_of_the_structure_on_these_springs(
     support = on_translations(assembly.structure, Prony(k0=feet.stiffness_n_m))
     modes = undamped_modes(build_system(assembly, support), 16)
     near = np.abs(modes.frequency_hz[:, None] / feet.frequency_hz - 1.0).min(axis=0)
-    assert_allclose(near, 0.0, atol=1e-8)  # the same eigenvalues by two runs of one solver
+    # one step of inverse iteration from feet 1.8 times as stiff: pairing takes frequencies 7 % apart for one
+    assert_allclose(near, 0.0, atol=5e-4)
     # an exactly symmetric pair may turn in its plane: its share of the plane of the next step is kept
     plane = mass_mac(assembly.mass, path[1].shapes[:, :2], path[0].shapes[:, :2]).sum(axis=0)
     assert_allclose(plane, 1.0, atol=1e-3)  # 1e11 N/m changes the first pair by no more

@@ -55,14 +55,14 @@ def modes_by_foot_stiffness(assembly: Assembly, numbered: UndampedModes) -> tupl
     For a structure whose modes are numbered on a clamped foot (a monopile) only these are returned, since
     springs on the translations do not support it.
     """
-    path = [Feet(np.inf, numbered.frequency_hz, numbered.shapes)]
+    path, near = [Feet(np.inf, numbered.frequency_hz, numbered.shapes)], None
     on_pins = all(len(dofs) == len("xyz") for _, dofs in standing(assembly.structure).fixed)
     decades = np.log10(STIFFEST_N_M / SOFTEST_N_M)
     for stiffness in (
         np.geomspace(STIFFEST_N_M, SOFTEST_N_M, int(PER_DECADE * decades) + 1) if on_pins else ()
     ):
         try:
-            found = _on_springs(assembly, float(stiffness), numbered)
+            found, near = _on_springs(assembly, float(stiffness), numbered, near)
         except InputError:  # unstable under its weight
             break
         if not found.frequency_hz[0] >= LOWEST_SHARE * numbered.frequency_hz[0]:
@@ -71,14 +71,20 @@ def modes_by_foot_stiffness(assembly: Assembly, numbered: UndampedModes) -> tupl
     return tuple(path)
 
 
-def _on_springs(assembly: Assembly, stiffness: float, numbered: UndampedModes) -> Feet:
-    """Return the numbered modes on springs; an unrecognised one has its pinned shape and no frequency."""
+def _on_springs(
+    assembly: Assembly, stiffness: float, numbered: UndampedModes, near: UndampedModes | None
+) -> tuple[Feet, UndampedModes]:
+    """Return the numbered modes on springs, and all that were computed, from those ``near`` them if any.
+
+    An unrecognised mode has its pinned shape and no frequency.
+    """
     system = build_system(assembly, on_translations(assembly.structure, Prony(k0=stiffness)))
-    modes = undamped_modes(system, len(numbered.frequency_hz) + EXTRA)
+    modes = undamped_modes(system, len(numbered.frequency_hz) + EXTRA, near=near)
     successor = track_modes(assembly.mass, numbered.frequency_hz, numbered.shapes, modes.shapes)
     lost = successor < 0
-    return Feet(
+    feet = Feet(
         stiffness,
         np.where(lost, np.nan, modes.frequency_hz[successor]),
         np.where(lost, numbered.shapes, modes.shapes[:, successor]),
     )
+    return feet, modes
