@@ -43,7 +43,7 @@ sensors:
   - {channel: top_y, node: tower_top, direction: [0, 1, 0], quantity: geophone}
 records: [r.xyz]
 identification: {method: our-own}
-update: {laws: [lagging], parameters: [guy_wires], particles: 20, starts: 2, damping_of: all}
+update: {laws: [lagging], parameters: [guy_wires], particles: 20, starts: 1, damping_of: all}
 """
 
 
@@ -219,5 +219,5 @@ def known_twin(server: Server, seconds: float = 600.0) -> dict[str, Any]:
         found: dict[str, Any] = server.get("/api/v1/assets/wtg/twin").json()
         if found.get("parameters"):
             return found
-        time.sleep(0.3)
+        time.sleep(1.0)
     raise TimeoutError(str(found))
