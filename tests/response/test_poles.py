@@ -47,7 +47,7 @@ def dense_poles(pencil: Pencil) -> np.ndarray:
     return values[np.abs(values) <= 2.0 * pi * BELOW_HZ]
 
 
-def zeros_above_the_real_axis(pencil: Pencil, low: float, high: float, n: int = 120) -> int:
+def zeros_above_the_real_axis(pencil: Pencil, low: float, high: float, n: int = 80) -> int:
     """Count zeros of det F with low < |λ| < high, 0.45π < arg λ < 0.99π by the argument principle.
 
     F has no poles there: the springpot's branch cut lies on the negative real axis. The edge lies right of

@@ -28,7 +28,7 @@ CHECKS = (
     response_schema_conformance,
 )
 SUBJECTS = [import_module(f"{schemas.__name__}.{m.name}") for m in iter_modules(schemas.__path__)]
-EXAMPLES = 12
+EXAMPLES = 8
 """Requests a route: enough for every kind of value that a generator likes to try first."""
 ENDLESS = ("/api/v1/events", "/api/v1/assets/{asset}/live")
 

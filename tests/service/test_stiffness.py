@@ -24,7 +24,7 @@ gravity: true
 damping: {rayleigh: {ratio: 0.0055, frequency_hz: 0.183}}
 update: {laws: [kelvin-voigt], particles: 20, starts: 2, damping_of: all}
 """
-DAYS = 9
+DAYS = 6
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -38,7 +38,7 @@ def config() -> TwinConfig:
         replace(t, frequency_std_hz=0.005 * (t.frequency_hz or 1.0), damping_ratio_std=0.003)
         for t in config.targets
     )
-    quick = {"laws": ("kelvin-voigt", "zener"), "particles": 40, "weighting": "auto"}
+    quick = {"laws": ("kelvin-voigt", "zener"), "particles": 20, "weighting": "auto"}
     return replace(config, targets=given, update=config.update.model_copy(update=quick))
 
 

@@ -25,7 +25,7 @@ def updated(folder: Path, *, bending: bool) -> TwinResult:
         text = text.replace("beam: euler", "  blades: {rotor: iea15, pitch_deg: 90}\nbeam: euler")
     path = folder / "twin.yaml"
     path.write_text(text, encoding="utf-8")
-    config = read_twin(path)
+    config = replace(read_twin(path), life=None)
     quick = {"laws": ("maxwell-3",), "particles": 40, "starts": 3}
     return run_twin(replace(config, update=config.update.model_copy(update=quick)))
 

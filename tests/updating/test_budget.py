@@ -77,7 +77,7 @@ def test_the_first_pair_is_met_in_both_assignments(
         ),
         relative=False,
     )
-    fit = update(single(model, residuals), starts=4, particles=40)
+    fit = update(single(model, residuals), starts=2, particles=20)
     np.testing.assert_allclose(fit.modes.damping_ratio[:2], [first, second], rtol=0.05)
     np.testing.assert_allclose(fit.modes.frequency_hz, [0.1819, 0.1838, 0.7362], rtol=0.01)
     assert fit.budget.damping_ratio_interval_90 is not None

@@ -50,9 +50,9 @@ def test_changes_of_the_size_that_is_told_are_found() -> None:
         size = seen.smallest(lambda x: alike(x, watch), 1e-4, 0.05)  # noqa: B023
         assert size is not None
         whole += is_found(seed, watch, size)
-        half += is_found(seed, watch, 0.5 * size)
+        half += seed < TURBINES // 2 and is_found(seed, watch, 0.5 * size)
     assert whole >= 9
-    assert half <= 9
+    assert half <= 4
 
 
 @pytest.fixture(scope="module")
