@@ -77,8 +77,8 @@ types: $(VENV)/.dev # of the scripts: that what they name and call is there
 layers: $(VENV)/.dev
 	$(BIN)/lint-imports
 
-unit: $(VENV)/.dev servers
-	$(BIN)/pytest -n 2 --dist loadfile --no-loadscope-reorder
+unit: $(VENV)/.dev servers # on two cores three workers: tests of servers wait often
+	$(BIN)/pytest -n 3 --dist loadfile --no-loadscope-reorder
 
 servers: # PostgreSQL, mosquitto, Chromium for tests that use the real ones; skipped where they cannot be installed
 	@scripts/install-servers

@@ -43,7 +43,9 @@ def quick(name: str) -> TwinConfig:
     config = read_twin(name)
     return replace(
         config,
-        update=config.update.model_copy(update={"laws": ("maxwell-3", "kelvin-voigt"), "particles": 40}),
+        update=config.update.model_copy(
+            update={"laws": ("maxwell-3", "kelvin-voigt"), "particles": 30, "starts": 2}
+        ),
         life=None,
     )
 
