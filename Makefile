@@ -10,7 +10,7 @@ export OPENBLAS_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help demo gallery live app window pages test lint types layers security unit servers bench qualify docs pictures lock clean
+.PHONY: help demo gallery live app window pages test lint types layers security kernels unit servers bench qualify docs pictures lock clean
 
 help: ## list the commands
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-9s %s\n", $$1, $$2}'
@@ -63,7 +63,7 @@ LOOSE := arg-type assignment call-overload dict-item index list-item misc no-any
 LOOSE += no-untyped-call no-untyped-def type-arg union-attr unused-ignore var-annotated
 
 test: $(VENV)/.dev ## everything CI checks
-	@$(MAKE) --no-print-directory --jobs=2 --output-sync=target lint types layers security pages
+	@$(MAKE) --no-print-directory --jobs=3 --output-sync=target servers kernels types lint layers security pages
 	@$(MAKE) --no-print-directory unit
 
 lint: $(VENV)/.dev
@@ -76,6 +76,11 @@ types: $(VENV)/.dev # of the scripts: that what they name and call is there
 
 layers: $(VENV)/.dev
 	$(BIN)/lint-imports
+
+COMPILING := response/test_numbered.py sensing/test_smoother.py loads/test_rotor.py watching/test_level.py
+COMPILING += watching/test_memory.py simulate/test_simulate.py::test_turbines_stay_bounded_and_lean_downwind
+kernels: $(VENV)/.dev # compiled once here, and not by each worker of the tests for itself
+	$(BIN)/pytest -p no:xdist $(COMPILING:%=tests/%)
 
 unit: $(VENV)/.dev servers # on two cores three workers: tests of servers wait often
 	$(BIN)/pytest -n 3 --dist loadfile --no-loadscope-reorder
