@@ -43,7 +43,7 @@ from jackettwin.sensing import (
     SensorReadings,
     Weather,
     likely_motions,
-    moved,
+    motion_from,
     readings_of,
     section_rows,
     sensed_model,
@@ -343,7 +343,7 @@ def kalman(system: System, seen: SensorReadings, sea: Weather) -> tuple[MotionMo
         replace(known.forces[i], rate=2.0 * np.pi * FORGET_HZ) for i in pick
     )
     model = replace(known, forces=walking, flexibility=known.flexibility[:, pick])
-    found = moved(model, seen)
+    found = motion_from(model, seen)
     return found.model, found.smoother.filtered(seen.y.T) @ found.to_coordinates.T
 
 
@@ -470,7 +470,7 @@ def _mean(
     dry: Assembly,
     wanted: list[tuple[int, int, int, int]],
 ) -> np.ndarray:
-    found: MotionEstimate = moved(sensed_model(system, sea), seen)
+    found: MotionEstimate = motion_from(sensed_model(system, sea), seen)
     judge = Judge(system, found.model, dry)
     return np.exp(np.mean([np.log(judge.dels(motion, wanted)) for motion in found.draws(2)], axis=0))
 

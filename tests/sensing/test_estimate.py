@@ -19,14 +19,14 @@ from jackettwin.sensing import (
     SensorReadings,
     Weather,
     discrete,
-    moved,
+    motion_from,
     readings_of,
     section_rows,
     sensed_model,
     spread_of,
     steady_smoother,
 )
-from jackettwin.sensing.estimate import under
+from jackettwin.sensing.estimate import motion_at_levels
 from jackettwin.sensing.latent_forces import gusts_std
 from jackettwin.soil import pinned
 from jackettwin.structure import Rayleigh, assemble, section_forces
@@ -83,7 +83,7 @@ def truth(model: MotionModel) -> tuple[np.ndarray, SensorReadings]:
 
 @pytest.fixture(scope="module")
 def estimate(model: MotionModel, truth: tuple[np.ndarray, SensorReadings]) -> MotionEstimate:
-    return moved(model, truth[1])
+    return motion_from(model, truth[1])
 
 
 def test_a_constant_force_moves_the_model_as_statics_say(system: System, model: MotionModel) -> None:
@@ -189,7 +189,7 @@ def test_drift_of_accelerometers_makes_no_slow_moment(
     readings = truth[1]
     n = readings.y.shape[1]
     drift = (1e-3 + 1e-4 * np.cos(np.pi * np.arange(n) / n)) * np.array([[1.0, -0.6, 0.3, 0.8, -1.0, 0.5]]).T
-    found = under(estimate.model, replace(readings, y=readings.y + drift), estimate.levels)
+    found = motion_at_levels(estimate.model, replace(readings, y=readings.y + drift), estimate.levels)
     names = [model.assembly.structure.members[m].name for m in model.assembly.mesh.member]
     row = section_rows(model).bending_y[:, names.index("tower_1"), 0]
     moved_by = (found.mean() - estimate.mean()) @ row
@@ -228,7 +228,7 @@ def test_section_forces_are_found_and_their_errors_are_as_said(
     base = names.index("tower_1")
     rows = section_rows(model)
     others = (drawn(model, seed) for seed in (1, 3))
-    motions = [(truth[0], estimate), *((own, moved(model, readings)) for own, readings in others)]
+    motions = [(truth[0], estimate), *((own, motion_from(model, readings)) for own, readings in others)]
     left, beside = [], []
     for coordinates, known in motions:
         for part in (rows.bending_y, rows.bending_z):

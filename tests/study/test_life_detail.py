@@ -10,7 +10,7 @@ from jackettwin.fatigue import WeldLife, count, models_at_height, weld_lives
 from jackettwin.records import Channel, Record
 from jackettwin.report.pages.life import life_quantity, write_life_page
 from jackettwin.response import Sensor, build_system
-from jackettwin.sensing import MotionEstimate, Weather, moved, readings_of, sensed_model
+from jackettwin.sensing import MotionEstimate, Weather, motion_from, readings_of, sensed_model
 from jackettwin.soil import pinned
 from jackettwin.structure import Rayleigh, assemble
 from jackettwin.study.life.life_detail import bands, candidates, damage_by_band, lost_without, with_one_more
@@ -49,7 +49,7 @@ def sensed() -> tuple[MotionEstimate, WeldMap, tuple[WeldLife, ...]]:
     t, rng = np.arange(1500) * 0.1, np.random.default_rng(1)
     y = 0.05 * np.array([np.sin(1.1 * t), np.cos(1.1 * t)]) + 1e-3 * rng.standard_normal((2, t.size))
     record = Record(y, 10.0, tuple(Channel(s.channel) for s in sensors))
-    found = moved(sensed_model(system, Weather(10.0, 2.0, 8.0)), readings_of(record, sensors, assembly))
+    found = motion_from(sensed_model(system, Weather(10.0, 2.0, 8.0)), readings_of(record, sensors, assembly))
     chart, motion = weld_map(system, found.model, assembly), found.mean()
     cycles = [[[count(point) for point in side] for side in weld] for weld in chart.stress(0, motion)]
     lives = weld_lives(structure, chart.joints[0].welds, cycles, 150.0, MODELS)

@@ -14,7 +14,7 @@ import yaml
 from jackettwin.arrays import FloatArray
 from jackettwin.fatigue import count, equivalent_range
 from jackettwin.response import Sensor, build_system
-from jackettwin.sensing import Weather, moved, readings_of, section_rows, sensed_model
+from jackettwin.sensing import Weather, motion_from, readings_of, section_rows, sensed_model
 from jackettwin.simulate import Scenario, read_scenario, simulate
 from jackettwin.simulate.members import deflections
 from jackettwin.simulate.motion.motion import simulate_motion
@@ -70,7 +70,7 @@ def estimated(scenario: Scenario, sensors: tuple[Sensor, ...]) -> FloatArray:
     record = replace(record, data=record.data[: len(sensors)], channels=record.channels[: len(sensors)])
     weather = Weather.of(record.conditions, 72.0)
     assert weather.wave_period_s == pytest.approx(8.0)
-    found = moved(sensed_model(system, weather), readings_of(record, sensors, assembly))
+    found = motion_from(sensed_model(system, weather), readings_of(record, sensors, assembly))
     rows = section_rows(found.model)
     e = base(assembly)
     return np.array([part[:, e, 0] @ found.mean().T for part in (rows.bending_y, rows.bending_z)])

@@ -183,14 +183,14 @@ def record_(
     otherwise by RECORD.
     """
     from jackettwin.fatigue import models_at_height, read_details
-    from jackettwin.study import count_steps, life_of_record, sensed, updated, with_record
+    from jackettwin.study import count_steps, life_of_record, readings_and_weather, updated, with_record
     from jackettwin.twin import read_twin
 
     models = partial(models_at_height, design_factor=design_factor, edition=edition)
     model, tubes = models(curve), read_details(details, models)
     config = with_record(read_twin(twin), record)
     tubes.require_members(config.structure)
-    readings, weather = sensed(config, record, feel_gravity=feel_gravity)
+    readings, weather = readings_and_weather(config, record, feel_gravity=feel_gravity)
     with progress(count_steps(config), config.name) as step:
         update = updated(config, progress=step, keep=keeping(fresh=fresh))
     with working("stresses at the welds"):

@@ -3,7 +3,7 @@ from .estimate import (
     MotionEstimate as MotionEstimate,
     estimate_motion as estimate_motion,
     likely_motions as likely_motions,
-    moved as moved,
+    motion_from as motion_from,
     section_rows as section_rows,
     sensed_model as sensed_model,
     spread_of as spread_of,

@@ -100,7 +100,7 @@ def estimate_motion(system: System, readings: SensorReadings, weather: Weather) 
     NumericalError
         If the filter does not come to rest.
     """
-    return moved(sensed_model(system, weather), readings)
+    return motion_from(sensed_model(system, weather), readings)
 
 
 def sensed_model(system: System, weather: Weather) -> MotionModel:
@@ -133,7 +133,7 @@ def _pushed(model: MotionModel, weather: Weather) -> MotionModel:
     return pushed_at_work(model, weather.rotor, weather.heading_rad, weather.wind_m_s)
 
 
-def moved(model: MotionModel, readings: SensorReadings, *, draws: int = 0) -> MotionEstimate:
+def motion_from(model: MotionModel, readings: SensorReadings, *, draws: int = 0) -> MotionEstimate:
     """Return the motion of a model from what sensors read; ``draws`` other levels are in its levels."""
     n, h = readings.y.shape[1], readings.step_s
     which = thinned(n, h, min(0.9 * BAND_HZ, 0.4 / h))
@@ -142,7 +142,7 @@ def moved(model: MotionModel, readings: SensorReadings, *, draws: int = 0) -> Mo
     drifts = np.equal(readings.derivative, ACCELERATION)
     slow = 1.0 + drifts * (2.0 * np.pi * _DRIFT_HZ / omega[:, None]) ** 2
     levels = find_levels(readings.y, h, seen, which, model.forces, readings.groups, slow=slow, draws=draws)
-    return under(model.with_forces(levels.forces), readings, levels)
+    return motion_at_levels(model.with_forces(levels.forces), readings, levels)
 
 
 def likely_motions(
@@ -166,7 +166,7 @@ def likely_motions(
     """
     first, *others = systems
     sea = SeaOnMembers.of(first.assembly, weather)
-    estimate = moved(
+    estimate = motion_from(
         _pushed(damped(_model_in(first, weather, sea, near)), weather), readings, draws=len(others)
     )
     found, drag = [estimate], sea.damping()
@@ -182,11 +182,11 @@ def likely_motions(
         )
         model = model.with_damping_beyond(_FIRST, float(np.exp(_DAMPING_LOG_STD * away[1])))
         model = damped(_damped(model, weather, away[2]))
-        found.append(under(model, readings, estimate.levels))
+        found.append(motion_at_levels(model, readings, estimate.levels))
     return tuple(found)
 
 
-def under(model: MotionModel, readings: SensorReadings, levels: Levels) -> MotionEstimate:
+def motion_at_levels(model: MotionModel, readings: SensorReadings, levels: Levels) -> MotionEstimate:
     """Return the motion of a model whose forces have levels, whoever found them."""
     h, (F, Q) = readings.step_s, discrete(*model.dynamics(), readings.step_s)
     C = model.motion_rows(readings.rows, readings.tilt, readings.derivative)

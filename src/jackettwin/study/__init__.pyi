@@ -30,8 +30,8 @@ from .life.life_so_far import LIFE_SO_FAR as LIFE_SO_FAR, LifeSoFar as LifeSoFar
 from .life.record_life import (
     RecordLife as RecordLife,
     life_of_record as life_of_record,
+    readings_and_weather as readings_and_weather,
     record_life as record_life,
-    sensed as sensed,
 )
 from .life.site import Site as Site, read_site as read_site
 from .life.site_life import SiteLife as SiteLife, SiteWeld as SiteWeld, site_life as site_life

@@ -68,7 +68,9 @@ class RecordLife:
     duration_s: float
 
 
-def sensed(config: TwinConfig, path: Path, *, feel_gravity: bool = False) -> tuple[SensorReadings, Weather]:
+def readings_and_weather(
+    config: TwinConfig, path: Path, *, feel_gravity: bool = False
+) -> tuple[SensorReadings, Weather]:
     """Return a record's repaired sensor readings on a twin's structure, and its wind and sea.
 
     Parameters

@@ -22,7 +22,7 @@ from jackettwin.fatigue import POSITIONS, YEAR_S, ModelsAtHeight, RemainingLife,
 from jackettwin.intervals import NORMAL_90
 from jackettwin.response import System
 from jackettwin.simulate import scenario_from, scenario_life
-from jackettwin.study.life.record_life import life_of_record, sensed
+from jackettwin.study.life.record_life import life_of_record, readings_and_weather
 from jackettwin.study.life.site import Site
 from jackettwin.twin import TwinConfig
 from jackettwin.updating import Update
@@ -104,7 +104,10 @@ def site_life(
             require(known is not None, "records need a twin", field="twin")
             assert known is not None
             config, update, _ = known
-            found = [life_of_record(config, update, *sensed(config, path), models) for path in records]
+            found = [
+                life_of_record(config, update, *readings_and_weather(config, path), models)
+                for path in records
+            ]
             return [(one.welds, one.duration_s) for one in found]
         lives: _Told = []
         for content in site.simulations(index, overrides):
