@@ -39,7 +39,8 @@ def main() -> tuple[list[float], float]:
         print(f"{finding.subject}: {finding.text}")
     found = identify(repair(record, quality))
     for mode in found.modes:
-        print(f"{mode.frequency_hz:.4f} ± {mode.frequency_std_hz:.4f} Hz, {100 * mode.damping_ratio:.2f} %")
+        low, high = mode.frequency_interval_90 or (float("nan"),) * 2
+        print(f"{low:.4f} to {high:.4f} Hz in 90 %, damping {100 * mode.damping_ratio:.2f} %")
     true = FIRST_HZ * np.array([1, 4, 9])
     ratios = [mode.frequency_hz / f for mode, f in zip(found.modes, true, strict=True)]
     alike = np.diag(mac(np.array([mode.mode_shape for mode in found.modes]), SHAPES))

@@ -229,10 +229,7 @@ def errors_of_fused(fused: FusedIdentification, system: ModalSystem) -> tuple[li
     both = list(zip(modes, system.damping_ratio, strict=True))
     return (
         [mode.damping_ratio / zeta - 1.0 for mode, zeta in both],
-        [
-            float(mode.damping_ratio_interval_95[0] < zeta < mode.damping_ratio_interval_95[1])
-            for mode, zeta in both
-        ],
+        [float(abs(np.log(mode.damping_ratio / zeta)) < 1.96 * mode.log_std[1]) for mode, zeta in both],
     )
 
 

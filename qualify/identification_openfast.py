@@ -29,7 +29,7 @@ Ten minutes each, made with OpenFAST (an independent program): turbulent wind on
 blades. The truth is linearised in steady wind. Side-side, its aerodynamic part (which grows with the wind
 from zero) is multiplied by {IN_TURBULENCE:g}, as the mean damping in turbulence is lower: the estimate is an
 effective damping of the ten minutes. Fore-aft and side-side differ by their shape; close pairs are rotated
-to the rotor's axes, which are known. Intervals are 95 %; ✗ misses the truth.
+to the rotor's axes, which are known. Intervals are 90 %; ✗ misses the truth.
 """
 
 
@@ -46,12 +46,12 @@ class Case:
 
     @property
     def frequency_inside(self) -> bool:
-        interval = None if self.mode is None else self.mode.frequency_interval_95
+        interval = None if self.mode is None else self.mode.frequency_interval_90
         return interval is not None and interval[0] < self.true_frequency_hz < interval[1]
 
     @property
     def damping_inside(self) -> bool:
-        interval = None if self.mode is None else self.mode.damping_ratio_interval_95
+        interval = None if self.mode is None else self.mode.damping_ratio_interval_90
         return interval is not None and interval[0] < self.true_damping_ratio < interval[1]
 
 
@@ -113,10 +113,10 @@ def table(found: list[Case]) -> list[str]:
         "|---|---|---|---|---|---|---|---|",
     ]
     for c in found:
-        if c.mode is None or c.mode.damping_ratio_interval_95 is None:
+        if c.mode is None or c.mode.damping_ratio_interval_90 is None:
             rows.append(f"| {c.record} | {c.label} | – | {c.true_frequency_hz:.4f} | – | – | – | missed |")
             continue
-        low, high = c.mode.damping_ratio_interval_95
+        low, high = c.mode.damping_ratio_interval_90
         miss = "" if c.damping_inside else " ✗"
         rows.append(
             f"| {c.record} | {c.label} | {c.mode.frequency_hz:.4f} | {c.true_frequency_hz:.4f} "
@@ -148,7 +148,7 @@ def fused_table(documents: dict[str, dict], results: dict[str, Identification]) 
                     rows.append(f"| {asset} | {label} | – | – | – |")
                     continue
                 m = near[DIRECTIONS.index(direction)]
-                low, high = m.frequency_interval_95
+                low, high = m.frequency_interval_90
                 rows.append(
                     f"| {asset} ({len(names)}) | {label} | {m.frequency_hz / f:.4f} "
                     f"| {low / f:.4f}–{high / f:.4f} | {m.damping_ratio / zeta:.2f} |"

@@ -27,7 +27,7 @@ EXPLANATION = f"""\
 A shear frame of four storeys, first mode {FIRST_HZ:g} Hz, the others damped {100 * OTHER_DAMPING:g} %, sensor
 noise {100 * NOISE:g} %, records of {DURATION_S:g} s, each of a different time. ζfT is the half
 bandwidth of the first mode in lines of a record: below 1 its decay lasts longer than a sixth of it. *Held*:
-95 % intervals of ζ, as printed, that contain the true value; then those above and below it; *statuses*: ok /
+90 % intervals of ζ, as printed, that contain the true value; then those above and below it; *statuses*: ok /
 damping unknown / doubtful / not found. Modes of every status are included.
 """
 
@@ -79,7 +79,7 @@ class Outcome:
 
 
 def outcome(mode: ModalEstimate, ratio: float) -> Outcome:
-    low, high = mode.damping_ratio_interval_95
+    low, high = mode.damping_ratio_interval_90
     return Outcome(mode.damping_ratio / ratio, low / ratio, high / ratio)
 
 
@@ -91,7 +91,7 @@ def row(kind: str, zft: float, found: list[Outcome], rest: str) -> str:
     held = np.mean(side == 0)
     return (
         f"| {zft:g} | {kind} | {len(found)} | {ratio.mean():.3f} ± {error:.3f} | {np.median(ratio):.3f} "
-        f"| {100 * held:.1f} ± {100 * np.sqrt(0.95 * 0.05 / len(found)):.1f} % "
+        f"| {100 * held:.1f} ± {100 * np.sqrt(0.9 * 0.1 / len(found)):.1f} % "
         f"| {np.sum(side > 0)} | {np.sum(side < 0)} | {rest} |"
     )
 

@@ -104,11 +104,11 @@ def judged(mode: ModalEstimate, true: list[tuple[float, float]]) -> Result:
     Of a pair at one frequency it is held against the one of its damping: nothing else in a record's truth
     tells which is which.
     """
-    low, high = mode.frequency_interval_95 or (0.0, np.inf)
+    low, high = mode.frequency_interval_90 or (0.0, np.inf)
     reach = 1.5 * max(high - mode.frequency_hz, mode.frequency_hz - low)
     near = [(f, zeta) for f, zeta in true if abs(f - mode.frequency_hz) < reach + STEPS_APART * f]
     held = min(near, key=lambda t: abs(np.log(t[1] / mode.damping_ratio)), default=None)
-    interval = mode.damping_ratio_interval_95
+    interval = mode.damping_ratio_interval_90
     return {
         "frequency_hz": mode.frequency_hz,
         "status": mode.status.value,

@@ -664,7 +664,7 @@ def _(case: ThesisCase, answers: list[Answer]) -> str:
     true = np.abs(damped_modes(system, below_hz=2.0).real_poles)
     found = answers[0].document["real_poles"]
     assert found, answers[0].document
-    rate, (low, high) = found[0]["rate_rad_s"], found[0]["rate_interval_95"]
+    rate, (low, high) = found[0]["rate_rad_s"], found[0]["rate_interval_90"]
     assert low < true.max() and high > true.min() and high < 1.2 * low, (low, high, true)
     plain = said("identify", str(case.folder / "pull.parquet"), "--json").document["modes"]
     asked = answers[0].document["modes"]
@@ -672,7 +672,7 @@ def _(case: ThesisCase, answers: list[Answer]) -> str:
         (m["frequency_hz"], m["status"]) for m in asked
     ]
     return (
-        f"{rate:.3g} rad/s found, 95 % {low:.3g} to {high:.3g}, true {true.min():.3g} to {true.max():.3g};"
+        f"{rate:.3g} rad/s found, 90 % {low:.3g} to {high:.3g}, true {true.min():.3g} to {true.max():.3g};"
         " modes as without --real-poles"
     )
 

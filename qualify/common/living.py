@@ -169,8 +169,8 @@ def _mode(key: dict[str, Any], day: datetime, i: int) -> dict[str, Any]:
         "frequency_std_hz": 1e-4,
         "damping_ratio": 0.01,
         "damping_ratio_std": 2e-3,
-        "damping_ratio_low_95": 0.007,
-        "damping_ratio_high_95": 0.014,
+        "damping_ratio_low_90": 0.007,
+        "damping_ratio_high_90": 0.014,
         "status": "ok",
     }
 

@@ -113,9 +113,9 @@ def matched(
 
 def inside(m: Any, f: float, zeta: float) -> dict[str, Any]:
     """Return whether the intervals of a mode hold its truth, and the error of ln ζ in standard deviations."""
-    if m.frequency_interval_95 is None:
+    if m.frequency_interval_90 is None:
         return {"frequency_inside": False, "damping_inside": False, "damping_z": np.nan}
-    (a, b), (c, d) = m.frequency_interval_95, m.damping_ratio_interval_95
+    (a, b), (c, d) = m.frequency_interval_90, m.damping_ratio_interval_90
     z = np.log([m.frequency_hz / f, m.damping_ratio / zeta]) / np.sqrt(np.diag(m.log_covariance))
     return {
         "frequency_inside": bool(a < f < b),

@@ -183,7 +183,7 @@ FAULTS = (
         ("a shape's noise counts all sensors", "expected = (1.0 - k / n) * float(m.std @ m.std) / square", "expected = float(m.std @ m.std) / square"),
         ("what is unseen moves the ground the other way", "np.asarray(inverse - inverse @ rows.J @ moved), np.asarray(-moved)", "np.asarray(inverse - inverse @ rows.J @ moved), np.asarray(moved)"),
         ("a 90 % interval is one of 68 %", "half = NORMAL_90 * self.std_per_day", "half = self.std_per_day"),
-        ("posterior intervals are of 68 %", "np.quantile(self.log_theta, [0.05, 0.95], axis=0)", "np.quantile(self.log_theta, [0.16, 0.84], axis=0)"),
+        ("posterior intervals are of 68 %", "np.quantile(self.log_theta, QUANTILES[::2], axis=0)", "np.quantile(self.log_theta, [0.16, 0.84], axis=0)"),
         ("damping predicted with the other sign", "-damped.poles.real / size", "damped.poles.real / size"),
         ("loss factors are storage over loss", "loss = D.imag / D.real", "loss = D.real / D.imag"),
         ("bridge sampling weighs both samples alike", "np.log([independent, at_trial.size])", "np.log([at_trial.size, at_trial.size])"),
@@ -224,12 +224,12 @@ FAULTS = (
         ("a parameter's deviation is that of half the interval", "return log(self.high / self.low) / (2.0 * NORMAL_90)", "return log(self.high / self.low) / NORMAL_90"),
     )),
     *_of("intervals", "tests/test_intervals.py", rows=(
-        ("95 % intervals are of 90 %", "math.exp(min(NORMAL_95 * float(log_std), MOST))", "math.exp(min(NORMAL_90 * float(log_std), MOST))"),
-        ("90 % of draws are 80 %", "[0.05, 0.5, 0.95]", "[0.1, 0.5, 0.9]"),
+        ("90 % intervals are of 95 %", "math.exp(min(NORMAL_90 * float(log_std), MOST))", "math.exp(min(NORMAL_95 * float(log_std), MOST))"),
+        ("90 % of draws are 80 %", "(0.05, 0.5, 0.95)", "(0.1, 0.5, 0.9)"),
     )),
     *_of("report", rows=(
         ("prefixes are of the next size", "((1e9, \"G\"), (1e6, \"M\"), (1e3, \"k\"))", "((1e9, \"M\"), (1e6, \"M\"), (1e3, \"k\"))"),
-        ("a 95 % interval is one of 68 %", "spread = math.exp(NORMAL_95 * std / value)", "spread = math.exp(std / value)"),
+        ("± is a standard deviation", "half = NORMAL_90 * scale * std", "half = scale * std"),
     )),
     *_of("store", rows=(
         ("a server ends work that is another's", "work.c.state == \"leased\", work.c.owner == owner)", "work.c.state == \"leased\")"),

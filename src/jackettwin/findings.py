@@ -79,13 +79,14 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "clock_late": Kind(
         "warning",
-        "{channels}: sampled {delay_s:.3g} ± {std_s:.2g} s {late} than the others, equally at all "
-        "frequencies: the clocks differ; shifted",
+        "{channels}: sampled {delay_s:.3g} s {late} than the others (standard deviation {std_s:.2g} s), "
+        "equally at all frequencies: the clocks differ; shifted",
     ),
     "clock_drift": Kind(
         "warning",
-        "{channels}: the clock is {drift_ppm:.0f} ± {std_ppm:.2g} ppm too {slow} compared with the "
-        "others', and in error by {delay_s:.3g} s in the middle of the record; resampled",
+        "{channels}: the clock is {drift_ppm:.0f} ppm too {slow} compared with the others' "
+        "(standard deviation {std_ppm:.2g} ppm), and in error by {delay_s:.3g} s in the middle of the "
+        "record; resampled",
     ),
     "clock_curve": Kind(
         "warning",
@@ -421,17 +422,17 @@ CATALOGUE: dict[str, Kind] = {
     "watch_sees": Kind("info", "{said}"),
     "structure_changed": Kind(
         "alarm",
-        "changed: {by_mode}; began {began} ({began_low} to {began_high}); "
+        "changed (90 % in brackets): {by_mode}; began {began} ({began_low} to {began_high}); "
         "most likely {cause} ({probability:.0%})",
     ),
     "structure_turned": Kind(
         "alarm",
-        "turned: {by_mode}; began {began} ({began_low} to {began_high}); "
+        "turned (90 % in brackets): {by_mode}; began {began} ({began_low} to {began_high}); "
         "most likely {cause} ({probability:.0%})",
     ),
     "sensor_changed": Kind(
         "warning",
-        "behaves differently since {began} ({began_low} to {began_high}); most likely {cause} "
+        "behaves differently since {began} (90 %: {began_low} to {began_high}); most likely {cause} "
         "({probability:.0%})",
     ),
     "cause_corrected": Kind(

@@ -1,4 +1,4 @@
-"""Central intervals: of a normal distribution, of draws, and on the logarithm of what is positive."""
+"""Central intervals of 90 %, the one level that is printed: normal ones, of draws, and on the logarithm."""
 
 from __future__ import annotations
 
@@ -8,24 +8,26 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 
+QUANTILES = (0.05, 0.5, 0.95)
+"""Lower end, median and upper end of every printed interval; names of fields say its level: 90 %."""
 NORMAL_90 = 1.6448536269514722
 """Half a central 90 % interval of a normal distribution, in standard deviations."""
 NORMAL_95 = 1.959963984540054
-"""Half a central 95 % interval of a normal distribution, in standard deviations."""
+"""The same of 95 %: for tests with one false alarm in twenty, and for what others state."""
 MOST = 50.0
 """Logarithm beyond which an interval says nothing, and its ends would overflow."""
 
 
-def log_interval_95(value: float, log_std: float) -> tuple[float, float]:
-    """Return the 95 % interval of a positive value whose logarithm has a standard deviation.
+def log_interval_90(value: float, log_std: float) -> tuple[float, float]:
+    """Return the 90 % interval of a positive value whose logarithm has a standard deviation.
 
     Examples
     --------
-    >>> low, high = log_interval_95(0.02, 0.1)
+    >>> low, high = log_interval_90(0.02, 0.1)
     >>> round(low, 5), round(high, 5)
-    (0.01644, 0.02433)
+    (0.01697, 0.02358)
     """
-    factor = math.exp(min(NORMAL_95 * float(log_std), MOST))
+    factor = math.exp(min(NORMAL_90 * float(log_std), MOST))
     return float(value) / factor, float(value) * factor
 
 
@@ -40,5 +42,5 @@ def interval_90(draws: FloatArray) -> tuple[float, float, float] | None:
     kept = draws[~np.isnan(draws)]
     if kept.size == 0:
         return None
-    low, middle, high = map(float, np.quantile(kept, [0.05, 0.5, 0.95]))
+    low, middle, high = map(float, np.quantile(kept, QUANTILES))
     return low, middle, high

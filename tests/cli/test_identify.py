@@ -126,7 +126,7 @@ def test_findings_of_many_records_are_counted(capsys: pytest.CaptureFixture[str]
 def test_a_fault_of_the_whole_record_is_said_once(capsys: pytest.CaptureFixture[str]) -> None:
     """The resolution of every channel was said for it, as a warning, and as the doubt of every mode."""
     found = [Finding("coarse_quantiser", name, {"steps": steps}) for name, steps in (("a", 1.4), ("b", 2.1))]
-    mode = dict.fromkeys(("frequency_interval_95", "damping_ratio_interval_95", "damping_ratio"))
+    mode = dict.fromkeys(("frequency_interval_90", "damping_ratio_interval_90", "damping_ratio"))
     mode |= {"frequency_hz": 0.32, "mpc": 1.0, "status": "doubtful", "status_reason": found[0].text}
     show_one(
         {
@@ -186,12 +186,12 @@ def test_what_cannot_be_written_is_shown(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 def test_a_table_gives_95_percent_intervals_of_frequency_and_damping() -> None:
-    """One standard deviation of the frequency stood beside an interval of 95 % of the damping."""
+    """One standard deviation of the frequency stood beside an interval of 95 % (90 % now) of the damping."""
     code, out, _ = run(str(RECORDS / "pile_U12_s301.parquet"))
     _, text, _ = run(str(RECORDS / "pile_U12_s301.parquet"), "--json")
-    low, high = json.loads(text)["modes"][0]["frequency_interval_95"]
+    low, high = json.loads(text)["modes"][0]["frequency_interval_90"]
     assert code == 0 and f"{low:.4f} – {high:.4f}" in out
-    assert "95 % of f [Hz]" in out and "95 % of ζ [%]" in out and "±" not in out
+    assert "90 % of f [Hz]" in out and "90 % of ζ [%]" in out and "±" not in out
 
 
 def test_setups_are_joined_before_the_identification(tmp_path: Path) -> None:

@@ -97,7 +97,7 @@ def test_masses_are_said_in_whole_numbers_and_without_deviation_on_a_bound(tmp_p
             yaml.safe_dump({"structure": "jacket15", "gravity": False, "stages": [stage]})
         )
         lines.append(" ".join(CliRunner().invoke(main, ["refine", str(tmp_path / "r.yaml")]).stdout.split()))
-    assert re.search(r"tower.added_mass_kg \+\d+(\.\d+)? ± \d+ ", lines[0]), lines[0]
+    assert re.search(r"tower.added_mass_kg \+\d+(\.\d+)? ± \d+ \(90 %\) ", lines[0]), lines[0]
     assert "tower.added_mass_kg +0 " in lines[1] and "lies on a bound" in lines[1]
 
 

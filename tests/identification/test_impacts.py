@@ -46,7 +46,7 @@ def test_modes_of_blows(
     assert [m.status.value for m in found] == ["ok"] * len(modes[0])
     for mode, f, zeta in zip(found, *modes, strict=True):
         assert mode.frequency_hz == pytest.approx(f, rel=2e-3)
-        low, high = mode.damping_ratio_interval_95 or (0.0, 0.0)
+        low, high = mode.damping_ratio_interval_90 or (0.0, 0.0)
         assert low / 1.1 < zeta < 1.1 * high
     one = len(blows_s) == 1
     assert all((m.method == "decay") == one for m in found)

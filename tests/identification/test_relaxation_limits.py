@@ -47,7 +47,7 @@ def share_found(record: Record, rms: float, n: int, seed: int) -> int:
 def test_at_the_limit_about_95_percent_are_found(record: Record, limits: AmbientLimits) -> None:
     """Two-sided: fresh trials at the interval's upper end and below its lower end, binomial at 0.1 %."""
     (one,) = limits.limits
-    low, high = one.interval_95
+    low, high = one.interval_90
     assert one.trials == TRIALS and low < one.rms_share < high < 20.0 * low
     n = 40
     assert share_found(record, high, n, 5) >= stats.binom.ppf(0.001, n, 0.95)

@@ -34,4 +34,4 @@ def test_intervals_end_at_those_of_all_records(identifications):
     (line,) = figure.data
     assert list(line.x) == [1, 2, 3]
     high = line.y[-1] + line.error_y.array[-1]
-    assert high == pytest.approx(100 * mode.damping_ratio_interval_95[1])
+    assert high == pytest.approx(100 * mode.damping_ratio_interval_90[1])

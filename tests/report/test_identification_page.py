@@ -105,7 +105,7 @@ def test_methods_stand_side_by_side_with_what_is_known_of_them(observation: Exam
     compared = Comparison(replace(found, modes=found.modes[:1]), modes, {"ssi-dat": "too many gaps"})
     table = method_table(compared, ["mode_1"])
     (row,) = table.rows
-    assert row[2].endswith("/ 1.00 ± 0.20")
+    assert row[2].endswith("/ 1.00 ± 0.33")
     assert row[3].endswith("/ 1.20")
     assert row[4] == UNKNOWN
     assert "SSI-dat not applied: too many gaps." in table.caption

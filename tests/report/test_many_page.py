@@ -35,7 +35,7 @@ def test_every_record_is_drawn_with_its_interval() -> None:
     f, zeta = tracks([("mode_1", mode)], [f"r{i}" for i in range(5)]).data
     np.testing.assert_allclose(f.y, mode.sightings.frequency_hz)
     np.testing.assert_allclose(zeta.y, 1.0)  # %
-    np.testing.assert_allclose(zeta.error_y.array, np.exp(stats.norm.ppf(0.975) * 0.2) - 1.0, rtol=1e-6)
+    np.testing.assert_allclose(zeta.error_y.array, np.exp(stats.norm.ppf(0.95) * 0.2) - 1.0, rtol=1e-6)
     assert list(f.customdata) == ["r0", "r1", "r2", "r3", "r4"]
 
 

@@ -329,7 +329,7 @@ def test_what_the_objections_name_is_not_said_twice() -> None:
     about = [text for text in shorts if "ore-aft 3" in text]
     assert about == [
         "Not explained: the frequency of fore-aft 3 is 1.2 % below the value that the other modes imply "
-        "(± 0.3 %)."
+        "(90 %: ± 0.49 %)."
     ]
     # damping of that mode is another matter
     shorts = sentences(objected_answers(DatumCheck("ζ10", 0.8, 0.2, False, True))).questions[0].short
@@ -410,14 +410,16 @@ def test_a_strange_shape_and_another_order_have_sentences() -> None:
     )
     a = replace(objected_answers(), scrutiny=Scrutiny(found))
     text = " ".join(sentences(a).questions[0].short)
-    assert "12 % of fore-aft 1's shape lies outside the model's (expected 0.2 %, ± 1 %)" in text
-    assert "fore-aft 3 lies 3 % below fore-aft 1, and in the model 2 % above it (± 0.5 %)" in text
+    assert "12 % of fore-aft 1's shape lies outside the model's (expected 0.2 %; 90 %: ± 1.6 %)" in text
+    assert "fore-aft 3 lies 3 % below fore-aft 1, and in the model 2 % above it (90 %: ± 0.82 %)" in text
     assert "fore-aft 3's shape" not in text
 
 
 def test_a_turned_pair_and_a_suspect_have_sentences() -> None:
     turned = DatumCheck("α1", -0.35, 0.07, False, True)
     text = " ".join(sentences(objected_answers(turned)).questions[0].short)
-    assert "the direction of the pair of fore-aft 1 differs by 20° from that in the model (± 4°)" in text
+    assert (
+        "the direction of the pair of fore-aft 1 differs by 20° from that in the model (90 %: ± 7°)" in text
+    )
     text = " ".join(sentences(objected_answers(suspected=(SOFT,))).questions[0].short)
     assert "deviate in the pattern of feet softer sideways than lengthwise" in text

@@ -110,8 +110,8 @@ def quick(model: Any, waveform: Path, conditions: dict[str, Any], picks: Any = (
             "frequency_std_hz": mode.frequency_std_hz,
             "damping_ratio": mode.damping_ratio,
             "damping_ratio_std": mode.damping_ratio_std,
-            "damping_ratio_low_95": 0.01,
-            "damping_ratio_high_95": 0.02,
+            "damping_ratio_low_90": 0.01,
+            "damping_ratio_high_90": 0.02,
             "status": "ok",
         }
         for number, mode in modes.items()

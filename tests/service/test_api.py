@@ -31,7 +31,7 @@ def test_a_record_is_taken_observed_and_asked_for(client: TestClient, service: S
     assert client.get(f"/api/v1/jobs/{sent.json()['job_id']}").json()["state"] == "done"
     modes = client.get("/api/v1/assets/wtg/modes?label=mode_1").json()["items"]
     assert [m["record_id"] for m in modes] == [record_id]
-    assert modes[0]["damping_ratio_interval_95"] == [0.01, 0.02]
+    assert modes[0]["damping_ratio_interval_90"] == [0.01, 0.02]
     (bins,) = client.get("/api/v1/assets/wtg/modes/bins?label=mode_1&points=10").json()["items"]
     assert (bins["count"], bins["time_s"]) == ([1], [0.0])
     assert bins["frequency_hz"] == {name: [modes[0]["frequency_hz"]] for name in ("min", "median", "max")}

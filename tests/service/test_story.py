@@ -94,6 +94,8 @@ def test_the_shipped_demonstration_is_of_this_program(
             times = (told.start_utc, told.start_utc + timedelta(days=1))
             (said,) = results.observations_between(connection, "demo", asset.model_hash, *times)
             kept = OBSERVATION.load(json.loads(said.document))
+            rests_on = results.find_supports(connection, "demo", 1)["records"]
+            assert 20 < rests_on < 40  # its days with a locked shaft and its records; all 730 were told once
             assert results.find_drawn(connection, "demo", 1, "explored")["loci"]
             assert results.find_watch(connection, "demo", 1)["days"]
             assert results.find_stiffness(connection, "demo", 1)["stiffness_in_time"]

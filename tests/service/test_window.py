@@ -476,8 +476,15 @@ def test_life_is_told_weld_by_weld(opened: Open, monkeypatch: pytest.MonkeyPatch
     expect(page.get_by_text("45°", exact=True)).to_be_visible()
     expect(page).to_have_url(re.compile("weld="))
     assert serious(page) == []
-    page.set_viewport_size({"width": 390, "height": 900})
+    many = [{**WELD, "brace": f"brace_{k}"} for k in range(9)]
+    monkeypatch.setattr(results, "find_life", lambda *_: many)
+    with writing(opened.service.database) as connection:
+        journal.tell(connection, "state", "wtg", {}, opened.service.now())
+    page = opened.page("/assets/wtg/life", width=390)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    expect(page.locator("tbody tr")).to_have_count(5)  # each is a card: 26 of them were six screens
+    page.get_by_role("button", name="Show all 9").click()
+    expect(page.locator("tbody tr")).to_have_count(9)
 
 
 @pytest.mark.parametrize(
@@ -533,6 +540,35 @@ def test_a_parameter_is_moved_by_keyboard_and_the_modes_follow(opened: Open) -> 
     page.get_by_role("slider").first.press("ArrowRight")
     expect(cell).to_have_text("0.1880")
     expect(page.get_by_text("4000 × the median")).to_be_visible()
+
+
+def test_a_law_of_several_directions_names_the_one_whose_values_stand_there(opened: Open) -> None:
+    page = opened.page("/jobs")
+    told = EXAMPLES["ExploredOut"]
+    of_two = [{**told["parameters"][0], "name": f"k_{way}", "words": f"{way} stiffness"} for way in WAYS]
+    answer = {**told, "parameters": of_two, "loci": [{**told["loci"][0], "words": "stiffness"}]}
+    page.route("**/api/v1/assets/wtg/explore", lambda route: route.fulfill(json=answer))
+    opened.goto(page, "/assets/wtg/explore")
+    expect(page.get_by_label("Parameter", exact=True)).to_have_text("stiffness, every direction")
+    expect(page.get_by_role("heading", name="Along the horizontal stiffness")).to_be_visible()
+    expect(page.get_by_text("Every direction's moves by the same factor")).to_be_visible()
+
+
+WAYS = ("horizontal", "vertical")
+
+
+def test_a_choice_stands_where_it_chooses_something(opened: Open) -> None:
+    """The ground is followed over all states and modes; what conditions leave has no state."""
+    page = opened.page("/assets/wtg/timeline?show=ground")
+    expect(page.get_by_role("heading", name="The ground through time")).to_be_visible()
+    page.get_by_role("group", name="Range").wait_for()
+    state, mode = page.get_by_role("group", name="State"), page.get_by_label("Mode", exact=True)
+    assert (state.count(), mode.count()) == (0, 0)
+    page.get_by_role("button", name="Frequency residual").click()
+    expect(mode).to_be_visible()
+    assert state.count() == 0
+    page.get_by_role("button", name="Damping", exact=True).click()
+    expect(state).to_be_visible()
 
 
 def test_a_thousand_turbines_are_on_a_map_and_those_that_need_somebody_come_first(opened: Open) -> None:

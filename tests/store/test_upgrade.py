@@ -12,6 +12,7 @@ from tests.service.servers import opened
 from tests.store.conftest import fresh
 from tests.store.old_stores import documents, lay_out, schemas
 
+from jackettwin.intervals import NORMAL_90, NORMAL_95
 from jackettwin.service.store_commands import rebuild
 from jackettwin.store import backup, handling, people, reading, results, sqlite_url, tables, writing
 from jackettwin.store.columns import rounded
@@ -25,8 +26,14 @@ def test_a_store_is_kept_of_every_migration_that_was_released() -> None:
 @pytest.mark.parametrize("schema", schemas())
 def test_an_old_store_says_what_it_said(schema: str, tmp_path: Path) -> None:
     store = lay_out(schema, tmp_path / "store")
+    with closing(sqlite3.connect(store / "jackettwin.sqlite")) as old:
+        wider = old.execute("select damping_ratio, damping_ratio_low_95 from modes order by id").fetchall()
     with opened(sqlite_url(store)) as database:
         with reading(database) as connection:
+            low = connection.scalars(select(tables.modes.c.damping_ratio_low_90).order_by(tables.modes.c.id))
+            assert wider and low.all() == pytest.approx(
+                [ratio * (end / ratio) ** (NORMAL_90 / NORMAL_95) for ratio, end in wider], rel=1e-12
+            )
             kept = connection.execute(
                 select(tables.observations.c.document).order_by(tables.observations.c.record_id)
             )

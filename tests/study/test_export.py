@@ -22,8 +22,8 @@ def mode(k: int, names: Sequence[str]) -> dict[str, Any]:
         "frequency_std_hz": None,
         "damping_ratio": 0.01,
         "damping_ratio_std": 0.001,
-        "frequency_interval_95": (k + 0.4, k + 0.6),
-        "damping_ratio_interval_95": None,
+        "frequency_interval_90": (k + 0.4, k + 0.6),
+        "damping_ratio_interval_90": None,
         "mode_shape": {name: [float(k + i), -1.0] for i, name in enumerate(names)},
     }
 

@@ -163,7 +163,7 @@ def test_the_document_is_json_and_complete(document: dict) -> None:
     assert [step["n_records"] for step in first["convergence"]] == [1, 2, 4]
     last = first["convergence"][-1]
     assert last["damping_ratio"] == pytest.approx(first["damping_ratio"])
-    assert last["damping_ratio_interval_95"] == pytest.approx(first["damping_ratio_interval_95"])
+    assert last["damping_ratio_interval_90"] == pytest.approx(first["damping_ratio_interval_90"])
     for mode, f in zip(document["modes"], (0.5, 1.3), strict=False):
         # five standard deviations of the best estimate from 1200 s
         assert mode["frequency_hz"] == pytest.approx(f, rel=5 * np.sqrt(0.02 / (2 * np.pi * f * 1200)))

@@ -33,7 +33,7 @@ def test_what_moves_the_answer_most_comes_first_and_settled_ones_last() -> None:
     assert [one.confirmed for one in (heavy, stiff, grown)] == [False, False, True]
     # one standard deviation more multiplies k by exp(−0.2)
     assert heavy.moves == {"k": expm1(-0.2), "c": expm1(0.05)}
-    assert heavy.value == "the rna_mass, known to ±1.5 %"
+    assert heavy.value == "the rna_mass, known to 1.5 % (σ)"
     assert heavy.settled_by == "weigh it" and not grown.moves
 
 

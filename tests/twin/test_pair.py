@@ -19,6 +19,7 @@ from jackettwin.findings import Finding
 from jackettwin.identification import ModalEstimate
 from jackettwin.identification.many_records.fusion import average as average_of_sightings
 from jackettwin.identification.status import ModeStatus
+from jackettwin.intervals import NORMAL_90, NORMAL_95
 from jackettwin.records import Record, read_record
 from jackettwin.twin import (
     OBSERVATION,
@@ -259,11 +260,25 @@ def test_an_observation_of_the_version_before_is_read(seen: Observation) -> None
     assert now.quality["findings"][0]["subject"] == "a"
 
 
+def test_intervals_of_95_percent_of_an_older_observation_are_read_as_90(seen: Observation) -> None:
+    document = json.loads(json.dumps(OBSERVATION.dump(seen)))
+    pairs = (("frequency_hz", "frequency_interval"), ("damping_ratio", "damping_ratio_interval"))
+    for mode in document["identification"]["modes"]:
+        for one in filter(None, (mode, mode.get("unrefined"))):
+            for value, name in pairs:
+                if ends := one.pop(f"{name}_90", None):
+                    wider = [one[value] * (end / one[value]) ** (NORMAL_95 / NORMAL_90) for end in ends]
+                    one[f"{name}_95"] = wider
+    now = OBSERVATION.load({**document, "schema_version": 2})
+    was, now_has = ([m.damping_ratio_interval_90 for m in o.identification.modes] for o in (seen, now))
+    np.testing.assert_allclose(now_has, was, rtol=1e-12)
+
+
 def test_documents_of_another_kind_or_version_are_refused(seen: Observation) -> None:
     document = OBSERVATION.dump(seen)
     with pytest.raises(InputError, match="another kind of document"):
         STATE.load(document)
-    with pytest.raises(InputError, match=r"schema_version: unknown version.*allowed: 1 to 2"):
+    with pytest.raises(InputError, match=r"schema_version: unknown version.*allowed: 1 to 3"):
         OBSERVATION.load({**document, "schema_version": 99})
     with pytest.raises(InputError, match=r"identification\.modes\.0\.frequency_hz: not a number"):
         damaged = json.loads(json.dumps(document))

@@ -1,4 +1,5 @@
 // What the API describes as an object of any kind, as the pages read it.
+import { count } from "../words/numbers";
 
 export interface KnownMode {
   mode: number;
@@ -22,7 +23,6 @@ export interface KnownParameter {
 export interface Knowledge {
   law?: string;
   status?: string;
-  statement?: string;
   records?: number;
   until_utc?: string;
   /** Whether there is a report. */
@@ -31,3 +31,7 @@ export interface Knowledge {
   answers?: { question: string; answer: string }[];
   parameters?: Record<string, KnownParameter>;
 }
+
+/** What an estimate is of: 730 records up to 2025-12-01. */
+export const recordsOf = ({ records, until_utc }: Knowledge): string =>
+  count(records ?? 0, "record") + (until_utc ? ` up to ${until_utc.slice(0, 10)}` : "");

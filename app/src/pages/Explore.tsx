@@ -71,7 +71,7 @@ function poles(locus: Locus, index: number): PlotData {
   };
 }
 
-function Along({ locus, name }: { locus: Locus; name: string }) {
+function Along({ locus, name, many }: { locus: Locus; name: string; many: boolean }) {
   const [index, setIndex] = useState(locus.origin);
   const [range, setRange] = useState<Range | null>(null);
   const [value, median] = [locus.values[index] ?? 0, locus.values[locus.origin] ?? 1];
@@ -90,7 +90,11 @@ function Along({ locus, name }: { locus: Locus; name: string }) {
   const plots = useMemo(() => drawn.map((plot) => ({ ...plot, marks: mark })), [drawn, value]);
   return (
     <>
-      <Card title={`Along the ${name}`} wide note="One parameter moves, the others stay where the data put them.">
+      <Card
+        title={`Along the ${name}`}
+        wide
+        note={`${many ? "Every direction's moves by the same factor" : "One parameter moves"}, the others stay where the data put them.`}
+      >
         <Slide max={locus.values.length - 1} at={index} onMove={setIndex}>
           {name} <b>{quantity(value, locus.unit, 3)}</b>
           {index === locus.origin ? " (median)" : ` (${quantity(value / median, "", 3)} × the median)`}
@@ -184,7 +188,11 @@ function Drawn({ asset, explored }: { asset: string; explored: Explored }) {
   const loci = explored.loci ?? [];
   const locus = loci.find((l) => l.parameter === asked("parameter")) ?? loci[0];
   const named: Named = Object.fromEntries((explored.parameters ?? []).map((p) => [p.name, p]));
-  const said: Name = (name) => (named[name] ?? loci.find((l) => l.parameter === name))?.words ?? name;
+  const many = (l: Locus): string => `${l.words}, every direction`;
+  const said: Name = (name) => named[name]?.words ?? loci.filter((l) => l.parameter === name).map(many)[0] ?? name;
+  /** Where several move by one factor, values are those of the first. */
+  const first = locus && explored.parameters?.find((p) => p.name.startsWith(`${locus.parameter}_`))?.words;
+  const own = named[locus?.parameter ?? ""];
   return (
     <>
       <div class="tools">
@@ -196,7 +204,7 @@ function Drawn({ asset, explored }: { asset: string; explored: Explored }) {
         <span class="quiet">Law {explored.law}</span>
       </div>
       <div class="grid">
-        {locus && <Along key={locus.parameter} locus={locus} name={said(locus.parameter)} />}
+        {locus && <Along key={locus.parameter} locus={locus} name={own?.words ?? first ?? ""} many={!own} />}
         {explored.surface && (
           <Card
             title="Where the data point"

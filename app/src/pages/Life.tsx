@@ -12,6 +12,8 @@ import { count, fixed, scientific, years } from "../words/numbers";
 import { day } from "../words/time";
 
 type Weld = Schemas["LifeOut"];
+/** Where each row is a card, some are enough at first. */
+const PHONE = matchMedia("(max-width: 600px)");
 const YEAR_S = 365.25 * 86_400;
 
 const key = (w: Weld): string => `${w.joint} ${w.brace} ${w.side}`;
@@ -132,6 +134,7 @@ export default function Life({ asset }: PageProps) {
                   rows={data.items}
                   id={key}
                   mark={(w) => (w === weld ? "here" : "")}
+                  most={PHONE.matches ? 5 : Infinity}
                 />
               </Card>
               {weld && (

@@ -9,6 +9,7 @@ import { SaveDrawn } from "../parts/plot/SaveMenu";
 import { Lanes, Roll } from "../parts/Roll";
 import { Empty, Shown } from "../parts/Shown";
 import type { PageProps } from "../shell/place";
+import { raised } from "../words/numbers";
 import { seconds } from "../words/time";
 
 const SPANS_S = [10, 30, 120] as const;
@@ -35,6 +36,7 @@ function useStream(asset: string, roll: Roll): boolean {
 function useReplay(record: RecordOut | undefined, roll: Roll): void {
   useEffect(() => {
     if (!record) return;
+    roll.units = Object.fromEntries(record.channels.map((c) => [String(c["name"]), raised(String(c["unit"]))]));
     roll.begin(SPANS_S[1], false); // a full picture from the first moment on
     let asked = 0;
     const more = async (): Promise<void> => {

@@ -1,10 +1,9 @@
 // The report on all records, to read, print and send; tables to take away.
 import { useAsset } from "../api/answer";
-import type { Knowledge } from "../api/shapes";
+import { type Knowledge, recordsOf } from "../api/shapes";
 import { Card } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import type { PageProps } from "../shell/place";
-import { count } from "../words/numbers";
 
 const EXPORT = "/api/v1/export.parquet?table=";
 const TABLES = ["modes", "findings", "records", "states", "conditions"];
@@ -29,7 +28,7 @@ export default function Reports({ asset }: PageProps) {
           const url = `/assets/${encodeURIComponent(asset)}/report?version=${data.version}`;
           return (
             <Card
-              title={`Of ${count(known.records ?? 0, "record")}${known.until_utc ? ` up to ${known.until_utc.slice(0, 10)}` : ""}`}
+              title={`Of ${recordsOf(known)}`}
               wide
               more={
                 <a href={url} target="_blank" rel="noreferrer">

@@ -50,7 +50,7 @@ export default function Start() {
         <Card title="Its files" wide>
           <Drop label="Files of the turbine" onFiles={(given) => void take(given)}>
             Drop a folder or files here: a structure (SACS, SubDyn, YAML) and records, or a twin file.
-            <p>{namesOf(files)}</p>
+            <p>{files.length > 0 && namesOf(files)}</p>
           </Drop>
         </Card>
         {whole && (

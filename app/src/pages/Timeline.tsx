@@ -4,7 +4,7 @@ import { useAnswer, useAsset } from "../api/answer";
 import { api, everything, type Mode, told } from "../api/client";
 import { Card, Choice, Head, Pick } from "../parts/Bits";
 import { alarmMarks, binPlot, type Bins, byLabel, modePlot } from "../parts/modes";
-import type { Mark, PlotData, Range } from "../parts/plot/series";
+import type { Mark, PlotData } from "../parts/plot/series";
 import { Empty, Shown, Trouble } from "../parts/Shown";
 import Stiffness, { InTime, keepRange, rangeKept } from "../parts/Stiffness";
 import { Rests, type Watch } from "../parts/Watched";
@@ -65,7 +65,7 @@ export default function Timeline({ asset }: PageProps) {
   const watch = useAsset(asset, "/watch");
   const alarms = useAsset(asset, "/alarms");
   const what = asked("show") ?? "frequency";
-  const wanted = asked("mode") ?? "";
+  const [ground, raw] = [what === "ground", what === "frequency" || what === "damping"];
   const [from, to] = [asked("from"), asked("to")];
   const labels = all.data?.bins.map((b) => b.label) ?? [];
   // What is drawn row by row as a whole needs no closer look.
@@ -81,14 +81,14 @@ export default function Timeline({ asset }: PageProps) {
   );
   return (
     <>
-      <Head title="Modes through time">
-        Every point is one record; choose one to open it. Drag to zoom, double-click to see all.
+      <Head title={ground ? "The ground through time" : "Modes through time"}>
+        {raw && "Every point is one record; choose one to open it. "}Drag to zoom, double-click to see all.
       </Head>
       {close && part.problem && <Trouble problem={part.problem} again={part.again} />}
       <div class="tools">
         <Choice label="Quantity" kept="show" options={QUANTITIES} />
-        <Choice label="State" kept="state" options={STATES} />
-        {others.length > 0 && (
+        {raw && <Choice label="State" kept="state" options={STATES} />}
+        {raw && others.length > 0 && (
           <Pick label="Beside" kept="beside" options={[["", "no other turbine"], ...others.map((a) => a.name)]} />
         )}
         {from && to && (
@@ -104,8 +104,6 @@ export default function Timeline({ asset }: PageProps) {
             seen={(close && part.data) || data}
             marks={alarmMarks(alarms.data?.items ?? [])}
             what={what}
-            wanted={wanted}
-            range={rangeKept()}
             beside={{ name: other, bins: beside.data ?? [] }}
             asset={asset}
             watch={watch.data}
@@ -132,8 +130,6 @@ interface DrawnProps {
   seen: Seen;
   marks: Mark[];
   what: string;
-  wanted: string;
-  range: Range | null;
   beside: { name: string; bins: Bins[] };
   asset: string;
   watch: Watch | undefined;
@@ -142,7 +138,8 @@ interface DrawnProps {
 
 type Drawing = { label: string; plot: PlotData; pick: (index: number) => void };
 
-function Drawn({ all, seen, marks, what, wanted, range, beside, asset, watch, open }: DrawnProps) {
+function Drawn({ all, seen, marks, what, beside, asset, watch, open }: DrawnProps) {
+  const [wanted, range] = [asked("mode") ?? "", rangeKept()];
   const key = marks.map((m) => m.words).join();
   const plots = useMemo((): Drawing[] => {
     const groups = seen.rows && byLabel(seen.rows);
@@ -175,11 +172,13 @@ function Drawn({ all, seen, marks, what, wanted, range, beside, asset, watch, op
     <>
       <div class="tools">
         <Choice label="Range" value={span} options={SPANS} onChoose={show} />
-        <Pick
-          label="Mode"
-          kept="mode"
-          options={[["", `all ${plots.length}`], ...plots.map((p) => [p.label, words(p.label)] as const)]}
-        />
+        {what !== "ground" && (
+          <Pick
+            label="Mode"
+            kept="mode"
+            options={[["", `all ${plots.length}`], ...plots.map((p) => [p.label, words(p.label)] as const)]}
+          />
+        )}
       </div>
       {what === "ground" && <Stiffness asset={asset} />}
       {what.endsWith("left") && (

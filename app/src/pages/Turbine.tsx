@@ -2,7 +2,7 @@
 import { Suspense } from "preact/compat";
 import { useAsset } from "../api/answer";
 import { type Alarm, type Asset, type Schemas } from "../api/client";
-import type { Knowledge, KnownMode, KnownParameter } from "../api/shapes";
+import { type Knowledge, type KnownMode, type KnownParameter, recordsOf } from "../api/shapes";
 import { AlarmList } from "../parts/AlarmList";
 import { Assumptions } from "../parts/Assumptions";
 import { Ago, Card, Light } from "../parts/Bits";
@@ -14,7 +14,7 @@ import { later } from "../parts/later";
 import { SaveDrawn } from "../parts/plot/SaveMenu";
 import type { PageProps } from "../shell/place";
 import { assetUrl } from "../shell/place";
-import { between, count, frequency, percent, quantity, sentence, words, Z90 } from "../words/numbers";
+import { between, count, frequency, percent, quantity, sentence, words } from "../words/numbers";
 
 const Stiffness = later(() => import("../parts/Stiffness"));
 type Twin = Schemas["TwinOut"];
@@ -30,7 +30,7 @@ function Figures({ twin, alarms }: { twin: Twin; alarms: readonly Alarm[] }) {
   const figures: [string, string, string][] = first.map((m) => [
     words(m.label),
     `${frequency(m.frequency_hz)} Hz`,
-    `damping ${percent(m.damping_ratio, m.damping_ratio_std && Z90 * m.damping_ratio_std)} % (90 %)`,
+    `damping ${percent(m.damping_ratio, m.damping_ratio_std)} % (90 %), mean of all`,
   ]);
   if (ground) {
     const interval = ground.interval_90 ? `${between(...ground.interval_90, ground.unit)} (90 %)` : "no interval";
@@ -53,30 +53,24 @@ function Figures({ twin, alarms }: { twin: Twin; alarms: readonly Alarm[] }) {
   );
 }
 
+/** The records of an estimate: where the twin file names states of operation, those in them. */
+const restsOn = (known: Knowledge): string => `Of the ${recordsOf(known)} that the estimate rests on`;
+
 /** What an estimate is of: ground that changes is told as on its newest day. */
 const of = (p: KnownParameter): string => p.day ?? "all records";
 
-function Supports({ known }: { known: Knowledge }) {
-  const rows = Object.entries(known.parameters ?? {});
-  return (
-    <>
-      <Table
-        label="Supports"
-        rows={rows}
-        id={([name]) => name}
-        columns={[
-          { title: "Parameter", show: ([, p]) => <span class="prose">{p.words}</span> },
-          { title: "Median and 90 % interval", show: ([, p]) => <span class="prose">{p.text}</span> },
-          { title: "Of", show: ([, p]) => of(p) },
-        ]}
-      />
-      <p class="quiet">
-        Law {known.law}; of {count(known.records ?? 0, "record")}
-        {known.until_utc ? ` up to ${known.until_utc.slice(0, 10)}` : ""}; {known.status}.
-      </p>
-    </>
-  );
-}
+const Supports = ({ known }: { known: Knowledge }) => (
+  <Table
+    label="Supports"
+    rows={Object.entries(known.parameters ?? {})}
+    id={([name]) => name}
+    columns={[
+      { title: "Parameter", show: ([, p]) => <span class="prose">{p.words}</span> },
+      { title: "Median and 90 % interval", show: ([, p]) => <span class="prose">{p.text}</span> },
+      { title: "Of", show: ([, p]) => of(p) },
+    ]}
+  />
+);
 
 /** The first sentence; the others are folded where the page is narrow. */
 const Said = ({ sentences: [first, ...others] }: { sentences: string[] }) => (
@@ -100,7 +94,7 @@ function Answers({ asset, known }: { asset: string; known: Knowledge }) {
       title="What is known, and what to do"
       wide
       more={<a href={assetUrl(asset, "reports")}>Report</a>}
-      note="Of all records together; in brackets 90 % intervals. What changes with time is told above and below."
+      note={`${restsOn(known)}; in brackets 90 % intervals. What changes with time is told above and below.`}
     >
       <dl class="answers">
         {known.answers?.map(({ question, answer }) => (
@@ -161,7 +155,7 @@ export function Turbine({ asset }: PageProps) {
         <Card
           title="What it does now"
           more={<a href={assetUrl(asset, "timeline")}>Through time</a>}
-          note="Mean of all records."
+          note="Means of all records, whatever the rotor did."
         >
           <Shown of={twin} some={(data) => data.records} none={<NoRecord asset={asset} />} lines={7}>
             {(data) => <ModeTable asset={asset} modes={data.modes as unknown as KnownMode[]} more={RECORDS} />}
@@ -173,7 +167,7 @@ export function Turbine({ asset }: PageProps) {
         </Suspense>
         <Card
           title="Damping by source"
-          note="Damping ratio in %, of all records."
+          note={`Damping ratio in %. ${restsOn(known ?? {})}.`}
           more={
             budget.data?.items.length ? (
               <SaveDrawn title="Damping by source" csv={() => budgetCsv(budget.data?.items ?? [])} />
@@ -184,12 +178,16 @@ export function Turbine({ asset }: PageProps) {
             {(data) => <Budget modes={data.items} />}
           </Shown>
         </Card>
-        <Assumptions asset={asset} known={known ?? {}} />
-        <Card title="Ground and rotor" more={<a href={assetUrl(asset, "reports")}>Report</a>}>
+        <Card
+          title="Ground and rotor"
+          note={known?.law && `Law ${known.law}, ${known.status}. ${restsOn(known)}.`}
+          more={<a href={assetUrl(asset, "reports")}>Report</a>}
+        >
           <Shown of={twin} some={() => known?.parameters} none={<NotYet />} lines={5}>
             {() => <Supports known={known ?? {}} />}
           </Shown>
         </Card>
+        <Assumptions asset={asset} known={known ?? {}} />
       </div>
     </>
   );

@@ -67,7 +67,8 @@ export function Assumptions({ asset, known }: { asset: string; known: Knowledge 
   return (
     <Card
       title="Open assumptions"
-      note="What the answers hang on and nobody has settled, the weightiest first; ± is one standard deviation."
+      wide
+      note="What the answers hang on and nobody has settled, the weightiest first; σ is one standard deviation."
     >
       {version !== null && (
         <p class="said-done" role="status">

@@ -1,6 +1,6 @@
 // Modes in a table: the same columns wherever modes stand.
 import { assetUrl } from "../shell/place";
-import { frequency, percent, words, Z90 } from "../words/numbers";
+import { frequency, percent, words } from "../words/numbers";
 import { type Column, Table } from "./Table";
 
 interface SomeMode {
@@ -9,6 +9,7 @@ interface SomeMode {
   frequency_std_hz: number | null;
   damping_ratio: number | null;
   damping_ratio_std: number | null;
+  damping_ratio_interval_90?: number[] | null;
 }
 
 interface ModeTableProps<T extends SomeMode> {
@@ -21,8 +22,9 @@ interface ModeTableProps<T extends SomeMode> {
 
 export function ModeTable<T extends SomeMode>({ asset, modes, id, first = [], more = [] }: ModeTableProps<T>) {
   const url = assetUrl(asset, "timeline");
-  const f = (m: T): string => frequency(m.frequency_hz, m.frequency_std_hz && Z90 * m.frequency_std_hz);
-  const zeta = (m: T): string => percent(m.damping_ratio, m.damping_ratio_std && Z90 * m.damping_ratio_std);
+  const f = (m: T): string => frequency(m.frequency_hz, m.frequency_std_hz);
+  const zeta = ({ damping_ratio: ratio, damping_ratio_std: std, damping_ratio_interval_90: ends }: T): string =>
+    ends ? `${percent(ratio)} (${percent(ends[0])} to ${percent(ends[1])})` : percent(ratio, std);
   const columns: Column<T>[] = [
     { title: "Mode", show: (m) => <a href={`${url}?mode=${m.label}`}>{words(m.label)}</a> },
     { title: "Frequency", unit: "Hz, 90 %", numeric: true, show: f },

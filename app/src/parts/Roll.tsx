@@ -7,7 +7,7 @@ import { csvFrom, stamp } from "./plot/series";
 
 const KEPT_S = 240;
 const LANE_PX = [22, 56] as const;
-const NAMES_PX = 92;
+const NAMES_PX = 122;
 
 type Piece = { from: number; step: number; values: readonly (number | null)[] };
 
@@ -15,6 +15,7 @@ type Piece = { from: number; step: number; values: readonly (number | null)[] };
 export class Roll {
   readonly channels = new Map<string, Piece[]>();
   streams = false;
+  units: Record<string, string> = {};
   private zero = 0;
   private started = performance.now();
 
@@ -48,8 +49,8 @@ export class Roll {
   }
 }
 
-type Ink = CanvasRenderingContext2D;
-type Sheet = { ink: Ink; now: number; span: number; left: number; right: number; ratio: number; quiet: string };
+type Numbers = Record<"now" | "span" | "left" | "right" | "ratio", number>;
+type Sheet = Numbers & { ink: CanvasRenderingContext2D; quiet: string; units: Roll["units"] };
 interface Lane {
   name: string;
   paint: string;
@@ -77,7 +78,7 @@ function draw(on: Sheet, pieces: Piece[], lane: Lane, top: number, height: numbe
     ink.clearRect(0, top, left, height);
     ink.fillStyle = on.quiet;
     ink.fillText(lane.name.slice(0, 13), 0, top + height / 2 + 4 * ratio);
-    const said = minus(`${least.toPrecision(2)} to ${most.toPrecision(2)}`);
+    const said = minus(`${least.toPrecision(2)} to ${most.toPrecision(2)} ${on.units[lane.name] ?? ""}`);
     if (height > 40 * ratio && least < most) ink.fillText(said, 0, top + height / 2 + 18 * ratio);
   }
   const x = (t: number): number => right - ((right - left) * (now - t)) / span;
@@ -143,7 +144,7 @@ export function Lanes({ roll, span }: { roll: Roll; span: number }) {
         ink.drawImage(sheet, -moved, 0);
         ink.restore();
       }
-      const on = { ink, now: column * step, span, left, right: width, ratio, quiet };
+      const on = { ink, now: column * step, span, left, right: width, ratio, quiet, units: roll.units };
       lanes.forEach((lane, k) => draw(on, roll.channels.get(lane.name) ?? [], lane, k * each, each));
       sheet.dataset["frames"] = String(++count);
       frame = requestAnimationFrame(next);

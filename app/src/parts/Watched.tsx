@@ -2,7 +2,7 @@
 import { useMemo, useState } from "preact/hooks";
 import { useAsset } from "../api/answer";
 import type { Schemas } from "../api/client";
-import { quantity, words, Z90 } from "../words/numbers";
+import { NORMAL_90, quantity, words } from "../words/numbers";
 import { seconds } from "../words/time";
 import { Card, Pick, Slide } from "./Bits";
 import { modeColour } from "./modes";
@@ -32,8 +32,8 @@ export function restPlot(watch: Watch, index: number, marks: Mark[], planted?: P
       kind: "band",
       x,
       y: [],
-      low: scaled(q?.rest_std, -Z90 * scale),
-      high: scaled(q?.rest_std, Z90 * scale),
+      low: scaled(q?.rest_std, -NORMAL_90 * scale),
+      high: scaled(q?.rest_std, NORMAL_90 * scale),
     },
     { name: "as it was", colour: modeColour(q?.label ?? ""), kind: "points", x, y: rest },
   ];

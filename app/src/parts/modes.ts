@@ -1,6 +1,6 @@
 // How modes look: the colour by kind, as in the report, and their plots through time.
 import type { Alarm, Mode, Schemas } from "../api/client";
-import { words, Z90 } from "../words/numbers";
+import { NORMAL_90, words } from "../words/numbers";
 import { day, seconds } from "../words/time";
 import type { Mark, PlotData } from "./plot/series";
 
@@ -9,7 +9,6 @@ export const PAINTS = ["blue", "vermillion", "green", "purple", "orange", "sky",
 export const paintOf = (k: number): string => PAINTS[k % PAINTS.length] ?? "blue";
 export type Bins = Schemas["ModeBinsOut"];
 
-const Z95 = 1.96;
 const KINDS: Record<string, string> = {
   fore_aft: "blue",
   side_side: "vermillion",
@@ -41,9 +40,9 @@ export function modePlot(label: string, modes: readonly Mode[], what: string, ma
   const damping = what === "damping";
   const value = (m: Mode): number | null => (damping ? m.damping_ratio && 100 * m.damping_ratio : m.frequency_hz);
   const end = (m: Mode, i: 0 | 1): number | null => {
-    const [zeta, at95] = [m.damping_ratio, m.damping_ratio_interval_95?.[i]];
-    if (damping) return zeta && at95 ? 100 * zeta * (at95 / zeta) ** (Z90 / Z95) : null;
-    return m.frequency_std_hz === null ? null : m.frequency_hz + (i ? Z90 : -Z90) * m.frequency_std_hz;
+    const known = m.damping_ratio_interval_90?.[i];
+    if (damping) return known === undefined ? null : 100 * known;
+    return m.frequency_std_hz === null ? null : m.frequency_hz + (i ? NORMAL_90 : -NORMAL_90) * m.frequency_std_hz;
   };
   return {
     title: words(label),

@@ -22,16 +22,17 @@ export function fixed(value: Number_, decimals: number): string {
   return minus(value.toLocaleString("en", how));
 }
 
+/** Every interval holds 90 %: of a normal scatter so many standard deviations to each side, and so says ±. */
+export const NORMAL_90 = 1.6448536269514722;
 function withStd(value: Number_, std: Number_, scale: number, decimals: number): string {
   if (!known(value)) return UNKNOWN;
   if (!known(std)) return fixed(scale * value, decimals);
-  // a small deviation has one digit at least
-  const digits = std > 0 ? Math.max(decimals, Math.min(Math.ceil(-Math.log10(scale * std)), 9)) : decimals;
-  return `${fixed(scale * value, digits)} ± ${fixed(scale * std, digits)}`;
+  const half = NORMAL_90 * scale * std;
+  // a small one has one digit at least
+  const digits = half > 0 ? Math.max(decimals, Math.min(Math.ceil(-Math.log10(half)), 9)) : decimals;
+  return `${fixed(scale * value, digits)} ± ${fixed(half, digits)}`;
 }
 
-/** Every interval of the window holds 90 %: of a normal scatter so many standard deviations to each side. */
-export const Z90 = 1.645;
 /** Hertz with four decimals. */
 export const frequency = (value: Number_, std?: Number_): string => withStd(value, std, 1, 4);
 /** A ratio in per cent, without the sign. */
@@ -98,6 +99,6 @@ export const years = (value: number | null): string =>
 export const sentence = (text: string): string =>
   text
     .replace(/\b(fore_aft|side_side|torsion|heave)_\d+\b/g, words)
-    .replace(/(\d)%/g, "$1 %")
+    .replace(/(\d) ?%/g, "$1\u00a0%")
     .replace(/([ (])-(?=\d)/g, "$1−")
     .replace(/^[a-z]/, (first) => first.toUpperCase());

@@ -17,13 +17,12 @@ import numpy as np
 from scipy.stats import chi2
 
 from jackettwin.arrays import FloatArray
+from jackettwin.intervals import NORMAL_90
 
 _CHANCE = 0.01
 """Probability below which the remainder of two changes is more than their uncertainty."""
 _AGAINST = -0.7
 """Largest cosine of two changes that take back each other, in standard deviations."""
-Z90 = 1.645
-"""Half of the 90 % intervals in alarm documents, in standard deviations."""
 
 
 def taken_back(alarms: Sequence[Mapping[str, Any]]) -> tuple[int | None, ...]:
@@ -62,4 +61,4 @@ def _sizes(alarm: Mapping[str, Any], names: Sequence[str]) -> tuple[FloatArray, 
     rows = np.array([[one["size"], *one["interval_90"]] for one in sized])
     turned = np.array([one["unit"] == "deg" for one in sized])
     size, low, high = np.where(turned[:, None], rows, np.log1p(np.where(turned[:, None], 0.0, rows))).T
-    return size, (high - low) / (2.0 * Z90)
+    return size, (high - low) / (2.0 * NORMAL_90)

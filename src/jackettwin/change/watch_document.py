@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from jackettwin.change.reversals import Z90, taken_back
+from jackettwin.change.reversals import taken_back
 from jackettwin.change.smallest_changes import smallest_documents
 from jackettwin.change.table_monitoring import Alarm, MonitoredTable
+from jackettwin.intervals import NORMAL_90
 from jackettwin.watching import CLEAR, CauseVerdict, Diagnosis, Watch
 
 _NAMED, _LIKELY = 3, 0.001
@@ -179,7 +180,7 @@ def _unit(change: str, kind: str) -> str:
 
 
 def _sized(size: float, std: float, unit: str) -> dict[str, Any]:
-    ends = np.array([size - Z90 * std, size, size + Z90 * std])
+    ends = np.array([size - NORMAL_90 * std, size, size + NORMAL_90 * std])
     low, mid, high = map(float, np.degrees(ends) if unit == "deg" else np.expm1(ends))
     return {"size": mid, "interval_90": [low, high], "unit": unit}
 

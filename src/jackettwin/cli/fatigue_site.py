@@ -15,6 +15,7 @@ from jackettwin.cli.console import Reply, answers, messages, progress, say
 from jackettwin.cli.weld_options import edition_option, joint_options
 from jackettwin.cli.weld_tables import POINT, SHOWN, SIDE, show_welds
 from jackettwin.files import atomic_path
+from jackettwin.intervals import QUANTILES
 from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
@@ -108,9 +109,7 @@ def _known(read: Site, fresh: bool) -> tuple[TwinConfig, Update, System] | None:
 
 def _weld(site: Site, life: SiteLife, one: SiteWeld) -> dict[str, Any]:
     w, total = one.one, sum(one.variances.values())
-    low, mid, high = (
-        left if np.isfinite(left := one.remaining.quantile(p)) else None for p in (0.05, 0.5, 0.95)
-    )
+    low, mid, high = (left if np.isfinite(left := one.remaining.quantile(p)) else None for p in QUANTILES)
     by_state: dict[str, float] = {}
     for own, share in zip(site.bins, one.by_bin, strict=True):
         by_state[own.state] = by_state.get(own.state, 0.0) + float(share)

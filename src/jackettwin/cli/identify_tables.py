@@ -23,8 +23,8 @@ def show_one(document: Mapping[str, Any]) -> None:
     if "methods" in document:
         _print_methods(document)
     for pole in document["real_poles"]:
-        low, high = pole["rate_interval_95"]
-        say(f"real pole: −{pole['rate_rad_s']:.3g} 1/s ({low:.3g} to {high:.3g} in 95 %)")
+        low, high = pole["rate_interval_90"]
+        say(f"real pole: −{pole['rate_rad_s']:.3g} 1/s ({low:.3g} to {high:.3g} in 90 %)")
     if "real_pole_limits" in document:
         _print_limits(document["real_pole_limits"], bool(document["real_poles"]))
     _print_rejected(document["rejected"])
@@ -82,11 +82,11 @@ def _print_limits(limits: Mapping[str, Any], found: bool) -> None:
     say(f"{nothing}no statement on rates beyond the band, {band}; inside, with 95 % power:")
     name, rms = max(limits["rms"].items(), key=lambda pair: pair[1])
     for one in limits["limits"]:
-        share, (least, most) = one["rms_share"], one["interval_95"]
+        share, (least, most) = one["rms_share"], one["interval_90"]
         said = (
             "at no amplitude up to 8 times the record's rms"
             if share is None
-            else f"from {share:.2g} times the record's rms ({least:.2g} to {most:.2g}), "
+            else f"from {share:.2g} times the record's rms ({least:.2g} to {most:.2g} in 90 %), "
             f"{share * rms:.2g} in {name}"
         )
         say(f"  a relaxation at {one['rate_rad_s']:.3g} 1/s is found {said}, by {one['trials']} trials")
@@ -157,14 +157,14 @@ def _print_fused(title: str, modes: Sequence[Mapping[str, Any]], n_records: int)
 
 
 def _frequency_interval(m: Mapping[str, Any]) -> str:
-    """Return the 95 % interval of f."""
-    interval = m["frequency_interval_95"]
+    """Return the 90 % interval of f."""
+    interval = m["frequency_interval_90"]
     return "–" if interval is None else f"{interval[0]:.4f} – {interval[1]:.4f}"
 
 
 def _damping_interval(m: Mapping[str, Any]) -> str:
-    """Return the 95 % interval of ζ, or its upper limit."""
-    interval, most = m["damping_ratio_interval_95"], m.get("damping_ratio_at_most")
+    """Return the 90 % interval of ζ, or its upper limit."""
+    interval, most = m["damping_ratio_interval_90"], m.get("damping_ratio_at_most")
     if interval is None:
         return "–" if most is None else f"at most {100 * most:.2f}"
     return f"{100 * interval[0]:.2f} – {100 * interval[1]:.2f}"
@@ -172,9 +172,9 @@ def _damping_interval(m: Mapping[str, Any]) -> str:
 
 _NUMBERS = (
     TableColumn("f [Hz]", "frequency_hz", ".4f"),
-    TableColumn("95 % of f [Hz]", _frequency_interval),
+    TableColumn("90 % of f [Hz]", _frequency_interval),
     TableColumn("ζ [%]", "damping_ratio", ".2f", 100.0),
-    TableColumn("95 % of ζ [%]", _damping_interval),
+    TableColumn("90 % of ζ [%]", _damping_interval),
 )
 
 

@@ -10,6 +10,7 @@ import click
 import yaml
 
 from jackettwin.cli.console import Reply, answers, output, say, show_table, working
+from jackettwin.intervals import NORMAL_90
 from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
@@ -57,10 +58,10 @@ def _show(stages: Sequence[RefinementStage], document: Mapping[str, Any], block:
 
 
 def _change(factor: Factor, entry: Mapping[str, Any]) -> str:
-    """Return the change of a property, with its standard deviation if it has a tolerance and is no bound."""
+    """Return the change of a property, with half its 90 % interval if it has a tolerance and is no bound."""
     value, std = entry["factors"][factor.name], entry["std"][factor.name]
     known = std is not None and factor.tolerance is not None and factor.name not in entry["at_bound"]
-    about = f" ± {float(f'{std:.2g}'):g}" if known else ""
+    about = f" ± {float(f'{NORMAL_90 * std:.2g}'):g} (90 %)" if known else ""
     done = f"× {value:.4f}" if factor.is_factor else f"{value:+.6g}"
     return f"{factor.name} {done}{about}"
 

@@ -94,7 +94,7 @@ def _operating_notes(levels: Mapping[str, OperatingLevel]) -> list[str]:
     return [
         f"{side}_1 has ζ {100 * level.damping_ratio:.2f} % here, with rigid blades in a frozen wake, and "
         f"{100 * level.expected_damping_ratio:.2f} % with bending blades and a wake that lags (`operation`): "
-        f"its level is about {level.ratio:.2f} times as large ({low:.2f} to {high:.2f})"
+        f"its level is about {level.ratio:.2f} times as large ({low:.2f} to {high:.2f} in 90 %)"
         for side, level in levels.items()
         for low, high in (level.ratio_interval_90,)
     ]

@@ -12,6 +12,7 @@ import numpy as np
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import Reply, answers, numbers_of, output, progress, say, say_all, show_table
 from jackettwin.errors import InputError, require
+from jackettwin.intervals import NORMAL_90, QUANTILES
 from jackettwin.report import Table, cell, words
 
 if TYPE_CHECKING:
@@ -190,7 +191,7 @@ def _relaxations(result: TwinResult, u: Update) -> list[str]:
     """Return a line for each measured real pole with the model's nearest."""
     lines = []
     for r, rate in zip(result.relaxations, u.best.rates, strict=True):
-        spread = "" if r.rate_std_rad_s is None else f" ± {r.rate_std_rad_s:.2g}"
+        spread = "" if r.rate_std_rad_s is None else f" ± {NORMAL_90 * r.rate_std_rad_s:.2g} (90 %)"
         lines.append(
             f"real pole {r.name}: measured {r.rate_rad_s:.3g}{spread} 1/s, the model's {rate:.3g} 1/s"
         )
@@ -204,10 +205,10 @@ def _leg_scatter(u: Update) -> list[str]:
     found = () if u.uncertainty is None else leg_scatter(u.problem.prior, u.uncertainty.log_theta)
     lines = []
     for s in found:
-        low, middle, high = np.quantile(s.draws, [0.05, 0.5, 0.95])
+        low, middle, high = np.quantile(s.draws, QUANTILES)
         lines.append(
             f"{s.name} has a standard deviation of {middle:.2g} of its logarithm between the legs ({low:.2g} "
-            f"… {high:.2g}; prior {s.before[0]:.2g} … {s.before[1]:.2g})"
+            f"… {high:.2g} in 90 %; prior {s.before[0]:.2g} … {s.before[1]:.2g})"
         )
     return lines
 
@@ -227,15 +228,23 @@ def _modes(measured: tuple[MeasuredMode, ...], u: Update) -> Table:
         for m, f, f0, zeta in zip(*columns, strict=True)
     ]
     known = "best fit" if u.uncertainty is None else "median"
-    heads = ("mode", "", "measured f [Hz]", f"{known} f [Hz]", "undamped, best fit", "measured ζ [%]", known)
+    heads = (
+        "mode",
+        "",
+        "measured f, 90 % [Hz]",
+        f"{known} f [Hz]",
+        "undamped, best fit",
+        "measured ζ, 90 % [%]",
+        known,
+    )
     return Table("", heads, rows)
 
 
 def _measured(value: float | None, std: float | None, scale: float, decimals: int, fitted: bool) -> str:
-    """Return value ± standard deviation, in brackets if it was not fitted."""
+    """Return value ± half the 90 % interval, in brackets if it was not fitted."""
     if value is None:
         return "–"
-    text = " ± ".join(f"{scale * v:.{decimals}f}" for v in (value, std) if v is not None)
+    text = " ± ".join(f"{scale * v:.{decimals}f}" for v in (value, std and NORMAL_90 * std) if v is not None)
     return text if fitted else f"({text})"
 
 

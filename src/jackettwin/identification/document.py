@@ -40,7 +40,7 @@ def identification_document(
             {
                 "rate_rad_s": pole.rate_rad_s,
                 "rate_std_rad_s": pole.rate_std_rad_s,
-                "rate_interval_95": pole.rate_interval_95,
+                "rate_interval_90": pole.rate_interval_90,
                 "time_constant_s": pole.time_constant_s,
                 "order_share": pole.order_share,
                 "mode_shape": shape_document(pole.mode_shape, names),
@@ -102,7 +102,7 @@ def limits_document(found: ReleaseRelaxations | AmbientLimits) -> dict[str, Any]
 
 def mode_document(m: ModalEstimate, channels: Sequence[str] | None) -> dict[str, Any]:
     """Return one identified mode; shapes are [real, imaginary] per channel, omitted without channels."""
-    known, interval = m.status != ModeStatus.DAMPING_UNKNOWN, m.damping_ratio_interval_95
+    known, interval = m.status != ModeStatus.DAMPING_UNKNOWN, m.damping_ratio_interval_90
     bound = (None, None) if m.cramer_rao_log_std is None else map(float, m.cramer_rao_log_std)
     frequency_bound, damping_bound = bound
     document: dict[str, Any] = {
@@ -110,8 +110,8 @@ def mode_document(m: ModalEstimate, channels: Sequence[str] | None) -> dict[str,
         "frequency_std_hz": m.frequency_std_hz,
         "damping_ratio": m.damping_ratio if known else None,
         "damping_ratio_std": m.damping_ratio_std if known else None,
-        "frequency_interval_95": m.frequency_interval_95,
-        "damping_ratio_interval_95": interval if known else None,
+        "frequency_interval_90": m.frequency_interval_90,
+        "damping_ratio_interval_90": interval if known else None,
         "damping_ratio_at_most": None if known or interval is None else interval[1],
         "mpc": m.mpc,
         "method": m.method,

@@ -27,7 +27,7 @@ class ModalEstimate:
         1 at the largest entry, in the units of the channels. If their kinds differ, e.g.
         velocities beside accelerations, the entries are the implied accelerations.
     frequency_std_hz, damping_ratio_std : float or None
-    frequency_interval_95, damping_ratio_interval_95 : (low, high) or None
+    frequency_interval_90, damping_ratio_interval_90 : (low, high) or None
         Computed on the logarithms of frequency and damping.
     damping_ratio_cov_limit : float
         Smallest coefficient of variation of the damping on this record: 1/√(2πζfT) (Au 2014).
@@ -67,8 +67,8 @@ class ModalEstimate:
     reasons: tuple[Finding, ...] = ()
     frequency_std_hz: float | None = None
     damping_ratio_std: float | None = None
-    frequency_interval_95: tuple[float, float] | None = None
-    damping_ratio_interval_95: tuple[float, float] | None = None
+    frequency_interval_90: tuple[float, float] | None = None
+    damping_ratio_interval_90: tuple[float, float] | None = None
     log_covariance: FloatArray | None = None
     mode_shape_std: FloatArray | None = None
     damping_ratio_cov_limit: float | None = None
@@ -96,7 +96,7 @@ class RealPole:
     rate_rad_s : float
         a = −λ [1/s]; a / 2π lies inside the band of the identification.
     rate_std_rad_s : float
-    rate_interval_95 : (low, high)
+    rate_interval_90 : (low, high)
         Computed on the logarithm of the rate.
     mode_shape : (n_channels,) complex
         In the units of the channels, 1 at the largest entry.
@@ -106,7 +106,7 @@ class RealPole:
 
     rate_rad_s: float
     rate_std_rad_s: float
-    rate_interval_95: tuple[float, float]
+    rate_interval_90: tuple[float, float]
     mode_shape: ComplexArray
     order_share: float
 

@@ -21,6 +21,7 @@ from jackettwin.identification.decays.relaxations import POWER
 from jackettwin.identification.pole_methods import relaxations
 from jackettwin.identification.preparation.components import components
 from jackettwin.identification.preparation.prepared_record import prepare
+from jackettwin.intervals import NORMAL_90
 from jackettwin.progress import SILENT, Progress
 
 if TYPE_CHECKING:
@@ -52,14 +53,14 @@ class AmbientLimit:
     rms_share : float
         The rms, in multiples of the record's in the band, at which 95 % are found; infinite if it exceeds
         ``STRONGEST``.
-    interval_95 : (low, high)
+    interval_90 : (low, high)
         Of ``rms_share``, for the number of trials.
     found, trials : int
     """
 
     rate_rad_s: float
     rms_share: float
-    interval_95: tuple[float, float]
+    interval_90: tuple[float, float]
     found: int
     trials: int
 
@@ -166,7 +167,7 @@ def _limit(
     by = np.array([1.0, -logit / slope])  # derivatives of x95 with respect to middle and ln slope
     std = float(np.sqrt(by @ covariance @ by))
     beyond = x95 > high
-    interval = (float(np.exp(x95 - 1.96 * std)), float(np.exp(x95 + 1.96 * std)))
+    interval = (float(np.exp(x95 - NORMAL_90 * std)), float(np.exp(x95 + NORMAL_90 * std)))
     return AmbientLimit(rate, float("inf") if beyond else float(np.exp(x95)), interval, sum(seen), trials)
 
 

@@ -25,7 +25,7 @@ from jackettwin.identification import (
     Spectrum,
     Stabilisation,
 )
-from jackettwin.intervals import log_interval_95
+from jackettwin.intervals import log_interval_90
 from jackettwin.records import Channel
 from jackettwin.response import build_system, undamped_modes
 from jackettwin.soil import Spring, Support
@@ -97,7 +97,7 @@ def story(config: TwinConfig, model: TwinModel, until: date = UNTIL, seed: int =
             modes[label] = ModalEstimate(
                 f, zeta, np.ones(1, complex), 1.0, 0.0, 1.0, frequency_std_hz=f * std[0],
                 damping_ratio_std=zeta * std[1], log_covariance=np.diag(std**2),
-                damping_ratio_interval_95=log_interval_95(zeta, std[1]),
+                damping_ratio_interval_90=log_interval_90(zeta, std[1]),
             )  # fmt: skip
         if day not in _STOP:
             yield _observation(model, day, until - timedelta(days=DAYS - day), weather, modes)

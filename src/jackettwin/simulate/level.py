@@ -13,10 +13,11 @@ from typing import NamedTuple
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.intervals import NORMAL_90
 from jackettwin.loads import OPERATING_LOG_STD, operating_point
 from jackettwin.simulate.motion.model import asset_model
 from jackettwin.simulate.motion.motion import Motion
-from jackettwin.simulate.operating_modes import Z90, modes_with_rotor
+from jackettwin.simulate.operating_modes import modes_with_rotor
 from jackettwin.simulate.scenario.air import GRID_M
 from jackettwin.simulate.scenario.scenario import Instrument, Scenario
 from jackettwin.simulate.sensing import readings
@@ -145,7 +146,7 @@ def operating_levels(scenario: Scenario, damping: Mapping[str, float]) -> dict[s
         here, other = damping.get(f"{side}_1"), expected.get(f"{side}_1")
         if here is None or other is None or min(here, other.damping_ratio) <= 0.0:
             continue
-        ratio, wide = sqrt(other.damping_ratio / here), exp(0.5 * Z90 * OPERATING_LOG_STD[side])
+        ratio, wide = sqrt(other.damping_ratio / here), exp(0.5 * NORMAL_90 * OPERATING_LOG_STD[side])
         found[side] = OperatingLevel(here, other.damping_ratio, ratio, (ratio / wide, ratio * wide))
     return found
 

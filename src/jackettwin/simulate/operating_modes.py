@@ -10,6 +10,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.caveats import Omission
+from jackettwin.intervals import NORMAL_90
 from jackettwin.loads import (
     OPERATING_LEAST_RATIO,
     OPERATING_LOG_STD,
@@ -33,8 +34,6 @@ _FIRST = {"fore_aft": "fore_aft_1", "side_side": "side_side_1"}
 _BELOW_HZ = 1.5
 _ROUNDS = 3
 """After which a first mode's pole and the blades' answer at it agree within 1e-3 of its damping."""
-Z90 = 1.645
-"""Half of a 90 % interval, in standard deviations."""
 _LOADS = ("x_n", "y_n", "z_n", "x_nm", "y_nm", "z_nm")
 LEFT_OUT = tuple(
     Omission(what)
@@ -157,7 +156,7 @@ def _side_row(modes: tuple[TrueMode, ...], side: str) -> dict[str, Any] | None:
     if mode is None:
         return None
     part = mode.damping_by_source["rotor"]
-    width = exp(Z90 * OPERATING_LOG_STD[side])
+    width = exp(NORMAL_90 * OPERATING_LOG_STD[side])
     return {
         "frequency_hz": mode.frequency_hz,
         "damping_ratio": mode.damping_ratio,

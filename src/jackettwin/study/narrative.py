@@ -52,7 +52,8 @@ def tolerance_assumptions(
 
 def _size(std: float, unit: str) -> str:
     """Return one standard deviation in words."""
-    return f"±{100.0 * std:.3g} %" if unit == "-" else f"±{std:.3g} {unit}"
+    size = f"{100.0 * std:.3g} %" if unit == "-" else f"{std:.3g} {unit}"
+    return f"{size} (σ)"
 
 
 def modelling_assumptions(

@@ -10,6 +10,7 @@ from typing import Any
 from jackettwin.files import StoredSchema
 from jackettwin.findings import Finding
 from jackettwin.identification import Identification, ModalEstimate
+from jackettwin.intervals import NORMAL_90, NORMAL_95
 from jackettwin.response import Sensor
 from jackettwin.twin.life.sensed_damage import SensedDamage
 from jackettwin.updating import Counterpart
@@ -143,5 +144,33 @@ def _findings_have_codes(document: dict[str, Any]) -> dict[str, Any]:
     return {**document, "quality": quality, "findings": kept}
 
 
-OBSERVATION = StoredSchema("observation", Observation, (_findings_have_codes,))
+_INTERVALS = (
+    ("frequency_hz", "frequency_interval"),
+    ("damping_ratio", "damping_ratio_interval"),
+    ("rate_rad_s", "rate_interval"),
+)
+"""Values of modes and real poles, and their intervals without the level."""
+
+
+def _intervals_of_90(document: dict[str, Any]) -> dict[str, Any]:
+    """Return version 3, whose intervals are of 90 %; those of 95 % are narrowed on the logarithm."""
+
+    def narrowed(one: dict[str, Any]) -> dict[str, Any]:
+        new = dict(one)
+        for value, interval in _INTERVALS:
+            if (ends := new.pop(f"{interval}_95", None)) is not None:
+                middle = one[value]
+                new[f"{interval}_90"] = [middle * (e / middle) ** (NORMAL_90 / NORMAL_95) for e in ends]
+        if new.get("unrefined"):
+            new["unrefined"] = narrowed(new["unrefined"])
+        return new
+
+    found = dict(document["identification"])
+    for kind in ("modes", "real_poles"):
+        if kind in found:
+            found[kind] = [narrowed(one) for one in found[kind]]
+    return {**document, "identification": found}
+
+
+OBSERVATION = StoredSchema("observation", Observation, (_findings_have_codes, _intervals_of_90))
 """Format of stored observations."""

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.intervals import QUANTILES
 from jackettwin.response import NumberedModes, Points, damping_ratio
 from jackettwin.soil import law_stiffness
 from jackettwin.updating.model import SupportModel
@@ -68,7 +69,7 @@ def _interval_90(draws: FloatArray) -> FloatArray:
     """Return the central 90 % interval over the first axis, NaN for modes that no draw has."""
     known = ~np.isnan(draws).all(axis=(0, 2))
     interval = np.full((*draws.shape[1:], 2), np.nan)
-    interval[known] = np.moveaxis(np.nanquantile(draws[:, known], [0.05, 0.95], axis=0), 0, -1)
+    interval[known] = np.moveaxis(np.nanquantile(draws[:, known], QUANTILES[::2], axis=0), 0, -1)
     return interval
 
 

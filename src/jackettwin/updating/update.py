@@ -11,7 +11,7 @@ from scipy.special import logsumexp
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import NumericalError
-from jackettwin.intervals import interval_90
+from jackettwin.intervals import QUANTILES, interval_90
 from jackettwin.processes import on_one_blas_thread
 from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.budget import Budget, damping_budget
@@ -76,7 +76,7 @@ class Uncertainty:
     @property
     def interval_90(self) -> FloatArray:
         """Central 90 % interval of every θ, (d, 2)."""
-        return np.asarray(np.exp(np.quantile(self.log_theta, [0.05, 0.95], axis=0)).T)
+        return np.asarray(np.exp(np.quantile(self.log_theta, QUANTILES[::2], axis=0)).T)
 
 
 @dataclass(frozen=True)

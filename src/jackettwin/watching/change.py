@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray
+from jackettwin.intervals import QUANTILES
 from jackettwin.watching.block import BROAD, Block, model_of_change
 from jackettwin.watching.directions import log_ramps
 from jackettwin.watching.scatter import STRONGER
@@ -100,7 +101,7 @@ def change_of(watch: Watch, worth: FloatArray, log_r: float, begun_by: float = n
 
 def _quantiles(by_begin: FloatArray) -> tuple[int, ...]:
     cumulative = np.cumsum(by_begin) / by_begin.sum()
-    return tuple(int(np.searchsorted(cumulative, p).clip(0, by_begin.size - 1)) for p in (0.05, 0.5, 0.95))
+    return tuple(int(np.searchsorted(cumulative, p).clip(0, by_begin.size - 1)) for p in QUANTILES)
 
 
 def _gradual(watch: Watch, kind: str, direction: str, by_begin: FloatArray) -> FloatArray:

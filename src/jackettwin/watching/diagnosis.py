@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.intervals import QUANTILES
 from jackettwin.watching.causes import SOMETHING_ELSE, Cause
 from jackettwin.watching.change import Change
 from jackettwin.watching.directions import SIZES
@@ -120,7 +121,7 @@ def _judge(
     order = np.argsort(cause.sizes)
     share = np.cumsum(np.exp(by_size[order] - total))
     low, mid, high = (
-        cause.sizes[order][np.searchsorted(share, p).clip(0, share.size - 1)] for p in (0.05, 0.5, 0.95)
+        cause.sizes[order][np.searchsorted(share, p).clip(0, share.size - 1)] for p in QUANTILES
     )
     return total, float(mid), (float(low), float(high))
 

@@ -18,6 +18,7 @@ from itertools import product
 import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
+from jackettwin.intervals import QUANTILES
 from jackettwin.watching.level_kernels import (
     BEFORE,
     LEVEL,
@@ -156,7 +157,7 @@ class Hypotheses:
         return Jump(
             float(w.sum()),
             _three(_steps(self.jumped[chosen], w)),
-            _three(mixture_quantiles(w / w.sum(), size, std, (0.05, 0.5, 0.95))),
+            _three(mixture_quantiles(w / w.sum(), size, std, QUANTILES)),
         )
 
 
@@ -167,7 +168,7 @@ def _three(x: FloatArray) -> tuple[float, float, float]:
 def _steps(x: FloatArray, w: FloatArray) -> FloatArray:
     order = np.argsort(x)
     total = np.cumsum(w[order]) / w.sum()
-    return np.asarray(x[order][np.minimum(np.searchsorted(total, [0.05, 0.5, 0.95]), x.size - 1)])
+    return np.asarray(x[order][np.minimum(np.searchsorted(total, QUANTILES), x.size - 1)])
 
 
 def _root(x: FloatArray) -> FloatArray:
@@ -179,8 +180,8 @@ def mixture_quantiles(
 ) -> FloatArray:
     """Return quantiles of a mixture of normal distributions, by bisection.
 
-    >>> mixture_quantiles(np.ones(1), np.zeros(1), np.ones(1), (0.05, 0.975)).round(3)
-    array([-1.645,  1.96 ])
+    >>> mixture_quantiles(np.ones(1), np.zeros(1), np.ones(1), (0.05, 0.9)).round(2)
+    array([-1.64,  1.28])
     """
     from scipy.special import ndtr
 

@@ -51,14 +51,14 @@ def test_a_rotor_stop_is_a_decay(seed: int) -> None:
     assert {mode.method for mode in found.modes} == {"decay"}
     first = found.modes[0]
     assert first.status == "ok"
-    assert first.frequency_interval_95 is not None
-    assert first.damping_ratio_interval_95 is not None
-    # 99 % intervals: eight of 95 % would fail once in three runs of other seeds
+    assert first.frequency_interval_90 is not None
+    assert first.damping_ratio_interval_90 is not None
+    # 99 % intervals: eight of 90 % would fail in half of the runs of other seeds
     for value, (low, high), truth in (
-        (first.frequency_hz, first.frequency_interval_95, F[0]),
-        (first.damping_ratio, first.damping_ratio_interval_95, ZETA[0]),
+        (first.frequency_hz, first.frequency_interval_90, F[0]),
+        (first.damping_ratio, first.damping_ratio_interval_90, ZETA[0]),
     ):
-        assert (low / value) ** 1.32 < truth / value < (high / value) ** 1.32
+        assert (low / value) ** 1.57 < truth / value < (high / value) ** 1.57
     assert mac(first.mode_shape, SHAPES[0].astype(complex)) > 0.99
     # nothing that is not of the structure is called ok
     for mode in found.modes:

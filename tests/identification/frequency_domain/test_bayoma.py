@@ -142,7 +142,7 @@ def test_the_transfer_function_at_resonance() -> None:
 def test_as_a_method_it_states_intervals(tower: ModalSystem, rng: np.random.Generator) -> None:
     record = simulate(tower, rng, duration_s=1200.0, sample_rate_hz=10.0)
     found = identify(record, IdentificationSettings(method="bayoma"))
-    assert all(mode.method == "bayoma" and mode.damping_ratio_interval_95 for mode in found.modes)
+    assert all(mode.method == "bayoma" and mode.damping_ratio_interval_90 for mode in found.modes)
     for f in (1.20, 1.26):
         near = min(found.modes, key=lambda mode: abs(mode.frequency_hz - f))
         assert abs(np.log(near.frequency_hz / f)) < 4.0 * near.frequency_std_hz / f
@@ -162,7 +162,7 @@ def test_the_first_pair_of_a_record_without_noise_is_found(name: str, pair_hz: t
     found = identify(record, settings).modes
     assert len(found) == 2
     for mode, f in zip(found, pair_hz, strict=True):
-        low, high = mode.frequency_interval_95 or (0.0, 0.0)
+        low, high = mode.frequency_interval_90 or (0.0, 0.0)
         assert low < f < high
         assert high / low < 1.1
 

@@ -56,7 +56,7 @@ def test_pieces_of_a_light_mode_are_fused_without_bias():
     system = ModalSystem(np.array([0.3, 1.1]), np.array([ratio, 0.01]), shapes, np.eye(2))
     found = [identify(simulate(system, np.random.default_rng([3, k]), sample_rate_hz=6.0)) for k in range(8)]
     mode = min(fuse(found).modes, key=lambda m: abs(m.frequency_hz - 0.3))
-    low, high = mode.damping_ratio_interval_95
+    low, high = mode.damping_ratio_interval_90
     assert low < ratio < high
     assert abs(np.log(mode.damping_ratio / ratio)) < 3.0 * mode.damping_ratio_std / mode.damping_ratio
     # eight records tell it to about 1/√(8 · 2πζfT) = 0.24

@@ -84,14 +84,14 @@ def test_joint_likelihood_of_pieces_is_unbiased_and_holds_the_truth(bandwidth):
     x, at = lines_of(z, f)
     each = np.array([damping_log_likelihood(one, f, at, T) for one in x]).reshape(sets, pieces, -1)
     found = np.array([likelihood_interval(one) for one in each.sum(axis=1)]) - np.log(ratio)
-    # of forty intervals of 95 %, fewer than 34 hold the truth once in seventy; that they are not too wide
-    # is tested below
+    # of forty intervals of 90 %, fewer than 29 hold the truth once in 2,600 (of 300 sets of another seed, 91
+    # and 89 % do); that they are not too wide is tested below
     held = np.sum((found[:, 1] < 0.0) & (found[:, 2] > 0.0))
-    assert held >= 34
+    assert held >= 29
     # three standard errors of the mean of ln ζ
     assert abs(found[:, 0].mean()) < 3.0 * found[:, 0].std() / np.sqrt(sets)
-    # and the interval is as wide as the scatter: 3.92 standard deviations of a normal one
-    assert np.mean(found[:, 2] - found[:, 1]) / found[:, 0].std() == pytest.approx(3.92, rel=0.35)
+    # and the interval is as wide as the scatter: 3.29 standard deviations of a normal one
+    assert np.mean(found[:, 2] - found[:, 1]) / found[:, 0].std() == pytest.approx(3.29, rel=0.35)
 
 
 def test_a_line_gives_no_lower_limit(rng):
@@ -99,6 +99,6 @@ def test_a_line_gives_no_lower_limit(rng):
     n = np.arange(1200) / 2.0
     z = np.exp(2j * np.pi * 0.3 * n)[None] + 0.05 * rng.standard_normal((1, 1200))
     x, at = lines_of(z, 0.3)
-    _, low, high = likelihood_interval(damping_log_likelihood(x[0], 0.3, at, T))
+    _, low, high, _ = likelihood_interval(damping_log_likelihood(x[0], 0.3, at, T))
     assert low == pytest.approx(LOG_ZETA[0])
     assert np.exp(high) < 2.0 / (0.3 * T)

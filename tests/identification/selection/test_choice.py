@@ -22,7 +22,7 @@ def test_refined_modes_state_both_estimates_and_the_bound(tower, rng):
         assert mode.cramer_rao_log_std is not None
         assert mode.cramer_rao_log_std[1] == pytest.approx(mode.damping_ratio_cov_limit, rel=0.5)
         assert mode.mode_shape.imag == pytest.approx(0.0)
-        low, high = mode.damping_ratio_interval_95
+        low, high = mode.damping_ratio_interval_90
         assert low < mode.damping_ratio < high
 
 

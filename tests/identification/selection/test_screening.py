@@ -65,7 +65,7 @@ def test_a_mode_whose_damping_is_hardly_known_to_ssi_is_found(seed):
     found = identify(parked(seed, 0.0))
     for f in FREQUENCY_HZ[2:]:
         mode = min(found.modes, key=lambda m: abs(m.frequency_hz - f))
-        low, high = mode.frequency_interval_95
+        low, high = mode.frequency_interval_90
         # two of six frequencies may miss their interval with a probability of 3 %: a margin of a half
         assert low / 1.005 < f < high * 1.005
         assert mode.status in ("ok", "damping unknown")
@@ -192,7 +192,7 @@ def test_a_known_frequency_is_kept_where_the_damping_is_not_known(clear):
     assert (judged.status, [r.code for r in judged.reasons]) == ("damping unknown", ["damping_unknown"])
     assert worth_keeping(unsure, [], known)
     assert with_unknown_damping(unsure).status == "damping unknown"
-    assert with_unknown_damping(unsure).frequency_interval_95 == mode.frequency_interval_95
+    assert with_unknown_damping(unsure).frequency_interval_90 == mode.frequency_interval_90
     # neither where the frequency is not known, nor what is known already, nor what has no peak
     assert not worth_keeping(replace(unsure, frequency_std_hz=0.05), [], known)
     assert not worth_keeping(unsure, [mode], known)

@@ -42,7 +42,7 @@ def found() -> Identification:
 
 def test_a_relaxation_is_found_with_its_interval(found: Identification) -> None:
     (pole,) = found.real_poles
-    assert pole.rate_interval_95[0] < RATE_RAD_S < pole.rate_interval_95[1]
+    assert pole.rate_interval_90[0] < RATE_RAD_S < pole.rate_interval_90[1]
     assert pole.time_constant_s == pytest.approx(1.0 / pole.rate_rad_s)
     assert mac(pole.mode_shape, SHAPE) > 0.99
     # never better than a first-order process observed alone
@@ -93,5 +93,5 @@ def test_the_variance_is_that_of_the_logarithm() -> None:
 def test_files_keep_them(found: Identification) -> None:
     (back,) = decode(Identification, encode(found)).real_poles
     (pole,) = found.real_poles
-    assert back.rate_interval_95 == pole.rate_interval_95
+    assert back.rate_interval_90 == pole.rate_interval_90
     assert_allclose(back.mode_shape, pole.mode_shape)

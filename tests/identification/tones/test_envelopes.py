@@ -48,7 +48,7 @@ def test_a_tone_as_strong_as_the_channel_is_not_a_mode(tower, rng, ratio):
             assert nearest.damping_ratio == pytest.approx(mode.damping_ratio, rel=0.05)
             continue
         assert "tone" in nearest.status_reason
-        low, high = nearest.damping_ratio_interval_95
+        low, high = nearest.damping_ratio_interval_90
         assert low < tower.damping_ratio[np.argmin(np.abs(tower.frequency_hz - mode.frequency_hz))] < high
 
 
@@ -125,7 +125,7 @@ def test_a_tone_within_a_mode_flags_it_and_is_no_mode(rng, amplitude, half_bandw
     assert "tone" in first.status_reason
     assert second.status == "ok"
     for mode, truth in zip((first, second), zeta, strict=True):
-        low, high = mode.damping_ratio_interval_95
+        low, high = mode.damping_ratio_interval_90
         assert low < truth < high
     assert first.damping_ratio_std > 1.8 * first.damping_ratio_cov_limit * first.damping_ratio
 

@@ -31,6 +31,7 @@ import scipy  # scipy.optimize and scipy.special are loaded where they are used
 from numpy import fft
 
 from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.intervals import NORMAL_90, QUANTILES
 from jackettwin.signals import next_fast_len
 
 REWEIGHTINGS = 2
@@ -128,7 +129,7 @@ def damped_cosines(
         background = noise / sigma[:, None] - _decays_at(p, fit.amplitudes, later)
     variance, freedom = _score_variance(_jacobian(fit), background)
     # a variance from few lines of noise is itself uncertain: intervals follow Student's t distribution
-    wider = scipy.special.stdtrit(freedom, 0.975) / scipy.special.ndtri(0.975)
+    wider = scipy.special.stdtrit(freedom, QUANTILES[-1]) / NORMAL_90
     covariance = bound @ variance @ bound * np.outer(wider, wider)
     about = white - white.mean(axis=1, keepdims=True)
     return DampedCosines(

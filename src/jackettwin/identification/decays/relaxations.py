@@ -35,7 +35,7 @@ from jackettwin.identification.decays.modes_of_decay import modes_of_decay
 from jackettwin.identification.estimate import RealPole
 from jackettwin.identification.mode_shapes import aligned, normalised
 from jackettwin.identification.preparation.resolve import usable_channels
-from jackettwin.intervals import log_interval_95
+from jackettwin.intervals import NORMAL_90, QUANTILES, log_interval_90
 from jackettwin.records import decimate
 from jackettwin.records.processing.filters import bridge
 from jackettwin.signals import next_fast_len
@@ -303,10 +303,10 @@ def _pole(
     weight = amplitude / sigma**2
     information = float(slope @ slope * np.sum(amplitude * weight))
     std, freedom = _in_noise(slope, np.sum(weight[:, None] * residual, axis=0)[None])
-    wider = float(scipy.special.stdtrit(freedom[0], 0.975) / scipy.special.ndtri(0.975))
+    wider = float(scipy.special.stdtrit(freedom[0], QUANTILES[-1]) / NORMAL_90)
     log_std, a = wider * float(std[0]) / information, float(np.exp(found.x))
     shape = normalised(aligned(amplitude.astype(complex)))
-    return RealPole(a, a * log_std, log_interval_95(a, log_std), shape, 1.0), amplitude
+    return RealPole(a, a * log_std, log_interval_90(a, log_std), shape, 1.0), amplitude
 
 
 def _left(

@@ -23,7 +23,7 @@ from jackettwin.identification.preparation.prepared_record import prepare
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.preparation.whitening import as_measured
 from jackettwin.identification.settings import IdentificationSettings
-from jackettwin.intervals import NORMAL_95
+from jackettwin.intervals import log_interval_90
 from jackettwin.records import spectral_matrix
 
 if TYPE_CHECKING:
@@ -123,15 +123,11 @@ def _estimates(found: BandPosterior, scale: FloatArray, duration_s: float) -> li
                 method="bayoma",
                 frequency_std_hz=float(f * std[0]),
                 damping_ratio_std=float(zeta * std[1]),
-                frequency_interval_95=_interval(float(f), float(std[0])),
-                damping_ratio_interval_95=_interval(float(zeta), float(std[1])),
+                frequency_interval_90=log_interval_90(float(f), float(std[0])),
+                damping_ratio_interval_90=log_interval_90(float(zeta), float(std[1])),
                 log_covariance=found.log_covariance[i],
                 mode_shape_std=found.shape_std[:, i] * scale / np.abs(measured).max(),
                 damping_ratio_cov_limit=float(1.0 / np.sqrt(2.0 * np.pi * zeta * f * duration_s)),
             )
         )
     return out
-
-
-def _interval(value: float, log_std: float) -> tuple[float, float]:
-    return value * float(np.exp(-NORMAL_95 * log_std)), value * float(np.exp(NORMAL_95 * log_std))

@@ -13,9 +13,9 @@ class Step:
 
     n_records: int
     frequency_hz: float
-    frequency_interval_95: tuple[float, float]
+    frequency_interval_90: tuple[float, float]
     damping_ratio: float
-    damping_ratio_interval_95: tuple[float, float]
+    damping_ratio_interval_90: tuple[float, float]
 
 
 def convergence(mode: FusedMode) -> tuple[Step, ...]:
@@ -27,9 +27,9 @@ def convergence(mode: FusedMode) -> tuple[Step, ...]:
             Step(
                 n,
                 mean.frequency_hz,
-                mean.frequency_interval_95,
+                mean.frequency_interval_90,
                 mean.damping_ratio,
-                mean.damping_ratio_interval_95,
+                mean.damping_ratio_interval_90,
             )
         )
     return tuple(steps)

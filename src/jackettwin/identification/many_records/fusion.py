@@ -29,7 +29,7 @@ from jackettwin.identification.many_records.rotor_orders import objections
 from jackettwin.identification.many_records.setups import WEAK_CONNECTION, tie
 from jackettwin.identification.many_records.tracking import Track, TrackedModes, follow
 from jackettwin.identification.status import ModeStatus, sentence, worse
-from jackettwin.intervals import log_interval_95
+from jackettwin.intervals import log_interval_90
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable, Sequence
@@ -56,7 +56,7 @@ class Average:
         Standard deviation between records in excess of their own uncertainty.
     correlation : float
         Correlation of ln f and ln ζ of the mean; scatter between records counts as uncorrelated.
-    damping_ratio_likelihood_95 : (low, high) or None
+    damping_ratio_likelihood_90 : (low, high) or None
         Interval of ζ if it is estimated from the likelihoods of the records.
     """
 
@@ -64,7 +64,7 @@ class Average:
     damping_ratio: float
     log_std: tuple[float, float]
     scatter: tuple[float, float]
-    damping_ratio_likelihood_95: tuple[float, float] | None = None
+    damping_ratio_likelihood_90: tuple[float, float] | None = None
     correlation: float = 0.0
 
     @property
@@ -74,14 +74,14 @@ class Average:
         return np.asarray(np.outer(std, std) * np.array([[1.0, self.correlation], [self.correlation, 1.0]]))
 
     @property
-    def frequency_interval_95(self) -> tuple[float, float]:
+    def frequency_interval_90(self) -> tuple[float, float]:
         """On the logarithm of f."""
-        return log_interval_95(self.frequency_hz, self.log_std[0])
+        return log_interval_90(self.frequency_hz, self.log_std[0])
 
     @property
-    def damping_ratio_interval_95(self) -> tuple[float, float]:
+    def damping_ratio_interval_90(self) -> tuple[float, float]:
         """By likelihood ratio if the records' likelihoods are known, otherwise on the logarithm of ζ."""
-        return self.damping_ratio_likelihood_95 or log_interval_95(self.damping_ratio, self.log_std[1])
+        return self.damping_ratio_likelihood_90 or log_interval_90(self.damping_ratio, self.log_std[1])
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ class FusedMode:
     frequency_hz, damping_ratio : float
     frequency_std_hz, damping_ratio_std : float
         Of the mean.
-    frequency_interval_95, damping_ratio_interval_95 : (low, high)
+    frequency_interval_90, damping_ratio_interval_90 : (low, high)
     log_covariance : (2, 2)
         Of (ln f, ln ζ).
     mode_shape : (n_channels,) complex
@@ -111,8 +111,8 @@ class FusedMode:
     damping_ratio: float
     frequency_std_hz: float
     damping_ratio_std: float
-    frequency_interval_95: tuple[float, float]
-    damping_ratio_interval_95: tuple[float, float]
+    frequency_interval_90: tuple[float, float]
+    damping_ratio_interval_90: tuple[float, float]
     log_covariance: FloatArray
     mode_shape: ComplexArray
     scatter_frequency: float
@@ -238,7 +238,7 @@ def average(seen: Sightings) -> Average:
             damping_ratio=joint.damping_ratio,
             log_std=(float(np.sqrt(variance_f)), joint.log_std),
             scatter=(float(np.sqrt(between_f)), joint.scatter),
-            damping_ratio_likelihood_95=joint.interval_95,
+            damping_ratio_likelihood_90=joint.interval_90,
         )
     return Average(
         frequency_hz=float(np.exp(mean_f)),
@@ -264,8 +264,8 @@ def _fused_mode(track: Track, seen: Sightings, keys: Iterable[Hashable], followe
         damping_ratio=zeta,
         frequency_std_hz=float(f * mean.log_std[0]),
         damping_ratio_std=float(zeta * mean.log_std[1]),
-        frequency_interval_95=mean.frequency_interval_95,
-        damping_ratio_interval_95=mean.damping_ratio_interval_95,
+        frequency_interval_90=mean.frequency_interval_90,
+        damping_ratio_interval_90=mean.damping_ratio_interval_90,
         log_covariance=mean.log_covariance,
         mode_shape=track.shape(keys, len(followed.channels)),
         scatter_frequency=mean.scatter[0],

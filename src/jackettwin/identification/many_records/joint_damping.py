@@ -19,7 +19,6 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.identification.maximum_likelihood.line_likelihood import LOG_ZETA, likelihood_interval
 from jackettwin.identification.status import ModeStatus
-from jackettwin.intervals import NORMAL_95
 
 if TYPE_CHECKING:
     from jackettwin.identification.many_records.sightings import Sightings
@@ -36,7 +35,7 @@ class JointDamping:
     """Damping ratio common to many records; ``scatter`` is τ."""
 
     damping_ratio: float
-    interval_95: tuple[float, float]
+    interval_90: tuple[float, float]
     log_std: float
     scatter: float
 
@@ -55,12 +54,12 @@ def joint_damping(seen: Sightings) -> JointDamping | None:
         [seen.damping_log_likelihood[has], -0.5 * away**2 / seen.log_covariance[normal, 1, 1][:, None]]
     )
     together = np.array([each.sum(axis=0), *(_scattered(each, tau) for tau in SCATTERS)])
-    middle, low, high = likelihood_interval(together.max(axis=0))
+    middle, low, high, std = likelihood_interval(together.max(axis=0))
     most = int(np.argmax(together.max(axis=1)))
     return JointDamping(
         damping_ratio=float(np.exp(middle)),
-        interval_95=(float(np.exp(low)), float(np.exp(high))),
-        log_std=(high - low) / (2.0 * NORMAL_95),
+        interval_90=(float(np.exp(low)), float(np.exp(high))),
+        log_std=std,
         scatter=(0.0, *SCATTERS)[most],
     )
 

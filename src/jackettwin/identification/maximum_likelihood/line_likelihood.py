@@ -23,6 +23,7 @@ from __future__ import annotations
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.intervals import NORMAL_90, NORMAL_95
 
 LOG_ZETA = np.round(np.arange(np.log(1e-4), np.log(0.2), 0.2), 6)
 """Nodes of ln ζ at which likelihoods are stored; a spacing of 0.2 suffices for records up to 2πζfT = 25."""
@@ -135,12 +136,12 @@ def damping_log_likelihood(
 
 FINE = 20
 """Points per interval of nodes at which a likelihood is interpolated."""
-HALF_CHI_SQUARE_95 = 1.9207
-"""Half the 95 % point of χ² with one degree of freedom."""
 
 
-def likelihood_interval(log_likelihood: FloatArray) -> tuple[float, float, float]:
-    """Return the median of ln ζ and the ends of its 95 % interval, by likelihood ratio.
+def likelihood_interval(log_likelihood: FloatArray) -> tuple[float, float, float, float]:
+    """Return of ln ζ the median, the ends of the 90 % interval by likelihood ratio, and a standard deviation.
+
+    The standard deviation is that of a normal likelihood with the same interval of 95 %.
 
     Parameters
     ----------
@@ -151,19 +152,27 @@ def likelihood_interval(log_likelihood: FloatArray) -> tuple[float, float, float
     --------
     >>> found = likelihood_interval(-0.5 * ((LOG_ZETA + 5.0) / 0.3) ** 2)
     >>> [round(x, 2) for x in found]
-    [-5.0, -5.59, -4.41]
+    [-5.0, -5.49, -4.51, 0.3]
     """
     log_zeta, values = between_nodes(log_likelihood)
     values = values - values.max()
     weight = np.exp(values)
     middle = float(np.interp(0.5 * weight.sum(), np.cumsum(weight) - 0.5 * weight, log_zeta))
-    inside = np.flatnonzero(values > -HALF_CHI_SQUARE_95)
-    ends = [float(log_zeta[inside[0]]), float(log_zeta[inside[-1]])]
+    low, high = _where_above(log_zeta, values, -0.5 * NORMAL_90**2)
+    far_low, far_high = _where_above(log_zeta, values, -0.5 * NORMAL_95**2)
+    middle = min(max(middle, far_low), far_high)
+    return middle, min(low, middle), max(high, middle), (far_high - far_low) / (2.0 * NORMAL_95)
+
+
+def _where_above(x: FloatArray, values: FloatArray, level: float) -> list[float]:
+    """Return the first and last place at which values on a grid exceed a level, between its points."""
+    inside = np.flatnonzero(values > level)
+    ends = [float(x[inside[0]]), float(x[inside[-1]])]
     for k, (inner, outer) in enumerate(((inside[0], inside[0] - 1), (inside[-1], inside[-1] + 1))):
         if 0 <= outer < len(values):
-            share = (values[inner] + HALF_CHI_SQUARE_95) / (values[inner] - values[outer])
-            ends[k] += float(share * (log_zeta[outer] - log_zeta[inner]))
-    return min(max(middle, ends[0]), ends[1]), ends[0], ends[1]
+            share = (values[inner] - level) / (values[inner] - values[outer])
+            ends[k] += float(share * (x[outer] - x[inner]))
+    return ends
 
 
 def between_nodes(values: FloatArray) -> tuple[FloatArray, FloatArray]:

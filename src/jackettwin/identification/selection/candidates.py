@@ -17,7 +17,7 @@ from jackettwin.identification.tones.drifting_tones import tones_at
 from jackettwin.identification.tones.envelopes import is_steady_tone
 from jackettwin.identification.tones.sinusoid import transform
 from jackettwin.identification.tones.steady_tones import without_tones
-from jackettwin.intervals import log_interval_95
+from jackettwin.intervals import log_interval_90
 from jackettwin.records import less_phase
 
 if TYPE_CHECKING:
@@ -212,8 +212,8 @@ def with_covariance(mode: ModalEstimate, covariance: FloatArray) -> ModalEstimat
         log_covariance=covariance,
         frequency_std_hz=float(mode.frequency_hz * std_f),
         damping_ratio_std=float(mode.damping_ratio * std_zeta),
-        frequency_interval_95=log_interval_95(mode.frequency_hz, std_f),
-        damping_ratio_interval_95=log_interval_95(mode.damping_ratio, std_zeta),
+        frequency_interval_90=log_interval_90(mode.frequency_hz, std_f),
+        damping_ratio_interval_90=log_interval_90(mode.damping_ratio, std_zeta),
     )
 
 

@@ -21,7 +21,6 @@ from jackettwin.identification.maximum_likelihood.line_likelihood import (
 from jackettwin.identification.selection.neighbours import apart
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.sinusoid import transform
-from jackettwin.intervals import NORMAL_95
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -121,14 +120,14 @@ def _with(mode: ModalEstimate, log_likelihood: FloatArray, duration_s: float) ->
     if 2.0 * np.pi * mode.damping_ratio * mode.frequency_hz * duration_s > MAX_REPLACED:
         return mode
     assert mode.log_covariance is not None
-    middle, low, high = likelihood_interval(log_likelihood)
-    zeta, std = float(np.exp(middle)), (high - low) / (2.0 * NORMAL_95)
+    middle, low, high, std = likelihood_interval(log_likelihood)
+    zeta = float(np.exp(middle))
     ratio = np.array([1.0, std / np.sqrt(mode.log_covariance[1, 1])])
     mode = replace(
         mode,
         damping_ratio=zeta,
         damping_ratio_std=zeta * std,
-        damping_ratio_interval_95=(float(np.exp(low)), float(np.exp(high))),
+        damping_ratio_interval_90=(float(np.exp(low)), float(np.exp(high))),
         damping_ratio_cov_limit=float(1.0 / np.sqrt(2.0 * np.pi * zeta * mode.frequency_hz * duration_s)),
         log_covariance=mode.log_covariance * np.outer(ratio, ratio),
     )

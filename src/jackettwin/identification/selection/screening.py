@@ -21,6 +21,7 @@ the
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import exp
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -40,6 +41,7 @@ from jackettwin.identification.selection.peaks import clear_peaks_hz, contrast, 
 from jackettwin.identification.selection.second_look import SAME_SHAPE, SecondLook, second_look, seen_again
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.sinusoid import transform
+from jackettwin.intervals import NORMAL_95
 from jackettwin.records import channel_axes, comparable_channels
 
 if TYPE_CHECKING:
@@ -324,9 +326,9 @@ def _may_be_waves(mode: ModalEstimate, others: Sequence[ModalEstimate], known: E
 
 
 def _may_reach(mode: ModalEstimate, damping_ratio: float) -> bool:
-    """Tell whether the interval of a mode's damping contains a value."""
-    interval = mode.damping_ratio_interval_95
-    return interval is not None and interval[1] > damping_ratio
+    """Tell whether a mode's damping may reach a value: in one of 40 cases, by chance."""
+    std = mode.damping_ratio_std
+    return std is not None and mode.damping_ratio * exp(NORMAL_95 * std / mode.damping_ratio) > damping_ratio
 
 
 def _shape(mode: ModalEstimate, close: Sequence[ModalEstimate], known: Evidence) -> Iterator[Verdict]:

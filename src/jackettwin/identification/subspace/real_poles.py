@@ -17,7 +17,7 @@ from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 from jackettwin.identification.estimate import RealPole
 from jackettwin.identification.linkage import average_linkage
 from jackettwin.identification.mode_shapes import aligned, mac, normalised
-from jackettwin.intervals import log_interval_95
+from jackettwin.intervals import log_interval_90
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -114,7 +114,7 @@ def _relaxation(
     return RealPole(
         rate_rad_s=a,
         rate_std_rad_s=a * log_std,
-        rate_interval_95=log_interval_95(a, log_std),
+        rate_interval_90=log_interval_90(a, log_std),
         mode_shape=normalised(aligned(table.shape[k])),
         order_share=share,
     )

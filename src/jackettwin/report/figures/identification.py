@@ -11,9 +11,10 @@ from plotly.subplots import make_subplots
 
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.identification import Identification, ModalEstimate, Spectrum
+from jackettwin.intervals import log_interval_90
 from jackettwin.report.figures import style
 from jackettwin.report.tables import numbers
-from jackettwin.report.tables.numbers import log_interval_95, words
+from jackettwin.report.tables.numbers import words
 
 _STEP = 2.4
 """Distance of the bars above the poles, in model orders."""
@@ -91,7 +92,7 @@ def stabilisation_damping(found: Identification, names: Sequence[str]) -> go.Fig
 
 
 def _bar(figure: go.Figure, mode: ModalEstimate, y: float, look: style.Appearance) -> None:
-    """Draw the 95 % interval of a mode's damping as a bar."""
+    """Draw the 90 % interval of a mode's damping as a bar."""
     bounds = damping_interval(mode)
     if bounds is None:
         return
@@ -106,7 +107,7 @@ def _bar(figure: go.Figure, mode: ModalEstimate, y: float, look: style.Appearanc
             "size": [9, 7, 9],
             "line": {"width": 2, "color": look.colour},
         },
-        hovertemplate=f"ζ {numbers.interval(bounds, 100.0, 2)} %<extra>95 %</extra>",
+        hovertemplate=f"ζ {numbers.interval(bounds, 100.0, 2)} %<extra>90 %</extra>",
         showlegend=False,
     )
 
@@ -156,7 +157,7 @@ def damping_against_frequency(found: Identification, names: Sequence[str]) -> go
 
 
 def intervals(modes: Sequence[tuple[str, ModalEstimate]]) -> go.Figure:
-    """Draw each mode's frequency (relative to its value) and damping with 95 % intervals."""
+    """Draw each mode's frequency (relative to its value) and damping with 90 % intervals."""
     figure = make_subplots(rows=1, cols=2, horizontal_spacing=0.06, shared_yaxes=True)
     names = [
         f"{words(label) if label else 'not in the model'}, {mode.frequency_hz:.4f} Hz"
@@ -181,7 +182,7 @@ def intervals(modes: Sequence[tuple[str, ModalEstimate]]) -> go.Figure:
             col=1,
             showlegend=False,
             error_x=None if relative is None else _asymmetric(0.0, relative, 1.0),
-            hovertemplate=f"{numbers.interval(f, 1.0, 4)} Hz<extra>95 %</extra>",
+            hovertemplate=f"{numbers.interval(f, 1.0, 4)} Hz<extra>90 %</extra>",
         )
         figure.add_scatter(
             x=[100.0 * mode.damping_ratio],
@@ -192,7 +193,7 @@ def intervals(modes: Sequence[tuple[str, ModalEstimate]]) -> go.Figure:
             col=2,
             showlegend=False,
             error_x=None if zeta is None else _asymmetric(100.0 * mode.damping_ratio, zeta, 100.0),
-            hovertemplate=f"{numbers.interval(zeta, 100.0, 2)} %<extra>95 %</extra>",
+            hovertemplate=f"{numbers.interval(zeta, 100.0, 2)} %<extra>90 %</extra>",
         )
     figure.update_xaxes(title_text=style.title("frequency around its estimate", "%"), row=1, col=1)
     figure.update_xaxes(title_text=style.title("damping ratio", "%"), rangemode="tozero", row=1, col=2)
@@ -201,17 +202,17 @@ def intervals(modes: Sequence[tuple[str, ModalEstimate]]) -> go.Figure:
 
 
 def frequency_interval(mode: ModalEstimate) -> tuple[float, float] | None:
-    """Return the 95 % interval of the frequency [Hz], if any uncertainty is known."""
-    if mode.frequency_interval_95 is not None or mode.frequency_std_hz is None:
-        return mode.frequency_interval_95
-    return log_interval_95(mode.frequency_hz, mode.frequency_std_hz)
+    """Return the 90 % interval of the frequency [Hz], if any uncertainty is known."""
+    if mode.frequency_interval_90 is not None or mode.frequency_std_hz is None:
+        return mode.frequency_interval_90
+    return log_interval_90(mode.frequency_hz, mode.frequency_std_hz / mode.frequency_hz)
 
 
 def damping_interval(mode: ModalEstimate) -> tuple[float, float] | None:
-    """Return the 95 % interval of the damping ratio, if any uncertainty is known."""
-    if mode.damping_ratio_interval_95 is not None or mode.damping_ratio_std is None:
-        return mode.damping_ratio_interval_95
-    return log_interval_95(mode.damping_ratio, mode.damping_ratio_std)
+    """Return the 90 % interval of the damping ratio, if any uncertainty is known."""
+    if mode.damping_ratio_interval_90 is not None or mode.damping_ratio_std is None:
+        return mode.damping_ratio_interval_90
+    return log_interval_90(mode.damping_ratio, mode.damping_ratio_std / mode.damping_ratio)
 
 
 def _asymmetric(value: float, low_high: tuple[float, ...], scale: float) -> dict[str, object]:
@@ -278,12 +279,12 @@ def _lines(
     marks: Sequence[tuple[str, float, tuple[float, float] | None, ModalEstimate]],
     limits: tuple[float, float],
 ) -> None:
-    """Draw the accepted modes as lines behind the poles, their 95 % intervals as bands."""
+    """Draw the accepted modes as lines behind the poles, their 90 % intervals as bands."""
     texts = []
-    for label, x, interval_95, mode in marks:
+    for label, x, interval_90, mode in marks:
         look = style.mode_look(label)
-        if interval_95 is not None:
-            figure.add_vrect(*interval_95, fillcolor=look.colour, opacity=0.12, line_width=0, layer="below")
+        if interval_90 is not None:
+            figure.add_vrect(*interval_90, fillcolor=look.colour, opacity=0.12, line_width=0, layer="below")
         figure.add_vline(x=x, line={"color": look.colour, "width": 1.4, "dash": look.dash}, layer="below")
         texts.append((x, words(label) if label else f"{mode.frequency_hz:.3f} Hz", look.colour))
     style.label_lines(figure, texts, limits)

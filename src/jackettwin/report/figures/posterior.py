@@ -9,6 +9,7 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from jackettwin.arrays import FloatArray
+from jackettwin.intervals import NORMAL_90, QUANTILES
 from jackettwin.report.figures import style
 from jackettwin.soil import Parameter
 from jackettwin.updating import Uncertainty, Update
@@ -17,7 +18,7 @@ _BINS = 24
 _POINTS = 300
 _PRIOR_DRAWS = 20_000
 _LN10 = np.log(10.0)
-_DELTA_90 = 2.706
+_DELTA_90 = NORMAL_90**2
 """90 % point of χ² with one degree of freedom, which bounds a profile's interval."""
 
 
@@ -100,7 +101,7 @@ def _histogram(figure: go.Figure, z: FloatArray, prior: FloatArray, i: int, colo
         hoverinfo="skip",
         **cell,
     )
-    for q in np.quantile(z, [0.05, 0.95]):
+    for q in np.quantile(z, QUANTILES[::2]):
         figure.add_vline(x=q, line={"color": style.INK, "width": 1, "dash": "dot"}, **cell)
 
 

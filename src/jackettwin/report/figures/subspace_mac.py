@@ -80,7 +80,7 @@ def complexity(found: Identification, names: Sequence[str]) -> go.Figure:
 
 
 def interval_history(histories: Sequence[tuple[str, Sequence[Step]]]) -> go.Figure:
-    """Draw damping ratios with their 95 % intervals after 1, 2, 4, … records.
+    """Draw damping ratios with their 90 % intervals after 1, 2, 4, … records.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def interval_history(histories: Sequence[tuple[str, Sequence[Step]]]) -> go.Figu
         look = style.mode_look(label)
         n = [step.n_records for step in steps]
         zeta = np.array([100.0 * step.damping_ratio for step in steps])
-        bounds = 100.0 * np.array([step.damping_ratio_interval_95 for step in steps])
+        bounds = 100.0 * np.array([step.damping_ratio_interval_90 for step in steps])
         figure.add_scatter(
             x=n,
             y=zeta,

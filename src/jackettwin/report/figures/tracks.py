@@ -11,7 +11,7 @@ from plotly.subplots import make_subplots
 
 from jackettwin.arrays import FloatArray
 from jackettwin.identification import FusedMode
-from jackettwin.intervals import NORMAL_95
+from jackettwin.intervals import NORMAL_90, QUANTILES
 from jackettwin.report.figures import style
 from jackettwin.report.tables.numbers import words
 
@@ -32,7 +32,7 @@ class _Points:
 
 
 def tracks(modes: Sequence[tuple[str, FusedMode]], records: Sequence[str]) -> go.Figure:
-    """Draw f and ζ of every mode in every record with 95 % intervals; a band for all records together.
+    """Draw f and ζ of every mode in every record with 90 % intervals; a band for all records together.
 
     Parameters
     ----------
@@ -48,11 +48,11 @@ def tracks(modes: Sequence[tuple[str, FusedMode]], records: Sequence[str]) -> go
         std = np.sqrt(np.diagonal(seen.log_covariance, axis1=1, axis2=2))
         names = [records[r] for r in seen.record]
         sides = (
-            (seen.frequency_hz, std[:, 0], 1.0, mode.frequency_interval_95),
-            (seen.damping_ratio, std[:, 1], 100.0, mode.damping_ratio_interval_95),
+            (seen.frequency_hz, std[:, 0], 1.0, mode.frequency_interval_90),
+            (seen.damping_ratio, std[:, 1], 100.0, mode.damping_ratio_interval_90),
         )
         for col, (value, log_std, scale, (low, high)) in enumerate(sides, start=1):
-            reach = np.exp(NORMAL_95 * np.nan_to_num(log_std))
+            reach = np.exp(NORMAL_90 * np.nan_to_num(log_std))
             points = _Points(
                 np.asarray(seen.record + 1.0),
                 scale * value,
@@ -79,7 +79,7 @@ def _thinned(points: _Points) -> _Points:
     if len(points.x) <= MOST_POINTS:
         return points
     parts = np.array_split(np.arange(len(points.x)), MOST_POINTS // 2)
-    low, high = np.array([np.quantile(points.y[part], [0.05, 0.95]) for part in parts]).T
+    low, high = np.array([np.quantile(points.y[part], QUANTILES[::2]) for part in parts]).T
     x, y = (np.array([np.median(values[part]) for part in parts]) for values in (points.x, points.y))
     names = [f"{points.names[part[0]]} to {points.names[part[-1]]}" for part in parts]
     return _Points(x, y, low, high, names)

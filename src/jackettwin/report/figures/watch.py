@@ -10,11 +10,11 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from jackettwin.change import Alarm, MonitoredTable, alarm_document
+from jackettwin.intervals import NORMAL_90
 from jackettwin.report.figures import style
 from jackettwin.report.tables.numbers import words
 from jackettwin.watching import CLEAR
 
-_BAND = 1.645
 _CAUSE_WIDTH = 18
 """Letters per line of a cause's name at its alarm."""
 _SHOWN_IN = {"frequency": (100.0, "%"), "damping": (100.0, "%"), "angle": (180.0 / np.pi, "°")}
@@ -65,7 +65,7 @@ def _line(figure: go.Figure, watched: MonitoredTable, i: int, row: int) -> None:
     times = [watched.table.time(look.day) for look in watched.looks]
     scale = _SHOWN_IN[watched.watch.quantities[i][0]][0]
     rest = scale * np.array([look.rest[i] for look in watched.looks])
-    half = scale * _BAND * np.array([look.rest_std[i] for look in watched.looks])
+    half = scale * NORMAL_90 * np.array([look.rest_std[i] for look in watched.looks])
     seen = np.isfinite(rest) & np.isfinite(half)
     kept = [t for t, good in zip(times, seen, strict=True) if good]
     place = {"row": row, "col": 1, "showlegend": row == 1}
@@ -148,7 +148,7 @@ def change_pattern(watched: MonitoredTable, alarm: Alarm) -> go.Figure:
         scale, unit = (100.0, "%") if change.kind == "scatter" else _SHOWN_IN[kind]
         figure.add_scatter(
             x=[scale * change.size[i] for i in chosen], y=names,
-            error_x={"type": "data", "array": [scale * _BAND * change.size_std[i] for i in chosen]},
+            error_x={"type": "data", "array": [scale * NORMAL_90 * change.size_std[i] for i in chosen]},
             mode="markers", marker={"size": 10, "color": style.VERMILLION}, name="seen, 90 %",
             legendgroup="seen", **place,
         )  # fmt: skip

@@ -47,12 +47,12 @@ def _modes(fused: FusedIdentification) -> list[Block]:
         return [Text(("No mode was found in enough records.",))]
     named = [(f"mode_{i}", mode) for i, mode in enumerate(fused.modes, start=1)]
     followed = (
-        "Every mode in every record with 95 % intervals; shaded: all records together. Scatter beyond the "
+        "Every mode in every record with 90 % intervals; shaded: all records together. Scatter beyond the "
         "intervals is due to changes between records: wind, tide, temperature or operating state."
     )
     if len(fused.records) > MOST_POINTS:
         followed += " Dots are medians of neighbouring records, bars the range of nine in ten."
-    shrinking = "Damping ratios with 95 % intervals as records are fused, in their order."
+    shrinking = "Damping ratios with 90 % intervals as records are fused, in their order."
     histories = [(label, convergence(mode)) for label, mode in named if mode.uncertainty_known]
     return [
         _mode_table(named, len(fused.records)),
@@ -75,16 +75,16 @@ def _mode_table(named: list[tuple[str, FusedMode]], n_records: int) -> Table:
     columns = (
         "mode",
         "f [Hz]",
-        "95 % of f [Hz]",
+        "90 % of f [Hz]",
         "ζ [%]",
-        "95 % of ζ [%]",
+        "90 % of ζ [%]",
         "found in\n[% of records]",
         "scatter of f\n[%]",
         "scatter of ζ\n[%]",
         "status",
     )
     caption = (
-        "Modes fused over all records. ± is one standard deviation of the mean; scatter is the standard "
+        "Modes fused over all records. Scatter is the standard "
         "deviation between records in excess of their uncertainty. The mean is taken over the records in "
         "which the mode is ok, if there are any. The status is the median over all records that contain the "
         "mode, unless a check across records objects."
@@ -105,9 +105,9 @@ def _groups(groups: tuple[RecordGroup, ...]) -> Table:
         "state",
         "records",
         "f [Hz]",
-        "95 % of f [Hz]",
+        "90 % of f [Hz]",
         "ζ [%]",
-        "95 % of ζ [%]",
+        "90 % of ζ [%]",
         "status",
     )
     return Table(
@@ -131,10 +131,10 @@ def _numbers(mode: FusedMode) -> tuple[str, ...]:
     if not mode.uncertainty_known:
         return fixed(mode.frequency_hz, 4), UNKNOWN, fixed(100.0 * mode.damping_ratio, 2), UNKNOWN
     return (
-        frequency(mode.frequency_hz, mode.frequency_std_hz),
-        interval(mode.frequency_interval_95, 1.0, 4),
-        percent(mode.damping_ratio, mode.damping_ratio_std),
-        interval(mode.damping_ratio_interval_95, 100.0, 2),
+        frequency(mode.frequency_hz),
+        interval(mode.frequency_interval_90, 1.0, 4),
+        percent(mode.damping_ratio),
+        interval(mode.damping_ratio_interval_90, 100.0, 2),
     )
 
 

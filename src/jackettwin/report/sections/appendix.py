@@ -72,7 +72,7 @@ def tolerances(result: TwinResult) -> list[Block]:
         (
             one.tolerance.words,
             f"{one.tolerance.std:.3g} {'' if one.tolerance.unit == '-' else one.tolerance.unit}".strip(),
-            f"{one.mean * one.tolerance.std:+.2g} ± {one.std * one.tolerance.std:.2g}".replace("-", "−"),
+            f"{one.mean * one.tolerance.std:+.2g} (σ {one.std * one.tolerance.std:.2g})".replace("-", "−"),
             *(
                 f"{100.0 * np.expm1(e):+.2g} ({r:.2f})".replace("-", "−")
                 for e, r in zip(one.effect[:_SHOWN], one.settled[:_SHOWN], strict=True)
@@ -107,7 +107,7 @@ def _status(k: Uncertainty) -> str:
     return (
         f"posterior of {len(p.log_theta)} draws, R-hat at most {p.convergence.rhat.max():.3f}, "
         f"at least {min(p.convergence.ess_bulk.min(), p.convergence.ess_tail.min()):.0f} effective, "
-        f"log evidence {p.log_evidence:.2f} ± {p.log_evidence_std:.2f}"
+        f"log evidence {p.log_evidence:.2f} (standard deviation {p.log_evidence_std:.2f})"
         f"{'.' if p.evidence_known else ': its runs disagree, so that it is not used to compare laws.'}"
     )
 

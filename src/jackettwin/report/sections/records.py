@@ -60,7 +60,7 @@ def diagrams(found: Identification, names: tuple[str, ...]) -> list[Block]:
     modes = list(zip(names, found.modes, strict=True))
     caption = (
         f"{found.records[0]}: which poles are stable? Stabilisation diagram: poles of model orders "
-        f"{s.orders[0]} to {s.orders[-1]}; lines are the accepted modes, shaded bands their 95 % intervals "
+        f"{s.orders[0]} to {s.orders[-1]}; lines are the accepted modes, shaded bands their 90 % intervals "
         "where known."
     )
     blocks: list[Block] = [
@@ -73,7 +73,7 @@ def diagrams(found: Identification, names: tuple[str, ...]) -> list[Block]:
         Plot(
             "stabilisation_damping",
             "Is their damping stable? The same poles over their damping ratio; above them the accepted "
-            "modes with their 95 % intervals.",
+            "modes with their 90 % intervals.",
             figures_identification.stabilisation_damping(found, names),
         ),
         Plot(
@@ -83,7 +83,7 @@ def diagrams(found: Identification, names: tuple[str, ...]) -> list[Block]:
         ),
     ]
     if any(figures_identification.damping_interval(mode) for _, mode in modes):
-        caption = "How well is each mode known from this record? 95 % intervals."
+        caption = "How well is each mode known from this record? 90 % intervals."
         blocks.append(Plot("intervals", caption, figures_identification.intervals(modes)))
     if modes:
         blocks += _shape_figures(found, names)
@@ -118,5 +118,5 @@ def _history(result: TwinResult) -> list[Block]:
     histories = [(m.label, convergence(tracks[m.label])) for m in result.measured if m.label in tracks]
     if not histories:
         return []
-    caption = "Do more records help? Damping ratios with 95 % intervals as records are fused, in their order."
+    caption = "Do more records help? Damping ratios with 90 % intervals as records are fused, in their order."
     return [Plot("interval_history", caption, figures_subspace_mac.interval_history(histories))]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from jackettwin.intervals import NORMAL_95
+from jackettwin.intervals import NORMAL_90
 
 UNKNOWN = "–"
 _MINUS = str.maketrans("-", "−")
@@ -33,19 +33,19 @@ def fixed(value: float | None, decimals: int, *, sign: bool = False) -> str:
 
 
 def frequency(value: float | None, std: float | None = None) -> str:
-    """Return hertz with four decimals.
+    """Return hertz with four decimals, and with a standard deviation half the 90 % interval.
 
     >>> frequency(0.18192, 0.00081)
-    '0.1819 ± 0.0008'
+    '0.1819 ± 0.0013'
     """
     return _with_std(value, std, 1.0, 4)
 
 
 def percent(value: float | None, std: float | None = None, *, decimals: int = 2) -> str:
-    """Return a ratio in per cent, without the sign.
+    """Return a ratio in per cent, without the sign, and with a standard deviation half the 90 % interval.
 
     >>> percent(0.0127, 0.004)
-    '1.27 ± 0.40'
+    '1.27 ± 0.66'
     """
     return _with_std(value, std, 100.0, decimals)
 
@@ -66,9 +66,10 @@ def _with_std(value: float | None, std: float | None, scale: float, decimals: in
         return UNKNOWN
     if std is None or not math.isfinite(std):
         return fixed(scale * value, decimals)
-    if std > 0.0:  # a small deviation has one digit at least
-        decimals = max(decimals, min(math.ceil(-math.log10(scale * std)), 9))
-    return f"{fixed(scale * value, decimals)} ± {fixed(scale * std, decimals)}"
+    half = NORMAL_90 * scale * std
+    if half > 0.0:  # a small one has one digit at least
+        decimals = max(decimals, min(math.ceil(-math.log10(half)), 9))
+    return f"{fixed(scale * value, decimals)} ± {fixed(half, decimals)}"
 
 
 def interval(low_high: tuple[float, float] | None, scale: float, decimals: int) -> str:
@@ -91,12 +92,6 @@ def scientific(value: float | None, digits: int = 3) -> str:
     if -3 <= power <= digits:
         return f"{float(f'{mantissa}e{exponent}'):.{max(digits - 1 - power, 0)}f}".translate(_MINUS)
     return f"{mantissa.translate(_MINUS)} × 10{str(power).translate(_SUPERSCRIPT)}"
-
-
-def log_interval_95(value: float, std: float) -> tuple[float, float]:
-    """Return the 95 % interval of a positive number, symmetric in its logarithm."""
-    spread = math.exp(NORMAL_95 * std / value)
-    return value / spread, value * spread
 
 
 def words(label: str) -> str:

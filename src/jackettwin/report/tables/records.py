@@ -57,9 +57,7 @@ def method_table(compared: Comparison, names: Sequence[str]) -> Table:
     def said(mode: ModalEstimate | None) -> str:
         if mode is None:
             return UNKNOWN
-        known = mode.damping_ratio_std
-        spread = "" if known is None else f" ± {percent(known)}"
-        return f"{frequency(mode.frequency_hz)} / {percent(mode.damping_ratio)}{spread}"
+        return f"{frequency(mode.frequency_hz)} / {percent(mode.damping_ratio, mode.damping_ratio_std)}"
 
     rows = [
         (
@@ -71,7 +69,7 @@ def method_table(compared: Comparison, names: Sequence[str]) -> Table:
     ]
     caption = (
         f"f [Hz] / ζ [%] of {', '.join(compared.reference.records)} by every method in the same band, "
-        "without refinement. ±: standard deviation of ζ, if the method gives one. Dash: not found. EFDD "
+        "without refinement. ±: 90 % of ζ, if the method gives it. Dash: not found. EFDD "
         "finds one mode of a close pair and overestimates light damping."
     )
     caption += "".join(
@@ -93,13 +91,13 @@ def _method_title(method: str) -> str:
 
 
 def identified_table(found: Identification, names: Sequence[str], *, folded: bool = False) -> Table:
-    """Return the identified modes of a record with their 95 % intervals."""
+    """Return the identified modes of a record with their 90 % intervals."""
     rows = [
         (
             words(name) if name else "not in the model",
             m.status.value if m.status_reason is None else f"{m.status.value}: {m.status_reason}",
-            f"{frequency(m.frequency_hz, m.frequency_std_hz)}\n{interval(frequency_interval(m), 1.0, 4)}",
-            f"{percent(m.damping_ratio, m.damping_ratio_std)}\n{interval(damping_interval(m), 100.0, 2)}",
+            f"{frequency(m.frequency_hz)}\n{interval(frequency_interval(m), 1.0, 4)}",
+            f"{percent(m.damping_ratio)}\n{interval(damping_interval(m), 100.0, 2)}",
             "–" if m.unrefined is None else percent(m.unrefined.damping_ratio, m.unrefined.damping_ratio_std),
             _limits(m),
             fixed(m.mpc, 2),
@@ -111,19 +109,19 @@ def identified_table(found: Identification, names: Sequence[str], *, folded: boo
     columns = (
         "mode",
         "status",
-        "f [Hz]\n95 % interval",
-        "ζ [%]\n95 % interval",
+        "f [Hz]\n90 % interval",
+        "ζ [%]\n90 % interval",
         "ζ by SSI\n[%]",
-        "least ±\n[% of ζ]",
+        "least std\n[% of ζ]",
         "MPC\n[-]",
         "orders\n[%]",
         "method",
     )
-    caption = f"Modes identified in {', '.join(found.records)}. ± is one standard deviation."
+    caption = f"Modes identified in {', '.join(found.records)}. ± is half the 90 % interval."
     if not folded:
         caption += (
-            " Least ±: smallest attainable value for this length of record, by the long-data law √(1/2πζfT) "
-            "and by the Cramér-Rao bound of the fitted spectrum."
+            " Least std: smallest attainable standard deviation for this length of record, by the long-data "
+            "law √(1/2πζfT) and by the Cramér-Rao bound of the fitted spectrum."
         )
     return Table(caption, columns, tuple(rows), 2, folded=folded)
 

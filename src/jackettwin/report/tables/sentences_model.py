@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from math import degrees, expm1
 
 from jackettwin.answers import Answers, GroundAnswer
+from jackettwin.intervals import NORMAL_90
 from jackettwin.report.tables.numbers import listed, rounded_percent, words
 from jackettwin.soil import parameter_words
 from jackettwin.updating import DatumCheck, OrderCheck, ShapeCheck, Tolerance, UndetectedError
@@ -88,19 +89,20 @@ def _stray(check: DatumCheck, labels: Mapping[int, str]) -> str:
     if check.is_direction:
         return (
             f"the direction of the pair of {label} differs by {abs(degrees(check.miss)):.0f}° from that in "
-            f"the model (± {degrees(check.std):.0f}°)"
+            f"the model (90 %: ± {degrees(NORMAL_90 * check.std):.0f}°)"
         )
     what, side = "damping" if check.datum[0] == "ζ" else "frequency", "above" if check.miss > 0.0 else "below"
     return (
         f"the {what} of {label} is {100 * abs(check.miss):.2g} % {side} the value that the other modes imply "
-        f"(± {100 * check.std:.2g} %)"
+        f"(90 %: ± {100 * NORMAL_90 * check.std:.2g} %)"
     )
 
 
 def _shape(check: ShapeCheck, labels: Mapping[int, str]) -> str:
+    half = 100 * NORMAL_90 * check.std
     return (
         f"{100 * check.outside:.2g} % of {words(labels.get(check.mode, f'mode {check.mode}'))}'s shape lies "
-        f"outside the model's (expected {100 * check.expected:.2g} %, ± {100 * check.std:.2g} %)"
+        f"outside the model's (expected {100 * check.expected:.2g} %; 90 %: ± {half:.2g} %)"
     )
 
 
@@ -108,7 +110,7 @@ def _order(check: OrderCheck, labels: Mapping[int, str]) -> str:
     lower, upper = (words(labels.get(mode, f"mode {mode}")) for mode in (check.lower, check.upper))
     return (
         f"{lower} lies {100 * expm1(check.apart):.2g} % below {upper}, and in the model "
-        f"{100 * expm1(-check.predicted):.2g} % above it (± {100 * check.std:.2g} %)"
+        f"{100 * expm1(-check.predicted):.2g} % above it (90 %: ± {100 * NORMAL_90 * check.std:.2g} %)"
     )
 
 

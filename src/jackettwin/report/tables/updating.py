@@ -9,6 +9,7 @@ import numpy as np
 
 from jackettwin.answers import Answers, Span
 from jackettwin.arrays import FloatArray
+from jackettwin.intervals import NORMAL_90, QUANTILES
 from jackettwin.report.table import Table
 from jackettwin.report.tables.numbers import (
     UNKNOWN,
@@ -41,7 +42,7 @@ def key_table(result: TwinResult) -> Table:
         rows.append(tuple(row))
     caption = (
         "Does each law meet the modes? Medians of the posterior where there is one, else the best fit; in "
-        "brackets: not fitted; ± one standard deviation."
+        "brackets: not fitted; ± half the 90 % interval."
     )
     return Table(caption, tuple(columns), tuple(rows), text_columns=1)
 
@@ -111,7 +112,7 @@ def relaxation_table(result: TwinResult) -> Table:
         for u in result.updates:
             known = None if u.uncertainty is None else u.uncertainty.predictive.rates[r.name]
             span = UNKNOWN if known is None else " … ".join(f"{v:.3g}" for v in _interval(known))
-            spread = "" if r.rate_std_rad_s is None else f" ± {r.rate_std_rad_s:.2g}"
+            spread = "" if r.rate_std_rad_s is None else f" ± {NORMAL_90 * r.rate_std_rad_s:.2g}"
             rate = float(u.best.rates[i])
             rows.append(
                 (r.name, u.law, f"{r.rate_rad_s:.3g}{spread}", f"{rate:.3g}", span, f"{1.0 / rate:.3g}")
@@ -132,7 +133,7 @@ def relaxation_table(result: TwinResult) -> Table:
 
 
 def _interval(draws: FloatArray) -> tuple[float, float]:
-    low, high = np.nanquantile(draws, [0.05, 0.95])
+    low, high = np.nanquantile(draws, QUANTILES[::2])
     return float(low), float(high)
 
 

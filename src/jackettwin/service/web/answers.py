@@ -102,9 +102,9 @@ def _page(rows: list[Mapping[str, Any]], limit: int, made: Callable[[Mapping[str
 
 
 def _mode_out(row: Mapping[str, Any]) -> ModeOut:
-    low, high = row["damping_ratio_low_95"], row["damping_ratio_high_95"]
+    low, high = row["damping_ratio_low_90"], row["damping_ratio_high_90"]
     known = {name: row[name] for name in ModeOut.model_fields if name in row}
-    return ModeOut(**known, damping_ratio_interval_95=None if low is None or high is None else (low, high))
+    return ModeOut(**known, damping_ratio_interval_90=None if low is None or high is None else (low, high))
 
 
 def findings(

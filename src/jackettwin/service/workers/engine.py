@@ -180,7 +180,7 @@ def observed_as(
     """Return an observation as :func:`observed` does."""
     rows = []
     for mode, known in zip(seen.identification.modes, seen.recognised, strict=True):
-        low, high = mode.damping_ratio_interval_95 or (None, None)
+        low, high = mode.damping_ratio_interval_90 or (None, None)
         rows.append(
             {
                 "label": "" if known is None else known.label,
@@ -188,8 +188,8 @@ def observed_as(
                 "frequency_std_hz": mode.frequency_std_hz,
                 "damping_ratio": mode.damping_ratio,
                 "damping_ratio_std": mode.damping_ratio_std,
-                "damping_ratio_low_95": low,
-                "damping_ratio_high_95": high,
+                "damping_ratio_low_90": low,
+                "damping_ratio_high_90": high,
                 "status": str(mode.status)[:255],
             }
         )

@@ -173,6 +173,9 @@ def known(
         return {"status": NO_MODE if total else NOT_TO_UPDATE, "parameters": {}}, None
     every = (OBSERVATION.load(json.loads(document)) for document in newest)
     shown = tuple(one for one in every if not one.mismatched)
+    if twin.config.operation.updates is not None:  # others are followed, and not what the estimate rests on
+        used = max(seen.sums.n for seen in total.modes.values())
+        in_all = (used, in_all[1] * used / in_all[0])
     measured = Measured(shown, sums.state, in_all=in_all)
     laws = twin.config.update.laws[:1]
     config = replace(twin.config, operation=OperationRule())  # the days contain only records that may update

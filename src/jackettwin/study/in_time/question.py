@@ -13,6 +13,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.change import Days
 from jackettwin.errors import InputError
 from jackettwin.files import digest
+from jackettwin.intervals import QUANTILES
 from jackettwin.progress import SILENT, Progress
 from jackettwin.study.fit_data import recorded_modes, residuals
 from jackettwin.study.follow_result import STIFFNESS, DayEstimate, Followed, PooledEstimate
@@ -300,7 +301,7 @@ class FollowQuestion:
         log_theta, status = _draws_after(before, problem, self.config.update.seed), "ok"
         if log_theta is None:
             log_theta, status = _draws(self.config, problem, progress)
-        low, median, high = np.exp(np.quantile(log_theta, [0.05, 0.5, 0.95], axis=0))
+        low, median, high = np.exp(np.quantile(log_theta, QUANTILES, axis=0))
         stiff = [i for i, p in enumerate(problem.parameters) if p.unit == STIFFNESS]
         modes = tuple(
             sorted(

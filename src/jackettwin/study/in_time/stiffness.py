@@ -22,6 +22,7 @@ from scipy.special import ndtr
 
 from jackettwin.arrays import FloatArray
 from jackettwin.change import Columns, Days, history_of
+from jackettwin.intervals import QUANTILES
 from jackettwin.twin import TwinModel
 from jackettwin.updating import Problem
 from jackettwin.watching import (
@@ -183,7 +184,7 @@ def _quantiles(
     weights, mean, std : (c,), (t, c), (t, c)
     flatter, origin : (t, n), (n,)
     """
-    wanted, heaviest = np.array([0.05, 0.5, 0.95]), np.argsort(-weights)[:_HEAVY]
+    wanted, heaviest = np.array(QUANTILES), np.argsort(-weights)[:_HEAVY]
     out = np.empty((len(mean), 3))
     for t, (m, s, flat) in enumerate(zip(mean, std, flatter, strict=True)):
         at = [m[heaviest, None] + s[heaviest, None] * _FINE, m[:, None] + s[:, None] * _COARSE]

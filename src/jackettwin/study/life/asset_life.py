@@ -12,7 +12,7 @@ import numpy as np
 
 from jackettwin.fatigue import POSITIONS, SIDES, TUBE_POSITIONS, HotSpot, RemainingLife, TubeWeld
 from jackettwin.findings import Finding
-from jackettwin.intervals import NORMAL_90
+from jackettwin.intervals import NORMAL_90, QUANTILES
 from jackettwin.structure import Structure
 from jackettwin.study.life.life_so_far import LifeSoFar, damage_of_year
 from jackettwin.study.life.shares import BLOCK_DAYS, LAST
@@ -91,7 +91,7 @@ class AssetLife:
         )  # fmt: skip
         total, years = sum(one.variances.values()), self.time.seconds / (_DAYS_A_YEAR * 86400.0)
         median, spread = one.remaining.rate * years, exp(NORMAL_90 * sqrt(total))
-        low, mid, high = (one.remaining.quantile(p) for p in (0.05, 0.5, 0.95))
+        low, mid, high = (one.remaining.quantile(p) for p in QUANTILES)
         left_out = (self.time.n - sums.n) / self.time.n * self.time.beyond
         return _place(structure, weld) | {
             "side": one.side,

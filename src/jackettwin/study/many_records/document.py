@@ -74,7 +74,7 @@ def fused_mode_document(mode: FusedMode, channels: Sequence[str]) -> dict[str, A
     Where no record states its uncertainty, intervals and scatter are None.
     """
     numbers = {
-        **named(mode, *MODAL, "frequency_interval_95", "damping_ratio_interval_95"),
+        **named(mode, *MODAL, "frequency_interval_90", "damping_ratio_interval_90"),
         "relative_scatter_frequency": mode.scatter_frequency,
         "relative_scatter_damping_ratio": mode.scatter_damping_ratio,
     }

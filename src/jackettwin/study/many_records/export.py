@@ -26,8 +26,8 @@ NUMBERS = {
     "frequency_high_95_hz": "Hz",
     "damping_ratio": "1",
     "damping_ratio_std": "1",
-    "damping_ratio_low_95": "1",
-    "damping_ratio_high_95": "1",
+    "damping_ratio_low_90": "1",
+    "damping_ratio_high_90": "1",
 }
 """Columns of numbers and their units; unknown values are empty in CSV and NaN in NetCDF."""
 
@@ -76,12 +76,12 @@ def mode_rows(document: Mapping[str, Any]) -> Iterator[Row]:
 
 def _rows(name: str, modes: Sequence[Mapping[str, Any]]) -> Iterator[Row]:
     for number, mode in enumerate(modes, start=1):
-        f_low, f_high = mode["frequency_interval_95"] or (None, None)
-        low, high = mode["damping_ratio_interval_95"] or (None, None)
+        f_low, f_high = mode["frequency_interval_90"] or (None, None)
+        low, high = mode["damping_ratio_interval_90"] or (None, None)
         row: Row = {"set": name, "mode": number, "status": mode["status"]}
         row |= {key: mode.get(key) for key in NUMBERS}
         row |= {"frequency_low_95_hz": f_low, "frequency_high_95_hz": f_high}
-        row |= {"damping_ratio_low_95": low, "damping_ratio_high_95": high}
+        row |= {"damping_ratio_low_90": low, "damping_ratio_high_90": high}
         yield {**row, "mode_shape": mode["mode_shape"]}
 
 

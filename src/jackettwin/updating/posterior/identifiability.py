@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.intervals import NORMAL_90
+from jackettwin.intervals import NORMAL_90, QUANTILES
 from jackettwin.updating.data.misfit import Misfit
 from jackettwin.updating.problem import Found, Problem
 
@@ -101,7 +101,7 @@ def identifiability(
     """
     prior = problem.prior.std
     ratio = z.std(axis=0) / prior
-    low, high = np.quantile(z, [0.05, 0.95], axis=0)
+    low, high = np.quantile(z, QUANTILES[::2], axis=0)
     factor = np.exp(high - low)
     deciders = _deciders(problem, z, ratio, converged)
     if misfit is not None and not misfit.fits:
@@ -140,7 +140,7 @@ def contradicted(verdicts: Sequence[Verdict], words: str) -> tuple[Verdict, ...]
 
 def _deciders(problem: Problem, z: FloatArray, ratio: FloatArray, converged: bool) -> list[Decider]:
     """Return what determines the interval of each parameter."""
-    low, middle, high = np.quantile(z, [0.05, 0.5, 0.95], axis=0)
+    low, middle, high = np.quantile(z, QUANTILES, axis=0)
     at_bound = (low - problem.prior.low < _NEAR_BOUND * (middle - low)) | (
         problem.prior.high - high < _NEAR_BOUND * (high - middle)
     )

@@ -22,6 +22,7 @@ import scipy.linalg as la
 from scipy.special import chdtri, stdtrit
 
 from jackettwin.arrays import FloatArray, IntArray
+from jackettwin.intervals import QUANTILES
 from jackettwin.updating.prior import BoxPrior, Prior
 
 FREEDOM = 3.0
@@ -224,6 +225,6 @@ def leg_scatter(prior: Prior, z: FloatArray, *, seed: int = 0) -> tuple[Scatter,
     groups = prior.legs if isinstance(prior, ScatteredPrior) else ()
     found = []
     for group in groups:
-        low, high = group.scale * np.sqrt(FREEDOM / chdtri(FREEDOM, [0.05, 0.95]))
+        low, high = group.scale * np.sqrt(FREEDOM / chdtri(FREEDOM, QUANTILES[::2]))
         found.append(Scatter(group.name, group.draw_scatter(z, rng), (float(low), float(high))))
     return tuple(found)

@@ -191,7 +191,7 @@ def gathered(
         worst = problem.parameters[int(np.argmax(found.rhat))].name
         raise NumericalError(
             f"the posterior did not converge: {found.problem or 'no evidence'} ({worst}), log evidence "
-            f"±{spread:.2f}; more particles may help"
+            f"scatters by {spread:.2f}; more particles may help"
         )
     return Posterior(
         log_theta=z.reshape(-1, z.shape[2]),

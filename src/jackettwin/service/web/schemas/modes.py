@@ -9,7 +9,7 @@ from pydantic import BaseModel, Field
 
 
 class ModeOut(BaseModel):
-    """A mode in one record; 95 % interval on the logarithm of the damping ratio."""
+    """A mode in one record; 90 % interval on the logarithm of the damping ratio."""
 
     record_id: str
     time_utc: datetime
@@ -18,7 +18,7 @@ class ModeOut(BaseModel):
     frequency_std_hz: float | None
     damping_ratio: float | None
     damping_ratio_std: float | None
-    damping_ratio_interval_95: tuple[float, float] | None
+    damping_ratio_interval_90: tuple[float, float] | None
     status: str
     model_version: int
 

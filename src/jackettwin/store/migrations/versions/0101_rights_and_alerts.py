@@ -1,4 +1,4 @@
-"""Rights by asset, positions, findings that people deal with, alerts, shared posts of servers, observations in columns."""
+"""Rights by asset, positions, findings that people deal with, alerts, shared posts, observations in columns, intervals of 90 %."""
 
 import hashlib
 
@@ -8,6 +8,8 @@ from alembic import op
 revision = "0101"
 down_revision = "0100"
 
+TO_90 = 1.6448536269514722 / 1.959963984540054
+"""Logarithm of half a 90 % interval over that of a 95 % one."""
 ROW_NUMBER = sa.BigInteger().with_variant(sa.Integer(), "sqlite")
 
 
@@ -71,12 +73,25 @@ def upgrade() -> None:
     )
     op.create_index("ix_alerts_due", "alerts", ["state", "due_utc"])
     op.create_index("ix_work_fair", "work", ["state", "kind", "priority", "asset", "id"])
+    _intervals("95", "90", TO_90)
     if op.get_bind().dialect.name == "postgresql":
         op.execute("alter table observations alter document type bytea using convert_to(document, 'UTF8')")
     else:
         with op.batch_alter_table("observations") as observations:
             observations.alter_column("document", type_=sa.LargeBinary(), existing_nullable=False)
         op.execute("update observations set document = cast(document as blob)")
+
+
+def _intervals(level: str, new: str, share: float) -> None:
+    """Rename the ends of the intervals of damping, and bring them to another level, on the logarithm."""
+    if op.get_bind().dialect.name == "sqlite":
+        op.get_bind().connection.driver_connection.create_function("power", 2, pow)
+    with op.batch_alter_table("modes") as modes:
+        for end in ("low", "high"):
+            modes.alter_column(f"damping_ratio_{end}_{level}", new_column_name=f"damping_ratio_{end}_{new}")
+    for end in (f"damping_ratio_low_{new}", f"damping_ratio_high_{new}"):
+        scaled = f"damping_ratio * power({end} / damping_ratio, {share})"
+        op.execute(f"update modes set {end} = {scaled} where damping_ratio > 0 and {end} is not null")
 
 
 def _acknowledgements_become_lines() -> None:
@@ -107,6 +122,7 @@ def downgrade() -> None:
         sa.Column("comment", sa.Text(), nullable=False),
     )
     op.drop_index("ix_work_fair", "work")
+    _intervals("90", "95", 1.0 / TO_90)
     for table in ("alerts", "handling", "posts", "mode_days", "asset_groups"):
         op.drop_table(table)
     with op.batch_alter_table("users") as users:
