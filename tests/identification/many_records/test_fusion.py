@@ -125,7 +125,7 @@ def test_a_quick_look_at_several_records_states_no_intervals(results):
         document = fused_mode_document(mode, names)
         assert document["status"] == "unchecked"
         assert document["frequency_hz"] == mode.frequency_hz
-        assert document["frequency_interval_95"] is document["damping_ratio_std"] is None
+        assert document["frequency_interval_90"] is document["damping_ratio_std"] is None
 
 
 def test_order_of_records_does_not_matter(results):

@@ -22,8 +22,8 @@ from jackettwin.study.many_records.shapes_uff import write_shapes_uff
 NUMBERS = {
     "frequency_hz": "Hz",
     "frequency_std_hz": "Hz",
-    "frequency_low_95_hz": "Hz",
-    "frequency_high_95_hz": "Hz",
+    "frequency_low_90_hz": "Hz",
+    "frequency_high_90_hz": "Hz",
     "damping_ratio": "1",
     "damping_ratio_std": "1",
     "damping_ratio_low_90": "1",
@@ -80,7 +80,7 @@ def _rows(name: str, modes: Sequence[Mapping[str, Any]]) -> Iterator[Row]:
         low, high = mode["damping_ratio_interval_90"] or (None, None)
         row: Row = {"set": name, "mode": number, "status": mode["status"]}
         row |= {key: mode.get(key) for key in NUMBERS}
-        row |= {"frequency_low_95_hz": f_low, "frequency_high_95_hz": f_high}
+        row |= {"frequency_low_90_hz": f_low, "frequency_high_90_hz": f_high}
         row |= {"damping_ratio_low_90": low, "damping_ratio_high_90": high}
         yield {**row, "mode_shape": mode["mode_shape"]}
 

@@ -84,8 +84,9 @@ def upgrade() -> None:
 
 def _intervals(level: str, new: str, share: float) -> None:
     """Rename the ends of the intervals of damping, and bring them to another level, on the logarithm."""
-    if op.get_bind().dialect.name == "sqlite":
-        op.get_bind().connection.driver_connection.create_function("power", 2, pow)
+    own = op.get_bind().connection.driver_connection
+    if own is not None and op.get_bind().dialect.name == "sqlite":
+        own.create_function("power", 2, pow)
     with op.batch_alter_table("modes") as modes:
         for end in ("low", "high"):
             modes.alter_column(f"damping_ratio_{end}_{level}", new_column_name=f"damping_ratio_{end}_{new}")
