@@ -155,7 +155,7 @@ FAULTS = (
         ("the periodogram is twice as large", "own /= sample_rate_hz * np.sqrt(duration * present.mean())", "own /= sample_rate_hz * np.sqrt(0.5 * duration * present.mean())"),
         ("MPC without square", "np.asarray(((s_xx - s_yy) ** 2 + 4.0 * s_xy**2) / (s_xx + s_yy) ** 2)", "np.asarray(((s_xx - s_yy) ** 2 + 2.0 * s_xy**2) / (s_xx + s_yy) ** 2)"),
         ("a decay's damping has the wrong sign", "omega * (-zeta + 1j * np.sqrt(1.0 - zeta**2))", "omega * (zeta + 1j * np.sqrt(1.0 - zeta**2))"),
-        ("Student's factor is inverted", "wider = scipy.special.stdtrit(freedom, 0.975) / scipy.special.ndtri(0.975)", "wider = scipy.special.ndtri(0.975) / scipy.special.stdtrit(freedom, 0.975)"),
+        ("Student's factor is inverted", "wider = scipy.special.stdtrit(freedom, QUANTILES[-1]) / NORMAL_90", "wider = NORMAL_90 / scipy.special.stdtrit(freedom, QUANTILES[-1])"),
         ("covariances of one lag more", "length = (n_samples - n_lags) // n_blocks", "length = (n_samples - n_lags - 1) // (2 * n_blocks)"),
         ("real poles have the wrong rate", "a = -np.log(p.eigenvalues.real) * rate", "a = -np.log(p.eigenvalues.real) / rate"),
         ("neighbours alike span a dimension each", "u[:, s > _DISTINCT]", "u[:, s > 0.0]"),
