@@ -56,6 +56,18 @@ def test_a_band_includes_a_pair_that_few_long_segments_show(seed: int) -> None:
     assert {round(m.frequency_hz, 1) for m in found} >= {0.2, 1.0, 1.1}
 
 
+@pytest.mark.parametrize(("duration_s", "first_hz"), [(120.0, 0.18), (130.0, 0.2), (180.0, 0.13)])
+def test_a_band_that_is_chosen_does_not_refuse_its_record(duration_s: float, first_hz: float) -> None:
+    """Of 22 to 26 cycles an edge at 0.65 of the peak leaves fewer than the 20 that an edge must have."""
+    found = 0
+    for seed in range(4):
+        record = jacket(seed, (first_hz, 1.06 * first_hz), duration_s)
+        modes = identify(record, IdentificationSettings(blocks=0, refine=False)).modes
+        found += any(abs(m.frequency_hz / first_hz - 1.03) < 0.06 for m in modes)
+        assert any(abs(m.frequency_hz - 1.06) < 0.1 for m in modes)
+    assert found >= 3
+
+
 @pytest.mark.parametrize(("duration_s", "waves"), [(120.0, 1.0), (180.0, 1.0), (180.0, 3.0), (300.0, 1.0)])
 def test_waves_do_not_open_the_band(duration_s: float, waves: float) -> None:
     """A wave spectrum is too broad for a clear peak, in few long segments too."""

@@ -170,7 +170,8 @@ def shortness(reduced: Record, resolved: ResolvedSettings, *, chosen: bool) -> t
         Whether the lower edge of the band was chosen automatically.
     """
     low, duration = resolved.lowest_frequency_hz, reduced.duration_s
-    first = low / EDGE_BELOW_PEAK if chosen else low
+    at_peak = chosen and low * duration > 1.001 * FEWEST_CYCLES  # else the record is too short for that edge
+    first = low / EDGE_BELOW_PEAK if at_peak else low
     out: tuple[str, ...] = ()
     if first * duration < SHORT_RECORD_CYCLES:
         out += (
@@ -209,7 +210,7 @@ def _band(record: Record, settings: IdentificationSettings) -> tuple[float, floa
         peak = lowest_motion_hz(record.data, record.sample_rate_hz)
         if peak is None:
             raise _without_peak(record)
-        low = EDGE_BELOW_PEAK * peak
+        low = max(EDGE_BELOW_PEAK * peak, FEWEST_CYCLES / record.duration_s)
     limit = 2.0 / SAMPLES_PER_CYCLE * nyquist
     high = settings.highest_frequency_hz or min(BAND_RATIO * low, limit)
     if not low < high < nyquist:
