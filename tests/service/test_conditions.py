@@ -44,6 +44,23 @@ def test_what_is_no_table_is_refused(tmp_path: Path, text: str) -> None:
         read_table(path)
 
 
+def test_an_hour_that_the_zone_never_has_is_refused(tmp_path: Path) -> None:
+    """The clock of the table was not put forward: its whole summer would be an hour off."""
+    path, spring = tmp_path / "scada.csv", "time,wind\n2025-03-30 01:50,7\n2025-03-30 02:00,8\n"
+    path.write_text(spring)
+    with pytest.raises(InputError, match=r"never has this time.*2025-03-30 02:00.*offset"):
+        read_table(path, zone="Europe/Berlin")
+    # ends of intervals that begin before the hour
+    for end in ("02:00", "03:00"):
+        path.write_text(spring.replace("02:00", end))
+        ends = read_table(path, zone="Europe/Berlin", end_stamped=True)["wind"]
+        assert list(ends) == [datetime(2025, 3, 30, 0, minute, tzinfo=UTC) for minute in (40, 50)]
+    assert read_table(path, zone="+01:00")["wind"]
+    path.write_text("begin,end,category\n2025-03-30 02:10,2025-03-30 04:00,Forced outage\n")
+    with pytest.raises(InputError, match="never has this time"):
+        read_table(path, zone="Europe/Berlin")
+
+
 def test_rows_count_that_overlap_by_half(service: Service) -> None:
     minutes = {T0 + timedelta(minutes=m): v for m, v in ((0, 4.0), (10, 8.0), (20, 100.0))}
     with writing(service.database) as connection:

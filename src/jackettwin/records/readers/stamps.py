@@ -277,6 +277,29 @@ def steady(
     return start, np.where(np.arange(len(shown)) < after, times_s, times_s - forward_s), ()
 
 
+def start_in_utc(end: datetime, zone: tzinfo, lasted: timedelta) -> datetime:
+    """Return the start in UTC of an interval whose end a clock in a zone shows.
+
+    Raises
+    ------
+    InputError
+        If clocks in the zone show neither its end nor its start, as they are put forward over both.
+
+    >>> from datetime import datetime, timedelta
+    >>> start_in_utc(datetime(2025, 3, 30, 3), read_zone("Europe/Berlin"), timedelta(minutes=10)).minute
+    50
+    """
+    require(
+        not (_skipped(end, zone) and _skipped(end - lasted, zone)),
+        "its zone never has this time, over which clocks are put forward: the clock was not",
+        field="time",
+        value=end.isoformat(" "),
+        allowed=f"what clocks in {zone} show",
+        remedy="state the offset of the clock as its zone, e.g. +01:00",
+    )
+    return in_utc(end, zone) - lasted
+
+
 def _skipped(time: datetime, zone: tzinfo) -> bool:
     """Tell whether clocks in a zone never show a time because they are put forward over it."""
     return in_utc(time, zone).astimezone(zone).replace(tzinfo=None) != time.replace(tzinfo=None)

@@ -12,9 +12,9 @@ from typing import Any
 import pyarrow as pa
 from pyarrow import csv
 
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, located
 from jackettwin.records import read_zone
-from jackettwin.records.readers.stamps import in_utc
+from jackettwin.records.readers.stamps import start_in_utc
 from jackettwin.service.workers.event_tables import BEGINS, ENDS, KINDS, by_ten_minutes, is_of_events
 
 Value = float | str | None
@@ -53,7 +53,7 @@ def read_table(
     Raises
     ------
     InputError
-        If it is not a table, or has no column of times.
+        If it is not a table, has no column of times, or tells times that its zone never has.
     """
     table = _read(path)
     given = names or {}
@@ -73,7 +73,8 @@ def read_table(
             remedy="name the column time_utc",
         )
     clock, back = read_zone(zone), timedelta(minutes=10 if end_stamped else 0)
-    starts = [None if t is None else _utc(t, clock) - back for t in table[times].to_pylist()]
+    with located(file=path):
+        starts = [None if t is None else _utc(t, clock, back) for t in table[times].to_pylist()]
     return {
         name: {t: _value(v) for t, v in zip(starts, table[column].to_pylist(), strict=True) if t is not None}
         for column, name in called.items()
@@ -114,15 +115,13 @@ def _events(table: Any, called: Mapping[str, str], zone: str, path: Path) -> Map
             allowed="2025-03-01 12:00:00 or with a zone",
         )
     clock = read_zone(zone)
-    rows = [
-        (_utc(begin, clock), None if end is None else _utc(end, clock), str(kind))
-        for begin, end, kind in zip(begins, ends, kinds, strict=True)
-        if begin is not None and kind is not None
-    ]
-    try:
+    with located(file=path):
+        rows = [
+            (_utc(begin, clock), None if end is None else _utc(end, clock), str(kind))
+            for begin, end, kind in zip(begins, ends, kinds, strict=True)
+            if begin is not None and kind is not None
+        ]
         return by_ten_minutes(rows)
-    except InputError as error:
-        raise error.at(file=path) from None
 
 
 IEC_61400_25 = {
@@ -181,9 +180,9 @@ def _read(path: Path) -> Any:
     return table
 
 
-def _utc(time: Any, clock: Any) -> datetime:
+def _utc(time: Any, clock: Any, back: timedelta = timedelta(0)) -> datetime:
     whole = time if isinstance(time, datetime) else datetime(time.year, time.month, time.day)
-    return in_utc(whole, clock) if whole.tzinfo is None else whole.astimezone(UTC)
+    return start_in_utc(whole, clock, back) if whole.tzinfo is None else whole.astimezone(UTC) - back
 
 
 def _value(value: Any) -> Value:
