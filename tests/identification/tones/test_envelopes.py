@@ -171,3 +171,19 @@ def test_a_tone_that_swells_and_drifts_a_little_is_suspicious_and_a_mode_seldom_
     assert seen["tone"] >= 15
     # 2πζfT is 9 to 11: three in a hundred by chance
     assert seen["mode"] <= 3
+
+
+def test_an_order_that_wanders_quickly_is_suspicious_and_a_mode_as_broad_is_not() -> None:
+    """3P of a speed that wanders by 2 % within ten seconds, its amplitude by 20 %, and modes of 1.5 %."""
+    seen = {"order": 0, "mode": 0}
+    for seed in range(30):
+        rng = np.random.default_rng(seed)
+        keep = np.exp(-1.0 / 50.0)
+        wander, swell = signal.lfilter([np.sqrt(1.0 - keep**2)], [1.0, -keep], rng.normal(size=(2, 4000)))
+        order = (1.0 + 0.2 * swell) * np.cos(2.0 * np.pi * np.cumsum(0.5 + 0.01 * wander) / 5.0)
+        pole = np.exp((-0.015 + 1j) * 2.0 * np.pi * 0.5 / 5.0)
+        mode = signal.lfilter([1.0], np.real(np.poly([pole, pole.conjugate()])), rng.normal(size=4000))
+        for name, y in (("order", order), ("mode", mode)):
+            noisy = y[1000:] + 0.05 * y.std() * rng.normal(size=3000)
+            seen[name] += is_suspiciously_steady(transform(noisy[None]), 600.0, 0.5, 0.015, np.ones(1))
+    assert seen == {"order": 30, "mode": 0}

@@ -131,7 +131,7 @@ def _widen_close_pair(mode: ModalEstimate, modes: Sequence[ModalEstimate]) -> Mo
 
 
 def _steady(mode: ModalEstimate, lines: ComplexArray, duration_s: float, scale: FloatArray) -> ModalEstimate:
-    """Flag a lightly damped mode whose envelope is as steady as that of a tone."""
+    """Flag a mode whose envelope is as steady as that of a tone."""
     shape = mode.mode_shape / scale
     if not is_suspiciously_steady(lines, duration_s, mode.frequency_hz, mode.damping_ratio, shape):
         return mode

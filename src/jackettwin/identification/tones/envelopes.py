@@ -28,8 +28,10 @@ MANY_VALUES = 12.0
 """2πζfT above which a mode is broader than a slightly drifting tone."""
 BANDWIDTHS = 3.0
 """Half width, in half bandwidths, of the band in which the envelope of a lightly damped mode is judged."""
+WANDERING = 5.0, 0.04
+"""Half width, in half bandwidths and as a share of the frequency, of the band that a tone may wander over."""
 SUSPICIOUS_VARIANCE = 0.3
-"""Relative variance of the squared envelope in that band below which the mode may be a tone."""
+"""Relative variance of the squared envelope in that band below which a lightly damped mode may be a tone."""
 MIN_HALF_BANDWIDTH = 0.9
 """Smallest half bandwidth assumed for a pole, in lines."""
 
@@ -57,10 +59,12 @@ def envelope_variance(
 def is_suspiciously_steady(
     lines: ComplexArray, duration_s: float, frequency_hz: float, damping_ratio: float, shape: ComplexArray
 ) -> bool:
-    """Tell whether a lightly damped mode has the envelope of a tone that varies and drifts slightly.
+    """Tell whether a mode has the envelope of a tone that varies and drifts.
 
-    By chance, a fifth of simulated modes with 2πζfT = 3 have such an envelope, 7 % with 6 and 3 % with 11.
-    Of tones whose amplitude varies by 30 % and frequency by 0.5 to 1 %, at least three quarters have it.
+    By chance, a fifth of simulated modes with 2πζfT = 3 have such an envelope, 7 % with 6 and 3 % with 11,
+    and one in a thousand above. Of tones whose amplitude varies by 30 % and frequency by 0.5 to 1 %, at least
+    three quarters have it. A tone that wanders by 1 to 3 % within ten seconds is as broad as a mode; the
+    broader the band, the steadier it is.
 
     Parameters
     ----------
@@ -70,12 +74,17 @@ def is_suspiciously_steady(
     """
     line = 1.0 / duration_s
     bandwidth = damping_ratio * frequency_hz
-    if 2.0 * np.pi * bandwidth / line > MANY_VALUES:
-        return False
-    half = max(BANDWIDTHS * bandwidth, 0.5 * HALF_WIDTH * frequency_hz, MIN_LINES * line)
-    return bool(
-        relative_variance(_analytic(lines, duration_s, frequency_hz, half, shape)) < SUSPICIOUS_VARIANCE
-    )
+    n = 2.0 * np.pi * bandwidth / line
+
+    def variance(half_hz: float) -> float:
+        half = max(half_hz, 0.5 * HALF_WIDTH * frequency_hz, MIN_LINES * line)
+        return float(relative_variance(_analytic(lines, duration_s, frequency_hz, half, shape)))
+
+    own = variance(BANDWIDTHS * bandwidth)
+    if n <= MANY_VALUES and own < SUSPICIOUS_VARIANCE:
+        return True
+    bandwidths, share = WANDERING
+    return min(own, variance(max(bandwidths * bandwidth, share * frequency_hz))) < least_variance(n)
 
 
 def least_variance(n: float) -> float:
