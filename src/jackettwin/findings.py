@@ -301,6 +301,11 @@ CATALOGUE: dict[str, Kind] = {
     "one_method": Kind(
         "warning", "with a shorter lag window it appears in only {share:.0%} of the model orders"
     ),
+    "no_peak_in_setup": Kind(
+        "warning",
+        "{setup} has no clear peak there, {ratio:.2g} times the neighbouring level: its part of the shape is "
+        "not known, or a sensor moved without a new name, or it is of another structure",
+    ),
     "no_peak": Kind(
         "warning",
         "in the direction of its shape the spectrum has no clear peak: it is {ratio:.2g} times the "

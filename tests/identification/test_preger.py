@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.signal import resample_poly
 
 from jackettwin.errors import InputError
 from jackettwin.identification import Identification, IdentificationSettings, identify_setups, mac
@@ -68,7 +69,7 @@ def test_three_setups_give_frequency_damping_and_the_whole_shape(found: Identifi
     names = [channel.name for channel in found.channels]
     assert names == ["z0", "z3", "z1", "z2", "z4", "z5", "z6", "z7"]
     rows = [int(name[1:]) for name in names]
-    ok = [mode for mode in found.modes if mode.status == "ok"]
+    ok = [mode for mode in found.modes if mode.status == "unchecked"]
     # poles of noise are stable as well, without a peak
     for mode, f, shape in zip(ok, F, SHAPES, strict=True):
         # four standard deviations of the long-data limits of one setup of the three
@@ -82,8 +83,19 @@ def test_three_setups_give_frequency_damping_and_the_whole_shape(found: Identifi
 def test_a_broad_pole_beside_a_mode_is_doubtful() -> None:
     """In this realisation 1.2 and 2.0 Hz each have a second stable pole, of four times the damping."""
     found = identify_setups([setup(j, rows, seed=150) for j, rows in enumerate(SETUPS)])
-    assert_allclose([m.frequency_hz for m in found.modes if m.status == "ok"], F, rtol=0.01)
+    assert_allclose([m.frequency_hz for m in found.modes if m.status == "unchecked"], F, rtol=0.01)
     assert sum("shape_twice" in [reason.code for reason in m.reasons] for m in found.modes) == 2
+
+
+def test_a_setup_of_another_structure_leaves_no_mode_without_doubt() -> None:
+    records = [setup(j, rows) for j, rows in enumerate(SETUPS)]
+    stiffer = replace(records[2], sample_rate_hz=10.4)
+    other = replace(stiffer, data=resample_poly(stiffer.data, 10, 13, axis=1), sample_rate_hz=8.0)
+    found = identify_setups([*records[:2], other])
+    assert found.modes
+    for mode in found.modes:
+        assert mode.status == "doubtful"
+        assert {reason.code for reason in mode.reasons} & {"no_peak", "no_peak_in_setup"}
 
 
 def test_one_setup_of_all_channels_is_plain_ssi() -> None:

@@ -49,6 +49,16 @@ def test_a_mode_is_like_itself(assembly: Assembly) -> None:
     assert found["mac"][3][:2] == pytest.approx([0.5, 0.5], abs=0.01)
 
 
+def test_of_modes_that_few_channels_cannot_tell_apart_the_nearest_is_taken(assembly: Assembly) -> None:
+    """Two channels at the tower top: half the modes move them alike."""
+    two = {name: CHANNELS[name] for name in ("x144", "y144")}
+    shape = {"x144": [1.0, 0.0], "y144": [0.02, 0.0]}
+    modes = [{"frequency_hz": f, "status": "ok", "mode_shape": shape} for f in (0.2, 1.5)]
+    found = beside_model({"channels": two, "modes": modes}, assembly)
+    assert [pair["label"] for pair in found["pairs"]] == ["fore_aft_1", "fore_aft_3"]
+    assert all(pair["modes_as_alike"] >= 2 for pair in found["pairs"])
+
+
 def test_channels_that_a_mode_lacks_are_left_out(assembly: Assembly) -> None:
     lost = {**identified(np.ones(6), 0.2), "mode_shape": {}}
     found = beside_model({"channels": CHANNELS, "modes": [lost]}, assembly)

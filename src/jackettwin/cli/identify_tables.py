@@ -209,6 +209,7 @@ def show_comparison(found: Mapping[str, Any], model: str) -> None:
         TableColumn("f [Hz]", "model_frequency_hz", ".4f"),
         TableColumn("difference [%]", "relative_difference", ".1f", 100.0),
         TableColumn("MAC", "mac", ".3f"),
+        TableColumn("others as alike", "modes_as_alike", ".0f"),
     )
     pairs = [pair for pair in found["pairs"] if pair is not None]
     show_table(Table(f"{model} at {len(found['channels'])} channels", columns, pairs))

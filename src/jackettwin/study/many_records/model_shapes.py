@@ -13,6 +13,9 @@ from jackettwin.response import Sensor, mode_kinds, mode_labels, observation_mat
 from jackettwin.structure import Assembly
 from jackettwin.updating import numbered_modes
 
+AS_ALIKE = 0.1
+"""Difference of MAC from the largest up to which modes of the structure are as like, since few channels see
+the same of many modes: the nearest of them in frequency is taken."""
 COMPARED = 20
 """Number of the structure's lowest modes that are compared."""
 
@@ -32,7 +35,8 @@ def beside_model(document: Mapping[str, Any], assembly: Assembly) -> dict[str, A
     -------
     dict
         ``channels`` that were compared, ``modes`` of the structure, ``mac`` (n_identified, n_modes), and
-        ``pairs``, one an identified mode; None for a mode that none of the channels saw.
+        ``pairs``, one an identified mode, with the number of other modes that are as like it at these
+        channels; None for a mode that none of the channels saw.
 
     Raises
     ------
@@ -83,7 +87,8 @@ def _macs(shape: Mapping[str, Any], names: list[str], at: np.ndarray[Any, Any]) 
 def _pair(
     mode: Mapping[str, Any], row: np.ndarray[Any, Any], labels: tuple[str, ...], f: np.ndarray[Any, Any]
 ) -> dict[str, Any]:
-    best = int(np.argmax(row))
+    alike = np.flatnonzero(row >= row.max() - AS_ALIKE)
+    best = int(alike[np.argmin(np.abs(np.log(f[alike] / mode["frequency_hz"])))])
     return {
         "frequency_hz": mode["frequency_hz"],
         "status": mode["status"],
@@ -91,4 +96,5 @@ def _pair(
         "model_frequency_hz": float(f[best]),
         "relative_difference": mode["frequency_hz"] / float(f[best]) - 1.0,
         "mac": float(row[best]),
+        "modes_as_alike": len(alike) - 1,
     }
