@@ -227,10 +227,9 @@ def errors_of_fused(fused: FusedIdentification, system: ModalSystem) -> tuple[li
     apart = np.abs(np.log(f / system.frequency_hz[:, None])) / 0.03 + 1.0 - mac(system.mode_shapes, shapes)
     modes = [fused.modes[int(j)] for j in np.argmin(apart, axis=1)]
     both = list(zip(modes, system.damping_ratio, strict=True))
-    return (
-        [mode.damping_ratio / zeta - 1.0 for mode, zeta in both],
-        [float(abs(np.log(mode.damping_ratio / zeta)) < 1.96 * mode.log_std[1]) for mode, zeta in both],
-    )
+    ends = [mode.damping_ratio_interval_90 for mode in modes]
+    held = [low < zeta < high for (low, high), zeta in zip(ends, system.damping_ratio, strict=True)]
+    return [mode.damping_ratio / zeta - 1.0 for mode, zeta in both], [float(one) for one in held]
 
 
 def section(case: Case, n: int, seed: int, n_sets: int) -> list[str]:

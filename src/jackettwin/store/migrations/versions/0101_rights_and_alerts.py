@@ -90,9 +90,13 @@ def _intervals(level: str, new: str, share: float) -> None:
     with op.batch_alter_table("modes") as modes:
         for end in ("low", "high"):
             modes.alter_column(f"damping_ratio_{end}_{level}", new_column_name=f"damping_ratio_{end}_{new}")
-    for end in (f"damping_ratio_low_{new}", f"damping_ratio_high_{new}"):
-        scaled = f"damping_ratio * power({end} / damping_ratio, {share})"
-        op.execute(f"update modes set {end} = {scaled} where damping_ratio > 0 and {end} is not null")
+    ends = [f"damping_ratio_{end}_{new}" for end in ("low", "high")]
+    table = sa.table("modes", *(sa.column(name, sa.Float) for name in ("damping_ratio", *ends)))
+    zeta = table.c.damping_ratio
+    for bound in (table.c[name] for name in ends):
+        known = sa.and_(zeta > 0.0, bound.is_not(None))
+        scaled = zeta * sa.func.power(bound / zeta, share)
+        op.execute(sa.update(table).where(known).values({bound: scaled}))
 
 
 def _acknowledgements_become_lines() -> None:
