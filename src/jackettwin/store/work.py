@@ -13,7 +13,7 @@ from datetime import datetime
 from itertools import zip_longest
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, Update, delete, func, insert, select, update
+from sqlalchemy import ColumnElement, Connection, Select, Update, delete, func, insert, select, update
 
 from jackettwin.store.assets import Version
 from jackettwin.store.database import insert_new
@@ -112,11 +112,23 @@ def _by_turns(
     """Return jobs in turns of assets, beginning with those served least."""
     if most <= 0:
         return []
-    heads = select(work.c.asset, func.min(work.c.id)).where(*same).group_by(work.c.asset)
-    waiting = sorted(connection.execute(heads), key=lambda row: (served.get(row[0], 0), row[1]))[:most]
+    heads = connection.execute(_first_of_each(same)).all()
+    waiting = sorted(heads, key=lambda head: (served.get(head[0], 0), head[1]))[:most]
     each = -(-most // max(len(waiting), 1))
     found = [_queued(connection, (*same, work.c.asset == asset), each) for asset, _ in waiting]
     return [job for turn in zip_longest(*found) for job in turn if job is not None][:most]
+
+
+def _first_of_each(same: tuple[ColumnElement[bool], ...]) -> Select[str, int]:
+    """Select the assets that have such jobs, each with its oldest: one search of the index for each asset.
+
+    Grouping would read the whole queue.
+    """
+    first = select(func.min(work.c.asset).label("asset")).where(*same).cte("waiting", recursive=True)
+    following = select(func.min(work.c.asset)).where(*same, work.c.asset > first.c.asset).scalar_subquery()
+    waiting = first.union_all(select(following).where(first.c.asset.is_not(None)))
+    oldest = select(func.min(work.c.id)).where(*same, work.c.asset == waiting.c.asset).scalar_subquery()
+    return select(waiting.c.asset, oldest).where(waiting.c.asset.is_not(None))
 
 
 def _queued(
