@@ -20,8 +20,9 @@ from pathlib import Path
 import numpy as np
 from common.page import write_page
 
-from jackettwin.change.causes import _ONE_SIZE, MODES, Modes, effect, model_causes, repeated, seen_causes
+from jackettwin.change.causes import _ONE_SIZE, effect, model_causes, repeated, seen_causes
 from jackettwin.change.changed_structures import Happening, Standing, happenings
+from jackettwin.change.standing_modes import MODES, Modes
 from jackettwin.decks import read_structure
 from jackettwin.response.modes.labels import LOCAL
 from jackettwin.structure import Structure, assemble

@@ -22,8 +22,9 @@ from common.chain import Bench, Row, bench, identified, late, louder, record, se
 from common.page import write_page
 from diagnosis import SENSORS, TIMES, Case, calibration, case, jackets, name_of, page, planted, truth
 
-from jackettwin.change.causes import _ONE_SIZE, ModelCauses, Modes, model_causes, repeated, seen_causes
+from jackettwin.change.causes import _ONE_SIZE, ModelCauses, model_causes, repeated, seen_causes
 from jackettwin.change.changed_structures import Happening, Standing
+from jackettwin.change.standing_modes import Modes
 from jackettwin.records import Record
 from jackettwin.structure import Structure, assemble
 from jackettwin.watching import Change, History, Watch, diagnose, start, step

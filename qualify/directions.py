@@ -18,8 +18,9 @@ import numpy as np
 from common.page import write_page
 from diagnosis import jackets, planted, truth
 
-from jackettwin.change.causes import _ONE_SIZE, MODES, Modes, effect, standings
+from jackettwin.change.causes import _ONE_SIZE, effect, standings
 from jackettwin.change.changed_structures import Happening, Standing
+from jackettwin.change.standing_modes import MODES, Modes
 from jackettwin.response.modes.labels import LOCAL
 from jackettwin.structure import Assembly, Material, Structure, assemble
 

@@ -1,27 +1,20 @@
 """Directions of causes on the reference jacket: closed forms, signs, and what cannot be told apart."""
 
 from dataclasses import replace
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
 
-from jackettwin.change import causes
-from jackettwin.change.causes import (
-    MODES,
-    ModelCauses,
-    Modes,
-    _kept,
-    model_causes,
-    seen_causes,
-    standings,
-    turned,
-)
+from jackettwin.change import causes, standing_modes
+from jackettwin.change.causes import ModelCauses, model_causes, seen_causes, standings, turned
 from jackettwin.change.changed_structures import Standing, braces, happenings, with_mass
 from jackettwin.change.ground import Ground, scour_loss
+from jackettwin.change.standing_modes import MODES, Modes, kept_share
 from jackettwin.change.working_rotor import NAME, WorkingRotor
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.response.modes.modal import UndampedModes
+from jackettwin.response.modes.modal import UndampedModes, undamped_modes
 from jackettwin.soil.foundation import read_foundation
 from jackettwin.structure import Assembly, assemble
 from jackettwin.twin import RotorSide
@@ -92,7 +85,7 @@ def test_shapes_are_kept_by_their_part_in_those_of_the_whole() -> None:
     modes = UndampedModes(np.ones(2), np.eye(3)[:, :2])
     like = Modes(("side_side_1", "local_1"), modes, np.eye(3), np.zeros(2), np.ones(2), np.zeros(2))
     shapes = np.array([[1.0, 0.6, 0.0], [0.0, 0.8, 0.0], [0.0, 0.0, 2.0]])
-    np.testing.assert_allclose(_kept(like, shapes), [1.0, 0.36, 0.0])
+    np.testing.assert_allclose(kept_share(like, shapes), [1.0, 0.36, 0.0])
 
 
 def test_a_model_that_misses_frequencies_is_trusted_less() -> None:
@@ -238,12 +231,41 @@ def test_causes_stand_on_the_feet_of_the_posterior() -> None:
         feet = stiffness * np.exp(0.05 * rng.standard_normal((50, 2, len(structure.reaction_nodes))))
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(causes, "_DRAWS", 1)
+            patch.setattr(causes, "happenings", lambda s: [h for h in happenings(s) if h.family == "soil"])
             known = Ground(stiffness=feet)
             f = np.array([0.1806, 0.1835, 0.571])
             found[stiffness] = model_causes(structure, LABELS, f, np.full(3, 0.01), ground=known)
     soft, stiff = found.values()
     assert np.all(soft.frequency_hz[:2] < stiff.frequency_hz[:2])
     assert np.all(direction(soft, "soil softening")[:2] < 3.0 * direction(stiff, "soil softening")[:2])
+
+
+CHEAP = "scour at foot_1", "soil softening", "brace_1_1_1 lost", "brace_1_1_1 weakened", "marine growth"
+
+
+def test_effects_in_a_basis_are_those_of_every_structures_own_modes(stands: Standing) -> None:
+    """To a thousandth, and of the eigenproblems no more is left than of the drawing and the best fit."""
+    solved = {}
+    with pytest.MonkeyPatch.context() as patch:
+        counted = Mock(side_effect=undamped_modes)
+        patch.setattr(standing_modes, "undamped_modes", counted)
+        patch.setattr(causes, "_DRAWS", 3)
+        patch.setattr(causes, "happenings", lambda s: [h for h in happenings(s) if h.name in CHEAP])
+        f, zeta = np.array([0.1806, 0.1835, 0.571]), np.full(3, 0.01)
+        cheap = model_causes(stands.structure, LABELS, f, zeta)
+        solved["cheap"] = counted.call_count
+        patch.setattr(standing_modes, "EXACT", -1.0)  # no modes in a basis are good enough
+        exact = model_causes(stands.structure, LABELS, f, zeta)
+        solved["exact"] = counted.call_count - solved["cheap"]
+    assert len(cheap.causes) == len(CHEAP) + 2  # clock and yaw
+    assert solved["exact"] > 3 + 3 * len(CHEAP) + 2 * 4  # a lost brace has one size
+    assert solved["cheap"] == 2
+    for one, other in zip(cheap.causes, exact.causes, strict=True):
+        for part in np.split(np.arange(3 * MODES), 3):
+            allowed = 1e-3 * np.abs(other.draws[:, part]).max()
+            np.testing.assert_allclose(one.draws[:, part], other.draws[:, part], rtol=0.0, atol=allowed)
+            if other.bent_at.size:
+                np.testing.assert_allclose(one.bend[:, part], other.bend[:, part], rtol=0.0, atol=allowed)
 
 
 def test_a_rotor_at_work_is_part_of_the_structure_and_a_cause(model: ModelCauses) -> None:

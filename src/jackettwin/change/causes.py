@@ -8,10 +8,9 @@ the draws of every direction.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from math import pi
-from typing import Any
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -19,21 +18,11 @@ from scipy.optimize import least_squares
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.change.changed_structures import Happening, Standing, happenings
 from jackettwin.change.ground import UNDESCRIBED, Ground
+from jackettwin.change.standing_modes import MODES, NEAR, Modes, on_feet
 from jackettwin.change.working_rotor import WorkingRotor
 from jackettwin.errors import InputError
 from jackettwin.loads import Coefficients, Water, mass_per_level
-from jackettwin.response import (
-    LOCAL,
-    UndampedModes,
-    build_system,
-    mode_kinds,
-    mode_labels,
-    principal_direction,
-    tide_slopes,
-    track_modes,
-    undamped_modes,
-)
-from jackettwin.soil import Spring, Support
+from jackettwin.response import tide_slopes, undamped_modes
 from jackettwin.structure import Assembly, Structure, assemble
 from jackettwin.watching import (
     Cause,
@@ -44,8 +33,6 @@ from jackettwin.watching import (
 )
 from jackettwin.watching.causes import MISFIT
 
-MODES = 8
-"""Number of modes of the model."""
 _DRAWS = 6
 _TYPICAL_STIFFNESS = 2.5e9
 """Prior stiffness of a foot [N/m], within about a factor of e."""
@@ -186,13 +173,19 @@ def model_causes(
         if place >= 0 and np.isfinite(value):
             zeta[place] = value
     loss = _LOSS[0] * np.exp(_LOSS[1] * rng.standard_normal(_DRAWS))
-    bases = [Modes.of(standing, assembly, like=named) for standing in stands]
+    near = undamped_modes(on_feet(best, assembly), NEAR).shapes
+    bases = Modes.of_each(stands, assembly, [named] * _DRAWS, near)
+
+    def modes_after(event: Happening, stands: Sequence[Standing], bases: Sequence[Modes]) -> list[Modes]:
+        stood = happened(event, stands)
+        same = stood[0].structure is structure
+        return Modes.of_each(stood, assembly if same else standing(stood[0].structure), bases, near)
+
     found: list[tuple[str, Cause]] = []
     traceless = ["sensor: gain", "sensor: sign", "sensor: position"]
     kept = np.ones(MODES)
     for event in happenings(typical):
-        after = standing(event.apply(typical).structure)  # whatever the feet
-        changed = [Modes.of(event.apply(s), after, like=b) for s, b in zip(stands, bases, strict=True)]
+        changed = modes_after(event, stands, bases)
         draws = np.array([
             effect(event, base, then, eta, zeta)
             for base, then, eta in zip(bases, changed, loss, strict=True)
@@ -202,7 +195,12 @@ def model_causes(
             traceless.append(event.name)
         else:
             sizes, weights = sizes_about(event.median, event.spread, both_ways=event.both_ways)
-            bend = _bend(event, stands[0], standing, bases[0], loss[0], zeta, draws[0])
+            solved = () if event.spread < _ONE_SIZE else [repeated(event, times) for times in _SOLVED]
+            bends = [
+                effect(often, bases[0], modes_after(often, stands[:1], bases[:1])[0], loss[0], zeta)
+                for often in solved
+            ]
+            bend = _bend(event.per, draws[0], bends)
             cause = Cause(
                 event.name, draws, sizes, weights, event.unit, bent_at=bend[0], bend=bend[1],
                 misfit=min(_MISSES * error, MISFIT),
@@ -228,57 +226,6 @@ def _seen_best(assembly: Assembly, shapes: FloatArray) -> tuple[str, ...]:
         node, axis = np.unravel_index(np.argmax(shape), shape.shape)
         out.append(f"an accelerometer at {names[node]} along {'xy'[axis]}")
     return tuple(out)
-
-
-@dataclass(frozen=True)
-class Modes:
-    """Modes of a structure, in the order of another's.
-
-    ``soil_share`` is the share of the strain energy in the ground, ``kept`` that of the kinetic energy in the
-    other's modes of the whole structure; ``direction`` is the horizontal one of most motion [rad], from x
-    towards y. Modes with members of their own begin with ``local``.
-    """
-
-    labels: tuple[str, ...]
-    modes: UndampedModes
-    mass: Any
-    soil_share: FloatArray
-    kept: FloatArray
-    direction: FloatArray
-
-    @classmethod
-    def of(cls, standing: Standing, assembly: Assembly, like: Modes | None = None) -> Modes:
-        """Return the modes of an assembled structure on its feet, named by kind, or in another's order."""
-        feet = zip(standing.structure.reaction_nodes, standing.horizontal, standing.vertical, strict=True)
-        springs = tuple(Spring(node, np.diag([h, h, v, 0.0, 0.0, 0.0])) for node, h, v in feet)
-        system = build_system(assembly, Support(springs))
-        if like is None:
-            modes, kept = undamped_modes(system, MODES), np.ones(MODES)
-            labels = mode_labels(mode_kinds(assembly, modes.shapes, modes.frequency_hz))
-        else:
-            modes, labels = _followed(like, undamped_modes(system, MODES + 6)), like.labels
-            kept = _kept(like, modes.shapes)
-        moved = (assembly.expand @ modes.shapes).reshape(len(assembly.mesh.coordinates), 6, -1)
-        energy = np.zeros(len(modes.omega))
-        for spring in springs:
-            u = moved[assembly.mesh.node_names.index(spring.node)]
-            energy += np.einsum("im,ij,jm->m", u, spring.matrix, u)
-        ways = np.array([principal_direction(moved[:, :2, q])[0] for q in range(len(modes.omega))])
-        return cls(labels, modes, assembly.mass, energy / modes.omega**2, kept, ways)
-
-
-def _followed(like: Modes, modes: UndampedModes) -> UndampedModes:
-    """Return modes in the order of another's, by shape."""
-    order = track_modes(like.mass, like.modes.omega, like.modes.shapes, modes.shapes)
-    order = np.where(order < 0, np.arange(MODES), order)
-    return UndampedModes(modes.omega[order], modes.shapes[:, order])
-
-
-def _kept(like: Modes, shapes: FloatArray) -> FloatArray:
-    """Return the share of each shape's kinetic energy in another's modes of the whole structure, (n,)."""
-    whole = like.modes.shapes[:, [not name.startswith(LOCAL) for name in like.labels]]
-    moving = like.mass @ shapes
-    return np.asarray(np.sum((whole.T @ moving) ** 2, axis=0) / np.einsum("im,im->m", shapes, moving))
 
 
 def effect(event: Happening, base: Modes, after: Modes, eta: float, zeta: FloatArray) -> FloatArray:
@@ -320,29 +267,30 @@ def repeated(event: Happening, times: int) -> Happening:
     return replace(event, apply=apply, per=times * event.per)
 
 
-def _bend(
-    event: Happening,
-    standing: Standing,
-    assembled: Callable[[Structure], Assembly],
-    base: Modes,
-    eta: float,
-    zeta: FloatArray,
-    once: FloatArray,
-) -> tuple[FloatArray, FloatArray]:
+def happened(event: Happening, stands: Sequence[Standing]) -> list[Standing]:
+    """Return the stands of one structure after an event, which changes that whatever its feet."""
+    first = event.apply(stands[0])
+    if first.horizontal is stands[0].horizontal and first.vertical is stands[0].vertical:
+        return [replace(standing, structure=first.structure) for standing in stands]
+    return [first, *(replace(event.apply(s), structure=first.structure) for s in stands[1:])]
+
+
+def _bend(per: float, once: FloatArray, often: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
     """Return sizes, and the deviation of the change per unit from that of a single event.
 
     Solved at ``_SOLVED`` times the event; towards zero it goes on as between the event and the next of these.
+
+    Parameters
+    ----------
+    per : size of the event
+    once : change by it per unit
+    often : the same at ``_SOLVED`` times it; none if it has one size
     """
-    if event.spread < _ONE_SIZE:
+    if not often:
         return np.zeros(0), np.zeros((0, once.size))
-    bends = [np.zeros(once.size)]
-    for times in _SOLVED:
-        often = repeated(event, times)
-        stands = often.apply(standing)
-        after = Modes.of(stands, assembled(stands.structure), like=base)
-        bends.append(effect(often, base, after, eta, zeta) - once)
+    bends = [np.zeros(once.size), *(change - once for change in often)]
     none = bends[1] / (1 - _SOLVED[0])
-    return event.per * np.array([0, 1, *_SOLVED]), np.array([none, *bends])
+    return per * np.array([0, 1, *_SOLVED]), np.array([none, *bends])
 
 
 def drawn_standings(typical: Standing, stiffness: FloatArray) -> tuple[list[Standing], Standing]:
@@ -378,6 +326,7 @@ def standings(
     places, frequency_hz : of measured modes among the named ones, −1 for none of them
     """
     known = [(place, f) for place, f in zip(places, frequency_hz, strict=True) if place >= 0]
+    near = undamped_modes(on_feet(typical, assembly), NEAR).shapes
 
     def at(x: FloatArray) -> Standing:
         return replace(
@@ -385,7 +334,7 @@ def standings(
         )
 
     def residual(x: FloatArray) -> FloatArray:
-        omega = Modes.of(at(x), assembly, like=named).modes.omega
+        omega = Modes.of_each([at(x)], assembly, [named], near)[0].modes.omega
         off = [np.log(omega[place] / (2.0 * pi * f)) / _MODEL_ERROR for place, f in known]
         return np.array([*off, *x])
 

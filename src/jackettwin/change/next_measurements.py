@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.change.causes import MODES, SeenCauses
+from jackettwin.change.causes import SeenCauses
+from jackettwin.change.standing_modes import MODES
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.response import LOCAL
 from jackettwin.watching import (

@@ -32,6 +32,7 @@ from .modes.modal import (
 )
 from .modes.modal_damping import modal_damping as modal_damping
 from .modes.multiple import aligned as aligned, aligned_coordinates as aligned_coordinates
+from .modes.on_springs import OnSprings as OnSprings
 from .modes.own_damping import own_damping as own_damping
 from .modes.poles import damping_ratio as damping_ratio
 from .modes.tracking import near_degenerate as near_degenerate, track_modes as track_modes

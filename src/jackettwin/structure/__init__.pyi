@@ -11,6 +11,7 @@ from .damping import Rayleigh as Rayleigh, RayleighSchema as RayleighSchema
 from .eigen import (
     AT_REST as AT_REST,
     below_zero as below_zero,
+    definite_factor as definite_factor,
     dense as dense,
     lowest_modes as lowest_modes,
     refined_modes as refined_modes,

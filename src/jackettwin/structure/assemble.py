@@ -13,7 +13,7 @@ from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.errors import InputError
 from jackettwin.structure import beam
 from jackettwin.structure.masses import rigid_body_mass, rigid_transfer
-from jackettwin.structure.mesh import Mesh, discretise, sum_of_blocks, sum_of_elements
+from jackettwin.structure.mesh import Blocks, Mesh, discretise, sum_of_elements
 from jackettwin.structure.model import Structure
 from jackettwin.structure.weight import WeightForces, geometric_stiffness, weight_forces
 
@@ -115,52 +115,56 @@ def assemble(
     ) or theory == "timoshenko"
     mesh = discretise(structure, theory=theory, subdivide=subdivide, rotary_inertia=rotary)
     p, R = mesh.properties, mesh.axes
-    K = sum_of_elements(mesh, beam.to_global(beam.stiffness(p), R))
+    K = sum_of_elements(mesh, beam.to_global(beam.stiffness(p), R), _elements(mesh, "stiffness"))
     inertial = p if structure.shear_in_mass else replace(p, Phi=np.zeros_like(p.Phi))
-    M = sum_of_elements(mesh, beam.to_global(beam.mass(inertial, rotary_inertia=rotary), R))
-    K = K + _elements(mesh, "stiffness")
-    M = M + _elements(mesh, "mass") + _point_masses(structure, mesh)
+    M = sum_of_elements(
+        mesh,
+        beam.to_global(beam.mass(inertial, rotary_inertia=rotary), R),
+        [*_elements(mesh, "mass"), *_point_masses(structure, mesh)],
+    )
     T, independent = _rigid_links(structure, mesh)
     if gravity:
         weight = weight_forces(structure, mesh, K, M, T) if weight is None else weight
         K = K + geometric_stiffness(structure, mesh, weight)
-    K, M = sp.csc_array(T.T @ K @ T), sp.csc_array(T.T @ M @ T)
+    if structure.rigid_links:
+        K, M = sp.csc_array(T.T @ K @ T), sp.csc_array(T.T @ M @ T)
     return Assembly(structure, mesh, K, M, T, independent, weight if gravity else None)
 
 
-def _elements(mesh: Mesh, matrix: Literal["stiffness", "mass"]) -> sp.csc_array:
+def _elements(mesh: Mesh, matrix: Literal["stiffness", "mass"]) -> Blocks:
     """Return the matrices of the elements that are no tubes."""
-    return sum_of_blocks(
-        mesh,
-        [
-            (np.concatenate([mesh.node_dofs(e.start), mesh.node_dofs(e.end)]), np.array(getattr(e, matrix)))
-            for e in mesh.others
-        ],
-    )
+    return [
+        (np.concatenate([mesh.node_dofs(e.start), mesh.node_dofs(e.end)]), np.array(getattr(e, matrix)))
+        for e in mesh.others
+    ]
 
 
-def _point_masses(structure: Structure, mesh: Mesh) -> sp.csc_array:
+def _point_masses(structure: Structure, mesh: Mesh) -> Blocks:
     blocks = [(mesh.node_dofs(m.node), rigid_body_mass(m)) for m in structure.masses]
     for reaction in structure.reactions:
         if reaction.mass is not None:
             blocks.append((mesh.node_dofs(reaction.node), np.array(reaction.mass)))
-    return sum_of_blocks(mesh, blocks)
+    return blocks
 
 
 def _rigid_links(structure: Structure, mesh: Mesh) -> tuple[sp.csr_array, IntArray]:
     """Return T with u = T q, and which DOFs are in q: of followers an angle for each released axis."""
-    T = sp.eye_array(mesh.n_dof, format="lil")
-    gone = []
+    gone, entries = [np.zeros(0, dtype=np.intp)], []
     for link in structure.rigid_links:
         rows, columns = mesh.node_dofs(link.follower), mesh.node_dofs(link.leader)
         arm = np.subtract(structure.nodes[link.follower], structure.nodes[link.leader])
-        T[rows, rows] = 0.0
-        T[rows[:, None], columns] = rigid_transfer(arm)
+        entries.append((np.repeat(rows, 6), np.tile(columns, 6), rigid_transfer(arm).ravel()))
         free = len(link.release)
         for angle, axis in zip(rows[3:], link.release, strict=False):
-            T[rows[3:, None], [angle]] = np.array(axis)[:, None]
+            entries.append((rows[3:], np.repeat(angle, 3), np.array(axis)))
         gone.append(np.concatenate([rows[:3], rows[3 + free :]]))
-    keep = np.setdiff1d(np.arange(mesh.n_dof), np.concatenate(gone) if gone else [])
-    result = sp.csr_array(T.tocsc()[:, keep])
+    followers = [mesh.node_dofs(link.follower) for link in structure.rigid_links]
+    keep = np.setdiff1d(np.arange(mesh.n_dof), np.concatenate(gone))
+    own = np.setdiff1d(keep, np.concatenate([gone[0], *followers]))
+    rows, columns, values = (
+        np.concatenate(parts) for parts in zip((own, own, np.ones(own.size)), *entries, strict=True)
+    )
+    at = np.searchsorted(keep, columns)
+    result = sp.coo_array((values, (rows, at)), shape=(mesh.n_dof, keep.size)).tocsr()
     result.eliminate_zeros()
     return result, np.asarray(keep, dtype=np.intp)

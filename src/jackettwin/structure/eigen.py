@@ -76,8 +76,7 @@ def refined_modes(
     NumericalError
         If M has one.
     """
-    shifted = sp.csc_matrix(K - shift * M)
-    moved = spla.splu(shifted).solve(np.asarray(M @ x))
+    moved = definite_factor(K - shift * M).solve(np.asarray(M @ x))
     basis = np.linalg.qr(np.hstack([x, moved]))[0]
     try:
         w, q = la.eigh(basis.T @ (K @ basis), basis.T @ (M @ basis), subset_by_index=[0, number - 1])
@@ -86,6 +85,25 @@ def refined_modes(
     if w.min(initial=0.0) < 1e-3 * shift:
         raise _unstable()
     return np.sqrt(np.maximum(w, 0.0)), np.asarray(basis @ q)
+
+
+def definite_factor(K: Matrix) -> Any:
+    """Return the sparse factor of a positive definite matrix, which needs no pivots: its ``solve`` solves.
+
+    Raises
+    ------
+    NumericalError
+        If a pivot is zero.
+    """
+    try:
+        return spla.splu(
+            sp.csc_matrix(K),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+    except RuntimeError as error:
+        raise NumericalError(f"a motion of the structure meets no stiffness: {error}") from error
 
 
 def below_zero(K: Matrix, M: Matrix) -> float:

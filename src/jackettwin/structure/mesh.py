@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -183,20 +184,31 @@ def _nodes(structure: Structure, usual: int) -> tuple[tuple[str, ...], FloatArra
     return tuple(names), np.vstack(points), along
 
 
-def sum_of_elements(mesh: Mesh, matrices: FloatArray) -> sp.csc_array:
-    """Return the sum of the elements' matrices (n_elements, 12, 12), on all DOFs of the mesh."""
+Blocks = Sequence[tuple[IntArray, FloatArray]]
+"""Dense square matrices, each with the DOFs that it is on."""
+
+
+def sum_of_elements(mesh: Mesh, matrices: FloatArray, blocks: Blocks = ()) -> sp.csc_array:
+    """Return the sum of the elements' matrices (n_elements, 12, 12) and of blocks, on all DOFs."""
     dofs = mesh.element_dofs()
     rows, columns = np.repeat(dofs, 12, axis=1).ravel(), np.tile(dofs, (1, 12)).ravel()
-    return sp.coo_array((matrices.ravel(), (rows, columns)), shape=(mesh.n_dof, mesh.n_dof)).tocsc()
+    return _summed(mesh, [(rows, columns, matrices.ravel()), *_entries(blocks)])
 
 
-def sum_of_blocks(mesh: Mesh, blocks: list[tuple[IntArray, FloatArray]]) -> sp.csc_array:
-    """Return the sum of dense blocks, each on its own DOFs."""
-    if not blocks:
-        return sp.csc_array((mesh.n_dof, mesh.n_dof))
-    rows = np.concatenate([np.repeat(dofs, dofs.size) for dofs, _ in blocks])
-    columns = np.concatenate([np.tile(dofs, dofs.size) for dofs, _ in blocks])
-    values = np.concatenate([np.ravel(block) for _, block in blocks])
+def sum_of_blocks(mesh: Mesh, blocks: Blocks) -> sp.csc_array:
+    """Return the sum of dense blocks."""
+    return _summed(mesh, _entries(blocks)) if blocks else sp.csc_array((mesh.n_dof, mesh.n_dof))
+
+
+Entries = tuple[IntArray, IntArray, FloatArray]
+
+
+def _entries(blocks: Blocks) -> list[Entries]:
+    return [(np.repeat(dofs, dofs.size), np.tile(dofs, dofs.size), np.ravel(block)) for dofs, block in blocks]
+
+
+def _summed(mesh: Mesh, entries: list[Entries]) -> sp.csc_array:
+    rows, columns, values = (np.concatenate(parts) for parts in zip(*entries, strict=True))
     total = sp.coo_array((values, (rows, columns)), shape=(mesh.n_dof, mesh.n_dof)).tocsc()
     total.eliminate_zeros()
     return total

@@ -11,14 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-import scipy.sparse.linalg as spla
 
 from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.errors import InputError
 from jackettwin.structure import beam
+from jackettwin.structure.eigen import definite_factor
 from jackettwin.structure.masses import lever_arm_stiffness
-from jackettwin.structure.mesh import Mesh, sum_of_blocks, sum_of_elements
+from jackettwin.structure.mesh import Blocks, Mesh, sum_of_elements
 from jackettwin.structure.model import PILES, Structure
 from jackettwin.structure.two_node import TwoNodeElement
 
@@ -66,7 +66,7 @@ def weight_forces(
     held = np.concatenate([mesh.node_dofs(name) for name in structure.reaction_nodes])
     free = np.setdiff1d(np.arange(T.shape[1]), (T[held].nonzero())[1])
     Tf = sp.csc_array(T[:, free])
-    u = Tf @ spla.spsolve(sp.csc_array(Tf.T @ K @ Tf), Tf.T @ weight)
+    u = Tf @ definite_factor(Tf.T @ K @ Tf).solve(Tf.T @ weight)
     N = beam.axial_force(mesh.properties, mesh.axes, u[mesh.element_dofs()])
     # ground holds a pile along its length: what it would carry hanging from its foot says nothing
     buried = np.array([member.part == PILES for member in structure.members], dtype=bool)
@@ -86,13 +86,13 @@ def geometric_stiffness(structure: Structure, mesh: Mesh, forces: WeightForces) 
     along which their force could turn.
     """
     N = np.concatenate([np.zeros(0), *(forces.members[m.name] for m in structure.members)])
-    tubes = sum_of_elements(mesh, beam.to_global(beam.geometric_stiffness(N, mesh.properties), mesh.axes))
+    tubes = beam.to_global(beam.geometric_stiffness(N, mesh.properties), mesh.axes)
     blocks = [
         (_dofs(mesh, e), geometric)
         for e in mesh.others
         if (geometric := _of_element(mesh, e, forces.elements[e.name])) is not None
     ]
-    return sp.csc_array(tubes + sum_of_blocks(mesh, blocks + _lever_arms(structure, mesh, forces)))
+    return sum_of_elements(mesh, tubes, [*blocks, *_lever_arms(structure, mesh, forces)])
 
 
 def _dofs(mesh: Mesh, element: TwoNodeElement) -> IntArray:
@@ -133,7 +133,7 @@ def _of_element(mesh: Mesh, element: TwoNodeElement, N: float) -> FloatArray | N
 _TRANSLATIONS = (0, 1, 2, 6, 7, 8)
 
 
-def _lever_arms(structure: Structure, mesh: Mesh, forces: WeightForces) -> list[tuple[IntArray, FloatArray]]:
+def _lever_arms(structure: Structure, mesh: Mesh, forces: WeightForces) -> Blocks:
     """Return the rotational stiffness of forces at the end of rigid arms: eccentric masses, rigid links."""
     blocks = []
     for body in structure.masses:
