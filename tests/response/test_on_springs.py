@@ -36,13 +36,13 @@ def test_one_factor_gives_the_modes_on_every_spring_of_a_changed_chain() -> None
     for springs in STIFFNESS:
         omega, shapes = whole.modes(springs, MODES)
         wanted, wanted_shapes = exact(K, springs)
-        off = 1.0 - (wanted[: MODES] / omega) ** 2
+        off = 1.0 - (wanted[:MODES] / omega) ** 2
         told = whole.error(springs, omega, shapes)
         assert np.all(off > -1e-10)  # Ritz values lie above
         assert off.max() < (wanted[MODES - 1] / wanted[NEAR - 1]) ** 8  # two steps, twice as many in ω²
         # the residual tells (1 − ω²/ω_j²) of the error, with ω_j above all that are in the basis
         assert np.all(off < told / (1.0 - (wanted[MODES - 1] / wanted[NEAR - 1]) ** 2) + 1e-10)
-        likeness = np.abs(np.einsum("ij,ij->j", shapes, wanted_shapes[:, : MODES]))
+        likeness = np.abs(np.einsum("ij,ij->j", shapes, wanted_shapes[:, :MODES]))
         np.testing.assert_allclose(likeness, 1.0, atol=1e-5)  # squares of shapes' errors
 
 
