@@ -59,9 +59,6 @@ window pages:
 	@echo 'Node 20 or newer is not installed: the window is not built; the service says so'
 endif
 
-LOOSE := arg-type assignment call-overload dict-item index list-item misc no-any-return operator return-value type-var
-LOOSE += no-untyped-call no-untyped-def type-arg union-attr unused-ignore var-annotated
-
 test: $(VENV)/.dev ## everything CI checks
 	@$(MAKE) --no-print-directory --jobs=3 --output-sync=target servers kernels types lint layers security pages
 	@$(MAKE) --no-print-directory unit
@@ -70,9 +67,8 @@ lint: $(VENV)/.dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 
-types: $(VENV)/.dev # of the scripts: that what they name and call is there
+types: $(VENV)/.dev
 	$(BIN)/mypy
-	MYPYPATH=qualify:scripts $(BIN)/mypy $(LOOSE:%=--disable-error-code=%) qualify benchmarks scripts
 
 layers: $(VENV)/.dev
 	$(BIN)/lint-imports
