@@ -17,10 +17,10 @@ from math import exp, log
 
 import numpy as np
 from scipy.optimize import minimize
-from scipy.signal.windows import tukey
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.sensing.latent_forces import LatentForce
+from jackettwin.signals import tukey
 
 _NOISE_STD = 3.0
 """Of the logarithm of the noise's variance beforehand: it may be twenty times more or less."""
