@@ -9,14 +9,23 @@ import pytest
 from jackettwin.change import causes, standing_modes
 from jackettwin.change.causes import ModelCauses, model_causes, seen_causes, standings, turned
 from jackettwin.change.changed_structures import Standing, braces, happenings, with_mass
-from jackettwin.change.ground import Ground, scour_loss
+from jackettwin.change.ground import UNDESCRIBED, Ground, scour_loss
 from jackettwin.change.standing_modes import MODES, Modes, kept_share
 from jackettwin.change.working_rotor import NAME, WorkingRotor
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
 from jackettwin.response.modes.modal import UndampedModes, undamped_modes
 from jackettwin.soil.foundation import read_foundation
-from jackettwin.structure import Assembly, assemble
+from jackettwin.structure import (
+    STEEL,
+    Assembly,
+    Member,
+    PointMass,
+    Reaction,
+    Section,
+    Structure,
+    assemble,
+)
 from jackettwin.twin import RotorSide
 
 LABELS = ("side_side_1", "fore_aft_1", "torsion_1")
@@ -195,6 +204,29 @@ def test_lost_anodes_are_taken_from_the_bodies_on_the_node_then_from_the_steel(s
     assert lost == pytest.approx(20.0 * length)
     f = [Modes.of(s, assemble(s.structure)).modes.frequency_hz for s in (lighter, stands)]
     assert np.all(f[0] >= f[1]) and f[0].sum() > f[1].sum()
+
+
+def test_a_monopile_stands_on_one_foot_that_turns() -> None:
+    """Softer ground takes ½ ln 0.9 of its share in ω², scour what its own stiffness loses of the same share.
+
+    Rotation is most of it, so that a metre does nearer the loss in rotation than that in sway.
+    """
+    tube, slim = Section(8.0, 0.08), Section(6.5, 0.04)
+    nodes = {"foot": (0.0, 0.0, -30.0), "deck": (0.0, 0.0, 15.0), "top": (0.0, 0.0, 110.0)}
+    members = (
+        Member("pile", "foot", "deck", tube, tube, STEEL), Member("tower", "deck", "top", slim, slim, STEEL)
+    )  # fmt: skip
+    pile = Structure(
+        "pile", nodes, members, masses=(PointMass("top", 6e5),), reactions=(Reaction("foot"),),
+        interface_nodes=("deck",), subdivide=3,
+    )  # fmt: skip
+    found = model_causes(pile, ("fore_aft_1",), np.array([0.21]), np.array([0.01]))
+    at = found.labels.index("fore_aft_1")
+    assert found.frequency_hz[at] == pytest.approx(0.21, rel=2e-3)
+    soil, scour = (direction(found, name)[at] for name in ("soil softening", "scour at all feet"))
+    sways, _, turns = UNDESCRIBED.scour_loss
+    assert turns < scour / (soil * 0.1) * np.log(0.9) * -1.0 < 0.5 * (turns + sways)
+    assert not [c.name for c in found.causes if c.name.startswith("scour at foot")]
 
 
 def test_no_more_mass_is_lost_than_there_is(stands: Standing) -> None:

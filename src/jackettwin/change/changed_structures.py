@@ -10,7 +10,7 @@ from typing import cast
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.change.ground import UNDESCRIBED, Loss
+from jackettwin.change.ground import ARM_M, UNDESCRIBED, Loss, in_line
 from jackettwin.errors import require
 from jackettwin.plugins import plugins
 from jackettwin.structure import Material, Member, PointMass, Section, Structure
@@ -35,13 +35,18 @@ class Standing:
     Attributes
     ----------
     horizontal, vertical : (n_feet,) [N/m]
-    scour_loss : ln of either that a metre of scour takes
+    scour_loss : ln of these, and of the rotational stiffness, that a metre of scour takes
     """
 
     structure: Structure
     horizontal: FloatArray
     vertical: FloatArray
     scour_loss: Loss = field(default_factory=lambda: UNDESCRIBED.scour_loss)
+
+    @property
+    def rocking(self) -> FloatArray:
+        """Rotational stiffness of every foot [Nm/rad]: none of several, which stand on translations."""
+        return self.vertical * (ARM_M**2 if in_line(self.structure) else 0.0)
 
 
 @dataclass(frozen=True)
@@ -92,7 +97,8 @@ def happenings(standing: Standing) -> tuple[Happening, ...]:
 
 def _grounds(structure: Structure) -> Iterator[Happening]:
     yield Happening("scour", "scour at all feet", lambda s: _scoured(s, None), 1.0, 1.0, 0.8, "m")
-    for i, node in enumerate(structure.reaction_nodes):
+    feet = structure.reaction_nodes
+    for i, node in enumerate(feet if len(feet) > 1 else ()):
         yield Happening("scour at one foot", f"scour at {node}", _scoured_at(i), 1.0, 1.5, 0.8, "m")
     yield Happening("soil", "soil softening", _softened, 0.1, 0.1, 0.8, "-")
 
@@ -103,7 +109,9 @@ def _scoured_at(foot: int) -> Callable[[Standing], Standing]:
 
 def _scoured(standing: Standing, foot: int | None) -> Standing:
     chosen = np.ones(standing.horizontal.size) if foot is None else np.eye(standing.horizontal.size)[foot]
-    sideways, axially = (np.exp(-loss * chosen) for loss in standing.scour_loss)
+    sideways, axially, turning = (np.exp(-loss * chosen) for loss in standing.scour_loss)
+    if in_line(standing.structure):
+        axially = turning
     return replace(standing, horizontal=standing.horizontal * sideways, vertical=standing.vertical * axially)
 
 

@@ -10,8 +10,9 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.files import read_yaml
-from jackettwin.soil import Foundation, read_foundation
+from jackettwin.soil import Foundation, read_foundation, standing
 from jackettwin.soil.foundation import build_foundation, shipped_foundations
+from jackettwin.structure import Structure
 from jackettwin.twin import TwinConfig
 from jackettwin.updating import Update
 
@@ -20,8 +21,11 @@ REFERENCE = "jacket15"
 clay over dense sand. A metre of scour takes 21 % of their lateral stiffness and 1 % of the axial one,
 which acts deeper."""
 
-Loss = tuple[float, float]
-"""ln of the horizontal and of the vertical stiffness that a pile head loses by a metre of scour."""
+Loss = tuple[float, float, float]
+"""ln of the horizontal, vertical and rotational stiffness that a pile head loses by a metre of scour."""
+ARM_M = 14.0
+"""Arm at which a foot's vertical stiffness resists its rotation where feet stand in a line, as a monopile
+does: 5e11 Nm/rad for 2.5e9 N/m."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +38,8 @@ class Ground:
         Layered ground with a pile; if None, scour acts as on the piles of ``REFERENCE``.
     stiffness : (n_draws, 2, n_feet) or None
         Horizontal and vertical stiffness of the feet [N/m], drawn from the posterior of an update; without,
-        it is fitted to the frequencies of the baseline.
+        it is fitted to the frequencies of the baseline. Of feet in a line the second is the rotational
+        stiffness over ``ARM_M`` squared.
     """
 
     piles: Foundation | None = None
@@ -56,8 +61,13 @@ UNDESCRIBED = Ground()
 """Undescribed ground."""
 
 
+def in_line(structure: Structure) -> bool:
+    """Tell whether a structure would turn over on translations alone: one foot, or feet in a line."""
+    return any(len(dofs) > len("xyz") for _, dofs in standing(structure).fixed)
+
+
 def scour_loss(piles: Foundation) -> Loss:
-    """Return the loss of ln stiffness of a pile head per metre of scour, horizontal and vertical.
+    """Return the loss of ln stiffness of a pile head per metre of scour, horizontal, vertical, rotational.
 
     Raises
     ------
@@ -66,7 +76,7 @@ def scour_loss(piles: Foundation) -> Loss:
     """
     before, after = (one.head() for one in (piles, piles.scoured(1.0)))
     K, L = before.steel + before.soil, after.steel + after.soil
-    return log(K[0, 0] / L[0, 0]), log(K[2, 2] / L[2, 2])
+    return log(K[0, 0] / L[0, 0]), log(K[2, 2] / L[2, 2]), log(K[3, 3] / L[3, 3])
 
 
 @cache
@@ -93,9 +103,10 @@ def _feet_stiffness(update: Update) -> FloatArray:
     model, known = update.model, update.uncertainty
     assert known is not None
     feet, s = model.assembly.structure.reaction_nodes, 2j * pi * model.reference_hz
-    out = np.zeros((len(known.log_theta), 2, len(feet)))
+    out, turns = np.zeros((len(known.log_theta), 2, len(feet))), in_line(model.assembly.structure)
     for draw, theta in zip(out, np.exp(known.log_theta), strict=True):
         for spring in model.tie_groups.support(model.laws(theta)).springs:
             k = np.asarray(spring.law.stiffness(s)).real * spring.matrix
-            draw[:, feet.index(spring.node)] += 0.5 * (k[0, 0] + k[1, 1]), k[2, 2]
+            upright = 0.5 * (k[3, 3] + k[4, 4]) / ARM_M**2 if turns else k[2, 2]
+            draw[:, feet.index(spring.node)] += 0.5 * (k[0, 0] + k[1, 1]), upright
     return out

@@ -124,19 +124,26 @@ class Modes:
 
 def on_feet(standing: Standing, assembly: Assembly) -> System:
     """Return an assembled structure on its feet."""
-    feet = zip(standing.structure.reaction_nodes, standing.horizontal, standing.vertical, strict=True)
-    springs = (Spring(node, np.diag([h, h, v, 0.0, 0.0, 0.0])) for node, h, v in feet)
-    return build_system(assembly, Support(tuple(springs)))
+    feet = zip(standing.structure.reaction_nodes, _by_foot(standing), strict=True)
+    return build_system(assembly, Support(tuple(Spring(node, np.diag(k)) for node, k in feet)))
 
 
 def feet_dofs(standing: Standing, assembly: Assembly) -> IntArray:
-    """Return the DOFs of the feet's translations, (3·n_feet,)."""
-    return np.concatenate([assembly.dofs(node)[:3] for node in standing.structure.reaction_nodes])
+    """Return the DOFs of the feet on which there is stiffness, (n_springs,)."""
+    dofs = np.stack([assembly.dofs(node) for node in standing.structure.reaction_nodes])
+    return np.asarray(dofs[_by_foot(standing) > 0.0])
 
 
 def feet_stiffness(standing: Standing) -> FloatArray:
-    """Return the stiffness on those [N/m]."""
-    return np.stack([standing.horizontal, standing.horizontal, standing.vertical], axis=1).ravel()
+    """Return the stiffness on those [N/m, Nm/rad]."""
+    every = _by_foot(standing)
+    return every[every > 0.0]
+
+
+def _by_foot(standing: Standing) -> FloatArray:
+    """Return the stiffness of every foot along and about x, y and z, (n_feet, 6)."""
+    h, v, turned = standing.horizontal, standing.vertical, standing.rocking
+    return np.stack([h, h, v, turned, turned, turned], axis=1)
 
 
 def kept_share(like: Modes, shapes: FloatArray) -> FloatArray:

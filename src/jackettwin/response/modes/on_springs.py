@@ -63,7 +63,7 @@ class OnSprings:
         """
         K, M = self._small
         at = self.basis[self.dofs]
-        last = len(M) - 1
+        last, number = len(M) - 1, min(number, len(M))
         try:
             # M x = μ K x: of many masses some may be zero
             mu, q = la.eigh(
