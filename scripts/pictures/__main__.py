@@ -43,16 +43,16 @@ SHOTS = (
     Shot("report", "demo/report.html", None, 1280, 1200),
     Shot("structure", "view.html", None, 1000, 760),
     Shot("supports", "law.html", "store and lose", 1000),
-    Shot("soil", "soil.html", "bear sideways"),
+    Shot("soil", "soil.html", "resist lateral"),
     Shot("updating", "explore.html", "Where is the cost low"),
     Shot("condensed", "explore.html", "as c varies"),
     Shot("response", "demo/report.html", "Pale: at rest", 1000),
-    Shot("identification", "demo/report.html", "Pick poles"),
-    Shot("posterior", "demo/report.html", "values go together"),
-    Shot("damping_budget", "demo/report.html", "Whose damping is it"),
+    Shot("identification", "demo/report.html", "which poles are stable"),
+    Shot("posterior", "demo/report.html", "how are the parameters correlated"),
+    Shot("damping_budget", "demo/report.html", "What causes the damping"),
     Shot("closing_loop", "demo/report.html", "What did the data add"),
     Shot("simulation", "parked.html", "Welch"),
-    Shot("watching", "watched/report.html", "nine days of ten"),
+    Shot("watching", "watched/report.html", "nine days out of ten"),
 )
 
 

@@ -126,7 +126,7 @@ def feet_headline(a: Answers) -> str:
     hidden = () if s.objection is None else s.objection.unseen
     said = [_seen_from(one.tolerance, one.seen_from) for one in hidden if one.tolerance.name == "weak_leg"]
     foot = f"; one foot softer than the others is {said[0]}" if said else ""
-    return f"Stiffness is the feet's mean by compliance (of like feet that yield as much){foot}."
+    return f"Stiffness is one value for all feet, from their mean compliance{foot}."
 
 
 def condition_headline(a: Answers) -> str:
