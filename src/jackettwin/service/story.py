@@ -137,7 +137,7 @@ def _scour_effect(config: TwinConfig, model: TwinModel) -> FloatArray:
         system = build_system(assembly, Support(springs))
         return np.asarray(undamped_modes(system, len(_MODES)).frequency_hz)
 
-    loss_per_m = Ground.of(config).scour_loss
+    loss_per_m = Ground.of(config).scour_loss[:2]  # of a foot that does not turn
     return np.log(frequencies(SCOUR_M) / frequencies(0.0)) / SCOUR_M
 
 
