@@ -20,8 +20,9 @@ def test_simulated_turbulence_has_sigma_spectrum_and_coherence() -> None:
     for component in range(3):
         got = variance[:, 0, component]
         error = got.std() / np.sqrt(24)
-        # what lies beyond the Nyquist frequency of 2 Hz is not in the record: 11 % of w
-        f = np.linspace(0.0, 2.0, 100_000)
+        # what lies beyond the Nyquist frequency of 2 Hz is not in the record: 11 % of w; nor what is slower
+        # than its first line: 9 % of u
+        f = np.linspace(0.5 / 600.0, 2.0, 100_000)
         wanted = np.trapezoid(kaimal(WIND, f, component), f)
         assert abs(got.mean() - wanted) < 4 * error
     spectra = np.fft.rfft(fields[..., 0], axis=1)
@@ -39,6 +40,23 @@ def test_simulated_turbulence_has_sigma_spectrum_and_coherence() -> None:
     )
     S = kaimal(WIND, f[band])
     assert got == pytest.approx(float(S @ coherence(WIND, f[band], 20.0) / S.sum()), abs=4 / np.sqrt(24 * 24))
+
+
+def test_the_slowest_gusts_are_no_stronger_than_the_spectrum() -> None:
+    """Of one seed in two winds, amplitudes of a line are as the roots of its densities."""
+    slow, fast = (Wind(speed, 150.0, 0.1) for speed in (6.0, 24.0))
+    series = [
+        turbulence(wind, np.zeros((1, 2)), duration=600.0, sample_rate_hz=2.0, seed=1)[:, 0]
+        for wind in (slow, fast)
+    ]
+    f = np.fft.rfftfreq(1200, 0.5)
+    power = [np.abs(np.fft.rfft(one, axis=0)) ** 2 for one in series]
+    for component in range(3):
+        got = power[0][1:200, component] / power[1][1:200, component]
+        wanted = kaimal(slow, f[1:200], component) / kaimal(fast, f[1:200], component)
+        # the mean over a line's band is 2.5 % more than what is at its middle in 6 m/s, 0.3 % in 24
+        np.testing.assert_allclose(got, wanted, rtol=0.023)
+        np.testing.assert_allclose(got[3:], wanted[3:], rtol=0.008)
 
 
 def test_seeds_repeat() -> None:
