@@ -40,10 +40,12 @@ def test_planted_levels_and_noise_are_found(rng: np.random.Generator) -> None:
     y, H, which, forces = planted(rng)
     start = tuple(force.with_level(0.1) for force in forces)
     found = find_levels(y, STEP_S, H, which, start, (0, 0))
-    # what counts as the misfit of the model takes some of a level; they start twenty times too low
+    # they start twenty times too low; 210 coefficients, of which the misfit hides a fifth: 5 %, twice. A
+    # misfit that stood for a part of the record took 7 to 26 % off a level
     for one, true in zip(found.forces, forces, strict=True):
-        assert one.level == pytest.approx(true.level, rel=0.3)
-    assert np.sqrt(found.noise) == pytest.approx([0.05, 0.05], rel=0.2)
+        assert one.level == pytest.approx(true.level, rel=0.1)
+    # noise is far below the misfit but where little moves
+    assert np.sqrt(found.noise) == pytest.approx([0.05, 0.05], rel=0.4)
     wrong = find_levels(y, STEP_S, H[:, ::-1], which, start, (0, 0))
     assert wrong.log_likelihood < found.log_likelihood - 100.0
 
@@ -54,11 +56,12 @@ def test_the_gradient_is_that_of_the_likelihood(rng: np.random.Generator) -> Non
     Y = (np.fft.rfft(y, axis=1) * np.sqrt(STEP_S / N))[:, which].T
     S = np.array([f.density(omega) for f in forces])
     r = np.full(Y.shape, 0.05**2 * STEP_S) * rng.uniform(0.5, 2.0, Y.shape)
-    value, slopes, *_ = _whittle(Y, H, S, r)
+    beside = 0.3 * np.abs(Y) ** 2
+    value, slopes, *_ = _whittle(Y, H, S, r, beside)
     way_S, way_r = rng.standard_normal(S.shape), rng.standard_normal(r.shape)
     h = 1e-6
-    ahead = _whittle(Y, H, S * np.exp(h * way_S), r * np.exp(h * way_r))[0]
-    behind = _whittle(Y, H, S * np.exp(-h * way_S), r * np.exp(-h * way_r))[0]
+    ahead = _whittle(Y, H, S * np.exp(h * way_S), r * np.exp(h * way_r), beside)[0]
+    behind = _whittle(Y, H, S * np.exp(-h * way_S), r * np.exp(-h * way_r), beside)[0]
     slope = (slopes * np.hstack([way_S.T, way_r])).sum()
     assert slope == pytest.approx((ahead - behind) / (2.0 * h), rel=1e-5)
     assert np.isfinite(value)
@@ -71,7 +74,8 @@ def test_information_is_the_curvature_of_the_expected_cost(rng: np.random.Genera
     some = _Evidence.of(y, STEP_S, H, which, forces, (0, 1))
     z, m = some.start, 2
     S_0 = np.einsum("fik,kf,fjk->fij", H, some.densities(z), H.conj())
-    S_0 += some.noise(z)[1][:, :, None] * np.eye(m)
+    # what the misfit adds is added to the record by the cost itself
+    S_0 += np.diag(some.noise(z)[0])
     columns = np.sqrt(m) * np.linalg.cholesky(S_0)
 
     def slope(x: np.ndarray) -> np.ndarray:

@@ -1,12 +1,15 @@
 r"""Levels and corners of the latent forces, and sensor noise, by Whittle's likelihood of a record's spectra.
 
-.. math:: -\ln L = \sum_{f>0} \ln\det S(f) + y_f^H S(f)^{-1} y_f, \qquad
-          S(f) = \sum_j S_j(f)\,h_j(f) h_j(f)^H + h\,R + ε^2\,\mathrm{diag}\,|y_f|^2
+.. math:: -\ln L = \sum_{f>0} \ln\det S(f) + \mathrm{tr}\,S(f)^{-1} [y_f y_f^H + E(f)], \qquad
+          S(f) = \sum_j S_j(f)\,h_j(f) h_j(f)^H + h\,R + E(f), \qquad E = ε^2\,\mathrm{diag}\,|y_f|^2
 
 with the Fourier coefficients y_f of a record, the responses h_j of its sensors to each force, the density of
-white noise, and a share ε of each channel's own motion that no force explains, as a model's shapes are never
-exact: without it forces must, at any level (Whittle 1953). The gradient of each force's density is one number
-a frequency, :math:`h_j^H S^{-1} h_j - |h_j^H S^{-1} y|^2`, and Fisher's information of two
+white noise, and a share ε of each channel's own motion that tells nothing, as a model's shapes are never
+exact: without it forces must explain all of it, at any level (Whittle 1953). It is added to the record, too,
+as its expectation: a model that lacks nothing has then no bias. With E in S alone it stood for a part of the
+record, and waves beneath a motion that wind makes were found a fifth to a third too weak. The gradient of
+each force's density is one number a frequency,
+:math:`h_j^H S^{-1} h_j - h_j^H S^{-1} [y y^H + E] S^{-1} h_j`, and Fisher's information of two
 :math:`|h_i^H S^{-1} h_j|^2` times their densities, so that a search costs tens of milliseconds.
 """
 
@@ -277,7 +280,7 @@ class _Evidence:
         if key not in self.last:
             S_f, (white, r) = self.densities(z), self.noise(z)
             self.last.clear()
-            self.last[key] = S_f, white, r, _whittle(self.Y, self.H, S_f, r)
+            self.last[key] = S_f, white, r, _whittle(self.Y, self.H, S_f, r, _MISFIT**2 * self.power)
         return self.last[key]
 
     def _with_rate(self, z: FloatArray, S_f: FloatArray) -> FloatArray:
@@ -326,8 +329,12 @@ def _apart(forces: tuple[LatentForce, ...], std: FloatArray) -> FloatArray:
 _Whittle = tuple[float, FloatArray, ComplexArray, ComplexArray, ComplexArray]
 
 
-def _whittle(Y: ComplexArray, H: ComplexArray, S_f: FloatArray, r: FloatArray) -> _Whittle:
+def _whittle(
+    Y: ComplexArray, H: ComplexArray, S_f: FloatArray, r: FloatArray, beside: FloatArray
+) -> _Whittle:
     """Return −ln L, its slope, and in the noise's own scale h, S⁻¹h and S⁻¹.
+
+    What stands ``beside`` the record (n, m) is the expectation of what is added to its squares.
 
     The slope (n, n_forces + m) is by the logarithms of the densities of forces S_f (n_forces, n) and of
     noise r (n, m).
@@ -339,10 +346,13 @@ def _whittle(Y: ComplexArray, H: ComplexArray, S_f: FloatArray, r: FloatArray) -
     inverse = np.linalg.inv(S)
     logdet = 2.0 * np.log(np.diagonal(np.linalg.cholesky(S), axis1=1, axis2=2).real).sum()
     solved, seen = (inverse @ y[:, :, None])[:, :, 0], np.asarray(inverse @ h)
-    value = float(logdet + np.log(r).sum() + (y.conj() * solved).real.sum())
+    diagonal, b = np.diagonal(inverse, axis1=1, axis2=2).real, beside / r
+    value = float(logdet + np.log(r).sum() + (y.conj() * solved).real.sum() + (b * diagonal).sum())
     own = (h.real * seen.real + h.imag * seen.imag).sum(axis=1)
     fit = np.abs((solved.conj()[:, None, :] @ h)[:, 0, :]) ** 2
-    of_noise = np.diagonal(inverse, axis1=1, axis2=2).real - np.abs(solved) ** 2
+    fit += (b[:, None, :] @ (np.square(seen.real) + np.square(seen.imag)))[:, 0, :]
+    of_noise = diagonal - np.abs(solved) ** 2
+    of_noise -= (b[:, None, :] @ (np.square(inverse.real) + np.square(inverse.imag)))[:, 0, :]
     slope: FloatArray = np.concatenate([own - fit, of_noise], axis=1)
     return value, slope, h, seen, np.asarray(inverse)
 
