@@ -90,7 +90,7 @@ FAULTS = (
         ("the median is that of the design curve", "10.0 ** (-2.0 * self.curve.log_std)", "10.0 ** (-0.0 * self.curve.log_std)"),
     )),
     *_of("sensing", rows=(
-        ("drag of a sea runs against its waves", "turn - float(k[0])", "turn + float(k[0])"),
+        ("drag of a sea runs against its waves", "np.exp(-1j * float(k)", "np.exp(1j * float(k)"),
         ("gravity pulls on a leaning accelerometer the other way", "np.asarray(-GRAVITY_M_S2 * share", "np.asarray(GRAVITY_M_S2 * share"),
         ("a rotor is turned against its heading", "turn @ self.damping @ turn.T", "turn.T @ self.damping @ turn"),
         ("modes damp each other at the frequency of one of them", ".imag / between * S", ".imag / omega[:, None] * S"),
@@ -99,10 +99,11 @@ FAULTS = (
         ("a pair of motions counts twice on the way back", "into = (self.right / _members(self.rates)).T @ G", "into = self.right.T @ G"),
         ("noise of a step is that of its end", "Q = F @ exact[:n, n:]", "Q = exact[:n, n:]"),
         ("a lightly damped mode leaks into slow forces", "taper = tukey(n, _TAPERED)", "taper = tukey(n, 0.0)"),
-        ("short waves reach as deep as long ones", "push = self._push(omega, angle, turn, speed)", "push = self._push(peak, angle, turn, speed)"),
-        ("drag on members is in phase with their inertia", "(water / (1j * omega)).real", "(water / omega).real"),
+        ("short waves reach as deep as long ones", "self._waves(multiples * peak)", "self._waves(peak + 0.0 * multiples)"),
+        ("drag on members is in phase with their inertia", "water / (1j * w)", "water / w"),
         ("what begins otherwise stays in the predictions only", "(wanted - wanted @ self.P @ self.information)", "(wanted)"),
         ("a working rotor pushes by twice its damping", "thrust = slope * _AVERAGED", "thrust = 2.0 * slope * _AVERAGED"),
+        ("what tells nothing stands for a part of the record", "r, _MISFIT**2 * self.power)", "r, 0.0 * self.power)"),
         ("levels are scored with half their curvature", "4.0 * forces.sum(axis=0)", "2.0 * forces.sum(axis=0)"),
     )),
     *_of("soil", rows=(

@@ -83,6 +83,7 @@ class LatentForce:
     level_log_std, rate_log_std : how far the logarithms of level and rate may lie from what is expected
     beside : name of another force, at whose level over its expected one this one's is expected, too
     width, tail : of waves: damping ratio of the band, and the corner of what falls beyond it over its peak
+    told : (n_dof,) load by which spectra tell the level, where that is another
     """
 
     name: str
@@ -96,6 +97,7 @@ class LatentForce:
     beside: str | None = None
     width: float = 0.1
     tail: float = 1.5
+    told: FloatArray | None = None
 
     @property
     def _tail(self) -> tuple[float, float, float]:

@@ -104,6 +104,11 @@ class MotionModel:
         """Return the model with the same patterns at other levels and rates."""
         return replace(self, forces=forces)
 
+    def as_told(self) -> MotionModel:
+        """Return the model with the loads by which spectra tell levels, which yield as the others do."""
+        forces = (f if f.told is None else replace(f, load=f.told) for f in self.forces)
+        return replace(self, forces=tuple(forces))
+
     def dynamics(self) -> tuple[FloatArray, FloatArray]:
         """Return A (n, n) and the noise's density (n, n) of the state: modes, their velocities, forces."""
         m, loads = self.n_modes, self.modal_loads

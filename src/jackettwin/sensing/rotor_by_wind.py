@@ -47,11 +47,13 @@ class RotorAtTop:
     damping : (6, 6) at the first frequency, symmetric [N·s/m, N·s, N·m·s]
     thrust_slope : of the thrust by the wind's speed in slow gusts [N·s/m]
     passing_hz : how often a blade passes; None if that is not known
+    thrust_n : in the mean wind
     """
 
     damping: FloatArray
     thrust_slope: float
     passing_hz: float | None = None
+    thrust_n: float = 0.0
 
     def towards(self, heading_rad: float) -> FloatArray:
         """Return the damping (6, 6) of a rotor whose wind blows towards a heading."""
@@ -85,11 +87,12 @@ class RotorByWind:
         below = max(int(np.floor(k)), int(np.ceil(low / _WINDS_M_S)))
         above = max(min(below + 1, int(high / _WINDS_M_S)), below)
         share = min(max(k - below, 0.0), 1.0) if above > below else 0.0
-        a, b = self._at(below), self._at(above)
+        a, b, steady = self._at(below), self._at(above), operating_point(self.rotor, self.control, wind)
         return RotorAtTop(
             (1.0 - share) * a.damping + share * b.damping,
             (1.0 - share) * a.thrust_slope + share * b.thrust_slope,
-            operating_point(self.rotor, self.control, wind).rotor_speed * self.rotor.n_blades / (2.0 * np.pi),
+            steady.rotor_speed * self.rotor.n_blades / (2.0 * np.pi),
+            steady.thrust,
         )
 
     def _at(self, number: int) -> RotorAtTop:

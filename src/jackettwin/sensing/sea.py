@@ -1,29 +1,34 @@
 r"""Waves as latent forces, and the damping by their drag on moving members.
 
 A sea of many periods is three bands, since its waves reach down as far as they are long: long waves bend the
-whole jacket, short ones of the same record push near the surface only. Each band has the forces of a regular
-wave of its own period, at the phase of every member's place (Morison's equation, its drag linearised):
+whole jacket, short ones of the same record push near the surface only. Waves of a band have many periods and
+ways, each with the forces at the phase of every member's place (Morison's equation, its drag linearised):
 
 .. math:: f = ρ C_M \tfrac{π}{4} D^2 \dot u_n + ½ ρ C_D D\, c\, σ_u\, u_n
 
 for water of unit acceleration at the surface, with c such that ranges of the drag have the third moment of
 those of u|u|, since ranges do the damage: the usual c = √(8/π), which errs least on average, is a third too
-small. The level expected of a band is the standard deviation of that acceleration in it, of a JONSWAP sea.
+small, and is that by which spectra tell how strong a sea is. Forces of all waves of a band have few principal
+patterns, whose histories are independent. A wave of one period in their stead would push legs together that
+stand half a wave apart, or all against each other: a band's force on the jacket as a whole was a quarter to
+twice of what it is, so that the level by which sensors were followed was wrong for every brace. The level
+expected of a band is the standard deviation of the water's acceleration in it, of a JONSWAP sea.
 Drag with the usual coefficient damps the motion of members, braces most of all.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from math import cos, pi, sin, sqrt
+from math import pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.integrate import cumulative_trapezoid
 
-from jackettwin.arrays import FloatArray
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.loads import (
     MorisonPoints,
     SeaState,
@@ -31,7 +36,6 @@ from jackettwin.loads import (
     jonswap,
     loads_along,
     morison_points,
-    point_forces,
     sea_drag_damping,
     velocity_std,
     wave_number,
@@ -50,12 +54,13 @@ class _Band(NamedTuple):
     rate_log_std: float
     width: float
     tail: float
+    patterns: int
 
 
 _BANDS = (
-    _Band("long", 1.02, 0.1, 0.09, 1.25),
-    _Band("middle", 1.56, 0.05, 0.12, 0.87),
-    _Band("short", 2.85, 0.05, 0.15, 0.6),
+    _Band("long", 1.02, 0.1, 0.09, 1.25, 4),
+    _Band("middle", 1.56, 0.05, 0.12, 0.87, 5),
+    _Band("short", 2.85, 0.05, 0.15, 0.6, 6),
 )
 """Waves of each reach as deep as those at its multiple do, whatever their frequency, so that its tail must be
 short: chosen for the water's acceleration at 1, 8, 20, 30 and 42 m under JONSWAP's seas of 1.5 to 8 m, which
@@ -65,14 +70,18 @@ _SHORTEST = 5.0
 """Multiple of the peak frequency beyond which waves reach no member but at the surface."""
 _SPACING_M = 4.0
 _USUAL_HEIGHT_M, _USUAL_PERIOD_S = 1.5, 7.0
-_ALONG, _ACROSS = sqrt(0.75), 0.5
-"""Of the water's acceleration in a sea that spreads as cos² about its mean direction, along and across it."""
+_WAVES, _WAYS = 8, 7
+"""Frequencies of a band, and ways in which its waves run: twice as many change no band's power by 1 %."""
+_WHOLE = 0.3
+"""Weight of a resultant beside the forces: from 0.3 to 1 the first nine modes are pushed alike within 1 %."""
+_BESIDE = 0.3
+"""Of a pattern's level over that of the first: a sea spreads less or more than cos²."""
 _KNOWN, _UNKNOWN = 0.3, 1.5
 """Of the logarithm of a sea's level, whose height is stated or not."""
 _DRAG = (48.0 / (3.0 * sqrt(pi / 2.0))) ** (1.0 / 3.0)
 """c = (E A⁶ / E A³)^⅓ of Rayleigh's amplitudes A of unit standard deviation: 2.34."""
-_SAME = 0.05
-"""Of a level at crests over that between them: waves pass, so that both are one of a long record."""
+_LEAST_ERROR = sqrt(8.0 / pi)
+"""c of the drag whose power is nearest (Borgman 1967): spectra tell a sea's level by it."""
 
 
 @dataclass(frozen=True)
@@ -129,58 +138,107 @@ class SeaOnMembers:
         """Standard deviation of the water's velocity normal to the members, (n_points,) [m/s]."""
         return velocity_std(self.grid, self.state, self.depth_m)
 
+    def with_other_water(self, growth: float, added_mass: float, drag: float) -> SeaOnMembers:
+        """Return the sea on members with so many times the growth's thickness, C_a and C_D."""
+        grid, steel = self.grid, self.grid.tube_diameter
+        other = replace(
+            grid,
+            diameter=steel + growth * (grid.diameter - steel),
+            added_mass=added_mass * grid.added_mass,
+            drag=drag * grid.drag,
+        )
+        return replace(self, grid=other)
+
     def forces(self) -> tuple[LatentForce, ...]:
-        """Return the forces of each band along and across the sea, at its crests and between them."""
-        peak, heading, found = 2.0 * pi / self.state.Tp, self.state.direction, []
+        """Return the forces of each band: the principal patterns of its waves, the largest first."""
+        peak, found = 2.0 * pi / self.state.Tp, []
         spread = loads_along(self.assembly, self.grid)
-        ways = (("along", heading, _ALONG), ("across", heading + 0.5 * pi, _ACROSS))
-        speed = _DRAG * self.speed_std
-        for band, level in zip(_BANDS, self._levels(), strict=True):
-            omega = band.multiple * peak
-            for way, angle, share in ways:
-                between = f"{band.name} waves {way}, between crests"
-                for place, turn in (("between crests", 0.0), ("at crests", 0.5 * pi)):
-                    push = self._push(omega, angle, turn, speed).ravel()
-                    found.append(
-                        LatentForce(
-                            f"{band.name} waves {way}, {place}",
-                            np.asarray(self.grid.N @ push),
-                            np.asarray(spread @ push).reshape(-1, 12),
-                            "wave",
-                            omega,
-                            share * level,
-                            _SAME if turn else self.level_log_std,
-                            band.rate_log_std,
-                            between if turn else None,
-                            width=band.width,
-                            tail=band.tail,
-                        )
+        for band, (level, multiples) in zip(_BANDS, self._bands(), strict=True):
+            inertia, drag = self._waves(multiples * peak)
+            waves = inertia + _DRAG * drag
+            kept = np.linalg.eigh(self._likeness(waves))[1].T[: -band.patterns - 1 : -1]
+            first = f"{band.name} waves 1"
+            for k, (push, told) in enumerate(
+                zip(kept @ waves, kept @ (inertia + _LEAST_ERROR * drag), strict=True), start=1
+            ):
+                found.append(
+                    LatentForce(
+                        f"{band.name} waves {k}",
+                        np.asarray(self.grid.N @ push),
+                        np.asarray(spread @ push).reshape(-1, 12),
+                        "wave",
+                        band.multiple * peak,
+                        level,
+                        self.level_log_std if k == 1 else _BESIDE,
+                        band.rate_log_std,
+                        None if k == 1 else first,
+                        width=band.width,
+                        tail=band.tail,
+                        told=np.asarray(self.grid.N @ told),
                     )
+                )
         return tuple(found)
 
-    def _levels(self) -> list[float]:
-        """Return the standard deviation of the surface's acceleration in each band [m/s²]."""
+    def _bands(self) -> list[tuple[float, FloatArray]]:
+        """Return the standard deviation of the surface's acceleration in each band [m/s²], and its waves.
+
+        Waves are multiples of the peak frequency, each of which has as much of its variance.
+        """
         ends = [0.0, *(sqrt(a.multiple * b.multiple) for a, b in pairwise(_BANDS)), _SHORTEST]
         found = []
         for low, high in pairwise(ends):
-            f = np.linspace(low, high, 200) / self.state.Tp
-            S = jonswap(f, Hs=self.state.Hs, Tp=self.state.Tp)
-            found.append(sqrt(float(np.trapezoid((2.0 * pi * f) ** 4 * S, f))))
+            x = np.linspace(low, high, 200)
+            f = x / self.state.Tp
+            S = (2.0 * pi * f) ** 4 * jonswap(f, Hs=self.state.Hs, Tp=self.state.Tp)
+            below = cumulative_trapezoid(S, f, initial=0)
+            shares = (np.arange(_WAVES) + 0.5) / _WAVES
+            found.append((sqrt(float(below[-1])), np.interp(shares * below[-1], below, x)))
         return found
 
-    def _push(self, omega: float, angle: float, turn: float, speed: FloatArray) -> FloatArray:
-        """Return the forces (n, 3) of a wave of unit acceleration at the surface, at a phase.
+    def _likeness(self, waves: FloatArray) -> FloatArray:
+        """Return the products (n, n) of waves (n, 3 n_points): of forces, and of what they sum up to.
 
-        Drag is linear in the sea's mean ``speed`` (n,) across the members.
+        Resultants sideways and their moments weigh a third of all forces each. By forces alone the push of
+        short waves across the sea, which moves the tower, was lost among those that legs bear of themselves.
         """
-        grid, d = self.grid, np.array([cos(angle), sin(angle), 0.0])
-        k, z = wave_number(np.array([omega]), self.depth_m), np.minimum(self.grid.points[:, 2], 0.0)
-        across, up = (part[:, 0, None] for part in depth_functions(k, z, self.depth_m))
-        turned = np.exp(1j * (turn - float(k[0]) * (grid.points @ d)))[:, None]
-        water = turned * (across * d + 1j * up * [0.0, 0.0, 1.0])
-        wet = wetness(grid, np.zeros(grid.weight.size))
-        inertia = point_forces(grid, np.zeros(water.shape), water.real, wet=wet)
-        drag = 0.5 * grid.density_kg_m3 * grid.drag * grid.diameter * speed * grid.weight * wet
-        return np.asarray(
-            inertia + drag[:, None] * np.einsum("nij,nj->ni", grid.normal, (water / (1j * omega)).real)
-        )
+        forces = waves.reshape(len(waves), -1, 3)
+        sums = (forces.sum(axis=1), np.cross(self.grid.points, forces).sum(axis=1))
+        alike = waves @ waves.T
+        whole = float(np.trace(alike))
+        for own in sums:
+            own = own[:, :2]
+            alike = alike + _WHOLE * whole / max(float(np.square(own).sum()), 1e-300) * own @ own.T
+        return np.asarray(alike)
+
+    def _waves(self, omega: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return inertia and drag (n, 3 n_points) of waves of a unit of acceleration at the surface, in all.
+
+        Of each frequency they run from all sides, by cos² about the mean direction, and each has two phases.
+        Drag is linear in the sea's mean speed across the members.
+        """
+        grid = self.grid
+        wet = wetness(grid, np.zeros(grid.weight.size)) * grid.weight * grid.density_kg_m3
+        mass = 0.25 * pi * wet * (grid.pressure + grid.added_mass) * grid.diameter**2
+        # the speed's deviation is of one of two ways across a member, and a sea runs along one
+        dashpot = 0.5 * sqrt(2.0) * wet * grid.drag * grid.diameter * self.speed_std
+        away = 0.5 * pi * (2.0 * (np.arange(_WAYS) + 0.5) / _WAYS - 1.0)
+        share = np.sqrt(np.cos(away) ** 2 / np.sum(np.cos(away) ** 2) / omega.size)
+        angle = self.state.direction + away
+        d = np.stack([np.cos(angle), np.sin(angle), np.zeros(_WAYS)], axis=1)
+        inertia, drag = [], []
+        z, numbers = np.minimum(grid.points[:, 2], 0.0), wave_number(omega, self.depth_m)
+        for w, k, across, up in zip(
+            omega, numbers, *(part.T for part in depth_functions(numbers, z, self.depth_m)), strict=True
+        ):
+            turned = (share * np.exp(-1j * float(k) * (grid.points @ d.T))).T[:, :, None]
+            water = turned * (across[:, None] * d[:, None] + 1j * up[:, None] * [0.0, 0.0, 1.0])
+            water = np.einsum("nij,wnj->wni", grid.normal, water)
+            inertia.append(mass[:, None] * water)
+            drag.append(dashpot[:, None] * water / (1j * w))
+        return _phases(inertia), _phases(drag)
+
+
+def _phases(waves: list[ComplexArray]) -> FloatArray:
+    """Return the parts of waves between crests, each (n, n_points, 3), and at them, (2n, 3 n_points)."""
+    every = np.concatenate(waves)
+    return np.concatenate([every.real, every.imag]).reshape(2 * len(every), -1)
