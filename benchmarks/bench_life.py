@@ -24,7 +24,7 @@ from jackettwin.response import observation_matrix
 from jackettwin.sensing import SensorReadings, Weather, estimate_motion, readings_of
 from jackettwin.simulate import read_scenario, simulate
 from jackettwin.structure import Rayleigh, assemble
-from jackettwin.twin import LifeSettings, StressModel, weld_map
+from jackettwin.twin import LifeSettings, RestingLoads, StressModel, weld_map
 from jackettwin.twin.life.likely_structures import LikelyStructures, likely_structures
 from jackettwin.twin.life.sensed_damage import sensed_damage
 from jackettwin.updating import numbered_modes
@@ -97,7 +97,7 @@ def stress_model() -> StressModel:
     return StressModel(
         LifeSettings(),
         assembly,
-        assemble(structure),
+        RestingLoads.of(assemble(structure)),
         Rayleigh.minimum(0.005, 0.3),
         numbered_modes(assembly, 12),
         depth_m=DEPTH_M,

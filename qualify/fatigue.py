@@ -36,6 +36,7 @@ from jackettwin.records import Record, write_record
 from jackettwin.response import Sensor, System, observation_matrix
 from jackettwin.sensing import (
     SECTION_REMAINDER,
+    STRESS_REMAINDER,
     LatentForce,
     MotionEstimate,
     MotionModel,
@@ -47,14 +48,13 @@ from jackettwin.sensing import (
     readings_of,
     section_rows,
     sensed_model,
-    stress_remainder,
 )
 from jackettwin.simulate import Scenario, read_scenario, simulate
 from jackettwin.simulate.members import deflections
 from jackettwin.simulate.motion.motion import simulate_motion
 from jackettwin.structure import Assembly, SectionForces, assemble, section_forces
 from jackettwin.study import updated, updated_systems
-from jackettwin.twin import WeldMap, read_twin, weld_map
+from jackettwin.twin import RestingLoads, WeldMap, read_twin, weld_map
 
 USUAL_SEED = 36
 SEED = int(sys.argv[2]) if len(sys.argv) > 2 else USUAL_SEED
@@ -188,11 +188,11 @@ def _rna(mass: float) -> dict[str, Any]:
 
 
 class Known(NamedTuple):
-    """A twin that updated itself: likely structures, one on stiff feet, with steel's mass only, its water."""
+    """A twin that updated itself: likely structures, one on stiff feet, what it bears at rest, its water."""
 
     systems: tuple[System, ...]
     before: System
-    dry: Assembly
+    rest: RestingLoads
     coefficients: Coefficients
 
 
@@ -239,7 +239,7 @@ def updated_asset(number: int) -> Known:
     return Known(
         updated_systems(update, draws=SUPPORTS - 1),
         update.model.system(_stiffest(update)),
-        assemble(config.structure),
+        RestingLoads.of(assemble(config.structure), config.water),
         config.water.coefficients,
     )
 
@@ -288,10 +288,10 @@ def dels(series: np.ndarray) -> np.ndarray:
 class Judge:
     """What is judged of a system: its moments' rows and its welds' stresses."""
 
-    def __init__(self, system: System, model: MotionModel, dry: Assembly) -> None:
+    def __init__(self, system: System, model: MotionModel, rest: RestingLoads) -> None:
         rows = section_rows(model)
         self.rows = sections(model.assembly, rows)
-        self.chart: WeldMap = weld_map(system, model, dry)
+        self.chart: WeldMap = weld_map(system, model, rest)
 
     def dels(self, motion: np.ndarray, wanted: list[tuple[int, int, int, int]]) -> np.ndarray:
         """Return ranges of the moments, then of wanted points (joint, brace, side, point)."""
@@ -393,14 +393,15 @@ def judged(case: int) -> Result:
     """Return, for one record, ranges over true ones by every method, and how far off they were said to be."""
     state, drawing = weather(case)
     start = process_time()
-    systems, before, dry, coefficients = known_asset(case // len(STATES))
+    systems, before, rest, coefficients = known_asset(case // len(STATES))
     update_s = process_time() - start
     with tempfile.TemporaryDirectory() as folder:
         scenario = read_scenario(str(write_scenario(Path(folder), case)))
         simulated = simulate(scenario).record
     sea = Weather.of(simulated.conditions, DEPTH_M, coefficients, ROTOR)
+    rest = rest.under(sea, systems[0].assembly)
     first = sensed_model(systems[0], sea)
-    true, wanted, displacement = truth_of(scenario, Judge(systems[0], first, dry), first)
+    true, wanted, displacement = truth_of(scenario, Judge(systems[0], first, rest), first)
     sensors = tuple(i.sensor for i in scenario.instruments)
     record = Record(
         simulated.data[: len(sensors)], simulated.sample_rate_hz, simulated.channels[: len(sensors)]
@@ -409,25 +410,25 @@ def judged(case: int) -> Result:
     start = process_time()
     every, judges = [], []
     for k, (system, found) in enumerate(zip(systems, likely_motions(systems, seen, sea), strict=True)):
-        judges.append(Judge(system, found.model, dry))
+        judges.append(Judge(system, found.model, rest))
         every.append([judges[k].dels(motion, wanted) for motion in found.draws(DRAWS, seed=k)])
     smoother_s = process_time() - start
     draws = np.log(np.array(every))
     z = [_height(j, first, judges[0]) for j, _, _, _ in wanted]
-    remainder = np.array([SECTION_REMAINDER] * 6 + [stress_remainder(h) for h in z])
+    remainder = np.array([SECTION_REMAINDER] * 6 + [STRESS_REMAINDER] * len(z))
     within = draws.var(axis=1, ddof=1).mean(axis=0)
     between = draws.mean(axis=1).var(axis=0, ddof=1)
     std = np.sqrt(within + np.maximum(between - within / DRAWS, 0.0) + remainder**2)
     estimates = {
         "smoother": np.exp(draws.mean(axis=(0, 1))),
-        "smoother, not updated": _mean(before, seen, sea, dry, wanted),
-        "4 sensors": _mean(systems[0], _of(record, sensors, systems[0], 4), sea, dry, wanted),
-        "1 DC sensor": _mean(systems[0], _felt(record, sensors, displacement, systems[0]), sea, dry, wanted),
+        "smoother, not updated": _mean(before, seen, sea, rest, wanted),
+        "4 sensors": _mean(systems[0], _of(record, sensors, systems[0], 4), sea, rest, wanted),
+        "1 DC sensor": _mean(systems[0], _felt(record, sensors, displacement, systems[0]), sea, rest, wanted),
     }
     for name, method in PEERS.items():
         for system, told in ((systems[0], name), (before, f"{name}, not updated")):
             model, motion = method(system, seen, sea)
-            estimates[told] = Judge(system, model, dry).dels(motion, wanted)
+            estimates[told] = Judge(system, model, rest).dels(motion, wanted)
     worst = 6 + np.argsort(-true[6:])[:SPOTS]
     score = (np.log(true) - draws.mean(axis=(0, 1))) / std
     return {
@@ -467,11 +468,11 @@ def _mean(
     system: System,
     seen: SensorReadings,
     sea: Weather,
-    dry: Assembly,
+    rest: RestingLoads,
     wanted: list[tuple[int, int, int, int]],
 ) -> np.ndarray:
     found: MotionEstimate = motion_from(sensed_model(system, sea), seen)
-    judge = Judge(system, found.model, dry)
+    judge = Judge(system, found.model, rest)
     return np.exp(np.mean([np.log(judge.dels(motion, wanted)) for motion in found.draws(2)], axis=0))
 
 

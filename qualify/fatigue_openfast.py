@@ -42,16 +42,16 @@ from jackettwin.records import Channel, Record
 from jackettwin.response import Sensor, observation_matrix
 from jackettwin.sensing import (
     SECTION_REMAINDER,
+    STRESS_REMAINDER,
     MotionModel,
     RotorByWind,
     Weather as KnownWeather,
     likely_motions,
     readings_of,
     section_rows,
-    stress_remainder,
 )
 from jackettwin.structure import Rayleigh, Structure, assemble
-from jackettwin.twin import LifeSettings, StressModel
+from jackettwin.twin import LifeSettings, RestingLoads, StressModel
 from jackettwin.twin.life.likely_structures import LikelyStructures, likely_structures
 from jackettwin.updating import numbered_modes
 
@@ -126,7 +126,7 @@ def known(structure: Structure, parked: Record) -> LikelyStructures:
     model = StressModel(
         LifeSettings(),
         assembly,
-        assemble(structure),
+        RestingLoads.of(assemble(structure)),
         Rayleigh.minimum(0.005, 0.3),
         numbered_modes(assembly, 12),
         depth_m=ASSET.depth_m,
@@ -155,8 +155,7 @@ def of_record(
     logs = np.log(np.array(draws))
     within = logs.var(axis=1, ddof=1).mean(axis=0)
     between = np.maximum(logs.mean(axis=1).var(axis=0, ddof=1) - within / DRAWS, 0.0)
-    heights = [structure.nodes[start][2] - structure.sea_level_z_m for start in leg_starts(structure)]
-    remainder = np.array([SECTION_REMAINDER] * 2 + [stress_remainder(z) for z in heights])
+    remainder = np.array([SECTION_REMAINDER] * 2 + [STRESS_REMAINDER] * len(leg_starts(structure)))
     mean = logs.mean(axis=(0, 1))
     std = np.sqrt(within + between + remainder**2)
     return np.exp(mean) / true, (np.log(true) - mean) / std, std

@@ -13,7 +13,7 @@ from jackettwin.decks import read_structure
 from jackettwin.fatigue import YEAR_S
 from jackettwin.structure import Rayleigh, assemble
 from jackettwin.study import LIFE_SO_FAR, LifeSoFar, asset_life
-from jackettwin.twin import DAMAGE_UNIT, Day, LifeSettings, SensedTime, StressModel, WeldSums
+from jackettwin.twin import DAMAGE_UNIT, Day, LifeSettings, RestingLoads, SensedTime, StressModel, WeldSums
 from jackettwin.twin.life.damage_sums import PointSums
 from jackettwin.twin.state import Operation
 from jackettwin.updating import numbered_modes
@@ -62,7 +62,11 @@ def model() -> StressModel:
     assembly = assemble(structure, gravity=True)
     settings = LifeSettings(design_factor=1.0, years=25.0)
     return StressModel(
-        settings, assembly, assemble(structure), Rayleigh.minimum(0.005, 0.3), numbered_modes(assembly, 12)
+        settings,
+        assembly,
+        RestingLoads.of(assemble(structure)),
+        Rayleigh.minimum(0.005, 0.3),
+        numbered_modes(assembly, 12),
     )
 
 

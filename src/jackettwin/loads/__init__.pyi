@@ -37,6 +37,7 @@ from .members.slam import (
     slam_per_length as slam_per_length,
 )
 from .members.water import (
+    StillWater as StillWater,
     Water as Water,
     mass_per_level as mass_per_level,
     outside_pressure as outside_pressure,

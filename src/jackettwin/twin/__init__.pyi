@@ -7,7 +7,12 @@ from .life.damage_sums import SensedTime as SensedTime, WeldSums as WeldSums
 from .life.likely_structures import StressModel as StressModel
 from .life.sensed_damage import DAMAGE_UNIT as DAMAGE_UNIT
 from .life.settings import LifeSettings as LifeSettings
-from .life.weld_map import WeldMap as WeldMap, planned_joints as planned_joints, weld_map as weld_map
+from .life.weld_map import (
+    RestingLoads as RestingLoads,
+    WeldMap as WeldMap,
+    planned_joints as planned_joints,
+    weld_map as weld_map,
+)
 from .model import TwinModel as TwinModel, twin_model as twin_model
 from .observation import (
     OBSERVATION as OBSERVATION,

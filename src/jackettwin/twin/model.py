@@ -18,6 +18,7 @@ from jackettwin.structure import Assembly, assemble
 from jackettwin.twin.calibration import Calibrations, sensors_at
 from jackettwin.twin.config import PAIRED_MODES, TwinConfig, assembled
 from jackettwin.twin.life.likely_structures import StressModel
+from jackettwin.twin.life.weld_map import RestingLoads
 from jackettwin.twin.operation import OperationRule
 from jackettwin.twin.rotor_at_work import rotor_by_wind
 from jackettwin.twin.tolerances.registry import AT_WORK, TOLERANCES, directions, stiffer_at_work
@@ -227,7 +228,10 @@ def _stress_model(config: TwinConfig, assembly: Assembly, numbered: UndampedMode
     return StressModel(
         config.life,
         assembly,
-        assemble(config.structure, beam_theory=beam, rotary_inertia=rotary, subdivide=subdivide),
+        RestingLoads.of(
+            assemble(config.structure, beam_theory=beam, rotary_inertia=rotary, subdivide=subdivide),
+            config.water,
+        ),
         config.rayleigh,
         numbered,
         directions(config, assembly),

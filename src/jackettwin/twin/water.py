@@ -12,9 +12,11 @@ from jackettwin.loads import (
     Coefficients,
     MorisonPoints,
     SeaState,
+    StillWater,
     Water,
     morison_points,
     sea_drag_damping,
+    still_water,
     water_mass,
 )
 from jackettwin.structure import Assembly
@@ -47,6 +49,11 @@ class WaterConfig:
 def moving_mass(water: WaterConfig, assembly: Assembly) -> sp.csr_array:
     """Return the mass matrix of growth, internal water and added mass, (n_dof, n_dof)."""
     return water_mass(assembly, _points(water, assembly), water.carried)
+
+
+def still_loads(water: WaterConfig, assembly: Assembly) -> StillWater:
+    """Return the weight of growth and water inside less buoyancy, on the DOFs and along the elements."""
+    return still_water(assembly, _points(water, assembly), water.carried)
 
 
 def water_effects(

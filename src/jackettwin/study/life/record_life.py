@@ -26,17 +26,17 @@ from jackettwin.fatigue import (
 from jackettwin.records import assess, read_record, repair, to_global_axes
 from jackettwin.response import System
 from jackettwin.sensing import (
+    STRESS_REMAINDER,
     MotionEstimate,
     SensorReadings,
     Weather,
     likely_motions,
     readings_of,
     section_rows,
-    stress_remainder,
 )
-from jackettwin.structure import Assembly, assemble
+from jackettwin.structure import assemble
 from jackettwin.study.life.updated_system import updated_systems
-from jackettwin.twin import TwinConfig, WeldMap, rotor_by_wind, twin_model, weld_map
+from jackettwin.twin import RestingLoads, TwinConfig, WeldMap, rotor_by_wind, twin_model, weld_map
 from jackettwin.twin.calibration import calibrated
 from jackettwin.updating import Update
 
@@ -125,7 +125,9 @@ def life_of_record(
         subdivide=config.subdivide,
     )
     systems = updated_systems(update, draws=supports - 1)
-    return record_life(systems, readings, weather, models, dry, draws=draws, details=details)
+    return record_life(
+        systems, readings, weather, models, RestingLoads.of(dry, config.water), draws=draws, details=details
+    )
 
 
 def record_life(
@@ -133,7 +135,7 @@ def record_life(
     readings: SensorReadings,
     weather: Weather,
     models: ModelsAtHeight,
-    dry: Assembly,
+    rest: RestingLoads,
     *,
     draws: int = DRAWS,
     seed: int = 0,
@@ -156,7 +158,8 @@ def record_life(
         If no brace is welded to a chord, or no tube reaches below the water level.
     """
     estimates = likely_motions(systems, readings, weather)
-    charts = [weld_map(system, e.model, dry) for system, e in zip(systems, estimates, strict=True)]
+    rest = rest.under(weather, systems[0].assembly)
+    charts = [weld_map(system, e.model, rest) for system, e in zip(systems, estimates, strict=True)]
     estimate, welds = estimates[0], [weld for joint in charts[0].joints for weld in joint.welds]
     motions = [list(own.draws(draws, seed=seed + k)) for k, own in enumerate(estimates)]
     every = [chart.cycles(motion) for chart, own in zip(charts, motions, strict=True) for motion in own]
@@ -176,11 +179,7 @@ def record_life(
         ]
     )
     by_system = damages.reshape(len(systems), -1, *damages.shape[1:])
-    heights = [structure.nodes[weld.node][2] - structure.sea_level_z_m for weld in welds]
-    others = [
-        _variances(by_system[:, :, i], curve, z)
-        for i, (curve, z) in enumerate(zip(curves, heights, strict=True))
-    ]
+    others = [_variances(by_system[:, :, i], curve) for i, curve in enumerate(curves)]
     cycles = [
         [[_all_of([one[i][s][p] for one in every]) for p in range(len(POSITIONS))] for s in range(len(SIDES))]
         for i in range(len(welds))
@@ -212,7 +211,7 @@ def _tubes(
         t = weld.section.thickness_m
         damages = [[curve.damage(c.ranges, c.numbers, thickness_m=t) for c in one[i]] for one in every]
         by_system = np.array(damages).reshape(len(estimates), -1, len(POSITIONS))
-        others.append(_variances(by_system, curve, weld.z_m - structure.sea_level_z_m))
+        others.append(_variances(by_system, curve))
         cycles.append([_all_of([one[i][p] for one in every]) for p in range(len(POSITIONS))])
     return tube_lives(structure, welds, cycles, duration_s, times=len(every), others=others), apart
 
@@ -221,7 +220,7 @@ def _all_of(cycles: list[Cycles]) -> Cycles:
     return Cycles(np.concatenate([c.full for c in cycles]), np.concatenate([c.half for c in cycles]))
 
 
-def _variances(damage: FloatArray, curve: SNCurve, height_m: float) -> dict[str, FloatArray]:
+def _variances(damage: FloatArray, curve: SNCurve) -> dict[str, FloatArray]:
     """Return the variance of ln D (…, 8) by source, from damages (n_systems, n_draws, …, 8)."""
     with np.errstate(divide="ignore"):
         logs = np.log(np.maximum(damage, 1e-300))
@@ -229,7 +228,7 @@ def _variances(damage: FloatArray, curve: SNCurve, height_m: float) -> dict[str,
     means = np.log(np.maximum(damage.mean(axis=1), 1e-300))
     between = means.var(axis=0, ddof=1) if len(means) > 1 else np.zeros(means.shape[1:])
     beyond = np.maximum(between - within / damage.shape[1], 0.0)
-    left = np.full(within.shape, (float(np.mean(curve.m)) * stress_remainder(height_m)) ** 2)
+    left = np.full(within.shape, (float(np.mean(curve.m)) * STRESS_REMAINDER) ** 2)
     return {
         "what sensors do not see": within,
         "structure and force levels": beyond,

@@ -33,7 +33,7 @@ from jackettwin.sensing import MotionModel, RotorByWind
 from jackettwin.soil import Prony, Spring, Support, standing
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.twin.life.settings import LifeSettings
-from jackettwin.twin.life.weld_map import planned_joints
+from jackettwin.twin.life.weld_map import RestingLoads, planned_joints
 from jackettwin.updating import Direction, moved_along, on_unlike_feet, possible
 
 _STEPS = 3
@@ -62,7 +62,7 @@ class StressModel:
     ----------
     settings : LifeSettings
     assembly : with what drawings say
-    dry : with the mass of steel alone
+    rest : weight of its steel and what the water does to it
     rayleigh : damping of the steel
     numbered : modes on pinned feet
     directions : what tolerances that are open do to the structure
@@ -74,7 +74,7 @@ class StressModel:
 
     settings: LifeSettings
     assembly: Assembly
-    dry: Assembly
+    rest: RestingLoads
     rayleigh: Rayleigh
     numbered: UndampedModes
     directions: tuple[Direction, ...] = ()

@@ -8,7 +8,7 @@ import numpy as np
 
 from jackettwin.arrays import AnyFloatArray, FloatArray, IntArray
 from jackettwin.fatigue import POSITIONS, SIDES, LifeModel, count
-from jackettwin.sensing import MotionEstimate, SensorReadings, Weather, likely_motions, stress_remainder
+from jackettwin.sensing import STRESS_REMAINDER, MotionEstimate, SensorReadings, Weather, likely_motions
 from jackettwin.twin.life.likely_structures import LikelyStructures, StressModel
 from jackettwin.twin.life.weld_map import WeldMap, weld_map
 
@@ -83,26 +83,27 @@ def sensed_damage(
     systems = likely.systems(STRUCTURES)
     estimates = likely_motions(systems, readings, weather, damped=likely.damped, near=likely.near)
     told = likely.model
-    chart = weld_map(systems[0], estimates[0].model, told.dry, told.joints, tubes=told.tubes)
+    rest = told.rest.under(weather, told.assembly)
+    chart = weld_map(systems[0], estimates[0].model, rest, told.joints, tubes=told.tubes)
     curves = _Curves.of(told)
     mean = estimates[0].mean()
     sides, guessed, largest_left = curves.worst(chart, mean, estimates[0].covariance)
     first = curves.damage(chart, mean, sides)
     again, left = curves.most(first, sides, (_AGAIN, KEPT_TUBES))
-    rest = first[left]
+    not_again = first[left]
     sides, first, guessed = sides[again], first[again], guessed[again]
     # what sensors do not see adds to the damage of every structure as it does to that of the first
     unseen = np.array(_drawn(curves, chart, estimates[0], mean, sides, first)) / np.maximum(first, 1e-300)
     others, of = [], set(curves.joint[sides[sides < curves.n_sides] // len(SIDES)].tolist())
     for system, one in zip(systems[1:], estimates[1:], strict=True):
-        chart = weld_map(system, one.model, told.dry, told.joints, of=of, tubes=told.tubes)
+        chart = weld_map(system, one.model, rest, told.joints, of=of, tubes=told.tubes)
         others.append(curves.damage(chart, one.mean(), sides, like=first))
     mirrored = [first**2 / np.maximum(one, _LEAST * first + 1e-300) for one in others]
     damage = np.array([first, *others, *mirrored])[:, None] * unseen
     worst = damage.mean(axis=(0, 1)).max(axis=1)
     bound = largest_left * float((worst / guessed).max(initial=0.0))
     grown = float((worst / np.maximum(first.max(axis=1), 1e-300)).max(initial=0.0))
-    bound = max(bound, grown * float(rest.max(initial=0.0)))
+    bound = max(bound, grown * float(not_again.max(initial=0.0)))
     return _kept(curves, sides, damage, bound)
 
 
@@ -161,9 +162,8 @@ class _Curves:
         welds = [weld for joint in told.joints for weld in joint.welds]
         sides = [(structure.nodes[w.node][2], t, told.curves) for w in welds for t in w.thickness_m]
         sides += [(tube.z_m, tube.section.thickness_m, tube.models) for tube in told.tubes]
-        heights = [z - structure.sea_level_z_m for z, _, _ in sides]
-        at = [curves(z)[1] for z, (_, _, curves) in zip(heights, sides, strict=True)]
-        left = [stress_remainder(z) * float(np.mean(m.curve.m)) for z, m in zip(heights, at, strict=True)]
+        at = [curves(z - structure.sea_level_z_m)[1] for z, _, curves in sides]
+        left = [STRESS_REMAINDER * float(np.mean(m.curve.m)) for m in at]
         joint = np.repeat(np.arange(len(told.joints)), [len(j.welds) for j in told.joints])
         return cls(tuple(at), np.array([t for _, t, _ in sides]), joint, np.array(left))
 

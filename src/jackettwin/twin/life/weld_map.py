@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,12 +12,48 @@ from jackettwin.arrays import AnyFloatArray, FloatArray
 from jackettwin.checks import joint_plans
 from jackettwin.errors import require
 from jackettwin.fatigue import Cycles, JointStresses, TubeWeld, count, joint_stresses
-from jackettwin.response import System, self_weight, static_displacement
-from jackettwin.sensing import MotionModel, section_rows
+from jackettwin.response import System, nodal_load, self_weight, static_displacement
+from jackettwin.sensing import MotionModel, Weather, section_rows
 from jackettwin.structure import Assembly, SectionForces, element_weight, section_forces
+from jackettwin.twin.water import WaterConfig, still_loads
 
 _YIELD_PA = 355e6
 """Yield strength that the design of joints requires and fatigue does not use."""
+
+
+class RestingLoads(NamedTuple):
+    """What loads a structure at rest: on the DOFs (n_dof,), and along its elements (n_elements, 12).
+
+    Forces at rest decide how the axial force of a brace is shared between K, Y and X joints, whose factors
+    differ by three.
+    """
+
+    on_dofs: FloatArray
+    along: FloatArray
+
+    @classmethod
+    def of(cls, dry: Assembly, water: WaterConfig | None = None) -> RestingLoads:
+        """Return the weight of steel, and of growth and water inside less buoyancy.
+
+        Parameters
+        ----------
+        dry : with the mass of steel alone
+        water : none whose mass is in the structure's own, as it is unknown then which members are flooded
+        """
+        load, along = self_weight(dry), element_weight(dry)
+        if water is None or not water.adds_mass:
+            return cls(load, along)
+        wet = still_loads(water, dry)
+        return cls(load + wet.load, along + wet.along)
+
+    def under(self, weather: Weather, assembly: Assembly) -> RestingLoads:
+        """Return the loads with the mean thrust of a rotor at work that is known."""
+        if not weather.working or weather.rotor is None:
+            return self
+        c, s = np.cos(weather.heading_rad), np.sin(weather.heading_rad)
+        push = weather.rotor.thrust_n * np.array([c, s, 0.0, 0.0, 0.0, 0.0])
+        at_top = nodal_load(assembly, {assembly.structure.top_node: tuple(push)})
+        return self._replace(on_dofs=self.on_dofs + at_top)
 
 
 @dataclass(frozen=True)
@@ -28,7 +65,7 @@ class WeldMap:
     joints : tuple of JointStresses
     rows : for every joint, (n_braces, 3, n_coordinates) nominal stress at unit coordinates; no braces where
         stresses are not asked
-    at_rest : likewise, (n_braces, 3) nominal stress under the steel's weight
+    at_rest : likewise, (n_braces, 3) nominal stress under weight and buoyancy
     tubes : for every weld around a tube, (8 points, n_coordinates) stress at unit coordinates
     """
 
@@ -75,7 +112,7 @@ def planned_joints(assembly: Assembly) -> tuple[JointStresses, ...]:
 def weld_map(
     system: System,
     model: MotionModel,
-    dry: Assembly,
+    rest: RestingLoads,
     joints: tuple[JointStresses, ...] | None = None,
     *,
     of: Collection[int] | None = None,
@@ -85,7 +122,7 @@ def weld_map(
 
     Parameters
     ----------
-    dry : the assembly with the steel's mass only, whose weight divides forces between K, Y and X joints
+    rest : what the structure bears at rest
     joints : of the structure, if they are planned already
     of : numbers of the joints whose stresses are asked; of all without it
     tubes : welds around tubes
@@ -97,8 +134,8 @@ def weld_map(
     """
     joints = planned_joints(model.assembly) if joints is None else joints
     require(joints, "no brace is welded to a chord", field="structure", remedy="joints of tubes are checked")
-    weight = static_displacement(system, self_weight(dry))
-    still = section_forces(model.assembly, weight[None], along=element_weight(dry)[None])
+    u = static_displacement(system, rest.on_dofs)
+    still = section_forces(model.assembly, u[None], along=rest.along[None])
     # at rest is one coordinate more
     unit = section_rows(model)
     forces = SectionForces(*(np.concatenate(pair) for pair in zip(unit, still, strict=True)))
