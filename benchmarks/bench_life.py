@@ -115,7 +115,7 @@ def streamed(
     """
     system = likely.systems(1)[0]
     estimate = estimate_motion(system, readings, weather)
-    chart = weld_map(system, estimate.model, likely.model.dry)
+    chart = weld_map(system, estimate.model, likely.model.rest)
     rows, y = estimate.to_coordinates, readings.y.T
     lag, piece = round(LAG_S / readings.step_s), round(PIECE_S / readings.step_s)
     counters: list[list[Counter]] = []
