@@ -96,7 +96,7 @@ class Here:
 def quick(model: Any, waveform: Path, conditions: dict[str, Any], picks: Any = ()) -> tuple[Any, ...]:
     """Stand in for the identification: two modes whose frequencies depend on the samples alone."""
     record = read_waveform(waveform)
-    a, b = (0.18 + 1e-4 * float(np.sum(record.data)) % 1e-3, 0.55)
+    a, b = (0.18 + 1e-4 * float(np.nansum(record.data)) % 1e-3, 0.55)
     modes = {1: estimate(a, 0.012, 4e-3, 0.2), 3: estimate(b, 0.01, 4e-3, 0.2)}
     seen = replace(
         observation(modes, record.start_utc, name=record.name, conditions=dict(conditions)),
@@ -119,10 +119,14 @@ def quick(model: Any, waveform: Path, conditions: dict[str, Any], picks: Any = (
     return json.dumps(OBSERVATION.dump(seen)), rows, ()
 
 
-def record_file(k: int = 0, *, samples: int = 200) -> bytes:
-    """Return a Parquet record of two channels with modes at 0.5 and 1.3 Hz; ``k`` chooses its samples."""
+def record_file(k: int = 0, *, samples: int = 200, gap: tuple[int, int] = (0, 0)) -> bytes:
+    """Return a Parquet record of two channels with modes at 0.5 and 1.3 Hz; ``k`` chooses its samples.
+
+    The first channel lacks those of a gap.
+    """
     noise = np.random.default_rng(k).standard_normal((2, samples))
     data = 0.05 * noise + sum(mixed * resonator(f, noise[i]) for i, (f, mixed) in enumerate(SHAPES.items()))
+    data[0, slice(*gap)] = np.nan
     buffer = io.BytesIO()
     pq.write_table(pa.table({"acc_top_x": data[0], "acc_top_y": data[1]}), buffer)
     return buffer.getvalue()
@@ -215,7 +219,11 @@ def empty_database() -> bytes:
 
 
 def make_service(
-    store: Path, database: str | None, monkeypatch: pytest.MonkeyPatch, **changes: Any
+    store: Path,
+    database: str | None,
+    monkeypatch: pytest.MonkeyPatch,
+    assets: tuple[str, ...] = ("wtg",),
+    **changes: Any,
 ) -> Iterator[Service]:
     """Run a service without threads: tests turn its dispatcher by hand."""
     settings = ServiceSettings(store=store, database=database, **changes)
@@ -228,7 +236,8 @@ def make_service(
     monkeypatch.setattr(verdict, "watched", lambda twin, days, *_: ({"days": len(days)}, (), {}))
     monkeypatch.setattr(verdict, "through_time", lambda *_: (None, None))
     made = Service(settings, open_database(settings.database_url), Here(), "test")  # type: ignore[arg-type]
-    add_text_version(made, "wtg", TWIN, {}, "test")
+    for name in assets:
+        add_text_version(made, name, TWIN, {}, "test")
     yield made
     made.database.dispose()
 

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+import json
 from datetime import timedelta
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
-from tests.service.conftest import NOON, turn, upload
+from tests.service.conftest import NOON, description, quick, record_file, turn, upload
 
-from jackettwin.records import Channel, Record, read_record
+from jackettwin.records import Channel, Record, assess, read_record
+from jackettwin.service.answer_cache import AnswerCache
 from jackettwin.service.context import Service
 from jackettwin.service.web.answers import coloured_by_life
 from jackettwin.service.web.schemas.drawings import StructureOut
 from jackettwin.service.web.signals import spectra, spectrogram
 from jackettwin.service.workers import engine, record_views
-from jackettwin.store import Packet, open_database, reading, streams, write_waveform, writing
+from jackettwin.store import Packet, open_database, read_waveform, reading, streams, write_waveform, writing
 from jackettwin.store.tables import records
 
 RATE = 20.0
@@ -114,8 +117,13 @@ def test_packets_are_handed_on_once(tmp_path: Path) -> None:
 def test_what_examination_set_aside_is_found_once(
     client: TestClient, service: Service, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Who looks again is told the same, without a worker; of samples that were deleted nothing is told."""
-    given = upload(client, 0).json()["record_id"]
+    """Who looks again is told the same, without a worker, and by what was observed, also after a restart.
+
+    A gap of samples 800 to 899, at 20 Hz; of samples that were deleted nothing is told.
+    """
+    gapped = {"file": ("r.parquet", record_file(samples=2000, gap=(800, 900)))}
+    sent = client.post("/api/v1/assets/wtg/records", files=gapped, data={"description": description()})
+    given = sent.json()["record_id"]
     asked, submit = [], service.cluster.submit
     monkeypatch.setattr(
         service.cluster, "submit", lambda task, *more, **how: asked.append(task) or submit(task, *more, **how)
@@ -123,6 +131,20 @@ def test_what_examination_set_aside_is_found_once(
     first, again = (client.get(f"/api/v1/records/{given}/stretches").json() for _ in range(2))
     assert first == again
     assert asked == [record_views.stretches]
+
+    def observed(model: Any, waveform: Path, *more: Any) -> tuple[Any, ...]:
+        document, *rows = quick(model, waveform, *more)
+        quality = assess(read_waveform(waveform)).summary()
+        return json.dumps({**json.loads(document), "quality": quality}), *rows
+
+    monkeypatch.setattr(engine, "observed", observed)
+    turn(service, 2)
+    service.answers = AnswerCache()
+    asked.clear()
+    assert client.get(f"/api/v1/records/{given}/stretches").json() == first
+    assert asked == []
+    (gap,) = (one for one in first["items"] if one["code"] == "gap")
+    assert (gap["channel"], gap["from_s"], gap["to_s"]) == ("acc_top_x", 40.0, 44.95)
     with writing(service.database) as connection:
         connection.execute(records.update().values(waveform=None))
     assert client.get(f"/api/v1/records/{given}/stretches").status_code == 404

@@ -17,6 +17,7 @@ from jackettwin.records.quality.aliasing import not_filtered
 from jackettwin.records.quality.faults import ChannelQuality, channel_findings
 from jackettwin.records.quality.sensor_changes import SensorChange, changes, described
 from jackettwin.records.quality.unit_errors import wrong_units
+from jackettwin.records.quality.unused import Unused, unused
 from jackettwin.records.record import LARGEST
 
 if TYPE_CHECKING:
@@ -63,6 +64,8 @@ class Quality:
         and the shorter side of a change.
     clocks : LoggerClocks
         Clock errors that ``repair`` corrects, and the part of the record without a jump of a clock.
+    unused : tuple of Unused
+        Where samples are missing, or suspect.
     """
 
     score: float
@@ -70,6 +73,7 @@ class Quality:
     findings: tuple[Finding, ...]
     suspect: BoolArray
     clocks: LoggerClocks
+    unused: tuple[Unused, ...]
 
     def summary(self) -> dict[str, Any]:
         """Return everything but the samples as plain JSON data."""
@@ -77,6 +81,7 @@ class Quality:
             "score": self.score,
             "findings": [f.document for f in self.findings],
             "channels": [asdict(channel) for channel in self.channels],
+            "unused": [asdict(stretches) for stretches in self.unused],
         }
 
 
@@ -91,7 +96,7 @@ def assess(record: Record, *, thorough: bool = True) -> Quality:
         Whether clocks are compared and changes within the record and missing filters are sought: two thirds
         of the time.
     """
-    unreadable = (record.data > LARGEST) | (record.data < -LARGEST)
+    read, unreadable = record, (record.data > LARGEST) | (record.data < -LARGEST)
     if unreadable.any():
         record = replace(record, data=np.where(unreadable, np.nan, record.data))
     held = [faults.hold_length(row) for row in record.data]
@@ -120,8 +125,9 @@ def assess(record: Record, *, thorough: bool = True) -> Quality:
     vibrating = [q.score for q, c in zip(channels, record.channels, strict=True) if c.quantity in VIBRATIONS]
     scores = vibrating or [q.score for q in channels]
     suspect = np.array([mask for _, mask, _ in judged], dtype=np.bool_).reshape(record.data.shape)
+    suspect |= unreadable
     score = float(np.mean(scores)) if scores else 0.0
-    return Quality(score, channels, tuple(findings), suspect | unreadable, known)
+    return Quality(score, channels, tuple(findings), suspect, known, unused(read, suspect))
 
 
 def shortest_stuck(sample_rate_hz: float) -> int:

@@ -15,15 +15,16 @@ from jackettwin.errors import InputError
 from jackettwin.service.answer_cache import Answer
 from jackettwin.service.intake.bundles import twin_folder
 from jackettwin.service.intake.files import Accepted, discard, parse_here, spooled, take_file
-from jackettwin.service.web.dependencies import known_record, living_asset
+from jackettwin.service.web.dependencies import known_asset, known_record, living_asset
 from jackettwin.service.web.problems import ApiError, disk_full
 from jackettwin.service.web.schemas.assets import Taken
 from jackettwin.service.web.schemas.records import PicksIn
 from jackettwin.service.work.conditions import add_conditions
+from jackettwin.service.workers import record_views
 from jackettwin.service.workers.drafts import draft
 from jackettwin.service.workers.failures import ROOM_BYTES
 from jackettwin.service.workers.tasks import read_conditions
-from jackettwin.store import assets, journal, people, reading, records, work, writing
+from jackettwin.store import assets, journal, people, reading, records, results, work, writing
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Service
@@ -169,6 +170,21 @@ def by_worker(
     if keep:
         service.answers.keep(asked, Answer.of(0, json.dumps(found).encode()))
     return found
+
+
+def stretches(service: Service, record_id: str, who: Who) -> Any:
+    """Return what examination set aside of a record: as observed, else as a worker finds it.
+
+    Nobody tells it of a record that is not observed yet, or was before observations held it.
+    """
+    with reading(service.database) as connection:
+        record = known_record(connection, record_id, who)
+        adopted = known_asset(connection, record.asset)
+        seen = results.find_observation(connection, record.asset, record_id, adopted.model_hash)
+    quality = {} if seen is None else json.loads(seen.document or "{}").get("quality", {})
+    if record.waveform is not None and "unused" in quality:
+        return record_views.stretches_of(quality)
+    return by_worker(service, record_id, who, record_views.stretches, keep=True)
 
 
 def _limited(stream: BinaryIO, most: int) -> Iterator[bytes]:

@@ -2,21 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from jackettwin.arrays import BoolArray
 from jackettwin.errors import InputError
 from jackettwin.service.workers.engine import load_twin
 from jackettwin.store import read_waveform
-
-_APART_S = 1.0
-"""Faults nearer than this are drawn as one."""
-_MOST = 100
-"""Largest number of stretches of a channel; of more, the longest are drawn."""
 
 
 def motion(folder: str, waveform: str, duration_s: float) -> dict[str, Any]:
@@ -39,36 +31,33 @@ def motion(folder: str, waveform: str, duration_s: float) -> dict[str, Any]:
 
 
 def stretches(folder: str, waveform: str) -> list[dict[str, Any]]:
-    """Return where in a record samples are missing or not used, and the moments that findings name."""
+    """Return :func:`stretches_of` a record that no observation tells of."""
     from jackettwin.records import assess
 
-    record = read_waveform(Path(waveform))
-    quality, rate = assess(record), record.sample_rate_hz
+    return stretches_of(assess(read_waveform(Path(waveform))).summary())
+
+
+def stretches_of(quality: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return where in a record samples are missing or not used, and the moments that findings name.
+
+    Parameters
+    ----------
+    quality : mapping
+        ``Quality.summary()``, as an observation holds it.
+    """
     said: dict[str | None, list[str]] = {}
-    for finding in quality.findings:
-        said.setdefault(finding.subject, []).append(finding.text)
     found = []
-    for channel, row, suspect in zip(record.channels, record.data, quality.suspect, strict=True):
-        gaps = ~np.isfinite(row)
-        for code, mask in (("gap", gaps), ("left_out", suspect & ~gaps)):
-            text = "; ".join(said.get(channel.name, [])) if code == "left_out" else "no samples"
-            for first, last in _runs(mask, round(_APART_S * rate)):
-                place = {"from_s": first / rate, "to_s": last / rate}
-                found.append({"channel": channel.name, "code": code, "text": text, **place})
-    for finding in quality.findings:
-        at = finding.params.get("time_s")
+    for finding in quality["findings"]:
+        text, subject, at = finding["text"], finding.get("subject"), finding["params"].get("time_s")
+        said.setdefault(subject, []).append(text)
         if isinstance(at, float):
-            place = {"from_s": at, "to_s": at}
-            found.append({"channel": finding.subject, "code": finding.code, "text": finding.text, **place})
+            found.append(
+                {"channel": subject, "code": finding["code"], "text": text, "from_s": at, "to_s": at}
+            )
+    for of in quality["unused"]:
+        channel, code = of["channel"], of["code"]
+        text = "no samples" if code == "gap" else "; ".join(said.get(channel, []))
+        for first, last in of["spans_ms"]:
+            place = {"from_s": first / 1e3, "to_s": last / 1e3}
+            found.append({"channel": channel, "code": code, "text": text, **place})
     return found
-
-
-def _runs(mask: BoolArray, apart: int) -> Iterator[tuple[int, int]]:
-    """Yield first and last sample of each run, joined over short pauses."""
-    places = np.flatnonzero(mask)
-    if not places.size:
-        return
-    cuts = np.flatnonzero(np.diff(places) > max(apart, 1))
-    firsts, lasts = places[np.r_[0, cuts + 1]], places[np.r_[cuts, places.size - 1]]
-    longest = np.argsort(firsts - lasts, kind="stable")[:_MOST]
-    yield from ((int(firsts[k]), int(lasts[k])) for k in np.sort(longest))

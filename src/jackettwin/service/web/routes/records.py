@@ -191,7 +191,7 @@ def motion(
 )
 def stretches(record_id: RecordId, who: Asker, parts: Parts) -> Page[StretchOut]:
     """Return where in a record samples are missing or left out, and the moments that findings name."""
-    return Page(items=uploads.by_worker(parts, record_id, who, workers.record_views.stretches, keep=True))
+    return Page(items=uploads.stretches(parts, record_id, who))
 
 
 @router.put(
