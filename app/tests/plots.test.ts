@@ -1,6 +1,6 @@
 import { describe, expect, test } from "vitest";
 import { binPlot } from "../src/parts/modes";
-import { csvOf, extentOf, type PlotData, spanOf, ticksOf } from "../src/parts/plot/series";
+import { csvOf, extentOf, type PlotData, spanOf, ticksOf, timeTicksOf } from "../src/parts/plot/series";
 import { svgOf } from "../src/parts/plot/svg";
 
 const plot: PlotData = {
@@ -52,6 +52,32 @@ describe("a plot", () => {
     expect(spanOf(odd, [97.5, 100])[1]).toBeGreaterThan(50);
     const heights = [...svgOf(odd, [0, 100], () => "#123456").matchAll(/cy="(\d+)/g)].map((m) => Number(m[1]));
     expect(Math.min(...heights)).toBe(40); // at the edge, not above the plot
+  });
+  test("tells lines of one colour apart by their strokes, above the curves, and words of near marks by rows", () => {
+    const line = { colour: "blue", kind: "line" as const, x: [0, 60], y: [1, 2] };
+    const series = [
+      { ...line, name: "first" },
+      { ...line, name: "second", dash: [7, 4] },
+    ];
+    const marks = [0, 1].map((x) => ({ x, words: "alarm", colour: "alarm" }));
+    const drawn = svgOf({ ...plot, series, marks }, [0, 60], () => "#123456");
+    expect(drawn.match(/stroke-dasharray="7 4"/g)).toHaveLength(2);
+    const rows = [...drawn.matchAll(/y="([\d.]+)"[^>]*>(second|alarm)</g)].map((m) => Number(m[1]));
+    expect(new Set(rows).size).toBe(3);
+    expect(Math.min(...rows)).toBe(rows[0]);
+  });
+  test("counts a year in months and an hour in minutes", () => {
+    const at = (from: string, to: string): string[] =>
+      timeTicksOf([Date.parse(from) / 1000, Date.parse(to) / 1000], 6).map((t) => new Date(t * 1000).toISOString());
+    expect(at("2025-01-15", "2025-12-20").map((t) => t.slice(0, 10))).toEqual([
+      "2025-03-01",
+      "2025-05-01",
+      "2025-07-01",
+      "2025-09-01",
+      "2025-11-01",
+    ]);
+    expect(at("2025-01-15T12:01", "2025-01-15T12:59")).toHaveLength(5);
+    expect(at("2025-01-15", "2025-01-15")).toHaveLength(0);
   });
   test("is drawn without letting a name become markup", () => {
     const drawn = svgOf(plot, [0, 60], () => "#123456");

@@ -648,18 +648,28 @@ def test_on_paper_columns_have_their_titles_and_nothing_asks_for_input(opened: O
     assert page.locator("main input:visible").count() == 0
 
 
-def test_an_empty_list_says_that_the_demonstration_is_being_laid_out(opened: Open) -> None:
-    page = opened.page("/")
-    nothing = {"items": [], "next_cursor": None}
-    page.route(re.compile(r"/api/v1/assets$"), lambda route: route.fulfill(json=nothing))
-    page.reload()
-    expect(page.get_by_text("No turbine yet")).to_be_visible()
-    opened.service.laying_out = True
-    try:
-        page.reload()
-        expect(page.get_by_text("Being laid out")).to_be_visible()
-    finally:
-        opened.service.laying_out = False
+def test_what_is_not_there_yet_is_said_to_be_laid_out_and_comes_by_itself(
+    tmp_path: Path, browser: Browser
+) -> None:
+    """Every page of the demonstration, and the list of turbines, before there is one and once it is there."""
+    patch = pytest.MonkeyPatch()
+    for service in make_service(tmp_path, None, patch, assets=()):
+        with served(service) as url:
+            one, page = Open(url, service, browser), browser.new_page(base_url=url)
+            service.laying_out = True
+            for path in ("", "live", "explore", "records", f"records/{'0' * 24}", "reports", "/"):
+                one.goto(page, path if path == "/" else f"/assets/wtg/{path}")
+                expect(page.get_by_text("The demonstration is being laid out").first).to_be_visible()
+                expect(page.get_by_text("No such")).to_have_count(0)
+            service.laying_out = False
+            expect(page.get_by_text("No turbine yet")).to_be_visible()
+            service.laying_out = True
+            one.goto(page, "/assets/wtg/model")
+            add_text_version(service, "wtg", TWIN, {}, "test")
+            service.laying_out = False
+            expect(page.get_by_role("cell", name="adopted")).to_be_visible()
+            page.close()
+    patch.undo()
 
 
 def test_any_page_is_one_file_without_server_or_script(opened: Open, tmp_path: Path) -> None:

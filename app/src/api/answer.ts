@@ -34,6 +34,12 @@ export function useAnswer<T>(
   const newest = useRef(0);
   const events = asset === null ? 0 : (happened.value[asset] ?? 0);
   const lost = connection.value === "lost";
+  const again = (): void => setTries((n) => n + 1);
+  useEffect(() => {
+    if (!state.problem?.after) return;
+    const timer = setTimeout(again, 1000 * state.problem.after);
+    return () => clearTimeout(timer);
+  }, [state.problem]);
   useEffect(() => {
     const number = ++newest.current;
     const keep = (data: T | undefined, problem: Problem | undefined): void => {
@@ -46,7 +52,7 @@ export function useAnswer<T>(
     );
   }, [key, about, events, tries, lost]);
   const current = state.key === key ? state : { data: undefined, problem: undefined };
-  return { data: current.data, problem: current.problem, again: () => setTries((n) => n + 1) };
+  return { data: current.data, problem: current.problem, again };
 }
 
 /** Ask what the API says at an address below an asset or a record. */

@@ -28,10 +28,12 @@ api.use({
 /** What went wrong, as the server says it (RFC 9457), or as this browser does. */
 export class Problem extends Error {
   constructor(
-    readonly kind: "offline" | "login" | "role" | "missing" | "refused" | "server",
+    readonly kind: "offline" | "login" | "role" | "missing" | "refused" | "soon" | "server",
     detail: string,
     readonly remedy: string = "",
     readonly field: string = "",
+    /** After how many seconds to ask again. */
+    readonly after: number = 0,
   ) {
     super(detail);
   }
@@ -42,13 +44,13 @@ const KINDS: Record<number, Problem["kind"]> = { 401: "login", 403: "role", 404:
 type Said = { detail?: unknown; remedy?: unknown; field?: unknown; allowed?: unknown };
 
 /** Make a problem of an answer that is none. */
-export function problemOf(status: number, said: unknown): Problem {
+export function problemOf(status: number, said: unknown, after = 0): Problem {
   const told = (typeof said === "object" && said !== null ? said : {}) as Said;
   const text = (value: unknown): string => (typeof value === "string" ? value : "");
-  const kind = KINDS[status] ?? (status >= 500 ? "server" : "refused");
+  const kind = KINDS[status] ?? (after ? "soon" : status >= 500 ? "server" : "refused");
   const allowed = text(told.allowed) && `; allowed: ${text(told.allowed)}`;
   const detail = text(told.detail) || `the server answered ${status}`;
-  return new Problem(kind, detail + allowed, text(told.remedy), text(told.field));
+  return new Problem(kind, detail + allowed, text(told.remedy), text(told.field), after);
 }
 
 type Fetched<T> = { data?: T; error?: unknown; response: Response };
@@ -63,7 +65,7 @@ export async function told<T>(answer: Promise<Fetched<T>>): Promise<T> {
   }
   if (fetched.response.ok) return fetched.data as T;
   if (fetched.response.status === 401) me.value = null;
-  throw problemOf(fetched.response.status, fetched.error);
+  throw problemOf(fetched.response.status, fetched.error, Number(fetched.response.headers.get("Retry-After")));
 }
 
 type Paged<T> = { items: T[]; next_cursor?: string | null };

@@ -11,7 +11,6 @@ export const connection = signal<Connection>("connecting");
 /** Counts what happened, by asset; "" counts everything. */
 export const happened = signal<Record<string, number>>({ "": 0 });
 
-let source: EventSource | null = null;
 let pending = new Set<string>();
 let timer: ReturnType<typeof setTimeout> | undefined;
 
@@ -31,30 +30,46 @@ function note(assets: Iterable<string>): void {
   }, REST_MS);
 }
 
-/** Begin to listen; a browser comes back by itself, with the number of the last event it knows. */
+/** Hear what a server tells until the function that comes back is called. A browser returns by itself, unless it was refused. */
+export function hear(
+  url: string,
+  kinds: readonly string[],
+  on: (said: unknown) => void,
+  there: (now: boolean) => void = () => undefined,
+): () => void {
+  let [source, timer]: [EventSource | null, number] = [null, 0];
+  const begin = (): void => {
+    const one = (source = new EventSource(url));
+    one.onopen = () => there(true);
+    one.onerror = () => {
+      there(false);
+      if (one.readyState === EventSource.CLOSED) timer = setTimeout(begin, 5000);
+    };
+    for (const kind of kinds) one.addEventListener(kind, (e: MessageEvent<string>) => on(JSON.parse(e.data)));
+  };
+  begin();
+  return () => {
+    clearTimeout(timer);
+    source?.close();
+  };
+}
+
+let stop: (() => void) | null = null;
+
 export function listen(): void {
-  if (source) return;
-  source = new EventSource("/api/v1/events");
-  source.onopen = () => {
-    if (connection.value === "lost") note([]);
-    connection.value = "live";
-  };
-  source.onerror = () => {
-    connection.value = "lost";
-    if (source?.readyState === EventSource.CLOSED) {
-      source = null;
-      setTimeout(listen, 5000);
-    }
-  };
-  for (const kind of KINDS)
-    source.addEventListener(kind, (event: MessageEvent<string>) => {
-      const said: unknown = JSON.parse(event.data);
-      if (typeof said === "object" && said !== null && "asset" in said) note([String(said.asset)]);
-    });
+  stop ??= hear(
+    "/api/v1/events",
+    KINDS,
+    (said) => note([String((said as { asset?: string }).asset ?? "")]),
+    (now) => {
+      if (now && connection.value === "lost") note([]);
+      connection.value = now ? "live" : "lost";
+    },
+  );
 }
 
 export function stopListening(): void {
-  source?.close();
-  source = null;
+  stop?.();
+  stop = null;
   connection.value = "connecting";
 }

@@ -1,15 +1,10 @@
 // What the API describes as an object of any kind, as the pages read it.
+import type { Mode } from "./client";
 import { count } from "../words/numbers";
 
-export interface KnownMode {
-  mode: number;
-  label: string;
-  frequency_hz: number;
-  frequency_std_hz: number | null;
-  damping_ratio: number | null;
-  damping_ratio_std: number | null;
-  records: number;
-}
+type Own = "label" | "frequency_hz" | "frequency_std_hz" | "damping_ratio" | "damping_ratio_std";
+export type Estimated = Pick<Mode, Own>;
+export type KnownMode = Estimated & { mode: number; records: number };
 
 export interface KnownParameter {
   median: number;

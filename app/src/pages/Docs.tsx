@@ -1,9 +1,9 @@
 // What the API takes and answers, as its own document says it.
 import { useAnswer } from "../api/answer";
 import { Problem } from "../api/client";
-import { Card, Head } from "../parts/Bits";
+import { Card, Find, Head } from "../parts/Bits";
 import { Shown } from "../parts/Shown";
-import { asked, keep } from "../shell/place";
+import { asked } from "../shell/place";
 
 type Parameter = { name: string; in: string; required?: boolean; description?: string };
 type Said = { tags?: string[]; description?: string; summary?: string; parameters?: Parameter[] };
@@ -25,7 +25,7 @@ function Call({ row }: { row: Row }) {
       <code>
         <b>{row.method.toUpperCase()}</b> {row.path}
       </code>
-      <p>{row.description ?? row.summary}</p>
+      <p>{(row.description ?? row.summary ?? "").replaceAll("``", "")}</p>
       {asks.length > 0 && (
         <p class="quiet">
           {asks.map((p, i) => (
@@ -67,13 +67,7 @@ export default function Docs() {
           return (
             <>
               <div class="tools">
-                <input
-                  type="search"
-                  aria-label="Find a call"
-                  placeholder="Find a call"
-                  value={text}
-                  onInput={(event) => keep({ find: event.currentTarget.value || null })}
-                />
+                <Find label="Find a call" />
                 <span class="quiet">
                   {data.info.title} {data.info.version}, {rows.length} calls
                 </span>

@@ -3,7 +3,7 @@ import { useMemo, useState } from "preact/hooks";
 import { useAsset } from "../api/answer";
 import { type Schemas } from "../api/client";
 import { Card, Choice, Head, Pick, Slide } from "../parts/Bits";
-import { modeColour, paintOf } from "../parts/modes";
+import { modeColour, modeDash, paintOf } from "../parts/modes";
 import { Plot } from "../parts/plot/Plot";
 import type { Mark, PlotData, Range, Series } from "../parts/plot/series";
 import { Empty, Shown } from "../parts/Shown";
@@ -41,7 +41,7 @@ function along(locus: Locus, name: string, title: string, yName: string, of: OfB
       name: words(b.label),
       colour: modeColour(b.label),
       kind: "line",
-      dashed: !b.label.endsWith("_1"),
+      ...modeDash(b.label),
       x: locus.values,
       y: locus.values.map((_, i) => (lively(b, i) ? of(b, i) : null)),
     })),
@@ -67,7 +67,7 @@ function poles(locus: Locus, index: number): PlotData {
     time: false,
     xName: "real part [rad/s]",
     yName: "imaginary part of the poles [rad/s]",
-    series: [...series, dots("here", "ink", now)],
+    series: [...series, { ...dots("here", "ink", now), names: now.map(([b]) => words(b.label)) }],
   };
 }
 
@@ -105,7 +105,10 @@ function Along({ locus, name, many }: { locus: Locus; name: string; many: boolea
           ))}
         </div>
       </Card>
-      <Card title="Modes here" note={`At a ${name} of ${quantity(value, locus.unit, 3)}.`}>
+      <Card
+        title="Modes here"
+        note={`At a ${name} of ${quantity(value, locus.unit, 3)}, of the model as drawn: what the estimate allows it as error is not taken out.`}
+      >
         <Table
           label="Frequencies and damping ratios"
           rows={locus.branches}
@@ -134,12 +137,11 @@ function Along({ locus, name, many }: { locus: Locus; name: string; many: boolea
 function Sensitivity({ asset, said }: { asset: string; said: Name }) {
   const found = useAsset(asset, "/sensitivity");
   const of = asked("sensitivity") ? "damping_sensitivity" : "frequency_sensitivity";
-  const [unit, scale] = asked("sensitivity") ? ["0.001 %", 1e3] : ["‰", 10];
   return (
     <Card
       title="Sensitivities"
       wide
-      note="Change of each mode if the parameter grows by one per cent: of its frequency in ‰, of its damping ratio in 0.001 %."
+      note="Change of each mode, in millionths, if the parameter grows by one per cent: of its frequency by itself, of its damping ratio as it is."
       more={<Choice label="Of" kept="sensitivity" options={OF} />}
     >
       <Shown of={found} none={<Empty title="Not estimated yet" />}>
@@ -151,8 +153,8 @@ function Sensitivity({ asset, said }: { asset: string; said: Name }) {
             columns={[
               { title: "Mode", show: (m) => words(m.label) },
               ...Object.keys(data.items[0]?.[of] ?? {}).map((name) =>
-                number<Schemas["SensitivityOut"]>(said(name), unit, (m) => scale * (m[of][name] ?? NaN), {
-                  say: (v) => fixed(v, 2),
+                number<Schemas["SensitivityOut"]>(said(name), "10⁻⁶", (m) => 1e4 * (m[of][name] ?? NaN), {
+                  say: (v) => fixed(v, 1),
                 }),
               ),
             ]}
@@ -247,11 +249,7 @@ function Surface({ surface: { x, y, cost }, named, said }: { surface: Grid; name
   );
 }
 
-const Nothing = () => (
-  <Empty title="Nothing to explore yet">
-    This comes with the first estimate of the ground, when no record waits.
-  </Empty>
-);
+const NOTHING = <Empty title="Nothing to explore yet">This comes with the first estimate of the ground.</Empty>;
 
 export default function Explore({ asset }: PageProps) {
   const found = useAsset(asset, "/explore");
@@ -260,7 +258,7 @@ export default function Explore({ asset }: PageProps) {
       <Head title="Explore">
         What each parameter of the ground does to the modes, and how well the records tell it.
       </Head>
-      <Shown of={found} lines={12} some={(data) => data.loci?.length} none={<Nothing />}>
+      <Shown of={found} lines={12} some={(data) => data.loci?.length} none={NOTHING}>
         {(data) => <Drawn asset={asset} explored={data} />}
       </Shown>
       <Laws />

@@ -1,7 +1,7 @@
 // Which turbine needs me?
 import { useAnswer } from "../api/answer";
-import { api, type Asset, me, told } from "../api/client";
-import { Ago, Choice, Head, Light } from "../parts/Bits";
+import { api, type Asset, told } from "../api/client";
+import { Ago, Choice, Find, Head, Light, Press } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import { type Column, number, Table } from "../parts/Table";
 import { asked, assetUrl, keep } from "../shell/place";
@@ -40,19 +40,14 @@ const COLUMNS: Column<Asset>[] = [
   number("Waiting", "records", (a) => some(a, "received", "observing")),
 ];
 
-function Nothing() {
-  if (me.value?.laying_out) return <Empty title="Being laid out">The demonstration is here in a few seconds.</Empty>;
-  return (
-    <Empty title="No turbine yet">
-      <p>
-        <a href="/start">Add one</a> with its files, or on the command line:
-      </p>
-      <pre>
-        jackettwin asset add NAME TWIN --store STORE{"\n"}jackettwin intake RECORDS --asset NAME --store STORE
-      </pre>
-    </Empty>
-  );
-}
+const Nothing = () => (
+  <Empty title="No turbine yet">
+    <p>
+      <a href="/start">Add one</a> with its files, or on the command line:
+    </p>
+    <pre>jackettwin asset add NAME TWIN --store STORE{"\n"}jackettwin intake RECORDS --asset NAME --store STORE</pre>
+  </Empty>
+);
 
 /** "2 turbines need you" */
 export function headline(assets: readonly Asset[]): string {
@@ -82,21 +77,13 @@ export function Fleet() {
               {data.items.length > 1 && <SaveDrawn title="Map" csv={() => mapCsv(data.items)} />}
               <div class="tools">
                 <Choice label="Status" kept="status" options={[["", `All ${data.items.length}`], ...URGENT]} />
-                <input
-                  type="search"
-                  aria-label="Find a turbine"
-                  placeholder="Find a turbine"
-                  value={text}
-                  onInput={(event) => keep({ find: event.currentTarget.value || null })}
-                />
+                <Find label="Find a turbine" />
               </div>
               {rows.length ? (
                 <Table label="Turbines" columns={COLUMNS} rows={rows} id={(a) => a.name} sorted={0} most={100} />
               ) : (
                 <Empty title="No turbine fits">
-                  <button type="button" onClick={() => keep({ status: null, find: null })}>
-                    Show all
-                  </button>
+                  <Press words="Show all" act={() => keep({ status: null, find: null })} />
                 </Empty>
               )}
             </section>

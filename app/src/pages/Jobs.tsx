@@ -2,7 +2,7 @@
 import { useAnswer } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
 import { may, useDeed } from "../api/do";
-import { Ago, Card, Choice, Head, Light } from "../parts/Bits";
+import { Ago, Card, Choice, Head, Light, Press } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import { Table } from "../parts/Table";
 import { asked, assetUrl } from "../shell/place";
@@ -54,11 +54,8 @@ export default function Jobs() {
                   show: (j) => {
                     const what = ["queued", "leased"].includes(j.state) ? "cancel" : "retry";
                     if (!may("engineer") || j.state === "done") return null;
-                    return (
-                      <button type="button" disabled={deed.busy} onClick={() => void act(j, what)}>
-                        {what === "cancel" ? "Cancel" : "Try again"}
-                      </button>
-                    );
+                    const words = what === "cancel" ? "Cancel" : "Try again";
+                    return <Press words={words} off={deed.busy} act={() => act(j, what)} />;
                   },
                 },
               ]}

@@ -22,7 +22,7 @@ const named = (w: Weld): string => (w.side === "tube" ? `${w.joint}, ` : `${w.jo
 const state = (w: Weld): string => {
   if (w.departed) return "alarm";
   if (w.beyond_validity.length) return "doubtful";
-  return w.over_budget ? "alarm" : (w.rate_interval_90[0] ?? 0) > w.budget_per_year ? "warning" : "ok";
+  return w.over_budget ? "alarm" : w.rate_per_year > w.budget_per_year ? "warning" : "ok";
 };
 const largest = (shares: Record<string, number>): string[] =>
   Object.entries(shares)

@@ -1,7 +1,8 @@
 // What happens now: signals roll as they arrive, or as they did in the newest record, and the structure moves.
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { type View } from "../../../src/jackettwin/report/templates/view.js";
-import { useAnswer, useAsset } from "../api/answer";
+import { useAsset, useRecord } from "../api/answer";
+import { hear } from "../api/events";
 import { api, type RecordOut, type Schemas, told } from "../api/client";
 import { Card, Head, Time, Pick } from "../parts/Bits";
 import { InSpace } from "../parts/InSpace";
@@ -19,16 +20,16 @@ type Packet = { channel: string; t0_utc: string; rate_hz: number; samples: (numb
 /** Packets as they arrive; true once one did. */
 function useStream(asset: string, roll: Roll): boolean {
   const [streams, setStreams] = useState(false);
-  useEffect(() => {
-    const source = new EventSource(`/api/v1/assets/${encodeURIComponent(asset)}/live`);
-    source.addEventListener("packet", (event: MessageEvent<string>) => {
-      const { channel, t0_utc, rate_hz, samples } = JSON.parse(event.data) as Packet;
-      if (!roll.streams) roll.begin(seconds(t0_utc), true); // a packet behind, so that it rolls while the next comes
-      roll.add(channel, seconds(t0_utc), 1 / rate_hz, samples);
-      setStreams(true);
-    });
-    return () => source.close();
-  }, [asset, roll]);
+  useEffect(
+    () =>
+      hear(`/api/v1/assets/${encodeURIComponent(asset)}/live`, ["packet"], (said) => {
+        const { channel, t0_utc, rate_hz, samples } = said as Packet;
+        if (!roll.streams) roll.begin(seconds(t0_utc), true); // a packet behind, so that it rolls while the next comes
+        roll.add(channel, seconds(t0_utc), 1 / rate_hz, samples);
+        setStreams(true);
+      }),
+    [asset, roll],
+  );
   return streams;
 }
 
@@ -61,20 +62,24 @@ function useReplay(record: RecordOut | undefined, roll: Roll): void {
 
 function Moving({ drawn, record, roll }: { drawn: Schemas["StructureOut"]; record: RecordOut; roll: Roll }) {
   const view = useRef<View | null>(null);
-  const moved = useAnswer(null, `motion ${record.record_id}`, async () => {
-    const params = { path: { record_id: record.record_id }, query: { duration_s: 600 } };
-    const motion = await told(api.GET("/api/v1/records/{record_id}/motion", { params }));
-    return { ...drawn, motions: [motion] };
-  });
+  const asked = useRecord(record.record_id, "/motion", { duration_s: 600 });
+  const motion = asked.data;
   useEffect(() => {
     const timer = setInterval(() => {
-      const start = moved.data?.motions[0]?.start_s ?? 0;
+      const start = motion?.start_s ?? 0;
       view.current?.stand((((roll.now() - start) % record.duration_s) + record.duration_s) % record.duration_s);
     }, 40);
     return () => clearInterval(timer);
-  }, [moved.data]);
-  const still = useMemo(() => ({ ...drawn, motions: [] }), [drawn]);
-  return <InSpace drawn={moved.data ?? still} view={view} />;
+  }, [motion]);
+  const moved = useMemo(() => ({ ...drawn, motions: motion ? [motion] : [] }), [drawn, motion]);
+  return (
+    <>
+      {!motion && (
+        <p class="note">{asked.problem?.message ?? "Its motion is computed by a worker once one is free."}</p>
+      )}
+      <InSpace drawn={moved} view={view} />
+    </>
+  );
 }
 
 export default function Live({ asset }: PageProps) {
@@ -109,7 +114,7 @@ export default function Live({ asset }: PageProps) {
                     label="Shown"
                     bare
                     value={String(span)}
-                    options={SPANS_S.map((s) => [String(s), `${s} s`] as const)}
+                    options={SPANS_S.map((s) => [String(s), `last ${s} s`] as const)}
                     onChoose={(s) => setSpan(Number(s))}
                   />
                 </>

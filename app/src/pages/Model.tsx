@@ -3,7 +3,7 @@ import { useState } from "preact/hooks";
 import { type Answer, useAsset } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
 import { may, namesOf, twinOf, useDeed } from "../api/do";
-import { Card, Field, Form, Head, Time } from "../parts/Bits";
+import { Card, Field, Form, Head, Press, Time } from "../parts/Bits";
 import { Drop } from "../parts/Drop";
 import { Shown } from "../parts/Shown";
 import { number, Table } from "../parts/Table";
@@ -111,14 +111,8 @@ export default function Model({ asset }: PageProps) {
                     show: (v) =>
                       v.adopted ? null : (
                         <>
-                          <button type="button" onClick={() => keep({ compare: String(v.version) })}>
-                            Compare
-                          </button>{" "}
-                          {may("engineer") && (
-                            <button type="button" disabled={deed.busy} onClick={() => void adopt(v.version)}>
-                              Adopt
-                            </button>
-                          )}
+                          <Press words="Compare" act={() => keep({ compare: String(v.version) })} />{" "}
+                          {may("engineer") && <Press words="Adopt" off={deed.busy} act={() => adopt(v.version)} />}
                         </>
                       ),
                   },

@@ -13,7 +13,7 @@ import { ModeTable } from "../parts/ModeTable";
 import type { PageProps } from "../shell/place";
 import { asked } from "../shell/place";
 import { InTime, rangeKept } from "../parts/Stiffness";
-import { fixed, short, words } from "../words/numbers";
+import { fixed, sentence, short, words } from "../words/numbers";
 import { seconds } from "../words/time";
 
 const POINTS = 1400;
@@ -27,7 +27,7 @@ export function condition(name: string): string {
   return own.replaceAll("_", " ") + (unit && ` [${UNITS[unit]}]`);
 }
 
-/** The signals, and once they are drawn what was said of their faults: workers do one thing after the other. */
+/** The signals, with what was said of their faults. */
 function Signals({ record, onDrawn }: { record: RecordOut; onDrawn: () => void }) {
   const names = record.channels.map((c) => String(c["name"]));
   const [chosen, setChosen] = useState(names.slice(0, 3));
@@ -41,10 +41,7 @@ function Signals({ record, onDrawn }: { record: RecordOut; onDrawn: () => void }
   const signal = useRecord(record.record_id, "/signal", query) as Answer<Schemas["Signal"]>;
   const there = Boolean(signal.data ?? signal.problem);
   useEffect(() => void (there && onDrawn()), [there]);
-  const params = { path: { record_id: record.record_id } };
-  const stretches = useAnswer(null, `stretches ${record.record_id} ${there}`, async () =>
-    there ? told(api.GET("/api/v1/records/{record_id}/stretches", { params })) : null,
-  );
+  const stretches = useRecord(record.record_id, "/stretches");
   const faults = stretches.data?.items ?? [];
   const switched = (name: string): void =>
     setChosen((old) =>
@@ -189,6 +186,8 @@ const about = (record: RecordOut): [string, string][] => [
   ]),
 ];
 
+const STATUS = [{ title: "Status", show: (m: Mode) => <Light status={m.status} /> }];
+
 export default function Record({ asset, id }: PageProps) {
   const record = useAnswer(asset, `record ${id}`, () =>
     told(api.GET("/api/v1/records/{record_id}", { params: { path: { record_id: id } } })),
@@ -196,7 +195,7 @@ export default function Record({ asset, id }: PageProps) {
   const modes = useAsset(asset, "/modes", { record: id, limit: 100 });
   const found = modes.data?.items ?? [];
   const [drawn, setDrawn] = useState(false);
-  if (record.data === undefined) return <Shown of={record}>{() => null}</Shown>;
+  if (record.data === undefined) return <Shown of={record} title="Record" children={() => null} />;
   const data = record.data;
   const problem = data.problem?.["detail"];
   return (
@@ -212,11 +211,10 @@ export default function Record({ asset, id }: PageProps) {
         <Card title="Modes found">
           <Shown of={modes} none={<p class="quiet">None yet.</p>}>
             {({ items }) => (
-              <ModeTable
-                asset={asset}
-                modes={items}
-                more={[{ title: "Status", show: (m) => <Light status={m.status} /> }]}
-              />
+              <>
+                <ModeTable asset={asset} modes={items} more={STATUS} />
+                {items.map((m) => m.reason && <p class="note">{sentence(`${m.label || "unnamed"}: ${m.reason}`)}</p>)}
+              </>
             )}
           </Shown>
         </Card>

@@ -3,7 +3,7 @@ import { useState } from "preact/hooks";
 import { useAsset } from "../api/answer";
 import type { Mode, RecordOut } from "../api/client";
 import { may } from "../api/do";
-import { Card, Choice, Light, Time, Head } from "../parts/Bits";
+import { Card, Choice, Head, Light, Press, Time } from "../parts/Bits";
 import { ModeTable } from "../parts/ModeTable";
 import { Empty, Shown } from "../parts/Shown";
 import { type Column, number, Table } from "../parts/Table";
@@ -58,22 +58,14 @@ export default function Records({ asset }: PageProps) {
       <Card
         title={from && to ? `From ${from.slice(0, 10)} to ${to.slice(0, 10)}` : "Latest first"}
         wide
-        more={
-          from && (
-            <button type="button" onClick={() => keep({ from: null, to: null })}>
-              All
-            </button>
-          )
-        }
+        more={from && <Press words="All" act={() => keep({ from: null, to: null })} />}
       >
         <Shown of={found} lines={8} none={<Nothing asset={asset} />}>
           {(data) => (
             <>
               <Table label="Records" columns={COLUMNS} rows={data.items} id={(r) => r.record_id} />
               {data.next_cursor && limit < 1000 && (
-                <button type="button" onClick={() => setLimit((n) => Math.min(n * 2, 1000))}>
-                  Show more
-                </button>
+                <Press words="Show more" act={() => setLimit((n) => Math.min(n * 2, 1000))} />
               )}
             </>
           )}

@@ -2,7 +2,7 @@
 import { useState } from "preact/hooks";
 import { api, me, type Schemas, told } from "../api/client";
 import { isTwin, may, namesOf, twinOf, useDeed } from "../api/do";
-import { Card, Field, Form, Head, Pick } from "../parts/Bits";
+import { Card, Field, Form, Head, Pick, Press } from "../parts/Bits";
 import { Drop } from "../parts/Drop";
 import { InSpace } from "../parts/InSpace";
 import { Empty, Trouble } from "../parts/Shown";
@@ -97,14 +97,12 @@ function Drafting({ files }: { files: readonly File[] }) {
             onChoose={setNamed}
           />
           <span class="quiet">Records: {namesOf(records)}</span>
-          <button
-            type="button"
-            class="main"
-            disabled={deed.busy || !structure || !records.length}
-            onClick={() => void ask()}
-          >
-            {deed.busy ? "A worker reads them" : "Draft a twin"}
-          </button>
+          <Press
+            words={deed.busy ? "A worker reads them" : "Draft a twin"}
+            look="main"
+            off={deed.busy || !structure || !records.length}
+            act={ask}
+          />
         </div>
         {deed.problem && <Trouble problem={deed.problem} />}
       </Card>

@@ -25,7 +25,7 @@ function Version({ asset, version }: { asset: string; version: number | undefine
     <Card
       title={version === undefined ? "As adopted" : `Version ${version}`}
       wide={version === undefined && !asked("beside")}
-      note="Every part in its own phase: what is heavily damped does not pass through rest together. Green points are what the sensors measured, in the model's amplitude and phase."
+      note="Every part in its own phase: what is heavily damped does not pass through rest together. Green points are what the sensors measured, in the model's amplitude and phase. Frequencies are the best fit's own: what the estimate allows the model as error is not taken out."
     >
       <Shown of={found} lines={12} some={(data) => data.nodes?.length} none={<Nothing />}>
         {(data) => <InSpace drawn={drawn ?? data} />}

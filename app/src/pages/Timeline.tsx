@@ -23,11 +23,8 @@ const REST_MS = 150;
 const ROWS = 8000;
 const POINTS = 1000;
 
-interface Seen {
-  bins: Bins[];
-  /** Every row, unless there are too many. */
-  rows: Mode[] | null;
-}
+/** Bins, and every row, unless there are too many. */
+type Seen = { bins: Bins[]; rows: Mode[] | null };
 
 /** What is known of some modes, or all, in a stretch of time. */
 async function look(

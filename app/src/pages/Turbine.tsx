@@ -140,7 +140,7 @@ export function Turbine({ asset }: PageProps) {
   const twin = useAsset(asset, "/twin");
   const alarms = useAsset(asset, "/alarms");
   const budget = useAsset(asset, "/damping-budget");
-  if (own.data === undefined && own.problem) return <Trouble problem={own.problem} again={own.again} />;
+  if (own.data === undefined && own.problem) return <Trouble title={asset} problem={own.problem} again={own.again} />;
   const known = twin.data?.parameters as Knowledge | undefined;
   return (
     <>

@@ -17,12 +17,9 @@ function evidence(alarm: Finding): string {
   return `${assetUrl(alarm.asset, "timeline")}?${range}`;
 }
 
-interface AlarmListProps {
-  alarms: readonly (Finding & { comment?: string | null })[];
-  again: () => void;
-  /** Whether what people did is shown line by line. */
-  whole?: boolean;
-}
+type Said = Finding & { comment?: string | null };
+/** If whole, what people did is shown line by line. */
+type AlarmListProps = { alarms: readonly Said[]; again: () => void; whole?: boolean };
 
 export function AlarmList({ alarms, again, whole = false }: AlarmListProps) {
   return (
@@ -31,7 +28,10 @@ export function AlarmList({ alarms, again, whole = false }: AlarmListProps) {
         <li key={alarm.id}>
           <p class="meta">
             <Light status={standing(alarm)} />
-            <Time at={alarm.time_utc} />
+            <span>
+              {alarm.severity === "alarm" && "found "}
+              <Time at={alarm.time_utc} />
+            </span>
             {alarm.assigned_to && <span>with {alarm.assigned_to}</span>}
             {alarm.muted_until_utc && (
               <span>

@@ -6,7 +6,7 @@ import { may } from "../api/do";
 import type { Knowledge } from "../api/shapes";
 import { assetUrl } from "../shell/place";
 import { count } from "../words/numbers";
-import { Card, Form } from "./Bits";
+import { Card, Form, Press } from "./Bits";
 import { Empty, Shown } from "./Shown";
 
 type Assumption = Schemas["AssumptionOut"];
@@ -21,12 +21,7 @@ function moved(one: Assumption, known: Knowledge): string {
 
 function Confirm({ asset, one, done }: { asset: string; one: Assumption; done: (version: number) => void }) {
   const [open, setOpen] = useState(false);
-  if (!open)
-    return (
-      <button type="button" onClick={() => setOpen(true)}>
-        Confirm
-      </button>
-    );
+  if (!open) return <Press words="Confirm" act={() => setOpen(true)} />;
   const send = async (text: (name: string) => string): Promise<void> => {
     const params = { path: { asset, key: one.key } };
     const path = "/api/v1/assets/{asset}/assumptions/{key}/confirm";

@@ -49,15 +49,9 @@ export function Head({ title, said, children }: { title: string; said?: boolean;
   );
 }
 
-interface CardProps {
-  title: string;
-  note?: ComponentChildren;
-  wide?: boolean;
-  more?: ComponentChildren;
-  children: ComponentChildren;
-}
+type CardProps = { title: string; note?: ComponentChildren; wide?: boolean; more?: ComponentChildren };
 
-export function Card({ title, note, wide, more, children }: CardProps) {
+export function Card({ title, note, wide, more, children }: CardProps & { children: ComponentChildren }) {
   return (
     <section class={wide ? "card wide" : "card"} aria-label={title}>
       <header>
@@ -69,6 +63,15 @@ export function Card({ title, note, wide, more, children }: CardProps) {
     </section>
   );
 }
+
+type PressProps = { words: string; act: () => unknown; off?: boolean; look?: string };
+
+/** A button that does something at once, unless it is off. */
+export const Press = ({ words, act, off = false, look = "" }: PressProps) => (
+  <button type="button" class={look} disabled={off} onClick={() => void act()}>
+    {words}
+  </button>
+);
 
 interface ChoiceProps {
   label: string;
@@ -121,17 +124,28 @@ export function Pick(props: ChoiceProps & { bare?: boolean }) {
   );
 }
 
-interface SlideProps {
-  children: ComponentChildren;
-  min?: number;
-  max: number;
-  step?: number | "any";
-  at: number;
-  onMove: (to: number) => void;
-}
+/** What is sought, which stands in the address. */
+export const Find = ({ label }: { label: string }) => (
+  <input
+    type="search"
+    aria-label={label}
+    placeholder={label}
+    value={asked("find") ?? ""}
+    onInput={(event) => keep({ find: event.currentTarget.value || null })}
+  />
+);
+
+type SlideProps = { min?: number; max: number; step?: number | "any"; at: number; onMove: (to: number) => void };
 
 /** A number by slider, with its words above. */
-export function Slide({ children, min = 0, max, step = 1, at, onMove }: SlideProps) {
+export function Slide({
+  children,
+  min = 0,
+  max,
+  step = 1,
+  at,
+  onMove,
+}: SlideProps & { children: ComponentChildren }) {
   const moved = (event: { currentTarget: HTMLInputElement }): void => onMove(Number(event.currentTarget.value));
   return (
     <label class="slide">
@@ -195,11 +209,7 @@ export function Form({ words, busy, onSend, onLeave, children }: FormProps) {
         <button class="main" disabled={deed.busy}>
           {deed.busy ? (busy ?? words) : words}
         </button>{" "}
-        {onLeave && (
-          <button type="button" onClick={onLeave}>
-            Not now
-          </button>
-        )}
+        {onLeave && <Press words="Not now" act={onLeave} />}
       </span>
     </form>
   );

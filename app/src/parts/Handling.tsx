@@ -3,7 +3,7 @@ import { useState } from "preact/hooks";
 import { useAnswer } from "../api/answer";
 import { api, type Finding, told } from "../api/client";
 import { may } from "../api/do";
-import { Form, Time } from "./Bits";
+import { Form, Press, Time } from "./Bits";
 
 type Act = "acknowledge" | "assign" | "comment" | "mute" | "close" | "reopen";
 const DAY_MS = 86_400_000;
@@ -60,9 +60,7 @@ export function Handling({ finding, again }: HandlingProps) {
     return (
       <p class="acts">
         {possible(finding).map((one) => (
-          <button type="button" key={one} onClick={() => setAct(one)}>
-            {ACTS[one]?.[0]}
-          </button>
+          <Press key={one} words={ACTS[one]?.[0] ?? one} act={() => setAct(one)} />
         ))}
       </p>
     );

@@ -12,7 +12,9 @@ import { Shown } from "./Shown";
 /** Of each parameter: unit, least, greatest and first value, in decades where it spans some. */
 type Slider = readonly [string, string, number, number, number];
 const K = ["N/m", 7, 11, 9.4] as const;
+const F0 = ["f0", "Hz", -2, 1, -0.74] as const;
 const LAWS: Record<string, readonly Slider[]> = {
+  "maxwell-3": [["k", ...K], ["loss_factor", "", 0.001, 0.5, 0.03], F0],
   "kelvin-voigt": [
     ["k", ...K],
     ["c", "N·s/m", 6, 10, 8.9],
@@ -22,19 +24,16 @@ const LAWS: Record<string, readonly Slider[]> = {
     ["c", "N·s/m", 6, 10, 8.9],
     ["k1", "N/m", 7, 12, 10],
   ],
-  springpot: [
-    ["k", ...K],
-    ["alpha", "", 0.001, 0.5, 0.06],
-    ["f0", "Hz", -2, 1, -0.74],
-  ],
+  springpot: [["k", ...K], ["alpha", "", 0.001, 0.5, 0.06], F0],
 };
 const WORDS: Record<string, string> = {
-  k: "stiffness",
-  c: "dashpot",
-  k0: "static stiffness",
-  k1: "stiffness of the damping branch",
-  alpha: "springpot exponent",
-  f0: "reference frequency",
+  k: "stiffness k",
+  c: "dashpot c",
+  k0: "static stiffness k0",
+  k1: "stiffness of the damping branch k1",
+  loss_factor: "loss factor at f0",
+  alpha: "springpot exponent alpha",
+  f0: "reference frequency f0",
 };
 const numberOf = ([, unit]: Slider, at: number): number => (unit ? 10 ** at : at);
 
@@ -57,7 +56,7 @@ function plotsOf(law: Schemas["LawOut"]): PlotData[] {
 }
 
 export function Laws() {
-  const name = asked("law") ?? "kelvin-voigt";
+  const name = asked("law") ?? "maxwell-3";
   const [places, setPlaces] = useState<Record<string, number>>({});
   const [range, setRange] = useState<Range | null>(null);
   const sliders = LAWS[name] ?? [];
@@ -83,7 +82,7 @@ export function Laws() {
           at={at(s)}
           onMove={(to) => setPlaces({ ...places, [`${name} ${s[0]}`]: to })}
         >
-          {WORDS[s[0]]} {s[0]} <b>{quantity(numberOf(s, at(s)), s[1], 3)}</b>
+          {WORDS[s[0]]} <b>{quantity(numberOf(s, at(s)), s[1], 3)}</b>
         </Slide>
       ))}
       <Shown of={found}>

@@ -1,16 +1,10 @@
 // Modes in a table: the same columns wherever modes stand.
+import type { Estimated } from "../api/shapes";
 import { assetUrl } from "../shell/place";
 import { frequency, percent, words } from "../words/numbers";
 import { type Column, Table } from "./Table";
 
-interface SomeMode {
-  label: string;
-  frequency_hz: number;
-  frequency_std_hz: number | null;
-  damping_ratio: number | null;
-  damping_ratio_std: number | null;
-  damping_ratio_interval_90?: number[] | null;
-}
+type SomeMode = Estimated & { damping_ratio_interval_90?: number[] | null };
 
 interface ModeTableProps<T extends SomeMode> {
   asset: string;

@@ -7,7 +7,7 @@ import { csvFrom, stamp } from "./plot/series";
 
 const KEPT_S = 240;
 const LANE_PX = [22, 56] as const;
-const NAMES_PX = 122;
+const NAMES_PX = 140;
 
 type Piece = { from: number; step: number; values: readonly (number | null)[] };
 

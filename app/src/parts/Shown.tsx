@@ -2,6 +2,8 @@
 import type { ComponentChildren } from "preact";
 import type { Answer } from "../api/answer";
 import type { Problem } from "../api/client";
+import { sentence } from "../words/numbers";
+import { Press } from "./Bits";
 
 const HEADINGS: Record<Problem["kind"], string> = {
   offline: "No connection",
@@ -9,20 +11,20 @@ const HEADINGS: Record<Problem["kind"], string> = {
   role: "Not allowed",
   missing: "Not here",
   refused: "Refused",
+  soon: "Not yet",
   server: "The server failed",
 };
 
-export function Trouble({ problem, again }: { problem: Problem; again?: () => void }) {
+type TroubleProps = { problem: Problem; again?: () => void; title?: string };
+
+export function Trouble({ problem, again, title }: TroubleProps) {
   return (
     <div class={`state ${problem.kind}`} role="alert">
+      {title && <h1>{title}</h1>}
       <h3>{HEADINGS[problem.kind]}</h3>
-      <p>{problem.message}</p>
-      {problem.remedy && <p>{problem.remedy}</p>}
-      {again && problem.kind !== "role" && problem.kind !== "missing" && (
-        <button type="button" onClick={again}>
-          Try again
-        </button>
-      )}
+      <p>{sentence(problem.message)}</p>
+      {problem.remedy && <p>{sentence(problem.remedy)}</p>}
+      {again && problem.kind !== "role" && problem.kind !== "missing" && <Press words="Try again" act={again} />}
     </div>
   );
 }
@@ -43,15 +45,17 @@ interface ShownProps<T> {
   /** What to say if there is nothing. */
   none?: ComponentChildren;
   lines?: number;
+  /** Of a page that is nothing else. */
+  title?: string;
   children: (data: T) => ComponentChildren;
 }
 
 const hasItems = (data: unknown): unknown => (data as { items?: unknown[] }).items?.length ?? true;
 
 /** An answer: bones while it is awaited, its problem, what to do if it is empty, or itself. */
-export function Shown<T>({ of, some = hasItems, none, lines = 4, children }: ShownProps<T>) {
+export function Shown<T>({ of, some = hasItems, none, lines = 4, title, children }: ShownProps<T>) {
   if (of.data === undefined) {
-    if (of.problem) return <Trouble problem={of.problem} again={of.again} />;
+    if (of.problem) return <Trouble problem={of.problem} again={of.again} {...(title ? { title } : {})} />;
     return (
       <div class="bones" role="status" aria-label="Reading">
         {Array.from({ length: lines }, (_, i) => (

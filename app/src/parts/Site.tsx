@@ -49,9 +49,6 @@ function drawn(assets: readonly Asset[]) {
   return { marks, scale: at.size > 1 ? scale : 0, below, placed, height: below + (placed && rows * STEP + EDGE) };
 }
 
-const alarmsLast = (a: { asset: Asset }, b: { asset: Asset }): number =>
-  Number(a.asset.status === "alarm") - Number(b.asset.status === "alarm");
-
 export const mapCsv = (assets: readonly Asset[]): string =>
   csvFrom([
     ["turbine", "status", "latitude [°]", "longitude [°]"],
@@ -59,6 +56,7 @@ export const mapCsv = (assets: readonly Asset[]): string =>
   ]);
 
 export function Site({ assets }: { assets: readonly Asset[] }) {
+  const last = ({ asset }: { asset: Asset }): number => Number(asset.status === "alarm"); // over the others
   const { marks, scale, below, placed, height } = drawn(assets);
   const length = (scale && ticksOf([0, WIDTH / 5 / scale], 1).at(-1)) || 0; // kilometres that a fifth of the width holds
   const chosen = asked("find")?.toLowerCase() ?? "";
@@ -77,28 +75,30 @@ export function Site({ assets }: { assets: readonly Asset[] }) {
           <text x={WIDTH - EDGE} y={below - 20} text-anchor="end">{`${length} km · north is up`}</text>
         </g>
       )}
-      {marks.toSorted(alarmsLast).map(({ asset, x, y }) => (
-        <g key={asset.name} transform={`translate(${x.toFixed(1)} ${y.toFixed(1)})`}>
-          <a
-            href={assetUrl(asset.name)}
-            tabIndex={-1}
-            class={`light ${asset.status.replaceAll(" ", "-")}`}
-            aria-label={`${asset.name}: ${asset.status}`}
-          >
-            <title>{[asset.name, sentence(asset.reason) || asset.status].join(": ")}</title>
-            <path
-              transform={`scale(${size})`}
-              d={MARKS[asset.status] ?? MARKS["ok"] ?? ""}
-              opacity={asset.name.toLowerCase().includes(chosen) ? 1 : 0.2}
-            />
-            {marks.length - placed <= NAMED && y < below && (
-              <text y={20} text-anchor="middle">
-                {asset.name}
-              </text>
-            )}
-          </a>
-        </g>
-      ))}
+      {marks
+        .toSorted((a, b) => last(a) - last(b))
+        .map(({ asset, x, y }) => (
+          <g key={asset.name} transform={`translate(${x.toFixed(1)} ${y.toFixed(1)})`}>
+            <a
+              href={assetUrl(asset.name)}
+              tabIndex={-1}
+              class={`light ${asset.status.replaceAll(" ", "-")}`}
+              aria-label={`${asset.name}: ${asset.status}`}
+            >
+              <title>{[asset.name, sentence(asset.reason) || asset.status].join(": ")}</title>
+              <path
+                transform={`scale(${size})`}
+                d={MARKS[asset.status] ?? MARKS["ok"] ?? ""}
+                opacity={asset.name.toLowerCase().includes(chosen) ? 1 : 0.2}
+              />
+              {marks.length - placed <= NAMED && y < below && (
+                <text y={20} text-anchor="middle">
+                  {asset.name}
+                </text>
+              )}
+            </a>
+          </g>
+        ))}
     </svg>
   );
 }

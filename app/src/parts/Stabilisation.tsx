@@ -4,7 +4,7 @@ import { useRecord } from "../api/answer";
 import { api, type Mode, type RecordOut, type Schemas, told } from "../api/client";
 import { may, useDeed } from "../api/do";
 import { percent, words } from "../words/numbers";
-import { Card, Time } from "./Bits";
+import { Card, Press, Time } from "./Bits";
 import { Plot } from "./plot/Plot";
 import type { PlotData, Series } from "./plot/series";
 import { Shown } from "./Shown";
@@ -75,13 +75,7 @@ export function Stabilisation(of: OfRecord) {
       wide
       note="Poles of every model order. Choose some to take them instead of the automatic choice; the record is identified again."
     >
-      {open ? (
-        <Open {...of} />
-      ) : (
-        <button type="button" onClick={() => setOpen(true)}>
-          Compute the stabilisation chart
-        </button>
-      )}
+      {open ? <Open {...of} /> : <Press words="Compute the stabilisation chart" act={() => setOpen(true)} />}
     </Card>
   );
 }
@@ -128,17 +122,13 @@ function Open({ record, modes, again }: OfRecord) {
                 ))}
               </div>
               <div class="tools">
-                <button
-                  type="button"
-                  class="main"
-                  disabled={deed.busy || !picks.length}
-                  onClick={() => void save(picks)}
-                >
-                  Take {picks.length} picked
-                </button>
-                <button type="button" disabled={deed.busy || !record.picks} onClick={() => void save([])}>
-                  Return to the automatic choice
-                </button>
+                <Press
+                  words={`Take ${picks.length} picked`}
+                  look="main"
+                  off={deed.busy || !picks.length}
+                  act={() => save(picks)}
+                />
+                <Press words="Return to the automatic choice" off={deed.busy || !record.picks} act={() => save([])} />
                 {deed.problem && <span class="error">{deed.problem.message}</span>}
               </div>
             </>

@@ -46,7 +46,7 @@ export function stiffnessPlot(found: Supports): PlotData {
       { name: "90 % by now", colour: "blue", kind: "band", ...smoothed },
       { name: "known by now", colour: "blue", kind: "line", x: smoothed.x, y: smoothed.y },
       { name: "90 % to expect", colour: "grey", kind: "band", ...later },
-      { name: "to expect", colour: "grey", kind: "line", dashed: true, x: later.x, y: later.y },
+      { name: "to expect", colour: "grey", kind: "line", dash: [6, 4], x: later.x, y: later.y },
       {
         name: "known on the day",
         colour: "ink",
@@ -55,11 +55,12 @@ export function stiffnessPlot(found: Supports): PlotData {
         y: then.map((d) => d.v.median),
       },
     ].filter((s) => s.x.length) as Series[],
-    marks: (time?.changes ?? []).map((c) => ({
-      x: seconds(c.time_utc),
-      words: `change ${day(c.time_utc)}`,
-      colour: "alarm",
-    })),
+    marks: (time?.changes ?? []).map((c) => {
+      const by = day(c.time_utc);
+      const after = now.findLast(([date]) => date < by)?.[0] ?? by; // the last day known to be as before
+      const [x, to] = [after, by].map((date) => seconds(`${date}T12:00:00Z`)) as [number, number];
+      return { x, to, words: `change, ${after} to ${by}`, colour: "alarm" };
+    }),
   };
 }
 

@@ -1,6 +1,7 @@
 // A table whose columns can be sorted; on a phone each row is a card.
 import type { ComponentChildren } from "preact";
 import { useState } from "preact/hooks";
+import { Press } from "./Bits";
 
 export interface Column<T> {
   title: string;
@@ -94,11 +95,7 @@ export function Table<T>(props: TableProps<T>) {
           ))}
         </tbody>
       </table>
-      {rows.length < sorted.length && (
-        <button type="button" onClick={() => setMost(Infinity)}>
-          Show all {sorted.length}
-        </button>
-      )}
+      {rows.length < sorted.length && <Press words={`Show all ${sorted.length}`} act={() => setMost(Infinity)} />}
     </div>
   );
 }

@@ -102,7 +102,7 @@ function Drawn({ watch, marks }: { watch: Watch; marks: Mark[] }) {
       yName: "ln R",
       series: [
         { name: "ln R", colour: "blue", kind: "line", x, y: watch.ln_evidence },
-        { name: "alarm", colour: "alarm", kind: "line", dashed: true, x, y: x.map(() => watch.threshold_ln ?? null) },
+        { name: "alarm", colour: "alarm", kind: "line", dash: [6, 4], x, y: x.map(() => watch.threshold_ln ?? null) },
       ],
       marks,
     };

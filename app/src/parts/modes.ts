@@ -16,6 +16,13 @@ const KINDS: Record<string, string> = {
   heave: "purple",
 };
 
+const DASHES: Record<string, number[]> = { 2: [7, 4], 3: [2, 3], 4: [9, 3, 2, 3], 5: [9, 3, 2, 3, 2, 3] };
+/** The line of a mode by its number, as its colour is by its kind. */
+export const modeDash = (label: string): { dash?: number[] } => {
+  const dash = DASHES[/\d+$/.exec(label)?.[0] ?? ""];
+  return dash ? { dash } : {};
+};
+
 export function modeColour(label: string): string {
   const [, kind = "", number = "0"] = /^(.*)_(\d+)$/.exec(label) ?? [];
   return KINDS[kind] ?? paintOf(Number(number) % 6);

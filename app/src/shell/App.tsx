@@ -8,33 +8,21 @@ import { may } from "../api/do";
 import { Fleet } from "../pages/Fleet";
 import { Login } from "../pages/Login";
 import { Turbine } from "../pages/Turbine";
+import { Press } from "../parts/Bits";
 import { later } from "../parts/later";
 import { Empty } from "../parts/Shown";
 import { assetUrl, go, place, route, type PageProps } from "./place";
 import { printPage, savePage } from "./paper";
 import { switchTheme, theme } from "./theme";
 
-/** Pages with plots come when they are first asked for. */
-const PAGES: Record<string, ComponentType<PageProps>> = {
-  fleet: Fleet,
-  turbine: Turbine,
-  timeline: later(() => import("../pages/Timeline")),
-  structure: later(() => import("../pages/Structure")),
-  explore: later(() => import("../pages/Explore")),
-  live: later(() => import("../pages/Live")),
-  life: later(() => import("../pages/Life")),
-  records: later(() => import("../pages/Records")),
-  record: later(() => import("../pages/Record")),
-  alarms: later(() => import("../pages/Alarms")),
-  model: later(() => import("../pages/Model")),
-  reports: later(() => import("../pages/Reports")),
-  jobs: later(() => import("../pages/Jobs")),
-  users: later(() => import("../pages/Users")),
-  docs: later(() => import("../pages/Docs")),
-  start: later(() => import("../pages/Start")),
-};
-const TABS = ["", ..."live timeline structure explore life records alarms model reports".split(" ")];
 const titled = (key: string): string => (key ? key.charAt(0).toUpperCase() + key.slice(1) : "Turbine");
+type Loaded = { default: ComponentType<PageProps> };
+const LATER = import.meta.glob<Loaded>(["../pages/*.tsx", "!../pages/{Fleet,Login,Turbine}.tsx"]);
+/** Pages with plots come when they are first asked for. */
+const PAGES: Record<string, ComponentType<PageProps>> = { fleet: Fleet, turbine: Turbine };
+for (const [path, load] of Object.entries(LATER))
+  PAGES[path.slice("../pages/".length, -".tsx".length).toLowerCase()] = later(load);
+const TABS = ["", ..."live timeline structure explore life records alarms model reports".split(" ")];
 const OWN_TABS: readonly (readonly [string, string, string])[] = [
   ["/", "Turbines", "viewer"],
   ["/jobs", "Jobs", "viewer"],
@@ -79,12 +67,8 @@ function Top() {
           <span class={`link-state ${state}`} role="status" title={`Connection: ${state}`}>
             <span>{state === "live" ? "live" : state === "lost" ? "no connection" : "connecting"}</span>
           </span>
-          <button type="button" class="wide-only" onClick={printPage}>
-            Print or PDF
-          </button>
-          <button type="button" class="wide-only" onClick={savePage}>
-            HTML
-          </button>
+          <Press words="Print or PDF" look="wide-only" act={printPage} />
+          <Press words="HTML" look="wide-only" act={savePage} />
           <button
             type="button"
             onClick={switchTheme}
@@ -93,11 +77,7 @@ function Top() {
             {theme.value === "dark" ? "Light" : "Dark"}
           </button>
           {user && <span class="name">{`${user.name} (${user.role})`}</span>}
-          {user?.csrf_token && (
-            <button type="button" onClick={() => void logOut()}>
-              Log out
-            </button>
-          )}
+          {user?.csrf_token && <Press words="Log out" act={logOut} />}
         </div>
       </div>
       <nav class="tabs" aria-label="Pages">

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from jackettwin.answers import Answers, answer
 from jackettwin.identification import Identification
@@ -14,7 +15,7 @@ from jackettwin.report.sections.records import further_records, the_records
 from jackettwin.report.sections.structure import the_structure
 from jackettwin.report.table import Table
 from jackettwin.report.tables import answers as tables
-from jackettwin.report.tables.numbers import fixed
+from jackettwin.report.tables.numbers import fixed, sentence
 from jackettwin.report.tables.sentences import FirstPageWords, sentences
 from jackettwin.report.tables.updating import true_parameters_table, truth_table
 from jackettwin.study import TwinResult, true_parameters
@@ -123,7 +124,7 @@ def _next(result: TwinResult, *, a: Answers, said: FirstPageWords) -> list[Block
 
 
 def _assumptions(result: TwinResult) -> list[Block]:
-    choices = tuple(one.value for one in result.assumptions if one.confirmed is None)
+    choices = tuple(sentence(one.value) for one in result.assumptions if one.confirmed is None)
     blocks: list[Block] = [Text(choices, "list")] if choices else []
     return [*blocks, Text(result.warnings, "warnings")] if result.warnings else blocks
 
@@ -141,7 +142,12 @@ def _provenance(result: TwinResult, *, given: Rows) -> list[Block]:
 
 
 def _conditions(record: Observation) -> str:
-    return "; ".join([record.name, *(f"{key} {value}" for key, value in record.conditions.items())])
+    return "; ".join([record.name, *(f"{key} {_short(value)}" for key, value in record.conditions.items())])
+
+
+def _short(value: Any) -> str:
+    """Return a condition without the digits that a store adds."""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def _settings(found: Identification) -> tuple[tuple[str, str], ...]:

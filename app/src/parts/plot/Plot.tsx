@@ -56,7 +56,7 @@ function joined(series: Series[]): uPlot.AlignedData {
 
 /** What a chart is made for; of other data of the same form only the numbers are exchanged. */
 const formOf = ({ time, log, logX, series }: PlotData): string =>
-  JSON.stringify([time, log, logX, series.map((s) => [s.kind, s.colour, s.solid, s.dashed, sizeOf(s)])]);
+  JSON.stringify([time, log, logX, series.map((s) => [s.kind, s.colour, s.solid, s.dash, sizeOf(s)])]);
 /** Points by how large they are drawn; of lines whether they are points, too. */
 const sizeOf = ({ kind, x }: Series): number =>
   kind === "band" ? 0 : kind === "line" ? Number(x.length < 3) : x.length > 200 ? 4 : 6;
@@ -92,7 +92,8 @@ function options(
         width: 1.5,
         points: { show: sizeOf(s) > 0 },
         spanGaps: true,
-        ...(s.dashed ? { dash: [6, 4] } : {}),
+        pxAlign: 0, // whole pixels make steps of what hardly rises
+        ...(s.dash ? { dash: s.dash } : {}),
       });
     }
   }
@@ -108,7 +109,7 @@ function options(
       y: { distr: data.log ? 3 : 1, range: () => spanOf(latest.current.data, latest.current.shown) },
     },
     axes: [
-      { ...axis, space: 70, ...(data.time ? { values: TIMES } : ownTicks(data.logX)) },
+      { ...axis, space: 70, ...(data.time ? { values: TIMES } : { ...ownTicks(data.logX), size: 30 }) },
       {
         ...axis,
         ...ownTicks(data.log),
@@ -243,7 +244,7 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
           {data.series.length > 1 &&
             data.series.map((s) => (
               <span key={s.name} class={s.kind}>
-                <i style={{ background: `var(--${s.colour})` }} aria-hidden="true" />
+                <i style={{ background: strokes(s) }} aria-hidden="true" />
                 {s.name}
               </span>
             ))}
@@ -289,6 +290,15 @@ const ownTicks = (log = false): uPlot.Axis => ({
   values: (_u, ticks) => ticks.map(onAxis),
 });
 const digits = (value: number): string => short(value, 5);
+
+/** The line of a series as its legend shows it. */
+function strokes({ colour, dash = [] }: Series): string {
+  const ends = dash.map((_, i) => dash.slice(0, i + 1).reduce((sum, length) => sum + length, 0));
+  const paints = dash.map(
+    (_, i) => `${i % 2 ? "transparent" : `var(--${colour})`} ${ends[i - 1] ?? 0}px ${ends[i] ?? 0}px`,
+  );
+  return dash.length ? `repeating-linear-gradient(90deg, ${paints.join()})` : `var(--${colour})`;
+}
 
 const REACH_PX = 14;
 

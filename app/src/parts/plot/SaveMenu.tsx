@@ -15,13 +15,9 @@ export function sheetOf(drawn: HTMLCanvasElement | HTMLImageElement, times = 1):
   return sheet;
 }
 
-interface SaveMenuProps {
-  title: string;
-  /** Both are told the button that was pressed. */
-  png: (from: Element) => Promise<HTMLCanvasElement> | HTMLCanvasElement | null;
-  svg: (from: Element) => string;
-  csv: () => string;
-}
+/** Drawings are told the button that was pressed. */
+type Sheet = (from: Element) => Promise<HTMLCanvasElement> | HTMLCanvasElement | null;
+type SaveMenuProps = { title: string; png: Sheet; svg: (from: Element) => string; csv: () => string };
 
 const near = (from: Element): ReturnType<typeof drawnAs> =>
   drawnAs(from.closest("figure, .card")?.querySelector(".drawn") ?? from, colour("paper"));

@@ -11,7 +11,10 @@ export interface Series {
   y: ArrayLike<number | null>;
   low?: ArrayLike<number | null>;
   high?: ArrayLike<number | null>;
-  dashed?: boolean;
+  /** Lengths of strokes and gaps [px]. */
+  dash?: number[];
+  /** A name for each point, written beside it. */
+  names?: readonly string[];
   /** A band that is itself what is measured: extremes of a signal. */
   solid?: boolean;
 }
@@ -133,4 +136,22 @@ export function ticksOf([low, high]: Range, most: number, log = false): number[]
   const first = Math.ceil(low / step);
   const many = count(step); // counted, not added up to: a step may be lost in what it is added to
   return Array.from({ length: many }, (_, k) => Number(((first + k) * step).toPrecision(12)));
+}
+
+const MINUTE_S = 60;
+const STEPS_S = [1, 5, 10, 30, 60, 180, 360, 720, 1440, 7 * 1440].map((minutes) => minutes * MINUTE_S);
+const MONTHS = [1, 2, 3, 6, 12, 24, 60];
+
+/** Places of a time axis: whole hours, days, or months. */
+export function timeTicksOf(range: Range, most: number): number[] {
+  const least = (range[1] - range[0]) / most;
+  const step = least < MINUTE_S / 2 ? 0 : STEPS_S.find((one) => one >= least);
+  if (step === 0) return ticksOf(range, most);
+  const months = MONTHS.find((n) => n * 30 * 1440 * MINUTE_S >= least) ?? 120;
+  const month = (k: number): number => Date.UTC(1970, k * months, 1) / 1000;
+  const place = (k: number): number => (step ? k * step : month(k));
+  let k = Math.floor(range[0] / (step ?? 31 * 1440 * MINUTE_S * months));
+  const found = [];
+  for (; place(k) <= range[1]; k++) if (place(k) >= range[0]) found.push(place(k));
+  return found;
 }

@@ -3,20 +3,13 @@ import type uPlot from "uplot";
 import { colour } from "../../shell/theme";
 import type { PlotData, Series } from "./series";
 
-interface Canvas {
-  ctx: CanvasRenderingContext2D;
-  px: (x: number) => number;
-  py: (y: number) => number;
-  left: number;
-  top: number;
-  width: number;
-  height: number;
-}
+type Scale = (v: number) => number;
+type Canvas = uPlot.BBox & { ctx: CanvasRenderingContext2D; px: Scale; py: Scale };
 
 /** A straight scale in place of uPlot's own, which asks what it is for every point. */
-function scaleOf(u: uPlot, name: "x" | "y", log: boolean, from: number, to: number): (v: number) => number {
+function scaleOf(u: uPlot, name: "x" | "y", log: boolean, from: number, to: number): Scale {
   const { min, max } = u.scales[name] ?? {};
-  const of = log ? Math.log10 : (v: number): number => v;
+  const of: Scale = log ? Math.log10 : (v) => v;
   const [a, b] = [of(min ?? 0), of(max ?? 1)];
   const factor = (to - from) / (b - a || 1);
   return log ? (v) => from + (Math.log10(v) - a) * factor : (v) => from + (v - a) * factor;
@@ -52,6 +45,21 @@ function beyond(c: Canvas, s: Series): void {
   c.ctx.fill();
 }
 
+/** Names of points, above and below by turns, as neighbours may stand close. */
+function names(c: Canvas, s: Series): void {
+  const ratio = devicePixelRatio;
+  c.ctx.font = `${12 * ratio}px system-ui, sans-serif`;
+  c.ctx.textAlign = "center";
+  [c.ctx.fillStyle, c.ctx.strokeStyle, c.ctx.lineWidth] = [colour(s.colour), colour("paper"), 3 * ratio];
+  s.names?.forEach((name, i) => {
+    const half = c.ctx.measureText(name).width / 2;
+    const x = Math.min(Math.max(c.px(s.x[i] ?? NaN), c.left + half), c.left + c.width - half);
+    const y = Math.min(c.py(s.y[i] ?? NaN) + (i % 2 ? 18 : -9) * ratio, c.top + c.height - 3 * ratio);
+    c.ctx.strokeText(name, x, y);
+    c.ctx.fillText(name, x, y);
+  });
+}
+
 function marks(u: uPlot, c: Canvas, data: PlotData): void {
   const ratio = devicePixelRatio;
   c.ctx.font = `${12 * ratio}px system-ui, sans-serif`;
@@ -84,30 +92,26 @@ function marks(u: uPlot, c: Canvas, data: PlotData): void {
 }
 
 export function under(of: () => PlotData): uPlot.Plugin {
-  const draw = (u: uPlot): void => {
+  const drawn = (what: (u: uPlot, c: Canvas, data: PlotData) => void) => (u: uPlot) => {
     const { ctx } = u;
     const data = of();
     const { left, top, width, height } = u.bbox;
-    const c: Canvas = {
-      ctx,
-      left,
-      top,
-      width,
-      height,
-      px: scaleOf(u, "x", data.logX ?? false, left, left + width),
-      py: scaleOf(u, "y", data.log ?? false, top + height, top),
-    };
+    const px = scaleOf(u, "x", data.logX ?? false, left, left + width);
+    const py = scaleOf(u, "y", data.log ?? false, top + height, top);
     ctx.save();
     ctx.beginPath();
     ctx.rect(left, top, width, height);
     ctx.clip();
+    what(u, { ctx, ...u.bbox, px, py }, data);
+    ctx.restore();
+  };
+  const behind = drawn((u, c, data) => {
     for (const s of data.series) {
       if (s.kind !== "points") continue;
       intervals(c, s);
       beyond(c, s);
     }
     marks(u, c, data);
-    ctx.restore();
-  };
-  return { hooks: { drawAxes: draw } };
+  });
+  return { hooks: { drawAxes: behind, draw: drawn((_, c, data) => data.series.forEach((s) => names(c, s))) } };
 }

@@ -32,7 +32,7 @@ def tornado(s: Scrutiny, parameter: int, words: str) -> Markup | None:
     shown = [m for m in s.movers(parameter)[:_MOST] if abs(float(m.effect[parameter])) > _FELT]
     if not shown:
         return None
-    row, head, right = 26.0, 24.0, _WIDTH - 64.0
+    row, head, right = 26.0, 24.0, _WIDTH - 84.0
     left = 16.0 + _LETTER * max(len(m.tolerance.words) for m in shown)
     bottom = head + row * len(shown)
     c = Canvas(_WIDTH, bottom + 44.0, f"Effect of the tolerances on the {words}")

@@ -10,7 +10,7 @@ from jackettwin.report.figures.follow import parameters_through_time, stiffness_
 from jackettwin.report.pages.page import PageSection, Plot, Text, write_page
 from jackettwin.report.table import Table
 from jackettwin.report.tables.answers import ranged
-from jackettwin.report.tables.numbers import count
+from jackettwin.report.tables.numbers import count, sentence
 from jackettwin.soil import parameter_words
 from jackettwin.study import Followed
 from jackettwin.version import __version__
@@ -34,7 +34,7 @@ def build_follow_page(followed: Followed, path: Path) -> Path:
         PageSection(
             "Drift",
             (
-                Text((followed.statement,)),
+                Text((sentence(followed.statement),)),
                 *_in_time(followed),
                 _plot(followed, "stiffness_through_time", drift, followed.stiffness),
                 _table(followed, followed.stiffness),
@@ -56,7 +56,7 @@ def stiffness_section(followed: Followed) -> PageSection:
     """Return the section on stiffness through time of a monitored twin, after the answers of its report."""
     said = "All other results are of all records together, as if the stiffness had been the same on all days."
     return PageSection(
-        "Stiffness through time", (Text((followed.stiffness_statement, said)), *_in_time(followed))
+        "Stiffness through time", (Text((sentence(followed.stiffness_statement), said)), *_in_time(followed))
     )
 
 

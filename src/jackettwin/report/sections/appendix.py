@@ -71,25 +71,25 @@ def tolerances(result: TwinResult) -> list[Block]:
     rows = [
         (
             one.tolerance.words,
+            one.tolerance.settled_by,
+            ", ".join(one.alike) or UNKNOWN,
             f"{one.tolerance.std:.3g} {'' if one.tolerance.unit == '-' else one.tolerance.unit}".strip(),
             f"{one.mean * one.tolerance.std:+.2g} (σ {one.std * one.tolerance.std:.2g})".replace("-", "−"),
             *(
                 f"{100.0 * np.expm1(e):+.2g} ({r:.2f})".replace("-", "−")
                 for e, r in zip(one.effect[:_SHOWN], one.settled[:_SHOWN], strict=True)
             ),
-            one.tolerance.settled_by,
-            ", ".join(one.alike) or UNKNOWN,
         )
         for one in s.influences
     ]
-    columns = ("tolerance", "σ before", "after", *(f"{name} [%]" for name in names), "settle it", "like")
+    columns = ("tolerance", "settle it", "like", "σ before", "after", *(f"{name} [%]" for name in names))
     caption = (
         f"{u.law}: what are the effects of the tolerances of drawings, weighing and sea? For each parameter "
         "its change due to one σ and, in brackets, the factor on its σ if that tolerance were known; like: "
         "not distinguished by these data."
     )
     text = "Checks of all measured values, and possible explanations of outlying ones, are in result.json."
-    return [Text((text,)), Table(caption, columns, tuple(rows), text_columns=1)]
+    return [Text((text,)), Table(caption, columns, tuple(rows), text_columns=3)]
 
 
 def every_solution(result: TwinResult) -> list[Block]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 from jackettwin.intervals import NORMAL_90
 
@@ -102,6 +103,16 @@ def words(label: str) -> str:
     """
     kind, _, number = label.rpartition("_")
     return f"{kind.replace('_', '-')} {number}" if kind else label
+
+
+def sentence(text: str) -> str:
+    """Return a sentence of the engine with modes and negative numbers as pages write them.
+
+    >>> sentence("side_side_1 fell by 9 % (-13 to -3.3)")
+    'side-side 1 fell by 9 % (−13 to −3.3)'
+    """
+    named = re.sub(r"\b(?:fore_aft|side_side|torsion|heave)_\d+\b", lambda found: words(found[0]), text)
+    return re.sub(r"(?<=[ (])-(?=\d)", "−", named)
 
 
 def count(n: int, noun: str) -> str:

@@ -342,7 +342,8 @@ def _model(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
             if a.fits
             else "differs from fitted frequencies by up to"
         )
-        more.append(f"The updated model {how} {100 * worst:.1f} % ({words(label)}).")
+        size = max(100 * worst, 0.1) if a.fits else 100 * worst  # not "within 0.0 %"
+        more.append(f"The updated model {how} {size:.1f} % ({words(label)}).")
     return tuple(short), tuple(more)
 
 

@@ -174,7 +174,7 @@ export function show(root, D, asked = new Map()) {
     pen.fillStyle = `rgb(${rgb})`; pen.font = "12px system-ui, sans-serif"; pen.textAlign = "left";
     const said = z === 0 ? "sea level" : `mud line ${z < 0 ? "−" : "+"}${Math.abs(z).toFixed(1)} m`;
     const room = size[0] - pen.measureText(said).width - 4;  // on a phone the name would be cut off
-    pen.fillText(said, Math.min(label[0] + 6, room), label[1] + 4);
+    pen.fillText(said, Math.min(label[0] + 6, room), label[1] + (label[0] + 6 > room ? 18 : 4));
   }
   function member(e, now) {
     const a = screen[D.start[e]], b = screen[D.end[e]], width = Math.max(1.4, D.diameter[e] * scale);
@@ -305,13 +305,14 @@ export function show(root, D, asked = new Map()) {
     });
   }
   function axes() {
-    const o = [54, size[1] - 50], c = Math.cos(eye.turn), s = Math.sin(eye.turn), ct = Math.cos(eye.tilt), st = Math.sin(eye.tilt);
+    const o = size[0] > 480 ? [54, size[1] - 50] : [size[0] - 54, 0.32 * size[1]], c = Math.cos(eye.turn), s = Math.sin(eye.turn), ct = Math.cos(eye.tilt), st = Math.sin(eye.tilt);
     pen.font = "12px system-ui, sans-serif"; pen.textAlign = "center";
     [["x", c, s * st], ["y", s, -c * st], ["z", 0, -ct]].forEach(([name, dx, dy]) => {
       line(o, [o[0] + 34 * dx, o[1] + 34 * dy], 1.6, look.quiet);
       pen.fillStyle = look.ink; pen.fillText(name, o[0] + 44 * dx, o[1] + 44 * dy + 4);
     });
-    const steps = [1, 2, 5, 10, 20, 50, 100], metres = steps.filter(v => v * scale < 130).pop() || 1, x = size[0] - 20, y = size[1] - 12;
+    const steps = [1, 2, 5, 10, 20, 50, 100], metres = steps.filter(v => v * scale < 130).pop() || 1, y = size[1] - 12;
+    const x = size[0] > 480 ? size[0] - 20 : 20 + metres * scale;  // where the name of the mud line is not
     line([x, y], [x - metres * scale, y], 2, look.quiet);
     pen.textAlign = "right"; pen.fillText(`${metres} m`, x, y - 6);
   }

@@ -65,7 +65,19 @@ def modes(
         "record_id": record,
     }
     rows = results.list_modes(connection, version.asset, version.model_hash, **chosen)
-    return _page(rows[:limit] if least_known else rows, limit, _mode_out)
+    reasons = {} if record is None else _reasons(connection, version, record)
+
+    def made(row: Mapping[str, Any]) -> ModeOut:
+        nearest = min(reasons, key=lambda f: abs(f - row["frequency_hz"]), default=0.0)  # it is rounded
+        return _mode_out({**row, "reason": reasons.get(nearest)})
+
+    return _page(rows[:limit] if least_known else rows, limit, made)
+
+
+def _reasons(connection: Connection, version: assets.Version, record: str) -> dict[float, str | None]:
+    """Return what is said against each mode of a record, by its frequency; empty once that is forgotten."""
+    seen = results.find_observation(connection, version.asset, record, version.model_hash)
+    return {} if seen is None or not seen.document else workers.engine.said_of_modes(seen.document)
 
 
 def coloured_by_life(drawn: StructureOut, welds: Sequence[Mapping[str, Any]]) -> StructureOut:

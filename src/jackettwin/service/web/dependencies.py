@@ -19,7 +19,7 @@ from jackettwin.errors import InputError
 from jackettwin.service.answer_cache import Answer, content_tag, has_tag
 from jackettwin.service.context import Service
 from jackettwin.service.web.auth import Who
-from jackettwin.service.web.problems import ApiError
+from jackettwin.service.web.problems import ApiError, laid_out_soon
 from jackettwin.store import assets, journal, reading, records, writing
 
 _JSON = "application/json"
@@ -121,7 +121,12 @@ class Route(APIRoute):
             if unknown is not None and self.include_in_schema:
                 allowed = ", ".join(sorted(known)) or "none here"
                 raise ApiError(422, "no such query parameter", field=unknown, allowed=allowed)
-            response = await answer(request)
+            try:
+                response = await answer(request)
+            except ApiError as error:
+                if error.problem.status == 404 and request.app.state.service.laying_out:
+                    raise laid_out_soon() from None
+                raise
             if hasattr(request.state, "version"):
                 return _versioned(request, response)
             return _by_content(request, response) if request.method == "GET" else response

@@ -80,6 +80,12 @@ def no_database() -> ApiError:
     return ApiError(503, "the database does not answer; try again soon", headers={"Retry-After": "5"})
 
 
+def laid_out_soon() -> ApiError:
+    """Return the error for what may be part of the demonstration before it is there."""
+    remedy = "it is here in a few seconds"
+    return ApiError(503, "the demonstration is being laid out", headers={"Retry-After": "2"}, remedy=remedy)
+
+
 def disk_full() -> ApiError:
     """Return the error if the disk is full."""
     return ApiError(

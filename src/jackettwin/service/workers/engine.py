@@ -198,6 +198,12 @@ def observed_as(
     return document, tuple(rows), said, _MISMATCHED if seen.mismatched else None
 
 
+def said_of_modes(document: str) -> dict[float, str | None]:
+    """Return why each mode of an observation is not simply one, by its frequency [Hz]."""
+    found = OBSERVATION.load(json.loads(document)).identification.modes
+    return {mode.frequency_hz: mode.status_reason for mode in found}
+
+
 _MISMATCHED = {
     "detail": "none of its modes is one of this twin's; the record is not used",
     "field": "record",

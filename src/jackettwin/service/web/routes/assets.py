@@ -22,7 +22,7 @@ from jackettwin.service.web.dependencies import (
     known_version,
     living_asset,
 )
-from jackettwin.service.web.problems import ApiError, answers
+from jackettwin.service.web.problems import ApiError, answers, laid_out_soon
 from jackettwin.service.web.schemas.assets import (
     AssetOut,
     ConditionsIn,
@@ -44,7 +44,7 @@ router = APIRouter(tags=["assets"], route_class=Route)
     "/assets",
     response_model=Page[AssetOut],
     dependencies=[auth.VIEWER],
-    responses=answers(401, 422),
+    responses=answers(401, 422, 503),
 )
 def list_assets(who: Asker, parts: Parts, connection: ReadsAtVersion, archived: bool = False) -> Response:
     """List the assets, or the archived ones, with status, last data and findings."""
@@ -52,6 +52,8 @@ def list_assets(who: Asker, parts: Parts, connection: ReadsAtVersion, archived: 
         rows = catalogue.overview(connection, archived=True, seen=who.assets)
     else:
         rows = catalogue.fleet(connection, parts.fleet, seen=who.assets)
+        if parts.laying_out and not rows:
+            raise laid_out_soon()
     # written here: FastAPI would check a thousand rows once more
     return Response(Page(items=rows).model_dump_json(), media_type="application/json")
 

@@ -46,13 +46,12 @@ def logout(request: Request, response: Response, who: Asker, parts: Parts, conne
 
 
 @router.get("/me", dependencies=[auth.VIEWER], responses=answers(401))
-def me(who: Asker, parts: Parts) -> Me:
+def me(who: Asker) -> Me:
     """Return the user of the request."""
     return Me(
         name=who.name,
         role=who.role,  # type: ignore[arg-type]
         csrf_token=who.csrf or None,
-        laying_out=parts.laying_out,
     )
 
 

@@ -21,6 +21,7 @@ class ModeOut(BaseModel):
     damping_ratio_interval_90: tuple[float, float] | None
     status: str
     model_version: int
+    reason: str | None = Field(None, description="Why it is doubtful, or no mode; of one record's modes.")
 
 
 class ExtremesOut(BaseModel):

@@ -29,10 +29,6 @@ class Me(BaseModel):
     name: str
     role: Literal["viewer", "engineer", "admin"]
     csrf_token: str | None = None
-    laying_out: bool = Field(
-        default=False,
-        description="Whether the demonstration is being laid out: until then no turbine.",
-    )
 
 
 class NewUser(BaseModel):
