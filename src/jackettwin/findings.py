@@ -244,7 +244,8 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "broad": Kind(
         "warning",
-        "with a damping of {damping_percent:.2g} % it is so broad that it may be due to the forces' spectrum",
+        "its damping of {damping_percent:.2g} %, or the upper end of its interval, is so high that the "
+        "forces' spectrum may explain it",
     ),
     "complex_shape": Kind(
         "warning",

@@ -132,7 +132,7 @@ def identify(
     lines = None if screening_data is None else screening_data.lines
     chosen = chosen_modes(judged, tones, ready, settings, lines)
     if screening_data is not None:
-        chosen = screened_choice(chosen, judged, screening_data, rescue=not wanted, drifting=tones.drifting)
+        chosen = screened_choice(chosen, judged, screening_data, tones=tones, rescue=not wanted)
     chosen = _with_likelihoods(chosen, tones.clean, ready, settings)
     label = poles.cluster.copy()
     for number, index in enumerate(chosen.candidate):

@@ -63,7 +63,9 @@ def poles_of(ready: PreparedRecord, settings: IdentificationSettings) -> Stabili
     """Return the poles of all orders, with their uncertainty if the method propagates it."""
     poles = pole_method(settings.method)(ready, settings)
     rate, band = ready.settings.sample_rate_hz, guarded_band_hz(ready.settings)
-    return stabilisation(poles, settings, sample_rate_hz=rate, band_hz=band, scale=ready.scale)
+    return stabilisation(
+        poles, settings, sample_rate_hz=rate, duration_s=ready.duration_s, band_hz=band, scale=ready.scale
+    )
 
 
 def by_plscf(ready: PreparedRecord, settings: IdentificationSettings) -> list[OrderPoles]:
@@ -94,7 +96,10 @@ def by_ssi_cov(ready: PreparedRecord, settings: IdentificationSettings) -> list[
     if not uncertain(settings):
         return order_poles(subspace, orders)
     shared = _propagation(ready, subspace, settings)
-    return order_poles_with_uncertainty(shared, orders, keep=lambda mu: admissible(mu, settings, rate, band))
+    duration_s = ready.duration_s
+    return order_poles_with_uncertainty(
+        shared, orders, keep=lambda mu: admissible(mu, settings, rate, duration_s, band)
+    )
 
 
 def relaxations(ready: PreparedRecord, settings: IdentificationSettings) -> tuple[RealPole, ...]:

@@ -252,6 +252,7 @@ def _poles(setups: _Setups, settings: IdentificationSettings) -> Stabilisation:
         order_poles(subspace, subspace.orders(resolved.orders)),
         settings,
         sample_rate_hz=resolved.sample_rate_hz,
+        duration_s=min(one.duration_s for one in setups.ready),
         band_hz=guarded_band_hz(resolved),
         scale=setups.scale,
     )

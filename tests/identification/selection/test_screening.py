@@ -214,3 +214,27 @@ def test_one_peak_told_twice_is_doubted_once(clear):
     for beside in (other, far):
         judged = screen([mode, beside], known)
         assert not {"shape_twice"} & {reason.code for one in judged for reason in one.reasons}
+
+
+def test_a_broad_peak_must_be_clear_and_its_damping_known(clear):
+    mode, known = clear
+
+    def codes(damping_ratio: float, log_std: float, by: Evidence = known) -> set[str]:
+        std, shape = damping_ratio * log_std, mode.mode_shape[: len(by.scale)]
+        one = replace(mode, damping_ratio=damping_ratio, damping_ratio_std=std, mode_shape=shape)
+        return {reason.code for reason in screen([one], by)[0].reasons}
+
+    # 1.96 standard deviations above 5 % is 9 or 16 %, above 2 % it is 6.5 %
+    assert "broad" not in codes(0.05, 0.3)
+    assert "broad" in codes(0.05, 0.6)
+    assert "broad" not in codes(0.02, 0.6)
+    # two channels cannot filter others out: a narrow peak need only be half as high again as its sides
+    lines, some = known.lines[:2], known.comparable[:2, :2]
+    noise = 0.6 * np.sqrt(np.mean(np.abs(lines) ** 2))
+    lines = lines + noise * np.random.default_rng(3).standard_normal(lines.shape)
+    two = replace(known, lines=lines, scale=known.scale[:2], comparable=some, looks=())
+    for damping_ratio in (0.035, 0.045):
+        narrow = replace(mode, damping_ratio=damping_ratio, mode_shape=mode.mode_shape[:2])
+        assert 1.5 < contrast(two.lines, two.duration_s, narrow, narrow.mode_shape / two.scale)[0] < 8.0
+    assert "no_peak" not in codes(0.035, 0.1, two)
+    assert "no_peak" in codes(0.045, 0.1, two)

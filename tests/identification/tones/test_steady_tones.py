@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from jackettwin.identification.selection.candidates import is_nearest
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.identification.tones.sinusoid import MAX_OFFSET, sinusoid
 from jackettwin.identification.tones.steady_tones import steady_tones, without_tones
@@ -101,3 +102,11 @@ def test_a_tone_that_wanders_by_a_line_is_followed(rng):
     assert steady == ()
     assert track.swept_hz == pytest.approx((0.4996, 0.5), abs=1.0 / 600.0)
     assert np.std(left - y) < 0.05 * np.std(tone)
+
+
+def test_a_pole_beside_a_light_mode_does_not_take_its_line_for_a_tone() -> None:
+    lines = np.zeros((1, 400), complex)
+    lines[0, 180] = 1.0  # at 0.3 Hz of 600 s
+    own = 0.29996, 0.3056  # of the mode, and 3.4 lines beside
+    assert [is_nearest(lines, 600.0, f, np.array(own)) for f in own] == [True, False]
+    assert is_nearest(lines, 600.0, own[1], np.array(own[1:]))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jackettwin.arrays import FloatArray
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.findings import Finding
 from jackettwin.identification.estimate import ModalEstimate, Rejected
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
@@ -16,7 +16,7 @@ from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.drifting_tones import tones_at
 from jackettwin.identification.tones.envelopes import is_steady_tone
 from jackettwin.identification.tones.sinusoid import transform
-from jackettwin.identification.tones.steady_tones import without_tones
+from jackettwin.identification.tones.steady_tones import strongest_line, without_tones
 from jackettwin.intervals import log_interval_90
 from jackettwin.records import less_phase
 
@@ -38,6 +38,8 @@ ORDER_REACH = 2.0
 """Distance of a rotor order, in half bandwidths, within which it disturbs a mode."""
 MIN_ORDER_REACH = 0.015
 """Smallest such distance as a share of the frequency, since an estimated speed is uncertain at its limits."""
+HALF_A_LINE = 0.5
+"""Difference of two distances below which poles are equally near to a line, in lines."""
 TONE_WIDENING = 2.0
 """Factor on the standard deviations of a mode that a tone disturbs."""
 
@@ -152,7 +154,9 @@ def find_tones(
             if track is not None:
                 followed.append(track)
                 clean = less_phase(clean, track.phase(y.shape[1]))
-            elif is_steady_tone(lines, duration_s, f[k], zeta[k], poles.mode_shape[k] / scale):
+            elif is_nearest(lines, duration_s, f[k], f[likely]) and is_steady_tone(
+                lines, duration_s, f[k], zeta[k], poles.mode_shape[k] / scale
+            ):
                 steady.append(k)
                 clean = without_tones(clean, sample_rate_hz, [f[k]])
             else:
@@ -162,6 +166,22 @@ def find_tones(
             break
     passed = {k for k in likely if any(tone.passes(f[k]) for tone in followed)}
     return Tones(frozenset(passed.union(steady)), tuple(float(f[k]) for k in steady), tuple(followed), clean)
+
+
+def is_nearest(lines: ComplexArray, duration_s: float, frequency_hz: float, all_hz: FloatArray) -> bool:
+    """Tell whether no pole is nearer to the strongest line about a pole, which would be subtracted with it.
+
+    Otherwise a pole beside a lightly damped mode would take the mode's steady line for its own.
+
+    Parameters
+    ----------
+    lines : (n_channels, n_lines)
+        Fourier transforms of the channels, from zero frequency.
+    all_hz : (n_poles,)
+    """
+    strongest_hz = strongest_line(lines, frequency_hz * duration_s) / duration_s
+    own, nearest = abs(strongest_hz - frequency_hz), np.abs(all_hz - strongest_hz).min()
+    return bool(own < nearest + HALF_A_LINE / duration_s)
 
 
 def beside_orders(mode: ModalEstimate, orders: Iterable[tuple[int, float, float]]) -> ModalEstimate:

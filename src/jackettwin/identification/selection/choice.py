@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.selection.candidates import Candidate, Tones
     from jackettwin.identification.selection.screening import Evidence
     from jackettwin.identification.settings import IdentificationSettings
-    from jackettwin.identification.tones.phase_track import PhaseTrack
 
 
 MAX_MISSING_SHARE = 0.01
@@ -176,31 +175,33 @@ def screened_choice(
     judged: Sequence[Candidate],
     known: Evidence,
     *,
+    tones: Tones,
     rescue: bool = True,
-    drifting: Sequence[PhaseTrack] = (),
 ) -> Choice:
     """Assign statuses to the modes, restore those of known frequency, drop those that are no modes.
 
     Parameters
     ----------
+    tones : Tones
+        Tones already subtracted: a peak where a drifting one crossed is a mode or the residual of the tone,
+        and what is left of a peak at a steady one is no measure of its width.
     rescue : bool
         Whether modes are restored.
-    drifting : sequence of PhaseTrack
-        Tones already subtracted: a peak where one of them crossed is a mode or the residual of the tone.
     """
     found = dict(zip(chosen.candidate, chosen.modes, strict=True))
     restored: dict[int, ModalEstimate] = {}
+    steady = [(f, f) for f in tones.steady_hz]
     rejected = list(chosen.rejected)
     for i, c in enumerate(judged if rescue else ()):
         f = c.mode.frequency_hz
-        passing = next((tone for tone in drifting if tone.passes(f)), None) if c.is_tone else None
+        passing = next((tone for tone in tones.drifting if tone.passes(f)), None) if c.is_tone else None
         if i in found or (c.objection is not None and passing is None) or not known.inside(f):
             continue
         if worth_keeping(c.mode, [*found.values(), *restored.values()], known):
             rejected = [r for r in rejected if not _about(r, c.mode)]
-            restored[i] = (
-                with_unknown_damping(c.mode) if passing is None else beside_tones(c.mode, [passing.swept_hz])
-            )
+            ranges = steady if passing is None else [passing.swept_hz]
+            mode = beside_tones(c.mode, ranges)
+            restored[i] = with_unknown_damping(mode) if passing is None else mode
     judged_modes = screen(chosen.modes, known, beside=tuple(restored.values()))
     modes = dict(zip(chosen.candidate, judged_modes, strict=True)) | restored
     forced = {i: m for i, m in modes.items() if not m.status.is_a_mode}

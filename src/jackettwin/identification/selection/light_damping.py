@@ -49,6 +49,9 @@ MAX_MISSING_SHARE = 0.01
 BY_CHANCE = frozenset({"steady_envelope", "narrow_as_a_line", "damping_unknown"})
 """Codes of findings that a lightly damped mode may have by chance. A mode with any other finding is given no
 likelihood."""
+SKIRTS_SEEN = 0.5
+"""Half bandwidth, in lines, below which a mode may by chance show no skirts, too: they come from the change
+of its motion within the record, and the records without that change are those of least apparent damping."""
 MAX_LOG_STD = 1.0
 """Standard deviation of ln ζ above which damping is unknown."""
 
@@ -75,8 +78,10 @@ def with_damping_likelihoods(
     out = list(modes)
     lines: ComplexArray | None = None
     for i, mode in enumerate(modes):
-        lightly = 2.0 * np.pi * mode.damping_ratio * mode.frequency_hz * duration_s < MAX_KNOWN
-        if not lightly or mode.log_covariance is None or {r.code for r in mode.reasons} - BY_CHANCE:
+        lines_wide = mode.damping_ratio * mode.frequency_hz * duration_s
+        by_chance = BY_CHANCE | {"no_skirts"} if lines_wide < SKIRTS_SEEN else BY_CHANCE
+        lightly = 2.0 * np.pi * lines_wide < MAX_KNOWN
+        if not lightly or mode.log_covariance is None or {r.code for r in mode.reasons} - by_chance:
             continue
         if any(apart(mode, other) < CLOSE_DISTANCE for other in modes if other is not mode):
             continue

@@ -78,6 +78,10 @@ SEA_BAND_HZ = (0.04, 0.4)
 BROAD_DAMPING = 0.04
 """Damping ratio above which a peak is as broad as a wave spectrum: JONSWAP with γ = 3.3,
 transferred to acceleration, is identified with 5 to 10 %."""
+BROAD_ELSEWHERE = 8.0
+"""The same ratio of a peak as broad, at any frequency, with any number of sensors: of 33 true modes of 4 to
+12 % in 180 to 600 s, two to four sensors, the least has 8.8 (but one beside a force peak 1.5); force peaks
+have mostly 1.4 to 7."""
 NO_SEA_CONTRAST = 10.0
 """The same ratio where no sea is stated: of 24 first modes of 5 % damping the least has 11."""
 FIRST_MODES, FOLLOWED_SHARE = 2.5, 0.7
@@ -93,6 +97,9 @@ SEAS_FORCES = (0.75, 4.0)
 """Range of the frequencies of sea forces, in multiples of 1/Tp."""
 MAX_CLEAR_DAMPING = 0.10
 """Damping ratio above which every mode is doubtful."""
+MAX_POSSIBLE_DAMPING = 0.15
+"""Damping ratio that the damping of a mode must not reach: then too few decay times were seen to tell a mode
+from a hump of the forces' spectrum. Of the true modes above none reaches it."""
 SAME_PEAK_MAC = 0.9
 """MAC above which two close modes in enough sensors are one peak identified twice:
 modes of equal frequency move in different shapes."""
@@ -304,7 +311,7 @@ def _forces(
         # aerodynamic damping may make one of a pair broad, but not a third mode beside two
         if lighter != 1 and _may_be_waves(mode, others, known):
             yield ModeStatus.DOUBTFUL, Finding("broad_as_waves", params=percent)
-    if zeta > MAX_CLEAR_DAMPING:
+    if zeta > MAX_CLEAR_DAMPING or (zeta > BROAD_DAMPING and _may_reach(mode, MAX_POSSIBLE_DAMPING)):
         yield ModeStatus.DOUBTFUL, Finding("broad", params=percent)
 
 
@@ -361,6 +368,8 @@ def _agreement(mode: ModalEstimate, close: Sequence[ModalEstimate], known: Evide
     least = MIN_CONTRAST if in_sea or len(shape) >= MIN_SENSORS else MIN_CONTRAST_ELSEWHERE
     if in_sea and mode.damping_ratio > BROAD_IN_SEA:
         least = BROAD_CONTRAST
+    elif mode.damping_ratio > BROAD_DAMPING:
+        least = max(least, BROAD_ELSEWHERE)
     if ratio < least or excess < MIN_CONTRAST_STD:
         yield ModeStatus.DOUBTFUL, Finding("no_peak", params={"ratio": ratio})
     yield from _one_sensor(mode, shape, known)

@@ -1,4 +1,10 @@
-"""Poles of all model orders in one table, with the soft criteria of a stabilisation diagram."""
+r"""Poles of all model orders in one table, with the soft criteria of a stabilisation diagram.
+
+A mode whose decay lasts longer than a record may happen to grow within it: the real part of its pole is then
+positive. Without such poles the mode would be missing just where its damping looks lowest, and the mean over
+records would be too high. A pole that grows by less than one e-fold within the record is therefore given the
+real part −1/T, the least damping that a record of the duration T shows; its deviations are unchanged.
+"""
 
 from __future__ import annotations
 
@@ -14,12 +20,16 @@ from jackettwin.identification.subspace.ssi_cov import OrderPoles, frequency_and
 if TYPE_CHECKING:
     from jackettwin.identification.settings import IdentificationSettings
 
+MOST_GROWTH = 1.0
+"""Growth within the record, in e-folds, above which a pole is none of a mode that varies by chance."""
+
 
 def stabilisation(
     poles: list[OrderPoles],
     settings: IdentificationSettings,
     *,
     sample_rate_hz: float,
+    duration_s: float,
     band_hz: tuple[float, float],
     scale: FloatArray,
 ) -> Stabilisation:
@@ -30,7 +40,7 @@ def stabilisation(
     scale : (n_channels,)
         Standard deviations by which the channels were divided; returned shapes are in channel units.
     """
-    poles = [_inside(p, settings, sample_rate_hz, band_hz) for p in poles]
+    poles = [_inside(p, settings, sample_rate_hz, duration_s, band_hz) for p in poles]
     table = [(*frequency_and_damping(p.eigenvalues, sample_rate_hz), p.shapes) for p in poles]
     n_channels = len(scale)
     flags = [np.zeros((len(table[0][0]), 3), dtype=bool)] if table else []
@@ -57,12 +67,14 @@ def admissible(
     eigenvalues: ComplexArray,
     settings: IdentificationSettings,
     sample_rate_hz: float,
+    duration_s: float,
     band_hz: tuple[float, float],
 ) -> BoolArray:
-    """Return which poles lie in the band, are stable and below the hard limit on damping, (n_poles,) bool."""
+    """Return which poles lie in the band, hardly grow and are below the limit on damping, (n_poles,) bool."""
     f, zeta = frequency_and_damping(eigenvalues, sample_rate_hz)
     inside = (f > band_hz[0]) & (f < band_hz[1])
-    return np.asarray(inside & (zeta > 0.0) & (zeta < settings.max_damping_ratio))
+    grown = -zeta * 2.0 * np.pi * f * duration_s
+    return np.asarray(inside & (grown < MOST_GROWTH) & (zeta < settings.max_damping_ratio))
 
 
 def log_deviations(
@@ -88,15 +100,19 @@ def _inside(
     poles: OrderPoles,
     settings: IdentificationSettings,
     sample_rate_hz: float,
+    duration_s: float,
     band_hz: tuple[float, float],
 ) -> OrderPoles:
-    keep = admissible(poles.eigenvalues, settings, sample_rate_hz, band_hz)
+    keep = admissible(poles.eigenvalues, settings, sample_rate_hz, duration_s, band_hz)
     deviations, shapes = poles.eigenvalue_deviations, poles.shape_deviations
+    mu = poles.eigenvalues[keep]
+    size = np.where(np.abs(mu) < 1.0, np.abs(mu), np.exp(-1.0 / (duration_s * sample_rate_hz)))
+    decaying = size / np.abs(mu)
     return OrderPoles(
         poles.order,
-        poles.eigenvalues[keep],
+        mu * decaying,
         poles.shapes[keep],
-        None if deviations is None else deviations[:, keep],
+        None if deviations is None else deviations[:, keep] * decaying,
         None if shapes is None else shapes[:, keep],
     )
 

@@ -115,13 +115,18 @@ def without_tones(y: FloatArray, sample_rate_hz: float, tones_hz: Iterable[float
     out = y
     for tone in tones_hz:
         spectrum = transform(out)
-        near = round(tone * y.shape[1] / sample_rate_hz) + np.arange(-3, 4)
-        edge = lines_around(len(y))
-        near = near[(near > edge) & (near < spectrum.shape[1] - edge)]
-        if len(near):
-            top = near[np.argmax(np.sum(np.abs(spectrum[:, near]) ** 2, axis=0))]
-            out = _subtract(out, sinusoid(spectrum, int(top)).position)
+        top = strongest_line(spectrum, tone * y.shape[1] / sample_rate_hz)
+        if top > 0:
+            out = _subtract(out, sinusoid(spectrum, top).position)
     return out
+
+
+def strongest_line(spectrum: ComplexArray, position: float) -> int:
+    """Return the line of most power within three lines of a position; 0 if none has enough around it."""
+    near = round(position) + np.arange(-3, 4)
+    edge = lines_around(len(spectrum))
+    near = near[(near > edge) & (near < spectrum.shape[1] - edge)]
+    return int(near[np.argmax(np.sum(np.abs(spectrum[:, near]) ** 2, axis=0))]) if len(near) else 0
 
 
 def _clear_tones(spectrum: ComplexArray) -> list[Sinusoid]:
