@@ -331,7 +331,8 @@ def _show(document: dict[str, Any]) -> None:
         s = document["state"]
         say(f"{s['file']}: A and B of {s['states']} states and {s['inputs']} inputs, with their names")
     if document["free_motions"]:
-        say(f"{document['free_motions']} free motions: the structure or a part of it is a mechanism")
+        free = f"{document['free_motions']} free motions"
+        say(f"{free}: the structure or a part of it is a mechanism (its feet: reaction_nodes)")
     if document["overdamped_poles"]:
         say(
             f"{len(document['overdamped_poles'])} overdamped motions of the supports, e.g. "
