@@ -51,6 +51,17 @@ def test_a_step_is_found_dated_measured_and_named(stepped: History) -> None:
     assert abs(sum(v.probability for v in found.verdicts) - 1.0) < 1e-9
 
 
+@pytest.mark.parametrize(("later", "kinds"), [(0.0, ["frequency"]), (40.0, ["frequency", "damping"])])
+def test_damping_that_changed_with_the_frequencies_is_no_second_change(
+    later: float, kinds: list[str]
+) -> None:
+    """By 25 %, which takes longer to show; if it changes 40 days later, it is found for itself."""
+    seasons = made(days=170, step=-0.006)
+    since = (seasons.days >= 120.0 + later)[:, None]
+    both = replace(seasons, damping=seasons.damping * np.exp(0.25 * since))
+    assert [change.kind for change in watched(both)[2]] == kinds
+
+
 def test_a_cause_that_the_model_expects_has_more_evidence(quiet: History) -> None:
     """A pair that parts is no mode alone, no pair alike and not all: only the pattern says it.
 

@@ -371,7 +371,12 @@ def _reconsidered(watch: Watch) -> Watch:
 
 
 def _without(watch: Watch, change: Change, onset: int) -> Watch:
-    """Return the state without onsets, ready for the next change, with this change accepted as a step."""
+    """Return the state without onsets, ready for the next change, with this change accepted as a step.
+
+    A structure whose frequencies changed has other damping and directions since, which take longer to show:
+    these are open from the same onset, so that they are no second change. Damping and directions that change
+    leave the frequencies as they were.
+    """
     blocks, first = [], 0
     for block in watch.blocks:
         m = len(block.kept)
@@ -379,7 +384,7 @@ def _without(watch: Watch, change: Change, onset: int) -> Watch:
         if change.kind == "scatter":
             louder = np.exp(change.size[first : first + m])
             blocks.append(replace(cleared(block), louder=block.louder * np.where(louder > 1.2, louder, 1.0)))
-        elif members.any():
+        elif members.any() or change.kind == "frequency":
             blocks.append(
                 with_change_accepted(block, onset, np.ones(m, dtype=np.bool_), len(watch.design.states))
             )
