@@ -1,6 +1,6 @@
 """What a change was, where the truth is changed by hand, without any cause of ``jackettwin.change``.
 
-Usage: python qualify/diagnosis_by_hand.py [models a jacket] [jacket…]
+Usage: python qualify/diagnosis_by_hand.py [models a jacket]
 
 Members are cut out, weakened and flooded, walls thinned, masses added on the drawing; scour is the pile's
 head stiffness from the soil's curves with the ground gone; sensors' clocks and the yaw are wrong, and what is
@@ -31,24 +31,72 @@ from jackettwin.structure import Material, Member, PointMass, Section, Structure
 from jackettwin.watching import Diagnosis, diagnose
 
 WATCHED, SOLVED = 5, 14
-SETS, SIGHTS = 3, 3
-"""Changes of every sort, of other sizes and at other places, judged by the causes of one model; and times
-that each is seen, with other noise."""
+SETS = 5
+"""Changes of every sort, of other sizes and at other places, judged by the causes of one model."""
 LOSS = 0.08
-SCOUR_M, SOFTER, GROWTH_M, THINNER_M, HEAVIER = (
-    (0.7, 2.0),
-    (0.1, 0.3),
-    (0.02, 0.1),
-    (0.002, 0.005),
-    (0.01, 0.04),
-)
-WEAKER, CLOCK, MISREAD_DEG, STRANGE = (
-    (0.2, 0.6),
-    (1e-3, 4e-3),
-    (8.0, 25.0),
-    {"frequency": 4e-3, "damping": 0.2},
-)
-"""Stiffness left to a brace, error of a clock, error of the yaw, and size of what is something else."""
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Ranges of sizes, all equally likely in ln.
+
+    Attributes
+    ----------
+    scour_m, foot_scour_m : depth at all feet and at one
+    softer : loss of the ground's stiffness
+    growth_m, thinner_m : thickness of growth, loss of a wall
+    heavier : of the mass of the RNA
+    less : what a weakened brace loses of its stiffness, as −ln of what is left
+    clock, misread : error of a clock, and sin² of the yaw's
+    strange : changes of ln f and ln ζ by something else
+    both_ways : whether a mass may be lost
+    """
+
+    scour_m: tuple[float, float]
+    foot_scour_m: tuple[float, float]
+    softer: tuple[float, float]
+    growth_m: tuple[float, float]
+    thinner_m: tuple[float, float]
+    heavier: tuple[float, float]
+    less: tuple[float, float]
+    clock: tuple[float, float]
+    misread: tuple[float, float]
+    strange: tuple[tuple[float, float], ...]
+    both_ways: bool = False
+
+
+WORLDS = {
+    "Sizes within a factor of two or four": Sizes(
+        (0.7, 2.0),
+        (1.5, 3.0),
+        (0.1, 0.3),
+        (0.02, 0.1),
+        (0.002, 0.005),
+        (0.01, 0.04),
+        (0.5, 1.6),
+        (1e-3, 4e-3),
+        (0.02, 0.18),
+        ((4e-3, 0.2),),
+    ),
+    "Sizes of every order of magnitude": Sizes(
+        (0.2, 5.0),
+        (0.3, 7.5),
+        (0.02, 0.4),
+        (0.002, 0.2),
+        (6e-4, 0.015),
+        (0.002, 0.05),
+        (0.07, 1.8),
+        (1e-4, 1.1e-2),
+        (7e-3, 0.37),
+        tuple(
+            (7e-4 * 2.0**k * f, min(0.12 * 2.0**k, 0.96) * z)
+            for f, z in ((1.0, 0.0), (0.0, 1.0), (1.0, 1.0))
+            for k in range(7)
+        ),
+        True,
+    ),
+}
+"""Sizes that an inspector would expect, and all that the watch holds possible."""
 BRACES = " lost", " weakened", " flooded"
 
 
@@ -90,6 +138,11 @@ def paired(before: Seen, after: Seen, chosen: list[int]) -> list[int]:
     """Return which mode of the changed structure each chosen one is, by the shapes' likeness."""
     a, b = (x / np.linalg.norm(x, axis=0) for x in (before.shapes[:, chosen], after.shapes))
     return [int(j) for j in linear_sum_assignment(-np.abs(a.T @ b))[1]]
+
+
+def drawn(rng: np.random.Generator, between: tuple[float, float]) -> float:
+    """Return a size, equally likely in ln between two."""
+    return float(np.exp(rng.uniform(*np.log(between))))
 
 
 def pile_head(depth_m: float) -> np.ndarray:
@@ -166,51 +219,56 @@ def inside(structure: Structure, m: Member) -> float:
 
 
 def strangers(
-    labels: tuple[str, ...], frequency_hz: np.ndarray, zeta: np.ndarray, rng: np.random.Generator
+    labels: tuple[str, ...],
+    frequency_hz: np.ndarray,
+    zeta: np.ndarray,
+    rng: np.random.Generator,
+    sizes: Sizes,
 ) -> list[tuple[str, np.ndarray, np.ndarray]]:
     """Return names and changes of ln f and ln ζ of wrong sensors and of something else, (n_modes,) each."""
     none, mixed, damped = np.zeros(len(labels)), frequency_hz.copy(), zeta.copy()
-    part = np.sin(np.radians(rng.uniform(*MISREAD_DEG))) ** 2
+    part = drawn(rng, sizes.misread)
     for n in (1, 2):
         pair = [labels.index(f"{way}_{n}") for way in ("fore_aft", "side_side") if f"{way}_{n}" in labels]
         if len(pair) == 2:  # what is looked for along an axis is partly the other mode of the pair
             other = pair[::-1]
             mixed[pair] += part * (frequency_hz[other] - frequency_hz[pair])
             damped[pair] += part * (zeta[other] - zeta[pair])
-    slow = rng.choice([-1.0, 1.0]) * rng.uniform(*CLOCK)
+    slow = rng.choice([-1.0, 1.0]) * drawn(rng, sizes.clock)
+    strange = sizes.strange[int(rng.integers(len(sizes.strange)))]
     return [
         ("sensor: clock", none + slow, none),
         ("sensor: yaw misread", np.log(mixed / frequency_hz), np.log(damped / zeta)),
-        ("something else", *(size * rng.standard_normal(len(labels)) for size in STRANGE.values())),
+        ("something else", *(size * rng.standard_normal(len(labels)) for size in strange)),
     ]
 
 
-def changes(site: Site, rng: np.random.Generator) -> list[tuple[str, Site]]:
+def changes(site: Site, rng: np.random.Generator, sizes: Sizes) -> list[tuple[str, Site]]:
     """Return changed sites, each with the beginning of the name that it ought to be given."""
     s, whole = site.structure, pile_head(0.0)
     out: list[tuple[str, Site]] = []
-    depth = rng.uniform(*SCOUR_M)
-    gone = pile_head(depth) / whole
+    gone = pile_head(drawn(rng, sizes.scour_m)) / whole
     out.append(("scour at all feet", replace(site, feet=site.feet * gone)))
     foot = int(rng.integers(len(site.feet)))
-    deeper = pile_head(rng.uniform(1.5, 3.0)) / whole
+    deeper = pile_head(drawn(rng, sizes.foot_scour_m)) / whole
     feet = site.feet.copy()
     feet[foot] *= deeper
     out.append((f"scour at {s.reaction_nodes[foot]}", replace(site, feet=feet)))
-    out.append(("soil softening", replace(site, feet=site.feet * (1.0 - rng.uniform(*SOFTER)))))
+    out.append(("soil softening", replace(site, feet=site.feet * (1.0 - drawn(rng, sizes.softer)))))
     braces = slanted(s)
     cut = brace_of(s, braces[int(rng.integers(len(braces)))])
     out.append((f"{'|'.join(m.name for m in cut)} lost", with_members(site, cut, lambda m: stiffer(m, 1e-4))))
-    for what in BRACES[1:]:
-        one = brace_of(s, braces[int(rng.integers(len(braces)))])
+    wet = [m for m in braces if submerged(s, m) == 1.0]
+    for what, among in zip(BRACES[1:], (braces, wet), strict=True):
+        one = brace_of(s, among[int(rng.integers(len(among)))])
         left, water = (
-            rng.uniform(*WEAKER),
+            np.exp(-drawn(rng, sizes.less)),
             [PointMass(n, 0.5 * inside(s, m)) for m in one for n in (m.start, m.end)],
         )
         hurt = with_members(site, one, lambda m, x=left: stiffer(m, x))
         wetter = replace(site, structure=s.with_masses((*s.masses, *water)))
         out.append((f"{'|'.join(m.name for m in one)}{what}", hurt if what == " weakened" else wetter))
-    thin = rng.uniform(*GROWTH_M)
+    thin = drawn(rng, sizes.growth_m)
 
     def ring(m: Member) -> float:
         d = m.section_start.outer_diameter_m
@@ -222,17 +280,18 @@ def changes(site: Site, rng: np.random.Generator) -> list[tuple[str, Site]]:
     out.append(("marine growth", replace(site, structure=s.with_masses((*s.masses, *grown)))))
     if s.masses:
         top = max(s.masses, key=lambda body: body.mass_kg)
-        heavier = (1.0 + rng.uniform(*HEAVIER)) * top.mass_kg
+        way = rng.choice([-1.0, 1.0]) if sizes.both_ways else 1.0
+        heavier = (1.0 + way * drawn(rng, sizes.heavier)) * top.mass_kg
         bodies = tuple(replace(b, mass_kg=heavier) if b is top else b for b in s.masses)
         out.append(("mass of the RNA", replace(site, structure=s.with_masses(bodies))))
-    wet = [
+    splashed = [
         m for m in s.members
         if m.part in ("jacket", "")
         and min(s.nodes[n][2] for n in (m.start, m.end)) < s.sea_level_z_m + 6.0
         and max(s.nodes[n][2] for n in (m.start, m.end)) > s.sea_level_z_m - 3.0
     ]  # fmt: skip
-    less = rng.uniform(*THINNER_M)
-    out.append(("corrosion of the splash zone", with_members(site, wet, lambda m: walls(m, less))))
+    less = drawn(rng, sizes.thinner_m)
+    out.append(("corrosion of the splash zone", with_members(site, splashed, lambda m: walls(m, less))))
     return out
 
 
@@ -258,7 +317,7 @@ def judged(jacket: str, wanted: str, number: int, found: Diagnosis) -> Case:
     return jacket, what, first.cause, number, first.probability, good, bool(group), inside
 
 
-def cases(jacket: str, structure: Structure, draws: int) -> tuple[list[Case], list[Case]]:
+def cases(jacket: str, structure: Structure, draws: int, sizes: Sizes) -> tuple[list[Case], list[Case]]:
     """Return what became of all changes to one jacket: on the day of the alarm, and a month later."""
     rng, later = (np.random.default_rng((k, len(jacket))) for k in (47, 53))
     early, out = list[Case](), list[Case]()
@@ -268,8 +327,8 @@ def cases(jacket: str, structure: Structure, draws: int) -> tuple[list[Case], li
         ground = pile_head(0.0) * common * np.exp(0.1 * rng.standard_normal((feet, 3)))
         site = Site(structure, ground)
         # no member is as on the drawing
-        drawn = np.exp(0.02 * rng.standard_normal(len(structure.members)))
-        factor = {m.name: x for m, x in zip(structure.members, drawn, strict=True)}
+        other = np.exp(0.02 * rng.standard_normal(len(structure.members)))
+        factor = {m.name: x for m, x in zip(structure.members, other, strict=True)}
         site = with_members(site, list(structure.members), lambda m: stiffer(m, factor[m.name]))  # noqa: B023
         before = solved(site)
         chosen = [i for i, label in enumerate(before.labels) if not label.startswith(LOCAL)][:WATCHED]
@@ -282,22 +341,21 @@ def cases(jacket: str, structure: Structure, draws: int) -> tuple[list[Case], li
         own = [kind for kind, known in zip(kinds, seen.known, strict=True) if known]
         every = []
         for k in range(SETS):
-            for wanted, changed in changes(site, rng):
+            for wanted, changed in changes(site, rng, sizes):
                 after = solved(changed)
                 at = paired(before, after, chosen)
                 ln_f = np.log(after.frequency_hz[at] / before.frequency_hz[chosen])
                 ln_z = np.log((0.006 + 0.5 * LOSS * after.soil_share[at]) / zeta)
                 every.append((SETS * draw + k, wanted, ln_f, ln_z))
-            odd = strangers(labels, before.frequency_hz[chosen], zeta, rng)
+            odd = strangers(labels, before.frequency_hz[chosen], zeta, rng, sizes)
             every += [(SETS * draw + k, *one) for one in odd]
         for number, wanted, ln_f, ln_z in every:
-            for _ in range(SIGHTS):
-                known = seen_change(np.concatenate([ln_f, ln_z]), kinds, rng, False)
-                if known.by_mode.sum() < LEAST:
-                    continue
-                for seen_now, of in ((known, out), *((first, early) for first in on_the_day(known, later))):
-                    found = diagnose(seen_now.restricted(seen.known), seen.causes, own)
-                    of.append(judged(jacket, wanted, number, found))
+            known = seen_change(np.concatenate([ln_f, ln_z]), kinds, rng, False)
+            if known.by_mode.sum() < LEAST:
+                continue
+            for seen_now, of in ((known, out), *((first, early) for first in on_the_day(known, later))):
+                found = diagnose(seen_now.restricted(seen.known), seen.causes, own)
+                of.append(judged(jacket, wanted, number, found))
             sys.stderr.write(f"{jacket} {draw}: {len(out)} {wanted} {np.round(100 * ln_f, 2)}\n")
     return early, out
 
@@ -306,34 +364,30 @@ def share(good: int, of: int) -> str:
     return f"{good} of {of} ({100 * good / max(of, 1):.0f} %)"
 
 
-def page(late: list[Case], early: list[Case], draws: int) -> list[str]:
-    """Return the page."""
-    return [
-        "# Diagnosis of changes to the drawing",
-        "",
-        f"`python qualify/diagnosis_by_hand.py {draws}`: jackets whose feet and members all differ from the",
-        f"model's, {draws} of each drawing, changed on the drawing: braces cut, weakened and flooded, walls",
-        "thinned, masses added; scour by soil curves; wrong clocks and yaw, and something else at random;",
-        f"{SETS} of each with other sizes and places, seen {SIGHTS} times with other noise. The truth does",
-        "not use `jackettwin.change`. Five modes; the model's feet are fitted to the frequencies before.",
-        "Changes too small for an alarm are left out.",
-        "",
-        "## A month after the change",
-        "",
-        "Changes are known to 0.03 % and 2 % of frequency and damping.",
-        "",
-        *tables(late),
-        "## On the day of the alarm",
-        "",
-        "The same changes, with data just sufficient for the alarm.",
-        "",
-        *tables(early),
-    ]
+HEAD = """# Diagnosis of changes to the drawing
+
+`python qualify/diagnosis_by_hand.py {draws}`: jackets whose feet and members all differ from the
+model's, {draws} of each drawing, changed on the drawing: braces cut, weakened and flooded, walls
+thinned, masses added; scour by soil curves; wrong clocks and yaw, and something else at random;
+{sets} of each, with other sizes and places. The truth does not use `jackettwin.change`. Five modes;
+the model's feet are fitted to the frequencies before. Changes too small for an alarm are left out.
+A month after the change it is known to 0.03 % and 2 % of frequency and damping; on the day of the
+alarm with what just suffices for it.
+"""
+
+
+def page(found: dict[str, tuple[list[Case], list[Case]]], draws: int) -> list[str]:
+    """Return the page, of early and late cases in each world."""
+    lines = HEAD.format(draws=draws, sets=SETS).splitlines()
+    for world, (early, late) in found.items():
+        lines += ["", f"## {world}, a month after", "", *tables(late)]
+        lines += [f"## {world}, on the day of the alarm", "", *tables(early)]
+    return lines
 
 
 def tables(found: list[Case]) -> list[str]:
     """Return shares, and what became of each jacket and change."""
-    error, chance, most = calibration(found, shared=True)
+    error, chance, most = calibration(found)
     confident = [c for c in found if c[4] > CONFIDENT and not c[5] and not c[7]]
     said = np.mean([c[4] for c in found])
     lines = [
@@ -368,19 +422,15 @@ def tables(found: list[Case]) -> list[str]:
 
 
 def main() -> None:
-    draws = int(sys.argv[1]) if len(sys.argv) > 1 else 2
+    draws = int(sys.argv[1]) if len(sys.argv) > 1 else 4
     with tempfile.TemporaryDirectory() as name:
         every = {jacket: structure for jacket, (structure, _) in jackets(Path(name)).items()}
     every["four legs, deck"] = read_structure(str(Path(__file__).parent / "decks/four_legs.yaml"))
-    both = [
-        cases(jacket, s, draws) for jacket, s in every.items() if not sys.argv[2:] or jacket in sys.argv[2:]
-    ]
-    early, late = ([c for found in both for c in found[k]] for k in (0, 1))
-    lines = page(late, early, draws)
-    if sys.argv[2:]:
-        sys.stdout.write("\n".join(lines))
-    else:
-        write_page("diagnosis_by_hand", lines)
+    found = {}
+    for world, sizes in WORLDS.items():
+        both = [cases(jacket, structure, draws, sizes) for jacket, structure in every.items()]
+        found[world] = ([c for early, _ in both for c in early], [c for _, late in both for c in late])
+    write_page("diagnosis_by_hand", page(found, draws))
 
 
 if __name__ == "__main__":
