@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from datetime import UTC, datetime, timedelta
 from functools import partial
 
 import numpy as np
 import pytest
-from observations import seen
+from observations import BEGUN, seen
 from tests.change.test_judge import CHANGED, MODEL, SIXTY, days_of
 
 from jackettwin.change import corrections
@@ -108,3 +109,16 @@ def test_looks_go_on_from_what_was_stored(last: int) -> None:
     resumed, _ = judge(MODEL, days_of(CHANGED), stored, SIXTY)
     whole, _ = judge(MODEL, days_of(CHANGED), None, SIXTY)
     assert json.dumps(JUDGED.dump(resumed)) == json.dumps(JUDGED.dump(whole))
+
+
+def test_a_change_that_went_again_is_told_as_it_was_while_it_lasted() -> None:
+    """Ice of six days: looks that took it for a step that lasts said −0.1 % (−0.15 to −0.06) later."""
+    gone = datetime(2025, 1, 1, tzinfo=UTC) + timedelta(days=BEGUN + 6)
+    begun = [o for o in seen(110, step=-0.003) if o.start_utc and o.start_utc < gone]
+    both = [*begun, *(o for o in seen(110) if o.start_utc and o.start_utc >= gone)]
+    before, after = (judge(MODEL, days_of(of), None, SIXTY)[0].alarms for of in (both[:-40], both))
+    assert (len(before), len(after)) == (1, 2)
+    assert before[0]["size_interval_90"][0] > -0.003  # nobody knows yet that it went
+    ice, back = (alarm["size_interval_90"] for alarm in after)
+    assert ice[0] < -0.003 < ice[1] and back[0] < 0.003 < back[1]
+    assert after[0]["looked_utc"] < gone.isoformat() < before[0]["looked_utc"] < after[1]["time_utc"]

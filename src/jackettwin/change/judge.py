@@ -74,6 +74,7 @@ class StoredMonitoring:
     alarms : as documents, in the order of time
     columns : of the baseline
     pending : the last alarm's change, while it is looked at again
+    looked : how it looked each time, as documents
     smallest : changes that would be found, as documents
     looks : what each day showed that was judged
     """
@@ -89,6 +90,7 @@ class StoredMonitoring:
     relearn: str = UNDATED
     columns: Columns | None = None
     pending: PendingChange | None = None
+    looked: tuple[Mapping[str, Any], ...] = ()
     smallest: tuple[Mapping[str, Any], ...] = ()
     looks: tuple[JudgedDay, ...] = ()
 
@@ -203,7 +205,7 @@ def _known(
         return fresh
     if kept.judged != _fingerprint(every, [d for d in after if d <= kept.through]):
         return replace(kept, judged="", through=UNDATED, watch=kept.learnt, alarms=(), pending=None,
-                       looks=())  # fmt: skip
+                       looked=(), looks=())  # fmt: skip
     return kept
 
 
@@ -230,7 +232,7 @@ def _day(
     if known.watch is None or not day.days.size:
         return replace(known, through=name)
     watch, look = step(known.watch, day)
-    alarms, pending = known.alarms, known.pending
+    alarms, pending, looked = known.alarms, known.pending, known.looked
 
     def told(change: Change) -> dict[str, Any]:
         of = causes()
@@ -240,13 +242,30 @@ def _day(
     if pending is not None:
         pending, change = look_again(pending, day)
         if change is not None:
-            alarms = (*alarms[:-1], with_later_look(alarms[-1], told(change)))
+            looked = (*looked, told(change))
+            alarms = (*alarms[:-1], with_later_look(alarms[-1], looked[-1]))
     if look.change is not None:
-        alarms, pending = (*alarms, told(look.change)), look.pending
+        alarms = (*alarms[:-1], *(_before(alarms[-1], looked, look.change) for _ in alarms[-1:]))
+        looked, pending = (told(look.change),), look.pending
+        alarms = (*alarms, *looked)
     shown = JudgedDay(name, round(look.log_r, 4), np.round(look.rest, 7), np.round(look.rest_std, 7))
     return replace(
-        known, watch=watch, through=name, alarms=alarms, pending=pending, looks=(*known.looks, shown)
-    )
+        known, watch=watch, through=name, alarms=alarms, pending=pending, looked=looked,
+        looks=(*known.looks, shown),
+    )  # fmt: skip
+
+
+def _before(
+    alarm: Mapping[str, Any], looked: Sequence[Mapping[str, Any]], later: Change
+) -> Mapping[str, Any]:
+    """Return the document of an alarm as it last looked before another change began."""
+    began = _time(later.began).isoformat()
+    sound = [one for one in looked if one["looked_utc"] <= began] or looked[:1]
+    if later.kind == "scatter" or not sound or sound[-1] is looked[-1]:
+        return alarm
+    (verdict,) = sound[-1]["verdicts"]
+    verdict = {**verdict, "time_utc": _time(later.day).isoformat()}
+    return with_later_look(alarm, {**sound[-1], "verdicts": [verdict]})
 
 
 def monitoring_document(judged: StoredMonitoring) -> dict[str, Any]:

@@ -54,6 +54,7 @@ class Alarm:
     patterns : {cause: (m,)} what each likely cause would have done to all quantities, at the size it would
         have; NaN where that is not known
     earlier : the same change as it looked before, first on the day of the alarm
+    told : day on which it was stated again as it looked before another change; None on the day of the look
     """
 
     change: Change
@@ -61,6 +62,7 @@ class Alarm:
     next_measurements: tuple[Measurement, ...] = ()
     patterns: Mapping[str, FloatArray] = field(default_factory=dict)
     earlier: tuple[Alarm, ...] = ()
+    told: float | None = None
 
     @property
     def day(self) -> float:
@@ -164,6 +166,7 @@ def watch_table(
         watch, look = step(watch, day)
         looks.append(look)
         if look.change is not None:
+            alarms = [*alarms[:-1], *(_before(one, look.change) for one in alarms[-1:])]
             alarms.append(explained_alarm(look.change, watch, baseline, seen))
             pending = look.pending
     found = [one for block in watch.blocks for one in slopes(block, watch.design)]
@@ -201,6 +204,18 @@ def explained_alarm(change: Change, watch: Watch, baseline: History, seen: SeenC
 def _looked_again(before: Alarm, later: Alarm) -> Alarm:
     """Return an alarm as it looks later, with how it looked before."""
     return replace(later, earlier=(*before.earlier, replace(before, earlier=())))
+
+
+def _before(alarm: Alarm, later: Change) -> Alarm:
+    """Return an alarm as it last looked before another change began.
+
+    Looks after that take both for one step: of ice that fell off after a week a month leaves a quarter.
+    """
+    looks = [*alarm.earlier, alarm]
+    if later.kind == "scatter" or looks[-1].change.day <= later.began:
+        return alarm
+    sound = [one for one in looks if one.change.day <= later.began] or looks[:1]
+    return _looked_again(alarm, replace(sound[-1], earlier=(), told=later.day))
 
 
 def _patterns(diagnosis: Diagnosis, causes: Sequence[Cause], known: BoolArray) -> dict[str, FloatArray]:

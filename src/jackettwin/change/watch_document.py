@@ -110,7 +110,7 @@ def _looked_document(watch: Watch, time: Callable[[float], datetime], alarm: Ala
         "at_alarm": None,
         "verdicts": [
             {
-                "time_utc": time(change.day).isoformat(),
+                "time_utc": time(change.day if alarm.told is None else alarm.told).isoformat(),
                 "cause": either([one.cause for one in named]),
                 "probability": sum(one.probability for one in named),
                 "named": [one.cause for one in named],
