@@ -11,7 +11,7 @@ import { Laws } from "../parts/Laws";
 import { Heat } from "../parts/Heat";
 import { number, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
-import { asked } from "../shell/place";
+import { asked, kept } from "../shell/place";
 import { fixed, frequency, percent, quantity, scientific, short, words } from "../words/numbers";
 
 type Explored = Schemas["ExploredOut"];
@@ -72,7 +72,8 @@ function poles(locus: Locus, index: number): PlotData {
 }
 
 function Along({ locus, name, many }: { locus: Locus; name: string; many: boolean }) {
-  const [index, setIndex] = useState(locus.origin);
+  const [at, setIndex] = kept("at", locus.origin);
+  const index = Math.min(at, locus.values.length - 1);
   const [range, setRange] = useState<Range | null>(null);
   const [value, median] = [locus.values[index] ?? 0, locus.values[locus.origin] ?? 1];
   const mark: Mark[] = [{ x: value, words: quantity(value, locus.unit), colour: "ink" }];

@@ -9,7 +9,7 @@ import { InSpace } from "../parts/InSpace";
 import { SaveDrawn } from "../parts/plot/SaveMenu";
 import { Lanes, Roll } from "../parts/Roll";
 import { Empty, Shown } from "../parts/Shown";
-import type { PageProps } from "../shell/place";
+import { kept, type PageProps } from "../shell/place";
 import { raised } from "../words/numbers";
 import { seconds } from "../words/time";
 
@@ -84,7 +84,7 @@ function Moving({ drawn, record, roll }: { drawn: Schemas["StructureOut"]; recor
 
 export default function Live({ asset }: PageProps) {
   const [roll] = useState(() => new Roll());
-  const [span, setSpan] = useState<number>(30);
+  const [span, setSpan] = kept("span", SPANS_S[1]);
   const streams = useStream(asset, roll);
   const listed = useAsset(asset, "/records", { limit: 100, status: "observed" });
   const record = listed.data?.items.find((r) => r.raw_kept);

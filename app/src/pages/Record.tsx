@@ -11,7 +11,7 @@ import { Shown } from "../parts/Shown";
 import { Stabilisation } from "../parts/Stabilisation";
 import { ModeTable } from "../parts/ModeTable";
 import type { PageProps } from "../shell/place";
-import { asked } from "../shell/place";
+import { asked, keep } from "../shell/place";
 import { InTime, rangeKept } from "../parts/Stiffness";
 import { fixed, sentence, short, words } from "../words/numbers";
 import { seconds } from "../words/time";
@@ -30,7 +30,8 @@ export function condition(name: string): string {
 /** The signals, with what was said of their faults. */
 function Signals({ record, onDrawn }: { record: RecordOut; onDrawn: () => void }) {
   const names = record.channels.map((c) => String(c["name"]));
-  const [chosen, setChosen] = useState(names.slice(0, 3));
+  const wanted = asked("channels")?.split("\n") ?? names.slice(0, 3);
+  const chosen = names.filter((name) => wanted.includes(name));
   const begin = seconds(record.start_utc);
   const range = rangeKept();
   const query = {
@@ -44,9 +45,7 @@ function Signals({ record, onDrawn }: { record: RecordOut; onDrawn: () => void }
   const stretches = useRecord(record.record_id, "/stretches");
   const faults = stretches.data?.items ?? [];
   const switched = (name: string): void =>
-    setChosen((old) =>
-      old.includes(name) ? old.filter((n) => n !== name) : names.filter((n) => n === name || old.includes(n)),
-    );
+    keep({ channels: names.filter((n) => (n === name) !== chosen.includes(n)).join("\n") });
   const plots = useMemo(
     () =>
       Object.entries(signal.data?.channels ?? {}).map(([name, bins]): PlotData => {

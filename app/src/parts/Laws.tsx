@@ -3,7 +3,7 @@ import { useMemo, useState } from "preact/hooks";
 import { useAnswer } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
 import { quantity } from "../words/numbers";
-import { asked } from "../shell/place";
+import { asked, kept } from "../shell/place";
 import { Card, Choice, Slide } from "./Bits";
 import { Plot } from "./plot/Plot";
 import type { PlotData, Range, Series } from "./plot/series";
@@ -57,10 +57,9 @@ function plotsOf(law: Schemas["LawOut"]): PlotData[] {
 
 export function Laws() {
   const name = asked("law") ?? "maxwell-3";
-  const [places, setPlaces] = useState<Record<string, number>>({});
   const [range, setRange] = useState<Range | null>(null);
   const sliders = LAWS[name] ?? [];
-  const at = (s: Slider): number => places[`${name} ${s[0]}`] ?? s[4];
+  const at = (s: Slider): number => kept(s[0], s[4])[0];
   const of = `${name}:${sliders.map((s) => `${s[0]}=${numberOf(s, at(s)).toPrecision(4)}`).join(",")}`;
   const found = useAnswer(null, "law", async () => told(api.GET("/api/v1/law", { params: { query: { of } } })), of);
   const plots = useMemo(() => (found.data ? plotsOf(found.data) : []), [found.data]);
@@ -74,14 +73,7 @@ export function Laws() {
         <Choice label="Law" kept="law" options={Object.keys(LAWS)} />
       </div>
       {sliders.map((s) => (
-        <Slide
-          key={s[0]}
-          min={s[2]}
-          max={s[3]}
-          step="any"
-          at={at(s)}
-          onMove={(to) => setPlaces({ ...places, [`${name} ${s[0]}`]: to })}
-        >
+        <Slide key={s[0]} min={s[2]} max={s[3]} step="any" at={at(s)} onMove={kept(s[0], s[4])[1]}>
           {WORDS[s[0]]} <b>{quantity(numberOf(s, at(s)), s[1], 3)}</b>
         </Slide>
       ))}

@@ -1,7 +1,8 @@
 // What conditions leave of each mode, day by day; the evidence for a change; what a planted one would look like.
-import { useMemo, useState } from "preact/hooks";
+import { useMemo } from "preact/hooks";
 import { useAsset } from "../api/answer";
 import type { Schemas } from "../api/client";
+import { kept } from "../shell/place";
 import { NORMAL_90, quantity, words } from "../words/numbers";
 import { seconds } from "../words/time";
 import { Card, Pick, Slide } from "./Bits";
@@ -120,8 +121,8 @@ const said = (s: Smallest): string =>
   `${s.change} of ${s.unit === "m" ? quantity(s.size, "m") : `${(100 * (s.size ?? 0)).toPrecision(2)} %`}: found within ${s.days} days`;
 
 function WouldBe({ watch, possible }: { watch: Watch; possible: Smallest[] }) {
-  const [index, setIndex] = useState(0);
-  const [at, setAt] = useState(Math.floor(watch.days.length / 10));
+  const [index, setIndex] = kept("planted", 0);
+  const [at, setAt] = kept("day", Math.floor(watch.days.length / 10));
   const one = possible[index] ?? possible[0];
   const from = noon(watch.days[at] ?? "1970-01-01");
   const plots = useMemo(() => {

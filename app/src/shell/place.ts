@@ -46,6 +46,12 @@ export function keep(values: Record<string, string | null>): void {
 
 export const asked = (name: string): string | null => place.value.query.get(name);
 
+/** A number that stands in the address unless it is the usual one, and how to change it. */
+export const kept = (name: string, usual: number): [number, (to: number) => void] => [
+  Number(asked(name) ?? usual),
+  (to) => keep({ [name]: to === usual ? null : String(Number(to.toFixed(3))) }),
+];
+
 /** Follow links of ours without leaving the page. */
 document.addEventListener("click", (event) => {
   if (event.defaultPrevented || event.button !== 0 || event.metaKey || event.ctrlKey || event.shiftKey) return;
