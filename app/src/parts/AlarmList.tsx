@@ -61,7 +61,7 @@ const Causes = ({ causes = {} }: { causes?: Record<string, number> | undefined }
   <ul class="causes">
     {Object.entries(causes).map(([cause, probability]) => (
       <li key={cause}>
-        <meter value={probability} aria-label={cause} /> {Math.round(100 * probability)} % {cause}
+        <meter value={probability} aria-label={cause} /> {sentence(`${Math.round(100 * probability)} % ${cause}`)}
       </li>
     ))}
   </ul>

@@ -98,7 +98,7 @@ export const years = (value: number | null): string =>
 /** A sentence of the server with modes and numbers as the pages write them. */
 export const sentence = (text: string): string =>
   text
-    .replace(/\b(fore_aft|side_side|torsion|heave)_\d+\b/g, words)
+    .replace(/\b(fore_aft|side_side|torsion|heave|foot)_\d+\b/g, words)
     .replace(/(\d) ?%/g, "$1\u00a0%")
     .replace(/([ (])-(?=\d)/g, "$1−")
     .replace(/^[a-z]/, (first) => first.toUpperCase());

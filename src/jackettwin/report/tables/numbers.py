@@ -111,7 +111,7 @@ def sentence(text: str) -> str:
     >>> sentence("side_side_1 fell by 9 % (-13 to -3.3)")
     'side-side 1 fell by 9 % (−13 to −3.3)'
     """
-    named = re.sub(r"\b(?:fore_aft|side_side|torsion|heave)_\d+\b", lambda found: words(found[0]), text)
+    named = re.sub(r"\b(?:fore_aft|side_side|torsion|heave|foot)_\d+\b", lambda found: words(found[0]), text)
     return re.sub(r"(?<=[ (])-(?=\d)", "−", named)
 
 
