@@ -10,6 +10,7 @@ import pytest
 from jackettwin.identification import ModalEstimate, identify
 from jackettwin.identification.selection.candidates import with_covariance
 from jackettwin.identification.selection.neighbours import (
+    MAX_SHARE_OF_ONE,
     combinations_of_neighbours,
     identified_twice,
     members_of_pairs,
@@ -141,3 +142,25 @@ def test_a_pair_along_two_axes_is_one_also_where_its_shapes_are_mixed():
     assert members_of_pairs(modes([0.300, 0.306], along, tone), channels) == set()
     unplaced = [Channel(f"c{k}") for k in range(6)]
     assert members_of_pairs(modes([0.300, 0.306], along, across), unplaced) == set()
+
+
+def test_three_levels_leave_little_to_tell_a_second_mode_by() -> None:
+    """Along one axis two neighbours leave one of three dimensions, whatever the other axis has."""
+    first, third = np.array([1.0, 0.6, 0.25]), np.array([0.3, -0.6, 0.7])
+    normal = np.cross(first, third)
+    x, y = np.array([1.0, 0.0]), np.array([0.0, 1.0])
+    frequencies = [0.24, 0.25, 0.74, 1.29, 1.33]
+    comparable = np.kron(np.ones((3, 3)), np.eye(2)) > 0.0
+    plane = first - third
+    for share, told in [(0.003, []), (0.0003, [2])]:
+        # of unit length, with the share outside the plane of the other two
+        second = np.sqrt(1.0 - share) * plane / np.linalg.norm(plane)
+        second = second + np.sqrt(share) * normal / np.linalg.norm(normal)
+        shapes = [np.kron(*p) for p in ((first, x), (first, y), (second, x), (third, y), (third, x))]
+        modes = [estimate(f, 0.012, s) for f, s in zip(frequencies, shapes, strict=True)]
+        assert combinations_of_neighbours(modes, np.ones(6), 2.0, comparable) == told
+        assert combinations_of_neighbours(modes, np.ones(6), 2.0) == [2]
+    # a random shape of three: its part along the normal is uniform, so that its square is below s in √s
+    random = np.random.default_rng(8).standard_normal((20_000, 3))
+    part = (random @ normal) ** 2 / np.sum(random**2, axis=1) / (normal @ normal)
+    assert np.mean(part < MAX_SHARE_OF_ONE) == pytest.approx(np.sqrt(MAX_SHARE_OF_ONE), abs=4e-3)

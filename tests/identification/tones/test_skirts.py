@@ -11,11 +11,11 @@ DURATION_S, F, HALF, NUMBER = 600.0, 0.9, 4.0, 60
 """Half width of the peaks in lines."""
 
 
-def peaks(rng: np.random.Generator, *, mode: bool, level: float) -> int:
+def peaks(rng: np.random.Generator, *, mode: bool, level: float, slope: float = 0.0) -> int:
     """Return how many of some random peaks have no skirts, in two channels."""
     k = np.arange(1500)
     x = (k - F * DURATION_S) / HALF
-    density = (1.0 / (1.0 + x**2) if mode else 2.0 ** -(x**2)) + level
+    density = ((1.0 / (1.0 + x**2) if mode else 2.0 ** -(x**2)) + level) * np.exp(-slope * x)
     found = 0
     for _ in range(NUMBER):
         drawn = np.sqrt(density) * (rng.standard_normal(k.size) + 1j * rng.standard_normal(k.size))
@@ -31,6 +31,11 @@ def test_orders_are_told_from_modes_where_their_skirts_would_show(rng: np.random
     assert peaks(rng, mode=True, level=1e-3) + peaks(rng, mode=True, level=1e-2) <= 1
     assert peaks(rng, mode=False, level=1e-3) > 0.9 * NUMBER
     assert peaks(rng, mode=False, level=0.1) <= 2  # where nothing can be known, nothing is said
+
+
+def test_a_mode_with_more_force_on_one_side_keeps_its_skirts(rng: np.random.Generator) -> None:
+    """Ten times as much at five half widths below as above, as in a turbine at sea; 4 of 60 had none."""
+    assert peaks(rng, mode=True, level=1e-3, slope=0.25) <= 1
 
 
 @pytest.mark.parametrize(("zeta", "other"), [(0.05, 0.3), (0.0074, 0.92)])

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.identification.status import ModeStatus
 
 if TYPE_CHECKING:
@@ -36,9 +36,15 @@ quasi-static part of the second modes, of which every second mode would then be 
 MIN_FREE_DIMENSIONS = 2
 """Dimensions outside the neighbours' span that are required; with fewer,
 almost any shape is a combination."""
+MAX_SHARE_OF_ONE = 1e-3
+"""The same share where the sensors along the shape's main axis leave one dimension, as three levels do beside
+two pairs of modes: of shapes of three random entries one in ten has less than 0.01 outside a plane, one in 32
+less than this; of six entries one in fifty has less than 0.01 outside four dimensions."""
 
 
-def combinations_of_neighbours(modes: Sequence[ModalEstimate], scale: FloatArray, close: float) -> list[int]:
+def combinations_of_neighbours(
+    modes: Sequence[ModalEstimate], scale: FloatArray, close: float, comparable: BoolArray | None = None
+) -> list[int]:
     """Return the modes whose shapes are combinations of those of the modes below and above.
 
     Neither doubtful modes nor modes already returned are used as neighbours. If two modes are each a
@@ -51,13 +57,19 @@ def combinations_of_neighbours(modes: Sequence[ModalEstimate], scale: FloatArray
         Shapes are divided by it.
     close : float
         Distance over the sum of half bandwidths within which modes count as close, not as neighbours.
+    comparable : (n_channels, n_channels), optional
+        Channels that may show the same motion, those not known to be perpendicular; by default all may.
     """
-    return _take_in_turn(
-        modes, scale, lambda free, i: _either_side(modes, free, i, close), lambda mode: mode.damping_ratio
-    )
+
+    def outside(i: int, free: Sequence[int]) -> float:
+        return _outside(modes, i, _either_side(modes, free, i, close), scale, comparable)
+
+    return _take_in_turn(modes, outside, lambda mode: mode.damping_ratio)
 
 
-def identified_twice(modes: Sequence[ModalEstimate], scale: FloatArray, close: float) -> list[int]:
+def identified_twice(
+    modes: Sequence[ModalEstimate], scale: FloatArray, close: float, comparable: BoolArray | None = None
+) -> list[int]:
     """Return modes without a fit whose shapes are combinations of those of modes close to them.
 
     Of several modes that are combinations of one another, the one of most uncertain frequency is returned
@@ -70,31 +82,32 @@ def identified_twice(modes: Sequence[ModalEstimate], scale: FloatArray, close: f
         Shapes are divided by it.
     close : float
         Distance over the sum of half bandwidths within which modes are close.
+    comparable : (n_channels, n_channels), optional
+        As of :func:`combinations_of_neighbours`.
     """
 
-    def beside(free: Sequence[int], i: int) -> list[int]:
+    def outside(i: int, free: Sequence[int]) -> float:
         near = [j for j in free if j != i and apart(modes[i], modes[j]) < close]
-        return near if modes[i].unrefined is None and len(near) > 1 else []
+        beside = near if modes[i].unrefined is None and len(near) > 1 else []
+        return _outside(modes, i, beside, scale, comparable)
 
-    return _take_in_turn(
-        modes, scale, beside, lambda mode: (mode.frequency_std_hz or np.inf) / mode.frequency_hz
-    )
+    return _take_in_turn(modes, outside, lambda mode: (mode.frequency_std_hz or np.inf) / mode.frequency_hz)
 
 
 def _take_in_turn(
     modes: Sequence[ModalEstimate],
-    scale: FloatArray,
-    beside: Callable[[Sequence[int], int], Sequence[int]],
+    outside: Callable[[int, Sequence[int]], float],
     rank: Callable[[ModalEstimate], float],
 ) -> list[int]:
     """Return modes whose shapes are combinations of others, the one of highest rank first.
 
-    ``beside`` returns which of the remaining modes, neither doubtful nor returned, are neighbours of a mode.
+    ``outside`` returns the share of a mode's shape outside the span of its neighbours among the remaining
+    modes, neither doubtful nor returned.
     """
     found: list[int] = []
     while True:
         free = [i for i, m in enumerate(modes) if i not in found and m.status != ModeStatus.DOUBTFUL]
-        theirs = [i for i in free if _outside(modes, i, beside(free, i), scale) < MAX_OUTSIDE_SHARE]
+        theirs = [i for i in free if outside(i, free) < MAX_OUTSIDE_SHARE]
         if not theirs:
             return found
         found.append(max(theirs, key=lambda i: rank(modes[i])))
@@ -112,22 +125,39 @@ def _either_side(modes: Sequence[ModalEstimate], free: Sequence[int], i: int, cl
     ]
 
 
-def _outside(modes: Sequence[ModalEstimate], i: int, beside: Sequence[int], scale: FloatArray) -> float:
+def _outside(
+    modes: Sequence[ModalEstimate],
+    i: int,
+    beside: Sequence[int],
+    scale: FloatArray,
+    comparable: BoolArray | None,
+) -> float:
     """Return the share of a shape outside the span of others; 1 if there are none or too many of them."""
     if not beside:
         return 1.0
-    inside, dimensions = share_in_span(
-        modes[i].mode_shape / scale, [modes[j].mode_shape / scale for j in beside]
-    )
-    return 1.0 if dimensions > len(scale) - MIN_FREE_DIMENSIONS else 1.0 - inside
+    own, others = modes[i].mode_shape / scale, [modes[j].mode_shape / scale for j in beside]
+    inside, dimensions = share_in_span(own, others)
+    if dimensions > len(scale) - MIN_FREE_DIMENSIONS:
+        return 1.0
+    outside = 1.0 - inside
+    if comparable is None:
+        return outside
+    along = comparable[np.argmax(np.abs(own))]
+    there = _span([other[along] / np.linalg.norm(other) for other in others]).shape[1]
+    few = along.sum() - there < MIN_FREE_DIMENSIONS
+    return 1.0 if few and outside > MAX_SHARE_OF_ONE else outside
 
 
 def share_in_span(shape: ComplexArray, others: Sequence[ComplexArray]) -> tuple[float, int]:
     """Return the share of a shape in the span of others (one or more), and the dimensions of that."""
-    shapes = np.array([other / np.linalg.norm(other) for other in others]).T
-    u, s, _ = np.linalg.svd(shapes, full_matrices=False)
-    basis: ComplexArray = u[:, s > _DISTINCT]
+    basis = _span([other / np.linalg.norm(other) for other in others])
     return float(np.sum(np.abs(basis.conj().T @ shape) ** 2) / np.sum(np.abs(shape) ** 2)), basis.shape[1]
+
+
+def _span(vectors: Sequence[ComplexArray]) -> ComplexArray:
+    """Return the distinct dimensions of some vectors, orthonormal in columns."""
+    u, s, _ = np.linalg.svd(np.array(vectors).T, full_matrices=False)
+    return np.asarray(u[:, s > _DISTINCT])
 
 
 def members_of_pairs(modes: Sequence[ModalEstimate], channels: Sequence[Channel]) -> set[int]:

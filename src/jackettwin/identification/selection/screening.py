@@ -230,9 +230,9 @@ def screen(
         Further modes, which are not judged but may be the other member of a pair.
     """
     judged = [_judged(mode, [m for m in (*modes, *beside) if m is not mode], known) for mode in modes]
-    for i in combinations_of_neighbours(judged, known.scale, CLOSE_DISTANCE):
+    for i in combinations_of_neighbours(judged, known.scale, CLOSE_DISTANCE, known.comparable):
         judged[i] = judged[i].flagged(ModeStatus.DOUBTFUL, Finding("shape_of_neighbours"))
-    for i in identified_twice(judged, known.scale, CLOSE_DISTANCE):
+    for i in identified_twice(judged, known.scale, CLOSE_DISTANCE, known.comparable):
         judged[i] = judged[i].flagged(ModeStatus.DOUBTFUL, Finding("shape_twice"))
     for i, share in _of_one_part(judged, known).items():
         judged[i] = judged[i].flagged(ModeStatus.DOUBTFUL, Finding("one_part", params={"share": share}))

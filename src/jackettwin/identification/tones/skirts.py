@@ -31,7 +31,12 @@ FEWEST_LINES, MOST_LINES = 16, 40
 WIDTHS = np.exp(np.linspace(np.log(0.7), np.log(12.0), 9))
 """Half widths that are tried, in lines: a few lines of a broad peak look like a narrow one."""
 MIDDLES = np.linspace(-0.8, 0.8, 7)
-"""Middles that are tried, in half widths."""
+"""Middles that are tried, in half widths of the mode and the same for both: in half widths of what is tried,
+a broad peak without skirts could move farther than one with them."""
+SLOPES = np.array([-0.4, -0.2, 0.0, 0.2, 0.4])
+"""Slopes of the logarithm of the forces over half a width of the mode that are tried. In a turbine at sea
+the force was ten times as much at five half widths below a mode as above: slopes that are not tried make
+four in ten of such modes peaks without skirts."""
 LEVELS = 10.0 ** np.arange(-4.0, 0.1, 0.5)
 """Levels r that are tried."""
 MAX_DAMPING_RATIO = 0.03
@@ -70,15 +75,16 @@ def missing_skirts(
         return None
     k = np.arange(int(np.ceil(middle - reach)), int(middle + reach) + 1)
     power = np.abs(shape.conj() @ lines[:, k]) ** 2
-    x = (k - middle) / WIDTHS[:, None, None] - MIDDLES[:, None]
-    return _best(power, 2.0 ** -(x**2)) - _best(power, 1.0 / (1.0 + x**2))
+    x = (k - middle - max(half, 1.0) * MIDDLES[:, None]) / WIDTHS[:, None, None]
+    slopes = SLOPES[:, None] * (k - k.mean()) / max(half, 1.0)
+    return _best(power, slopes, 2.0 ** -(x**2)) - _best(power, slopes, 1.0 / (1.0 + x**2))
 
 
-def _best(power: FloatArray, peak: FloatArray) -> float:
-    """Return ln L of lines (n_lines,) at the best of some peaks (…, n_lines), levels and scales."""
-    shape = peak[..., None, :] + LEVELS[:, None]
-    log_likelihood = -np.log(shape).sum(axis=-1) - power.size * np.log((power / shape).mean(axis=-1))
-    return float(log_likelihood.max())
+def _best(power: FloatArray, slopes: FloatArray, peak: FloatArray) -> float:
+    """Return ln L of lines at the best slope (n_slopes, n_lines), peak (…, n_lines), level and scale."""
+    shape = (peak[..., None, :] + LEVELS[:, None]).reshape(-1, power.size)
+    mean = (power * np.exp(slopes)) @ (1.0 / shape).T / power.size
+    return float(np.max(-np.log(shape).sum(axis=-1) - power.size * np.log(mean)))
 
 
 def are_orders(frequency_hz: FloatArray, damping_ratio: FloatArray, missing: FloatArray) -> BoolArray:
