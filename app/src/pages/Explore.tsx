@@ -73,7 +73,7 @@ function poles(locus: Locus, index: number): PlotData {
 
 function Along({ locus, name, many }: { locus: Locus; name: string; many: boolean }) {
   const [at, setIndex] = kept("at", locus.origin);
-  const index = Math.min(at, locus.values.length - 1);
+  const index = Math.max(0, Math.min(at, locus.values.length - 1));
   const [range, setRange] = useState<Range | null>(null);
   const [value, median] = [locus.values[index] ?? 0, locus.values[locus.origin] ?? 1];
   const mark: Mark[] = [{ x: value, words: quantity(value, locus.unit), colour: "ink" }];

@@ -84,7 +84,8 @@ function Moving({ drawn, record, roll }: { drawn: Schemas["StructureOut"]; recor
 
 export default function Live({ asset }: PageProps) {
   const [roll] = useState(() => new Roll());
-  const [span, setSpan] = kept("span", SPANS_S[1]);
+  const [wanted, setSpan] = kept("span", SPANS_S[1]);
+  const span = SPANS_S.find((s) => s === wanted) ?? SPANS_S[1];
   const streams = useStream(asset, roll);
   const listed = useAsset(asset, "/records", { limit: 100, status: "observed" });
   const record = listed.data?.items.find((r) => r.raw_kept);

@@ -48,7 +48,7 @@ export const asked = (name: string): string | null => place.value.query.get(name
 
 /** A number that stands in the address unless it is the usual one, and how to change it. */
 export const kept = (name: string, usual: number): [number, (to: number) => void] => [
-  Number(asked(name) ?? usual),
+  Number(asked(name) ?? usual) || (asked(name) === "0" ? 0 : usual),
   (to) => keep({ [name]: to === usual ? null : String(Number(to.toFixed(3))) }),
 ];
 
