@@ -505,11 +505,15 @@ def ratios(results: list[Result], method: str, place: str) -> list[float]:
             found.append(float(values[at + int(true[at + 1] > true[at])]))
         else:
             low, high = map(float, place.split(" to "))
-            z, spots = np.array(one["z_m"]), true[6:]
-            inside = np.flatnonzero((z >= low) & (z < high))
-            most = inside[np.argsort(-spots[inside])[:OF_BAND]]
-            found += values[6:][most].tolist()
+            found += values[6:][most_damaged(one, low, high)].tolist()
     return found
+
+
+def most_damaged(one: Result, low: float, high: float) -> np.ndarray:
+    """Return which hot spots of a record between two heights are damaged most."""
+    z, spots = np.array(one["z_m"]), np.array(one["true"])[6:]
+    inside = np.flatnonzero((z >= low) & (z < high))
+    return np.asarray(inside[np.argsort(-spots[inside])[:OF_BAND]])
 
 
 def main() -> None:
@@ -575,6 +579,8 @@ def coverage(results: list[Result]) -> list[str]:
                 for one in results
             ]
         )
+        most = [scored(one, [6 + i for i in most_damaged(one, low, high)]) for one in results]
+        rows[f"{OF_BAND} spots of {low:g} to {high:g} (not in all)"] = np.concatenate(most)
     rows["tower top (not in all)"] = np.concatenate([scored(one, [2, 3]) for one in results])
     for name, row in rows.items():
         if len(row):

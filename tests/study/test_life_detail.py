@@ -14,7 +14,7 @@ from jackettwin.sensing import MotionEstimate, Weather, motion_from, readings_of
 from jackettwin.soil import pinned
 from jackettwin.structure import Rayleigh, assemble
 from jackettwin.study.life.life_detail import bands, candidates, damage_by_band, lost_without, with_one_more
-from jackettwin.twin import WeldMap, weld_map
+from jackettwin.twin import RestingLoads, WeldMap, weld_map
 
 MODELS = models_at_height("T")
 
@@ -50,7 +50,7 @@ def sensed() -> tuple[MotionEstimate, WeldMap, tuple[WeldLife, ...]]:
     y = 0.05 * np.array([np.sin(1.1 * t), np.cos(1.1 * t)]) + 1e-3 * rng.standard_normal((2, t.size))
     record = Record(y, 10.0, tuple(Channel(s.channel) for s in sensors))
     found = motion_from(sensed_model(system, Weather(10.0, 2.0, 8.0)), readings_of(record, sensors, assembly))
-    chart, motion = weld_map(system, found.model, assembly), found.mean()
+    chart, motion = weld_map(system, found.model, RestingLoads.of(assembly)), found.mean()
     cycles = [[[count(point) for point in side] for side in weld] for weld in chart.stress(0, motion)]
     lives = weld_lives(structure, chart.joints[0].welds, cycles, 150.0, MODELS)
     return found, chart, lives

@@ -88,5 +88,5 @@ def test_the_tower_base_is_known_through_wrong_feet(scenario: Scenario, truth: F
     turned = tuple(replace(s, direction=tuple(-v for v in s.direction)) for s in sensors[2:4])
     # of the top pair alone the others leave no more than a twentieth
     wrong = dels(estimated(scenario, (*sensors[:2], *turned, *sensors[4:]))) / dels(truth)
-    # three times what sensors that point the right way may leave
-    assert np.abs(wrong - 1.0).max() > 0.18
+    # two and a half times what sensors that point the right way may leave
+    assert np.abs(wrong - 1.0).max() > 0.15
