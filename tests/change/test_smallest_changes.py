@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -56,7 +58,8 @@ def test_an_owner_is_told_scour_softening_and_braces_at_every_horizon(
         t, labels, f * np.exp(0.001 * rng.standard_normal(shape)), np.full(shape, 0.001) * f, none, none,
         10.0 + rng.standard_normal((t.size, 1)), ("temperature_c",), np.zeros(t.size, dtype=np.intp),
     )  # fmt: skip
-    found = smallest_changes(start(baseline), baseline, model)
+    watch = start(baseline)
+    found = smallest_changes(watch, baseline, model)
     names = ("scour at all feet", "soil softening", "a brace lost")
     assert [(one.change, one.days) for one in found] == [(n, d) for d in (30.0, 90.0, 365.0) for n in names]
     assert {one.days for one in found if one.projected} == {365.0}
@@ -69,3 +72,14 @@ def test_an_owner_is_told_scour_softening_and_braces_at_every_horizon(
     said = smallest_sentence(smallest_documents(found))
     assert "within 365 days (projected from a shorter baseline) scour at all feet by" in said
     assert f"{year[2].found} of 36 braces if lost" in said
+    # an effect that may be half as large or half as large again is found with 95 % if half of it nearly is
+    unsure = replace(
+        model,
+        causes=tuple(
+            replace(c, draws=np.concatenate([0.5 * c.draws, 1.5 * c.draws]), bend=0.0 * c.bend)
+            for c in model.causes
+            if c.name == "soil softening"
+        ),
+    )
+    (wider,) = (one for one in smallest_changes(watch, baseline, unsure) if one.days == 90.0)
+    assert 1.7 < wider.size / quarter[1].size < 2.0

@@ -21,9 +21,9 @@ def learnt(seed: int) -> tuple[Watch, History]:
 
 
 def alike(size: float, watch: Watch) -> np.ndarray:
-    """Return both frequencies falling by a size, and nothing else."""
-    out = np.zeros(len(watch.quantities))
-    out[:2] = -size
+    """Return both frequencies falling by a size, and nothing else: one draw."""
+    out = np.zeros((1, len(watch.quantities)))
+    out[:, :2] = -size
     return out
 
 
@@ -78,6 +78,8 @@ def test_the_chance_rises_with_size_and_nothing_is_no_change(seen: tuple[Watch, 
     chance = [month.chance(alike(x, watch)) for x in (0.0, 0.001, 0.003, 0.01)]
     assert chance == sorted(chance) and chance[0] < 0.01 and chance[-1] > 0.99
     assert month.chance(-alike(0.01, watch)) > 0.99
+    either = np.concatenate([alike(0.001, watch), alike(0.003, watch)])
+    assert month.chance(either) == pytest.approx((chance[1] + chance[2]) / 2.0)
     assert month.smallest(lambda x: alike(x, watch), 1e-5, 1e-4) is None
 
 

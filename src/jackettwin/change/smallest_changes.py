@@ -81,28 +81,30 @@ def _general(watch: Watch, baseline: History, seen: Sight) -> Iterator[SmallestC
     f = typical(baseline.frequency)
     named = [c for c in general_causes(watch.quantities, watch.labels, f) if c.name == _EVERY]
     for cause in named:
-        size = seen.smallest(lambda x, c=cause: c.steps(np.array([-x]))[0], 1e-4, 0.2)  # type: ignore[misc]
+        size = seen.smallest(lambda x, c=cause: c.steps(np.array([-x])), 1e-4, 0.2)  # type: ignore[misc]
         yield SmallestChange(cause.name, seen.days, size, "-")
 
 
 def _of_structure(watch: Watch, seen: Sight, causes: ModelCauses) -> Iterator[SmallestChange]:
     over = seen_causes(causes, watch.quantities, watch.labels)
 
-    def step(cause: Cause, size: float) -> FloatArray:
-        every = np.zeros(over.known.size)
-        every[over.known] = cause.steps(np.array([size]))[0]
+    def steps(cause: Cause, size: float) -> FloatArray:
+        """Return the changes by a cause as the structure's model draws them, (n_draws, m)."""
+        every = np.zeros((len(cause.draws), over.known.size))
+        apart = size * (cause.draws - cause.draws.mean(axis=0))
+        every[:, over.known] = cause.steps(np.array([size])) + apart
         return every
 
     for cause in over.causes:
         if cause.name in _LARGEST:
             usual = float(np.median(np.abs(cause.sizes)))
             high = min(_RANGE[1] * usual, _LARGEST[cause.name])
-            size = seen.smallest(lambda x, c=cause: step(c, x), _RANGE[0] * usual, high)  # type: ignore[misc]
-            moved = () if size is None else tuple(np.round(step(cause, size), 7).tolist())
+            size = seen.smallest(lambda x, c=cause: steps(c, x), _RANGE[0] * usual, high)  # type: ignore[misc]
+            moved = () if size is None else tuple(np.round(steps(cause, size).mean(axis=0), 7).tolist())
             yield SmallestChange(cause.name, seen.days, size, cause.unit, step=moved)
     lost = [c for c in over.causes if c.name.split(" (or ")[0].endswith(_ALL_OR_NONE)]
     number = [1 + len(c.alike) for c in lost]
-    found = [n for c, n in zip(lost, number, strict=True) if seen.chance(step(c, 1.0)) >= CHANCE]
+    found = [n for c, n in zip(lost, number, strict=True) if seen.chance(steps(c, 1.0)) >= CHANCE]
     if lost:
         yield SmallestChange("a brace lost", seen.days, None, "-", sum(found), sum(number))
 

@@ -67,17 +67,22 @@ class Sight:
     power: float
     projected: bool = False
 
-    def chance(self, step: FloatArray) -> float:
-        """Return the probability that a step of all quantities (m_all,) is detected by its clearest kind."""
-        found, first = [0.0], 0
+    def chance(self, steps: FloatArray) -> float:
+        """Return the probability that a change is detected by its clearest kind of quantity.
+
+        Parameters
+        ----------
+        steps : (n_draws, m_all) of all quantities, as probable one as the other
+        """
+        found, first = [np.zeros(len(steps))], 0
         for directions, info, weights in zip(self.directions, self.info, self.weights, strict=True):
-            m = info.shape[1]
-            found.append(float(weights @ self._each(directions, info, step[first : first + m])))
-            first += m
-        return max(found)
+            part = steps[:, first : first + info.shape[1]]
+            found.append(np.array([weights @ self._each(directions, info, step) for step in part]))
+            first += info.shape[1]
+        return float(np.max(found, axis=0).mean())
 
     def _each(self, directions: Directions, info: FloatArray, step: FloatArray) -> FloatArray:
-        """Return the probability of detection under each model."""
+        """Return the probability of detection of a step (m,) under each model."""
         u = directions.vectors
         a = np.einsum("di,kij,dj->kd", u, info, u)
         c = np.einsum("di,kij,j->kd", u, info, step)
@@ -93,7 +98,7 @@ class Sight:
 
         Parameters
         ----------
-        step : function that returns the change of all quantities (m_all,) at a size
+        step : function that returns the changes of all quantities (n_draws, m_all) at a size
         """
         if self.chance(step(high)) < CHANCE:
             return None
