@@ -10,6 +10,11 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, settings
+
+# by the clock a loaded machine fails what a free one passes
+settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("any machine")
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # a run in the background ignores Ctrl-C, and so would every program that a test starts and interrupts

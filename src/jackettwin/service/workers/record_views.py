@@ -1,4 +1,7 @@
-"""Drawings of a stored record beside its samples: motion of the structure, and places of faults."""
+"""Drawings of a stored record beside its samples: motion of the structure, and places of faults.
+
+What reads samples is loaded by workers only: the server asks ``stretches_of`` itself.
+"""
 
 from __future__ import annotations
 
@@ -7,8 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from jackettwin.errors import InputError
-from jackettwin.service.workers.engine import load_twin
-from jackettwin.store import read_waveform
 
 
 def motion(folder: str, waveform: str, duration_s: float) -> dict[str, Any]:
@@ -21,6 +22,8 @@ def motion(folder: str, waveform: str, duration_s: float) -> dict[str, Any]:
     """
     from jackettwin.report import record_motion
     from jackettwin.response import playback
+    from jackettwin.service.workers.engine import load_twin
+    from jackettwin.store import read_waveform
 
     model = load_twin(Path(folder)).model
     if model.assembly is None or model.numbered is None:
@@ -33,6 +36,7 @@ def motion(folder: str, waveform: str, duration_s: float) -> dict[str, Any]:
 def stretches(folder: str, waveform: str) -> list[dict[str, Any]]:
     """Return :func:`stretches_of` a record that no observation tells of."""
     from jackettwin.records import assess
+    from jackettwin.store import read_waveform
 
     return stretches_of(assess(read_waveform(Path(waveform))).summary())
 
