@@ -224,10 +224,6 @@ def test_a_broad_peak_must_be_clear_and_its_damping_known(clear):
         one = replace(mode, damping_ratio=damping_ratio, damping_ratio_std=std, mode_shape=shape)
         return {reason.code for reason in screen([one], by)[0].reasons}
 
-    # 1.96 standard deviations above 5 % is 9 or 16 %, above 2 % it is 6.5 %
-    assert "broad" not in codes(0.05, 0.3)
-    assert "broad" in codes(0.05, 0.6)
-    assert "broad" not in codes(0.02, 0.6)
     # two channels cannot filter others out: a narrow peak need only be half as high again as its sides
     lines, some = known.lines[:2], known.comparable[:2, :2]
     noise = 0.6 * np.sqrt(np.mean(np.abs(lines) ** 2))
@@ -238,3 +234,8 @@ def test_a_broad_peak_must_be_clear_and_its_damping_known(clear):
         assert 1.5 < contrast(two.lines, two.duration_s, narrow, narrow.mode_shape / two.scale)[0] < 8.0
     assert "no_peak" not in codes(0.035, 0.1, two)
     assert "no_peak" in codes(0.045, 0.1, two)
+    # 1.96 standard deviations above 5 % is 9 or 16 %, above 2 % it is 6.5 %; a clear peak may be little known
+    assert "broad" not in codes(0.05, 0.3, two)
+    assert "broad" in codes(0.05, 0.6, two)
+    assert "broad" not in codes(0.02, 0.6, two)
+    assert "broad" not in codes(0.05, 0.6)

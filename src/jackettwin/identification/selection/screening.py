@@ -98,8 +98,8 @@ SEAS_FORCES = (0.75, 4.0)
 MAX_CLEAR_DAMPING = 0.10
 """Damping ratio above which every mode is doubtful."""
 MAX_POSSIBLE_DAMPING = 0.15
-"""Damping ratio that the damping of a mode must not reach: then too few decay times were seen to tell a mode
-from a hump of the forces' spectrum. Of the true modes above none reaches it."""
+"""Damping ratio that the damping of a mode must not reach unless its peak is as clear as above: too few decay
+times were seen to tell a mode from a hump of the forces' spectrum."""
 SAME_PEAK_MAC = 0.9
 """MAC above which two close modes in enough sensors are one peak identified twice:
 modes of equal frequency move in different shapes."""
@@ -311,7 +311,8 @@ def _forces(
         # aerodynamic damping may make one of a pair broad, but not a third mode beside two
         if lighter != 1 and _may_be_waves(mode, others, known):
             yield ModeStatus.DOUBTFUL, Finding("broad_as_waves", params=percent)
-    if zeta > MAX_CLEAR_DAMPING or (zeta > BROAD_DAMPING and _may_reach(mode, MAX_POSSIBLE_DAMPING)):
+    hardly_known = zeta > BROAD_DAMPING and _may_reach(mode, MAX_POSSIBLE_DAMPING)
+    if zeta > MAX_CLEAR_DAMPING or (hardly_known and not _clear(mode, known)):
         yield ModeStatus.DOUBTFUL, Finding("broad", params=percent)
 
 
@@ -320,9 +321,9 @@ def _may_be_waves(mode: ModalEstimate, others: Sequence[ModalEstimate], known: E
 
     A close mode as broad as it is the other member of its pair.
     """
-    shape = mode.mode_shape / known.scale
-    if contrast(known.lines, known.duration_s, mode, shape)[0] < NO_SEA_CONTRAST:
+    if not _clear(mode, known):
         return True
+    shape = mode.mode_shape / known.scale
     first = [
         m.mode_shape / known.scale
         for m in others
@@ -330,6 +331,12 @@ def _may_be_waves(mode: ModalEstimate, others: Sequence[ModalEstimate], known: E
         and (m.damping_ratio < BROAD_DAMPING or apart(mode, m) > CLOSE_DISTANCE)
     ]
     return bool(first) and share_in_span(shape, first)[0] > FOLLOWED_SHARE
+
+
+def _clear(mode: ModalEstimate, known: Evidence) -> bool:
+    """Tell whether a broad peak stands out of its sides as that of a mode that the air damps."""
+    ratio, _ = contrast(known.lines, known.duration_s, mode, mode.mode_shape / known.scale)
+    return ratio >= NO_SEA_CONTRAST
 
 
 def _may_reach(mode: ModalEstimate, damping_ratio: float) -> bool:
