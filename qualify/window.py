@@ -233,7 +233,7 @@ def page(rows: list[Row], n: int, given: argparse.Namespace, paces: list[float])
         "# The window with much",
         "",
         f"`python qualify/window.py --years {given.years} --frames {given.frames}`: {n:,} rows of modes, and",
-        "a record of a day. Measured in Chromium without a graphics processor, beside other work; the last",
+        "a record of a day. Measured in Chromium without a graphics processor; the last",
         "column is the CPU time of the page's process, with its start, scaled to a machine whose",
         f"800×800 `eig` takes 0.47 s: times {min(paces):.2f} to {max(paces):.2f}, measured beside each.",
         "",
