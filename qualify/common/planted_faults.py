@@ -119,7 +119,7 @@ FAULTS = (
     )),
     *_of("loads", rows=(
         ("heave radiates against sway", "+ 1j * across[:, 2:] * vertical", "- 1j * across[:, 2:] * vertical"),
-        ("drag without one half", "0.5 * rho * grid.drag * D", "rho * grid.drag * D"),
+        ("drag without one half", "0.5 * self.density_kg_m3 * self.drag", "self.density_kg_m3 * self.drag"),
         ("waves run the other way", "np.exp(-1j * self.k * along)", "np.exp(1j * self.k * along)"),
         ("the JONSWAP peak is twice as narrow", "gamma ** np.exp(-0.5 * ((f / fp - 1.0) / sigma) ** 2)", "gamma ** np.exp(-2.0 * ((f / fp - 1.0) / sigma) ** 2)"),
         ("Prandtl's tip loss lacks 2/π", "F = F * 2.0 / np.pi * np.arccos(", "F = F * np.arccos("),

@@ -217,10 +217,10 @@ class SeaOnMembers:
         Drag is linear in the sea's mean speed across the members.
         """
         grid = self.grid
-        wet = wetness(grid, np.zeros(grid.weight.size)) * grid.weight * grid.density_kg_m3
-        mass = 0.25 * pi * wet * (grid.pressure + grid.added_mass) * grid.diameter**2
+        wet = wetness(grid, np.zeros(grid.weight.size)) * grid.weight
+        mass = grid.inertia_per_length * wet
         # the speed's deviation is of one of two ways across a member, and a sea runs along one
-        dashpot = 0.5 * sqrt(2.0) * wet * grid.drag * grid.diameter * self.speed_std
+        dashpot = sqrt(2.0) * grid.drag_per_length * wet * self.speed_std
         away = 0.5 * pi * (2.0 * (np.arange(_WAYS) + 0.5) / _WAYS - 1.0)
         share = np.sqrt(np.cos(away) ** 2 / np.sum(np.cos(away) ** 2) / omega.size)
         angle = self.state.direction + away

@@ -96,4 +96,4 @@ def tower_drag_damping(grid: MorisonPoints, wind: FloatArray) -> sp.csr_array:
     v = np.einsum("nij,nj->ni", grid.normal, wind)
     speed = np.maximum(np.linalg.norm(v, axis=1), 1e-12)[:, None, None]
     tangent = speed * grid.normal + v[:, :, None] * v[:, None, :] / speed
-    return spread(grid, (0.5 * grid.density_kg_m3 * grid.drag * grid.diameter)[:, None, None] * tangent)
+    return spread(grid, grid.drag_per_length[:, None, None] * tangent)

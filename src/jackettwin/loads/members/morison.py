@@ -60,6 +60,16 @@ class MorisonPoints:
     N: sp.csr_array
     density_kg_m3: float
 
+    @property
+    def drag_per_length(self) -> FloatArray:
+        """½ρ C_D D, (n,) [kg/m²]."""
+        return 0.5 * self.density_kg_m3 * self.drag * self.diameter
+
+    @property
+    def inertia_per_length(self) -> FloatArray:
+        """ρ (C_p + C_a) πD²/4, (n,) [kg/m]."""
+        return 0.25 * np.pi * self.density_kg_m3 * (self.pressure + self.added_mass) * self.diameter**2
+
     def motion(self, x: FloatArray) -> FloatArray:
         """Return the motion of the points (..., n, 3) from that of the DOFs (..., n_dof)."""
         moved = (self.N.T @ np.atleast_2d(x).T).T
@@ -221,7 +231,6 @@ def point_forces(
     """
     from jackettwin.loads.kernels import morison  # imported here because it loads a compiler
 
-    rho, D = grid.density_kg_m3, grid.diameter
     v = u if velocity is None else u - velocity
     shape = np.broadcast_shapes(v.shape, du.shape)
     length = np.broadcast_to(grid.weight * wet, shape[:-1])
@@ -234,8 +243,8 @@ def point_forces(
         for field in fields
     )
     morison(
-        0.5 * rho * grid.drag * D,
-        0.25 * np.pi * rho * (grid.pressure + grid.added_mass) * D**2,
+        grid.drag_per_length,
+        grid.inertia_per_length,
         grid.normal,
         seen,
         others[0] if others else seen,
@@ -266,7 +275,7 @@ def drag_damping(grid: MorisonPoints, sigma: FloatArray) -> sp.csr_array:
     sigma : (n,) standard deviation of the water's normal velocity at the points [m/s]
     """
     wet = wetness(grid, np.zeros(grid.weight.size))
-    per_length = 0.5 * grid.density_kg_m3 * grid.drag * grid.diameter * np.sqrt(8.0 / np.pi) * sigma * wet
+    per_length = grid.drag_per_length * np.sqrt(8.0 / np.pi) * sigma * wet
     return spread(grid, per_length[:, None, None] * grid.normal)
 
 

@@ -42,9 +42,8 @@ def radiation_damping(grid: MorisonPoints, shape: FloatArray, omega: float, dept
     kd2 = 2.0 * k * depth
     group = 0.5 * omega / k * (1.0 + kd2 / np.sinh(min(kd2, 700.0)))
     horizontal, vertical = depth_functions(np.array([k]), np.minimum(grid.points[:, 2], 0.0), depth)
-    mass = grid.density_kg_m3 * (grid.pressure + grid.added_mass) * 0.25 * np.pi * grid.diameter**2
     wet = grid.weight * above_bed(grid, depth) * wetness(grid, np.zeros(grid.weight.size))
-    pushed = (mass * wet * omega**2)[:, None] * scattered(np.array([k]), grid.diameter)
+    pushed = (grid.inertia_per_length * wet * omega**2)[:, None] * scattered(np.array([k]), grid.diameter)
     across = np.einsum("nij,nj->ni", grid.normal, grid.motion(shape)) * pushed
     beta = np.arange(_HEADINGS) * (2.0 * np.pi / _HEADINGS)
     d = np.stack([np.cos(beta), np.sin(beta)])

@@ -205,7 +205,7 @@ def relative_drag_beyond(
     assert series.across is not None and series.wet is not None
     n = grid.weight.size
     motion = np.asarray(grid.N.T @ basis).reshape(n, 3, -1)
-    per_point = 0.5 * grid.density_kg_m3 * grid.drag * grid.diameter * grid.weight
+    per_point = grid.drag_per_length * grid.weight
     return RelativeDrag(
         series.across,
         series.wet * per_point,
