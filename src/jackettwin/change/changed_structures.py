@@ -10,9 +10,10 @@ from typing import cast
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.change.ground import ARM_M, UNDESCRIBED, Loss, in_line
+from jackettwin.change.ground import ARM_M, UNDESCRIBED, Loss
 from jackettwin.errors import require
 from jackettwin.plugins import plugins
+from jackettwin.soil import feet_in_line
 from jackettwin.structure import Material, Member, PointMass, Section, Structure
 
 _LEG = 0.9
@@ -46,7 +47,7 @@ class Standing:
     @property
     def rocking(self) -> FloatArray:
         """Rotational stiffness of every foot [Nm/rad]: none of several, which stand on translations."""
-        return self.vertical * (ARM_M**2 if in_line(self.structure) else 0.0)
+        return self.vertical * (ARM_M**2 if feet_in_line(self.structure) else 0.0)
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,7 @@ def _scoured_at(foot: int) -> Callable[[Standing], Standing]:
 def _scoured(standing: Standing, foot: int | None) -> Standing:
     chosen = np.ones(standing.horizontal.size) if foot is None else np.eye(standing.horizontal.size)[foot]
     sideways, axially, turning = (np.exp(-loss * chosen) for loss in standing.scour_loss)
-    if in_line(standing.structure):
+    if feet_in_line(standing.structure):
         axially = turning
     return replace(standing, horizontal=standing.horizontal * sideways, vertical=standing.vertical * axially)
 

@@ -10,9 +10,8 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.files import read_yaml
-from jackettwin.soil import Foundation, read_foundation, standing
+from jackettwin.soil import Foundation, feet_in_line, read_foundation
 from jackettwin.soil.foundation import build_foundation, shipped_foundations
-from jackettwin.structure import Structure
 from jackettwin.twin import TwinConfig
 from jackettwin.updating import Update
 
@@ -61,11 +60,6 @@ UNDESCRIBED = Ground()
 """Undescribed ground."""
 
 
-def in_line(structure: Structure) -> bool:
-    """Tell whether a structure would turn over on translations alone: one foot, or feet in a line."""
-    return any(len(dofs) > len("xyz") for _, dofs in standing(structure).fixed)
-
-
 def scour_loss(piles: Foundation) -> Loss:
     """Return the loss of ln stiffness of a pile head per metre of scour, horizontal, vertical, rotational.
 
@@ -103,7 +97,7 @@ def _feet_stiffness(update: Update) -> FloatArray:
     model, known = update.model, update.uncertainty
     assert known is not None
     feet, s = model.assembly.structure.reaction_nodes, 2j * pi * model.reference_hz
-    out, turns = np.zeros((len(known.log_theta), 2, len(feet))), in_line(model.assembly.structure)
+    out, turns = np.zeros((len(known.log_theta), 2, len(feet))), feet_in_line(model.assembly.structure)
     for draw, theta in zip(out, np.exp(known.log_theta), strict=True):
         for spring in model.tie_groups.support(model.laws(theta)).springs:
             k = np.asarray(spring.law.stiffness(s)).real * spring.matrix

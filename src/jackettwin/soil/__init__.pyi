@@ -67,6 +67,7 @@ from .support import (
     Spring as Spring,
     Support as Support,
     clamped as clamped,
+    feet_in_line as feet_in_line,
     held_where_sprung as held_where_sprung,
     on_translations as on_translations,
     own_support as own_support,

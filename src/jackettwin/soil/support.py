@@ -69,13 +69,16 @@ def standing(structure: Structure) -> Support:
 
     Clamped feet where pins would let the structure turn over: one foot, or feet in a line.
     """
+    return clamped(structure) if feet_in_line(structure) else pinned(structure)
+
+
+def feet_in_line(structure: Structure) -> bool:
+    """Tell whether a structure would turn over on translations alone: one foot, or feet in a line."""
     feet = np.array([structure.nodes[node] for node in structure.reaction_nodes])
     if feet.size == 0:
-        return pinned(structure)
-    apart = feet - feet.mean(axis=0)
-    spread = np.linalg.svd(apart, compute_uv=False)
-    in_line = len(feet) < 3 or spread[1] <= 1e-6 * spread[0]
-    return clamped(structure) if in_line else pinned(structure)
+        return False
+    spread = np.linalg.svd(feet - feet.mean(axis=0), compute_uv=False)
+    return len(feet) < 3 or bool(spread[1] <= 1e-6 * spread[0])
 
 
 def on_translations(structure: Structure, law: Law) -> Support:
