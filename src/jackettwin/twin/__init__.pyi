@@ -1,5 +1,5 @@
 from .advance import advance as advance, advance_all as advance_all
-from .config import TwinConfig as TwinConfig, assembled as assembled
+from .config import TwinConfig as TwinConfig, assembled as assembled, assembled_dry as assembled_dry
 from .exact_sums import UNIT as UNIT, average as average, plus as plus
 from .files import read_twin as read_twin, shipped_twins as shipped_twins
 from .inputs import inputs_document as inputs_document

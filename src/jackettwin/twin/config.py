@@ -294,15 +294,20 @@ class TwinConfig:
         }
 
 
-def assembled(config: TwinConfig) -> Assembly:
-    """Return the assembled structure of a twin, including the water's added mass."""
-    assembly = assemble(
+def assembled_dry(config: TwinConfig, *, gravity: bool = False) -> Assembly:
+    """Return the assembled structure of a twin with the mass of its steel alone."""
+    return assemble(
         config.structure,
         beam_theory=config.beam,
         rotary_inertia=config.rotary_inertia,
         subdivide=config.subdivide,
-        gravity=config.gravity,
+        gravity=gravity,
     )
+
+
+def assembled(config: TwinConfig) -> Assembly:
+    """Return the assembled structure of a twin, including the water's added mass."""
+    assembly = assembled_dry(config, gravity=config.gravity)
     if config.water is None or not config.water.adds_mass:
         return assembly
     return replace(assembly, mass=assembly.mass + moving_mass(config.water, assembly).tocsc())

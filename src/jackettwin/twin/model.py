@@ -14,9 +14,9 @@ from jackettwin.files import digest
 from jackettwin.identification import Examination, IdentificationSettings, Pick
 from jackettwin.records import Record
 from jackettwin.response import Sensor, UndampedModes, mode_kinds, mode_labels, observation_matrix, sees
-from jackettwin.structure import Assembly, assemble
+from jackettwin.structure import Assembly
 from jackettwin.twin.calibration import Calibrations, sensors_at
-from jackettwin.twin.config import PAIRED_MODES, TwinConfig, assembled
+from jackettwin.twin.config import PAIRED_MODES, TwinConfig, assembled, assembled_dry
 from jackettwin.twin.life.likely_structures import StressModel
 from jackettwin.twin.life.weld_map import RestingLoads
 from jackettwin.twin.operation import OperationRule
@@ -224,14 +224,10 @@ def _stress_model(config: TwinConfig, assembly: Assembly, numbered: UndampedMode
     """Return what damage is told with, if the twin asks for it."""
     if config.life is None:
         return None
-    beam, rotary, subdivide = config.beam, config.rotary_inertia, config.subdivide
     return StressModel(
         config.life,
         assembly,
-        RestingLoads.of(
-            assemble(config.structure, beam_theory=beam, rotary_inertia=rotary, subdivide=subdivide),
-            config.water,
-        ),
+        RestingLoads.of(assembled_dry(config), config.water),
         config.rayleigh,
         numbered,
         directions(config, assembly),

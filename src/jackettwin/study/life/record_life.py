@@ -34,9 +34,16 @@ from jackettwin.sensing import (
     readings_of,
     section_rows,
 )
-from jackettwin.structure import assemble
 from jackettwin.study.life.updated_system import updated_systems
-from jackettwin.twin import RestingLoads, TwinConfig, WeldMap, rotor_by_wind, twin_model, weld_map
+from jackettwin.twin import (
+    RestingLoads,
+    TwinConfig,
+    WeldMap,
+    assembled_dry,
+    rotor_by_wind,
+    twin_model,
+    weld_map,
+)
 from jackettwin.twin.calibration import calibrated
 from jackettwin.updating import Update
 
@@ -118,16 +125,9 @@ def life_of_record(
     supports : number of the posterior's supports, the most probable first
     details : what is assessed of the tubes beside joints; nothing without it
     """
-    dry = assemble(
-        config.structure,
-        beam_theory=config.beam,
-        rotary_inertia=config.rotary_inertia,
-        subdivide=config.subdivide,
-    )
+    rest = RestingLoads.of(assembled_dry(config), config.water)
     systems = updated_systems(update, draws=supports - 1)
-    return record_life(
-        systems, readings, weather, models, RestingLoads.of(dry, config.water), draws=draws, details=details
-    )
+    return record_life(systems, readings, weather, models, rest, draws=draws, details=details)
 
 
 def record_life(
