@@ -245,7 +245,8 @@ def _day(
             looked = (*looked, told(change))
             alarms = (*alarms[:-1], with_later_look(alarms[-1], looked[-1]))
     if look.change is not None:
-        alarms = (*alarms[:-1], *(_before(alarms[-1], looked, look.change) for _ in alarms[-1:]))
+        if alarms:
+            alarms = (*alarms[:-1], _before(alarms[-1], looked, look.change))
         looked, pending = (told(look.change),), look.pending
         alarms = (*alarms, *looked)
     shown = JudgedDay(name, round(look.log_r, 4), np.round(look.rest, 7), np.round(look.rest_std, 7))

@@ -85,9 +85,8 @@ class Modes:
         cls, stands: Sequence[Standing], assembly: Assembly, like: Sequence[Modes], near: FloatArray
     ) -> list[Modes]:
         springs = np.stack([feet_stiffness(standing) for standing in stands])
-        whole = OnSprings(
-            assembly.stiffness, assembly.mass, feet_dofs(stands[0], assembly), springs, near
-        )  # fmt: skip
+        dofs = feet_dofs(stands[0], assembly)
+        whole = OnSprings(assembly.stiffness, assembly.mass, dofs, springs, near)
         found = []
         for standing, stiffness, before in zip(stands, springs, like, strict=True):
             omega, shapes = whole.modes(stiffness, COMPUTED)

@@ -166,7 +166,7 @@ def watch_table(
         watch, look = step(watch, day)
         looks.append(look)
         if look.change is not None:
-            alarms = [*alarms[:-1], *(_before(one, look.change) for one in alarms[-1:])]
+            alarms[-1:] = [_before(one, look.change) for one in alarms[-1:]]
             alarms.append(explained_alarm(look.change, watch, baseline, seen))
             pending = look.pending
     found = [one for block in watch.blocks for one in slopes(block, watch.design)]

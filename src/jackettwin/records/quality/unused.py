@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from jackettwin.arrays import BoolArray
+from jackettwin.arrays import BoolArray, Int64Array
+from jackettwin.records.quality.faults import runs
 
 if TYPE_CHECKING:
     from jackettwin.records.record import Record
@@ -46,19 +47,17 @@ def unused(record: Record, suspect: BoolArray) -> tuple[Unused, ...]:
         codes: tuple[tuple[Literal["gap", "left_out"], BoolArray], ...]
         codes = (("gap", gaps), ("left_out", wrong & ~gaps))
         for code, mask in codes:
-            runs = _runs(mask, round(1e3 * _APART_S * per_ms))
-            spans = tuple((round(first / per_ms), round(last / per_ms)) for first, last in runs)
+            stretches = _joined(runs(mask), round(1e3 * _APART_S * per_ms))
+            spans = tuple((round(first / per_ms), round(last / per_ms)) for first, last in stretches)
             if spans:
                 found.append(Unused(channel.name, code, spans))
     return tuple(found)
 
 
-def _runs(mask: BoolArray, apart: int) -> Iterator[tuple[int, int]]:
-    """Yield first and last sample of each run, joined over short pauses."""
-    places = np.flatnonzero(mask)
-    if not places.size:
-        return
-    cuts = np.flatnonzero(np.diff(places) > max(apart, 1))
-    firsts, lasts = places[np.r_[0, cuts + 1]], places[np.r_[cuts, places.size - 1]]
+def _joined(found: Int64Array, apart: int) -> Iterator[tuple[int, int]]:
+    """Yield first and last sample of runs (n, 2), by start and length, joined over short pauses."""
+    firsts, lasts = found[:, 0], found.sum(axis=1) - 1
+    cut = firsts[1:] - lasts[:-1] > max(apart, 1)
+    firsts, lasts = firsts[np.r_[True, cut][: len(found)]], lasts[np.r_[cut, True][: len(found)]]
     longest = np.argsort(firsts - lasts, kind="stable")[:_MOST]
     yield from ((int(firsts[k]), int(lasts[k])) for k in np.sort(longest))
