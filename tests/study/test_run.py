@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from observations import estimate, observation
 
-import jackettwin.study.run as run_module
+import jackettwin.study.law_fits as law_fits
 from jackettwin.errors import InputError
 from jackettwin.files.json import null_for_nan
 from jackettwin.identification import ModalEstimate
@@ -318,14 +318,14 @@ def test_records_of_noise_are_told_from_those_of_another_structure(tmp_path: Pat
 
 def test_a_law_that_nothing_fits_leaves_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
     """It is named with its reason; if no law fits, the reason of the first is the answer."""
-    config, fit = read_twin("thesis_table_6_1"), run_module.fitted
+    config, fit = read_twin("thesis_table_6_1"), law_fits.fitted
 
     def fails(problem: Problem, *given: Any, **named: Any) -> Update:
         if problem.model.family.name in failing:
             raise InputError("no start of the search ended in a minimum")
         return fit(problem, *given, **named)
 
-    monkeypatch.setattr(run_module, "fitted", fails)
+    monkeypatch.setattr(law_fits, "fitted", fails)
     laws = ("zener", "kelvin-voigt")
     failing = {"zener"}
     result = run_twin(config, laws=laws)

@@ -41,36 +41,8 @@ def target_modes(
     """
     _check_labels(config, labels)
     most = _FAR_ABOVE * float(pinned_hz.max())
-    for place, target in enumerate(config.targets):
-        if target.mode > len(labels):
-            raise InputError(
-                "the structure has fewer modes",
-                file=config.path,
-                field=f"targets.{place}.mode",
-                value=target.mode,
-                allowed=f"1 to {len(labels)}",
-                remedy="leave the higher ones out, or divide its members (subdivide)",
-            )
-        if (target.frequency_hz or 0.0) > most:
-            raise InputError(
-                "is far above the modes of the model",
-                file=config.path,
-                field=f"targets.{place}.frequency_hz",
-                value=target.frequency_hz,
-                allowed=f"up to {most:.3g} Hz here",
-                remedy="give Hz, not mHz, rad/s or cycles a minute",
-            )
-        _refuse_misnumbered(config, place, labels, pinned_hz)
-        own = float(pinned_hz[target.mode - 1])
-        if (target.frequency_hz or 0.0) > _STIFFEST * own:
-            raise InputError(
-                "no support stiffness gives this mode so high a frequency",
-                file=config.path,
-                field=f"targets.{place}.frequency_hz",
-                value=target.frequency_hz,
-                allowed=f"up to {own:.4g} Hz, mode {target.mode} ({labels[target.mode - 1]}) on rigid feet",
-                remedy="check the mode's number (jackettwin modes lists them), the unit, and the structure",
-            )
+    for place in range(len(config.targets)):
+        _check_target(config, place, labels, pinned_hz, most)
     for given in config.relaxations:
         if given.rate_rad_s > 2.0 * pi * most:
             raise InputError(
@@ -82,29 +54,63 @@ def target_modes(
                 remedy="give rad/s: one over the relaxation time in seconds",
             )
     return tuple(
-        MeasuredMode(
-            mode=t.mode,
-            label=labels[t.mode - 1],
-            frequency_hz=t.frequency_hz,
-            frequency_std_hz=t.frequency_std_hz,
-            damping_ratio=t.damping_ratio,
-            damping_ratio_std=t.damping_ratio_std,
-            correlation=t.correlation,
-            estimate=None,
-            mac=None,
-            fits_frequency=t.frequency_hz is not None and t.mode in config.update.modes,
-            fits_damping=t.damping_ratio is not None
-            and t.mode in config.update.modes
-            and config.update.fits_damping(labels[t.mode - 1]),
-        )
+        _measured_mode(config, t, labels[t.mode - 1], None)
         for t in sorted(config.targets, key=lambda t: t.mode)
     )
 
 
+def _check_target(
+    config: TwinConfig, place: int, labels: tuple[str, ...], pinned_hz: FloatArray, most_hz: float
+) -> None:
+    """Refuse a target that no mode of the model, on any supports, can have.
+
+    Raises
+    ------
+    InputError
+        Names the target, and the mode that it fits if there is one.
+    """
+    target = config.targets[place]
+    if target.mode > len(labels):
+        raise InputError(
+            "the structure has fewer modes",
+            file=config.path,
+            field=f"targets.{place}.mode",
+            value=target.mode,
+            allowed=f"1 to {len(labels)}",
+            remedy="leave the higher ones out, or divide its members (subdivide)",
+        )
+    if target.frequency_hz is None:
+        return
+    if target.frequency_hz > most_hz:
+        raise InputError(
+            "is far above the modes of the model",
+            file=config.path,
+            field=f"targets.{place}.frequency_hz",
+            value=target.frequency_hz,
+            allowed=f"up to {most_hz:.3g} Hz here",
+            remedy="give Hz, not mHz, rad/s or cycles a minute",
+        )
+    _refuse_misnumbered(config, place, target.frequency_hz / pinned_hz, labels, pinned_hz)
+    own = float(pinned_hz[target.mode - 1])
+    if target.frequency_hz > _STIFFEST * own:
+        raise InputError(
+            "no support stiffness gives this mode so high a frequency",
+            file=config.path,
+            field=f"targets.{place}.frequency_hz",
+            value=target.frequency_hz,
+            allowed=f"up to {own:.4g} Hz, mode {target.mode} ({labels[target.mode - 1]}) on rigid feet",
+            remedy="check the mode's number (jackettwin modes lists them), the unit, and the structure",
+        )
+
+
 def _refuse_misnumbered(
-    config: TwinConfig, place: int, labels: tuple[str, ...], pinned_hz: FloatArray
+    config: TwinConfig, place: int, share: FloatArray, labels: tuple[str, ...], pinned_hz: FloatArray
 ) -> None:
     """Refuse a target far from its own mode where the value fits another mode that is not a target.
+
+    Parameters
+    ----------
+    share : of the target's frequency in that of each mode on rigid feet
 
     Raises
     ------
@@ -112,9 +118,6 @@ def _refuse_misnumbered(
         Names the mode that the value fits.
     """
     target = config.targets[place]
-    if target.frequency_hz is None:
-        return
-    share = target.frequency_hz / pinned_hz
     own = float(share[target.mode - 1])
     if LEAST_SHARE <= own <= MOST_SHARE:
         return
@@ -211,6 +214,7 @@ def _check_labels(config: TwinConfig, labels: tuple[str, ...]) -> None:
 def _measured_mode(
     config: TwinConfig, mean: Target, label: str, clearest: tuple[ModalEstimate, float] | None
 ) -> MeasuredMode:
+    """Return a measured mode, and which of its values the update fits."""
     estimate, mac = clearest or (None, None)
     chosen = mean.mode in config.update.modes
     return MeasuredMode(
@@ -223,8 +227,8 @@ def _measured_mode(
         correlation=mean.correlation,
         estimate=estimate,
         mac=mac,
-        fits_frequency=chosen,
-        fits_damping=chosen and config.update.fits_damping(label),
+        fits_frequency=chosen and mean.frequency_hz is not None,
+        fits_damping=chosen and mean.damping_ratio is not None and config.update.fits_damping(label),
     )
 
 

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
@@ -15,8 +13,8 @@ from jackettwin.errors import InputError
 from jackettwin.files import NOT_KEPT, Keep
 from jackettwin.progress import SILENT, Progress
 from jackettwin.soil import SERIES
-from jackettwin.study.fit_cache import fitted, with_kept_posterior
 from jackettwin.study.fit_data import recorded_modes, residuals, target_modes, updating
+from jackettwin.study.law_fits import Posteriors, fit_laws
 from jackettwin.study.measure import Measured, measure
 from jackettwin.study.measurements import MeasuredMode
 from jackettwin.study.narrative import (
@@ -27,15 +25,14 @@ from jackettwin.study.narrative import (
     without_relaxation,
 )
 from jackettwin.study.pair_directions import measured_directions
-from jackettwin.study.problem import UpdateEvidence, law_problem
-from jackettwin.study.relaxations import measured_relaxations, relaxing
+from jackettwin.study.problem import UpdateEvidence
+from jackettwin.study.relaxations import measured_relaxations
 from jackettwin.study.result import DampingExcess, TwinResult
 from jackettwin.study.rotor import mean_wind, operating_states, rotor_damping, rotor_speed_hz
 from jackettwin.study.scrutiny import Scrutiny, scrutiny
 from jackettwin.twin import TwinConfig, TwinModel, TwinState, suspects, twin_model
-from jackettwin.updating import Update, contradicted, likely, recommended, series
+from jackettwin.updating import Update, contradicted, recommended
 
-Posteriors = Literal["all", "likely", "none"]
 log = logging.getLogger(__name__)
 _MOST_REASONS = 20
 """Largest number of lines with reasons that no identified mode is a mode of the model."""
@@ -101,13 +98,67 @@ def updated_twin(
     InputError
         If the measured modes do not fit the structure, or no support can produce them.
     """
-    assembly, numbered, labels = model.structure, model.modes, model.labels
     state = None if found is None else updating(config, found.state)
     measured = (
-        target_modes(config, labels, pinned_hz=numbered.frequency_hz)
+        target_modes(config, model.labels, pinned_hz=model.modes.frequency_hz)
         if found is None or state is None
-        else _recorded(config, found, state, labels)
+        else _recorded(config, found, state, model.labels)
     )
+    wind, evidence = _evidence(config, model, found, state, measured)
+    fits = fit_laws(
+        config,
+        evidence,
+        laws or config.update.laws,
+        tuple(m.mode for m in measured),
+        posteriors=posteriors,
+        progress=progress,
+        keep=keep,
+    )
+    others = suspects(config, model.structure) if any(u.problem.weighted for u in fits.updates) else ()
+    seen = () if found is None else found.observations
+    checked = tuple(scrutiny(u, measured, others, evidence.pairs, seen) for u in fits.updates)
+    updates = tuple(_judged(u, s) for u, s in zip(fits.updates, checked, strict=True))
+    speed, blades = rotor_speed_hz(config)
+    length = () if fits.series_choice is None else (Assumption(SERIES, fits.series_choice),)
+    return TwinResult(
+        name=config.name,
+        assembly=model.structure,
+        sensors=() if found is None else found.sensors,
+        numbered=model.modes,
+        labels=model.labels,
+        observations=seen,
+        shown=None if found is None else found.shown,
+        measured=measured,
+        updates=updates,
+        excess=tuple(_excess(measured, u) for u in updates),
+        assumptions=(
+            *modelling_assumptions(config, measured, evidence.relaxations, wind),
+            *length,
+            *_of_tolerances(config, updates, checked),
+        ),
+        warnings=(
+            *without_relaxation(fits.left_out),
+            *without_fit(fits.unfit),
+            *cautions(config, found, measured, updates, model.labels),
+        ),
+        relaxations=evidence.relaxations,
+        rotor_speed_hz=speed,
+        rotor_state=None if config.update.rotor is None else config.update.rotor_state,
+        wind_m_s=wind,
+        blades=blades,
+        in_all=None if found is None else found.in_all,
+        scrutiny=checked,
+    )
+
+
+def _evidence(
+    config: TwinConfig,
+    model: TwinModel,
+    found: Measured | None,
+    state: TwinState | None,
+    measured: tuple[MeasuredMode, ...],
+) -> tuple[float | None, UpdateEvidence]:
+    """Return the mean wind speed [m/s], None if unknown, and the data that every law is fitted to."""
     relaxations = measured_relaxations(config, state)
     wind = mean_wind(config, state)
     states = operating_states(
@@ -116,76 +167,13 @@ def updated_twin(
         state,
         residuals(config, measured, relaxations),
         wind,
-        assembly=assembly,
-        numbered=numbered,
+        assembly=model.structure,
+        numbered=model.modes,
     )
     sensors = () if found is None else found.sensors
-    pairs = measured_directions(state, sensors, assembly, measured)
-    evidence = UpdateEvidence(
-        assembly, state, states, rotor_damping(config, assembly, numbered, wind), relaxations, pairs
-    )
-    wanted = laws or config.update.laws
-    shown, updates, lengths = tuple(m.mode for m in measured), [], []
-
-    def fit(law: str, *, sampled: bool = posteriors == "all") -> Update:
-        problem = law_problem(config, evidence, law)
-        with _said_where(config):
-            return fitted(problem, shown, config.update, sampled=sampled, progress=progress, keep=keep)
-
-    unfit = dict[str, InputError]()
-    for law in relaxing(config, wanted) if relaxations else wanted:
-        progress(f"update {law}")
-        try:
-            if law == SERIES:
-                chosen, why = series(lambda name: fit(name, sampled=False), progress)
-                lengths.append(Assumption(SERIES, why))
-                wanted = tuple(chosen.law if name == SERIES else name for name in wanted)
-                updates.append(fit(chosen.law))
-            else:
-                updates.append(fit(law))
-        except InputError as error:  # other laws may still explain the data
-            unfit[law] = error
-    if not updates:
-        raise next(iter(unfit.values()))
-    # a series may end with a law that is also listed
-    updates = list({u.law: u for u in updates}.values())
-    if posteriors == "likely":
-        updates = _with_one_posterior(config, updates, progress, keep)
-    speed, blades = rotor_speed_hz(config)
-    others = suspects(config, assembly) if any(u.problem.weighted for u in updates) else ()
-    seen = () if found is None else found.observations
-    checked = tuple(scrutiny(u, measured, others, pairs, seen) for u in updates)
-    updates = [_judged(u, s) for u, s in zip(updates, checked, strict=True)]
-    left_out = tuple(law for law in wanted if law not in {*unfit, *(u.law for u in updates)})
-    return TwinResult(
-        name=config.name,
-        assembly=assembly,
-        sensors=sensors,
-        numbered=numbered,
-        labels=labels,
-        observations=seen,
-        shown=None if found is None else found.shown,
-        measured=measured,
-        updates=tuple(updates),
-        excess=tuple(_excess(measured, result) for result in updates),
-        assumptions=(
-            *modelling_assumptions(config, measured, relaxations, wind),
-            *lengths,
-            *_of_tolerances(config, updates, checked),
-        ),
-        warnings=(
-            *without_relaxation(left_out),
-            *without_fit(unfit),
-            *cautions(config, found, measured, tuple(updates), labels),
-        ),
-        relaxations=relaxations,
-        rotor_speed_hz=speed,
-        rotor_state=None if config.update.rotor is None else config.update.rotor_state,
-        wind_m_s=wind,
-        blades=blades,
-        in_all=None if found is None else found.in_all,
-        scrutiny=checked,
-    )
+    rotor = rotor_damping(config, model.structure, model.modes, wind)
+    pairs = measured_directions(state, sensors, model.structure, measured)
+    return wind, UpdateEvidence(model.structure, state, states, rotor, relaxations, pairs)
 
 
 def _of_tolerances(
@@ -224,16 +212,6 @@ def count_steps(config: TwinConfig, laws: tuple[str, ...] | None = None) -> int:
     return 1 + len(config.records) + len(laws or config.update.laws)
 
 
-@contextmanager
-def _said_where(config: TwinConfig) -> Iterator[None]:
-    """Add the place in the twin file to errors about data that no support can produce."""
-    try:
-        yield
-    except InputError as error:
-        source = "records" if config.records else "targets"
-        raise error.at(file=config.path, field=None if error.field else source) from None
-
-
 def _judged(u: Update, s: Scrutiny) -> Update:
     """Return a fit of which nothing is identified if its data ask for an error beyond the tolerances."""
     asked = () if s.objection is None else s.objection.suspected
@@ -241,17 +219,6 @@ def _judged(u: Update, s: Scrutiny) -> Update:
         return u
     verdicts = contradicted(u.uncertainty.verdicts, " and ".join(t.words for t in asked))
     return replace(u, fit=replace(u.fit, uncertainty=replace(u.uncertainty, verdicts=verdicts)))
-
-
-def _with_one_posterior(
-    config: TwinConfig, updates: list[Update], progress: Progress, keep: Keep
-) -> list[Update]:
-    """Return the updates, the most probable one with its posterior."""
-    chosen = likely(updates)
-    return [
-        with_kept_posterior(u, config.update, progress=progress, keep=keep) if u is chosen else u
-        for u in updates
-    ]
 
 
 def _excess(measured: tuple[MeasuredMode, ...], result: Update) -> tuple[DampingExcess, ...]:

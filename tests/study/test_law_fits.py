@@ -15,7 +15,7 @@ from jackettwin.twin import read_twin
 from jackettwin.twin.config import TwinConfig
 from jackettwin.updating import Update
 
-kept_fits = import_module("jackettwin.study.fit_cache")
+kept_fits = import_module("jackettwin.study.law_fits")
 
 
 @dataclass
