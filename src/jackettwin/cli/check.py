@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from jackettwin.checks import DesignBasis, FrameUse, GroutUse, SheetLine, VortexUse
     from jackettwin.response import System
     from jackettwin.soil import PileModel, PileUse
+    from jackettwin.structure import Structure
 
 
 @click.command("check")
@@ -129,12 +130,7 @@ def check_command(
 
     STRUCTURE is at rest under its weight and the forces given, or under those that --combinations factors.
     """
-    from jackettwin.checks import DesignBasis, frame_use, left_out, vortex_uses
-    from jackettwin.decks import read_structure
-    from jackettwin.loads import Water
-    from jackettwin.response import build_system, nodal_load, self_weight, static_displacement, undamped_modes
-    from jackettwin.simulate import read_scenario, scenario_uses, water_at_rest, water_notes
-    from jackettwin.structure import assemble, element_weight
+    from jackettwin.checks import DesignBasis
 
     basis = DesignBasis(
         yield_strength,
@@ -169,50 +165,81 @@ def check_command(
         at_rest = "belongs to a structure at rest"
         _refuse(at_rest, "leave it out: a scenario has its own water", still_water=still_water or None)
         _refuse(at_rest, "name the structure", wind=wind, current=current, grout=grout)
-        chosen_scenario = read_scenario(scenario)
-        use = scenario_uses(chosen_scenario, basis)
-        stands = chosen_scenario.asset.structure
-        missing = (
-            *left_out(stands),
-            *_flows_left_out(None, None),
-            *_piles_left_out(()),
-            *_grout_left_out(None),
-        )
-        notes, lines = water_notes(chosen_scenario), _sheet(sheet, use, basis)
-        return _reply(chosen_scenario.name, use, notes, missing, sheet=lines)
+        return _of_scenario(scenario, basis, sheet)
     assert structure is not None
-    assembly = assemble(read_structure(structure), subdivide=subdivide)
-    stands, held = supported_option(support, assembly, pile_model)
+    return _at_rest(
+        structure,
+        (support, pile_model),
+        subdivide,
+        basis,
+        forces=dict(nodal_force(text) for text in forces),
+        weight=not no_weight,
+        flooded=flooded if still_water else None,
+        resistance=pile_resistance,
+        grout=grout,
+        flows=(wind, current),
+        sheet=sheet,
+    )
+
+
+def _of_scenario(scenario: str, basis: DesignBasis, sheet: str | None) -> Reply:
+    """Return the worst use of each member and joint in a simulated scenario."""
+    from jackettwin.simulate import read_scenario, scenario_uses, water_notes
+
+    chosen = read_scenario(scenario)
+    use = scenario_uses(chosen, basis)
+    missing = _left_out(chosen.asset.structure)
+    return _reply(chosen.name, use, water_notes(chosen), missing, sheet=_sheet(sheet, use, basis))
+
+
+def _at_rest(
+    source: str,
+    held_by: tuple[str | None, PileModel | None],
+    subdivide: int | None,
+    basis: DesignBasis,
+    *,
+    forces: dict[str, tuple[float, ...]],
+    weight: bool,
+    flooded: tuple[str, ...] | None,
+    resistance: float,
+    grout: Path | None,
+    flows: tuple[float | None, float | None],
+    sheet: str | None,
+) -> Reply:
+    """Return the use of a structure at rest.
+
+    ``flooded`` is None out of water; ``flows`` are the speeds of wind and current [m/s].
+    """
+    from jackettwin.checks import frame_use, vortex_uses
+    from jackettwin.decks import read_structure
+    from jackettwin.loads import Water
+    from jackettwin.response import build_system, nodal_load, self_weight, static_displacement, undamped_modes
+    from jackettwin.simulate import water_at_rest
+    from jackettwin.structure import assemble, element_weight
+
+    assembly = assemble(read_structure(source), subdivide=subdivide)
+    stands, held = supported_option(held_by[0], assembly, held_by[1])
     if stands is not assembly.structure:
         assembly = assemble(stands, subdivide=subdivide)
-    load, along = nodal_load(assembly, dict(nodal_force(text) for text in forces)), None
-    if not no_weight:
+    load, along, pressure = nodal_load(assembly, forces), None, None
+    if weight:
         load, along = load + self_weight(assembly), element_weight(assembly)
-    pressure = None
-    if still_water:
+    if flooded is not None:
         wet, wet_along, pressure = water_at_rest(assembly, Water(flooded))
         load, along = load + wet, wet_along if along is None else along + wet_along
     system = build_system(assembly, held)
     u = static_displacement(system, load)
     use = frame_use(assembly, u, basis, along=along, pressure=pressure)
-    piles = _piles(support, pile_model, system, u, basis, pile_resistance)
-    missing = (
-        *left_out(assembly.structure),
-        *_flows_left_out(wind, current),
-        *_piles_left_out(piles),
-        *_grout_left_out(grout),
-    )
+    piles = _piles(*held_by, system, u, basis, resistance)
     vortices: tuple[VortexUse, ...] = ()
-    if wind is not None or current is not None:
+    if flows != (None, None):
         lowest = float(undamped_modes(system, 1).frequency_hz[0])
-        vortices = vortex_uses(
-            assembly.structure, wind_m_s=wind, current_m_s=current, first_frequency_hz=lowest
-        )
+        vortices = vortex_uses(stands, wind_m_s=flows[0], current_m_s=flows[1], first_frequency_hz=lowest)
     return _reply(
-        assembly.structure.name,
+        stands.name,
         use,
         [],
-        missing,
+        _left_out(stands, flows, piles, grout),
         piles=piles,
         grouted=_grouted(grout, system, u),
         vortices=vortices,
@@ -239,7 +266,6 @@ def _combined(
     sheet: str | None,
 ) -> Reply:
     """Return the envelope of a file of combinations, with each one's own worst use."""
-    from jackettwin.checks import left_out
     from jackettwin.decks import read_structure
     from jackettwin.response import build_system
     from jackettwin.simulate import combined_uses, read_combinations
@@ -266,14 +292,8 @@ def _combined(
         for use in _grouted(grout, system, u):
             if use.foot not in grouted or use.utilisation > grouted[use.foot].utilisation:
                 grouted[use.foot] = replace(use, case=case)
-    omissions = () if stands is None else left_out(stands)
-    factored = [one for one in omissions if "partial action factors" not in one.what]
-    missing = (
-        *factored,
-        *_flows_left_out(None, None),
-        *_piles_left_out(tuple(piles.values())),
-        *_grout_left_out(grout),
-    )
+    listed = _left_out(stands, piles=tuple(piles.values()), grout=grout)
+    missing = tuple(one for one in listed if "partial action factors" not in one.what)
     if (piles or grouted) and len(found.at_rest) < len(found.each):
         missing = (*missing, Omission("piles and grout in combinations of scenarios", "ISO 19902 17, 15.1"))
     return _reply(
@@ -344,6 +364,19 @@ def _grouted(path: Path | None, system: System, u: FloatArray) -> tuple[GroutUse
             remedy="put the feet on springs: --support",
         )
     return grout_uses(connections, head_forces(system.support, moved))
+
+
+def _left_out(
+    stands: Structure | None,
+    flows: tuple[float | None, float | None] = (None, None),
+    piles: tuple[PileUse, ...] = (),
+    grout: Path | None = None,
+) -> tuple[Omission, ...]:
+    """Return what a check of a structure, None for scenarios without a common one, omits."""
+    from jackettwin.checks import left_out
+
+    frame = () if stands is None else left_out(stands)
+    return (*frame, *_flows_left_out(*flows), *_piles_left_out(piles), *_grout_left_out(grout))
 
 
 def _grout_left_out(path: Path | None) -> tuple[Omission, ...]:
