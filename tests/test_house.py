@@ -6,8 +6,6 @@ import ast
 from collections import Counter, defaultdict
 from pathlib import Path
 
-import pytest
-
 SOURCE = Path(__file__).parents[1] / "src" / "jackettwin"
 MOST_MODULES = 20
 """Modules side by side in a folder; ``cli`` has one for each command."""
@@ -59,8 +57,3 @@ def test_no_public_class_has_the_name_of_another() -> None:
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 homes[node.name].append(path.relative_to(SOURCE).as_posix())
     assert {name: places for name, places in homes.items() if len(places) > 1} == {}
-
-
-@pytest.mark.parametrize("name", ["jackettwin.doors", "jackettwin.twin.follow"])
-def test_what_moved_left_nothing_behind(name: str) -> None:
-    assert not (SOURCE.parent / (name.replace(".", "/") + ".py")).exists()

@@ -12,7 +12,6 @@ from tests.support.sightings import sightings
 from jackettwin.identification import fuse
 from jackettwin.identification.estimate import ModalEstimate
 from jackettwin.identification.many_records.fusion import FusedMode
-from jackettwin.identification.selection.candidates import with_covariance
 from jackettwin.report.figures.tracks import MOST_POINTS, tracks
 from jackettwin.report.pages.many_records import build_many_page
 from jackettwin.study.many_records.summary import FusedBatch
@@ -23,7 +22,7 @@ def seen_often(n: int) -> FusedMode:
     """Return a mode of 1 Hz and 1 % that swings by a tenth over the records."""
     f = 1.0 + 0.1 * np.sin(np.linspace(0.0, 2.0 * np.pi, n))
     one = np.diag([0.01**2, 0.2**2])
-    estimates = [with_covariance(ModalEstimate(v, 0.01, np.ones(1, complex), 1.0, 0.0, 1.0), one) for v in f]
+    estimates = [ModalEstimate(v, 0.01, np.ones(1, complex), 1.0, 0.0, 1.0).with_covariance(one) for v in f]
     return FusedMode(
         1.0, 0.01, 0.001, 1e-4, (0.99, 1.01), (0.009, 0.011), one, np.ones(1, complex), 0.0, 0.0,
         sightings(estimates, [600.0] * n),

@@ -1,6 +1,7 @@
 """Modes beside another program's: MAC, pairs of one frequency, nodes by name and place, tables."""
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -172,7 +173,7 @@ def test_commands_compare_and_draw(tmp_path: Path) -> None:
         "\n".join([f"stage,{rows[0]}", *(f"tower,{row}" for row in rows[1:])]) + "\n"
     )
     said = run("stages", "jacket15", "--against", str(tmp_path / "staged.csv"), "--figure", page)
-    assert "shapes at 46 nodes" in said or "shapes at" in said
+    assert re.search(r"shapes at \d+ nodes", said)
     said = run("stages", "jacket15", "--against", "jacket15", "--figure", page)
     assert Path(page).read_text().count("MAC 1.000") == 15
     refused = CliRunner().invoke(main, ["modes", "jacket15", "--support", "pinned", "--figure", page])

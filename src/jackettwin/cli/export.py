@@ -76,10 +76,8 @@ def export_command(
 
 
 def _warnings(whole: Structure, held: Support) -> list[str]:
-    from jackettwin.response import dissipates
-
     found = []
-    if any(dissipates(spring.law) for spring in held.springs):
+    if any(spring.law.dissipates for spring in held.springs):
         found.append("a deck has no damping of the ground; a superelement has")
     if not whole.rotary_inertia or (whole.beam == "timoshenko" and whole.shear_in_mass):
         found.append("SubDyn adds rotary inertia to its beams, and neglects shear in their mass")

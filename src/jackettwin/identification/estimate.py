@@ -10,6 +10,7 @@ from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, Int64Array
 from jackettwin.findings import Finding
 from jackettwin.identification.picks import Pick
 from jackettwin.identification.status import ModeStatus, sentence, worse
+from jackettwin.intervals import log_interval_90
 from jackettwin.records import Channel
 
 
@@ -81,6 +82,18 @@ class ModalEstimate:
     def status_reason(self) -> str | None:
         """Why the status is not ``"ok"``, as one text; None if it is."""
         return sentence(self.reasons)
+
+    def with_covariance(self, log_covariance: FloatArray) -> ModalEstimate:
+        """Return the mode with a covariance (2, 2) of (ln f, ln ζ), its standard deviations and intervals."""
+        std_f, std_zeta = np.sqrt(np.diag(log_covariance))
+        return replace(
+            self,
+            log_covariance=log_covariance,
+            frequency_std_hz=float(self.frequency_hz * std_f),
+            damping_ratio_std=float(self.damping_ratio * std_zeta),
+            frequency_interval_90=log_interval_90(self.frequency_hz, std_f),
+            damping_ratio_interval_90=log_interval_90(self.damping_ratio, std_zeta),
+        )
 
     def flagged(self, status: ModeStatus, reason: Finding) -> ModalEstimate:
         """Return the mode with one more reason; its status is the worse of the old and the given one."""
@@ -154,6 +167,13 @@ class Stabilisation:
     cluster: Int64Array
     log_covariance: FloatArray | None = None
     mode_shape_std: FloatArray | None = None
+
+    @classmethod
+    def none(cls, n_channels: int) -> Stabilisation:
+        """Return the diagram of a method without poles."""
+        no, number, flags = np.empty(0), np.empty(0, dtype=np.int64), np.empty(0, dtype=np.bool_)
+        shapes = np.empty((0, n_channels), dtype=np.complex128)
+        return cls(number, no, no, shapes, flags, flags, flags, number)
 
     @property
     def frequency_std_hz(self) -> FloatArray | None:
@@ -245,9 +265,6 @@ class Identification:
     @property
     def without_figures(self) -> Identification:
         """The same without poles and spectrum, which only figures need: a few kilobytes."""
-        none, no = np.empty(0), np.empty(0, dtype=np.bool_)
-        whole, n_channels = np.empty(0, dtype=np.int64), len(self.channels)
-        shapes = np.empty((0, n_channels), dtype=np.complex128)
-        poles = Stabilisation(whole, none, none, shapes, no, no, no, whole)
-        spectrum = Spectrum(none, np.empty((n_channels, 0)), np.empty((n_channels, 0)))
-        return replace(self, stabilisation=poles, spectrum=spectrum)
+        n_channels = len(self.channels)
+        spectrum = Spectrum(np.empty(0), np.empty((n_channels, 0)), np.empty((n_channels, 0)))
+        return replace(self, stabilisation=Stabilisation.none(n_channels), spectrum=spectrum)

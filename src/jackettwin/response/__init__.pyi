@@ -88,7 +88,6 @@ from .superelement.craig_bampton import (
     INTERFACE as INTERFACE,
     RUNGE_KUTTA as RUNGE_KUTTA,
     Superelement as Superelement,
-    dissipates as dissipates,
     fixed_interface_frequencies as fixed_interface_frequencies,
     held_displacement as held_displacement,
     slowed as slowed,

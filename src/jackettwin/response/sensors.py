@@ -148,7 +148,7 @@ def sensor_kinds() -> dict[str, SensorKind]:
 
 def sees(quantity: str) -> str:
     """Return the kind of sensor that measures a quantity of a record: strain, inclination, else motion."""
-    return quantity if quantity in SENSOR_KINDS else "motion"
+    return quantity if quantity in sensor_kinds() else "motion"
 
 
 def observation_matrix(assembly: Assembly, sensors: tuple[Sensor, ...]) -> sp.csr_array:

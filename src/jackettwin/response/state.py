@@ -12,7 +12,6 @@ import scipy.sparse.linalg as spla
 from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.response.system import Matrix, Pencil
-from jackettwin.soil import Prony
 from jackettwin.structure import dense
 
 
@@ -27,13 +26,7 @@ class Branch(NamedTuple):
 
 def maxwell_branches(pencil: Pencil) -> list[Branch]:
     """Return the Maxwell branches with non-zero stiffness and damping, in the order of the state vector."""
-    return [
-        Branch(k, tau, group.S, group.dofs)
-        for group in pencil.groups
-        if isinstance(group.law, Prony)
-        for k, tau in zip(group.law.k, group.law.tau, strict=True)
-        if k > 0.0 and tau > 0.0
-    ]
+    return [Branch(k, tau, group.S, group.dofs) for group in pencil.groups for k, tau in group.law.branches]
 
 
 def _instant_stiffness(pencil: Pencil) -> Matrix:
@@ -48,8 +41,8 @@ def damping_matrix(pencil: Pencil) -> Matrix:
     """Return C = αM + βK + Σ c S, the matrix of viscous damping."""
     total = pencil.rayleigh.alpha * pencil.M + pencil.rayleigh.beta * pencil.K
     for group in pencil.groups:
-        if isinstance(group.law, Prony) and group.law.c:
-            total = total + group.law.c * group.S
+        if group.law.dashpot:
+            total = total + group.law.dashpot * group.S
     return total
 
 
@@ -63,12 +56,12 @@ def state_matrix(pencil: Pencil) -> FloatArray:
     InputError
         If a law has no finite number of states.
     """
-    if not all(isinstance(group.law, Prony) for group in pencil.groups):
+    if not all(group.law.is_rational for group in pencil.groups):
         raise InputError(
             "a springpot has no finite number of states",
             field="law",
             value="springpot",
-            allowed="elastic, kelvin-voigt, zener, maxwell, maxwell-3",
+            allowed="a law of springs, dashpots and Maxwell branches",
             remedy="use the damped modes of the full model, or a maxwell law instead",
         )
     n, branches = pencil.n, maxwell_branches(pencil)

@@ -145,15 +145,13 @@ def _observation(
     model: TwinModel, day: int, of: date, weather: DayWeather, modes: dict[str, ModalEstimate]
 ) -> Observation:
     start = datetime(of.year, of.month, of.day, tzinfo=UTC)
-    none, whole = np.empty(0), np.empty(0, dtype=np.int64)
-    no = np.empty(0, dtype=bool)
     seen = Identification(
         records=(f"simulated day {day + 1}",),
         channels=(Channel("simulated"),),
         modes=tuple(modes.values()),
         rejected=(),
-        stabilisation=Stabilisation(whole, none, none, np.empty((0, 1), complex), no, no, no, whole),
-        spectrum=Spectrum(none, np.empty((1, 0)), np.empty((1, 0))),
+        stabilisation=Stabilisation.none(1),
+        spectrum=Spectrum(np.empty(0), np.empty((1, 0)), np.empty((1, 0))),
         settings=ResolvedSettings(0.1, 2.0, 5.0, 20, (2, 4), 8.0),
         duration_s=86_400.0,
     )

@@ -47,7 +47,8 @@ def after_a_stop(seed: int) -> Record:
 @pytest.mark.parametrize("seed", range(3))
 def test_a_rotor_stop_is_a_decay(seed: int) -> None:
     found = identify(after_a_stop(seed))
-    assert any("free decay" in text for text in found.warnings)
+    assert [(one.code, one.severity) for one in found.findings] == [("free_decay", "info")]
+    assert str(found.findings[0]) in found.warnings
     assert {mode.method for mode in found.modes} == {"decay"}
     first = found.modes[0]
     assert first.status == "ok"

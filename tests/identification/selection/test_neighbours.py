@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from jackettwin.identification import ModalEstimate, identify
-from jackettwin.identification.selection.candidates import with_covariance
 from jackettwin.identification.selection.neighbours import (
     MAX_SHARE_OF_ONE,
     combinations_of_neighbours,
@@ -55,7 +54,7 @@ def test_of_two_that_may_each_be_of_the_others_the_broader_is_told(
 def test_of_three_close_modes_in_one_plane_the_least_known_is_told_twice() -> None:
     shapes = [SHAPES[0], 0.8 * SHAPES[0] + 0.5 * SHAPES[1], SHAPES[1]]
     modes = [
-        with_covariance(estimate(f, 0.02, s), np.diag([std, 0.3]) ** 2)
+        estimate(f, 0.02, s).with_covariance(np.diag([std, 0.3]) ** 2)
         for f, s, std in zip([0.74, 0.755, 0.76], shapes, [0.008, 0.012, 0.004], strict=True)
     ]
     assert identified_twice(modes, np.ones(6), 2.0) == [1]

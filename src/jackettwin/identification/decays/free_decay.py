@@ -24,7 +24,6 @@ from jackettwin.identification.mode_shapes import aligned, mpc, mpd_rad, normali
 from jackettwin.identification.preparation.resolve import FEWEST_SAMPLES, usable_channels
 from jackettwin.identification.preparation.spectra import lowest_peak_hz, welch
 from jackettwin.identification.preparation.whitening import accelerated, as_measured
-from jackettwin.identification.selection.candidates import with_covariance
 from jackettwin.identification.status import ModeStatus
 from jackettwin.records import decimate, detrend
 from jackettwin.records.processing.filters import bridge
@@ -180,13 +179,14 @@ def transient(record: Record, settings: IdentificationSettings, *, impacts: bool
             for mode in modes
             if mode not in inside
         ),
-        stabilisation=_no_poles(len(usable.channels)),
+        stabilisation=Stabilisation.none(len(usable.channels)),
         spectrum=as_measured(welch(level.data, rate), times),
         settings=ResolvedSettings(
             low or 0.5 * float(f.min()), min(high, 0.4 * rate), rate, 0, (), (part.last - part.first) / rate
         ),
         duration_s=record.duration_s,
         warnings=(*warnings, str(finding)),
+        findings=(finding,),
     )
     return Transient(part.fall, identified)
 
@@ -285,7 +285,7 @@ def _modes(decay: _Decay, y: FloatArray, rate: float) -> list[ModalEstimate]:
             method="decay",
             cramer_rao_log_std=np.sqrt(np.diag(fit.cramer_rao[both])),
         )
-        mode = with_covariance(mode, fit.log_covariance[both])
+        mode = mode.with_covariance(fit.log_covariance[both])
         out.append(
             _judged(
                 mode,
@@ -350,10 +350,3 @@ def _halves(decay: _Decay, y: FloatArray, rate: float) -> tuple[DampedCosines, D
         for a, b in ((part.first, middle), (middle, part.first + length))
     )
     return (early, late) if min(early.explained, late.explained) > MIN_EXPLAINED_HALVES else None
-
-
-def _no_poles(n_channels: int) -> Stabilisation:
-    none, no = np.empty(0), np.empty(0, dtype=bool)
-    whole = np.empty(0, dtype=np.int64)
-    shapes = np.empty((0, n_channels), dtype=complex)
-    return Stabilisation(whole, none, none, shapes, no, no, no, whole)

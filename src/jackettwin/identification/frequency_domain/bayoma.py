@@ -11,19 +11,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.identification.estimate import Identification, ModalEstimate
+from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
 from jackettwin.identification.frequency_domain.band_posterior import (
     MOST_MODES,
     BandPosterior,
     band_posterior,
 )
-from jackettwin.identification.frequency_domain.fdd import no_poles, peaks, principal
+from jackettwin.identification.frequency_domain.fdd import peaks, principal
+from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.identification.mode_shapes import aligned, mpc, mpd_rad, normalised
 from jackettwin.identification.preparation.prepared_record import prepare
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.preparation.whitening import as_measured
 from jackettwin.identification.settings import IdentificationSettings
-from jackettwin.intervals import log_interval_90
 from jackettwin.records import spectral_matrix
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ def bayoma(record: Record, settings: IdentificationSettings | None = None) -> Id
         channels=ready.channels,
         modes=tuple(sorted(modes, key=lambda mode: mode.frequency_hz)),
         rejected=(),
-        stabilisation=no_poles(len(ready.scale)),
+        stabilisation=Stabilisation.none(len(ready.scale)),
         spectrum=as_measured(welch(ready.y * ready.scale[:, None], rate), ready.differentiated),
         settings=resolved,
         duration_s=record.duration_s,
@@ -111,23 +111,16 @@ def _estimates(found: BandPosterior, scale: FloatArray, duration_s: float) -> li
     for i, (f, zeta) in enumerate(zip(found.frequency_hz, found.damping_ratio, strict=True)):
         measured = found.shapes[:, i] * scale
         shape = normalised(aligned(measured.astype(complex)))
-        std = np.sqrt(np.diag(found.log_covariance[i]))
-        out.append(
-            ModalEstimate(
-                frequency_hz=float(f),
-                damping_ratio=float(zeta),
-                mode_shape=shape,
-                mpc=float(mpc(shape)),
-                mpd_rad=float(mpd_rad(shape)),
-                order_share=1.0,
-                method="bayoma",
-                frequency_std_hz=float(f * std[0]),
-                damping_ratio_std=float(zeta * std[1]),
-                frequency_interval_90=log_interval_90(float(f), float(std[0])),
-                damping_ratio_interval_90=log_interval_90(float(zeta), float(std[1])),
-                log_covariance=found.log_covariance[i],
-                mode_shape_std=found.shape_std[:, i] * scale / np.abs(measured).max(),
-                damping_ratio_cov_limit=float(1.0 / np.sqrt(2.0 * np.pi * zeta * f * duration_s)),
-            )
+        mode = ModalEstimate(
+            frequency_hz=float(f),
+            damping_ratio=float(zeta),
+            mode_shape=shape,
+            mpc=float(mpc(shape)),
+            mpd_rad=float(mpd_rad(shape)),
+            order_share=1.0,
+            method="bayoma",
+            mode_shape_std=found.shape_std[:, i] * scale / np.abs(measured).max(),
+            damping_ratio_cov_limit=float(long_data_limits(f, zeta, duration_s)[1]),
         )
+        out.append(mode.with_covariance(found.log_covariance[i]))
     return out

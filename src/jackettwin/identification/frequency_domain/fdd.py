@@ -61,7 +61,7 @@ def fdd(record: Record, settings: IdentificationSettings | None = None) -> Ident
         channels=ready.channels,
         modes=tuple(mode for mode in modes if mode is not None),
         rejected=(),
-        stabilisation=no_poles(len(scale)),
+        stabilisation=Stabilisation.none(len(scale)),
         spectrum=as_measured(welch(y * scale[:, None], rate), ready.differentiated),
         settings=resolved,
         duration_s=record.duration_s,
@@ -115,11 +115,3 @@ def _mode(
         order_share=1.0,
         method="efdd",
     )
-
-
-def no_poles(n_channels: int) -> Stabilisation:
-    """Return the stabilisation of a method without poles."""
-    none, no = np.empty(0), np.empty(0, dtype=bool)
-    whole = np.empty(0, dtype=np.int64)
-    shapes = np.empty((0, n_channels), dtype=complex)
-    return Stabilisation(whole, none, none, shapes, no, no, no, whole)

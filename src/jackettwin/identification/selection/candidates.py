@@ -17,7 +17,6 @@ from jackettwin.identification.tones.drifting_tones import tones_at
 from jackettwin.identification.tones.envelopes import is_steady_tone
 from jackettwin.identification.tones.sinusoid import transform
 from jackettwin.identification.tones.steady_tones import strongest_line, without_tones
-from jackettwin.intervals import log_interval_90
 from jackettwin.records import less_phase
 
 if TYPE_CHECKING:
@@ -221,20 +220,7 @@ def beside_tones(mode: ModalEstimate, tones_hz: Iterable[tuple[float, float]]) -
     mode = mode.flagged(ModeStatus.DOUBTFUL, tone)
     if mode.log_covariance is None:
         return mode
-    return with_covariance(mode, TONE_WIDENING**2 * mode.log_covariance)
-
-
-def with_covariance(mode: ModalEstimate, covariance: FloatArray) -> ModalEstimate:
-    """Return the mode with a covariance of (ln f, ln ζ) and its standard deviations and intervals."""
-    std_f, std_zeta = np.sqrt(np.diag(covariance))
-    return replace(
-        mode,
-        log_covariance=covariance,
-        frequency_std_hz=float(mode.frequency_hz * std_f),
-        damping_ratio_std=float(mode.damping_ratio * std_zeta),
-        frequency_interval_90=log_interval_90(mode.frequency_hz, std_f),
-        damping_ratio_interval_90=log_interval_90(mode.damping_ratio, std_zeta),
-    )
+    return mode.with_covariance(TONE_WIDENING**2 * mode.log_covariance)
 
 
 def _mode(poles: Stabilisation, cluster: Cluster, duration_s: float) -> ModalEstimate:
@@ -262,7 +248,7 @@ def _mode(poles: Stabilisation, cluster: Cluster, duration_s: float) -> ModalEst
     covariance = poles.log_covariance[k] + np.cov(both, bias=True)
     lift = np.maximum(limits / np.sqrt(np.diag(covariance)), 1.0)
     mode = replace(mode, mode_shape_std=poles.mode_shape_std[k])
-    return with_covariance(mode, covariance * np.outer(lift, lift))
+    return mode.with_covariance(covariance * np.outer(lift, lift))
 
 
 def _objection(

@@ -18,7 +18,6 @@ from jackettwin.identification.preparation.whitening import left_to_differentiat
 from jackettwin.identification.selection.candidates import (
     beside_orders,
     beside_tones,
-    with_covariance,
 )
 from jackettwin.identification.selection.neighbours import apart, members_of_pairs
 from jackettwin.identification.selection.screening import screen, with_unknown_damping, worth_keeping
@@ -126,7 +125,7 @@ def _widen_close_pair(mode: ModalEstimate, modes: Sequence[ModalEstimate]) -> Mo
     if mode.unrefined is not None or mode.log_covariance is None or min(beside, default=np.inf) > CLOSE_PAIR:
         return mode
     wider = np.array([1.0, PAIR_WIDENING])
-    return with_covariance(mode, mode.log_covariance * np.outer(wider, wider))
+    return mode.with_covariance(mode.log_covariance * np.outer(wider, wider))
 
 
 def _steady(mode: ModalEstimate, lines: ComplexArray, duration_s: float, scale: FloatArray) -> ModalEstimate:
@@ -279,7 +278,7 @@ def _refined_modes(
             cramer_rao_log_std=refined.cramer_rao[k],
             damping_ratio_cov_limit=float(limits[1]),
         )
-        out[index] = with_covariance(mode, refined.covariance[k] * np.outer(lift, lift))
+        out[index] = mode.with_covariance(refined.covariance[k] * np.outer(lift, lift))
     return out
 
 

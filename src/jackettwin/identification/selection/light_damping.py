@@ -18,6 +18,7 @@ from jackettwin.identification.maximum_likelihood.line_likelihood import (
     damping_log_likelihood,
     likelihood_interval,
 )
+from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.identification.selection.neighbours import apart
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.sinusoid import transform
@@ -133,7 +134,7 @@ def _with(mode: ModalEstimate, log_likelihood: FloatArray, duration_s: float) ->
         damping_ratio=zeta,
         damping_ratio_std=zeta * std,
         damping_ratio_interval_90=(float(np.exp(low)), float(np.exp(high))),
-        damping_ratio_cov_limit=float(1.0 / np.sqrt(2.0 * np.pi * zeta * mode.frequency_hz * duration_s)),
+        damping_ratio_cov_limit=float(long_data_limits(mode.frequency_hz, zeta, duration_s)[1]),
         log_covariance=mode.log_covariance * np.outer(ratio, ratio),
     )
     known = mode.status.severity >= ModeStatus.DAMPING_UNKNOWN.severity

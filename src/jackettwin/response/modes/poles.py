@@ -69,7 +69,7 @@ def poles_below(pencil: Pencil, radius: float) -> list[Pair]:
     NumericalError
         If the iteration does not converge or a refined pole does not come to rest.
     """
-    if all(isinstance(group.law, Prony) for group in pencil.groups):
+    if all(group.law.is_rational for group in pencil.groups):
         values, vectors = _poles_within(pencil, radius * (1.0 + _CLUSTER))
         pairs = [pair for at in _clusters(values) for pair in _exactly(pencil, values[at], vectors[:, at])]
     else:

@@ -15,7 +15,6 @@ from jackettwin.response.modes.poles import damping_ratio, poles_below
 from jackettwin.response.superelement.craig_bampton import (
     INTERFACE,
     Superelement,
-    dissipates,
     interface_centroid,
     interface_motion,
     poles,
@@ -122,7 +121,7 @@ def default_band_hz(full: System) -> float:
     count.
     """
     pencil = tied(full)
-    locked = [group.dofs for group in pencil.groups if dissipates(group.law)]
+    locked = [group.dofs for group in pencil.groups if group.law.dissipates]
     free = np.setdiff1d(np.arange(pencil.n), np.concatenate([*locked, np.empty(0, dtype=np.intp)]))
     K, M = (sp.csc_array(matrix)[free][:, free] for matrix in (pencil.static_stiffness(), pencil.M))
     omega = lowest_modes(K, M, 5 + DOFS_PER_NODE)[0]

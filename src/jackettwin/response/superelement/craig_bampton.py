@@ -162,7 +162,7 @@ def superelement(
     static = _response(pencil, at, 0.0)
     n_damped = 0
     inner = np.zeros((static.shape[0], 0))
-    if damped and any(dissipates(group.law) for group in pencil.groups):
+    if damped and any(group.law.dissipates for group in pencil.groups):
         inner = _damped_shapes(pencil, at, static, band_hz, number)
         n_damped = inner.shape[1]
     inner = np.hstack([inner, _fixed_modes(pencil, at, number - n_damped)[1]])
@@ -261,11 +261,6 @@ def _finite(law: Law) -> Law:
     return Prony(k0=fit.k0 + sum(fit.k[:1]), c=fit.c, k=fit.k[1:], tau=fit.tau[1:])
 
 
-def dissipates(law: Law) -> bool:
-    """Return whether a law dissipates energy."""
-    return not isinstance(law, Prony) or law.c > 0.0 or any(law.k)
-
-
 def _response(pencil: Pencil, at: _Interface, s: complex) -> FloatArray:
     """Return the response to unit motions of the interface with its internal variables; real if s = 0."""
     F = sp.csc_array(pencil.F(s) if s else pencil.static_stiffness())
@@ -322,7 +317,7 @@ def _reduced(pencil: Pencil, basis: FloatArray) -> tuple[FloatArray, FloatArray,
     for group in pencil.groups:
         law, spring = group.law, _on(u, group.S)
         K = K + law.static_stiffness * spring
-        C = C + (law.c if isinstance(law, Prony) else 0.0) * spring
+        C = C + law.dashpot * spring
     at = pencil.n
     for branch in maxwell_branches(pencil):
         y = basis[at : at + branch.dofs.size]

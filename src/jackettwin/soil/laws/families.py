@@ -12,7 +12,6 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from itertools import product
 from math import pi
-from typing import ClassVar
 
 import numpy as np
 
@@ -63,12 +62,12 @@ class Family(ABC):
         Parameters that a part of the law vanishes with: the stiffness of each of several branches.
     """
 
-    name: ClassVar[str]
-    words: ClassVar[str]
-    parameters: ClassVar[tuple[Parameter, ...]]
-    needs_frequency: ClassVar[bool] = False
-    relaxes: ClassVar[bool] = True
-    omissible: ClassVar[tuple[int, ...]] = ()
+    name: str
+    words: str
+    parameters: tuple[Parameter, ...]
+    needs_frequency: bool = False
+    relaxes: bool = True
+    omissible: tuple[int, ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -238,6 +237,11 @@ class FractionalElement(Family):
         return rows, slopes
 
 
+SERIES = "prony"
+"""A Prony series whose branches are as many as the data tell."""
+_NUMBERS = ("no", "one", "two", "three", "four")
+
+
 class FreeBranches(Family):
     r"""Free Maxwell branches beside a spring: a Prony series, generalised Maxwell, thesis chapter 10.
 
@@ -246,8 +250,15 @@ class FreeBranches(Family):
     Relative stiffnesses g and ratios of times r (``spacing2``, …) are its parameters, so that each series has
     one set of numbers: with free times the N! orders of the branches would be as many equal solutions.
     Branches nearer than a factor of two cannot be told apart. The priors are centred on the three branches
-    that give a constant loss factor, and wide.
+    that give a constant loss factor, and wide. One branch is ``zener`` in other parameters.
     """
+
+    def __init__(self, n: int) -> None:
+        """Describe the law of n branches."""
+        self.name = f"{SERIES}-{n}"
+        self.words = f"a spring beside {_NUMBERS[n]} free Maxwell branch{'' if n == 1 else 'es'}"
+        self.parameters = _free_branches(n)
+        self.omissible = tuple(range(1, 2 * n, 2))
 
     def build(self, values: FloatArray, reference_hz: float) -> Law:
         """Return the law."""
@@ -349,42 +360,6 @@ def _free_branches(n: int) -> tuple[Parameter, ...]:
     return tuple(parameters)
 
 
-class PronyOne(FreeBranches):
-    """One free branch: ``zener`` in other parameters, with the priors of the longer series."""
-
-    name = "prony-1"
-    words = "a spring beside one free Maxwell branch"
-    parameters = _free_branches(1)
-    omissible = (1,)
-
-
-class PronyTwo(FreeBranches):
-    """Two free branches."""
-
-    name = "prony-2"
-    words = "a spring beside two free Maxwell branches"
-    parameters = _free_branches(2)
-    omissible = (1, 3)
-
-
-class PronyThree(FreeBranches):
-    """Three free branches."""
-
-    name = "prony-3"
-    words = "a spring beside three free Maxwell branches"
-    parameters = _free_branches(3)
-    omissible = (1, 3, 5)
-
-
-class PronyFour(FreeBranches):
-    """Four free branches."""
-
-    name = "prony-4"
-    words = "a spring beside four free Maxwell branches"
-    parameters = _free_branches(4)
-    omissible = (1, 3, 5, 7)
-
-
 def _empty(values: FloatArray, *, branches: int) -> tuple[FloatArray, FloatArray]:
     rows = np.zeros((len(values), BRANCHES + 2 * branches))
     rows[:, OMEGA0] = 1.0
@@ -396,14 +371,9 @@ LAWS = (
     Zener(),
     ThreeBranches(),
     FractionalElement(),
-    PronyOne(),
-    PronyTwo(),
-    PronyThree(),
-    PronyFour(),
+    *(FreeBranches(n) for n in range(1, 5)),
 )
-SERIES = "prony"
-"""A Prony series whose branches are as many as the data tell."""
-_SERIES_LAWS = ("prony-1", "prony-2", "prony-3", "prony-4")
+_SERIES_LAWS = tuple(law.name for law in LAWS if isinstance(law, FreeBranches))
 PLUGINS = "jackettwin.support_laws"
 """Group of entry points, each an instance of a :class:`Family`, entered by its name."""
 DEFAULT_LAWS = ("maxwell-3", "kelvin-voigt", "zener", "springpot")

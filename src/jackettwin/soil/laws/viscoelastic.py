@@ -60,6 +60,28 @@ class Law(ABC):
         return law_slope(self.row, s)
 
     @property
+    def dashpot(self) -> float:
+        """Parallel dashpot [N·s/m]."""
+        return float(self.row[C])
+
+    @property
+    def branches(self) -> list[tuple[float, float]]:
+        """Spring [N/m] and relaxation time [s] of each Maxwell branch that is neither absent nor locked."""
+        pairs = self.row[BRANCHES:].reshape(-1, 2).tolist()
+        return [(k, tau) for k, tau in pairs if k > 0.0 and tau > 0.0]
+
+    @property
+    def is_rational(self) -> bool:
+        """Whether D(s) has finitely many poles, so that internal variables describe the law."""
+        return not self.row[K_ALPHA]
+
+    @property
+    def dissipates(self) -> bool:
+        """Whether a motion loses energy in it."""
+        fractional = self.row[K_ALPHA] > 0.0 and self.row[ALPHA] > 0.0
+        return bool(self.dashpot > 0.0 or fractional or self.branches)
+
+    @property
     def static_stiffness(self) -> float:
         """Stiffness of the undamped structure: D(0), for the springpot Re D(iω₀) [N/m]."""
         return float(static_rows(self.row)[K0])
