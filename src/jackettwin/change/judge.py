@@ -51,8 +51,8 @@ class JudgedDay:
     ----------
     date : str
     ln_evidence : ln of the detection statistic
-    rest, rest_std : (n_quantities,) daily means minus the part explained by conditions, and their standard
-        deviations without a change, to seven decimals; NaN where the day has none
+    rest, rest_std : (n_quantities,) daily means minus the part explained by conditions as believed before the
+        day, and their standard deviations without a change, to seven decimals; NaN where the day has none
     """
 
     date: str

@@ -61,10 +61,13 @@ class Block:
     louder : (m,) factors on the noise, above 1 while a sensor is known to fail
     tail : (NEIGHBOURS, m) last residuals, that is, values minus the part explained by conditions
     steadiness : (m,) ν of :mod:`jackettwin.watching.scatter`
-    reference : (m, p) coefficients at the end of the baseline, from which plotted residuals are computed
+    reference : (m, p) coefficients at the end of the baseline
     directions : directions of steps that are tested
     outlying : (m,) share of the baseline's values that were rejected
     near : of directions, the other mode of each pair
+    centre : (n_states, p) mean regressors of each operating state over the baseline, where its level is
+        known best; None in states stored before it was kept
+    level_variance : (n_states, m) variance of that level at the end of the baseline
     """
 
     kind: Kind
@@ -85,6 +88,8 @@ class Block:
     directions: Directions
     outlying: FloatArray = field(default_factory=lambda: np.full(1, _OUTLYING))
     near: NearestModes | None = None
+    centre: FloatArray | None = None
+    level_variance: FloatArray | None = None
 
 
 @dataclass(frozen=True)
@@ -93,7 +98,7 @@ class DayResult:
 
     Attributes
     ----------
-    rest : (m,) the day's mean minus the part explained by conditions with the baseline's coefficients
+    rest : (m,) the day's mean minus the baseline's level and the effects of conditions as believed before it
     rest_std : (m,) its standard deviation if nothing has changed
     chi2, freedom : (m,) scatter in units of the noise's variance, and its degrees of freedom
     apart : (m,) number of values rejected by comparison with others of the day
@@ -145,6 +150,8 @@ def begin(
     spread = np.maximum(np.nanstd(hours.values, axis=0), 0.1 * usual_std)
     learnt = learn(hours, design.coefficients(spread, slopes), hidden=design.hidden)
     m, p = len(kept), rows.shape[1]
+    centre = _centre(hours.rows, len(design.states))
+    _, cov = _first_coefficients(learnt.beliefs[0], m, p)
     block = Block(
         kind=kind,
         kept=kept,
@@ -164,8 +171,18 @@ def begin(
         directions=directions,
         outlying=(beside + 1.0) / (np.isfinite(rest).sum(axis=0) + 1.0),
         near=near,
+        centre=centre,
+        level_variance=_unsure(cov, centre),
     )
     return block, hours
+
+
+def _centre(rows: FloatArray, states: int) -> FloatArray:
+    """Return the mean regressors of each operating state, (n_states, p); its intercept if it has no rows."""
+    of = rows[:, :states] > 0.0
+    own = [rows[here].mean(axis=0) if here.any() else np.eye(states, rows.shape[1])[k]
+           for k, here in enumerate(of.T)]  # fmt: skip
+    return np.array(own)
 
 
 def _steady(hours: Hours, memory: Memory) -> FloatArray:
@@ -261,8 +278,11 @@ def residuals(
 
 def _coefficients(block: Block) -> tuple[FloatArray, FloatArray]:
     """Return the current coefficients (m, p) and their covariances (m, p, p)."""
-    m, p = block.reference.shape
-    belief = block.beliefs[0]
+    return _first_coefficients(block.beliefs[0], *block.reference.shape)
+
+
+def _first_coefficients(belief: Belief, m: int, p: int) -> tuple[FloatArray, FloatArray]:
+    """Return the coefficients (m, p) that a state holds and their covariances (m, p, p)."""
     own = np.stack([belief.cov[q * p : (q + 1) * p, q * p : (q + 1) * p] for q in range(m)])
     return belief.mean[: m * p].reshape(m, p), own
 
@@ -297,13 +317,14 @@ def with_hours(block: Block, hours: Hours, apart: FloatArray, last_day: float) -
 
 def _spoken(block: Block, hours: Hours, apart: FloatArray, done: Filtered) -> DayResult:
     memory = block.memories[0]
-    rest = hours.values - hours.rows @ block.reference.T
+    expected, unsure = _expected(block, hours.rows)
+    rest = hours.values - expected
     noise = hours.noise * memory.scale**2
     weight = np.where(np.isfinite(rest), 1.0 / noise, 0.0)
     total = weight.sum(axis=0)
     with np.errstate(invalid="ignore", divide="ignore"):
         mean = np.where(total > 0.0, np.nansum(weight * np.nan_to_num(rest), axis=0) / total, np.nan)
-        std = np.sqrt(1.0 / total + memory.std**2 + _unsure(_coefficients(block)[1], hours.rows).mean(axis=0))
+        std = np.sqrt(1.0 / total + memory.std**2 + unsure.mean(axis=0))
     z = done.innovation / np.sqrt(done.spread)
     # the scatter of hourly innovations about their daily mean also informs on the noise; the mean itself does
     # not, since a step is not scatter
@@ -314,6 +335,25 @@ def _spoken(block: Block, hours: Hours, apart: FloatArray, done: Filtered) -> Da
     total_share = np.maximum(share.sum(axis=0), 1e-300)
     freedom = hours.freedom.sum(axis=0) + total_share - np.sum(share**2, axis=0) / total_share
     return DayResult(mean, std, chi2, freedom, apart, z)
+
+
+def _expected(block: Block, rows: FloatArray) -> tuple[FloatArray, FloatArray]:
+    r"""Return what conditions make of the baseline's level, and its variance, (n, m) each.
+
+    .. math:: \bar x^T β_0 + (x - \bar x)^T β
+
+    with β_0 the coefficients at the end of the baseline, β today's, and x̄ the baseline's mean regressors:
+    what an unusual condition does is learnt from the days that show it, while the level stays the baseline's,
+    so that what remains is the change. The level at x̄ and the effects about it are estimated independently.
+    """
+    mean, cov = _coefficients(block)
+    if block.centre is None or block.level_variance is None:
+        return rows @ block.reference.T, _unsure(cov, rows)
+    state = rows[:, : len(block.centre)]
+    centre = state @ block.centre
+    about = rows - centre
+    level = centre @ block.reference.T + about @ mean.T
+    return level, _unsure(cov, about) + state @ block.level_variance
 
 
 def with_weights_reset(block: Block, share: float) -> Block:

@@ -83,8 +83,8 @@ class Look:
     Attributes
     ----------
     day : time of the last record
-    rest, rest_std : (m_all,) daily means minus the part explained by conditions, and their standard
-        deviations without a change
+    rest, rest_std : (m_all,) daily means minus the part explained by conditions as believed before the day,
+        and their standard deviations without a change since the baseline
     log_r : ln of the detection statistic
     change : Change or None
     pending : if there is a change, the data for estimating it again later
