@@ -215,7 +215,7 @@ FAULTS = (
         ("the model's error of damping replaces the data's", "m.damping_ratio_std or error.damping * zeta", "error.damping * zeta"),
     )),
     *_of("change", rows=(
-        ("a change takes back what is like it, not against it", "against = float(a @ b) <= _AGAINST *", "against = float(a @ -b) <= _AGAINST *"),
+        ("a change takes back what is like it, not against it", 'way = -1.0 if answer.way == "takes_back"', 'way = 1.0 if answer.way == "takes_back"'),
         ("scour stiffens the feet", "(np.exp(-loss * chosen) for loss", "(np.exp(loss * chosen) for loss"),
         ("a weakened brace keeps its stiffness", "_scaled(members, 0.7)", "_scaled(members, 1.0)"),
     )),

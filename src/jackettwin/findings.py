@@ -428,26 +428,29 @@ CATALOGUE: dict[str, Kind] = {
     "watch_sees": Kind("info", "{said}"),
     "structure_changed": Kind(
         "alarm",
-        "changed (90 % in brackets): {by_mode}; began {began} ({began_low} to {began_high}); "
-        "most likely {cause} ({probability:.0%})",
+        "changed (90 % in brackets): {by_mode}; began {began} ({began_low} to {began_high}); {said}",
     ),
     "structure_turned": Kind(
         "alarm",
-        "turned (90 % in brackets): {by_mode}; began {began} ({began_low} to {began_high}); "
-        "most likely {cause} ({probability:.0%})",
+        "turned (90 % in brackets): {by_mode}; began {began} ({began_low} to {began_high}); {said}",
     ),
     "sensor_changed": Kind(
         "warning",
-        "behaves differently since {began} (90 %: {began_low} to {began_high}); most likely {cause} "
-        "({probability:.0%})",
+        "behaves differently since {began} (90 %: {began_low} to {began_high}); {said}",
     ),
     "cause_corrected": Kind(
         "warning",
-        "the change of {alarm} was: {was} ({was_probability:.0%}); now: {now} ({probability:.0%})",
+        "the change of {alarm} was: {was}; now: {now}",
     ),
     "change_taken_back": Kind(
         "warning",
-        "the change of {alarm} takes back that of {earlier}: a repair, or a mass that comes and goes",
+        "changed back (90 % in brackets): {by_mode}; began {began} ({began_low} to {began_high}); {said}: a "
+        "repair, or a mass that comes and goes",
+    ),
+    "change_again": Kind(
+        "warning",
+        "changed once more (90 % in brackets): {by_mode}; began {began} ({began_low} to {began_high}); "
+        "{said}: it comes and goes, like ice or a state of operation without a column",
     ),
     # service
     "study_set_aside": Kind(

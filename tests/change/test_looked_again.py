@@ -14,7 +14,8 @@ from tests.change.test_judge import CHANGED, MODEL, SIXTY, days_of
 
 from jackettwin.change import corrections
 from jackettwin.change.judge import JUDGED, StoredMonitoring, judge
-from jackettwin.change.watch_document import corrected_sentence, either, likeliest_of, with_later_look
+from jackettwin.change.table_monitoring import likeliest_of
+from jackettwin.change.watch_document import corrected_sentence, one_of, verdict_words, with_later_look
 from jackettwin.watching import CauseVerdict, Diagnosis
 
 
@@ -42,9 +43,9 @@ def test_another_cause_corrects_the_first_and_the_same_does_not() -> None:
     assert {**found["at_alarm"], "at_alarm": None} == looks[0]
     ((at, finding),) = corrections(found)
     assert at == "2025-03-04" and finding.code == "cause_corrected"
-    assert "was: sensor: more scatter (90%); now: brace_1 lost (90%)" in str(finding)
+    assert "was: sensor: more scatter (90 %); now: brace_1 lost (90 %)" in str(finding)
     said = corrected_sentence(found)
-    assert said == "was: sensor: more scatter (90%, 2025-03-01); now: brace_1 lost (90%, 2025-03-04)"
+    assert said == "was: sensor: more scatter (90 %, 2025-03-01); now: brace_1 lost (90 %, 2025-03-04)"
     assert not corrected_sentence(looks[0]) and not corrections(looks[0])
 
 
@@ -77,8 +78,10 @@ def test_causes_that_are_not_distinguished_are_named_together() -> None:
     assert [one.cause for one in found] == list(group)
     clear = replace(soil, probability=0.6)
     assert likeliest_of(Diagnosis((clear, all_feet), (group,))) == (clear,)
-    assert either(["a"]) == "a" and either(["a", "b"]) == "a or b"
-    assert either(list("abcdef")) == "a, b, c or 3 more" and either(list("abcd")) == "a, b, c or d"
+    assert one_of(["a"]) == "a" and one_of(["a", "b"]) == "one of a, b"
+    assert one_of(list("abcdef")) == "one of a, b, c, 3 more" and one_of(list("abcd")) == "one of a, b, c, d"
+    soft = {"named": list(group), "probability": 0.88}
+    assert verdict_words(soft) == "one of soil softening, scour, scour at foot_1 (together 88 %)"
 
 
 def test_a_later_look_knows_a_change_better() -> None:

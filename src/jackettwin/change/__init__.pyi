@@ -10,7 +10,6 @@ from .judge import (
     history_of as history_of,
     judge as judge,
     monitoring_document as monitoring_document,
-    repairs as repairs,
     sight_of as sight_of,
 )
 from .smallest_changes import (
@@ -24,6 +23,7 @@ from .watch_document import (
     corrected_sentence as corrected_sentence,
     next_sentence as next_sentence,
     statement as statement,
+    verdict_words as verdict_words,
     watched_document as watched_document,
 )
 from .working_rotor import WorkingRotor as WorkingRotor

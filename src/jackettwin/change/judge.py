@@ -20,14 +20,20 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.change.causes import ModelCauses, seen_causes
 from jackettwin.change.ground import UNDESCRIBED, Ground
-from jackettwin.change.reversals import taken_back
+from jackettwin.change.reversals import past_of
 from jackettwin.change.smallest_changes import (
     smallest_changes,
     smallest_documents,
     smallest_sentence,
 )
 from jackettwin.change.table_monitoring import explained_alarm, structure_causes, watch_after_baseline
-from jackettwin.change.watch_document import alarm_document, sizes_by_mode, with_later_look
+from jackettwin.change.watch_document import (
+    alarm_document,
+    likeliest,
+    sizes_by_mode,
+    verdict_words,
+    with_later_look,
+)
 from jackettwin.change.working_rotor import WorkingRotor
 from jackettwin.errors import InputError
 from jackettwin.files import StoredSchema, digest, null_for_nan
@@ -187,11 +193,9 @@ def judge(
         known = _day(known, baseline, history_of(columns, every, [day]), day, causes)
     known = replace(known, judged=_fingerprint(every, after))
     told = {alarm["time_utc"]: len(alarm.get("verdicts", ())) for alarm in kept.alarms}
-    known_repairs = repairs(kept.alarms)
     for alarm in known.alarms:
         findings += [finding_of(alarm)] if alarm["time_utc"] not in told else []
         findings += [f for _, f in corrections(alarm)[max(told.get(alarm["time_utc"], 1), 1) - 1 :]]
-    findings += [f for at, f in repairs(known.alarms) if (at, f) not in known_repairs]
     return known, tuple(findings)
 
 
@@ -234,20 +238,20 @@ def _day(
     watch, look = step(known.watch, day)
     alarms, pending, looked = known.alarms, known.pending, known.looked
 
-    def told(change: Change) -> dict[str, Any]:
-        of = causes()
+    def told(change: Change, before: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+        of, past = causes(), [past_of(alarm) for alarm in before]
         seen = None if of is None else seen_causes(of, watch.quantities, watch.labels)
-        return alarm_document(watch, _time, explained_alarm(change, watch, baseline(), seen))
+        return alarm_document(watch, _time, explained_alarm(change, watch, baseline(), seen, past))
 
     if pending is not None:
         pending, change = look_again(pending, day)
         if change is not None:
-            looked = (*looked, told(change))
+            looked = (*looked, told(change, alarms[:-1]))
             alarms = (*alarms[:-1], with_later_look(alarms[-1], looked[-1]))
     if look.change is not None:
         if alarms:
             alarms = (*alarms[:-1], _before(alarms[-1], looked, look.change))
-        looked, pending = (told(look.change),), look.pending
+        looked, pending = (told(look.change, alarms),), look.pending
         alarms = (*alarms, *looked)
     shown = JudgedDay(name, round(look.log_r, 4), np.round(look.rest, 7), np.round(look.rest_std, 7))
     return replace(
@@ -302,19 +306,27 @@ _NAMED = 0.01
 
 
 def finding_of(alarm: Mapping[str, Any]) -> Finding:
-    """Return the finding on an alarm."""
-    now = alarm["verdicts"][-1]
+    """Return the finding on an alarm: one that is known already asks for less than a new one."""
     low, high = alarm["size_interval_90"]
     began_low, began_high = (text[:10] for text in alarm["began_interval_90"])
     params = {
         "time_utc": alarm["time_utc"], "began": alarm["began_utc"][:10], "began_low": began_low,
-        "began_high": began_high, "size": alarm["size"], "low": low, "high": high, "cause": now["cause"],
-        "probability": now["probability"], "by_mode": sizes_by_mode(alarm),
+        "began_high": began_high, "size": alarm["size"], "low": low, "high": high,
+        "cause": alarm["verdicts"][-1]["cause"], "probability": alarm["verdicts"][-1]["probability"],
+        "said": likeliest(alarm), "by_mode": sizes_by_mode(alarm),
         "causes": {of["cause"]: of["probability"] for of in alarm["causes"] if of["probability"] >= _NAMED},
     }  # fmt: skip
-    sensor = now["cause"].startswith("sensor") or alarm["kind"] == "scatter"
-    turned = "structure_turned" if alarm.get("unit") == "deg" else "structure_changed"
-    return Finding("sensor_changed" if sensor else turned, ", ".join(alarm["quantities"]), params)
+    return Finding(_code(alarm), ", ".join(alarm["quantities"]), params)
+
+
+def _code(alarm: Mapping[str, Any]) -> str:
+    """Return the code of an alarm: that of a known change if it was taken for one from the first day on."""
+    if alarm["verdicts"][-1]["cause"].startswith("sensor") or alarm["kind"] == "scatter":
+        return "sensor_changed"
+    for way, code in (("takes_back_utc", "change_taken_back"), ("again_utc", "change_again")):
+        if alarm.get(way) and (alarm["at_alarm"] or alarm).get(way):
+            return code
+    return "structure_turned" if alarm.get("unit") == "deg" else "structure_changed"
 
 
 def sight_of(judged: StoredMonitoring) -> Finding | None:
@@ -328,21 +340,10 @@ def corrections(alarm: Mapping[str, Any]) -> tuple[tuple[str, Finding], ...]:
     found = []
     for was, now in itertools.pairwise(alarm.get("verdicts", ())):
         params = {
-            "alarm": alarm["time_utc"][:10], "was": was["cause"], "was_probability": was["probability"],
-            "now": now["cause"], "probability": now["probability"],
+            "alarm": alarm["time_utc"][:10], "was": verdict_words(was), "now": verdict_words(now),
         }  # fmt: skip
         found.append((now["time_utc"], Finding("cause_corrected", ", ".join(alarm["quantities"]), params)))
     return tuple(found)
-
-
-def repairs(alarms: Sequence[Mapping[str, Any]]) -> tuple[tuple[str, Finding], ...]:
-    """Return when a change took back an earlier one, as a repair does, and the finding on it."""
-    return tuple(
-        (later["time_utc"], Finding("change_taken_back", ", ".join(later["quantities"]), {
-            "alarm": later["time_utc"][:10], "earlier": alarms[i]["time_utc"][:10],
-        }))
-        for later, i in zip(alarms, taken_back(alarms), strict=True) if i is not None
-    )  # fmt: skip
 
 
 def _fingerprint(every: Days, dates: Sequence[str]) -> str:

@@ -1,64 +1,106 @@
-r"""Changes that take back an earlier one: a repair, or a mass that comes and goes, such as ice.
+"""Changes that are known already: one that takes back an earlier one, or one that comes again.
 
-The sizes :math:`s_i` of an earlier change and :math:`s_j` of a later one of the same kind cancel if
-
-.. math:: \chi^2 = \sum_q \frac{(s_{iq}+s_{jq})^2}{\sigma_{iq}^2+\sigma_{jq}^2}
-
-over the quantities that either changed is no larger than chance makes it, and if they point against each
-other.
+A repair takes back what it repairs; ice, or a state of operation without a column, comes and goes. Each is a
+cause like others, whose direction and size are those of the earlier change with their uncertainty.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Literal
 
 import numpy as np
-from scipy.stats import chi2
 
-from jackettwin.arrays import FloatArray
+from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.intervals import NORMAL_90
+from jackettwin.watching import CLEAR, Cause, CauseVerdict
 
-_CHANCE = 0.01
-"""Probability below which the remainder of two changes is more than their uncertainty."""
-_AGAINST = -0.7
-"""Largest cosine of two changes that take back each other, in standard deviations."""
+Way = Literal["takes_back", "again"]
+_PRIOR = 10.0
+"""Prior weight of a known change beside that of a cause of which nothing is known. What stands is repaired,
+and what came and went within a year does so again within about another, while new changes are decades
+apart."""
 
 
-def taken_back(alarms: Sequence[Mapping[str, Any]]) -> tuple[int | None, ...]:
-    """Return for each alarm, in order of time, the index of the earlier one whose change it takes back.
+@dataclass(frozen=True)
+class Answer:
+    """What a change is to an earlier one: it takes it back or is the same once more.
 
-    A change is taken back once, the latest first; scatter has no size and takes back nothing.
-
-    Parameters
+    Attributes
     ----------
-    alarms : documents with their kind, quantities, and change by quantity
+    time_utc : of the alarm of the earlier one
     """
-    found: list[int | None] = []
-    for j, later in enumerate(alarms):
-        spent = {i for pair in enumerate(found) if pair[1] is not None for i in pair}
-        free = (i for i in reversed(range(j)) if i not in spent and _cancel(alarms[i], later))
-        found.append(next(free, None))
+
+    way: Way
+    time_utc: str
+
+
+@dataclass(frozen=True)
+class Past:
+    """An earlier alarm.
+
+    Attributes
+    ----------
+    size, size_std : (m,) change of each quantity as it last looked, of the logarithm or an angle [rad]
+    sized : whether it has a size; more scatter has none
+    """
+
+    time_utc: str
+    size: FloatArray
+    size_std: FloatArray
+    sized: bool
+    answer: Answer | None = None
+
+
+def past_of(alarm: Mapping[str, Any]) -> Past:
+    """Return an earlier alarm from its document."""
+    sized = list(alarm["by_quantity"].values())
+    rows = np.array([[one["size"], *one["interval_90"]] for one in sized])
+    turned = np.array([one["unit"] == "deg" for one in sized])[:, None]
+    size, low, high = np.where(turned, np.radians(rows), np.log1p(np.where(turned, 0.0, rows))).T
+    std = (high - low) / (2.0 * NORMAL_90)
+    ways: tuple[Way, ...] = ("takes_back", "again")
+    answer = next((Answer(way, alarm[f"{way}_utc"]) for way in ways if alarm.get(f"{way}_utc")), None)
+    return Past(alarm["time_utc"], size, std, alarm["kind"] != "scatter", answer)
+
+
+def known_changes(past: Sequence[Past]) -> dict[str, tuple[Answer, Past]]:
+    """Return by its name what a next change may be to earlier ones: each is undone, or comes once more."""
+    first: dict[str, str] = {}  # the time of the first of equal changes, by the time of each
+    last: dict[str, tuple[Past, bool]] = {}  # by that time: the last of them, and whether it went
+    for one in past:
+        known = one.answer is not None and one.answer.time_utc in first
+        of = first[one.answer.time_utc] if known and one.answer is not None else one.time_utc
+        first[one.time_utc] = of
+        gone = known and one.answer is not None and one.answer.way == "takes_back"
+        last[of] = (last[of][0], True) if gone else (one, False)
+    found = {}
+    for time, (one, gone) in last.items():
+        if one.sized:
+            day = (time if gone else one.time_utc)[:10]
+            name = f"the change of {day} {'again' if gone else 'taken back'}"
+            found[name] = (Answer("again" if gone else "takes_back", time if gone else one.time_utc), one)
+    return found
+
+
+def known_causes(known: Mapping[str, tuple[Answer, Past]], chosen: BoolArray) -> tuple[Cause, ...]:
+    """Return known changes as causes over chosen quantities."""
+    found = []
+    for name, (answer, of) in known.items():
+        way = -1.0 if answer.way == "takes_back" else 1.0
+        draws = _draws(way * of.size[chosen], of.size_std[chosen])
+        found.append(Cause(name, draws, np.ones(1), np.zeros(1), prior=_PRIOR, misfit=0.0))
     return tuple(found)
 
 
-def _cancel(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
-    """Tell whether two changes leave nothing."""
-    if one["kind"] == "scatter" or one["kind"] != other["kind"]:
-        return False
-    over = sorted({*one["quantities"], *other["quantities"]})
-    if not all(name in alarm["by_quantity"] for name in over for alarm in (one, other)):
-        return False
-    (a, a_std), (b, b_std) = (_sizes(alarm, over) for alarm in (one, other))
-    a, b = a / np.hypot(a_std, b_std), b / np.hypot(a_std, b_std)
-    against = float(a @ b) <= _AGAINST * float((a @ a) * (b @ b)) ** 0.5
-    return against and bool(chi2.sf(float((a + b) @ (a + b)), len(over)) > _CHANCE)
+def answer_of(named: Sequence[CauseVerdict], known: Mapping[str, tuple[Answer, Past]]) -> Answer | None:
+    """Return what a change is to an earlier one, if that is clear."""
+    (best, *others) = named
+    return known[best.cause][0] if best.cause in known and not others and best.probability >= CLEAR else None
 
 
-def _sizes(alarm: Mapping[str, Any], names: Sequence[str]) -> tuple[FloatArray, FloatArray]:
-    """Return the changes of some quantities and their standard deviations, of logarithms or in degrees."""
-    sized = [alarm["by_quantity"][name] for name in names]
-    rows = np.array([[one["size"], *one["interval_90"]] for one in sized])
-    turned = np.array([one["unit"] == "deg" for one in sized])
-    size, low, high = np.where(turned[:, None], rows, np.log1p(np.where(turned[:, None], 0.0, rows))).T
-    return size, (high - low) / (2.0 * NORMAL_90)
+def _draws(mean: FloatArray, std: FloatArray) -> FloatArray:
+    """Return 2m draws of independent quantities with exactly these means and standard deviations."""
+    apart = np.sqrt(mean.size - 0.5) * np.diag(std)
+    return np.asarray(mean + np.concatenate([apart, -apart]))

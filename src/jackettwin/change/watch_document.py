@@ -10,16 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from jackettwin.change.reversals import taken_back
 from jackettwin.change.smallest_changes import smallest_documents
-from jackettwin.change.table_monitoring import Alarm, MonitoredTable
+from jackettwin.change.table_monitoring import Alarm, MonitoredTable, likeliest_of
 from jackettwin.intervals import NORMAL_90
-from jackettwin.watching import CLEAR, CauseVerdict, Diagnosis, Watch
+from jackettwin.watching import CLEAR, CauseVerdict, Watch
 
 _NAMED, _LIKELY = 3, 0.001
 """Number of causes in a sentence if none is clear, and the smallest probability of a listed cause."""
-_WITH = 0.05
-"""Smallest probability of a cause that is named with one from which the data do not distinguish it."""
 
 
 def watched_document(watched: MonitoredTable) -> dict[str, Any]:
@@ -32,9 +29,9 @@ def watched_document(watched: MonitoredTable) -> dict[str, Any]:
         "statement": statement(watched),
         "alarms": alarms,
         "reversals": [
-            {"time_utc": alarms[j]["time_utc"], "takes_back_utc": alarms[i]["time_utc"]}
-            for j, i in enumerate(taken_back(alarms))
-            if i is not None
+            {key: alarm[key] for key in ("time_utc", "takes_back_utc")}
+            for alarm in alarms
+            if alarm["takes_back_utc"]
         ],
         "quantities": {
             quantity_name(watched.watch, key): {
@@ -96,6 +93,7 @@ def _looked_document(watch: Watch, time: Callable[[float], datetime], alarm: Ala
         for i, (name, (kind, _)) in enumerate(zip(names, watch.quantities, strict=True))
     }
     lead = members[np.argmax(change.by_mode[members])]
+    answered = {} if alarm.answer is None else {alarm.answer.way: alarm.answer.time_utc}
     return {
         "time_utc": time(change.day).isoformat(),
         "looked_utc": time(change.day).isoformat(),
@@ -111,11 +109,13 @@ def _looked_document(watch: Watch, time: Callable[[float], datetime], alarm: Ala
         "verdicts": [
             {
                 "time_utc": time(change.day if alarm.told is None else alarm.told).isoformat(),
-                "cause": either([one.cause for one in named]),
+                "cause": one_of([one.cause for one in named]),
                 "probability": sum(one.probability for one in named),
                 "named": [one.cause for one in named],
             }
         ],
+        "takes_back_utc": answered.get("takes_back"),
+        "again_utc": answered.get("again"),
         "causes": [_cause(v) for v in alarm.diagnosis.verdicts if v.probability > _LIKELY],
         "inseparable": [list(group) for group in alarm.diagnosis.inseparable],
         "next_measurements": [
@@ -127,22 +127,17 @@ def _looked_document(watch: Watch, time: Callable[[float], datetime], alarm: Ala
     }
 
 
-def likeliest_of(diagnosis: Diagnosis) -> tuple[CauseVerdict, ...]:
-    """Return the likeliest cause, with those that the data do not distinguish from it unless it is clear.
-
-    Softer soil at 41 % is no verdict where scour of all feet has 29 % and of one 18 %.
-    """
-    best, *others = diagnosis.verdicts
-    if best.probability >= CLEAR:
-        return (best,)
-    group = next((group for group in diagnosis.inseparable if best.cause in group), ())
-    return (best, *(one for one in others if one.cause in group and one.probability >= _WITH))
-
-
-def either(names: Sequence[str]) -> str:
-    """Return names with "or" before the last one, of many the first."""
+def one_of(names: Sequence[str]) -> str:
+    """Return a cause, or that it is one of several, of many the first."""
     told = [*names[:_NAMED], f"{len(names) - _NAMED} more"] if len(names) > _NAMED + 1 else list(names)
-    return " or ".join([", ".join(told[:-1]), told[-1]]) if told[1:] else told[0]
+    return f"one of {', '.join(told)}" if told[1:] else told[0]
+
+
+def verdict_words(verdict: Mapping[str, Any], day: str = "") -> str:
+    """Return a verdict with its probability, that of all it names together, and the day it was given."""
+    together = "together " if len(verdict["named"]) > 1 else ""
+    since = f", {day}" if day else ""
+    return f"{one_of(verdict['named'])} ({together}{100.0 * verdict['probability']:.0f} %{since})"
 
 
 def alike_sentence(alarm: Mapping[str, Any]) -> str:
@@ -156,8 +151,8 @@ def corrected_sentence(alarm: Mapping[str, Any]) -> str:
     *was, now = alarm["verdicts"]
     if not was:
         return ""
-    told = ", then ".join(f"{v['cause']} ({v['probability']:.0%}, {v['time_utc'][:10]})" for v in was)
-    return f"was: {told}; now: {now['cause']} ({now['probability']:.0%}, {now['time_utc'][:10]})"
+    told = ", then ".join(verdict_words(v, v["time_utc"][:10]) for v in was)
+    return f"was: {told}; now: {verdict_words(now, now['time_utc'][:10])}"
 
 
 def _doubt(alarm: Alarm) -> float:
@@ -166,7 +161,7 @@ def _doubt(alarm: Alarm) -> float:
     return max(float(-p @ np.log(p)), 1e-12)
 
 
-def next_sentence(alarm: dict[str, Any]) -> str:
+def next_sentence(alarm: Mapping[str, Any]) -> str:
     """Return the sentence on the next measurement of an alarm's document, empty if there is none."""
     told = [f"{m['what']} ({100.0 * m['share_of_doubt']:.0f} %)" for m in alarm["next_measurements"]]
     if not told:
@@ -214,7 +209,7 @@ def likeliest(alarm: Mapping[str, Any]) -> str:
     """Return the likeliest cause of an alarm's document in words, or the first few if none is clear."""
     now = alarm["verdicts"][-1]
     if now["probability"] >= CLEAR:
-        return f"most likely {now['cause']} ({100.0 * now['probability']:.0f} %)"
+        return f"most likely {verdict_words(now)}"
     named = [f"{one['cause']} ({100.0 * one['probability']:.0f} %)" for one in alarm["causes"][:_NAMED]]
     return f"cause not clear: {', '.join(named)}"
 
@@ -230,26 +225,48 @@ def statement(watched: MonitoredTable) -> str:
             f"No change found in {len(watched.looks)} days with records up to {last:%Y-%m-%d}; a false alarm "
             f"is expected once in {watched.watch.arl_years:g} years or more rarely."
         )
-    parts = []
     documents = [alarm_document(watched.watch, table.time, alarm) for alarm in watched.alarms]
-    earlier = taken_back(documents)
-    for alarm, doc, back in zip(watched.alarms, documents, earlier, strict=True):
-        change = alarm.change
-        what = "scatter of" if change.kind == "scatter" else "change of"
-        began = [table.time(day) for day in (change.began, *change.began_interval_90)]
-        parts.append(
-            f"{table.time(alarm.day):%Y-%m-%d}: {what} {sizes_by_mode(doc)}, began "
-            f"{began[0]:%Y-%m-%d} ({began[1]:%Y-%m-%d} to {began[2]:%Y-%m-%d}); {likeliest(doc)}"
-            f"{f'; {corrected}' if (corrected := corrected_sentence(doc)) else ''}"
-            f"{'' if back is None else f'; takes back the change of {_alarmed(watched, back)}'}."
-        )
-    times = sum(back is not None for back in earlier)
-    if times > 1:
-        parts.append(
-            f"{times} changes came and went: a mass such as ice, or a state of operation without a column."
-        )
-    return " ".join(parts)
+    return " ".join(alarm_sentence(chain) for chain in chains(documents))
 
 
-def _alarmed(watched: MonitoredTable, index: int) -> str:
-    return f"{watched.table.time(watched.alarms[index].day):%Y-%m-%d}"
+def chains(alarms: Sequence[Mapping[str, Any]]) -> list[list[Mapping[str, Any]]]:
+    """Return alarms of which nothing is known with the ones that take them back or are the same again."""
+    of: dict[str, list[Mapping[str, Any]]] = {}
+    for alarm in alarms:
+        earlier = alarm.get("takes_back_utc") or alarm.get("again_utc")
+        of[alarm["time_utc"]] = chain = of.get(earlier or "", [])
+        chain.append(alarm)
+    return list({id(chain): chain for chain in of.values()}.values())
+
+
+def alarm_sentence(chain: Sequence[Mapping[str, Any]]) -> str:
+    """Return the sentence on a change, and on when it was taken back and came again."""
+    first, *more = chain
+    what = "scatter of" if first["kind"] == "scatter" else "change of"
+    low, high = (time[:10] for time in first["began_interval_90"])
+    corrected = corrected_sentence(first)
+    return (
+        f"{first['time_utc'][:10]}: {what} {sizes_by_mode(first)}, began {first['began_utc'][:10]} "
+        f"({low} to {high}); {likeliest(first)}{f'; {corrected}' if corrected else ''}{_went(more)}."
+    )
+
+
+def _went(more: Sequence[Mapping[str, Any]]) -> str:
+    """Return when a change was taken back and came again, in words."""
+    if not more:
+        return ""
+    told = [
+        f"{'taken back' if one['takes_back_utc'] else 'again from'} {one['began_utc'][:10]}"
+        f"{'' if one['takes_back_utc'] else ' on'} ({_sure(one)})"
+        for one in more
+    ]
+    why = (
+        "it comes and goes, like ice or a state of operation without a column"
+        if len(more) > 1
+        else "as by a repair, or a mass that comes and goes"
+    )
+    return f"; {', '.join(told)}: {why}"
+
+
+def _sure(alarm: Mapping[str, Any]) -> str:
+    return f"{100.0 * alarm['verdicts'][-1]['probability']:.0f} %"

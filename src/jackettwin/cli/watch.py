@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from datetime import UTC
 from pathlib import Path
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import click
 
@@ -90,8 +91,6 @@ def watch_command(
     days are assumed healthy.
     """
     from jackettwin.change import (
-        alike_sentence,
-        next_sentence,
         smallest_sentence,
         statement,
         watched_document,
@@ -129,13 +128,8 @@ def watch_command(
     def show() -> None:
         say(statement(watched))
         for alarm in document["alarms"]:
-            show_table(Table(f"alarm of {alarm['time_utc']}", _CAUSES, alarm["causes"][:_SHOWN]))
-            if alike := alike_sentence(alarm):
-                say(alike)
-            for group in alarm["inseparable"]:
-                say(f"not distinguished by these data: {', '.join(group)}")
-            if alarm["next_measurements"]:
-                say(next_sentence(alarm))
+            if not (alarm["takes_back_utc"] or alarm["again_utc"]):  # told with the first of its kind
+                _show_causes(alarm)
         if could := smallest_sentence(document["smallest_found"]):
             say(could)
         say_all(watched.limits, "limit")
@@ -143,6 +137,19 @@ def watch_command(
             say(f"report: {out / 'report.html'}")
 
     return Reply(document, show)
+
+
+def _show_causes(alarm: Mapping[str, Any]) -> None:
+    """Print the causes of an alarm's document, and what would tell them apart."""
+    from jackettwin.change import alike_sentence, next_sentence
+
+    show_table(Table(f"alarm of {alarm['time_utc']}", _CAUSES, alarm["causes"][:_SHOWN]))
+    if alike := alike_sentence(alarm):
+        say(alike)
+    for group in alarm["inseparable"]:
+        say(f"not distinguished by these data: {', '.join(group)}")
+    if alarm["next_measurements"]:
+        say(next_sentence(alarm))
 
 
 _CAUSES = (TableColumn("cause", "cause"), TableColumn("probability [%]", "probability", ".1f", 100.0))

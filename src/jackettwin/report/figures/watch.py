@@ -9,7 +9,7 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from jackettwin.change import Alarm, MonitoredTable, alarm_document
+from jackettwin.change import Alarm, MonitoredTable, alarm_document, verdict_words
 from jackettwin.intervals import NORMAL_90
 from jackettwin.report.figures import style
 from jackettwin.report.tables.numbers import words
@@ -88,8 +88,7 @@ def _mark(figure: go.Figure, watched: MonitoredTable, alarm: Alarm, i: int, row:
     figure.add_vline(x=at, line={"color": style.VERMILLION, "width": 2}, row=row, col=1)
     if named:
         now = alarm_document(watched.watch, table.time, alarm)["verdicts"][-1]
-        clear = now["probability"] >= CLEAR
-        said = f"{now['cause']}, {100.0 * now['probability']:.0f} %" if clear else "cause not clear"
+        said = verdict_words(now) if now["probability"] >= CLEAR else "cause not clear"
         figure.add_annotation(
             x=at, y=1.0, yref="y domain", xanchor="left", yanchor="top", xshift=6, showarrow=False,
             bgcolor="white", align="left", text="<br>".join(wrap(said, _CAUSE_WIDTH)), row=row, col=1,

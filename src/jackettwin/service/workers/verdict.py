@@ -27,7 +27,6 @@ from jackettwin.change import (
     finding_of,
     judge,
     monitoring_document,
-    repairs,
     sight_of,
 )
 from jackettwin.errors import JackettwinError
@@ -290,7 +289,6 @@ def watched(
         said.append((f"{min(identities)}T00:00:00+00:00", sees))
     for alarm in judged.alarms:
         said += [(alarm["time_utc"], finding_of(alarm)), *corrections(alarm)]
-    said += repairs(judged.alarms)
     rows = tuple(engine.finding_row(f) | {"time_utc": at, "day": at[:10]} for at, f in said)
     return JUDGED.dump(judged), rows, monitoring_document(judged)
 
