@@ -10,7 +10,14 @@ import numpy as np
 import pytest
 
 from jackettwin.change import finding_of
-from jackettwin.change.reversals import Answer, Past, answer_of, known_causes, known_changes, past_of
+from jackettwin.change.reversals import (
+    EarlierAlarm,
+    Recurrence,
+    answer_of,
+    known_causes,
+    known_changes,
+    past_of,
+)
 from jackettwin.change.watch_document import alarm_sentence, chains
 from jackettwin.watching import Cause, Change, Diagnosis, diagnose, general_causes
 from jackettwin.watching.scatter import STRONGER
@@ -21,12 +28,12 @@ EVERY = np.ones(4, dtype=np.bool_)
 ON = np.array([-4e-3, -4e-3, -2e-3, -2e-3])
 
 
-def past(day: int, size: np.ndarray, answer: Answer | None = None, std: float = STD) -> Past:
-    return Past(f"2025-03-{day:02d}T00:00:00+00:00", size, np.full(size.size, std), True, answer)
+def past(day: int, size: np.ndarray, answer: Recurrence | None = None, std: float = STD) -> EarlierAlarm:
+    return EarlierAlarm(f"2025-03-{day:02d}T00:00:00+00:00", size, np.full(size.size, std), True, answer)
 
 
-def answered(of: Past, way: str) -> Answer:
-    return Answer(way, of.time_utc)  # type: ignore[arg-type]
+def answered(of: EarlierAlarm, way: str) -> Recurrence:
+    return Recurrence(way, of.time_utc)  # type: ignore[arg-type]
 
 
 def seen(size: np.ndarray, rng: np.random.Generator) -> Change:
@@ -46,7 +53,9 @@ def patterns() -> tuple[Cause, ...]:
     )
 
 
-def told(earlier: Sequence[Past], size: np.ndarray, seed: int = 0) -> tuple[Answer | None, Diagnosis]:
+def told(
+    earlier: Sequence[EarlierAlarm], size: np.ndarray, seed: int = 0
+) -> tuple[Recurrence | None, Diagnosis]:
     known = known_changes(earlier)
     causes = (*patterns(), *known_causes(known, EVERY))
     found = diagnose(seen(size, np.random.default_rng(seed)), causes, KINDS)
@@ -115,7 +124,7 @@ def test_an_alarm_is_read_back_from_its_document() -> None:
     np.testing.assert_allclose([found.size[0], found.size_std[0]], np.radians([-8.0, 0.8 / 1.645]), rtol=1e-3)
     back = past_of(off)
     np.testing.assert_allclose([back.size[0], back.size_std[0]], [6e-3, STD], rtol=1e-3)
-    assert (found.answer, back.answer) == (None, Answer("takes_back", on["time_utc"]))
+    assert (found.answer, back.answer) == (None, Recurrence("takes_back", on["time_utc"]))
 
 
 def test_one_story_is_told_of_what_comes_and_goes() -> None:

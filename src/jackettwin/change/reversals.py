@@ -24,7 +24,7 @@ apart."""
 
 
 @dataclass(frozen=True)
-class Answer:
+class Recurrence:
     """What a change is to an earlier one: it takes it back or is the same once more.
 
     Attributes
@@ -37,7 +37,7 @@ class Answer:
 
 
 @dataclass(frozen=True)
-class Past:
+class EarlierAlarm:
     """An earlier alarm.
 
     Attributes
@@ -50,10 +50,10 @@ class Past:
     size: FloatArray
     size_std: FloatArray
     sized: bool
-    answer: Answer | None = None
+    answer: Recurrence | None = None
 
 
-def past_of(alarm: Mapping[str, Any]) -> Past:
+def past_of(alarm: Mapping[str, Any]) -> EarlierAlarm:
     """Return an earlier alarm from its document."""
     sized = list(alarm["by_quantity"].values())
     rows = np.array([[one["size"], *one["interval_90"]] for one in sized])
@@ -61,14 +61,14 @@ def past_of(alarm: Mapping[str, Any]) -> Past:
     size, low, high = np.where(turned, np.radians(rows), np.log1p(np.where(turned, 0.0, rows))).T
     std = (high - low) / (2.0 * NORMAL_90)
     ways: tuple[Way, ...] = ("takes_back", "again")
-    answer = next((Answer(way, alarm[f"{way}_utc"]) for way in ways if alarm.get(f"{way}_utc")), None)
-    return Past(alarm["time_utc"], size, std, alarm["kind"] != "scatter", answer)
+    answer = next((Recurrence(way, alarm[f"{way}_utc"]) for way in ways if alarm.get(f"{way}_utc")), None)
+    return EarlierAlarm(alarm["time_utc"], size, std, alarm["kind"] != "scatter", answer)
 
 
-def known_changes(past: Sequence[Past]) -> dict[str, tuple[Answer, Past]]:
+def known_changes(past: Sequence[EarlierAlarm]) -> dict[str, tuple[Recurrence, EarlierAlarm]]:
     """Return by its name what a next change may be to earlier ones: each is undone, or comes once more."""
     first: dict[str, str] = {}  # the time of the first of equal changes, by the time of each
-    last: dict[str, tuple[Past, bool]] = {}  # by that time: the last of them, and whether it went
+    last: dict[str, tuple[EarlierAlarm, bool]] = {}  # by that time: the last of them, and whether it went
     for one in past:
         known = one.answer is not None and one.answer.time_utc in first
         of = first[one.answer.time_utc] if known and one.answer is not None else one.time_utc
@@ -80,11 +80,13 @@ def known_changes(past: Sequence[Past]) -> dict[str, tuple[Answer, Past]]:
         if one.sized:
             day = (time if gone else one.time_utc)[:10]
             name = f"the change of {day} {'again' if gone else 'taken back'}"
-            found[name] = (Answer("again" if gone else "takes_back", time if gone else one.time_utc), one)
+            found[name] = (Recurrence("again" if gone else "takes_back", time if gone else one.time_utc), one)
     return found
 
 
-def known_causes(known: Mapping[str, tuple[Answer, Past]], chosen: BoolArray) -> tuple[Cause, ...]:
+def known_causes(
+    known: Mapping[str, tuple[Recurrence, EarlierAlarm]], chosen: BoolArray
+) -> tuple[Cause, ...]:
     """Return known changes as causes over chosen quantities."""
     found = []
     for name, (answer, of) in known.items():
@@ -94,7 +96,9 @@ def known_causes(known: Mapping[str, tuple[Answer, Past]], chosen: BoolArray) ->
     return tuple(found)
 
 
-def answer_of(named: Sequence[CauseVerdict], known: Mapping[str, tuple[Answer, Past]]) -> Answer | None:
+def answer_of(
+    named: Sequence[CauseVerdict], known: Mapping[str, tuple[Recurrence, EarlierAlarm]]
+) -> Recurrence | None:
     """Return what a change is to an earlier one, if that is clear."""
     (best, *others) = named
     return known[best.cause][0] if best.cause in known and not others and best.probability >= CLEAR else None

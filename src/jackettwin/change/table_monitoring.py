@@ -12,7 +12,7 @@ from jackettwin.change.causes import ModelCauses, SeenCauses, model_causes, seen
 from jackettwin.change.ground import UNDESCRIBED, Ground
 from jackettwin.change.modal_table import ModalTable
 from jackettwin.change.next_measurements import Circumstances, Measurement, next_measurements
-from jackettwin.change.reversals import Answer, Past, answer_of, known_causes, known_changes
+from jackettwin.change.reversals import EarlierAlarm, Recurrence, answer_of, known_causes, known_changes
 from jackettwin.change.smallest_changes import SmallestChange, smallest_changes
 from jackettwin.change.working_rotor import WorkingRotor
 from jackettwin.errors import InputError
@@ -69,7 +69,7 @@ class Alarm:
     patterns: Mapping[str, FloatArray] = field(default_factory=dict)
     earlier: tuple[Alarm, ...] = ()
     told: float | None = None
-    answer: Answer | None = None
+    answer: Recurrence | None = None
 
     @property
     def day(self) -> float:
@@ -195,7 +195,11 @@ def watch_table(
 
 
 def explained_alarm(
-    change: Change, watch: Watch, baseline: History, seen: SeenCauses | None, past: Sequence[Past] = ()
+    change: Change,
+    watch: Watch,
+    baseline: History,
+    seen: SeenCauses | None,
+    past: Sequence[EarlierAlarm] = (),
 ) -> Alarm:
     """Return a change with its causes: the structure's or patterns over modes, and earlier changes."""
     kinds = [kind for kind, _ in watch.quantities]
@@ -223,10 +227,10 @@ def explained_alarm(
     return Alarm(change, replace(found, verdicts=tuple(sizeless)), further, patterns, answer=answer)
 
 
-def _past(table: ModalTable, alarms: Sequence[Alarm]) -> tuple[Past, ...]:
+def _past(table: ModalTable, alarms: Sequence[Alarm]) -> tuple[EarlierAlarm, ...]:
     """Return earlier alarms as the next ones see them."""
     return tuple(
-        Past(
+        EarlierAlarm(
             table.time(one.day).isoformat(), one.change.size, one.change.size_std,
             one.change.kind != "scatter", one.answer,
         )

@@ -137,7 +137,8 @@ def verdict_words(verdict: Mapping[str, Any], day: str = "") -> str:
     """Return a verdict with its probability, that of all it names together, and the day it was given."""
     together = "together " if len(verdict["named"]) > 1 else ""
     since = f", {day}" if day else ""
-    return f"{one_of(verdict['named'])} ({together}{100.0 * verdict['probability']:.0f} %{since})"
+    unclear = "" if verdict["probability"] >= CLEAR else "not clear, rather "
+    return f"{unclear}{one_of(verdict['named'])} ({together}{100.0 * verdict['probability']:.0f} %{since})"
 
 
 def alike_sentence(alarm: Mapping[str, Any]) -> str:
