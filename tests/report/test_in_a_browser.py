@@ -20,6 +20,11 @@ from jackettwin.study import TwinResult
 
 CHROMIUM = next((p for p in ("chromium", "chromium-browser", "google-chrome") if shutil.which(p)), "")
 MEASURE = """<script>setTimeout(() => { const r = e => e.getBoundingClientRect();
+const parts = [...document.querySelectorAll("details.part")], closed = parts.filter(d => !d.open).length;
+const screens = document.documentElement.scrollHeight / 900;
+const appendix = r(document.getElementById("appendix")).top / 900;
+dispatchEvent(new Event("beforeprint"));
+const printed = [...document.querySelectorAll("details")].every(d => d.open);
 const wide = [...document.querySelectorAll("p, li, figcaption, caption, svg, h1, h2, td")].filter(
   e => r(e).width > 0 && !e.closest(".plot, .scroll, .wide") && r(e).right > innerWidth + 1);
 const boxes = [...document.querySelectorAll("svg text")].map(e => [r(e), r(e.ownerSVGElement)]);
@@ -27,7 +32,7 @@ const cut = [...document.querySelectorAll(".wide")].filter(e => e.scrollWidth > 
 document.title = JSON.stringify({page: document.documentElement.scrollWidth, window: innerWidth,
   wide: wide.length, tables: cut.map(e => e.innerText.slice(0, 60)),
   outside: boxes.filter(([a, b]) => a.left < b.left - 1 || a.right > b.right + 1).length,
-  appendix: r(document.getElementById("appendix")).top / 900, ms: performance.timing.domInteractive
+  parts: parts.length, closed, screens, appendix, printed, ms: performance.timing.domInteractive
   - performance.timing.fetchStart});
 }, 200);</script>"""
 
@@ -70,9 +75,15 @@ def _measured_inside(frame: Path) -> Path:
     return frame
 
 
-@pytest.mark.parametrize("width", [1400, 1024, 400])
+@pytest.mark.parametrize("width", [1400, 1024, 768, 400])
 def test_nothing_is_cut_off(page: Path, width: int) -> None:
+    """With every section open, as before it prints; on a phone all are folded, elsewhere the appendix."""
     found = laid_out(page, width)
+    assert found["printed"]
+    if width == 400:
+        assert found["closed"] == found["parts"] > 5 and found["screens"] < 6.0
+    else:
+        assert 0 < found["closed"] < found["parts"]
     assert found["page"] <= found["window"]
     assert found["wide"] == found["outside"] == 0
     assert found["tables"] == []

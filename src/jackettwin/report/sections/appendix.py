@@ -11,6 +11,7 @@ from jackettwin.report.pages.page import Block, Plot, Text
 from jackettwin.report.table import Table
 from jackettwin.report.tables import updating as tables
 from jackettwin.report.tables.numbers import UNKNOWN, fixed, words
+from jackettwin.soil import parameter_words
 from jackettwin.study import TwinResult
 from jackettwin.updating import Uncertainty, Update, recommended
 
@@ -67,12 +68,13 @@ def tolerances(result: TwinResult) -> list[Block]:
     s = result.scrutiny[place.index(True)] if u is not None and result.scrutiny else None
     if u is None or s is None or not s.influences:
         return []
-    names = [p.name for p in u.problem.parameters][:_SHOWN]
+    known = {one.tolerance.name: one.tolerance.words for one in s.influences}
+    names = [parameter_words(p.name) for p in u.problem.parameters][:_SHOWN]
     rows = [
         (
             one.tolerance.words,
             one.tolerance.settled_by,
-            ", ".join(one.alike) or UNKNOWN,
+            ", ".join(known.get(name, name) for name in one.alike) or UNKNOWN,
             f"{one.tolerance.std:.3g} {'' if one.tolerance.unit == '-' else one.tolerance.unit}".strip(),
             f"{one.mean * one.tolerance.std:+.2g} (σ {one.std * one.tolerance.std:.2g})".replace("-", "−"),
             *(
