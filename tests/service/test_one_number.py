@@ -11,6 +11,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from datetime import timedelta
+from math import pi
 from pathlib import Path
 from typing import Any
 
@@ -50,6 +51,7 @@ class Outlets:
     page: str
     figures: dict[str, Any]
     known: dict[str, Any]
+    drawn: dict[str, Any]
     modes: list[dict[str, Any]]
 
 
@@ -65,19 +67,21 @@ def outlets(tmp_path_factory: pytest.TempPathFactory) -> Outlets:
     asked = Question("wtg", 1, str(folder), {DAY: "a"}, {DAY: day}, texts, (3, 1800.0), of="it")
     outcome = know(asked)
     assert outcome is not None and outcome.document is not None and outcome.page is not None
+    told = json.loads(outcome.document)
     sums, _ = engine.summed(twin, None, asked.identities, asked.days)
     measured = Measured(tuple(seen), sums.state, in_all=(3, 1800.0))
     result = updated_twin(twin.config, twin.model, measured, laws=("kelvin-voigt",), posteriors="likely")
-    answers, told = answer(result), replace(result, observations=())
+    answers, shown = answer(result), replace(result, observations=())
     with output.capture() as printed:
         print_answers(answers)
         print_updates(result, only=answers.law)
     return Outlets(
-        encode(run_document(told, report=None) | answers_document(answers)),
+        encode(run_document(shown, report=None) | answers_document(answers)),
         re.sub(r"\s+", " ", printed.get()),
         _text(gzip.decompress(outcome.page).decode()),
         _figures(gzip.decompress(outcome.page).decode()),
-        json.loads(outcome.document)["known"],
+        told["known"],
+        told["together"]["known"],
         engine.knowledge(twin.model, sums)["modes"],
     )
 
@@ -198,6 +202,21 @@ def test_tables_and_drawings_of_the_page_say_what_the_document_says(outlets: Out
             f"{m['frequency_hz']:.4f}" in outlets.page and f"{100 * m['damping_ratio']:.2f}" in outlets.page
         )
         assert f"{m['frequency_hz']:.3f} Hz" in outlets.page
+
+
+def test_a_mode_is_explored_and_drawn_at_its_reported_frequency(outlets: Outlets) -> None:
+    """At the medians each locus has it, and its poles have it everywhere; the structure moves with it."""
+    reported = {m["label"]: m for m in outlets.document["updates"][0]["modes"]}
+    for locus in outlets.drawn["explored"]["loci"]:
+        measured = [b for b in locus["branches"] if b["label"] in reported]
+        assert len(measured) == len(reported)
+        for b in measured:
+            at_medians = b["frequency_hz"][locus["origin"]]
+            assert at_medians == pytest.approx(reported[b["label"]]["frequency_hz"], rel=1e-5)  # six digits
+            omega = abs(complex(b["pole_real_rad_s"][0], b["pole_imag_rad_s"][0]))
+            assert omega == pytest.approx(2.0 * pi * b["frequency_hz"][0], rel=1e-5)
+    for drawn, m in zip(outlets.drawn["structure"]["motions"], reported.values(), strict=True):
+        assert drawn["note"] == f"{m['frequency_hz']:.4f} Hz, ζ = {100 * m['damping_ratio']:.2f} %"
 
 
 def test_shares_of_damping_are_of_what_was_measured(outlets: Outlets) -> None:

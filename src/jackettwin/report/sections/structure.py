@@ -28,7 +28,10 @@ def the_structure(result: TwinResult) -> list[Block]:
 
 
 def structure_view(result: TwinResult) -> View:
-    """Return the structure with its updated modes, each beside what was measured of it."""
+    """Return the structure with its updated modes, each beside what was measured of it.
+
+    Shapes are those of the best fit; frequencies and damping ratios are the reported ones.
+    """
     u = recommended(result.updates)
     motions = (
         []
@@ -37,7 +40,7 @@ def structure_view(result: TwinResult) -> View:
             damped_motion(
                 result.assembly,
                 words(m.label),
-                complex(pole),
+                _pole(float(u.central_hz[i]), float(u.central_damping[i])),
                 u.modes.shapes[:, i],
                 _measured(result, m, u.modes.shapes[:, i]),
             )
@@ -46,6 +49,11 @@ def structure_view(result: TwinResult) -> View:
         ]
     )
     return View(result.assembly, thickness_quantities(result.assembly), tuple(motions), result.sensors)
+
+
+def _pole(frequency_hz: float, damping_ratio: float) -> complex:
+    r"""Return the eigenvalue :math:`ω(-ζ + i\sqrt{1 - ζ^2})` [rad/s]."""
+    return 2.0 * np.pi * frequency_hz * complex(-damping_ratio, np.sqrt(1.0 - damping_ratio**2))
 
 
 def _measured(result: TwinResult, mode: MeasuredMode, shape: ComplexArray) -> SensorMotion | None:

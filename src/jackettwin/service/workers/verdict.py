@@ -217,7 +217,11 @@ def _sensitivity(u: Update, median: FloatArray, result: TwinResult) -> list[dict
 
 
 def _explored(u: Update, median: FloatArray, name: str) -> dict[str, Any]:
-    """Return cost and root loci along each parameter around the medians; empty if there are none."""
+    """Return cost and root loci along each parameter around the medians; empty if there are none.
+
+    The estimate lets a model be wrong in frequency by a constant factor for each mode; the poles contain
+    it, so that at the medians each measured mode has its reported frequency.
+    """
     at = {p.name: float(np.clip(v, p.low, p.high)) for p, v in zip(u.problem.parameters, median, strict=True)}
     try:
         found = explore_update(name, u, ExploreSettings(grid=_GRID, starts=0, at=at))
@@ -225,6 +229,14 @@ def _explored(u: Update, median: FloatArray, name: str) -> dict[str, Any]:
         return {}
     document = exploration_document(found)
     kept = {key: document[key] for key in ("parameters", "loci", "surface", "curves")}
+    reported = dict(zip(u.shown, u.central_hz, strict=True))
+    for locus in kept["loci"]:
+        for branch in locus["branches"]:
+            there = branch["frequency_hz"][locus["origin"]]
+            factor = reported.get(branch["mode"], np.nan) / there
+            if np.isfinite(factor):
+                for key in ("pole_real_rad_s", "pole_imag_rad_s", "frequency_hz"):
+                    branch[key] = factor * branch[key]
     return {"law": u.law, **_rounded(null_for_nan(kept))}
 
 

@@ -18,7 +18,10 @@ def _words(parameter: str) -> str:
 
 
 class BranchOut(BaseModel):
-    """Locus of one mode along a parameter; null where it does not oscillate."""
+    """Locus of one mode along a parameter; null where it does not oscillate.
+
+    At the medians measured modes have the reported frequencies; damping is of the sources in the model.
+    """
 
     mode: int
     label: str
