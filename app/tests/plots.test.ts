@@ -92,6 +92,21 @@ describe("a plot", () => {
     expect(drawn).toContain(">−2</text>");
     expect(drawn).not.toMatch(/>-\d/);
   });
+  test("has few ticks whatever its range, and a search for them ends", () => {
+    let seed = 1; // the same numbers each time, of every size that a number can have
+    const random = (): number => (seed = (seed * 48271) % 2147483647) / 2147483647;
+    const any = (): number =>
+      random() < 0.1
+        ? ([0, NaN, Infinity, -Infinity][Math.floor(4 * random())] ?? 0)
+        : (random() < 0.5 ? -1 : 1) * 10 ** (-320 + 628 * random());
+    for (let i = 0; i < 5000; i++) {
+      const low = any();
+      const high = random() < 0.3 ? low * (1 + 10 ** (-16 * random())) : any();
+      for (const log of [false, true]) expect(ticksOf([low, high], 6, log).length).toBeLessThan(15);
+      const from = 3e9 * (random() - 0.1);
+      expect(timeTicksOf([from, from + 10 ** (-6 + 17 * random())], 6).length).toBeLessThan(400);
+    }
+  });
   test("has ticks in steps of 1, 2 or 5", () => {
     expect(ticksOf([0, 1], 5)).toEqual([0, 0.2, 0.4, 0.6, 0.8, 1]);
     expect(ticksOf([-0.09, 0.09], 2)).toEqual([-0.05, 0, 0.05]); // not one alone

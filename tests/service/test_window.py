@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from datetime import timedelta
 from importlib.resources import files
 from pathlib import Path
-from urllib.parse import urlsplit
+from urllib.parse import unquote_plus, urlencode, urlsplit
 from xml.etree import ElementTree
 
 import httpx
@@ -26,6 +26,7 @@ from tests.service.servers import CHROMIUM, free_port
 
 from jackettwin.files import find_file
 from jackettwin.service.context import Service
+from jackettwin.service.demonstration import lay_out
 from jackettwin.service.web import pages
 from jackettwin.service.web.app import EXAMPLES, create_app
 from jackettwin.service.web.catalogue import add_text_version
@@ -386,6 +387,121 @@ def test_a_place_is_in_its_address(opened: Open) -> None:
     expect(page).to_have_url(re.compile(r"\?(?!.*show)(?=.*mode=mode_1)(?=.*from=)"))
     lines = saved(page)
     assert len(lines) >= 5 and lines[0].startswith("series,time_utc,")
+
+
+CONTROLS = """() => Object.fromEntries([...document.querySelectorAll(
+  "main .choice button, main select, main input:is([type=range], [type=checkbox]), main th button"
+)].filter(e => e.getAttribute("aria-label") !== "Time").map((e, i) => [
+  `${i} ${e.innerText.replace(/ [↑↓]/, "")}`,
+  e.matches(".choice button") ? e.getAttribute("aria-pressed") : e.matches("th button")
+  ? e.closest("th").getAttribute("aria-sort") : e.type === "checkbox" ? e.checked : e.value]))"""
+"""How every control of a page stands, but the clock of a motion."""
+
+
+@pytest.mark.parametrize(
+    "path",
+    ["/", "/jobs", "/live", "/timeline", "/structure", "/explore", "/life", "/records", "/ID", "/alarms"],
+)
+def test_a_link_holds_every_control_and_what_it_asks_for_in_vain_is_said(opened: Open, path: str) -> None:
+    """Each is moved, then the address opened again; nonsense in it is told, and the page is as at first."""
+    told = {"life": {"items": WELDS}, "watch": EXAMPLES["WatchOut"]}
+    page = opened.page("/login")
+    page.context.route(
+        re.compile(f"/api/v1/assets/wtg/({'|'.join(told)})$"),
+        lambda route: route.fulfill(json=told[route.request.url.rsplit("/", 1)[1]]),
+    )
+    url = path if path in ("/", "/jobs") else f"/assets/wtg{path.replace('ID', 'records/ID')}"
+    opened.goto(page, url := url.replace("ID", newest(opened.url)))
+    page.wait_for_timeout(300)  # parts that come by themselves
+    for box in page.locator("main input[type=checkbox]").all():
+        box.click()
+    for listed in page.locator("main select").all():
+        listed.select_option(index=listed.locator("option").count() - 1)
+    for slider in page.locator("main input[type=range]").all():
+        slider.press("ArrowLeft" if float(slider.input_value()) > 0.9 else "ArrowRight")
+    for choice in reversed(page.locator("main .choice").all()):  # the first says which others there are
+        choice.get_by_role("button").last.click()
+    for title in page.locator("main tr th:last-child button, main th:nth-child(2) button").all():
+        title.click()
+    for plot in page.locator(".plot > [role=img]").all():
+        plot.press("+")
+    expect(page.locator(".bones")).to_have_count(0)
+    page.wait_for_timeout(400)  # the address is written at a pace
+    stands, address = page.evaluate(CONTROLS), page.url
+    asked = {unquote_plus(part.split("=")[0]) for part in urlsplit(address).query.split("&")}
+    assert asked != {""} and page.locator(".strange").count() == 0, address
+    other = page.context.new_page()
+    opened.goto(other, address)
+    other.wait_for_function(f"n => Object.keys(({CONTROLS})()).length >= n", arg=len(stands))
+    assert other.evaluate(CONTROLS) == stands, address
+    opened.said.clear()
+    opened.goto(page, f"{url}?{urlencode(dict.fromkeys(asked - UNJUDGED, 'nonsense'))}")
+    words = page.locator(".strange")
+    for name in asked - UNJUDGED:
+        expect(words).to_contain_text(f"{name} = nonsense")
+    assert opened.said == []
+
+
+UNJUDGED = {
+    "play",
+    "record",
+    "zoom-Singular values",
+    *"water growth flooded sensors measured dimensions ghost".split(),
+}
+"""What is so or not, records, of which the server knows more, and the axis of a plot that is not drawn."""
+
+
+@pytest.fixture(scope="module")
+def demonstration(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterator[Open]:
+    """The shipped demonstration, as `make live` begins with it."""
+    patch = pytest.MonkeyPatch()
+    for service in make_service(tmp_path_factory.mktemp("shipped"), None, patch, assets=()):
+        assert lay_out(service)
+        with served(service) as url:
+            yield Open(url, service, browser)
+    patch.undo()
+
+
+@pytest.mark.parametrize("width", [1440, 390])
+def test_four_questions_of_a_newcomer_are_answered_within_three_clicks(
+    demonstration: Open, width: int
+) -> None:
+    """Whose damping, when the soil changed, which record is worst, what to install: from the list on."""
+    clicks = 0
+
+    def click(where: Locator) -> None:
+        nonlocal clicks
+        where.click()
+        clicks += 1
+
+    page = demonstration.page("/", width=width)
+    click(page.get_by_role("link", name="demo", exact=True))
+    damping = page.locator(".answers div", has_text="Whose damping is it?")
+    expect(damping).to_contain_text(
+        re.compile(r"Side-side 1 has a measured damping of 2\.\d.* the rotor 2\.\d")
+    )
+    reason = damping.get_by_text("Why the rotor: feathered blades")
+    if width == 390:
+        expect(reason).to_be_hidden()
+        click(damping.get_by_text("more sentences"))
+    expect(reason).to_be_visible()
+    ground = page.get_by_role("region", name="The ground")
+    expect(ground).to_contain_text(
+        re.compile(r"fell by \d.* between 2025-03-\d\d and 2025-04-\d\d, 90\s% interval")
+    )
+    changed = page.get_by_role("region", name="What changed, and why")
+    expect(changed).to_contain_text(re.compile(r"began 2025-04-\d\d \(2025-04-\d\d to 2025-04-\d\d\)"))
+    next_step = page.locator(".answers div", has_text="What to do next?")
+    expect(next_step).to_contain_text("low-noise accelerometers on one foot")
+    click(page.get_by_role("link", name="Records", exact=True))
+    worst = page.get_by_role("region", name="The worst first")
+    expect(worst.locator("tbody tr").first).to_contain_text(
+        re.compile(r"2025-12-01 1\d:00.*side-side 1", re.S)
+    )
+    expect(worst).to_contain_text(
+        "the less, the more it is damped and the fewer of its cycles the record holds"
+    )
+    assert clicks <= 3
 
 
 def test_many_modes_are_drawn_in_bins_until_they_are_few(

@@ -17,6 +17,8 @@ export interface Answer<T> {
   again: () => void;
 }
 
+type State<T> = { key: string; data?: T | undefined; problem?: Problem | undefined };
+
 /** Ask, and ask again when an event of the asset ("" for any) arrives or the question changes. */
 export function useAnswer<T>(
   asset: string | null,
@@ -25,11 +27,7 @@ export function useAnswer<T>(
   /** What the question is about; the last answer stays until this one's comes. */
   about = "",
 ): Answer<T> {
-  const [state, setState] = useState<{ key: string; data: T | undefined; problem: Problem | undefined }>({
-    key,
-    data: undefined,
-    problem: undefined,
-  });
+  const [state, setState] = useState<State<T>>({ key });
   const [tries, setTries] = useState(0);
   const newest = useRef(0);
   const events = asset === null ? 0 : (happened.value[asset] ?? 0);
@@ -51,8 +49,8 @@ export function useAnswer<T>(
       (error: unknown) => keep(undefined, error instanceof Problem ? error : new Problem("server", String(error))),
     );
   }, [key, about, events, tries, lost]);
-  const current = state.key === key ? state : { data: undefined, problem: undefined };
-  return { data: current.data, problem: current.problem, again };
+  const { data, problem }: State<T> = state.key === key ? state : { key };
+  return { data, problem, again };
 }
 
 /** Ask what the API says at an address below an asset or a record. */

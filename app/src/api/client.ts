@@ -68,6 +68,9 @@ export async function told<T>(answer: Promise<Fetched<T>>): Promise<T> {
   throw problemOf(fetched.response.status, fetched.error, Number(fetched.response.headers.get("Retry-After")));
 }
 
+/** Files as they are sent. */
+export const sending = (form: FormData) => ({ body: form as never, bodySerializer: () => form });
+
 type Paged<T> = { items: T[]; next_cursor?: string | null };
 
 /** Return a whole list, page by page, at most so many. */

@@ -10,6 +10,7 @@ type Said = { tags?: string[]; description?: string; summary?: string; parameter
 type Operation = Said & { requestBody?: { content: object }; responses: object };
 type Described = { info: { title: string; version: string }; paths: Record<string, Record<string, Operation>> };
 type Row = Operation & { method: string; path: string };
+const tagOf = (row: Row): string => row.tags?.[0] ?? "other";
 
 async function read(): Promise<Described> {
   const answer = await fetch("/api/v1/openapi.json").catch(() => null);
@@ -63,7 +64,8 @@ export default function Docs() {
           const rows: Row[] = Object.entries(data.paths)
             .flatMap(([path, of]) => Object.entries(of).map(([method, one]) => ({ ...one, method, path })))
             .filter((r) => `${r.path} ${r.description ?? ""}`.toLowerCase().includes(text));
-          const tags = [...new Set(rows.map((r) => r.tags?.[0] ?? "other"))];
+          const byTag = new Map<string, Row[]>();
+          for (const row of rows) byTag.set(tagOf(row), [...(byTag.get(tagOf(row)) ?? []), row]);
           return (
             <>
               <div class="tools">
@@ -73,14 +75,12 @@ export default function Docs() {
                 </span>
               </div>
               <div class="grid">
-                {tags.map((tag) => (
+                {[...byTag].map(([tag, own]) => (
                   <Card key={tag} title={tag} wide>
                     <ul class="list">
-                      {rows
-                        .filter((r) => (r.tags?.[0] ?? "other") === tag)
-                        .map((r) => (
-                          <Call key={r.method + r.path} row={r} />
-                        ))}
+                      {own.map((r) => (
+                        <Call key={r.method + r.path} row={r} />
+                      ))}
                     </ul>
                   </Card>
                 ))}

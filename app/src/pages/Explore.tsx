@@ -1,17 +1,17 @@
 // What the ground's parameters do: move one and see every mode follow; how sharply the data decide.
-import { useMemo, useState } from "preact/hooks";
+import { useMemo } from "preact/hooks";
 import { useAsset } from "../api/answer";
 import { type Schemas } from "../api/client";
-import { Card, Choice, Head, Pick, Slide } from "../parts/Bits";
+import { Card, Choice, Head, Pick, Slide, slid } from "../parts/Bits";
 import { modeColour, modeDash, paintOf } from "../parts/modes";
 import { Plot } from "../parts/plot/Plot";
-import type { Mark, PlotData, Range, Series } from "../parts/plot/series";
+import type { Mark, PlotData, Series } from "../parts/plot/series";
 import { Empty, Shown } from "../parts/Shown";
 import { Laws } from "../parts/Laws";
 import { Heat } from "../parts/Heat";
 import { number, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
-import { asked, kept } from "../shell/place";
+import { keep, useChosen } from "../shell/place";
 import { fixed, frequency, percent, quantity, scientific, short, words } from "../words/numbers";
 
 type Explored = Schemas["ExploredOut"];
@@ -72,9 +72,8 @@ function poles(locus: Locus, index: number): PlotData {
 }
 
 function Along({ locus, name, many }: { locus: Locus; name: string; many: boolean }) {
-  const [at, setIndex] = kept("at", locus.origin);
-  const index = Math.max(0, Math.min(at, locus.values.length - 1));
-  const [range, setRange] = useState<Range | null>(null);
+  const slider = { name: "at", usual: locus.origin, max: locus.values.length - 1 };
+  const index = Math.round(slid(slider));
   const [value, median] = [locus.values[index] ?? 0, locus.values[locus.origin] ?? 1];
   const mark: Mark[] = [{ x: value, words: quantity(value, locus.unit), colour: "ink" }];
   const drawn = useMemo(
@@ -96,19 +95,19 @@ function Along({ locus, name, many }: { locus: Locus; name: string; many: boolea
         wide
         note={`${many ? "Every direction's moves by the same factor" : "One parameter moves"}, the others stay where the data put them.`}
       >
-        <Slide max={locus.values.length - 1} at={index} onMove={setIndex}>
+        <Slide of={slider}>
           {name} <b>{quantity(value, locus.unit, 3)}</b>
           {index === locus.origin ? " (median)" : ` (${quantity(value / median, "", 3)} × the median)`}
         </Slide>
         <div class="pair">
           {plots.map((plot) => (
-            <Plot key={plot.title} data={plot} height={240} range={range} onRange={setRange} together="explore" />
+            <Plot key={plot.title} data={plot} height={240} together={name} />
           ))}
         </div>
       </Card>
       <Card
         title="Modes here"
-        note={`At a ${name} of ${quantity(value, locus.unit, 3)}, of the model as drawn: what the estimate allows it as error is not taken out.`}
+        note={`At a ${name} of ${quantity(value, locus.unit, 3)}; at the median as in the report. Damping is that of the sources in the model, without what is unexplained.`}
       >
         <Table
           label="Frequencies and damping ratios"
@@ -137,7 +136,7 @@ function Along({ locus, name, many }: { locus: Locus; name: string; many: boolea
 
 function Sensitivity({ asset, said }: { asset: string; said: Name }) {
   const found = useAsset(asset, "/sensitivity");
-  const of = asked("sensitivity") ? "damping_sensitivity" : "frequency_sensitivity";
+  const of = useChosen("sensitivity", OF) ? "damping_sensitivity" : "frequency_sensitivity";
   return (
     <Card
       title="Sensitivities"
@@ -189,7 +188,9 @@ function Curves({ explored, said }: { explored: Explored; said: Name }) {
 
 function Drawn({ asset, explored }: { asset: string; explored: Explored }) {
   const loci = explored.loci ?? [];
-  const locus = loci.find((l) => l.parameter === asked("parameter")) ?? loci[0];
+  const names = loci.map((l) => l.parameter);
+  const wanted = useChosen("parameter", names);
+  const locus = loci.find((l) => l.parameter === wanted);
   const named: Named = Object.fromEntries((explored.parameters ?? []).map((p) => [p.name, p]));
   const many = (l: Locus): string => `${l.words}, every direction`;
   const said: Name = (name) => named[name]?.words ?? loci.filter((l) => l.parameter === name).map(many)[0] ?? name;
@@ -201,8 +202,9 @@ function Drawn({ asset, explored }: { asset: string; explored: Explored }) {
       <div class="tools">
         <Pick
           label="Parameter"
-          kept="parameter"
-          options={loci.map((l) => [l.parameter, said(l.parameter)] as const)}
+          value={wanted}
+          options={names.map((name) => [name, said(name)] as const)}
+          onChoose={(name) => keep({ parameter: name === names[0] ? null : name, at: null })}
         />
         <span class="quiet">Law {explored.law}</span>
       </div>

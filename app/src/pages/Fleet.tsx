@@ -4,7 +4,7 @@ import { api, type Asset, told } from "../api/client";
 import { Ago, Choice, Find, Head, Light, Press } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import { type Column, number, Table } from "../parts/Table";
-import { asked, assetUrl, keep } from "../shell/place";
+import { asked, assetUrl, keep, useChosen } from "../shell/place";
 import { SaveDrawn } from "../parts/plot/SaveMenu";
 import { mapCsv, Site } from "../parts/Site";
 import { count, sentence, years } from "../words/numbers";
@@ -60,7 +60,8 @@ export function headline(assets: readonly Asset[]): string {
 
 export function Fleet() {
   const assets = useAnswer("", "assets", () => told(api.GET("/api/v1/assets")));
-  const [wanted, text] = [asked("status") ?? "", asked("find") ?? ""];
+  const [wanted, text] = [useChosen("status", ["", ...URGENT]), (asked("find") ?? "").toLowerCase()];
+  const fits = (a: Asset): boolean => (!wanted || a.status === wanted) && a.name.toLowerCase().includes(text);
   return (
     <>
       <Head title="Turbines" said>
@@ -68,9 +69,7 @@ export function Fleet() {
       </Head>
       <Shown of={assets} none={<Nothing />} lines={6}>
         {(data) => {
-          const rows = data.items.filter(
-            (a) => (!wanted || a.status === wanted) && a.name.toLowerCase().includes(text.toLowerCase()),
-          );
+          const rows = data.items.filter(fits);
           return (
             <section class="card" aria-label="All turbines">
               {data.items.length > 1 && <Site assets={data.items} />}
@@ -80,7 +79,7 @@ export function Fleet() {
                 <Find label="Find a turbine" />
               </div>
               {rows.length ? (
-                <Table label="Turbines" columns={COLUMNS} rows={rows} id={(a) => a.name} sorted={0} most={100} />
+                <Table label="Turbines" columns={COLUMNS} rows={rows} id={(a) => a.name} sorted="Status" most={100} />
               ) : (
                 <Empty title="No turbine fits">
                   <Press words="Show all" act={() => keep({ status: null, find: null })} />

@@ -5,7 +5,7 @@ import { may, useDeed } from "../api/do";
 import { Ago, Card, Choice, Head, Light, Press } from "../parts/Bits";
 import { Empty, Shown } from "../parts/Shown";
 import { Table } from "../parts/Table";
-import { asked, assetUrl } from "../shell/place";
+import { assetUrl, useChosen } from "../shell/place";
 
 type Job = Schemas["JobOut"];
 const WORDS: Record<string, string> = { queued: "waiting", leased: "under way" };
@@ -13,7 +13,7 @@ const STATES = Object.entries({ "": "All", ...WORDS, done: "done", failed: "fail
 const KINDS: Record<string, string> = { observe: "find the modes of a record", know: "ask what all records say" };
 
 export default function Jobs() {
-  const state = asked("state") ?? "";
+  const state = useChosen("state", STATES);
   const query = { limit: 200, ...(state ? { state: state as Job["state"] } : {}) };
   const jobs = useAnswer("", `jobs ${state}`, () => told(api.GET("/api/v1/jobs", { params: { query } })));
   const deed = useDeed();

@@ -7,7 +7,7 @@ import { csvFrom } from "../parts/plot/series";
 import { Empty, Shown } from "../parts/Shown";
 import { type Column, number, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
-import { asked, keep } from "../shell/place";
+import { linkWith, useChosen } from "../shell/place";
 import { count, fixed, scientific, years } from "../words/numbers";
 import { day } from "../words/time";
 
@@ -32,21 +32,7 @@ const largest = (shares: Record<string, number>): string[] =>
 
 const COLUMNS: Column<Weld>[] = [
   { title: "Status", show: (w) => <Light status={state(w)} />, by: state },
-  {
-    title: "Weld",
-    show: (w) => (
-      <a
-        href={`?weld=${encodeURIComponent(key(w))}`}
-        onClick={(event) => {
-          event.preventDefault();
-          keep({ weld: key(w) });
-        }}
-      >
-        {named(w)}
-      </a>
-    ),
-    by: key,
-  },
+  { title: "Weld", show: (w) => <a href={linkWith({ weld: key(w) })}>{named(w)}</a>, by: key },
   number("Above the sea", "m", (w) => w.above_sea_m, { say: (v) => fixed(v, 1) }),
   {
     title: "Left",
@@ -112,7 +98,7 @@ function One({ weld }: { weld: Weld }) {
 
 export default function Life({ asset }: PageProps) {
   const life = useAsset(asset, "/life");
-  const wanted = asked("weld");
+  const wanted = useChosen("weld", life.data?.items.map(key));
   return (
     <>
       <Head title="Life" said>
@@ -120,7 +106,7 @@ export default function Life({ asset }: PageProps) {
       </Head>
       <Shown of={life} lines={8} none={<Nothing />}>
         {(data) => {
-          const weld = data.items.find((w) => key(w) === wanted) ?? data.items[0];
+          const weld = data.items.find((w) => key(w) === wanted);
           return (
             <div class="grid">
               <Card

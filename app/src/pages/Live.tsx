@@ -9,11 +9,12 @@ import { InSpace } from "../parts/InSpace";
 import { SaveDrawn } from "../parts/plot/SaveMenu";
 import { Lanes, Roll } from "../parts/Roll";
 import { Empty, Shown } from "../parts/Shown";
-import { kept, type PageProps } from "../shell/place";
+import { type PageProps, useChosen } from "../shell/place";
 import { raised } from "../words/numbers";
 import { seconds } from "../words/time";
 
-const SPANS_S = [10, 30, 120] as const;
+const SPANS_S = ["10", "30", "120"];
+const SPAN_S = 30;
 const PIECE_S = 60;
 type Packet = { channel: string; t0_utc: string; rate_hz: number; samples: (number | null)[] };
 
@@ -38,7 +39,7 @@ function useReplay(record: RecordOut | undefined, roll: Roll): void {
   useEffect(() => {
     if (!record) return;
     roll.units = Object.fromEntries(record.channels.map((c) => [String(c["name"]), raised(String(c["unit"]))]));
-    roll.begin(SPANS_S[1], false); // a full picture from the first moment on
+    roll.begin(SPAN_S, false); // a full picture from the first moment on
     let asked = 0;
     const more = async (): Promise<void> => {
       if (roll.streams || roll.now() < asked - PIECE_S / 2) return;
@@ -84,8 +85,7 @@ function Moving({ drawn, record, roll }: { drawn: Schemas["StructureOut"]; recor
 
 export default function Live({ asset }: PageProps) {
   const [roll] = useState(() => new Roll());
-  const [wanted, setSpan] = kept("span", SPANS_S[1]);
-  const span = SPANS_S.find((s) => s === wanted) ?? SPANS_S[1];
+  const span = Number(useChosen("span", SPANS_S, String(SPAN_S)));
   const streams = useStream(asset, roll);
   const listed = useAsset(asset, "/records", { limit: 100, status: "observed" });
   const record = listed.data?.items.find((r) => r.raw_kept);
@@ -114,9 +114,9 @@ export default function Live({ asset }: PageProps) {
                   <Pick
                     label="Shown"
                     bare
-                    value={String(span)}
-                    options={SPANS_S.map((s) => [String(s), `last ${s} s`] as const)}
-                    onChoose={(s) => setSpan(Number(s))}
+                    kept="span"
+                    usual={String(SPAN_S)}
+                    options={SPANS_S.map((s) => [s, `last ${s} s`] as const)}
                   />
                 </>
               }

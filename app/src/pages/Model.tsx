@@ -8,7 +8,7 @@ import { Drop } from "../parts/Drop";
 import { Shown } from "../parts/Shown";
 import { number, Table } from "../parts/Table";
 import type { PageProps } from "../shell/place";
-import { asked, keep } from "../shell/place";
+import { keep, useChosen } from "../shell/place";
 import { scientific, words } from "../words/numbers";
 
 type Versions = Schemas["Page_VersionOut_"];
@@ -77,7 +77,8 @@ function NewVersion({ asset, versions }: { asset: string; versions: Answer<Versi
 export default function Model({ asset }: PageProps) {
   const versions = useAsset(asset, "/versions");
   const deed = useDeed();
-  const other = Number(asked("compare") ?? 0);
+  const others = versions.data?.items.filter((v) => !v.adopted).map((v) => String(v.version));
+  const other = Number(useChosen("compare", others && ["", ...others]));
   const adopt = async (version: number): Promise<void> => {
     const path = { params: { path: { asset, version } } };
     if (await deed.run(() => told(api.POST("/api/v1/assets/{asset}/versions/{version}/adopt", path))))

@@ -11,8 +11,7 @@ import { Shown } from "../parts/Shown";
 import { Stabilisation } from "../parts/Stabilisation";
 import { ModeTable } from "../parts/ModeTable";
 import type { PageProps } from "../shell/place";
-import { asked, keep } from "../shell/place";
-import { InTime, rangeKept } from "../parts/Stiffness";
+import { asked, keep, stretch, useChosen, useStrange } from "../shell/place";
 import { fixed, sentence, short, words } from "../words/numbers";
 import { seconds } from "../words/time";
 
@@ -32,8 +31,9 @@ function Signals({ record, onDrawn }: { record: RecordOut; onDrawn: () => void }
   const names = record.channels.map((c) => String(c["name"]));
   const wanted = asked("channels")?.split("\n") ?? names.slice(0, 3);
   const chosen = names.filter((name) => wanted.includes(name));
+  useStrange(wanted.some((name) => name && !names.includes(name)) ? ["channels"] : []);
   const begin = seconds(record.start_utc);
-  const range = rangeKept();
+  const range = stretch.value;
   const query = {
     channels: chosen,
     points: POINTS,
@@ -81,7 +81,7 @@ function Signals({ record, onDrawn }: { record: RecordOut; onDrawn: () => void }
         <p class="quiet">Choose a channel.</p>
       ) : (
         <Shown of={signal} lines={8}>
-          {() => plots.map((plot) => <InTime key={plot.title} data={plot} height={120} together="signal" />)}
+          {() => plots.map((plot) => <Plot key={plot.title} data={plot} height={120} together="signal" />)}
         </Shown>
       )}
       {faults.length > 0 && (
@@ -103,7 +103,7 @@ const mark = (f: Stretch, begin: number): Mark => ({
 });
 
 function Spectrum({ record, modes }: { record: RecordOut; modes: readonly Mode[] }) {
-  const what = asked("spectrum") ?? "";
+  const what = useChosen("spectrum", SPECTRA);
   const found = useRecord(record.record_id, "/spectrum");
   const key = modes.map((m) => m.frequency_hz).join();
   const plot = useMemo((): PlotData | null => {
@@ -132,7 +132,7 @@ function Spectrum({ record, modes }: { record: RecordOut; modes: readonly Mode[]
       more={<Choice label="What" kept="spectrum" options={SPECTRA} />}
     >
       <Shown of={found} lines={6}>
-        {() => plot && <Plot data={plot} height={300} range={[0, Math.min(2, record.sample_rate_hz / 2)]} />}
+        {() => plot && <Plot data={plot} height={300} first={[0, Math.min(2, record.sample_rate_hz / 2)]} />}
       </Shown>
     </Card>
   );
@@ -140,7 +140,7 @@ function Spectrum({ record, modes }: { record: RecordOut; modes: readonly Mode[]
 
 function Spectrogram({ record }: { record: RecordOut }) {
   const names = record.channels.map((c) => String(c["name"]));
-  const channel = asked("channel") ?? names[0] ?? "";
+  const channel = useChosen("channel", names);
   const found = useRecord(record.record_id, "/spectrogram", { channel });
   const cells = useMemo(() => {
     const rows = found.data?.level_db ?? [];

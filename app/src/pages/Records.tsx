@@ -1,5 +1,4 @@
 // Which records are there, and how far did each get?
-import { useState } from "preact/hooks";
 import { useAsset } from "../api/answer";
 import type { Mode, RecordOut } from "../api/client";
 import { may } from "../api/do";
@@ -9,7 +8,8 @@ import { Empty, Shown } from "../parts/Shown";
 import { type Column, number, Table } from "../parts/Table";
 import { Upload } from "../parts/Upload";
 import type { PageProps } from "../shell/place";
-import { asked, assetUrl, keep } from "../shell/place";
+import { assetUrl, keep, numberAsked, stretch, useChosen } from "../shell/place";
+import { stamp } from "../parts/plot/series";
 
 type Status = RecordOut["status"];
 const LEFT_OUT = { refused: "refused", mismatched: "mismatched", set_aside: "set aside" };
@@ -39,13 +39,14 @@ const COLUMNS: Column<RecordOut>[] = [
   { title: "Source", show: (r) => r.source_name, by: (r) => r.source_name },
   { title: "Remark", show: (r) => <span class="prose">{detail(r)}</span> },
 ];
-const MORE = 20;
+const [MORE, MOST] = [20, 1000];
 
 export default function Records({ asset }: PageProps) {
-  const status = asked("status") ?? "";
-  const [limit, setLimit] = useState(MORE);
-  const [from, to] = [asked("from"), asked("to")];
-  const query = { limit, ...(status ? { status: status as Status } : {}), ...(from && to ? { from, to } : {}) };
+  const status = useChosen("status", STATUSES);
+  const limit = numberAsked("rows", 1, MOST) ?? MORE;
+  const [from, to] = stretch.value?.map(stamp) ?? [];
+  const times = from && to ? { from, to } : {};
+  const query = { limit, ...(status ? { status: status as Status } : {}), ...times };
   const found = useAsset(asset, "/records", query);
   return (
     <>
@@ -54,7 +55,7 @@ export default function Records({ asset }: PageProps) {
       <div class="tools below">
         <Choice label="Status" kept="status" options={STATUSES} />
       </div>
-      <LeastKnown asset={asset} times={from && to ? { from, to } : {}} />
+      <LeastKnown asset={asset} times={times} />
       <Card
         title={from && to ? `From ${from.slice(0, 10)} to ${to.slice(0, 10)}` : "Latest first"}
         wide
@@ -64,8 +65,8 @@ export default function Records({ asset }: PageProps) {
           {(data) => (
             <>
               <Table label="Records" columns={COLUMNS} rows={data.items} id={(r) => r.record_id} />
-              {data.next_cursor && limit < 1000 && (
-                <Press words="Show more" act={() => setLimit((n) => Math.min(n * 2, 1000))} />
+              {data.next_cursor && limit < MOST && (
+                <Press words="Show more" act={() => keep({ rows: String(Math.min(limit * 2, MOST)) })} />
               )}
             </>
           )}

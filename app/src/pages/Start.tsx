@@ -1,6 +1,6 @@
 // A turbine from what lies in a folder: a twin file, or a structure and records, of which a twin is drafted.
 import { useState } from "preact/hooks";
-import { api, me, type Schemas, told } from "../api/client";
+import { api, me, type Schemas, sending, told } from "../api/client";
 import { isTwin, may, namesOf, twinOf, useDeed } from "../api/do";
 import { Card, Field, Form, Head, Pick, Press } from "../parts/Bits";
 import { Drop } from "../parts/Drop";
@@ -83,8 +83,7 @@ function Drafting({ files }: { files: readonly File[] }) {
       const [first, description] = paired(records)[0] ?? [];
       if (first) form.append("record", first);
       if (description) form.append("description", description);
-      const body = form as unknown as { structure: string; record: string };
-      setDraft(await told(api.POST("/api/v1/drafts", { body, bodySerializer: () => form })));
+      setDraft(await told(api.POST("/api/v1/drafts", sending(form))));
     });
   return (
     <>

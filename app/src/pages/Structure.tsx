@@ -6,7 +6,8 @@ import { Card, Pick } from "../parts/Bits";
 import { InSpace } from "../parts/InSpace";
 import { Empty, Shown } from "../parts/Shown";
 import type { PageProps } from "../shell/place";
-import { asked } from "../shell/place";
+import { asked, useChosen } from "../shell/place";
+import { sentence } from "../words/numbers";
 import { day, utc } from "../words/time";
 
 function Version({ asset, version }: { asset: string; version: number | undefined }) {
@@ -25,8 +26,9 @@ function Version({ asset, version }: { asset: string; version: number | undefine
     <Card
       title={version === undefined ? "As adopted" : `Version ${version}`}
       wide={version === undefined && !asked("beside")}
-      note="Every part in its own phase: what is heavily damped does not pass through rest together. Green points are what the sensors measured, in the model's amplitude and phase. Frequencies are the best fit's own: what the estimate allows the model as error is not taken out."
+      note="Every part in its own phase: what is heavily damped does not pass through rest together. Green points are what the sensors measured, in the model's amplitude and phase. Frequencies and damping ratios are the updated ones, as in the report."
     >
+      {moved.problem && <p class="error">{sentence(moved.problem.message)}</p>}
       <Shown of={found} lines={12} some={(data) => data.nodes?.length} none={<Nothing />}>
         {(data) => <InSpace drawn={drawn ?? data} />}
       </Shown>
@@ -36,25 +38,19 @@ function Version({ asset, version }: { asset: string; version: number | undefine
 
 export default function Structure({ asset }: PageProps) {
   const versions = useAsset(asset, "/versions");
-  const others = versions.data?.items.filter((v) => !v.adopted) ?? [];
+  const others = versions.data?.items.filter((v) => !v.adopted);
   const records = useAsset(asset, "/records", { limit: 20, status: "observed" });
   const kept = records.data?.items.filter((r) => r.raw_kept) ?? [];
-  const beside = asked("beside");
+  const moved = kept.map((r) => [r.record_id, `the record of ${utc(r.start_utc)}`] as const);
+  const linked = asked("record"); // perhaps an older one
+  if (linked && moved.every(([id]) => id !== linked)) moved.push([linked, "the record of the link"]);
+  const beside = useChosen("beside", others && ["", ...others.map((v) => String(v.version))]);
   return (
     <>
       <div class="head">
         <h1>Structure</h1>
-        {kept.length > 0 && (
-          <Pick
-            label="Moved as in"
-            kept="record"
-            options={[
-              ["", "its modes"],
-              ...kept.map((r) => [r.record_id, `the record of ${utc(r.start_utc)}`] as const),
-            ]}
-          />
-        )}
-        {others.length > 0 && (
+        {moved.length > 0 && <Pick label="Moved as in" kept="record" options={[["", "its modes"], ...moved]} />}
+        {others && others.length > 0 && (
           <Pick
             label="Beside it"
             kept="beside"

@@ -4,12 +4,14 @@ import { useAnswer, useAsset } from "../api/answer";
 import { api, everything, type Mode, told } from "../api/client";
 import { Card, Choice, Head, Pick } from "../parts/Bits";
 import { alarmMarks, binPlot, type Bins, byLabel, modePlot } from "../parts/modes";
-import type { Mark, PlotData } from "../parts/plot/series";
+import type { PlotData } from "../parts/plot/series";
 import { Empty, Shown, Trouble } from "../parts/Shown";
-import Stiffness, { InTime, keepRange, rangeKept } from "../parts/Stiffness";
-import { Rests, type Watch } from "../parts/Watched";
+import { stamp } from "../parts/plot/series";
+import { Plot } from "../parts/plot/Plot";
+import Stiffness from "../parts/Stiffness";
+import { Rests } from "../parts/Watched";
 import type { PageProps } from "../shell/place";
-import { asked, assetUrl, go } from "../shell/place";
+import { assetUrl, go, keepStretch, stretch, useChosen } from "../shell/place";
 import { words } from "../words/numbers";
 import { seconds } from "../words/time";
 
@@ -52,18 +54,16 @@ async function look(
 const countOf = (bins: readonly Bins[]): number => bins.reduce((n, b) => b.count.reduce((sum, k) => sum + k, n), 0);
 
 export default function Timeline({ asset }: PageProps) {
-  const state = asked("state") ?? "";
+  const state = useChosen("state", STATES);
   const of = state ? { state } : {};
   const all = useAnswer(asset, `modes ${asset} ${state}`, () => look(asset, of));
-  const other = asked("beside") ?? "";
   const assets = useAnswer(null, "assets", () => told(api.GET("/api/v1/assets")));
+  const others = assets.data?.items.map((a) => a.name).filter((name) => name !== asset);
+  const other = useChosen("beside", others && ["", ...others]);
   const beside = useAnswer(null, `beside ${other} ${state}`, async () => (other ? (await look(other, of)).bins : []));
-  const others = (assets.data?.items ?? []).filter((a) => a.name !== asset);
-  const watch = useAsset(asset, "/watch");
-  const alarms = useAsset(asset, "/alarms");
-  const what = asked("show") ?? "frequency";
+  const what = useChosen("show", QUANTITIES);
   const [ground, raw] = [what === "ground", what === "frequency" || what === "damping"];
-  const [from, to] = [asked("from"), asked("to")];
+  const [from, to] = stretch.value?.map(stamp) ?? [];
   const labels = all.data?.bins.map((b) => b.label) ?? [];
   // What is drawn row by row as a whole needs no closer look.
   const close = useRested(from && to && labels.length && !all.data?.rows ? `${from} ${to}` : "");
@@ -85,8 +85,8 @@ export default function Timeline({ asset }: PageProps) {
       <div class="tools">
         <Choice label="Quantity" kept="show" options={QUANTITIES} />
         {raw && <Choice label="State" kept="state" options={STATES} />}
-        {raw && others.length > 0 && (
-          <Pick label="Beside" kept="beside" options={[["", "no other turbine"], ...others.map((a) => a.name)]} />
+        {raw && others && others.length > 0 && (
+          <Pick label="Beside" kept="beside" options={[["", "no other turbine"], ...others]} />
         )}
         {from && to && (
           <a href={`${assetUrl(asset, "records")}?${String(new URLSearchParams({ from, to }))}`}>
@@ -99,12 +99,9 @@ export default function Timeline({ asset }: PageProps) {
           <Drawn
             all={data.bins}
             seen={(close && part.data) || data}
-            marks={alarmMarks(alarms.data?.items ?? [])}
             what={what}
             beside={{ name: other, bins: beside.data ?? [] }}
             asset={asset}
-            watch={watch.data}
-            open={(m) => go(assetUrl(asset, "records", m.record_id))}
           />
         )}
       </Shown>
@@ -125,18 +122,18 @@ function useRested(value: string): string {
 interface DrawnProps {
   all: Bins[];
   seen: Seen;
-  marks: Mark[];
   what: string;
   beside: { name: string; bins: Bins[] };
   asset: string;
-  watch: Watch | undefined;
-  open: (mode: Mode) => void;
 }
 
 type Drawing = { label: string; plot: PlotData; pick: (index: number) => void };
 
-function Drawn({ all, seen, marks, what, beside, asset, watch, open }: DrawnProps) {
-  const [wanted, range] = [asked("mode") ?? "", rangeKept()];
+function Drawn({ all, seen, what, beside, asset }: DrawnProps) {
+  const watch = useAsset(asset, "/watch").data;
+  const marks = alarmMarks(useAsset(asset, "/alarms").data?.items);
+  const wanted = useChosen("mode", ["", ...all.map((b) => b.label)]);
+  const range = stretch.value;
   const key = marks.map((m) => m.words).join();
   const plots = useMemo((): Drawing[] => {
     const groups = seen.rows && byLabel(seen.rows);
@@ -145,7 +142,7 @@ function Drawn({ all, seen, marks, what, beside, asset, watch, open }: DrawnProp
       if (groups) {
         const rows = groups.get(label) ?? [];
         const pick = (index: number): void => {
-          if (rows[index]) open(rows[index]);
+          if (rows[index]) go(assetUrl(asset, "records", rows[index].record_id));
         };
         const plot = withOther(modePlot(label, rows, what, marks), beside, label, what);
         return { label, plot, pick };
@@ -153,7 +150,7 @@ function Drawn({ all, seen, marks, what, beside, asset, watch, open }: DrawnProp
       const bins = seen.bins.find((b) => b.label === label) ?? { ...whole, time_s: [] };
       const pick = (index: number): void => {
         const from = seconds(bins.start_utc) + (bins.time_s[index] ?? 0);
-        keepRange([Math.floor(from), Math.ceil(from + bins.bin_s)]);
+        keepStretch([Math.floor(from), Math.ceil(from + bins.bin_s)]);
       };
       return { label, plot: withOther(binPlot(bins, what, marks), beside, label, what), pick };
     });
@@ -161,7 +158,7 @@ function Drawn({ all, seen, marks, what, beside, asset, watch, open }: DrawnProp
   const last = Math.max(...all.map((b) => seconds(b.start_utc) + (b.time_s.at(-1) ?? 0) + b.bin_s));
   const first = Math.min(...all.map((b) => seconds(b.start_utc) + (b.time_s[0] ?? 0)));
   const shown = plots.filter((p) => !wanted || p.label === wanted);
-  const show = (days: string): void => keepRange(days ? [last - Number(days) * DAY_S, last + DAY_S] : null);
+  const show = (days: string): void => keepStretch(days ? [last - Number(days) * DAY_S, last + DAY_S] : null);
   const kind = what === "left" ? "frequency" : "damping";
   const simulated = all.reduce((n, b) => n + b.simulated, 0);
   const span = range ? String(Math.round((range[1] - range[0]) / DAY_S - 1)) : "";
@@ -195,12 +192,12 @@ function Drawn({ all, seen, marks, what, beside, asset, watch, open }: DrawnProp
         >
           {!seen.rows && <p class="quiet">Bins of time; choose one, or zoom, to see its records.</p>}
           {shown.map(({ label, plot, pick }) => (
-            <InTime
+            <Plot
               key={label}
               data={plot}
               height={shown.length === 1 ? 460 : 170}
               together="timeline"
-              range={range ?? [first, last]}
+              first={[first, last]}
               onPick={(_, index) => pick(index)}
             />
           ))}

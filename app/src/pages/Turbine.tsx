@@ -118,13 +118,8 @@ function Head({ asset, twin }: { asset: Asset; twin: Twin | undefined }) {
       <Light status={asset.status} long />
       <h1>{asset.name}</h1>
       <span class="quiet">
-        {asset.last_record_utc ? (
-          <>
-            last data <Ago at={asset.last_record_utc} />
-          </>
-        ) : (
-          "no data yet"
-        )}
+        {asset.last_record_utc ? "last data " : "no data yet"}
+        {asset.last_record_utc && <Ago at={asset.last_record_utc} />}
         {waiting ? `, ${count(waiting, "record")} waiting` : ""}
         {left ? `, ${count(left, "record")} left out` : ""}
         {` · model version ${asset.version}`}

@@ -11,8 +11,7 @@ type Role = Schemas["UserOut"]["role"];
 function Add({ again }: { again: () => void }) {
   const send = async (text: (name: string) => string): Promise<void> => {
     const assets = text("assets")
-      .split(",")
-      .map((a) => a.trim())
+      .split(/[\s,]+/)
       .filter(Boolean);
     const own = { name: text("name"), role: text("role") as Role, password: text("password") };
     await told(api.POST("/api/v1/users", { body: { ...own, assets: assets.length ? assets : null } }));

@@ -1,7 +1,8 @@
 // Findings that ask for a person, what is known of each, and the way to say that one has looked.
+import { useEffect } from "preact/hooks";
 import type { Finding } from "../api/client";
 import { sentence } from "../words/numbers";
-import { assetUrl } from "../shell/place";
+import { asked, assetUrl } from "../shell/place";
 import { Light, Time } from "./Bits";
 import { Handling, History, standing } from "./Handling";
 
@@ -17,20 +18,22 @@ function evidence(alarm: Finding): string {
   return `${assetUrl(alarm.asset, "timeline")}?${range}`;
 }
 
-type Said = Finding & { comment?: string | null };
-/** If whole, what people did is shown line by line. */
-type AlarmListProps = { alarms: readonly Said[]; again: () => void; whole?: boolean };
+/** Whether a link is about it, which stands out then. */
+export const linked = (alarm: Finding): boolean => asked("alarm") === String(alarm.id);
 
-export function AlarmList({ alarms, again, whole = false }: AlarmListProps) {
+export function AlarmList({ alarms, again }: { alarms: readonly Finding[]; again: () => void }) {
+  useEffect(() => document.querySelector("li.here")?.scrollIntoView({ block: "center" }), [asked("alarm")]);
   return (
     <ul class="list">
       {alarms.map((alarm) => (
-        <li key={alarm.id}>
+        <li key={alarm.id} class={linked(alarm) ? "here" : ""}>
           <p class="meta">
             <Light status={standing(alarm)} />
             <span>
               {alarm.severity === "alarm" && "found "}
-              <Time at={alarm.time_utc} />
+              <a href={`${assetUrl(alarm.asset, "alarms")}?alarm=${alarm.id}`}>
+                <Time at={alarm.time_utc} />
+              </a>
             </span>
             {alarm.assigned_to && <span>with {alarm.assigned_to}</span>}
             {alarm.muted_until_utc && (
@@ -42,13 +45,7 @@ export function AlarmList({ alarms, again, whole = false }: AlarmListProps) {
           </p>
           <p>{sentence(alarm.text)}</p>
           <Causes causes={alarm.params["causes"] as Record<string, number> | undefined} />
-          {whole
-            ? (alarm.severity === "alarm" || standing(alarm) !== alarm.severity) && <History finding={alarm} />
-            : alarm.acknowledged_by && (
-                <p class="quiet">
-                  {alarm.acknowledged_by}, <Time at={alarm.acknowledged_utc ?? alarm.time_utc} />: {alarm.comment}
-                </p>
-              )}
+          {(alarm.severity === "alarm" || standing(alarm) !== alarm.severity) && <History finding={alarm} />}
           {alarm.severity !== "info" && <Handling finding={alarm} again={again} />}
         </li>
       ))}

@@ -2,7 +2,7 @@
 import type { ComponentChildren, InputHTMLAttributes } from "preact";
 import type { Problem } from "../api/client";
 import { useDeed } from "../api/do";
-import { asked, keep } from "../shell/place";
+import { asked, chosen, keep, numberAsked, type Options, useStrange } from "../shell/place";
 import { ago, local, utc } from "../words/time";
 
 const SAID: Record<string, string> = {
@@ -75,16 +75,17 @@ export const Press = ({ words, act, off = false, look = "" }: PressProps) => (
 
 interface ChoiceProps {
   label: string;
-  options: readonly (string | readonly [string, string])[];
-  /** The choice stands in the address under this name; the first option is the usual one. */
+  options: Options;
+  /** The choice stands in the address under this name, unless it is the usual one: the first, if none is said. */
   kept?: string;
+  usual?: string;
   value?: string;
   onChoose?: (value: string) => void;
 }
 
-function choosing({ options, kept, value = "", onChoose }: ChoiceProps): [string, (value: string) => void] {
-  const usual = pairs(options)[0]?.[0] ?? "";
-  if (kept) return [asked(kept) ?? usual, (one) => keep({ [kept]: one === usual ? null : one })];
+function choosing({ options, kept, usual, value = "", onChoose }: ChoiceProps): [string, (value: string) => void] {
+  const first = usual ?? pairs(options)[0]?.[0];
+  if (kept) return [chosen(kept, options, first), (one) => keep({ [kept]: one === first ? null : one })];
   return [value, (one) => onChoose?.(one)];
 }
 
@@ -103,7 +104,7 @@ export function Choice(props: ChoiceProps) {
   );
 }
 
-const pairs = (options: ChoiceProps["options"]): (readonly [string, string])[] =>
+const pairs = (options: Options): (readonly [string, string])[] =>
   options.map((one) => (typeof one === "string" ? [one, one] : one));
 
 /** One of many things: a list to open, named beside it or only to who cannot see it. */
@@ -135,18 +136,16 @@ export const Find = ({ label }: { label: string }) => (
   />
 );
 
-type SlideProps = { min?: number; max: number; step?: number | "any"; at: number; onMove: (to: number) => void };
+/** A number by slider, with the name that it has in the address, where it stands at first, and its limits. */
+export type Slider = { name: string; usual: number; min?: number; max: number; step?: number | "any" };
+export const slid = ({ name, usual, min = 0, max }: Slider): number => numberAsked(name, min, max) ?? usual;
 
-/** A number by slider, with its words above. */
-export function Slide({
-  children,
-  min = 0,
-  max,
-  step = 1,
-  at,
-  onMove,
-}: SlideProps & { children: ComponentChildren }) {
-  const moved = (event: { currentTarget: HTMLInputElement }): void => onMove(Number(event.currentTarget.value));
+/** A slider with its words above. */
+export function Slide({ of, children }: { of: Slider; children: ComponentChildren }) {
+  const [{ name, usual, min = 0, max, step = 1 }, at] = [of, slid(of)];
+  useStrange(asked(name) !== null && numberAsked(name, min, max) === null ? [name] : []);
+  const moved = ({ currentTarget: { value } }: { currentTarget: HTMLInputElement }): void =>
+    keep({ [name]: Number(value) === usual ? null : String(Number(Number(value).toFixed(3))) });
   return (
     <label class="slide">
       <span>{children}</span>

@@ -112,13 +112,8 @@ export function History({ finding }: { finding: Finding }) {
         <li key={i}>
           <b>{one.by}</b> {ACTS[one.action]?.[2] ?? one.action}
           {one.to ? ` to ${one.to}` : ""}
-          {one.until_utc && (
-            <>
-              {" "}
-              until <Time at={one.until_utc} />
-            </>
-          )}
-          , <Time at={one.time_utc} />
+          {one.until_utc && " until "}
+          {one.until_utc && <Time at={one.until_utc} />}, <Time at={one.time_utc} />
           {one.comment && <>: {one.comment}</>}
         </li>
       ))}

@@ -1,19 +1,19 @@
 // A support law by slider: what it stores and loses at each frequency, and how it creeps.
-import { useMemo, useState } from "preact/hooks";
+import { useMemo } from "preact/hooks";
 import { useAnswer } from "../api/answer";
 import { api, type Schemas, told } from "../api/client";
 import { quantity } from "../words/numbers";
-import { asked, kept } from "../shell/place";
-import { Card, Choice, Slide } from "./Bits";
+import { useChosen } from "../shell/place";
+import { Card, Choice, Slide, slid } from "./Bits";
 import { Plot } from "./plot/Plot";
-import type { PlotData, Range, Series } from "./plot/series";
+import type { PlotData, Series } from "./plot/series";
 import { Shown } from "./Shown";
 
-/** Of each parameter: unit, least, greatest and first value, in decades where it spans some. */
-type Slider = readonly [string, string, number, number, number];
+/** Of each parameter: name, unit, least, greatest and first value, in decades where it spans some. */
+type Parameter = readonly [string, string, number, number, number];
 const K = ["N/m", 7, 11, 9.4] as const;
 const F0 = ["f0", "Hz", -2, 1, -0.74] as const;
-const LAWS: Record<string, readonly Slider[]> = {
+const LAWS: Record<string, readonly Parameter[]> = {
   "maxwell-3": [["k", ...K], ["loss_factor", "", 0.001, 0.5, 0.03], F0],
   "kelvin-voigt": [
     ["k", ...K],
@@ -35,7 +35,8 @@ const WORDS: Record<string, string> = {
   alpha: "springpot exponent alpha",
   f0: "reference frequency f0",
 };
-const numberOf = ([, unit]: Slider, at: number): number => (unit ? 10 ** at : at);
+const sliderOf = ([name, , min, max, usual]: Parameter) => ({ name, usual, min, max, step: "any" as const });
+const valueOf = (p: Parameter): number => (p[1] ? 10 ** slid(sliderOf(p)) : slid(sliderOf(p)));
 
 function plotsOf(law: Schemas["LawOut"]): PlotData[] {
   const one = (title: string, yName: string, time: boolean, log: boolean, y: Series["y"]): PlotData => ({
@@ -56,11 +57,9 @@ function plotsOf(law: Schemas["LawOut"]): PlotData[] {
 }
 
 export function Laws() {
-  const name = asked("law") ?? "maxwell-3";
-  const [range, setRange] = useState<Range | null>(null);
-  const sliders = LAWS[name] ?? [];
-  const at = (s: Slider): number => kept(s[0], s[4])[0];
-  const of = `${name}:${sliders.map((s) => `${s[0]}=${numberOf(s, at(s)).toPrecision(4)}`).join(",")}`;
+  const name = useChosen("law", Object.keys(LAWS));
+  const parameters = LAWS[name] ?? [];
+  const of = `${name}:${parameters.map((p) => `${p[0]}=${valueOf(p).toPrecision(4)}`).join(",")}`;
   const found = useAnswer(null, "law", async () => told(api.GET("/api/v1/law", { params: { query: { of } } })), of);
   const plots = useMemo(() => (found.data ? plotsOf(found.data) : []), [found.data]);
   return (
@@ -72,22 +71,16 @@ export function Laws() {
       <div class="tools">
         <Choice label="Law" kept="law" options={Object.keys(LAWS)} />
       </div>
-      {sliders.map((s) => (
-        <Slide key={s[0]} min={s[2]} max={s[3]} step="any" at={at(s)} onMove={kept(s[0], s[4])[1]}>
-          {WORDS[s[0]]} <b>{quantity(numberOf(s, at(s)), s[1], 3)}</b>
+      {parameters.map((p) => (
+        <Slide key={p[0]} of={sliderOf(p)}>
+          {WORDS[p[0]]} <b>{quantity(valueOf(p), p[1], 3)}</b>
         </Slide>
       ))}
       <Shown of={found}>
         {() => (
           <div class="pair">
             {plots.map((plot) => (
-              <Plot
-                key={plot.title}
-                data={plot}
-                height={200}
-                range={plot.title === "Creep" ? null : range}
-                onRange={setRange}
-              />
+              <Plot key={plot.title} data={plot} height={200} together={plot.xName} />
             ))}
           </div>
         )}

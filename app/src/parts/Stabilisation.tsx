@@ -3,6 +3,7 @@ import { useEffect, useMemo, useState } from "preact/hooks";
 import { useRecord } from "../api/answer";
 import { api, type Mode, type RecordOut, type Schemas, told } from "../api/client";
 import { may, useDeed } from "../api/do";
+import { keep, useChosen } from "../shell/place";
 import { percent, words } from "../words/numbers";
 import { Card, Press, Time } from "./Bits";
 import { Plot } from "./plot/Plot";
@@ -11,22 +12,27 @@ import { Shown } from "./Shown";
 
 type Poles = Schemas["StabilisationOut"];
 type Pick_ = { frequency_hz: number; order: number };
+const keyOf = ({ frequency_hz, order }: Pick_): string => `${order} ${frequency_hz}`;
+const poleOf = (poles: Poles, i: number): Pick_ => ({
+  frequency_hz: poles.frequency_hz[i] ?? NaN,
+  order: poles.order[i] ?? 0,
+});
 
 const KIND = ["picked", "stable", "not stable"] as const;
 const PAINT = { picked: "alarm", stable: "green", "not stable": "grey" } as const;
 
 /** The number of each pole in the answer, by what it is shown as. */
 function sorted(poles: Poles, picks: readonly Pick_[]): Record<(typeof KIND)[number], number[]> {
-  const taken = new Set(picks.map((p) => `${p.order} ${p.frequency_hz}`));
+  const taken = new Set(picks.map(keyOf));
   const out: Record<(typeof KIND)[number], number[]> = { picked: [], stable: [], "not stable": [] };
-  poles.frequency_hz.forEach((f, i) => {
-    if (taken.has(`${poles.order[i]} ${f}`)) out.picked.push(i);
+  poles.frequency_hz.forEach((_, i) => {
+    if (taken.has(keyOf(poleOf(poles, i)))) out.picked.push(i);
     else out[poles.stable[i] ? "stable" : "not stable"].push(i);
   });
   return out;
 }
 
-type ChartProps = { poles: Poles; picks: Pick_[]; onPick: (i: number) => void; modes: readonly Mode[] };
+type ChartProps = { poles: Poles; picks: Pick_[]; onPick: (pole: Pick_) => void; modes: readonly Mode[] };
 
 function Chart({ poles, picks, onPick, modes }: ChartProps) {
   const groups = useMemo(() => sorted(poles, picks), [poles, picks]);
@@ -44,7 +50,7 @@ function Chart({ poles, picks, onPick, modes }: ChartProps) {
   }, [groups, modes]);
   const chosen = (series: number, index: number): void => {
     const pole = groups[KIND[series] ?? "stable"][index];
-    if (pole !== undefined) onPick(pole);
+    if (pole !== undefined) onPick(poleOf(poles, pole));
   };
   return <Plot data={plot} height={340} onPick={chosen} />;
 }
@@ -68,14 +74,18 @@ const kept = (record: RecordOut): Pick_[] => {
 type OfRecord = { record: RecordOut; modes: readonly Mode[]; again: () => void };
 
 export function Stabilisation(of: OfRecord) {
-  const [open, setOpen] = useState(false);
+  const open = useChosen("poles", ["", "shown"]);
   return (
     <Card
       title="Poles"
       wide
       note="Poles of every model order. Choose some to take them instead of the automatic choice; the record is identified again."
     >
-      {open ? <Open {...of} /> : <Press words="Compute the stabilisation chart" act={() => setOpen(true)} />}
+      {open ? (
+        <Open {...of} />
+      ) : (
+        <Press words="Compute the stabilisation chart" act={() => keep({ poles: "shown" })} />
+      )}
     </Card>
   );
 }
@@ -86,11 +96,10 @@ function Open({ record, modes, again }: OfRecord) {
   const deed = useDeed();
   const path = { params: { path: { record_id: record.record_id } } };
   const poles = useRecord(record.record_id, "/stabilisation");
-  const switched = (i: number): void => {
-    const [f, order] = [poles.data?.frequency_hz[i], poles.data?.order[i]];
-    if (f === undefined || order === undefined || !may("engineer")) return;
-    const same = (p: Pick_): boolean => p.frequency_hz === f && p.order === order;
-    setPicks((old) => (old.some(same) ? old.filter((p) => !same(p)) : [...old, { frequency_hz: f, order }]));
+  const taken = new Set(picks.map(keyOf));
+  const switched = (pole: Pick_): void => {
+    if (!may("engineer")) return;
+    setPicks(taken.has(keyOf(pole)) ? picks.filter((p) => keyOf(p) !== keyOf(pole)) : [...picks, pole]);
   };
   const save = async (chosen: Pick_[]): Promise<void> => {
     const done = await deed.run(() =>
@@ -98,8 +107,6 @@ function Open({ record, modes, again }: OfRecord) {
     );
     if (done) again();
   };
-  const by = record.picks?.["by"];
-  const when = record.picks?.["time_utc"];
   return (
     <Shown of={poles} lines={9}>
       {(data) => (
@@ -112,10 +119,8 @@ function Open({ record, modes, again }: OfRecord) {
                   <label key={i}>
                     <input
                       type="checkbox"
-                      checked={picks.some(
-                        (p) => p.frequency_hz === data.frequency_hz[i] && p.order === data.order[i],
-                      )}
-                      onChange={() => switched(i)}
+                      checked={taken.has(keyOf(poleOf(data, i)))}
+                      onChange={() => switched(poleOf(data, i))}
                     />{" "}
                     {(data.frequency_hz[i] ?? 0).toFixed(4)} Hz, {percent(data.damping_ratio[i])} %
                   </label>
@@ -135,13 +140,7 @@ function Open({ record, modes, again }: OfRecord) {
           )}
           {record.picks && (
             <p class="quiet">
-              Picked by {String(by)}
-              {typeof when === "string" && (
-                <>
-                  , <Time at={when} />
-                </>
-              )}
-              .
+              Picked by {String(record.picks["by"])}, <Time at={String(record.picks["time_utc"])} />.
             </p>
           )}
         </>

@@ -1,14 +1,12 @@
 // The ground's stiffness of each day over that of the first: known then, known by now, and what to expect.
-import type { ComponentProps } from "preact";
 import { useMemo } from "preact/hooks";
 import { useAsset } from "../api/answer";
 import { type Schemas } from "../api/client";
-import { asked, keep } from "../shell/place";
 import { sentence } from "../words/numbers";
 import { day, seconds } from "../words/time";
 import { Card } from "./Bits";
 import { Plot } from "./plot/Plot";
-import type { PlotData, Range, Series } from "./plot/series";
+import type { PlotData, Series } from "./plot/series";
 import { Empty, Shown } from "./Shown";
 
 type Supports = Schemas["SupportsOut"];
@@ -84,23 +82,7 @@ function Drawn({ data }: { data: Supports }) {
   return (
     <>
       {data.statement && <p>{sentence(data.statement)}</p>}
-      <InTime data={plot} height={260} />
+      <Plot data={plot} height={260} />
     </>
   );
-}
-
-/** A plot through time, of the stretch that all plots of the page show. */
-export const InTime = (props: ComponentProps<typeof Plot>) => (
-  <Plot range={rangeKept()} onRange={keepRange} {...props} />
-);
-
-/** The stretch of time that the address holds. */
-export function rangeKept(): Range | null {
-  const [from, to] = [asked("from"), asked("to")];
-  return from && to ? [seconds(from), seconds(to)] : null;
-}
-
-export function keepRange(range: Range | null): void {
-  const stamp = (s: number): string => new Date(s * 1000).toISOString().slice(0, 19) + "Z";
-  keep({ from: range && stamp(range[0]), to: range && stamp(range[1]) });
 }

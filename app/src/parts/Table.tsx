@@ -1,6 +1,6 @@
 // A table whose columns can be sorted; on a phone each row is a card.
 import type { ComponentChildren } from "preact";
-import { useState } from "preact/hooks";
+import { asked, keep, useChosen } from "../shell/place";
 import { Press } from "./Bits";
 
 export interface Column<T> {
@@ -31,8 +31,8 @@ interface TableProps<T> {
   columns: readonly Column<T>[];
   rows: readonly T[];
   id: (row: T) => string;
-  sorted?: number;
-  descending?: boolean;
+  /** The title of the column that rows are sorted by at first. */
+  sorted?: string;
   mark?: (row: T) => string;
   /** Rows that are shown until all are asked for. */
   most?: number;
@@ -47,29 +47,36 @@ function compared(a: string | number | null, b: string | number | null): number 
   return String(a).localeCompare(String(b), "en", { numeric: true });
 }
 
+/** The address holds by which column rows are sorted, with a minus from the greatest on, and whether all are shown. */
 export function Table<T>(props: TableProps<T>) {
-  const [order, setOrder] = useState({ column: props.sorted ?? -1, down: props.descending ?? false });
-  const [most, setMost] = useState(props.most ?? Infinity);
-  const by = props.columns[order.column]?.by;
-  const sorted = by ? props.rows.toSorted((a, b) => compared(by(a), by(b)) * (order.down ? -1 : 1)) : props.rows;
-  const rows = sorted.slice(0, most);
-  const sort = (column: number): void => setOrder((old) => ({ column, down: old.column === column && !old.down }));
+  const [sort, all] = ["sort", "all"].map((what) => `${what}-${props.label.toLowerCase().replaceAll(" ", "-")}`) as [
+    string,
+    string,
+  ];
+  const titles = props.columns.flatMap((c) => (c.by ? [c.title] : []));
+  const usual = props.sorted ?? "";
+  const order = useChosen(sort, [usual, ...titles, ...titles.map((t) => `-${t}`)]);
+  const [title, down] = [order.replace(/^-/, ""), order.startsWith("-")];
+  const by = props.columns.find((c) => c.title === title)?.by;
+  const sorted = by ? props.rows.toSorted((a, b) => compared(by(a), by(b)) * (down ? -1 : 1)) : props.rows;
+  const rows = sorted.slice(0, asked(all) ? Infinity : (props.most ?? Infinity));
+  const sortBy = (one: string): void => keep({ [sort]: one === order ? `-${one}` : one === usual ? null : one });
   return (
     <div class="scroll" tabIndex={0} role="region" aria-label={props.label}>
       <table class={props.columns.length > MANY ? "many" : ""}>
         <thead>
           <tr>
-            {props.columns.map((c, i) => (
+            {props.columns.map((c) => (
               <th
                 key={c.title}
                 class={c.numeric ? "n" : ""}
                 scope="col"
-                aria-sort={order.column !== i ? undefined : order.down ? "descending" : "ascending"}
+                aria-sort={title !== c.title ? undefined : down ? "descending" : "ascending"}
               >
                 {c.by ? (
-                  <button type="button" onClick={() => sort(i)}>
+                  <button type="button" onClick={() => sortBy(c.title)}>
                     {c.title}
-                    <span aria-hidden="true">{order.column !== i ? "" : order.down ? " ↓" : " ↑"}</span>
+                    <span aria-hidden="true">{title !== c.title ? "" : down ? " ↓" : " ↑"}</span>
                   </button>
                 ) : (
                   c.title
@@ -95,7 +102,7 @@ export function Table<T>(props: TableProps<T>) {
           ))}
         </tbody>
       </table>
-      {rows.length < sorted.length && <Press words={`Show all ${sorted.length}`} act={() => setMost(Infinity)} />}
+      {rows.length < sorted.length && <Press words={`Show all ${sorted.length}`} act={() => keep({ [all]: "1" })} />}
     </div>
   );
 }

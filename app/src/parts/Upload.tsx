@@ -1,6 +1,6 @@
 // Records given by hand: dropped or chosen, sent one after the other, watched until they are observed.
 import { useState } from "preact/hooks";
-import { me, problemOf } from "../api/client";
+import { api, Problem, sending, told } from "../api/client";
 import { assetUrl } from "../shell/place";
 import { Drop } from "./Drop";
 
@@ -10,20 +10,15 @@ export async function send(asset: string, file: File, description: File | undefi
   const form = new FormData();
   form.append("file", file);
   if (description) form.append("description", description);
-  const token = me.value?.csrf_token;
-  const headers: HeadersInit = token ? { "X-CSRF-Token": token } : {};
   try {
-    const url = `/api/v1/assets/${encodeURIComponent(asset)}/records`;
-    const answer = await fetch(url, { method: "POST", body: form, headers });
-    const body = (await answer.json().catch(() => ({}))) as { record_id?: string; records?: number };
-    if (!answer.ok) {
-      const problem = problemOf(answer.status, body);
-      return { name: file.name, said: [problem.message, problem.remedy].filter(Boolean).join(". "), failed: true };
-    }
-    const said = answer.status === 200 ? "known already" : "taken; it is observed soon";
-    return { name: file.name, said, failed: false, ...(body.record_id ? { record: body.record_id } : {}) };
-  } catch {
-    return { name: file.name, said: "the server does not answer; send it again", failed: true };
+    const to = { params: { path: { asset } }, ...sending(form) };
+    const answer = api.POST("/api/v1/assets/{asset}/records", to);
+    const { record_id: record } = (await told(answer)) as { record_id?: string };
+    const said = (await answer).response.status === 200 ? "known already" : "taken; it is observed soon";
+    return { name: file.name, said, failed: false, ...(record ? { record } : {}) };
+  } catch (error) {
+    const said = error instanceof Problem ? `${error.message} ${error.remedy}` : String(error);
+    return { name: file.name, said, failed: true };
   }
 }
 

@@ -2,14 +2,14 @@
 import { useMemo } from "preact/hooks";
 import { useAsset } from "../api/answer";
 import type { Schemas } from "../api/client";
-import { kept } from "../shell/place";
+import { useChosen } from "../shell/place";
 import { NORMAL_90, quantity, words } from "../words/numbers";
 import { seconds } from "../words/time";
-import { Card, Pick, Slide } from "./Bits";
+import { Card, Pick, Slide, slid } from "./Bits";
 import { modeColour } from "./modes";
+import { Plot } from "./plot/Plot";
 import type { Mark, PlotData, Series } from "./plot/series";
 import { Empty, Shown } from "./Shown";
-import { InTime } from "./Stiffness";
 
 export type Watch = Schemas["WatchOut"];
 type Smallest = Schemas["SmallestChangeOut"];
@@ -50,14 +50,6 @@ export function restPlot(watch: Watch, index: number, marks: Mark[], planted?: P
   return { title: q ? title(q) : "", time: true, xName: "UTC", yName, series, marks };
 }
 
-const Column = ({ plots, together }: { plots: PlotData[]; together: string }) => (
-  <>
-    {plots.map((plot) => (
-      <InTime key={plot.title} data={plot} height={170} together={together} />
-    ))}
-  </>
-);
-
 const NotYet = () => (
   <Empty title="Not watched yet">Days are judged once the baseline is whole, usually after a year.</Empty>
 );
@@ -73,7 +65,8 @@ export function Rests({ watch, marks, kind, label }: RestsProps) {
       ),
     [watch, kind, label, key],
   );
-  return !plots.length ? <NotYet /> : <Column plots={plots} together="timeline" />;
+  if (!plots.length) return <NotYet />;
+  return plots.map((plot) => <Plot key={plot.title} data={plot} height={170} together="timeline" />);
 }
 
 /** The evidence of each day, and what an alarm would have looked like. */
@@ -111,7 +104,7 @@ function Drawn({ watch, marks }: { watch: Watch; marks: Mark[] }) {
   const possible = watch.smallest.filter((s) => s.step.length && s.size !== null);
   return (
     <>
-      <InTime data={plot} height={220} together="evidence" />
+      <Plot data={plot} height={220} together="evidence" />
       {possible.length > 0 && <WouldBe watch={watch} possible={possible} />}
     </>
   );
@@ -121,9 +114,10 @@ const said = (s: Smallest): string =>
   `${s.change} of ${s.unit === "m" ? quantity(s.size, "m") : `${(100 * (s.size ?? 0)).toPrecision(2)} %`}: found within ${s.days} days`;
 
 function WouldBe({ watch, possible }: { watch: Watch; possible: Smallest[] }) {
-  const [index, setIndex] = kept("planted", 0);
-  const [at, setAt] = kept("day", Math.floor(watch.days.length / 10));
-  const one = possible[index] ?? possible[0];
+  const options = possible.map((s, i) => [String(i), said(s)] as const);
+  const one = possible[Number(useChosen("planted", options))];
+  const days = { name: "day", usual: Math.floor(watch.days.length / 10), max: watch.days.length - 1 };
+  const at = Math.round(slid(days));
   const from = noon(watch.days[at] ?? "1970-01-01");
   const plots = useMemo(() => {
     const marks: Mark[] = [
@@ -145,18 +139,12 @@ function WouldBe({ watch, possible }: { watch: Watch; possible: Smallest[] }) {
         The days as they were, and with a planted change added: the smallest that this watch finds with 95 %.
       </p>
       <div class="tools">
-        <Pick
-          label="Planted change"
-          bare
-          value={String(index)}
-          options={possible.map((s, i) => [String(i), said(s)] as const)}
-          onChoose={(i) => setIndex(Number(i))}
-        />
-        <Slide max={watch.days.length - 1} at={at} onMove={setAt}>
-          planted on {watch.days[at]}
-        </Slide>
+        <Pick label="Planted change" bare kept="planted" options={options} />
+        <Slide of={days}>planted on {watch.days[at]}</Slide>
       </div>
-      <Column plots={plots} together="evidence" />
+      {plots.map((plot) => (
+        <Plot key={plot.title} data={plot} height={170} together="evidence" />
+      ))}
     </>
   );
 }

@@ -11,7 +11,7 @@ import { Turbine } from "../pages/Turbine";
 import { Press } from "../parts/Bits";
 import { later } from "../parts/later";
 import { Empty } from "../parts/Shown";
-import { assetUrl, go, place, route, type PageProps } from "./place";
+import { asked, assetUrl, go, place, route, strange, stretch, useChosen, useStrange, type PageProps } from "./place";
 import { printPage, savePage } from "./paper";
 import { switchTheme, theme } from "./theme";
 
@@ -44,6 +44,20 @@ void ask(); // beside the first answers of the page, not before them
 async function logOut(): Promise<void> {
   await api.POST("/api/v1/logout").catch(() => undefined);
   me.value = null;
+}
+
+/** What the link asks for and this page does not have. */
+function Strange() {
+  useChosen("theme", ["light", "dark"]);
+  useStrange(["from", "to"].filter((end) => asked(end) !== null && stretch.value === null));
+  const said = Object.entries(strange.value).map(([name, value]) => `${name} = ${value}`);
+  if (!said.length) return null;
+  return (
+    <p
+      class="strange"
+      role="status"
+    >{`The link asks for what is not here, and the usual is shown instead: ${said.join(", ")}.`}</p>
+  );
 }
 
 function Top() {
@@ -122,6 +136,7 @@ export function App() {
         </p>
       )}
       <main id="main" tabIndex={-1}>
+        <Strange />
         {user !== null && (
           <Suspense fallback={<div class="bones" role="status" aria-label="Loading" />}>
             {Page ? (

@@ -1,5 +1,6 @@
 // Where the reader is: path and query, so that a link holds all that a page shows.
 import { computed, signal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
 
 /** What the address tells a page. */
 export type PageProps = { asset: string; id: string };
@@ -30,14 +31,24 @@ export function go(url: string, replace = false): void {
   }
 }
 
-/** Keep something of what a page shows in its address; null forgets it. */
-export function keep(values: Record<string, string | null>): void {
+type Values = Record<string, string | null>;
+
+/** What the address holds, with some values changed; null forgets one. */
+function queryWith(values: Values): URLSearchParams {
   const query = new URLSearchParams(place.value.query);
   for (const [name, value] of Object.entries(values)) {
     if (value === null) query.delete(name);
     else query.set(name, value);
   }
-  place.value = { path: place.value.path, query };
+  return query;
+}
+
+/** This page with something of what it shows changed, to follow. */
+export const linkWith = (values: Values): string => `?${queryWith(values).toString()}`;
+
+/** Keep something of what a page shows in its address. */
+export function keep(values: Values): void {
+  place.value = { path: place.value.path, query: queryWith(values) };
   clearTimeout(waits);
   const rest = written + PACE_MS - performance.now();
   if (rest > 0) waits = setTimeout(write, rest);
@@ -46,11 +57,53 @@ export function keep(values: Record<string, string | null>): void {
 
 export const asked = (name: string): string | null => place.value.query.get(name);
 
-/** A number that stands in the address unless it is the usual one, and how to change it. */
-export const kept = (name: string, usual: number): [number, (to: number) => void] => [
-  Number(asked(name) ?? usual) || (asked(name) === "0" ? 0 : usual),
-  (to) => keep({ [name]: to === usual ? null : String(Number(to.toFixed(3))) }),
-];
+/** What the address asks for and the page does not have, by name: the frame says so. */
+export const strange = signal<Readonly<Record<string, string>>>({});
+
+/** Say of what the address asks for under some names that there is no such thing, while that is so. */
+export function useStrange(names: readonly string[]): void {
+  const odd = Object.fromEntries(names.map((name) => [name, asked(name) ?? ""]));
+  useEffect(() => {
+    if (!names.length) return;
+    strange.value = { ...strange.value, ...odd };
+    const others = (): [string, string][] => Object.entries(strange.value).filter(([name]) => !(name in odd));
+    return () => (strange.value = Object.fromEntries(others()));
+  }, [JSON.stringify(odd)]);
+}
+
+/** What may be chosen, by its name in the address, where that is not what is read. */
+export type Options = readonly (string | readonly [string, string])[];
+const keysOf = (options: Options): string[] => options.map((one) => (typeof one === "string" ? one : one[0]));
+
+/** Which of some things the address chooses; the usual one if it says nothing, or what is not among them. */
+export function chosen(name: string, options: Options = [], usual = keysOf(options)[0] ?? ""): string {
+  const value = asked(name);
+  return value !== null && keysOf(options).includes(value) ? value : usual;
+}
+
+/** The same, and what is not among them is said; nothing is judged before the options are known. */
+export function useChosen(name: string, options: Options | undefined, usual?: string): string {
+  const value = asked(name);
+  useStrange(options === undefined || value === null || keysOf(options).includes(value) ? [] : [name]);
+  return chosen(name, options, usual);
+}
+
+/** A number that stands in the address unless it is the usual one, if it lies within its limits. */
+export function numberAsked(name: string, low: number, high: number): number | null {
+  const value = Number(asked(name) || NaN);
+  return value >= low && value <= high ? value : null;
+}
+
+/** The stretch of time that the address holds [s]; null for all, or if it is none. */
+export const stretch = computed((): [number, number] | null => {
+  const [from, to] = [Date.parse(asked("from") ?? "") / 1000, Date.parse(asked("to") ?? "") / 1000];
+  return from < to ? [from, to] : null;
+});
+
+export function keepStretch(range: readonly [number, number] | null): void {
+  const [from = null, to = null] = range?.map((s) => new Date(s * 1000).toISOString().replace(".000", "")) ?? [];
+  keep({ from, to });
+}
 
 /** Follow links of ours without leaving the page. */
 document.addEventListener("click", (event) => {

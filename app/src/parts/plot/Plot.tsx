@@ -2,6 +2,7 @@
 import { useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
+import { asked, keep, keepStretch, stretch, useStrange } from "../../shell/place";
 import { colour, theme } from "../../shell/theme";
 import { onAxis, raised, short } from "../../words/numbers";
 import { useWidth } from "../width";
@@ -14,12 +15,11 @@ import { under } from "./under";
 interface PlotProps {
   data: PlotData;
   height?: number;
-  /** Shown part of the x axis, null for all; without onRange the plot's own, of which it is the first. */
-  range?: Range | null;
-  onRange?: (range: Range | null) => void;
+  /** What is shown of the x axis at first, null for all; the address keeps another. */
+  first?: Range | null;
   /** What to do when a point is chosen by click or Enter. */
   onPick?: (series: number, index: number) => void;
-  /** Plots of one name share their cursor. */
+  /** Plots of one name share their cursor, and what is shown of the x axis. */
   together?: string;
 }
 
@@ -120,9 +120,9 @@ function options(
   };
 }
 
-export function Plot({ data, height = 220, onPick, together, ...given }: PlotProps) {
-  const own = useState(given.range ?? null);
-  const [range, onRange] = given.onRange ? [given.range ?? null, given.onRange] : own;
+export function Plot({ data, height = 220, onPick, together, first = null }: PlotProps) {
+  const zoom = useZoom(together ?? data.title, first);
+  const [range, onRange] = data.time ? [stretch.value ?? first, keepStretch] : zoom;
   const root = useRef<HTMLDivElement>(null);
   const width = useWidth(root);
   const chart = useRef<uPlot | null>(null);
@@ -266,6 +266,18 @@ export function Plot({ data, height = 220, onPick, together, ...given }: PlotPro
       />
     </figure>
   );
+}
+
+/** What the address holds of a plot's x axis: "0.2~0.9", or "all" where it is not all at first. */
+function useZoom(of: string, first: Range | null): [Range | null, (range: Range | null) => void] {
+  const name = `zoom-${of}`;
+  const [said, [a, b]] = [asked(name), (asked(name) ?? "").split("~").map(Number) as Range];
+  useStrange(said !== null && said !== "all" && !(a < b) ? [name] : []);
+  const digits = (range: Range): string => range.map((v) => Number(v.toPrecision(6))).join("~");
+  return [
+    a < b ? [a, b] : said === "all" ? null : first,
+    (range) => keep({ [name]: range ? digits(range) : first && "all" }),
+  ];
 }
 
 /** Where the wheel leads: sideways (or with shift) along, with control nearer or farther; else nowhere. */

@@ -1,11 +1,13 @@
-// The report's widget (src/jackettwin/report/templates/view.js), as this window sees it.
-declare module "*/templates/view.js" {
-  export interface View {
-    focus(): void;
-    repaint(): void;
-    link(other: View): void;
-    stand(seconds: number): void;
-    gone(): void;
-  }
-  export function show(root: HTMLElement, drawn: unknown, asked?: Map<string, string>): View;
+/** The widget as TypeScript sees it: see view.js. */
+export interface View {
+  /** What the address asks for and is not here, by name. */
+  readonly odd: Readonly<Record<string, string>>;
+  focus(): void;
+  repaint(): void;
+  link(other: View): void;
+  stand(seconds: number): void;
+  gone(): void;
 }
+type Asked = Pick<URLSearchParams, "get">;
+type Keep = (values: Record<string, string | null>) => void;
+export function show(root: HTMLElement, drawn: unknown, asked?: Asked, keep?: Keep): View;

@@ -1,8 +1,9 @@
 /* A structure to turn, colour and set in motion: one widget for the report, `jackettwin view` and the window.
 
    show(root, D) makes the picture and its controls inside root; D is what view_document() of
-   report/view/page.py returns. Colours are the page's own (tokens.css). */
-export function show(root, D, asked = new Map()) {
+   report/view/page.py returns. Colours are the page's own (tokens.css). What is shown stands in asked, as
+   an address holds it, and keep is told what changes of it; null is what is shown at first. */
+export function show(root, D, asked = new Map(), keep = () => {}) {
   const make = (tag, more = {}, ...inside) => {
     const made = Object.assign(document.createElement(tag), more);
     made.append(...inside);
@@ -73,6 +74,7 @@ export function show(root, D, asked = new Map()) {
     ...(D.motions.some(o => o.stress) ? [{...moving, name: "stress, modes at 0.1 m", unit: "MPa", stress: true}] : [])];
   let at = D.nodes.slice(), scale = 1, size = [1, 1], pixel = 1, screen = [], hover = -1;
 
+  const BOXES = ["water", "growth", "flooded", "sensors", "measured", "dimensions", "ghost"].filter($);
   function shown(id) { const box = $(id); return box ? box.checked : false; }
 
   /* ---- projection: orthographic, z up ---- */
@@ -388,7 +390,10 @@ export function show(root, D, asked = new Map()) {
     if (!state.playing || !state.motion) { draw(); }
   }
   let grip = null;
-  function turned() { fit(); linked.forEach(other => other.lookFrom(eye)); }
+  function turned() {
+    fit(); linked.forEach(other => other.lookFrom(eye));
+    keep(Object.fromEntries(Object.keys(home).map(k => [k, eye[k] === home[k] ? null : eye[k].toFixed(2)])));
+  }
   canvas.addEventListener("pointerdown", e => { canvas.focus({preventScroll: true}); grip = [e.clientX, e.clientY, e.shiftKey]; canvas.setPointerCapture(e.pointerId); });
   canvas.addEventListener("pointerup", () => { grip = null; });
   canvas.addEventListener("pointermove", e => {
@@ -409,18 +414,23 @@ export function show(root, D, asked = new Map()) {
     if (step) { eye.turn += step[0]; eye.tilt += step[1]; turned(); e.preventDefault(); }
     if (e.key === " ") { $("play").click(); e.preventDefault(); }
   });
-  $("play").addEventListener("click", () => { state.playing = !state.playing; $("play").textContent = state.playing ? "Pause" : "Play"; });
+  function play(now) { state.playing = now; $("play").textContent = now ? "Pause" : "Play"; }
+  $("play").addEventListener("click", () => {
+    play(!state.playing);
+    keep({play: state.playing ? null : "0", phase: state.playing ? null : Number($("time").value).toFixed(3)});
+  });
   $("time").addEventListener("input", () => {
     if (!state.motion) { return; }
     state.frame = Math.min(Number($("time").value) * state.motion.q.length, state.motion.q.length - 1e-6);
-    if (state.playing) { $("play").click(); }
-    told(); draw();
+    play(false); told(); draw();
+    keep({play: "0", phase: $("time").value});
   });
   $("speed").addEventListener("input", told);
   $("size").addEventListener("input", () => { named(); draw(); });
-  ["water", "growth", "flooded", "sensors", "measured", "dimensions", "ghost"].forEach(id => { if ($(id)) { $(id).addEventListener("change", draw); } });
+  ["speed", "size"].forEach(id => $(id).addEventListener("input", () => keep({[id]: $(id).value === "0" ? null : $(id).value})));
+  BOXES.forEach(id => $(id).addEventListener("change", () => { draw(); keep({[id]: shown(id) ? null : "0"}); }));
 
-  /* ---- lists, and what the address asks for: #motion=2&quantity=1&phase=0.25&play=0 ---- */
+  /* ---- lists, and what the address asks for: #motion=side-side 1&quantity=1&phase=0.25&play=0 ---- */
   colours.forEach((q, k) => $("quantity").add(new Option(q.unit === "–" ? q.name : `${q.name} [${q.unit}]`, k)));
   $("motion").add(new Option("still", -1));
   [...new Set(D.motions.map(o => o.group))].forEach(group => {
@@ -429,18 +439,36 @@ export function show(root, D, asked = new Map()) {
     D.motions.forEach((o, k) => { if (o.group === group) { part.append(new Option(o.name, k)); } });
     $("motion").append(part);
   });
-  $("motion").value = asked.get("motion") || (D.motions.length ? 0 : -1);
-  $("quantity").value = asked.get("quantity") || 0;
-  ["turn", "tilt"].forEach(k => { if (asked.has(k)) { eye[k] = Number(asked.get(k)); } });
+  const odd = {};  // what is asked for and is not here
+  function listed(id, first) {  // by name or by number
+    const said = asked.get(id), all = [...$(id).options], of = k => all.find(one => one.value === String(k)).text;
+    const found = said ? all.find(one => one.text === said || one.value === said) : null;
+    if (said && !found) { odd[id] = said; }
+    $(id).value = found ? found.value : first;
+    $(id).addEventListener("change", () => keep({[id]: $(id).value === String(first) ? null : of($(id).value)}));
+  }
+  listed("motion", D.motions.length ? 0 : -1);
+  listed("quantity", 0);
+  const numbers = {turn: [-1e3, 1e3], tilt: [-1.55, 1.55], zoom: [0.3, 20], x: [-1e4, 1e4], y: [-1e4, 1e4], phase: [0, 1], speed: [-1, 1.3], size: [-1, 1]};
+  const number_of = k => {
+    const said = asked.get(k), [from, to] = numbers[k], value = said ? Number(said) : Infinity;
+    if (said && !(value >= from && value <= to)) { odd[k] = said; }
+    return value >= from && value <= to ? value : null;
+  };
+  Object.keys(home).forEach(k => { eye[k] = number_of(k) ?? home[k]; });
+  ["speed", "size"].forEach(k => { $(k).value = number_of(k) ?? 0; });
+  BOXES.forEach(id => { $(id).checked = asked.get(id) !== "0"; });
   $("quantity").addEventListener("change", colourBy);
   $("motion").addEventListener("change", choose);
   fit(); colourBy(); choose();
-  if (asked.get("play") === "0") { $("play").click(); }
-  if (asked.has("phase") && state.motion) { state.frame = Number(asked.get("phase")) * state.motion.q.length; told(); draw(); }
+  if (asked.get("play") === "0") { play(false); }
+  if (number_of("phase") !== null && state.motion) { state.frame = Math.min(number_of("phase") * state.motion.q.length, state.motion.q.length - 1e-6); told(); draw(); }
   const observer = new ResizeObserver(fit);
   observer.observe(canvas);
   requestAnimationFrame(tick);
   return {
+    /** What the address asks for and is not here, by name. */
+    odd,
     focus() { canvas.focus({preventScroll: true}); },
     /** The colours of the page changed. */
     repaint() { looks(); colourBy(); },
