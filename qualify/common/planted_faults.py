@@ -100,10 +100,12 @@ FAULTS = (
         ("noise of a step is that of its end", "Q = F @ exact[:n, n:]", "Q = exact[:n, n:]"),
         ("a lightly damped mode leaks into slow forces", "taper = tukey(n, _TAPERED)", "taper = tukey(n, 0.0)"),
         ("short waves reach as deep as long ones", "self._waves(multiples * peak)", "self._waves(peak + 0.0 * multiples)"),
-        ("drag on members is in phase with their inertia", "water / (1j * w)", "water / w"),
+        ("drag on members is in phase with their inertia", "dashpot / (1j * w)", "dashpot / w"),
         ("what begins otherwise stays in the predictions only", "(wanted - wanted @ self.P @ self.information)", "(wanted)"),
         ("a working rotor pushes by twice its damping", "thrust = slope * _AVERAGED", "thrust = 2.0 * slope * _AVERAGED"),
         ("what tells nothing stands for a part of the record", "r, _MISFIT**2 * self.power)", "r, 0.0 * self.power)"),
+        ("local waves are drawn with twice their power", "0.5 * number * self.density", "number * self.density"),
+        ("local waves are the principal ones again", "(patterns[band.patterns :],)", "(patterns[: band.patterns],)"),
         ("levels are scored with half their curvature", "4.0 * forces.sum(axis=0)", "2.0 * forces.sum(axis=0)"),
     )),
     *_of("soil", rows=(

@@ -29,7 +29,7 @@ from jackettwin.sensing import (
 from jackettwin.sensing.estimate import motion_at_levels
 from jackettwin.sensing.latent_forces import gusts_std
 from jackettwin.soil import pinned
-from jackettwin.structure import Rayleigh, assemble, section_forces
+from jackettwin.structure import Rayleigh, SectionForces, assemble, section_forces
 from jackettwin.study import record_life
 from jackettwin.twin import RestingLoads, weld_map
 
@@ -72,8 +72,10 @@ def drawn(model: MotionModel, seed: int) -> tuple[np.ndarray, SensorReadings]:
     s = steady_smoother(*discrete(*known.dynamics(), STEP_S), C, np.full(len(SENSORS), 5e-8))
     x, y = s.draw(6_000, np.random.default_rng(seed))
     to = np.vstack([np.eye(known.n_modes, x.shape[1]), known.force_rows()])
+    rng = np.random.default_rng(seed)
+    local = [force.drawn(len(x), STEP_S, rng) for force in known.local_forces()]
     record = Record(y.T, 1.0 / STEP_S, blank.channels)
-    return x @ to.T, readings_of(record, SENSORS, model.assembly)
+    return np.column_stack([x @ to.T, *local]), readings_of(record, SENSORS, model.assembly)
 
 
 @pytest.fixture(scope="module")
@@ -92,12 +94,29 @@ def test_a_constant_force_moves_the_model_as_statics_say(system: System, model: 
     u = static_displacement(system, force.load)
     q = model.modal_loads[:, -1] / model.omega**2
     assert_allclose(model.shapes @ q + model.flexibility[:, -1], u, atol=1e-9 * np.abs(u).max())
-    coordinates = np.concatenate([q, np.eye(len(model.forces))[-1]])
+    coordinates = np.concatenate([q, np.eye(len(model.forces))[-1], np.zeros(len(model.local))])
     rows = section_rows(model)
     exact = section_forces(model.assembly, u[None], along=force.along[None])
     for part, whole in zip(rows, exact, strict=True):
         found = np.tensordot(coordinates, part, 1)
         assert_allclose(found, whole[0], atol=1e-8 * np.abs(whole).max())
+
+
+def test_local_waves_bend_each_brace_as_all_of_their_patterns_do(model: MotionModel) -> None:
+    """One history of a band has the axial and bending stress of twelve independent ones at every section."""
+    p, rows = model.assembly.mesh.properties, section_rows(model)
+
+    def power(forces: SectionForces) -> np.ndarray:
+        per_force = (1.0 / p.A**2, 2.0 / (p.A * p.I), 2.0 / (p.A * p.I))
+        parts = (forces.axial, forces.bending_y, forces.bending_z)
+        return np.sum(
+            [(f**2).sum(axis=0) * c[:, None] for f, c in zip(parts, per_force, strict=True)], axis=0
+        )
+
+    for k, (waves, bent) in enumerate(zip(model.local, model.bent, strict=True), start=-len(model.local)):
+        every = power(section_forces(model.assembly, bent.T, along=waves.along))
+        one = power(SectionForces(*(part[k, None] for part in rows)))
+        assert_allclose(one, every, rtol=1e-6, atol=1e-12 * every.max())
 
 
 def test_readings_in_time_and_in_frequency_are_the_same_model(
@@ -237,10 +256,11 @@ def test_section_forces_are_found_and_their_errors_are_as_said(
             error = (found - true).std()
             left.append(error / true.std())
             beside.append(error / float(spread_of(row[None], known.covariance)[0]))
-            # above 0.1 Hz, where the rotor pushes little, short waves that sensors hardly see are missed
+            # above 0.1 Hz, where the rotor pushes little, short waves that sensors hardly see are
+            # missed: 2 to 18 %
             fast = np.fft.rfftfreq(len(true), STEP_S) > 0.1
             parts = [np.abs(np.fft.rfft(v)[fast]) ** 2 for v in (found - true[: len(found)], true)]
-            assert parts[0].sum() < 0.17**2 * parts[1].sum()
+            assert parts[0].sum() < 0.2**2 * parts[1].sum()
     assert np.sqrt(np.mean(np.square(left))) < 0.75
     # the mean over ten minutes of slow forces is in what is said, and in no range of stress
     assert 0.6 < np.sqrt(np.mean(np.square(beside))) < 1.4

@@ -24,7 +24,7 @@ from jackettwin.loads import (
     wetness,
 )
 from jackettwin.sensing import Weather
-from jackettwin.sensing.sea import _DRAG, SeaOnMembers
+from jackettwin.sensing.sea import SeaOnMembers
 from jackettwin.structure import Assembly, assemble, rigid_body_motion
 
 DEPTH_M = 72.0
@@ -112,11 +112,12 @@ def test_patterns_of_a_band_have_the_cross_spectrum_of_the_waves_in_it(
     hs, tp = 2.3, 7.9
     one = sea(assembly, Coefficients(), wave_height_m=hs, wave_period_s=tp, wave_direction_rad=heading)
     grid, wet = one.grid, wetness(one.grid, np.zeros(one.grid.weight.size))
-    linear = 0.5 * grid.density_kg_m3 * grid.drag * grid.diameter * _DRAG * np.sqrt(2.0) * one.speed_std
+    linear = 0.5 * grid.density_kg_m3 * grid.drag * grid.diameter * np.sqrt(16.0 / np.pi) * one.speed_std
     linear = (linear * wet * grid.weight)[:, None]
     rigid, ends = rigid_body_motion(assembly)[:, :2], [0.6, 1.26, 2.11, 5.0]
+    moved = np.abs(rigid_body_motion(assembly)[:, :3]).sum(axis=1) == 1.0
     for name, low, high in zip(("long", "middle", "short"), ends[:-1], ends[1:], strict=True):
-        f = np.linspace(low, high, 25)[1:] / tp
+        f = (low + (high - low) * (np.arange(24) + 0.5) / 24) / tp
         S = (2.0 * pi * f) ** 4 * jonswap(f, Hs=hs, Tp=tp)
 
         def spectrum(towards: float, f: np.ndarray = f, S: np.ndarray = S) -> np.ndarray:
@@ -139,17 +140,36 @@ def test_patterns_of_a_band_have_the_cross_spectrum_of_the_waves_in_it(
         own, there = np.array(own).T @ np.array(own), spectrum(heading)
         # patterns that are left out are 3, 10 and 25 % of the power
         assert np.linalg.norm(own - there) < 0.3 * np.linalg.norm(there)
+        # of forces on single members they leave out 7 to 16 %, which local waves hold
+        (rest,) = (w.load for w in one.local() if w.like.startswith(name))
+        power, local, whole = (float(np.diag(m)[moved].sum()) for m in (own, rest @ rest.T, there))
+        assert power < 0.94 * whole
+        assert power + local == pytest.approx(whole, rel=0.03)
         assert_allclose(np.diag(rigid.T @ own @ rigid), np.diag(rigid.T @ there @ rigid), rtol=0.2)
         if name == "long":
             assert np.linalg.norm(own - spectrum(heading + pi)) > 2.0 * np.linalg.norm(own - there)
 
 
-def test_linear_drag_does_the_damage_of_that_of_the_square(rng: np.random.Generator) -> None:
-    """Of a narrow sea's velocity u, ranges of c σ u and of u|u| have the same third moment."""
-    t, df = np.arange(0.0, 40_000.0, 0.5), 1.0 / 40_000.0
-    f = 0.1 + df * np.arange(-60, 61)
-    wave = np.exp(2j * np.pi * np.outer(t, f)) @ (rng.standard_normal((f.size, 2)) @ [1.0, 1j])
-    u = wave.real / wave.real.std()
-    square, linear = (equivalent_range(count(x), 3.0, 1.0) for x in (u * np.abs(u), _DRAG * u))
-    assert linear == pytest.approx(square, rel=0.1)  # 240 independent waves: 6 % of the ratio
-    assert equivalent_range(count(np.sqrt(8.0 / np.pi) * u), 3.0, 1.0) < 0.75 * square
+@pytest.mark.parametrize(("share", "off"), [(0.3, 0.03), (0.5, 0.07)])
+def test_linear_drag_beside_inertia_does_the_damage_of_the_square(
+    share: float, off: float, rng: np.random.Generator
+) -> None:
+    """In a sea by cos² drag is largest where inertia is least; with drag alone in mind it was 9 to 13 % more.
+
+    Drag is so many times inertia, in standard deviations: 0.1 to 0.9 of stress in three jackets.
+    """
+    n, step, tp = 2**15, 0.25, 9.0
+    f = np.fft.rfftfreq(n, step)
+    S = jonswap(np.maximum(f, 1e-6), Hs=4.0, Tp=tp) * (2.0 * pi * f) ** 2 * ((f * tp > 0.4) & (f * tp < 5.0))
+    along, across = (
+        np.sqrt(part * S) * (rng.standard_normal((f.size, 2)) @ [1.0, 1j]) for part in (0.75, 0.25)
+    )
+    u, v, inertia = (np.fft.irfft(z, n) for z in (along, across, 2j * pi * f * along))
+    speed = np.sqrt(u.var() + v.var())
+    square, linear = np.hypot(u, v) * u, np.sqrt(8.0 / pi) * speed * u
+    drag = share * inertia.std() / (speed * u).std()
+    true, by_error, by_moment = (
+        equivalent_range(count(inertia + drag * own), 4.0, 1.0) for own in (square, linear, 2.34 * speed * u)
+    )
+    assert by_error == pytest.approx(true, rel=off)
+    assert by_moment > 1.07 * true

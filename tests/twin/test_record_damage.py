@@ -268,18 +268,20 @@ def sensed(stress_model: StressModel) -> tuple[SensedDamage, dict[int, np.ndarra
     smoother = steady_smoother(*discrete(*known.dynamics(), 0.1), C, np.full(6, 5e-8))
     states, y = smoother.draw(6000, np.random.default_rng(5))
     to = np.vstack([np.eye(known.n_modes, states.shape[1]), known.force_rows()])
+    rng = np.random.default_rng(6)
+    motion = np.column_stack([states @ to.T, *(f.drawn(6000, 0.1, rng) for f in known.local_forces())])
     readings = readings_of(Record(y.T, 10.0, blank.channels), TOWER, system.assembly)
     damage = sensed_damage(likely, readings, weather)
     assert damage is not None
     chart = weld_map(system, known, stress_model.rest)
     lives, true = stress_model.settings.models, {}
     welds = [w for joint in chart.joints for w in joint.welds]
-    cycles = chart.cycles(states @ to.T)
+    cycles = chart.cycles(motion)
     sea, rows = system.assembly.structure.sea_level_z_m, section_rows(known)
     for side in damage.sides:
         if side >= 2 * len(welds):
             tube = stress_model.tubes[side - 2 * len(welds)]
-            points = [count(series) for series in tube.stress(rows) @ (states @ to.T).T]
+            points = [count(series) for series in tube.stress(rows) @ motion.T]
             curve, t = tube.models(tube.z_m - sea)[1].curve, tube.section.thickness_m
         else:
             weld, points = welds[side // 2], cycles[side // 2][side % 2]

@@ -17,7 +17,7 @@ from jackettwin.sensing.readings import ACCELERATION, SensorReadings, Weather, t
 from jackettwin.sensing.rotor_by_wind import damped_at_work, pushed_at_work
 from jackettwin.sensing.sea import SeaOnMembers
 from jackettwin.sensing.smoother import SteadySmoother, discrete, steady_smoother
-from jackettwin.structure import SectionForces, section_forces
+from jackettwin.structure import Assembly, SectionForces, section_forces
 
 _WATER_LOG_STD = np.array([0.47, 0.1, 0.25])
 """Of the growth's thickness, C_a and C_D: a factor of 1.6, a tenth, and 0.65 for smooth members but 1.05 for
@@ -42,7 +42,8 @@ BAND_HZ = 2.2
 class MotionEstimate:
     """Motion of a structure through a record.
 
-    Coordinates are the modes, then the levels of the forces: what a section feels is linear in both.
+    Coordinates are the modes, the levels of the forces, and those of local waves, of which sensors tell
+    nothing: what a section feels is linear in all.
 
     Attributes
     ----------
@@ -62,7 +63,8 @@ class MotionEstimate:
     def to_coordinates(self) -> FloatArray:
         """Coordinates from the state, (n_coordinates, n_states)."""
         own = self.of_state(self.model.force_rows())
-        return np.vstack([np.eye(self.model.n_modes, own.shape[1]), own])
+        unseen = np.zeros((len(self.model.local), own.shape[1]))
+        return np.vstack([np.eye(self.model.n_modes, own.shape[1]), own, unseen])
 
     def of_state(self, rows: FloatArray) -> FloatArray:
         """Return rows (k, n) of the model's state as rows of the smoother's, behind which drifts follow."""
@@ -72,7 +74,10 @@ class MotionEstimate:
     def covariance(self) -> FloatArray:
         """Covariance of the coordinates at any instant far from the record's ends."""
         T = self.to_coordinates
-        return np.asarray(T @ self.smoother.smoothed @ T.T)
+        found = T @ self.smoother.smoothed @ T.T
+        for k, force in enumerate(self.model.local_forces(), start=len(T) - len(self.model.local)):
+            found[k, k] = force.level**2
+        return np.asarray(found)
 
     def mean(self) -> FloatArray:
         """Return the most probable coordinates, (n_samples, n_coordinates)."""
@@ -88,7 +93,10 @@ class MotionEstimate:
         rng, s, T = np.random.default_rng(seed), self.smoother, self.to_coordinates
         for _ in range(number):
             drawn, y = s.draw(len(mean), rng, T)
-            yield mean + drawn - s.smooth(y, rows=T)[0]
+            found = mean + drawn - s.smooth(y, rows=T)[0]
+            for k, force in enumerate(self.model.local_forces(), start=len(T) - len(self.model.local)):
+                found[:, k] = force.drawn(len(mean), self.readings.step_s, rng)
+            yield found
 
 
 def estimate_motion(system: System, readings: SensorReadings, weather: Weather) -> MotionEstimate:
@@ -116,7 +124,7 @@ def _model_in(
     if weather.working and weather.rotor is not None and weather.rotor.passing_hz is not None:
         wind = (*wind, *passing_forces(wind, weather.rotor.passing_hz))
     forces = (*wind, *sea.forces())
-    model = motion_model(system, forces, below_hz=BAND_HZ, drag=sea.damping(), near=near)
+    model = motion_model(system, forces, below_hz=BAND_HZ, drag=sea.damping(), near=near, local=sea.local())
     return _pushed(_damped(model, weather), weather)
 
 
@@ -139,7 +147,7 @@ def motion_from(model: MotionModel, readings: SensorReadings, *, draws: int = 0)
     n, h = readings.y.shape[1], readings.step_s
     which = thinned(n, h, min(0.9 * BAND_HZ, 0.4 / h))
     omega = np.asarray(2.0 * np.pi * np.fft.rfftfreq(n, h)[which], dtype=np.float64)
-    seen = model.as_told().transfer(readings.rows, readings.tilt, readings.derivative, omega)
+    seen = model.transfer(readings.rows, readings.tilt, readings.derivative, omega)
     drifts = np.equal(readings.derivative, ACCELERATION)
     slow = 1.0 + drifts * (2.0 * np.pi * _DRIFT_HZ / omega[:, None]) ** 2
     levels = find_levels(readings.y, h, seen, which, model.forces, readings.groups, slow=slow, draws=draws)
@@ -181,6 +189,7 @@ def likely_motions(
             below_hz=BAND_HZ,
             drag=other.damping(),
             near=estimate.model.computed,
+            local=other.local(),
         )
         model = model.with_damping_beyond(_FIRST, float(np.exp(_DAMPING_LOG_STD * away[0])))
         model = damped(_damped(model, weather, away[1]))
@@ -210,7 +219,28 @@ def section_rows(model: MotionModel) -> SectionForces:
     """Return the section forces that unit coordinates make, each (n_coordinates, n_elements, 2)."""
     still = np.zeros((model.n_modes, *model.forces[0].along.shape))
     along = np.concatenate([still, np.stack([force.along for force in model.forces])])
-    return section_forces(model.assembly, np.vstack([model.shapes.T, model.flexibility.T]), along=along)
+    found = section_forces(model.assembly, np.vstack([model.shapes.T, model.flexibility.T]), along=along)
+    unseen = (
+        _as_one(model.assembly, section_forces(model.assembly, bent.T, along=waves.along))
+        for waves, bent in zip(model.local, model.bent, strict=True)
+    )
+    return SectionForces(*map(np.concatenate, zip(found, *unseen, strict=True)))
+
+
+def _as_one(assembly: Assembly, forces: SectionForces) -> SectionForces:
+    """Return the section forces (1, n_elements, 2) that vary as those of independent cases (n, …) together.
+
+    At each section by itself, along what varies most of its axial and bending stress: what damages a weld is
+    its own stress, whatever others have at the time.
+    """
+    p = assembly.mesh.properties
+    # of a thin tube: I/A = R²/2
+    per_force = np.stack([1.0 / p.A, *[np.sqrt(2.0 / (p.A * p.I))] * 2], axis=-1)
+    stress = np.stack([forces.axial, forces.bending_y, forces.bending_z], axis=-1) * per_force[:, None]
+    values, ways = np.linalg.eigh(np.einsum("neic,neid->eicd", stress, stress))
+    most = np.einsum("neic,eic->nei", stress, ways[..., -1])
+    whole = np.sqrt(np.square(stress).sum(axis=(0, -1))) / np.maximum(values[..., -1], 1e-300)
+    return SectionForces(*((most * part).sum(axis=0, keepdims=True) * whole for part in forces))
 
 
 def spread_of(rows: FloatArray, covariance: FloatArray) -> FloatArray:

@@ -83,7 +83,6 @@ class LatentForce:
     level_log_std, rate_log_std : how far the logarithms of level and rate may lie from what is expected
     beside : name of another force, at whose level over its expected one this one's is expected, too
     width, tail : of waves: damping ratio of the band, and the corner of what falls beyond it over its peak
-    told : (n_dof,) load by which spectra tell the level, where that is another
     """
 
     name: str
@@ -97,7 +96,6 @@ class LatentForce:
     beside: str | None = None
     width: float = 0.1
     tail: float = 1.5
-    told: FloatArray | None = None
 
     @property
     def _tail(self) -> tuple[float, float, float]:
@@ -138,9 +136,31 @@ class LatentForce:
         band = 2.0 * width * x**2 / ((1.0 - x**2) ** 2 + (width * x) ** 2) / a
         return np.asarray(square / passed * band * b**2 / (b**2 + x**2) * c**2 / (c**2 + x**2))
 
+    def drawn(self, number: int, step_s: float, rng: np.random.Generator) -> FloatArray:
+        """Return a history (number,) of the process."""
+        omega = np.asarray(2.0 * pi * np.fft.rfftfreq(number, step_s), dtype=np.float64)
+        size = np.sqrt(0.5 * number * self.density(omega) / step_s)
+        return np.fft.irfft(size * (rng.standard_normal((2, omega.size)).T @ [1.0, 1j]), number)
+
     def with_level(self, level: float, rate: float | None = None) -> LatentForce:
         """Return the force at another level, and another corner or peak."""
         return replace(self, level=level, rate=self.rate if rate is None else rate)
+
+
+@dataclass(frozen=True)
+class LocalWaves:
+    """What waves of a band do beside its principal patterns: they bend members and move no sensor.
+
+    Attributes
+    ----------
+    like : name of the force whose process they follow, each at its level
+    load : (n_dof, n) of the patterns
+    along : (n, n_elements, 12) what of them acts along elements
+    """
+
+    like: str
+    load: FloatArray
+    along: FloatArray
 
 
 def with_thrust(forces: tuple[LatentForce, ...], level_n: Mapping[str, float]) -> tuple[LatentForce, ...]:

@@ -19,7 +19,7 @@ import scipy.sparse as sp
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import require
 from jackettwin.response import System, UndampedModes, static_displacement, undamped_modes
-from jackettwin.sensing.latent_forces import LatentForce
+from jackettwin.sensing.latent_forces import LatentForce, LocalWaves
 from jackettwin.structure import Assembly
 
 _FIRST_GUESS = 20
@@ -38,6 +38,8 @@ class MotionModel:
     forces : tuple of LatentForce
     flexibility : (n_dof, n_forces) displacement per unit of each force beyond the modes
     computed : all modes that were computed, from which those of a similar structure are found soon
+    local : what bends members and moves no sensor
+    bent : (n_dof, n) displacement under each pattern of each of ``local``
     """
 
     assembly: Assembly
@@ -47,6 +49,8 @@ class MotionModel:
     forces: tuple[LatentForce, ...]
     flexibility: FloatArray
     computed: UndampedModes
+    local: tuple[LocalWaves, ...] = ()
+    bent: tuple[FloatArray, ...] = ()
 
     @property
     def n_modes(self) -> int:
@@ -104,11 +108,6 @@ class MotionModel:
         """Return the model with the same patterns at other levels and rates."""
         return replace(self, forces=forces)
 
-    def as_told(self) -> MotionModel:
-        """Return the model with the loads by which spectra tell levels, which yield as the others do."""
-        forces = (f if f.told is None else replace(f, load=f.told) for f in self.forces)
-        return replace(self, forces=tuple(forces))
-
     def dynamics(self) -> tuple[FloatArray, FloatArray]:
         """Return A (n, n) and the noise's density (n, n) of the state: modes, their velocities, forces."""
         m, loads = self.n_modes, self.modal_loads
@@ -128,6 +127,11 @@ class MotionModel:
     def force_rows(self) -> FloatArray:
         """Return the forces from the state, (n_forces, n)."""
         return la.block_diag(np.zeros((0, 2 * self.n_modes)), *(force.dynamics()[2] for force in self.forces))
+
+    def local_forces(self) -> tuple[LatentForce, ...]:
+        """Return the processes that local waves follow, at their levels."""
+        named = {force.name: force for force in self.forces}
+        return tuple(named[waves.like] for waves in self.local)
 
     def displacement_rows(self, rows: FloatArray) -> FloatArray:
         """Return what ``rows`` (k, n_dof) see of the displacement from the state, (k, n)."""
@@ -175,6 +179,7 @@ def motion_model(
     below_hz: float,
     drag: sp.csr_array | None = None,
     near: UndampedModes | None = None,
+    local: tuple[LocalWaves, ...] = (),
 ) -> MotionModel:
     """Return the modes of a supported structure below a frequency, and what forces do to it.
 
@@ -182,6 +187,7 @@ def motion_model(
     ----------
     drag : (n_dof, n_dof) damping of the water besides that of supports and steel
     near : modes of a similar structure
+    local : what bends members and moves no sensor
 
     Raises
     ------
@@ -203,11 +209,15 @@ def motion_model(
     )
     omega, shapes = modes.omega[keep], modes.shapes[:, keep]
     loads = np.column_stack([force.load for force in forces])
-    flexibility = static_displacement(system, loads) - shapes @ ((shapes.T @ loads) / omega[:, None] ** 2)
+    still = static_displacement(system, np.hstack([loads, *(waves.load for waves in local)]))
+    yielded, *bent = np.split(still, np.cumsum([len(forces), *(w.load.shape[1] for w in local)])[:-1], axis=1)
+    flexibility = yielded - shapes @ ((shapes.T @ loads) / omega[:, None] ** 2)
     damping = _damping(system, omega, shapes)
     if drag is not None:
         damping = damping + shapes.T @ (drag @ shapes)
-    return MotionModel(system.assembly, omega, shapes, damping, forces, flexibility, modes)
+    return MotionModel(
+        system.assembly, omega, shapes, damping, forces, flexibility, modes, local, tuple(bent)
+    )
 
 
 def _damping(system: System, omega: FloatArray, shapes: FloatArray) -> FloatArray:

@@ -4,16 +4,16 @@ A sea of many periods is three bands, since its waves reach down as far as they 
 whole jacket, short ones of the same record push near the surface only. Waves of a band have many periods and
 ways, each with the forces at the phase of every member's place (Morison's equation, its drag linearised):
 
-.. math:: f = ρ C_M \tfrac{π}{4} D^2 \dot u_n + ½ ρ C_D D\, c\, σ_u\, u_n
+.. math:: f = ρ C_M \tfrac{π}{4} D^2 \dot u_n + ½ ρ C_D D \sqrt{8/π}\, σ_u\, u_n
 
-for water of unit acceleration at the surface, with c such that ranges of the drag have the third moment of
-those of u|u|, since ranges do the damage: the usual c = √(8/π), which errs least on average, is a third too
-small, and is that by which spectra tell how strong a sea is. Forces of all waves of a band have few principal
-patterns, whose histories are independent. A wave of one period in their stead would push legs together that
-stand half a wave apart, or all against each other: a band's force on the jacket as a whole was a quarter to
-twice of what it is, so that the level by which sensors were followed was wrong for every brace. The level
-expected of a band is the standard deviation of the water's acceleration in it, of a JONSWAP sea.
-Drag with the usual coefficient damps the motion of members, braces most of all.
+for water of unit acceleration at the surface. Drag that errs least on average does the damage of u|u|, too,
+in a sea from several ways, whose drag is largest where inertia is least. Forces of all waves of a band have
+few principal patterns, whose histories are independent. A wave of one period in their stead would push legs
+together that stand half a wave apart, or all against each other: a band's force on the jacket as a whole was
+a quarter to twice of what it is, so that the level by which sensors were followed was wrong for every brace.
+What principal patterns leave out moves nothing that sensors see, and is a seventh of the stress of braces
+about the sea: it is not estimated, but drawn at the band's level. The level expected of a band is that of
+the water's acceleration in it, of a JONSWAP sea. Drag damps the motion of members, braces most of all.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.integrate import cumulative_trapezoid
 
-from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.arrays import FloatArray
 from jackettwin.loads import (
     MorisonPoints,
     SeaState,
@@ -41,7 +41,7 @@ from jackettwin.loads import (
     wave_number,
     wetness,
 )
-from jackettwin.sensing.latent_forces import LatentForce
+from jackettwin.sensing.latent_forces import LatentForce, LocalWaves
 from jackettwin.sensing.readings import Weather
 from jackettwin.structure import Assembly
 
@@ -74,14 +74,14 @@ _WAVES, _WAYS = 8, 7
 """Frequencies of a band, and ways in which its waves run: twice as many change no band's power by 1 %."""
 _WHOLE = 0.3
 """Weight of a resultant beside the forces: from 0.3 to 1 the first nine modes are pushed alike within 1 %."""
+_LOCAL = 12
+"""Patterns of a band beyond its principal ones: all but 0.5 % of what stress of braces is left by these."""
 _BESIDE = 0.3
 """Of a pattern's level over that of the first: a sea spreads less or more than cos²."""
 _KNOWN, _UNKNOWN = 0.3, 1.5
 """Of the logarithm of a sea's level, whose height is stated or not."""
-_DRAG = (48.0 / (3.0 * sqrt(pi / 2.0))) ** (1.0 / 3.0)
-"""c = (E A⁶ / E A³)^⅓ of Rayleigh's amplitudes A of unit standard deviation: 2.34."""
-_LEAST_ERROR = sqrt(8.0 / pi)
-"""c of the drag whose power is nearest (Borgman 1967): spectra tell a sea's level by it."""
+_DRAG = sqrt(8.0 / pi)
+"""c of the drag that errs least on average (Borgman 1967)."""
 
 
 @dataclass(frozen=True)
@@ -152,20 +152,14 @@ class SeaOnMembers:
     def forces(self) -> tuple[LatentForce, ...]:
         """Return the forces of each band: the principal patterns of its waves, the largest first."""
         peak, found = 2.0 * pi / self.state.Tp, []
-        spread = loads_along(self.assembly, self.grid)
-        for band, (level, multiples) in zip(_BANDS, self._bands(), strict=True):
-            inertia, drag = self._waves(multiples * peak)
-            waves = inertia + _DRAG * drag
-            kept = np.linalg.eigh(self._likeness(waves))[1].T[: -band.patterns - 1 : -1]
+        for band, level, patterns in self._patterns:
             first = f"{band.name} waves 1"
-            for k, (push, told) in enumerate(
-                zip(kept @ waves, kept @ (inertia + _LEAST_ERROR * drag), strict=True), start=1
-            ):
+            for k, push in enumerate(patterns[: band.patterns], start=1):
                 found.append(
                     LatentForce(
                         f"{band.name} waves {k}",
                         np.asarray(self.grid.N @ push),
-                        np.asarray(spread @ push).reshape(-1, 12),
+                        np.asarray(self._along @ push).reshape(-1, 12),
                         "wave",
                         band.multiple * peak,
                         level,
@@ -174,10 +168,35 @@ class SeaOnMembers:
                         None if k == 1 else first,
                         width=band.width,
                         tail=band.tail,
-                        told=np.asarray(self.grid.N @ told),
                     )
                 )
         return tuple(found)
+
+    def local(self) -> tuple[LocalWaves, ...]:
+        """Return what of each band its principal patterns do not hold."""
+        return tuple(
+            LocalWaves(
+                f"{band.name} waves 1",
+                np.asarray(self.grid.N @ others.T),
+                np.array([np.asarray(self._along @ push).reshape(-1, 12) for push in others]),
+            )
+            for band, _, patterns in self._patterns
+            for others in (patterns[band.patterns :],)
+        )
+
+    @cached_property
+    def _along(self) -> sp.csr_array:
+        return loads_along(self.assembly, self.grid)
+
+    @cached_property
+    def _patterns(self) -> list[tuple[_Band, float, FloatArray]]:
+        """Bands, their levels, and their patterns (n, 3 n_points), the largest first."""
+        peak, found = 2.0 * pi / self.state.Tp, []
+        for band, (level, multiples) in zip(_BANDS, self._bands(), strict=True):
+            waves = self._waves(multiples * peak)
+            kept = np.linalg.eigh(self._likeness(waves))[1].T[: -band.patterns - _LOCAL - 1 : -1]
+            found.append((band, level, kept @ waves))
+        return found
 
     def _bands(self) -> list[tuple[float, FloatArray]]:
         """Return the standard deviation of the surface's acceleration in each band [m/s²], and its waves.
@@ -210,8 +229,8 @@ class SeaOnMembers:
             alike = alike + _WHOLE * whole / max(float(np.square(own).sum()), 1e-300) * own @ own.T
         return np.asarray(alike)
 
-    def _waves(self, omega: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return inertia and drag (n, 3 n_points) of waves of a unit of acceleration at the surface, in all.
+    def _waves(self, omega: FloatArray) -> FloatArray:
+        """Return forces (n, 3 n_points) of waves of a unit of acceleration at the surface, in all.
 
         Of each frequency they run from all sides, by cos² about the mean direction, and each has two phases.
         Drag is linear in the sea's mean speed across the members.
@@ -225,7 +244,7 @@ class SeaOnMembers:
         share = np.sqrt(np.cos(away) ** 2 / np.sum(np.cos(away) ** 2) / omega.size)
         angle = self.state.direction + away
         d = np.stack([np.cos(angle), np.sin(angle), np.zeros(_WAYS)], axis=1)
-        inertia, drag = [], []
+        found = []
         z, numbers = np.minimum(grid.points[:, 2], 0.0), wave_number(omega, self.depth_m)
         for w, k, across, up in zip(
             omega, numbers, *(part.T for part in depth_functions(numbers, z, self.depth_m)), strict=True
@@ -233,12 +252,6 @@ class SeaOnMembers:
             turned = (share * np.exp(-1j * float(k) * (grid.points @ d.T))).T[:, :, None]
             water = turned * (across[:, None] * d[:, None] + 1j * up[:, None] * [0.0, 0.0, 1.0])
             water = np.einsum("nij,wnj->wni", grid.normal, water)
-            inertia.append(mass[:, None] * water)
-            drag.append(dashpot[:, None] * water / (1j * w))
-        return _phases(inertia), _phases(drag)
-
-
-def _phases(waves: list[ComplexArray]) -> FloatArray:
-    """Return the parts of waves between crests, each (n, n_points, 3), and at them, (2n, 3 n_points)."""
-    every = np.concatenate(waves)
-    return np.concatenate([every.real, every.imag]).reshape(2 * len(every), -1)
+            found.append((mass + _DRAG * dashpot / (1j * w))[:, None] * water)
+        every = np.concatenate(found)
+        return np.concatenate([every.real, every.imag]).reshape(2 * len(every), -1)
