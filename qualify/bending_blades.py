@@ -11,6 +11,7 @@ import tempfile
 from importlib import resources
 from pathlib import Path
 
+from common.command import arguments
 from common.page import write_page
 
 from jackettwin.decks import read_structure
@@ -52,6 +53,7 @@ def rows(name: str, result: TwinResult) -> list[str]:
 
 
 def main() -> None:
+    arguments(__doc__)
     lines = []
     with tempfile.TemporaryDirectory() as folder:
         for name, blades in BLADES.items():

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
+from common.command import arguments
 from common.page import write_page
 
 from jackettwin.identification.maximum_likelihood.local_refinement import groups, refine_group
@@ -98,6 +99,7 @@ def rows(name: str, system: ModalSystem, found: Fits) -> list[str]:
 
 
 def main() -> None:
+    arguments(__doc__)
     systems = {
         "white forces": PAIR,
         "forces as f⁻²·³": replace(PAIR, force_slope=2.3),

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from common.command import arguments
 
 from jackettwin.simulate.batch import record_path, run_set
 from jackettwin.simulate.scenario.sets import read_set
@@ -57,8 +58,9 @@ class Outcome:
 
 
 def main() -> None:
+    given = arguments(__doc__, folder=None)
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(name)
+        folder = given.folder or Path(name)
         folder.mkdir(exist_ok=True)
         (folder / "set.yaml").write_text(SET, encoding="utf-8")
         chosen = read_set(folder / "set.yaml")

@@ -8,11 +8,11 @@ Usage: python qualify/condensed_poles.py [n_sets]
 
 from __future__ import annotations
 
-import sys
 import time
 
 import numpy as np
 from common.cases import Result, cases
+from common.command import arguments
 from common.page import write_page
 
 from jackettwin.decks import read_structure
@@ -67,7 +67,7 @@ def block(model: SupportModel, rng: np.random.Generator) -> Result:
 
 
 def main() -> None:
-    n = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
+    n = arguments(__doc__, n=10_000).n
     assembly = assemble(read_structure("jacket15"))
     steel = Rayleigh.minimum(0.01, 0.1832)
     lines, cpu_s = [], 0.0

@@ -5,11 +5,11 @@ Usage: python qualify/damping_budget.py [n_twins]
 
 from __future__ import annotations
 
-import sys
 import time
 
 import numpy as np
 from common.cases import Result, cases
+from common.command import arguments
 from common.measured import as_measured, sampled
 from common.page import percent, write_page
 from scipy.stats import binomtest
@@ -77,7 +77,7 @@ def first_pair(pair: tuple[float, float]) -> str:
 
 
 def main() -> None:
-    number = int(sys.argv[1]) if len(sys.argv) > 1 else 200
+    number = arguments(__doc__, number=200).number
     model = twin_model(BOUNDS)
     found = cases("damping_budget", number, lambda case: twin(model, case))
     inside = np.array([r["inside"] for r in found if r["inside"] is not None])

@@ -18,6 +18,7 @@ from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
+from common.command import arguments
 from common.page import write_page
 
 from jackettwin.change.causes import _ONE_SIZE, effect, model_causes, repeated, seen_causes
@@ -270,7 +271,7 @@ def _share(right: list[bool]) -> str:
 
 
 def main() -> None:
-    draws = int(sys.argv[1]) if len(sys.argv) > 1 else 6
+    draws = arguments(__doc__, draws=6).draws
     with tempfile.TemporaryDirectory() as name:
         stand = {jacket: structure for jacket, (structure, _) in jackets(Path(name)).items()}
         stand["OC3 tripod"] = read_structure(str(Path(__file__).parent / "decks/oc3_tripod.dat"))

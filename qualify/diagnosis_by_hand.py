@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from common.command import arguments
 from common.page import write_page
 from diagnosis import CONFIDENT, LEAST, STD, Case, calibration, jackets, on_the_day, seen_change
 from scipy.optimize import linear_sum_assignment
@@ -422,7 +423,7 @@ def tables(found: list[Case]) -> list[str]:
 
 
 def main() -> None:
-    draws = int(sys.argv[1]) if len(sys.argv) > 1 else 4
+    draws = arguments(__doc__, draws=4).draws
     with tempfile.TemporaryDirectory() as name:
         every = {jacket: structure for jacket, (structure, _) in jackets(Path(name)).items()}
     every["four legs, deck"] = read_structure(str(Path(__file__).parent / "decks/four_legs.yaml"))

@@ -1,6 +1,6 @@
 """Diagnosis through the whole chain: records of changed jackets are identified and their modes watched.
 
-Usage: python qualify/diagnosis_chain.py [folder] [records of each state] [seasons of each change]
+Usage: python qualify/diagnosis_chain.py [folder] [records of each state]
 
 Records of two jackets, as they stand and after each of twelve causes at three sizes, are simulated and
 identified (``common/chain.py``); each is a piece that is kept in the folder, so that a run that was stopped
@@ -19,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 from common.chain import Bench, Row, bench, identified, late, louder, record, season, watched_labels
+from common.command import arguments
 from common.page import write_page
 from diagnosis import SENSORS, TIMES, Case, calibration, case, jackets, name_of, page, planted, truth
 
@@ -182,8 +183,8 @@ def first_change(watch: Watch, days: History) -> Change | None:
 
 
 def main() -> None:
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/qualify")
-    number = int(sys.argv[2]) if len(sys.argv) > 2 else RECORDS
+    given = arguments(__doc__, folder=Path("out/qualify"), records=RECORDS)
+    folder, number = given.folder, given.records
     with tempfile.TemporaryDirectory() as name:
         stand = jackets(Path(name))
         pieces = Pieces(folder)

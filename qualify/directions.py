@@ -15,6 +15,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from common.command import arguments
 from common.page import write_page
 from diagnosis import jackets, planted, truth
 
@@ -77,7 +78,7 @@ def missed(
 
 
 def main() -> None:
-    number = int(sys.argv[1]) if len(sys.argv) > 1 else 8
+    number = arguments(__doc__, number=8).number
     lines = [
         "# Directions of causes",
         "",

@@ -5,10 +5,10 @@ Usage: python qualify/drift.py [n_twins]
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import numpy as np
+from common.command import arguments
 from scipy.stats import binomtest
 
 from jackettwin.decks import read_structure
@@ -54,7 +54,7 @@ def twin(model: SupportModel, change: float, seed: int) -> Drift:
 
 
 def main() -> None:
-    number = int(sys.argv[1]) if len(sys.argv) > 1 else 400
+    number = arguments(__doc__, number=400).number
     model = support_model(
         assemble(read_structure("jacket15")),
         family=family("maxwell-3"),

@@ -14,6 +14,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
+from common.command import arguments
 from openfast import SPRINGPOTS, on_feet, reduced_to_interface, three_legs
 
 from jackettwin.response.superelement.craig_bampton import Superelement
@@ -22,11 +23,12 @@ from jackettwin.response.superelement.files import write_superelement
 
 
 def main() -> None:
-    if len(sys.argv) == 1:
+    named = arguments(__doc__, readers=()).readers
+    if not named:
         sys.stderr.write("no reader is named: nothing is run (docs/verification/openfast.md)\n")
         return
     element = reduced_to_interface(on_feet("", SPRINGPOTS, structure=three_legs(turn_deg=20.0)))
-    for argument in sys.argv[1:]:
+    for argument in named:
         layout, _, program = argument.partition("=")
         for kind in LAYOUTS:
             if layout == kind or kind == LAYOUTS[0]:

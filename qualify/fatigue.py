@@ -25,6 +25,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import yaml
 from common.cases import KEPT, Result, cases, digest
+from common.command import arguments
 from common.page import write_page
 
 from jackettwin.decks import read_structure
@@ -57,7 +58,8 @@ from jackettwin.study import updated, updated_systems
 from jackettwin.twin import RestingLoads, WeldMap, read_twin, weld_map
 
 USUAL_SEED = 36
-SEED = int(sys.argv[2]) if len(sys.argv) > 2 else USUAL_SEED
+GIVEN = arguments(__doc__, n=48, seed=USUAL_SEED) if __name__ == "__main__" else None
+SEED = GIVEN.seed if GIVEN else USUAL_SEED
 STEP_S = 0.05
 DEPTH_M = 72.0
 M = 4.0
@@ -517,7 +519,7 @@ def most_damaged(one: Result, low: float, high: float) -> np.ndarray:
 
 
 def main() -> None:
-    n = int(sys.argv[1]) if len(sys.argv) > 1 else 48
+    n = arguments(__doc__, n=48, seed=USUAL_SEED).n
     every = cases("fatigue", n, run, part=str(SEED), whole=True)
     results = [one for one in every if "lost" not in one]
     lost = len(every) - len(results)

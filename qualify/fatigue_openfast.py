@@ -14,6 +14,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from common.command import arguments
 from common.openfast_records import (
     ACCELERATIONS,
     BAYS,
@@ -84,8 +85,9 @@ def make(folder: Path) -> None:
 
 
 def main() -> None:
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path("missing")
-    if "--make" in sys.argv:
+    given = arguments(__doc__, folder=Path("missing"), make=False)
+    folder = given.folder
+    if given.make:
         make(folder)
     found = {
         name: dict(np.load(folder / f"{name}.npz")) for name in CASES if (folder / f"{name}.npz").exists()

@@ -25,6 +25,7 @@ from typing import IO, Any
 
 import numpy as np
 import yaml
+from common.command import arguments
 from common.page import write_page
 
 from jackettwin.records import Record, read_record
@@ -238,6 +239,7 @@ def slowness() -> float:
 
 
 def main() -> None:
+    arguments(__doc__)
     slow = slowness()
     rows = []
     for jacket in JACKETS:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
+from common.command import arguments
 from common.hydrodyn_deck import Water, write_driver, write_water
 from common.page import write_page
 
@@ -46,6 +47,7 @@ ABOVE_BED_MM = (-11, -6, -1, 1, 6, 11, 20)
 
 
 def main() -> None:
+    arguments(__doc__)
     program = os.environ.get("HYDRODYN", "")
     if not Path(program).is_file():
         sys.stderr.write(

@@ -11,6 +11,7 @@ from functools import reduce
 
 import numpy as np
 from common.cases import Result, cases
+from common.command import arguments
 from common.page import write_page
 from scipy.special import logsumexp
 
@@ -161,6 +162,7 @@ def evidence_row(found: list[Result]) -> str:
 
 
 def main() -> None:
+    arguments(__doc__)
     assembly = assemble(read_structure("jacket15"))
     steel = Rayleigh.minimum(0.0055, 0.1832)
     models: dict[str, SupportModel] = {

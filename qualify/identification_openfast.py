@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from common.command import arguments
 from scipy.signal import welch
 
 from jackettwin.identification import Identification, ModalEstimate, fuse, identify
@@ -226,8 +227,9 @@ def _bending(document: dict[str, Any], result: Identification) -> list[ModalEsti
 
 
 def main() -> None:
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else SHIPPED
-    out = Path(sys.argv[2]) if len(sys.argv) > 2 else Path("docs/verification/identification_openfast.md")
+    page = Path("docs/verification/identification_openfast.md")
+    given = arguments(__doc__, folder=SHIPPED, out=page)
+    folder, out = given.folder, given.out
     documents = truths(folder)
     results = {n: along_axes(identify(read_record(str(folder / f"{n}.parquet")))) for n in documents}
     said = [f"- {name}: {text}" for name, result in results.items() for text in result.warnings]

@@ -24,6 +24,7 @@ import tempfile
 from collections import defaultdict
 from pathlib import Path
 
+from common.command import arguments
 from common.page import write_page
 from common.planted_faults import FAULTS, Fault
 
@@ -122,7 +123,7 @@ def key(fault: Fault) -> str:
 
 def main() -> None:
     """Plant every fault of the rooms that are named, or of all."""
-    wanted = sys.argv[1:]
+    wanted = arguments(__doc__, rooms=()).rooms
     faults = [f for f in FAULTS if not wanted or f.room.split("/")[0] in wanted]
     verdicts: dict[str, bool] = json.loads(VERDICTS.read_text("utf-8")) if VERDICTS.exists() else {}
     caught: dict[str, list[Fault]] = defaultdict(list)

@@ -18,6 +18,7 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
+from common.command import arguments
 from common.openfast_deck import Run, Turbine, write_case
 from common.page import write_page
 
@@ -58,6 +59,7 @@ FOUR = ("first side-side", "first fore-aft", "second side-side", "second fore-af
 
 
 def main() -> None:
+    arguments(__doc__)
     program = os.environ.get("OPENFAST", "")
     if not Path(program).is_file():
         sys.stderr.write(

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from common.command import arguments
 from common.openfast_deck import Run
 from common.page import write_page
 from openfast import (
@@ -58,11 +59,11 @@ class Decay:
 
 
 def main() -> None:
+    chosen = tuple(arguments(__doc__, winds=WINDS).winds)
     program, decks = os.environ.get("OPENFAST", ""), Path(os.environ.get("IEA15", ""))
     if not (Path(program).is_file() and (decks / "IEA-15-240-RWT").is_dir()):
         sys.stderr.write("OPENFAST and IEA15 are not set: nothing is run (docs/verification/operation.md)\n")
         return
-    chosen = tuple(float(v) for v in sys.argv[1:]) or WINDS
     lines = introduction()
     rotor, control = read_rotor("iea15")
     for flexible in (True, False):

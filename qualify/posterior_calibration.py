@@ -5,11 +5,11 @@ Usage: python qualify/posterior_calibration.py [n_twins]
 
 from __future__ import annotations
 
-import sys
 import time
 
 import numpy as np
 from common.cases import Result, cases
+from common.command import arguments
 from common.page import percent, write_page
 from scipy.stats import binomtest, chisquare
 
@@ -76,7 +76,7 @@ def twin(model: SupportModel, case: int) -> Result:
 
 
 def main() -> None:
-    number = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
+    number = arguments(__doc__, number=1000).number
     model = twin_model()
     found = cases("posterior_calibration", number, lambda case: twin(model, case))
     known = [r for r in found if r["inside"] is not None]

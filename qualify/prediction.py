@@ -5,11 +5,11 @@ Usage: python qualify/prediction.py [n_truths] [n_intervals]
 
 from __future__ import annotations
 
-import sys
 import time
 
 import numpy as np
 from common.cases import Result, cases
+from common.command import arguments
 from common.measured import as_measured, sampled
 from common.page import percent, write_page
 from scipy.stats import binomtest
@@ -81,7 +81,8 @@ def prediction(assembly: Assembly, case: int) -> Result:
 
 
 def main() -> None:
-    number, intervals = (int(a) for a in [*sys.argv[1:], *("50", "400")[len(sys.argv) - 1 :]])
+    given = arguments(__doc__, number=50, intervals=400)
+    number, intervals = given.number, given.intervals
     assembly = assemble(read_structure("jacket15"))
     found = cases("prediction", number, lambda case: truth(assembly, case))
     ranks = [

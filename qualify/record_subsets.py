@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 from common.cases import Result, cases
+from common.command import arguments
 from common.page import write_page
 
 from jackettwin.study import run_twin
@@ -65,6 +66,7 @@ def cell(values: list[float] | None, scale: float, digits: int) -> tuple[str, bo
 
 
 def main() -> None:
+    arguments(__doc__)
     chosen = subsets(read_twin("openfast_pile").records)
     found = cases("record_subsets", len(chosen), lambda case: subset(chosen[case]), whole=True)
     columns = (("k", 1e-9, 1), ("side_side_1", 100.0, 2), ("fore_aft_1", 100.0, 2))

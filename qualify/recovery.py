@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from common.command import arguments
 from common.openfast_deck import Run, write_case
 from common.page import write_page
 from openfast import at_rest, execute, turbine
@@ -36,13 +37,14 @@ OURS = {"FKze": "axial_n", "MKxe": "bending_y_nm", "MKye": "bending_z_nm", "MKze
 
 
 def main() -> None:
+    given = arguments(__doc__, folder=None)
     program = os.environ.get("OPENFAST", "")
     if not Path(program).is_file():
         sys.stderr.write("OPENFAST is not set: nothing is run (docs/verification/recovery.md)\n")
         return
     with tempfile.TemporaryDirectory() as scratch:
         # a named folder keeps the run for the next page
-        place = Path(sys.argv[1] if len(sys.argv) > 1 else scratch)
+        place = given.folder or Path(scratch)
         place.mkdir(exist_ok=True)
         if not (place / "case.out").is_file():
             execute(program, prepared(place))

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 import yaml
+from common.command import arguments
 from common.page import write_page
 
 from jackettwin.records import Record, read_record
@@ -44,6 +45,7 @@ SECOND = {"fore-aft": "fore_aft_2", "side-side": "side_side_2"}
 
 
 def main() -> None:
+    arguments(__doc__)
     with tempfile.TemporaryDirectory() as folder:
         simulated = {case: levels_of(Path(folder), *case) for case in dict.fromkeys(RECORDS.values())}
     levels = {case: found for case, (found, _) in simulated.items()}

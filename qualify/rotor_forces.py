@@ -19,6 +19,7 @@ from pathlib import Path
 from unittest.mock import patch
 
 import numpy as np
+from common.command import arguments
 from common.openfast_deck import Run, write_case
 from common.page import write_page
 from openfast import turbine
@@ -45,6 +46,7 @@ STANDING = {"Wake_Mod": "0", "UA_Mod": "0"}
 
 
 def main() -> None:
+    arguments(__doc__)
     program, decks = os.environ.get("OPENFAST", ""), Path(os.environ.get("IEA15", ""))
     if not (Path(program).is_file() and (decks / "IEA-15-240-RWT").is_dir()):
         sys.stderr.write(

@@ -5,11 +5,11 @@ Usage: python qualify/sensor_faults.py [n_structures]
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+from common.command import arguments
 from common.page import write_page
 from common.structures import bridge, building, cantilever
 
@@ -83,4 +83,4 @@ def main(n: int) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 1000)
+    main(arguments(__doc__, n=1000).n)

@@ -8,7 +8,6 @@ of modes. Usage: python qualify/simulated_jackets.py [n_records]
 
 from __future__ import annotations
 
-import sys
 import tempfile
 from collections import Counter
 from pathlib import Path
@@ -18,6 +17,7 @@ from typing import Any
 import numpy as np
 import yaml
 from common.cases import Result, cases
+from common.command import arguments
 from common.page import write_page
 
 from jackettwin.identification import IdentificationSettings, ModalEstimate, examine
@@ -134,7 +134,7 @@ def row(what: str, results: list[Result]) -> str:
 
 
 def main() -> None:
-    n = int(sys.argv[1]) if len(sys.argv) > 1 else 120
+    n = arguments(__doc__, n=120).n
     results = cases("simulated_jackets", n, run, whole=True)
     rows = [row("all", results)]
     for key in ("jacket", "state", "levels"):

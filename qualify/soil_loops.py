@@ -12,6 +12,7 @@ from math import pi
 from pathlib import Path
 
 import numpy as np
+from common.command import arguments
 
 from jackettwin.soil.foundation import read_foundation
 from jackettwin.soil.piles.cyclic import CyclicPile, loop
@@ -26,6 +27,7 @@ HEAD = "| amplitude | lateral k/k₀ | lateral η | axial k/k₀ | axial η |"
 
 
 def main() -> None:
+    arguments(__doc__)
     foundation = replace(read_foundation("jacket15"), law=ELASTIC)
     pile = foundation.cyclic()
     K0 = foundation.head().impedance(0.0)[0].real

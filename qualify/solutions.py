@@ -5,11 +5,11 @@ Usage: python qualify/solutions.py [n_problems]
 
 from __future__ import annotations
 
-import sys
 import time
 
 import numpy as np
 from common.cases import Result, cases
+from common.command import arguments
 from common.page import write_page
 
 from jackettwin.decks import read_structure
@@ -97,7 +97,7 @@ def planted_problem(models: dict[str, SupportModel], case: int) -> Result:
 
 
 def main() -> None:
-    number = int(sys.argv[1]) if len(sys.argv) > 1 else 20
+    number = arguments(__doc__, number=20).number
     assembly = assemble(read_structure("jacket15"))
     steel = Rayleigh.minimum(0.0055, 0.1832)
     models = {law: support_model(assembly, family=family(law), rayleigh=steel) for law in LAWS}

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 import yaml
+from common.command import arguments
 from common.openfast_deck import Run, write_case
 from common.page import write_page
 from openfast import DECKS, execute, three_legs, turbine
@@ -61,6 +62,7 @@ def cases() -> list[Case]:
 
 
 def main() -> None:
+    arguments(__doc__)
     program = os.environ.get("OPENFAST", "")
     if not Path(program).is_file():
         sys.stderr.write("OPENFAST is not set to the program: nothing is run\n")

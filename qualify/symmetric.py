@@ -22,6 +22,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from common.command import arguments
 from common.page import write_page
 
 from jackettwin.decks import read_structure
@@ -231,11 +232,11 @@ def told(lines: Iterator[str]) -> list[str]:
 
 
 def main() -> None:
-    n = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
-    twin = sys.argv[2:3]
+    given = arguments(__doc__, n=10_000, twin=None)
+    n, twin = given.n, given.twin
     cost = told(costs())
     if twin:
-        slow = command_s("run", twin[0], "--out", tempfile.mkdtemp()) / eig_s() * SLOW_EIG_S
+        slow = command_s("run", str(twin), "--out", tempfile.mkdtemp()) / eig_s() * SLOW_EIG_S
         cost += ["", f"`jackettwin run` of the twin that was given: {slow:.0f} CPU-seconds of that machine."]
     write_page(
         "symmetric",

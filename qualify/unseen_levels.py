@@ -20,6 +20,7 @@ from pathlib import Path
 from unittest.mock import patch
 
 import numpy as np
+from common.command import arguments
 from common.openfast_deck import Run, write_case
 from common.page import write_page
 from openfast import execute, on_piles, tower_inside, turbine, without_turbine
@@ -55,11 +56,11 @@ CHANNELS = {"acc_top_x": "YawBrTAxp", "acc_top_y": "YawBrTAyp"}
 
 
 def main() -> None:
+    folder = arguments(__doc__, folder=None).folder
     program, decks = os.environ.get("OPENFAST", ""), Path(os.environ.get("IEA15", ""))
-    if not (Path(program).is_file() and (decks / "IEA-15-240-RWT").is_dir() and len(sys.argv) > 1):
+    if not (Path(program).is_file() and (decks / "IEA-15-240-RWT").is_dir() and folder):
         sys.stderr.write("OPENFAST, IEA15, FOLDER: nothing is run (docs/verification/unseen_levels.md)\n")
         return
-    folder = Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
     powers = []
     for speed, seed in CASES:

@@ -8,7 +8,6 @@ Usage: python qualify/unseen_structures.py [n_twins of each structure]
 
 from __future__ import annotations
 
-import sys
 import tempfile
 import time
 from pathlib import Path
@@ -16,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 from common.cases import Result, cases
+from common.command import arguments
 from common.page import percent, write_page
 from scipy.stats import binomtest
 
@@ -121,7 +121,7 @@ def rows(found: list[Result]) -> list[str]:
 
 
 def main() -> None:
-    number = len(STRUCTURES) * (int(sys.argv[1]) if len(sys.argv) > 1 else 20)
+    number = len(STRUCTURES) * arguments(__doc__, each=20).each
     models = {name: true_model(name) for name in STRUCTURES}
     found = cases("unseen_structures", number, lambda case: twin(models, case))
     inside = sum(sum(r["inside"]) for r in found)

@@ -1,12 +1,12 @@
 """Watching on seasons made by other code: false alarms, delays, names, beside what people run today.
 
-Usage: python qualify/watching.py [quiet turbines a kind of seasons] [turbines a change]
+Usage: python qualify/watching.py [page] [quiet turbines a kind of seasons] [turbines a change]
        [of a kind without conditions] [folder of pieces]
        python qualify/watching.py speed
        python qualify/watching.py kinds [turbines a kind of seasons] [folder of pieces]
        python qualify/watching.py scours [turbines a kind of seasons] [folder of pieces]
        python qualify/watching.py right [turbines]
-       python qualify/watching.py smallest [turbines a kind of seasons] [folder of pieces]
+       python qualify/watching.py smallest [turbines a kind of seasons] [folder of pieces] [--model]
 
 Each turbine is a piece that is kept in a file; a run that was stopped goes on where it was. Pieces of other
 source code are not used.
@@ -14,6 +14,7 @@ source code are not used.
 
 from __future__ import annotations
 
+import argparse
 import hashlib
 import json
 import sys
@@ -28,6 +29,7 @@ import numpy as np
 from common.charts import daily, ewma, hotelling, pca_novelty, regressed
 from common.page import write_page
 from common.seasons import FREQUENCY_HZ, Kind, Seasons, ramp, seasons, step
+from diagnosis_by_hand import LOSS, Site, paired, pile_head, solved
 from scipy.stats import beta, chi2, poisson
 
 from jackettwin import watching
@@ -78,6 +80,8 @@ NAMING = "causes.py", "diagnosis.py", "next_look.py"
 """Of ``watching``: what only says which cause it was."""
 TWIN_HZ = (0.1757, 0.1783)
 """First pair of the reference jacket on feet of 2.5e9 N/m, to which the twin is fitted."""
+PAIRS_OF_MODEL = ("side_side_1", "fore_aft_1", "side_side_2", "fore_aft_2")
+"""Modes of the reference jacket that take the place of the seasons' two pairs."""
 SIZES = (0.0007, 0.0014, 0.0028, 0.0056, 0.0112, 0.0225, 0.045)
 
 
@@ -414,28 +418,90 @@ def smallest(kind: str, baseline: float, seed: int) -> list[Any] | None:
     return out
 
 
-def smallest_found(pieces: dict[str, Any]) -> list[str]:
+def smallest_of_model(kind: str, baseline: float, seed: int) -> list[Any] | None:
+    """Return the same of a structure's changes: scour at all feet and softening, as changes to the drawing.
+
+    The feet differ from the model's, whose causes are computed from the baseline's frequencies.
+    """
+    place, structure = list(KINDS).index(kind), read_structure("jacket15")
+    rng = np.random.default_rng((11, place, seed))
+    apart = np.exp(0.4 * rng.standard_normal(3))[[0, 0, 2]]
+    feet = pile_head(0.0) * apart * np.exp(0.1 * rng.standard_normal((len(structure.reaction_nodes), 3)))
+    site = Site(structure, feet)
+    before = solved(site)
+    chosen = [before.labels.index(label) for label in PAIRS_OF_MODEL]
+    begun = baseline + rng.uniform(5.0, 25.0)
+    s = seasons(SMALLEST_SEEDS + 100 * place + seed, begun + HORIZONS_DAYS[-1] + 1.0, KINDS[kind])
+
+    def of_site(s: Seasons) -> History:
+        """Return the seasons' modes as those of the structure."""
+        own = history(s)
+        scale = before.frequency_hz[chosen] / FREQUENCY_HZ
+        return replace(
+            own, labels=PAIRS_OF_MODEL, frequency=own.frequency * scale,
+            frequency_std=own.frequency_std * scale, angle=np.full_like(own.angle, np.nan),
+        )  # fmt: skip
+
+    learning = of_site(s).between(0.0, baseline)
+    f, zeta = np.nanmedian(learning.frequency, axis=0), np.nanmedian(learning.damping, axis=0)
+    causes = model_causes(structure, PAIRS_OF_MODEL, f, zeta, seed=seed)
+    watch = watching.start(learning, patterns=causes.patterns(PAIRS_OF_MODEL))
+    told = smallest_changes(watch, learning, causes)
+    for day in of_site(s).between(baseline, np.floor(begun)).by_day():
+        watch, look = watching.step(watch, day)
+        if look.change is not None:
+            return None
+    out = []
+    for one in told:
+        if one.size is None:
+            continue
+        softer = 1.0 - one.size if one.change == "soil softening" else pile_head(one.size) / pile_head(0.0)
+        after = solved(replace(site, feet=feet * softer))
+        at = paired(before, after, chosen)
+        ln_f = np.log(after.frequency_hz[at] / before.frequency_hz[chosen])
+        more = 0.5 * LOSS * (after.soil_share[at] - before.soil_share[chosen])
+        ln_zeta = np.log1p(more / zeta)
+        h = of_site(s.changed(step(s.days, begun, ln_f), step(s.days, begun, ln_zeta)))
+        now = watch
+        for day in h.between(np.floor(begun), begun + one.days).by_day():
+            now, look = watching.step(now, day)
+            if look.change is not None:
+                break
+        out.append([one.days, one.size, one.projected, look.change is not None, one.change])
+    return out
+
+
+def smallest_found(pieces: dict[str, Any], name: str) -> list[str]:
     """Return the table of the smallest changes that were told and planted."""
     lines = [
-        "| baseline [days] | within [days] | projected | size, median [%] | found | 95 % interval [%] |",
-        "|---|---|---|---|---|---|",
+        "| change | baseline [days] | within [days] | projected | size, median | found | 95 % interval [%] |",
+        "|---|---|---|---|---|---|---|",
     ]
+    every = []
     for baseline in BASELINES:
-        turbines = [one for one in _of(pieces, f"smallest/{baseline:g}/") if one is not None]
-        for days in HORIZONS_DAYS:
-            told = [row for one in turbines for row in one if row[0] == days]
-            if not told:
-                continue
-            n, found = len(told), sum(row[3] for row in told)
-            low = beta.ppf(0.025, found, n - found + 1) if found else 0.0
-            high = beta.ppf(0.975, found + 1, n - found) if found < n else 1.0
-            size = 100.0 * np.median([row[1] for row in told])
-            lines.append(
-                f"| {baseline:g} | {days:g} | {'yes' if told[0][2] else 'no'} | {size:.2f} | "
-                f"{found} of {n} | {100 * low:.0f} to {100 * high:.0f} |"
-            )
-    early = sum(one is None for one in _of(pieces, "smallest/"))
-    return [*lines, "", f"Alarms before the change, not counted: {early}.", ""]
+        turbines = [one for one in _of(pieces, f"{name}/{baseline:g}/") if one is not None]
+        rows = [row if len(row) > 4 else [*row, "all modes alike"] for one in turbines for row in one]
+        every += rows
+        for change in dict.fromkeys(row[4] for row in rows):
+            for days in HORIZONS_DAYS:
+                told = [row for row in rows if row[0] == days and row[4] == change]
+                if told:
+                    size = np.median([row[1] for row in told])
+                    shown = f"{size:.2f} m" if change.startswith("scour") else f"{100.0 * size:.2f} %"
+                    lines.append(
+                        f"| {change} | {baseline:g} | {days:g} | {'yes' if told[0][2] else 'no'} | {shown} | "
+                        f"{_found_of(told)} |"
+                    )
+    early = sum(one is None for one in _of(pieces, f"{name}/"))
+    return [*lines, f"| **all** | | | | | {_found_of(every)} |", "",
+            f"Alarms before the change, not counted: {early}.", ""]  # fmt: skip
+
+
+def _found_of(told: list[Any]) -> str:
+    n, found = len(told), sum(row[3] for row in told)
+    low = beta.ppf(0.025, found, n - found + 1) if found else 0.0
+    high = beta.ppf(0.975, found + 1, n - found) if found < n else 1.0
+    return f"{found} of {n} | {100 * low:.0f} to {100 * high:.0f}"
 
 
 # what the seasons' information allows
@@ -671,34 +737,63 @@ def computed(pieces: Iterable[tuple[str, Callable[[], Any]]], folder: Path) -> d
     return out
 
 
+def given() -> argparse.Namespace:
+    """Return what was asked for; without its name it is the page."""
+    words = sys.argv[1:]
+    shape = argparse.RawDescriptionHelpFormatter
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=shape)
+    asked = parser.add_subparsers(dest="what", required=True)
+    usual = {
+        "page": (15, 20, 7),
+        "speed": (),
+        "kinds": (3,),
+        "scours": (4,),
+        "right": (24,),
+        "smallest": (3,),
+    }
+    for what, numbers in usual.items():
+        of = asked.add_parser(what)
+        for k, number in enumerate(numbers):
+            of.add_argument(f"turbines_{k}", nargs="?", type=int, default=number, help=f"default: {number}")
+        if what not in ("speed", "right"):
+            of.add_argument("folder", nargs="?", type=Path, default=Path("out/qualify"))
+        if what == "smallest":
+            of.add_argument(
+                "--model", action="store_true", help="of a structure, with changes to its drawing"
+            )
+    known = words and (words[0] in usual or words[0] in ("-h", "--help"))
+    return parser.parse_args(words if known else ["page", *words])
+
+
 def main() -> None:
-    if sys.argv[1:] == ["speed"]:
+    asked = given()
+    if asked.what == "speed":
         sys.stdout.write("\n".join(speed()))
         return
-    if sys.argv[1:2] == ["right"]:
-        sys.stdout.write("\n".join(right_models(int(sys.argv[2]) if len(sys.argv) > 2 else 24)) + "\n")
+    number = asked.turbines_0
+    if asked.what == "right":
+        sys.stdout.write("\n".join(right_models(number)) + "\n")
         return
-    if sys.argv[1:2] == ["smallest"]:
-        folder = Path(sys.argv[3] if len(sys.argv) > 3 else "out/qualify")
-        number = int(sys.argv[2]) if len(sys.argv) > 2 else 3
+    if asked.what == "smallest":
+        one = smallest_of_model if asked.model else smallest
+        name = "smallest_of_model" if asked.model else "smallest"
         named = [
-            (f"smallest/{days:g}/{kind}/{seed}", lambda k=kind, d=days, s=seed: smallest(k, d, s))
+            (f"{name}/{days:g}/{kind}/{seed}", lambda k=kind, d=days, s=seed: one(k, d, s))
             for days, turbines in zip(BASELINES, (number, number // 3), strict=True)
             for seed in range(turbines)
             for kind in KINDS
             if kind not in SLOW
         ]
-        sys.stdout.write("\n".join(smallest_found(computed(named, folder))))
+        sys.stdout.write("\n".join(smallest_found(computed(named, asked.folder), name)))
         return
-    if sys.argv[1:2] in (["kinds"], ["scours"]):
-        folder, every = Path(sys.argv[3] if len(sys.argv) > 3 else "out/qualify"), sys.argv[1] == "kinds"
-        named = [p for p in pieces_of(int(sys.argv[2]), 0, 0) if every or p[0].startswith("scour/")]
-        pieces = computed(named, folder)
+    if asked.what in ("kinds", "scours"):
+        every = asked.what == "kinds"
+        named = [p for p in pieces_of(number, 0, 0) if every or p[0].startswith("scour/")]
+        pieces = computed(named, asked.folder)
         sys.stdout.write("\n".join([*scours(pieces), *(false_alarms(pieces) if every else ())]))
         return
-    kinds, number, without = (int(x) for x in (*sys.argv[1:4], *("15", "20", "7")[len(sys.argv) - 1 :]))
-    folder = Path(sys.argv[4] if len(sys.argv) > 4 else "out/qualify")
-    pieces = computed(pieces_of(kinds, number, without), folder)
+    kinds, number, without = asked.turbines_0, asked.turbines_1, asked.turbines_2
+    pieces = computed(pieces_of(kinds, number, without), asked.folder)
     head = [
         "# Watching",
         "",

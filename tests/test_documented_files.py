@@ -82,3 +82,35 @@ def test_every_page_of_theory_begins_with_its_question_an_equation_and_a_picture
         assert re.fullmatch(r"\*[^*]+\?\*", question), page.name
         assert any(part.startswith("$$") for part in rest), page.name
         assert any(part.startswith("![") for part in rest), page.name
+
+
+CAMPAIGNS = Path(__file__).parents[1] / "qualify"
+
+
+def test_every_campaign_has_a_command_line() -> None:
+    """One without took ``--help`` for the name of a folder, or for nothing, and ran for hours."""
+    scripts = [path.read_text("utf-8") for path in CAMPAIGNS.glob("*.py")]
+    assert len(scripts) > 40
+    run = [text for text in scripts if 'if __name__ == "__main__"' in text]
+    assert all("arguments(__doc__" in text or "ArgumentParser(" in text for text in run)
+
+
+def test_a_campaign_takes_values_by_place(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    monkeypatch.syspath_prepend(str(CAMPAIGNS))
+    arguments = import_module("common.command").arguments
+    usual = {"number": 4, "folder": None, "winds": (4.0, 8.0), "make": False}
+    monkeypatch.setattr("sys.argv", ["campaign"])
+    assert vars(arguments("What.", **usual)) == usual
+    monkeypatch.setattr("sys.argv", ["campaign", "7", "out", "12", "--make"])
+    assert vars(arguments("What.", **usual)) == {
+        "number": 7,
+        "folder": Path("out"),
+        "winds": [12.0],
+        "make": True,
+    }
+    monkeypatch.setattr("sys.argv", ["campaign", "--help"])
+    with pytest.raises(SystemExit, match="0"):
+        arguments("What.", **usual)
+    assert "What." in capsys.readouterr().out
