@@ -7,7 +7,14 @@ import numpy as np
 import pytest
 
 from jackettwin.change import causes, standing_modes
-from jackettwin.change.causes import ModelCauses, model_causes, seen_causes, standings, turned
+from jackettwin.change.causes import (
+    ModelCauses,
+    mixing,
+    model_causes,
+    seen_causes,
+    standings,
+    turned,
+)
 from jackettwin.change.changed_structures import Standing, braces, happenings, with_mass
 from jackettwin.change.ground import UNDESCRIBED, Ground, scour_loss
 from jackettwin.change.standing_modes import MODES, Modes, kept_share
@@ -27,6 +34,7 @@ from jackettwin.structure import (
     assemble,
 )
 from jackettwin.twin import RotorSide
+from jackettwin.watching import diagnosis
 
 LABELS = ("side_side_1", "fore_aft_1", "torsion_1")
 
@@ -343,3 +351,46 @@ def undamped_unit_top(assembly: Assembly) -> np.ndarray:
     shape = np.zeros((assembly.stiffness.shape[0], 1))
     shape[assembly.dofs(assembly.structure.top_node)[0]] = 1.0
     return shape
+
+
+def test_modes_that_are_mixed_otherwise_divide_an_effect_otherwise(stands: Standing) -> None:
+    """By Rayleigh's quotient: G_ij of a softer foot is what its springs lose times both modes' motion there.
+
+    What two modes gain and lose together is nothing, and half of the tangent's angle is the rotation.
+    """
+    small = next(h for h in happenings(stands) if h.family == "scour at one foot")
+    softer = replace(stands, horizontal=stands.horizontal * [0.97, 1.0, 1.0, 1.0])
+    event = replace(small, apply=lambda _: softer, per=1.0)
+    assembly = assemble(stands.structure, gravity=True)
+    base = Modes.of(stands, assembly)
+    rows = mixing(event, base, Modes.of(softer, assembly, like=base), 0.004)
+    assert rows.shape == (MODES * (MODES - 1) // 2, 3 * MODES) and not rows[:, MODES:].any()
+    square = base.modes.omega**2
+    np.testing.assert_allclose(rows[:, :MODES] @ square, 0.0, atol=1e-9 * np.abs(rows * square.max()).max())
+    foot = assembly.dofs(stands.structure.reaction_nodes[0])[:2]
+    at = base.modes.shapes[foot]
+    lost = -0.03 * stands.horizontal[0] * at.T @ at
+    pairs = [(i, j) for i in range(MODES) for j in range(i)]
+    for row, (i, j) in zip(rows, pairs, strict=True):
+        miss = 2.0 * causes._MIXES * 0.004 * np.sqrt(square[i] * square[j])
+        _, vectors = np.linalg.eigh([[min(square[i], square[j]), miss], [miss, max(square[i], square[j])]])
+        turned_by = np.arctan(np.abs(vectors[1, 0] / vectors[0, 0]))
+        # the effect is of first order in 3 % of a foot; modes of neighbouring λ mix in second order, too
+        size = 0.05 * np.abs(lost).max() * turned_by / square[i]
+        assert row[i] == pytest.approx(turned_by * lost[i, j] / square[i], rel=0.05, abs=size)
+
+
+def test_the_error_of_a_direction_has_all_its_parts(model: ModelCauses) -> None:
+    """Draws, each quantity by itself and mixing add up; a tail's multiple is not of the draws."""
+    cause = next(c for c in model.causes if c.mixing is not None)
+    kinds = ["frequency"] * MODES + ["damping"] * MODES + ["angle"] * MODES
+    alone = np.concatenate([
+        np.full(MODES, cause.misfit * np.sqrt(np.mean(part**2))) for part in np.split(cause.draws, 3, axis=1)
+    ])  # fmt: skip
+    apart = cause.draws - cause.draws.mean(axis=0)
+    for times in (1.0, 3.0):
+        root = diagnosis._misfit(cause, kinds, times)
+        whole = apart.T @ apart / max(len(apart) - 1, 1) + times**2 * (
+            np.diag(alone**2) + cause.mixing.T @ cause.mixing
+        )
+        np.testing.assert_allclose(root @ root.T, whole, atol=1e-9 * np.abs(whole).max())

@@ -41,8 +41,9 @@ _FEET_APART = 0.15
 and in a nearly round structure that rotates the axes of a pair."""
 _MODEL_ERROR = 0.01
 """Prior relative error of a model's frequencies, with the weight of one mode."""
-_MISSES = 5.0
-"""Ratio of a model's error of directions to its error of frequencies: docs/verification/directions.md."""
+_MISSES, _MIXES = 2.0, 0.5
+"""Errors of a model's directions over its error of frequencies, of each mode by itself and by other rotations
+of two modes than an equal error beside the diagonal makes: docs/verification/directions.md."""
 _LOSS = (0.08, 0.4)
 """Loss factor of the ground: median and spread in ln."""
 _ALIKE = 0.995
@@ -203,7 +204,7 @@ def model_causes(
             bend = _bend(event.per, draws[0], bends)
             cause = Cause(
                 event.name, draws, sizes, weights, event.unit, bent_at=bend[0], bend=bend[1],
-                misfit=min(_MISSES * error, MISFIT),
+                misfit=min(_MISSES * error, MISFIT), mixing=mixing(event, bases[0], changed[0], error),
             )  # fmt: skip
             found.append((event.family, cause))
     works = () if rotor is None else (rotor.cause(assembly, fit, zeta, _DRAWS, rng),)
@@ -236,6 +237,32 @@ def effect(event: Happening, base: Modes, after: Modes, eta: float, zeta: FloatA
     ln_f = np.log(after.modes.omega / base.modes.omega)
     more = 0.5 * eta * (after.soil_share - base.soil_share) + event.damps * np.maximum(-ln_f, 0.0)
     return np.concatenate([ln_f, more / zeta, turned(base, after)]) / event.per
+
+
+def mixing(event: Happening, base: Modes, after: Modes, error: float) -> FloatArray:
+    r"""Return what another rotation of two modes than the model's does to an event's effect, (k, 3·MODES).
+
+    With G = Φᵀ(δK − λδM)Φ of the event, a rotation φ of modes i and j changes its effect by
+
+    .. math:: φ G_{ij}/λ_i \text{ and } -φ G_{ij}/λ_j, \quad
+              \tan 2φ = \frac{4 ε_{ij} \sqrt{λ_iλ_j}}{|λ_i - λ_j|}
+
+    ε_ij is half of what the model misses beside the diagonal, as its error of frequencies is half of what it
+    misses on it. Members that differ from the drawing divide an effect otherwise between neighbouring modes;
+    only the sum is as certain as their energies.
+    """
+    left, _, right = np.linalg.svd(base.modes.shapes.T @ (base.mass @ after.modes.shapes))
+    turn, before = left @ right, base.modes.omega**2
+    G = (turn * after.modes.omega**2) @ turn.T - np.diag(before)
+    rows = []
+    for i in range(MODES):
+        for j in range(i):
+            apart = abs(before[i] - before[j]) / np.sqrt(before[i] * before[j])
+            phi = 0.5 * np.arctan2(4.0 * _MIXES * error, apart)
+            row = np.zeros(3 * MODES)
+            row[i], row[j] = phi * G[i, j] / before[i], -phi * G[i, j] / before[j]
+            rows.append(row / event.per)
+    return np.array(rows)
 
 
 def pairs_of(labels: Sequence[str]) -> list[tuple[int, int]]:
@@ -444,7 +471,12 @@ def seen_causes(
     ]
     kept = [pair for pair, good in zip(quantities, known, strict=True) if good]
     causes = tuple(
-        replace(c, draws=c.draws[:, columns], bend=c.bend[:, columns] if c.bend.size else c.bend)
+        replace(
+            c,
+            draws=c.draws[:, columns],
+            bend=c.bend[:, columns] if c.bend.size else c.bend,
+            mixing=None if c.mixing is None else c.mixing[:, columns],
+        )
         for c in model.causes
     )
     return SeenCauses((*causes, sensor_noise(kept)), known, tuple(columns), model)

@@ -186,5 +186,7 @@ def _predicted(cause: Cause, verdict: CauseVerdict, column: int, noise: float) -
     spread = np.hypot(np.std(per) * verdict.size, np.mean(per) * size_std)
     kind = slice(0, MODES) if column < MODES else slice(MODES, 2 * MODES)
     misfit = cause.misfit * np.sqrt(np.mean(cause.draws[:, kind] ** 2)) * abs(verdict.size)
+    if cause.mixing is not None:
+        misfit = np.hypot(misfit, np.linalg.norm(cause.mixing[:, column]) * verdict.size)
     mean = cause.steps(np.array([verdict.size]))[0, column]
     return float(mean), float(np.sqrt(spread**2 + noise**2 + misfit**2))

@@ -49,6 +49,8 @@ class Cause:
         ``draws`` there, for effects that are not proportional to the size, e.g. a brace that loses stiffness
     alike : names of other causes of the same effect, which this one represents
     misfit : error of the model's direction in any quantity, as a share of its length
+    mixing : (k, m) further errors per unit of size, independent of each other, of modes that are mixed
+        otherwise than in the model; None if there are none
     """
 
     name: str
@@ -62,6 +64,7 @@ class Cause:
     bend: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
     misfit: float = MISFIT
     alike: tuple[str, ...] = ()
+    mixing: FloatArray | None = None
 
     def steps(self, sizes: FloatArray) -> FloatArray:
         """Return the mean change of all quantities, (n_sizes, m).

@@ -177,15 +177,20 @@ def _likelihood(
 def _misfit(cause: Cause, kinds: Sequence[str], times: float = 1.0) -> FloatArray:
     """Return R, (m, r), with RRᵀ the covariance of a cause's direction per unit of size.
 
-    The draws of the structural model give errors that are correlated between quantities; the remaining error
-    of the model is independent and ``times`` the usual one.
+    The draws of the structural model give errors that are correlated between quantities. What the model
+    misses is ``times`` the usual: of each quantity by itself, and of two modes that it mixes otherwise.
     """
     draws = cause.draws
     kind, J = np.array(kinds), draws.mean(axis=0)
     alone = np.zeros(len(kind))
     for one in np.unique(kind):
         alone[kind == one] = times * cause.misfit * np.sqrt(np.mean(draws[:, kind == one] ** 2))
-    return np.concatenate([np.diag(alone), (draws - J).T / np.sqrt(max(len(draws) - 1, 1))], axis=1)
+    drawn = (draws - J).T / np.sqrt(max(len(draws) - 1, 1))
+    if cause.mixing is None:
+        return np.concatenate([np.diag(alone), drawn], axis=1)
+    mixed = times**2 * cause.mixing.T @ cause.mixing
+    values, vectors = np.linalg.eigh(np.diag(alone**2) + drawn @ drawn.T + mixed)
+    return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
 
 
 def _noisy(change: Change, cause: Cause, begins: FloatArray) -> float:
