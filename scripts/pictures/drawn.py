@@ -16,7 +16,8 @@ from jackettwin.fatigue import ENVIRONMENTS, read_curve
 from jackettwin.loads import airy_wave, regular_wave
 from jackettwin.response.superelement.accuracy import default_band_hz, reduced_modes
 from jackettwin.response.superelement.craig_bampton import superelement
-from jackettwin.sensing.latent_forces import LatentForce, gust_corner
+from jackettwin.sensing.latent_forces import LatentForce
+from jackettwin.sensing.wind_forces import gust_corner
 from jackettwin.structure import Rayleigh
 from jackettwin.structure.cut import at_interface
 
@@ -138,16 +139,16 @@ def latent_densities() -> go.Figure:
     frequency_hz = np.geomspace(1e-3, 1.0, 400)
     corner, peak = gust_corner(10.0), 2.0 * np.pi * 0.1
     drawn = (
-        ("gusts at 10 m/s", "gust", corner, _BLUE, "solid"),
-        ("as a rotor averages them", "disc", corner, _BLUE, "dash"),
-        ("quick gusts", "gust", 25.0 * corner, _BLUE, "dot"),
-        ("sea of 10 s, long waves", "wave", peak, _GREEN, "solid"),
-        ("its shorter waves", "wave", 1.7 * peak, _GREEN, "dash"),
-        ("its shortest", "wave", 2.9 * peak, _GREEN, "dot"),
+        ("gusts at 10 m/s", "gust", corner, 1.0, _BLUE, "solid"),
+        ("as a rotor averages them", "disc", 0.74 * corner, 10.5, _BLUE, "dash"),
+        ("quick gusts", "gust", 25.0 * corner, 1.0, _BLUE, "dot"),
+        ("sea of 10 s, long waves", "wave", peak, 1.5, _GREEN, "solid"),
+        ("its shorter waves", "wave", 1.7 * peak, 1.5, _GREEN, "dash"),
+        ("its shortest", "wave", 2.9 * peak, 1.5, _GREEN, "dot"),
     )
     none = np.empty(0)
-    for name, kind, rate, colour, dash in drawn:
-        density = LatentForce(name, none, none, kind, rate).density(2.0 * np.pi * frequency_hz)
+    for name, kind, rate, tail, colour, dash in drawn:
+        density = LatentForce(name, none, none, kind, rate, tail=tail).density(2.0 * np.pi * frequency_hz)
         figure.add_scatter(x=frequency_hz, y=density, name=name, line={"color": colour, "dash": dash})
     figure.update_xaxes(type="log", exponentformat="power", dtick=1)
     figure.update_yaxes(type="log", exponentformat="power", dtick=1, range=[-4.0, 5.5])

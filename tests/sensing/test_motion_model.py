@@ -5,8 +5,8 @@ from numpy.testing import assert_allclose
 
 from jackettwin.decks import read_structure
 from jackettwin.response import build_system
-from jackettwin.sensing.latent_forces import wind_forces
 from jackettwin.sensing.motion_model import motion_model
+from jackettwin.sensing.wind_forces import RotorPlace, wind_forces
 from jackettwin.soil import read_support
 from jackettwin.structure import Rayleigh, assemble
 
@@ -17,7 +17,7 @@ def test_modes_are_damped_by_the_law_at_the_mean_of_their_frequencies() -> None:
     assembly = assemble(structure)
     support = read_support("zener:k0=5e8,c=1.5e9,k1=1e9", structure)
     system = build_system(assembly, support, rayleigh=Rayleigh.minimum(0.005, 0.3))
-    model = motion_model(system, wind_forces(assembly), below_hz=2.2)
+    model = motion_model(system, wind_forces(assembly, RotorPlace()), below_hz=2.2)
     x = model.shapes[system.free]
     between = np.sqrt(np.outer(model.omega, model.omega))
     loss = [

@@ -10,13 +10,14 @@ import scipy.linalg as la
 
 from jackettwin.arrays import FloatArray
 from jackettwin.response import System, UndampedModes
-from jackettwin.sensing.latent_forces import LatentForce, passing_forces, wind_forces
+from jackettwin.sensing.latent_forces import LatentForce
 from jackettwin.sensing.levels import Levels, find_levels
 from jackettwin.sensing.motion_model import MotionModel, motion_model
 from jackettwin.sensing.readings import ACCELERATION, SensorReadings, Weather, thinned
 from jackettwin.sensing.rotor_by_wind import damped_at_work, pushed_at_work
 from jackettwin.sensing.sea import SeaOnMembers
 from jackettwin.sensing.smoother import SteadySmoother, discrete, steady_smoother
+from jackettwin.sensing.wind_forces import RotorPlace, passing_forces, wind_forces
 from jackettwin.structure import Assembly, SectionForces, section_forces
 
 _WATER_LOG_STD = np.array([0.47, 0.1, 0.25])
@@ -120,9 +121,11 @@ def sensed_model(system: System, weather: Weather) -> MotionModel:
 def _model_in(
     system: System, weather: Weather, sea: SeaOnMembers, near: UndampedModes | None = None
 ) -> MotionModel:
-    wind = wind_forces(system.assembly, wind_m_s=weather.wind_m_s)
-    if weather.working and weather.rotor is not None and weather.rotor.passing_hz is not None:
-        wind = (*wind, *passing_forces(wind, weather.rotor.passing_hz))
+    rotor, speed = weather.rotor, weather.wind_m_s
+    place = RotorPlace(weather.hub, weather.heading_rad, weather.radius_m)
+    wind = wind_forces(system.assembly, place, wind_m_s=speed, working=weather.working)
+    if weather.working and rotor is not None and rotor.passing_hz is not None and speed is not None:
+        wind = (*wind, *passing_forces(wind, rotor.passing_hz, speed, place.radius_m))
     forces = (*wind, *sea.forces())
     model = motion_model(system, forces, below_hz=BAND_HZ, drag=sea.damping(), near=near, local=sea.local())
     return _pushed(_damped(model, weather), weather)

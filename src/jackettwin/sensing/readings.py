@@ -17,6 +17,7 @@ from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import Record, decimate
 from jackettwin.response import Sensor, observation_matrix
 from jackettwin.sensing.rotor_by_wind import RotorAtTop, RotorByWind
+from jackettwin.sensing.wind_forces import USUAL_RADIUS_M
 from jackettwin.structure import Assembly
 
 ACCELERATION = 2
@@ -64,6 +65,7 @@ class Weather:
     working : whether the rotor turns and produces
     heading_rad : towards which its wind blows, anticlockwise from x seen from above
     rotor : what it does at the tower top in this wind; None is a usual rotor
+    hub, radius_m : of the rotor, from the tower top (3,) and its blades' length
     """
 
     wind_m_s: float | None = None
@@ -75,6 +77,8 @@ class Weather:
     working: bool = False
     heading_rad: float = 0.0
     rotor: RotorAtTop | None = None
+    hub: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    radius_m: float = USUAL_RADIUS_M
 
     @classmethod
     def of(
@@ -103,6 +107,8 @@ class Weather:
             working,
             radians(float(heading)) if isinstance(heading, (int, float)) else 0.0,
             rotor.at(wind) if rotor is not None and working and wind is not None else None,
+            (0.0, 0.0, 0.0) if rotor is None else rotor.hub,
+            USUAL_RADIUS_M if rotor is None else rotor.rotor.radius,
         )
 
 

@@ -1,0 +1,241 @@
+r"""What wind does to a rotor and its tower, as latent forces.
+
+Gusts have Kaimal's spectrum and the coherence of IEC 61400-1 (2019), C.2,
+
+.. math:: γ(f, r) = \exp(-12 \sqrt{(f r/U)^2 + (0.12\, r/L)^2}).
+
+A working rotor's blades average them around circles: of their harmonics by azimuth the mean pushes, and turns
+the shaft, the first one bends it, and as three blades pass the third does so and the second and fourth, at
+three times the rotor's speed. A rotor that stands with feathered blades has lift from v and w, of which gusts
+are a third and a twelfth as long as those of u, along three lines. Forces act at the hub.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from math import pi
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.loads import AIR_KG_M3, TOWER_DRAG, Coefficients, morison_points, point_forces
+from jackettwin.response import nodal_load
+from jackettwin.sensing.latent_forces import LatentForce
+from jackettwin.structure import Assembly
+
+_INTEGRAL_SCALE_M = 340.2
+"""8.1 Λ₁ of hubs above 60 m, IEC 61400-1 (2019) annex C."""
+_USUAL_WIND_M_S = 10.0
+USUAL_RADIUS_M = 100.0
+"""Of a rotor that nobody described."""
+_SPACING_M = 4.0
+_FORCE_N = 1e5
+"""To start from; the record decides."""
+
+
+class _Push(NamedTuple):
+    """How gusts push a rotor.
+
+    Attributes
+    ----------
+    row : of the load at the hub, x along the axis
+    corner : over U/6L
+    tail : the upper corner over that one, beyond which the density falls with f⁻⁴ instead of f⁻²; or none
+    beside, ratio, log_std : of another's level what this one's is expected to be, of a moment over the radius
+    passing : of its level what blades that cut the same gusts make as they pass
+    quick : whether what its spectrum lacks above some tenths of a hertz is sought in the record
+    """
+
+    name: str
+    row: int
+    corner: float
+    tail: float | None = None
+    beside: str | None = None
+    ratio: float = 1.0
+    log_std: float = 3.0
+    passing: float | None = None
+    quick: bool = False
+
+
+_WORKING = (
+    _Push("rotor Fx", 0, 0.74, 10.5, passing=0.25, quick=True),
+    _Push("rotor Fy", 1, 1.4, None, "rotor Fx", 0.12, 0.5),
+    _Push("rotor Mx", 3, 0.74, 10.5, "rotor Fx", 0.2, 0.5, 0.25, quick=True),
+    _Push("rotor My", 4, 1.45, 7.0, "rotor Fx", 0.2, 0.5, 0.7, quick=True),
+    _Push("rotor Mz", 5, 1.45, 7.0, "rotor Fx", 0.2, 0.5, 0.7, quick=True),
+)
+"""Three blades of 120 m whose load per length and wind grows with the radius to the power of 0 to ½.
+
+From 7 to 20 m/s the thrust's corners lie at 0.68 to 0.74 and 6.3 to 8.8 U/6L, those of the moments across
+at 1.4 to 1.5 and 10 to 11; these are 0.16 to 0.20 R of the thrust, with the shipped 15 MW rotor's blades
+0.20, its torque 0.19 to 0.26 R and the force aside 0.11 to 0.16; what passes is 0.21 to 0.26 of thrust and
+torque, 0.68 to 0.70 of the moments."""
+_STANDING = (
+    _Push("rotor Fx", 0, 1.8),
+    _Push("rotor Fy", 1, 1.4),
+    _Push("rotor Mx", 3, 3.0, None, "rotor Fy", 0.2, 1.0),
+    _Push("rotor My", 4, 1.9, None, "rotor Fx", 0.2, 1.0),
+    _Push("rotor Mz", 5, 1.9, None, "rotor Fx", 0.2, 1.0),
+)
+"""The shipped rotor with feathered blades: with one corner the logarithm of the density is 0.1 to 0.2 off
+from 1/600 to 0.5 Hz, and the corners of 8 to 22 m/s are 0.1 to 0.3 U/6L apart."""
+_PASSING_LOG_STD, _PASSING_RATE_LOG_STD, _PASSING_WIDTH = 0.3, 0.05, 2.2
+"""Of the level and frequency of what passes; half of its band over U/6L: 1.6 to 2.1 of moments, 2.4 to 2.9 of
+thrust."""
+_ASIDE = -0.45
+"""Force aside over the moment across per radius as blades pass: a blade that is pushed harder as it is up
+drives the shaft harder, too: of the shipped rotor −0.40 to −0.49 at 7 to 18 m/s, with a coherence of 0.9."""
+_QUICK = 25.0
+"""Ratio of the corners of quick and slow gusts: the two have Kaimal's f^(-5/3) within a factor of 1.6."""
+_QUICK_SHARE, _QUICK_LOG_STD, _QUICK_RATE_LOG_STD = 0.3, 1.5, 0.3
+"""Expected ratio of quick gusts to slow ones, and the deviations of its logarithm and of their corner's.
+
+With a free corner the quick gusts fit what lies above 1 Hz and slow moments replace them: those were found
+three times too large in a simulated record at work."""
+_RATE_LOG_STD = 0.2
+_THRUST_LOG_STD = 0.5
+"""Of a working rotor's thrust, given how it damps: turbulence is not class B, a controller answers."""
+_TURBULENCE, _GUSTS_LOG_STD = 0.14, 0.7
+"""I_ref of class B (IEC 61400-1 (2019), eq. (10)): drag on a tower varies by 2Uσ in a wind that is stated."""
+_TOWER = "tower"
+
+
+@dataclass(frozen=True)
+class RotorPlace:
+    """Where a rotor's forces act: at the hub, on axes of its own.
+
+    Attributes
+    ----------
+    hub : from the tower top (3,) [m] at heading 0
+    heading_rad : of its axis, anticlockwise from x seen from above
+    radius_m : of its blades
+    """
+
+    hub: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    heading_rad: float = 0.0
+    radius_m: float = USUAL_RADIUS_M
+
+    def on_top(self, row: int) -> tuple[float, ...]:
+        """Return the load (6,) on the tower top, in global axes, of a unit one at the hub in the rotor's."""
+        c, s = np.cos(self.heading_rad), np.sin(self.heading_rad)
+        turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        force, moment = np.kron(np.eye(2), turn)[:, row].reshape(2, 3)
+        return (*force, *(moment + np.cross(turn @ self.hub, force)))
+
+
+def with_thrust(forces: tuple[LatentForce, ...], level_n: Mapping[str, float]) -> tuple[LatentForce, ...]:
+    """Return forces whose rotor is expected to push by so much; moments and quick gusts go with it.
+
+    Parameters
+    ----------
+    level_n : {"rotor Fx": standard deviation of its slow gusts}
+    """
+    named = {force.name: force for force in forces}
+
+    def expected(force: LatentForce) -> LatentForce:
+        root = force
+        while root.beside is not None:
+            root = named[root.beside]
+        if root.name not in level_n:
+            return force
+        level = force.level * level_n[root.name] / root.level
+        return replace(
+            force, level=level, level_log_std=force.level_log_std if force.beside else _THRUST_LOG_STD
+        )
+
+    return tuple(expected(force) for force in forces)
+
+
+def gusts_std(wind_m_s: float) -> float:
+    """Return the standard deviation of the wind's speed [m/s]: IEC 61400-1 (2019), eq. (10), class B."""
+    return _TURBULENCE * (0.75 * wind_m_s + 5.6)
+
+
+def gust_corner(wind_m_s: float | None) -> float:
+    """Return the corner a [rad/s] of gusts in a mean wind: U/6L of Kaimal's spectrum, IEC 61400-1 (C.14)."""
+    return 2.0 * pi * (_USUAL_WIND_M_S if wind_m_s is None else wind_m_s) / (6.0 * _INTEGRAL_SCALE_M)
+
+
+def wind_forces(
+    assembly: Assembly,
+    place: RotorPlace,
+    *,
+    wind_m_s: float | None = None,
+    working: bool = False,
+) -> tuple[LatentForce, ...]:
+    """Return the wind's forces and moments at the hub and its drag along the tower.
+
+    What sensors hardly tell apart is expected in proportion: a moment to its force, quick gusts to slow ones.
+    Quick ones, whose levels the record tells, are for what is above the corners of the others, where spectra
+    fall less than theirs.
+    """
+    corner, nothing = gust_corner(wind_m_s), np.zeros((assembly.mesh.start.size, 12))
+    speed = _USUAL_WIND_M_S if wind_m_s is None else wind_m_s
+    drag, known = 2.0 * speed * gusts_std(speed), 3.0 if wind_m_s is None else _GUSTS_LOG_STD
+    slow: list[LatentForce] = []
+    quick: list[LatentForce] = []
+    for push in _WORKING if working else _STANDING:
+        level = _FORCE_N * push.ratio * (place.radius_m if push.row >= 3 else 1.0)
+        load = nodal_load(assembly, {assembly.structure.top_node: place.on_top(push.row)})
+        kind: Literal["gust", "disc"] = "gust" if push.tail is None else "disc"
+        at = push.corner * corner, level, push.log_std, _RATE_LOG_STD, push.beside
+        slow.append(LatentForce(push.name, load, nothing, kind, *at, tail=push.tail or 1.0))
+        if push.quick:
+            quick.append(slow[-1])
+    for axis, load in zip("xy", _on_tower(assembly), strict=False):
+        slow.append(LatentForce(f"tower {axis}", load, nothing, "gust", corner, drag, known))
+        quick.append(slow[-1])
+    return (*slow, *(_quick(f, _QUICK * corner) for f in quick))
+
+
+def _quick(force: LatentForce, rate: float) -> LatentForce:
+    return replace(
+        force,
+        name=f"{force.name}, quick",
+        kind="gust",
+        rate=rate,
+        level=_QUICK_SHARE * force.level,
+        level_log_std=_QUICK_LOG_STD,
+        rate_log_std=_QUICK_RATE_LOG_STD,
+        beside=force.name,
+    )
+
+
+def passing_forces(
+    forces: tuple[LatentForce, ...], passing_hz: float, wind_m_s: float, radius_m: float
+) -> tuple[LatentForce, ...]:
+    """Return what gusts do that blades cut as they pass, beside the slow forces of the same rotor."""
+    named, rate = {force.name: force for force in forces}, 2.0 * pi * passing_hz
+    aside = _ASIDE / radius_m * named["rotor Fy"].load
+    return tuple(
+        replace(
+            named[push.name],
+            name=f"{push.name}, passing",
+            load=named[push.name].load + (aside if push.name == "rotor My" else 0.0),
+            kind="wave",
+            rate=rate,
+            level=push.passing * named[push.name].level,
+            level_log_std=_PASSING_LOG_STD,
+            rate_log_std=_PASSING_RATE_LOG_STD,
+            beside=push.name,
+            width=_PASSING_WIDTH * gust_corner(wind_m_s) / rate,
+            tail=1.5,
+        )
+        for push in _WORKING
+        if push.passing is not None
+    )
+
+
+def _on_tower(assembly: Assembly) -> tuple[FloatArray, ...]:
+    """Return the drag (n_dof,) of unit wind along x and along y on the tower; nothing without one."""
+    others = tuple({m.part for m in assembly.structure.members} - {_TOWER})
+    if all(m.part != _TOWER for m in assembly.structure.members):
+        return ()
+    air = Coefficients(TOWER_DRAG, 0.0, 0.0, density_kg_m3=AIR_KG_M3)
+    grid = morison_points(assembly, lowest_z=0.0, spacing=_SPACING_M, exclude_parts=others, coefficients=air)
+    still = np.zeros_like(grid.points)
+    return tuple(
+        np.asarray(grid.N @ point_forces(grid, still + unit, still).ravel()) for unit in np.eye(3)[:2]
+    )
