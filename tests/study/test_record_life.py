@@ -6,20 +6,25 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
+from numpy.testing import assert_allclose
 
 from jackettwin.arrays import FloatArray
+from jackettwin.decks import read_structure
 from jackettwin.fatigue import count, equivalent_range
-from jackettwin.response import Sensor, build_system
+from jackettwin.response import Sensor, build_system, observation_matrix
 from jackettwin.sensing import Weather, motion_from, readings_of, section_rows, sensed_model
 from jackettwin.simulate import Scenario, read_scenario, simulate
 from jackettwin.simulate.members import deflections
 from jackettwin.simulate.motion.motion import simulate_motion
 from jackettwin.soil import read_support
 from jackettwin.structure import Assembly, Rayleigh, assemble, section_forces
+from jackettwin.study import readings_and_weather
+from jackettwin.twin import read_twin
 
 HEIGHTS_M = (144.0, 77.0, 41.0, 28.0)
 
@@ -90,3 +95,24 @@ def test_the_tower_base_is_known_through_wrong_feet(scenario: Scenario, truth: F
     wrong = dels(estimated(scenario, (*sensors[:2], *turned, *sensors[4:]))) / dels(truth)
     # two and a half times what sensors that point the right way may leave
     assert np.abs(wrong - 1.0).max() > 0.15
+
+
+def test_channels_that_are_no_sensors_tell_the_weather(tmp_path: Path) -> None:
+    """Temperature has no place, wind is the weather's; sensors point as the twin says."""
+    twin, path = tmp_path / "twin.yaml", tmp_path / "record.csv"
+    sensors = [
+        {"channel": name, "height_m": 77.0, "direction": along}
+        for name, along in (("b", [0, 1, 0]), ("a", [2, 0, 0]))
+    ]
+    twin.write_text(yaml.safe_dump({"structure": "jacket15", "sensors": sensors, "records": [path.name]}))
+    t = np.arange(0.0, 60.0, 0.05)
+    columns = [t, np.sin(t), np.cos(t), 9.0 + 0.0 * t, 12.0 + 0.0 * t]
+    header = "time [s],a [m/s²],b [m/s²],air [°C],wind speed [m/s]"
+    np.savetxt(path, np.stack(columns, axis=1), delimiter=",", header=header, comments="", fmt="%.9g")
+    readings, weather = readings_and_weather(read_twin(twin), path)
+    assert weather.wind_m_s == pytest.approx(12.0)
+    assembly = assemble(read_structure("jacket15"))
+    expected = observation_matrix(
+        assembly, tuple(Sensor(n, d, height_m=77.0) for n, d in (("a", (1, 0, 0)), ("b", (0, 1, 0))))
+    )
+    assert_allclose(readings.rows, expected.toarray())

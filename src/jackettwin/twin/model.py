@@ -9,10 +9,10 @@ import numpy as np
 import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import located
+from jackettwin.errors import located, require
 from jackettwin.files import digest
 from jackettwin.identification import Examination, IdentificationSettings, Pick
-from jackettwin.records import Record
+from jackettwin.records import Channel, Record
 from jackettwin.response import Sensor, UndampedModes, mode_kinds, mode_labels, observation_matrix, sees
 from jackettwin.structure import Assembly
 from jackettwin.twin.calibration import Calibrations, sensors_at
@@ -143,6 +143,41 @@ class TwinModel:
     def with_picks(self, picks: tuple[Pick, ...]) -> TwinModel:
         """Return the model with other manually chosen poles."""
         return replace(self, picks=picks)
+
+    def directed(self, record: Record) -> Record:
+        """Return a record whose channels sit and point as their sensors do at its start."""
+        given = {s.channel: s for s in sensors_at(self.sensors, self.calibrations, record.start_utc)}
+
+        def as_given(channel: Channel) -> Channel:
+            sensor = given.get(channel.name)
+            if sensor is None:
+                return channel
+            x, y, z = np.asarray(sensor.direction) / (np.linalg.norm(sensor.direction) or 1.0)
+            along = float(x), float(y), float(z)
+            return replace(channel, node=sensor.node, height_m=sensor.height_m, direction=along)
+
+        return replace(record, channels=tuple(map(as_given, record.channels)))
+
+    def felt(self, record: Record) -> Record:
+        """Return a record without the channels that are no sensors, such as wind; all without sensors.
+
+        Raises
+        ------
+        InputError
+            If no channel is a sensor.
+        """
+        names = {sensor.channel for sensor in self.sensors}
+        here = [name for name in record.channel_names if name in names]
+        require(
+            here or not names,
+            "has none of the twin's sensors",
+            file=record.name,
+            field="channels",
+            value=", ".join(record.channel_names),
+            allowed=", ".join(sorted(names)),
+            remedy="name the channels in the twin as in the record",
+        )
+        return record.select(here) if names else record
 
     def placed(self, record: Record) -> tuple[Sensor, ...]:
         """Return the sensors of a record's channels, with positions at its start."""

@@ -61,8 +61,8 @@ def to_rotor_axes(
     return replace(rotated, metadata={**rotated.metadata, "axes": "rotor"})
 
 
-def to_global_axes(record: Record, *, yaw_rad: float | None = None) -> Record:
-    """Return a record in rotor axes with its pairs as ``…_x`` and ``…_y`` again.
+def to_global_axes(record: Record, *, yaw_rad: float | None = None, rename: bool = True) -> Record:
+    """Return a record in rotor axes with its pairs as ``…_x`` and ``…_y`` again; else with their own names.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def to_global_axes(record: Record, *, yaw_rad: float | None = None) -> Record:
         raise InputError(
             "is in global axes already", file=record.name, field="axes", remedy="use to_rotor_axes"
         )
-    rotated = _rotate(record, -_yaw(record, yaw_rad), GLOBAL)
+    rotated = _rotate(record, -_yaw(record, yaw_rad), GLOBAL if rename else None)
     return replace(rotated, metadata={**rotated.metadata, "axes": "global"})
 
 

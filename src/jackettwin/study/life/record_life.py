@@ -23,7 +23,7 @@ from jackettwin.fatigue import (
     tube_welds,
     weld_lives,
 )
-from jackettwin.records import assess, read_record, repair, to_global_axes
+from jackettwin.records import assess, read_record, repair, to_global_axes, with_conditions
 from jackettwin.response import System
 from jackettwin.sensing import (
     STRESS_REMAINDER,
@@ -89,11 +89,13 @@ def readings_and_weather(
     InputError
         If the record cannot be read, measures no motion, or its sensors do not fit the structure.
     """
-    record = calibrated(read_record(path, config.defaults), config.calibrations)
+    record = with_conditions(calibrated(read_record(path, config.defaults), config.calibrations))
+    model = twin_model(config)
+    record = model.directed(record)
     record = repair(record, assess(record))
     if record.metadata.get("axes") == "rotor" or any(c.frame == "nacelle" for c in record.channels):
-        record = to_global_axes(record)
-    model = twin_model(config)
+        record = to_global_axes(record, rename=not model.sensors)
+    record = model.felt(record)
     water, numbered = config.water, model.numbered
     return (
         readings_of(record, model.placed(record), model.structure, feel_gravity=feel_gravity),
