@@ -18,10 +18,12 @@ import numpy as np
 from scipy.signal import cont2discrete, lfilter
 
 from jackettwin.identification import ModalEstimate, fuse, identify
+from jackettwin.identification.many_records.joint_damping import jointly
 from jackettwin.identification.maximum_likelihood.line_likelihood import (
     between_nodes,
     damping_log_likelihood,
     likelihood_interval,
+    over_noise,
 )
 from jackettwin.identification.selection.light_damping import HALF_BAND_LINES
 from jackettwin.records import Channel, Record
@@ -111,20 +113,21 @@ def lines_alone(zft: float, number: int, seed: int) -> list[str]:
     inverse = np.linalg.pinv(frame(ratio)[2].T)[0]
     peak = round(FIRST_HZ * DURATION_S)
     line = np.arange(peak - HALF_BAND_LINES, peak + HALF_BAND_LINES + 1)
-    found, together = [], 0.0
+    found, all_lines = [], []
     other: dict[str, list[float]] = {"maximum": [], "mean of ζ": []}
     for k in range(number):
         data = record(ratio, np.random.default_rng([seed, k]), "lines").data
         x = inverse @ np.fft.rfft(data - data.mean(axis=1, keepdims=True))[:, line]
         x /= RATE_HZ * np.sqrt(DURATION_S)
         each = damping_log_likelihood(x, FIRST_HZ, line / DURATION_S, DURATION_S)
-        found.append(Outcome(*np.exp(likelihood_interval(each)[:3]) / ratio))
-        together = together + each
-        log_zeta, values = between_nodes(each)
+        all_lines.append(each)
+        found.append(Outcome(*np.exp(likelihood_interval(over_noise(each))[:3]) / ratio))
+        log_zeta, values = between_nodes(over_noise(each))
         weight = np.exp(values - values.max())
         other["maximum"].append(np.exp(log_zeta[np.argmax(values)]) / ratio)
         other["mean of ζ"].append(weight @ np.exp(log_zeta) / weight.sum() / ratio)
-    middle, low, high = np.exp(likelihood_interval(together)[:3]) / ratio
+    together = jointly(np.array(all_lines))
+    middle, (low, high) = together.damping_ratio / ratio, np.array(together.interval_90) / ratio
     return [
         row("lines", zft, found, "–"),
         *(

@@ -6,7 +6,7 @@ import numpy as np
 
 from jackettwin.identification import ModalEstimate
 from jackettwin.identification.many_records.sightings import Sightings, log_covariance
-from jackettwin.identification.maximum_likelihood.line_likelihood import LOG_ZETA
+from jackettwin.identification.maximum_likelihood.line_likelihood import LOG_ZETA, NOISE_WEIGHTS
 
 
 def sightings(modes: Sequence[ModalEstimate], duration_s: Sequence[float]) -> Sightings:
@@ -20,5 +20,5 @@ def sightings(modes: Sequence[ModalEstimate], duration_s: Sequence[float]) -> Si
         duration_s=np.asarray(duration_s, dtype=float),
         log_covariance=np.array([log_covariance(mode) for mode in modes]).reshape(-1, 2, 2),
         severity=np.array([mode.status.severity for mode in modes], dtype=np.int64),
-        damping_log_likelihood=np.full((len(modes), len(LOG_ZETA)), np.nan),
+        damping_log_likelihood=np.full((len(modes), len(NOISE_WEIGHTS), len(LOG_ZETA)), np.nan),
     )

@@ -48,9 +48,10 @@ class ModalEstimate:
         Smallest standard deviations of ln f and ln ζ of any unbiased method, for the fitted spectral model.
     mode_shape_unaligned : (n_channels,) complex or None
         The shape as identified, if it was rotated within the plane of a close pair.
-    damping_log_likelihood : (n_nodes,) or None
-        Log-likelihood of a lightly damped mode at the nodes ``LOG_ZETA`` of ``line_likelihood.py``;
-        then the interval of ζ is the likelihood's, not symmetric on the logarithm.
+    damping_log_likelihood : (1 + NOISE_RANGES, n_nodes) or None
+        Log-likelihood of a lightly damped mode at the nodes ``LOG_ZETA`` of ``line_likelihood.py``, by ranges
+        of the noise; then the interval of ζ is the likelihood's, not symmetric on the logarithm. Earlier
+        versions stored (n_nodes,), over all noise.
     status : ModeStatus
         ``"ok"``, ``"damping unknown"``, ``"unchecked"``, ``"doubtful"`` or ``"not a mode: …"``.
     reasons : tuple of Finding

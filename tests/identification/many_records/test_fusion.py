@@ -145,7 +145,7 @@ def test_the_covariance_of_ln_f_and_ln_zeta_is_that_within_records() -> None:
     """Scatter between records widens both deviations and adds nothing to their product."""
     n, own, rho = 8, np.array([1e-3, 0.1]), 0.6
     covariance = np.outer(own, own) * np.array([[1.0, rho], [rho, 1.0]])
-    nodes = np.full((n, 3), np.nan)
+    nodes = np.full((n, 3, 3), np.nan)
 
     def averaged(scatter: float) -> Average:
         moved = scatter * np.array([1.0, -1.0] * (n // 2))

@@ -9,8 +9,13 @@ import pytest
 from tests.support.sightings import sightings
 
 from jackettwin.identification import ModalEstimate, fuse, identify
-from jackettwin.identification.many_records.joint_damping import joint_damping
-from jackettwin.identification.maximum_likelihood.line_likelihood import LOG_ZETA
+from jackettwin.identification.many_records.joint_damping import joint_damping, jointly
+from jackettwin.identification.maximum_likelihood.line_likelihood import (
+    LOG_ZETA,
+    NOISE_WEIGHTS,
+    likelihood_interval,
+    over_noise,
+)
 from jackettwin.identification.synthetic import ModalSystem, simulate
 
 
@@ -24,7 +29,8 @@ def seen(log_zeta, std, *, likelihood=True):
     out = sightings(modes, [600.0] * len(modes))
     if not likelihood:
         return out
-    return replace(out, damping_log_likelihood=-0.5 * ((LOG_ZETA - np.asarray(log_zeta)[:, None]) / std) ** 2)
+    one = -0.5 * ((LOG_ZETA - np.asarray(log_zeta)[:, None]) / std) ** 2
+    return replace(out, damping_log_likelihood=np.repeat(one[:, None], len(NOISE_WEIGHTS), axis=1))
 
 
 def test_equal_normal_likelihoods_give_the_mean_and_the_root_n_interval():
@@ -43,6 +49,23 @@ def test_scatter_between_records_widens_the_interval_and_is_told(rng):
     # √((τ² + σ²)/n), and the mean of ζ, not of ln ζ: half a variance higher
     assert joint.log_std == pytest.approx(np.sqrt((0.36 + 0.09) / 60), rel=0.4)
     assert np.log(joint.damping_ratio) == pytest.approx(-5.0 + 0.18, abs=0.3)
+
+
+@pytest.mark.parametrize("true_range", [0, 3])
+def test_many_records_show_the_noise_that_the_prior_does_not_know(true_range, rng):
+    """Each record favours its range of noise by e^0.7; in the others it would have half the damping."""
+    away = np.where(np.arange(len(NOISE_WEIGHTS)) == true_range, 0.0, -np.log(2.0))
+    means = -5.0 + rng.normal(0.0, 0.4, 200)[:, None] + away
+    each = -0.5 * ((LOG_ZETA - means[:, :, None]) / 0.4) ** 2 + np.where(away == 0.0, 0.0, -0.7)[:, None]
+    joint = jointly(each)
+    # τ² of the first scatter, not excluded, moves the mean by half a node at most; three standard errors
+    assert np.log(joint.damping_ratio) == pytest.approx(-5.0, abs=3.0 * 0.4 / np.sqrt(200) + 0.02)
+    assert joint.interval_90[0] < np.exp(-5.0) < joint.interval_90[1] * 1.05
+    by_prior = likelihood_interval(np.sum([over_noise(one) for one in each], axis=0))
+    assert by_prior[2] < -5.1
+    # few records are not trusted to show it
+    few = jointly(each[:3])
+    assert few.log_std > 0.2
 
 
 def test_estimates_alone_are_averaged_as_before():

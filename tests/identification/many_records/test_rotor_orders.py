@@ -11,7 +11,7 @@ import pytest
 from jackettwin.identification import fuse, identify
 from jackettwin.identification.many_records.rotor_orders import objections
 from jackettwin.identification.many_records.sightings import Sightings
-from jackettwin.identification.maximum_likelihood.line_likelihood import LOG_ZETA
+from jackettwin.identification.maximum_likelihood.line_likelihood import LOG_ZETA, NOISE_WEIGHTS
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Record
@@ -27,7 +27,7 @@ def track(log_f: np.ndarray, rng: np.random.Generator, std: float = 0.002) -> Si
     f = np.exp(log_f[at] + std * rng.standard_normal(n))
     return Sightings(
         at, np.zeros(n, dtype=np.int64), f, np.full(n, 0.01), np.full(n, 600.0), covariance,
-        np.zeros(n, dtype=np.int64), np.full((n, len(LOG_ZETA)), np.nan),
+        np.zeros(n, dtype=np.int64), np.full((n, len(NOISE_WEIGHTS), len(LOG_ZETA)), np.nan),
     )  # fmt: skip
 
 

@@ -1,12 +1,14 @@
 r"""Damping of a mode from the likelihoods of many records, since each estimate would be biased.
 
-Frequency, force and noise differ between records; damping is common, apart from a scatter τ of ln ζ between
-records. With ζ̄ the mean over records,
+Frequency and force differ between records; damping is common, apart from a scatter τ of ln ζ between
+records. With ζ̄ the mean over records and weights w of the ranges of the noise n,
 
-.. math:: \ell(\ln\barζ, \tau) = \sum_r \ln \int L_r(x)\,
+.. math:: \ell(\ln\barζ, \tau) = \max_w \sum_r \ln \sum_n w_n \int L_{rn}(x)\,
           \mathcal N(x;\ \ln\barζ - \tfrac12\tau^2, \tau^2)\,\mathrm dx
+          + \alpha \sum_n w^0_n \ln w_n
 
-is maximised over τ at every ζ̄; the interval is by likelihood ratio.
+is maximised over τ at every ζ̄; the interval is by likelihood ratio. The weights are those that the records
+show (expectation maximisation, as of a mixture); α keeps them near the prior w⁰ where there are few.
 """
 
 from __future__ import annotations
@@ -17,7 +19,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.identification.maximum_likelihood.line_likelihood import LOG_ZETA, likelihood_interval
+from jackettwin.identification.maximum_likelihood.line_likelihood import (
+    LOG_ZETA,
+    NOISE_WEIGHTS,
+    likelihood_interval,
+)
 from jackettwin.identification.status import ModeStatus
 
 if TYPE_CHECKING:
@@ -26,6 +32,17 @@ if TYPE_CHECKING:
 
 SCATTERS = (0.2, 0.3, 0.4, 0.55, 0.75, 1.0)
 """Values of τ besides 0. A value below the step of the nodes cannot be distinguished from 0."""
+PRIOR_RECORDS = 2.0
+"""α: the prior of the noise counts as so many records."""
+MIXTURE_STEPS = 40
+"""Most steps of expectation maximisation."""
+MIXTURE_GAIN = 1e-3
+"""Gain of the log-likelihood in a step below which these end."""
+MANY_RECORDS, NODES_AROUND = 100, 6
+"""Number of records from which only so many nodes on either side of the likeliest are computed: a factor of
+3.3, beyond which the interval of so many records does not reach."""
+TINY, FAR_BELOW = 1e-300, 100.0
+"""Least likelihood of a record, and how far below the least computed one that of other nodes is set."""
 MIN_SHARE = 0.5
 """Smallest share of the records that must have a likelihood; otherwise estimates are averaged."""
 
@@ -45,15 +62,30 @@ def joint_damping(seen: Sightings) -> JointDamping | None:
 
     A record in which the mode is ``OK`` but has no likelihood is given a normal one in ln ζ.
     """
-    has = np.isfinite(seen.damping_log_likelihood).all(axis=1)
+    has = np.isfinite(seen.damping_log_likelihood).all(axis=(1, 2))
     normal = ~has & (seen.severity <= ModeStatus.OK.severity) & np.isfinite(seen.log_covariance[:, 1, 1])
     if not has.any() or has.sum() < MIN_SHARE * (has.sum() + normal.sum()):
         return None
     away = LOG_ZETA - np.log(seen.damping_ratio[normal, None])
-    each = np.vstack(
-        [seen.damping_log_likelihood[has], -0.5 * away**2 / seen.log_covariance[normal, 1, 1][:, None]]
-    )
-    together = np.array([each.sum(axis=0), *(_scattered(each, tau) for tau in SCATTERS)])
+    alone = -0.5 * away**2 / seen.log_covariance[normal, 1, 1][:, None]
+    shape = (len(alone), len(NOISE_WEIGHTS), len(LOG_ZETA))
+    each = np.concatenate([
+        seen.damping_log_likelihood[has], np.broadcast_to(alone[:, None], shape)
+    ])  # fmt: skip
+    return jointly(each)
+
+
+def jointly(each: FloatArray) -> JointDamping:
+    """Return the damping by likelihoods (n_records, 1 + NOISE_RANGES, n_nodes) of different records."""
+    top = each.max(axis=(1, 2))
+    values, at = np.exp(each - top[:, None, None]), slice(None)
+    if len(each) >= MANY_RECORDS:
+        likeliest = int(np.argmax(np.log(NOISE_WEIGHTS @ values + TINY).sum(axis=0)))
+        at = slice(max(likeliest - NODES_AROUND, 0), likeliest + NODES_AROUND + 1)
+    together = np.full((1 + len(SCATTERS), len(LOG_ZETA)), -np.inf)
+    for row, tau in zip(together, (0.0, *SCATTERS), strict=True):
+        row[at] = _over_mixture((values if tau == 0.0 else values @ _kernel(tau))[:, :, at])
+    together = np.where(np.isfinite(together), together, together[:, at].min() - FAR_BELOW)
     middle, low, high, std = likelihood_interval(together.max(axis=0))
     most = int(np.argmax(together.max(axis=1)))
     return JointDamping(
@@ -64,11 +96,28 @@ def joint_damping(seen: Sightings) -> JointDamping | None:
     )
 
 
-def _scattered(each: FloatArray, tau: float) -> FloatArray:
-    """Return Σ ln of the likelihoods averaged over ln ζ with mean ζ̄ and scatter τ, at the nodes of ln ζ̄."""
+def _over_mixture(values: FloatArray) -> FloatArray:
+    """Return Σ ln of likelihoods (n_records, n_ranges, n_nodes) at the best weights of the ranges of noise.
+
+    Up to a constant, with the prior of the weights.
+    """
+    prior = NOISE_WEIGHTS[:, None]
+    weights = np.repeat(prior, values.shape[2], axis=1)
+    before = np.full(values.shape[2], -np.inf)
+    for _ in range(MIXTURE_STEPS):
+        mixed = np.einsum("rnz,nz->rz", values, weights) + TINY
+        penalty = PRIOR_RECORDS * np.sum(prior * np.log(weights / prior), axis=0)
+        now = np.log(mixed).sum(axis=0) + penalty
+        if np.max(now - before) < MIXTURE_GAIN:
+            break
+        weights = weights * np.einsum("rnz,rz->nz", values, 1.0 / mixed) + PRIOR_RECORDS * prior
+        weights /= weights.sum(axis=0)
+        before = now
+    return np.asarray(now)
+
+
+def _kernel(tau: float) -> FloatArray:
+    """Return the weights (n_nodes, n_nodes) of ln ζ in columns of ln ζ̄, with mean ζ̄ and scatter τ."""
     apart = LOG_ZETA[:, None] - (LOG_ZETA - 0.5 * tau**2)
     kernel = np.exp(-0.5 * (apart / tau) ** 2)
-    kernel /= kernel.sum(axis=0)
-    top = each.max(axis=1, keepdims=True)
-    mean = np.exp(each - top) @ kernel
-    return np.asarray(np.sum(np.log(np.maximum(mean, 1e-300)) + top, axis=0))
+    return np.asarray(kernel / kernel.sum(axis=0))

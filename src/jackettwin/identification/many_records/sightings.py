@@ -32,8 +32,8 @@ class Sightings:
         Covariance of (ln f, ln ζ); NaN where unknown.
     severity : (n,) int
         Severity of the mode's status in each record.
-    damping_log_likelihood : (n, n_nodes)
-        At ``LOG_ZETA`` of ``line_likelihood.py``; NaN where the record has none.
+    damping_log_likelihood : (n, 1 + NOISE_RANGES, n_nodes)
+        At ``LOG_ZETA`` of ``line_likelihood.py``, by ranges of the noise; NaN where the record has none.
     """
 
     record: Int64Array

@@ -20,7 +20,7 @@ from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 from jackettwin.errors import InputError
 from jackettwin.identification.many_records.setups import ShapeSum, add_channels, tied
 from jackettwin.identification.many_records.sightings import Sightings, log_covariance
-from jackettwin.identification.maximum_likelihood.line_likelihood import LOG_ZETA
+from jackettwin.identification.maximum_likelihood.line_likelihood import LOG_ZETA, NOISE_WEIGHTS
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable, Sequence
@@ -114,9 +114,10 @@ class Track:
         rows = np.array(self.rows).reshape(-1, _COLUMNS)
         record, mode, severity = rows[:, (0, 1, 9)].astype(np.int64).T
         covariance = rows[:, 5:9].reshape(-1, 2, 2)
-        likelihood = np.full((len(rows), len(LOG_ZETA)), np.nan)
+        likelihood = np.full((len(rows), len(NOISE_WEIGHTS), len(LOG_ZETA)), np.nan)
         for row, number in enumerate(record):
             if int(number) in self.likelihoods:
+                # stored before ranges of noise were kept apart, it is the same in all
                 likelihood[row] = self.likelihoods[int(number)]
         return Sightings(record, mode, rows[:, 2], rows[:, 3], rows[:, 4], covariance, severity, likelihood)
 

@@ -16,6 +16,9 @@ is, without any approximation,
 With white noise n the covariance of the lines is a diagonal plus a matrix of rank two. The likelihood of ln ζ
 is integrated over the frequency (uniform prior), q and n (uniform in the logarithm). Maximising over n
 instead attributes part of the tails to noise and underestimates the damping, by a tenth in ten minutes.
+Any one prior of n is wrong in the same way in every record of one sensor, so that many records together are
+biased by it, by −7 to +6 % as n is less or more than the tails. Likelihoods are therefore kept apart by
+ranges of n; many records show which of these occur (``many_records/joint_damping.py``).
 """
 
 from __future__ import annotations
@@ -40,11 +43,16 @@ NOISE_STEP = 0.4
 """Step of ln n."""
 NO_NOISE, NO_NOISE_WEIGHT = -8.0, 5.0
 """Logarithm of a negligible noise relative to the tail of the mode, and the range of ln n it represents."""
-LOWEST_NOISE, HIGHEST_NOISE = -3.0, 4.0
-"""Lower limit of ln n relative to the tail of the mode at the edge of the band, and upper limit relative to
-the density of the mode one line from its peak."""
+LOWEST_NOISE, NOISE_RANGES, RANGE_STEPS = -3.0, 8, 4
+"""Lower limit of ln n relative to the tail of the mode at the edge of the band, number of ranges above it,
+and steps in each: the highest is e⁴ times the density of the mode one line from its peak."""
+NOISE_WEIGHTS = np.append(NO_NOISE_WEIGHT, np.full(NOISE_RANGES, RANGE_STEPS * NOISE_STEP))
+NOISE_WEIGHTS /= NOISE_WEIGHTS.sum()
+"""Prior weight of negligible noise and of each range of ln n."""
 NEGLIGIBLE = 12.0
 """Noise levels whose log-likelihood is this far below the largest are left out."""
+IMPOSSIBLE = -60.0
+"""Log-likelihood stored for them."""
 
 
 def line_log_likelihood(
@@ -86,7 +94,9 @@ def line_log_likelihood(
 def damping_log_likelihood(
     x: ComplexArray, frequency_hz: float, lines_hz: FloatArray, duration_s: float
 ) -> FloatArray:
-    """Return the log-likelihood of ``LOG_ZETA``, with its largest value 0.
+    """Return the log-likelihood of ``LOG_ZETA`` in every range of the noise, (1 + NOISE_RANGES, n_nodes).
+
+    The largest value is 0; the first row is that of negligible noise.
 
     Parameters
     ----------
@@ -101,11 +111,10 @@ def damping_log_likelihood(
     bandwidth = np.exp(LOG_ZETA) * frequency_hz * duration_s
     inside = np.flatnonzero((bandwidth > LEAST_BANDWIDTH) & (bandwidth < MOST_BANDWIDTH))
     a = 2.0 * np.pi * bandwidth[inside] / duration_s
-    half = 0.5 * (len(x) - 1)
-    at_edge = -2.0 * np.log(half * line)
-    log_noise = np.arange(at_edge + LOWEST_NOISE, at_edge + 2.0 * np.log(half) + HIGHEST_NOISE, NOISE_STEP)
-    log_noise = np.append(at_edge + NO_NOISE, log_noise)
-    weight = np.append(NO_NOISE_WEIGHT, np.full(len(log_noise) - 1, NOISE_STEP))
+    at_edge = -2.0 * np.log(0.5 * (len(x) - 1) * line)
+    steps = np.arange(NOISE_RANGES * RANGE_STEPS)
+    log_noise = at_edge + np.append(NO_NOISE, LOWEST_NOISE + (0.5 + steps) * NOISE_STEP)
+    row = np.append(0, 1 + steps // RANGE_STEPS)
 
     near = 2.0 * np.pi * frequency_hz + line * np.linspace(-2.0, 2.0, 33)
     coarse = line_log_likelihood(
@@ -124,13 +133,28 @@ def damping_log_likelihood(
     fine = line_log_likelihood(
         x, omega, duration_s, (-a[:, None] + 1j * at)[:, :, None], np.exp(log_noise[noise])
     )
-    top = fine.max()
-    out = np.full(len(LOG_ZETA), -np.inf)
-    out[inside] = np.log(np.sum(np.exp(fine - top) @ weight[noise], axis=-1) * reach)
-    out[: inside[0]] = out[inside[0]]
-    last = inside[-1]
-    beyond = np.arange(1, len(out) - last)
-    out[last + 1 :] = out[last] + min(out[last] - out[last - 1], 0.0) * beyond
+    over_frequency = np.exp(fine - fine.max()).sum(axis=1).T * reach
+    ranges = np.zeros((1 + NOISE_RANGES, len(inside)))
+    np.add.at(ranges, row[noise], over_frequency)
+    ranges[1:] /= RANGE_STEPS
+    values = np.log(np.maximum(ranges, np.exp(IMPOSSIBLE)))
+    out = np.empty((len(ranges), len(LOG_ZETA)))
+    out[:, inside] = values
+    out[:, : inside[0]] = values[:, :1]
+    slope = np.minimum(values[:, -1] - values[:, -2], 0.0)
+    beyond = np.arange(1, len(LOG_ZETA) - inside[-1])
+    out[:, inside[-1] + 1 :] = values[:, -1:] + slope[:, None] * beyond
+    return np.asarray(out - out.max())
+
+
+def over_noise(log_likelihood: FloatArray) -> FloatArray:
+    """Return the log-likelihood of ``LOG_ZETA`` of one record, over all noise, with its largest value 0.
+
+    Parameters
+    ----------
+    log_likelihood : (1 + NOISE_RANGES, n_nodes)
+    """
+    out = np.log(NOISE_WEIGHTS @ np.exp(log_likelihood))
     return np.asarray(out - out.max())
 
 

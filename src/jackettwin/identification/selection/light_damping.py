@@ -17,6 +17,7 @@ from jackettwin.findings import Finding
 from jackettwin.identification.maximum_likelihood.line_likelihood import (
     damping_log_likelihood,
     likelihood_interval,
+    over_noise,
 )
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.identification.selection.neighbours import apart
@@ -50,9 +51,6 @@ MAX_MISSING_SHARE = 0.01
 BY_CHANCE = frozenset({"steady_envelope", "narrow_as_a_line", "damping_unknown"})
 """Codes of findings that a lightly damped mode may have by chance. A mode with any other finding is given no
 likelihood."""
-SKIRTS_SEEN = 0.5
-"""Half bandwidth, in lines, below which a mode may by chance show no skirts, too: they come from the change
-of its motion within the record, and the records without that change are those of least apparent damping."""
 MAX_LOG_STD = 1.0
 """Standard deviation of ln ζ above which damping is unknown."""
 
@@ -80,9 +78,8 @@ def with_damping_likelihoods(
     lines: ComplexArray | None = None
     for i, mode in enumerate(modes):
         lines_wide = mode.damping_ratio * mode.frequency_hz * duration_s
-        by_chance = BY_CHANCE | {"no_skirts"} if lines_wide < SKIRTS_SEEN else BY_CHANCE
         lightly = 2.0 * np.pi * lines_wide < MAX_KNOWN
-        if not lightly or mode.log_covariance is None or {r.code for r in mode.reasons} - by_chance:
+        if not lightly or mode.log_covariance is None or {r.code for r in mode.reasons} - BY_CHANCE:
             continue
         if any(apart(mode, other) < CLOSE_DISTANCE for other in modes if other is not mode):
             continue
@@ -126,7 +123,7 @@ def _with(mode: ModalEstimate, log_likelihood: FloatArray, duration_s: float) ->
     if 2.0 * np.pi * mode.damping_ratio * mode.frequency_hz * duration_s > MAX_REPLACED:
         return mode
     assert mode.log_covariance is not None
-    middle, low, high, std = likelihood_interval(log_likelihood)
+    middle, low, high, std = likelihood_interval(over_noise(log_likelihood))
     zeta = float(np.exp(middle))
     ratio = np.array([1.0, std / np.sqrt(mode.log_covariance[1, 1])])
     mode = replace(
