@@ -31,10 +31,10 @@ CHANNELS = {"six": slice(None), "two": slice(2)}
 
 
 def peak(rng: np.random.Generator, n: int, middle_hz: float, width: float) -> np.ndarray:
-    """Return a random process of unit variance around a frequency."""
-    lines = np.fft.rfftfreq(n, 1.0 / RATE_HZ)
+    """Return a random process of unit variance around a frequency, part of a longer one: it has two ends."""
+    lines = np.fft.rfftfreq(2 * n, 1.0 / RATE_HZ)
     drawn = rng.standard_normal(lines.size) + 1j * rng.standard_normal(lines.size)
-    x = np.fft.irfft(drawn * np.exp(-0.5 * ((lines - middle_hz) / (width * middle_hz)) ** 2), n)
+    x = np.fft.irfft(drawn * np.exp(-0.5 * ((lines - middle_hz) / (width * middle_hz)) ** 2), 2 * n)[:n]
     return np.asarray(x / x.std())
 
 

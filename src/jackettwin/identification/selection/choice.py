@@ -112,7 +112,7 @@ def chosen_modes(
         mode if i in pairs else _steady(mode, lines, duration_s, scale)
         for i, mode in enumerate(flagged_modes)
     )
-    found = replace(found, modes=_skirted(tuple(steady), lines, duration_s, scale))
+    found = replace(found, modes=tuple(steady))
     if settings.refine:
         found = replace(found, findings=(*found.findings, *_hidden(judged, found)))
         found = replace(found, modes=tuple(_widen_close_pair(m, found.modes) for m in found.modes))
@@ -201,8 +201,11 @@ def screened_choice(
             ranges = steady if passing is None else [passing.swept_hz]
             mode = beside_tones(c.mode, ranges)
             restored[i] = with_unknown_damping(mode) if passing is None else mode
-    judged_modes = screen(chosen.modes, known, beside=tuple(restored.values()))
-    modes = dict(zip(chosen.candidate, judged_modes, strict=True)) | restored
+    # an order of unknown damping betrays the one at twice its frequency
+    skirted = _skirted((*chosen.modes, *restored.values()), known.lines, known.duration_s, known.scale)
+    own, beside = skirted[: len(chosen.modes)], skirted[len(chosen.modes) :]
+    judged_modes = screen(own, known, beside=beside)
+    modes = dict(zip((*chosen.candidate, *restored), (*judged_modes, *beside), strict=True))
     forced = {i: m for i, m in modes.items() if not m.status.is_a_mode}
     order = sorted((i for i in modes if i not in forced), key=lambda i: modes[i].frequency_hz)
     left_out = [

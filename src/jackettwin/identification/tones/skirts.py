@@ -7,19 +7,29 @@ distributed, have the means
 .. math:: S = a\left(\frac{1}{1 + x^2} + r\right) \quad\text{or}\quad S = a\left(2^{-x^2} + r\right),
 
 r being the level of all else, both times the slope of the forces. The likelihoods of both, at their best a,
-r, slope, width and middle, tell one from the other unless half a width is below a line or r hides it.
+r, slope, width and middle, tell one from the other unless r hides the skirts. The ends of a record differ,
+which gives every peak skirts of its own; through Hann's window it has none, and both means are those seen
+through it.
 """
 
 from __future__ import annotations
+
+from functools import lru_cache
 
 import numpy as np
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 
 LESS_LIKELY = 5.0
-"""Excess of ln L of a peak without skirts above which it is none of a mode. Of 3670 simulated peaks of modes
-of 0.5 to 16 lines half width, on levels r of 0.001 to 0.05 and forces that are level or slope by ±0.35 over
-half a width, 0.5 % have more; of peaks without skirts 83 % at r = 0.001, 33 % at 0.01 and 6 % at 0.03."""
+"""Excess of ln L of a peak without skirts above which it is none of a mode. Of 8100 simulated peaks of modes
+of 1 to 8 lines half width, on levels r of 0.001 to 0.05 and forces that are level or slope by 0.25 or −0.35
+over half a width, 0.15 % have more; of peaks without skirts and from 0.5 to 8 lines 77 % at r = 0.001, 26 %
+at 0.01 and 6 % at 0.03."""
+BOTH_LESS_LIKELY = 3.0
+"""The same for the sum of two peaks at a multiple of each other, neither of which shows skirts: two modes are
+there by chance in a few per cent of cases, and one in twenty of such pairs has more."""
+HIGHEST_3P_HZ = 1.8
+"""Greatest frequency of the lower of these: 3P of 36 revolutions a minute."""
 SHOWN = -1.0
 """Excess below which a peak is taken to have skirts though it lies at a multiple of an order."""
 MULTIPLES = np.array([0.5, 2.0])
@@ -28,8 +38,13 @@ REACH = 6.0
 """Distance from the peak that is compared, in half widths of the mode."""
 FEWEST_LINES, MOST_LINES = 16, 40
 """Fewest and most lines on either side."""
-WIDTHS = np.exp(np.linspace(np.log(0.7), np.log(12.0), 9))
-"""Half widths that are tried, in lines: a few lines of a broad peak look like a narrow one."""
+WIDTHS = tuple(map(float, np.exp(np.linspace(np.log(0.15), np.log(12.0), 11))))
+"""Half widths that are tried, in lines: a few lines of a broad peak look like a narrow one, and through the
+window a narrow one is a line and a half wide."""
+INDEPENDENT = 2.0 / 3.0
+"""Independent values in a line through Hann's window: its noise bandwidth is one and a half lines."""
+FURTHEST, PER_LINE = 128, 16
+"""Greatest distance from a peak at which its mean is tabulated, in lines, and values per line."""
 MIDDLES = np.linspace(-0.8, 0.8, 7)
 """Middles that are tried, in half widths of the mode and the same for both: in half widths of what is tried,
 a broad peak without skirts could move farther than one with them."""
@@ -37,6 +52,7 @@ SLOPES = np.array([-0.4, -0.2, 0.0, 0.2, 0.4])
 """Slopes of the logarithm of the forces over half a width of the mode that are tried. In a turbine at sea
 the force was ten times as much at five half widths below a mode as above. If only level forces are tried,
 half of the simulated modes above have no skirts."""
+LN_2 = float(np.log(2.0))
 LEVELS = 10.0 ** np.arange(-4.0, 0.1, 0.5)
 """Levels r that are tried."""
 MAX_DAMPING_RATIO = 0.03
@@ -70,14 +86,50 @@ def missing_skirts(
     half, middle = damping_ratio * frequency_hz * duration_s, frequency_hz * duration_s
     free = 0.5 * float(np.abs(others_hz - frequency_hz).min(initial=np.inf)) * duration_s
     wanted = np.clip(REACH * half, FEWEST_LINES, MOST_LINES)
-    reach = min(wanted, free, middle - 1.0, lines.shape[1] - 1 - middle)
+    reach = min(wanted, free, middle - 2.0, lines.shape[1] - 2 - middle)
     if reach < FEWEST_LINES:
         return None
     k = np.arange(int(np.ceil(middle - reach)), int(middle + reach) + 1)
-    power = np.abs(shape.conj() @ lines[:, k]) ** 2
-    x = (k - middle - max(half, 1.0) * MIDDLES[:, None]) / WIDTHS[:, None, None]
+    near = shape.conj() @ lines[:, k[0] - 1 : k[-1] + 2]
+    power = np.abs(near[1:-1] - 0.5 * (near[:-2] + near[2:])) ** 2
+    away = np.abs(k - middle - max(half, 1.0) * MIDDLES[:, None])
     slopes = SLOPES[:, None] * (k - k.mean()) / max(half, 1.0)
-    return _best(power, slopes, 2.0 ** -(x**2)) - _best(power, slopes, 1.0 / (1.0 + x**2))
+    place = np.arange(FURTHEST * PER_LINE) / PER_LINE
+    with_skirts, without = (
+        _best(power, slopes, np.array([np.interp(away, place, through_window(w, skirts)) for w in WIDTHS]))
+        for skirts in (True, False)
+    )
+    return INDEPENDENT * (without - with_skirts)
+
+
+@lru_cache(maxsize=64)
+def through_window(half_lines: float, skirts: bool) -> FloatArray:
+    r"""Return the mean power of lines through Hann's window beside a peak, over that at its middle.
+
+    The transform of the process's covariance, exp(−2πh|τ|) or exp(−π²h²τ²/ln 2) with h in lines and τ in
+    records, times the autocorrelation of the window.
+
+    Returns
+    -------
+    (FURTHEST · PER_LINE,) at distances of 0, 1 / PER_LINE, … lines
+
+    Examples
+    --------
+    >>> through_window(0.15, False)[[0, 16, 64]].round(3).tolist()
+    [1.0, 0.265, 0.0]
+    >>> round(float(through_window(8.0, True)[16 * 8]), 2)
+    0.5
+    """
+    n = 4 * FURTHEST
+    window = 0.5 - 0.5 * np.cos(2.0 * np.pi * (np.arange(n) + 0.5) / n)
+    tau = np.arange(n) / n
+    covariance = np.exp(
+        -2.0 * np.pi * half_lines * tau if skirts else -((np.pi * half_lines * tau) ** 2) / LN_2
+    )
+    product = covariance * np.correlate(window, window, "full")[n - 1 :]
+    product[0] *= 0.5
+    mean = np.fft.rfft(product, n * PER_LINE).real[: FURTHEST * PER_LINE]
+    return np.asarray(np.maximum(mean, 0.0) / mean[0])
 
 
 def _best(power: FloatArray, slopes: FloatArray, peak: FloatArray) -> float:
@@ -88,15 +140,20 @@ def _best(power: FloatArray, slopes: FloatArray, peak: FloatArray) -> float:
 
 
 def are_orders(frequency_hz: FloatArray, damping_ratio: FloatArray, missing: FloatArray) -> BoolArray:
-    """Tell which peaks lie at half or twice one without skirts, and do not show skirts themselves.
+    """Tell which peaks lie at half or twice another, and are as little modes as that one.
+
+    Neither shows skirts, and the other has none, or both together are unlikely to have any. A peak too close
+    to others to be judged by itself is judged by the other.
 
     Parameters
     ----------
     frequency_hz, damping_ratio, missing : (n,)
         ``missing`` as of :func:`missing_skirts`, NaN where it is unknown.
     """
-    order = np.flatnonzero(missing > LESS_LIKELY)
-    ratio = frequency_hz[:, None, None] / (frequency_hz[order, None] * MULTIPLES)
-    width = np.hypot(damping_ratio[:, None], damping_ratio[order])[..., None]
-    near = (np.abs(np.log(ratio)) < width).any(axis=(1, 2))
-    return np.asarray(near & (missing > SHOWN))
+    ratio = frequency_hz[:, None, None] / (frequency_hz[:, None] * MULTIPLES)
+    width = np.hypot(damping_ratio[:, None], damping_ratio)[..., None]
+    near = (np.abs(np.log(ratio)) < width).any(axis=2)
+    near &= np.minimum(frequency_hz[:, None], frequency_hz) < HIGHEST_3P_HZ
+    order = (missing > LESS_LIKELY) | (missing[:, None] + missing > BOTH_LESS_LIKELY)
+    shown = missing < SHOWN
+    return np.asarray((near & order & ~shown & ~shown[:, None]).any(axis=1))
