@@ -323,6 +323,11 @@ CATALOGUE: dict[str, Kind] = {
         "its peak falls off faster than that of a mode: it may be an order of a rotor whose speed wanders; "
         "add the rotor's speed as a channel [rpm]",
     ),
+    "may_be_folded": Kind(
+        "warning",
+        "the record seems not to have been filtered before it was sampled at {rate_hz:.3g} Hz: a motion "
+        "above half of that would look so",
+    ),
     "multiple_of_order": Kind(
         "warning",
         "lies at half or twice the frequency of a peak that falls off faster than that of a mode: both may "

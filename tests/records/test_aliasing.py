@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
+from jackettwin.identification import IdentificationSettings, examine
 from jackettwin.identification.record_steps import moving_channels
 from jackettwin.records import Record, assess, read_record
 from jackettwin.records.quality.aliasing import not_filtered
@@ -70,3 +71,20 @@ def test_a_folded_peak_is_said_where_it_is(tower: SimpleNamespace) -> None:
     (found,) = (f for f in findings if f.code == "not_filtered")
     assert abs(found.params["peak_hz"] - 2.2) < 0.1 and found.params["half_hz"] == 5.0
     assert "has a peak at 2.2" in found.text and "near" not in found.text
+
+
+def test_a_folded_mode_is_doubted_and_what_lies_lower_is_not(tower: SimpleNamespace) -> None:
+    """The same mode of 7.8 Hz; filtered before every second sample is taken, nothing is doubted for it."""
+    record = tower.record(3)
+    far = tower.oscillator(np.random.default_rng(1).normal(size=24_000), 7.8, 0.01, 20.0)[12_000:]
+    moved = replace(record, data=record.data + 0.3 * record.data.std() / far.std() * far)
+
+    def doubts(y: np.ndarray) -> list[float]:
+        found = examine(replace(moved, data=y, sample_rate_hz=10.0), IdentificationSettings()).identification
+        said = [m for m in found.modes if "may_be_folded" in [r.code for r in m.reasons]]
+        assert any(m.status == "ok" and m.frequency_hz < 2.0 for m in found.modes)
+        return [m.frequency_hz for m in said]
+
+    folded = doubts(moved.data[:, ::2])
+    assert any(abs(f - 2.2) < 0.05 for f in folded) and min(folded) > 2.0
+    assert doubts(signal.decimate(moved.data, 2, axis=1)) == []

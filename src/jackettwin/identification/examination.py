@@ -44,6 +44,7 @@ from jackettwin.records import (
     record_content,
     with_conditions,
 )
+from jackettwin.records.quality.aliasing import PEAKS
 from jackettwin.records.quality.crossed_axes import axes_in_line
 from jackettwin.records.quality.length import CYCLES, too_short
 from jackettwin.records.quality.record_quality import Quality
@@ -53,6 +54,8 @@ from jackettwin.version import __version__
 
 UNFIT = ("another_time", "stored_backwards", "clocks_wander", "coarse_quantiser")
 """Findings that make every mode of a record doubtful, unless the record was repaired."""
+FOLDED_FROM = PEAKS[0]
+"""Lowest frequency of a mode, over half the sample rate, that may be a folded one."""
 ORDERS_FOUND = ("rotor_order_removed", "rotor_order_weak", "rotor_order_seen", "rotor_order_stated")
 """Findings on multiples of the rotor's speed."""
 
@@ -153,6 +156,7 @@ def examine(
         if long is not None:
             found = replace(found, notes=long.peaks_above(settings, found.settings))
         found = _beside_orders(found, findings)
+        found = _perhaps_folded(found, quality)
         found = doubted(found, doubts)
         found = along_axes(found) if in_axes else found
         warnings = (str(f) for f in findings if f.severity != "info")
@@ -281,6 +285,19 @@ def _beside_orders(found: Identification, findings: Findings) -> Identification:
         if f.code in ORDERS_FOUND
     ]
     return replace(found, modes=tuple(beside_orders(mode, orders) for mode in found.modes))
+
+
+def _perhaps_folded(found: Identification, quality: Quality) -> Identification:
+    """Flag the modes of a record without a filter that may be those above half its sample rate."""
+    half_hz = [float(f.params["half_hz"] or 0.0) for f in quality.findings if f.code == "not_filtered"]
+    if not half_hz:
+        return found
+    reason = Finding("may_be_folded", params={"rate_hz": 2.0 * half_hz[0]})
+    modes = (
+        m.flagged(ModeStatus.DOUBTFUL, reason) if m.frequency_hz > FOLDED_FROM * half_hz[0] else m
+        for m in found.modes
+    )
+    return replace(found, modes=tuple(modes))
 
 
 def doubted(found: Identification, reasons: Findings) -> Identification:

@@ -33,7 +33,8 @@ UPPER = 2.0 / 3.0
 LEAST_POWER = 0.005
 """Share of the power in that band above which folding matters."""
 PEAKS = (0.4, 0.95)
-"""Band, over half the sample rate, in which a peak is sought."""
+"""Band, over half the sample rate, in which a peak is sought, and from which a mode may be a folded one:
+motion falls with frequency, and what is folded the least is the strongest."""
 PEAK_RATIO = 3.0
 """Ratio of the highest density there to the median around it from which it is a peak; noise has 1.4 to 1.9,
 every twentieth sample of the shipped records 2.6 to 18."""
