@@ -169,7 +169,10 @@ def test_heights_from_the_bed_and_a_forgotten_sea_level_are_asked_after(tmp_path
 def test_a_structure_or_a_record_in_place_of_a_twin_is_told_how_one_is_made(tmp_path: Path) -> None:
     record = written(tmp_path / "A1.csv", "ACC_088m_E [g]")
     structure = Path(__file__).parents[2] / "examples" / "three_leg_jacket.yaml"
-    for given, said in ((record, "init STRUCTURE"), (structure, f"init {structure} RECORD…")):
+    modes = tmp_path / "consultant_modes.csv"
+    modes.write_text("mode;f [Hz];std\n1;0,18;0,001\n2;0,8;0,01\n")
+    told = ((record, "init STRUCTURE"), (structure, f"init {structure} RECORD…"), (modes, "targets: cons"))
+    for given, said in told:
         with pytest.raises(InputError, match="not a twin") as refused:
             read_twin(given)
         assert said in str(refused.value)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from jackettwin.errors import did_you_mean, located, look_up, require
+from jackettwin.errors import InputError, did_you_mean, located, look_up, require
 from jackettwin.files import find_file, read_mapping, read_yaml, shipped, validate
 from jackettwin.identification import IdentificationSettings, Pick, parse_picks, refuse_strangers
 from jackettwin.loads import SeaState, WaterSchema, depth_of, water_members
@@ -44,6 +44,8 @@ from jackettwin.updating import (
     numbered_modes,
 )
 
+MOST_OF_A_TABLE = 100_000
+"""Size of a file above which it is no table of modes [bytes]: a line of one has less than a hundred."""
 _STRUCTURE_KEYS = {"jacket", "members"}
 """Keys of which every structure file has one and no twin file has any."""
 
@@ -95,9 +97,20 @@ def _stated(keys: object, folder: Path) -> dict[str, Any]:
     return {key: value for key, value in said.items() if key not in keys}
 
 
+def _is_table_of_modes(path: Path) -> bool:
+    try:
+        return path.stat().st_size < MOST_OF_A_TABLE and bool(read_targets_table(path))
+    except (InputError, OSError):
+        return False
+
+
 def _keys(path: Path) -> dict[str, Any]:
     """Return the keys of a twin file; the error for a structure or record states how to make a twin of it."""
     is_record = any(path.suffix.lower() in form.extensions for form in formats())
+    require(
+        not (is_record and _is_table_of_modes(path)), "is a table of modes, not a twin", file=path,
+        remedy=f"name it in a twin file: structure: FILE and targets: {path.name}",
+    )  # fmt: skip
     remedy = f"jackettwin init STRUCTURE {path} writes a twin"
     require(not is_record, "is a record, not a twin", file=path, remedy=remedy)
     found = read_yaml(path, what="twin file")
