@@ -52,17 +52,31 @@ def test_units_of_a_channel_change_nothing_but_its_shape(tower, rng):
 def test_remaining_gaps_leave_the_modes_unrefined_and_say_so(tower, rng):
     record = simulate(tower, rng, sample_rate_hz=5.0)
     data = record.data.copy()
-    data[:, 400:480] = np.nan
+    data[:, 1400:1480] = np.nan
     result = identify(replace(record, data=data))
     assert any("gaps remain" in text for text in result.warnings)
     assert {mode.method for mode in result.modes} == {"ssi-cov"}
+
+
+def test_modes_are_refined_on_a_stretch_that_is_most_of_the_record(tower, rng):
+    """What is refined is that of the stretch alone; its first eighth and a gap stand for no time."""
+    record = simulate(tower, rng, sample_rate_hz=5.0)
+    gone, cut = record.data.copy(), replace(record, data=record.data[:, 480:])
+    gone[:, 400:480] = np.nan
+    result, alone = identify(replace(record, data=gone)), identify(cut)
+    assert not any("gaps remain" in text for text in result.warnings)
+    for mode, same in zip(result.modes, alone.modes, strict=True):
+        assert mode.method == same.method == "maximum likelihood"
+        # the poles from which the fits start are those of other samples, and so is what they admit
+        assert abs(mode.frequency_hz - same.frequency_hz) < 2.0 * same.frequency_std_hz
+        assert mode.damping_ratio_std == pytest.approx(same.damping_ratio_std, rel=0.5)
 
 
 def test_damping_of_a_close_pair_that_no_fit_describes_is_known_less_well(rng):
     pair = ModalSystem(np.array([0.3, 0.302, 1.0]), np.full(3, 0.01), np.eye(3), np.diag([1.0, 1.0, 4.0]))
     record = simulate(pair, rng, sample_rate_hz=5.0, duration_s=1800.0)
     data = record.data.copy()
-    data[:, 400:500] = np.nan  # too long a gap to fit a spectrum
+    data[:, 4400:4500] = np.nan  # too long a gap to fit a spectrum, and no stretch of most of the record
     record = replace(record, data=data)
     plain = identify(record, IdentificationSettings(refine=False)).modes
     modes = identify(record).modes

@@ -24,6 +24,12 @@ CASES_PER_COEFFICIENT = 15
 """Complete instants needed per coefficient."""
 MIN_EXPLAINED_SHARE = 0.9
 """Share of a channel's variance the others must explain."""
+MAX_MISSING_SHARE = 0.01
+"""Largest share of missing samples in a channel that count as zeros in a periodogram."""
+LEAST_STRETCH = 0.75
+"""Share of the record that a stretch without gaps must have to stand for it: what is estimated from it
+scatters 1.15 times as much as from the whole. Fits to half a record are no sharper than subspace estimates of
+all of it: in ten minutes with 8 % missing, 0.20 and 0.23 in ln ζ of a mode of 1 %."""
 RIDGE = 1e-9
 """Regularisation as a share of the variance, needed if sensors repeat each other exactly."""
 
@@ -66,6 +72,35 @@ def fill(y: FloatArray) -> FloatArray:
             if weights is not None:
                 out[i, at] = _predict(whole, weights, at, reach)
     return out
+
+
+def without_gaps(y: FloatArray) -> FloatArray | None:
+    """Return the samples whose spectrum is that of the motion: all if few are missing, a stretch, or None.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        NaN marks a missing sample.
+    """
+    few = np.isnan(y).mean(axis=1).max() <= MAX_MISSING_SHARE
+    return y if few else longest_stretch(y)
+
+
+def longest_stretch(y: FloatArray) -> FloatArray | None:
+    """Return the longest stretch (n_channels, n) in which no sample is missing; None if it is too short.
+
+    Examples
+    --------
+    >>> y = np.ones((2, 100))
+    >>> y[0, 10:15] = np.nan
+    >>> longest_stretch(y).shape
+    (2, 85)
+    """
+    missing = np.flatnonzero(~np.isfinite(y).all(axis=0))
+    ends = np.concatenate([[-1], missing, [y.shape[1]]])
+    most = int(np.argmax(np.diff(ends)))
+    first, end = int(ends[most]) + 1, int(ends[most + 1])
+    return y[:, first:end] if end - first >= LEAST_STRETCH * y.shape[1] else None
 
 
 def _around(valid: BoolArray, reach: int) -> BoolArray:

@@ -13,6 +13,7 @@ from jackettwin.identification.estimate import Rejected
 from jackettwin.identification.maximum_likelihood.fits import FitStart, accepted_fits, not_refined
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.identification.mode_shapes import mac, normalised
+from jackettwin.identification.preparation.gaps import without_gaps
 from jackettwin.identification.preparation.resolve import guarded_band_hz
 from jackettwin.identification.preparation.whitening import left_to_differentiate
 from jackettwin.identification.selection.candidates import (
@@ -37,9 +38,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.selection.screening import Evidence
     from jackettwin.identification.settings import IdentificationSettings
 
-
-MAX_MISSING_SHARE = 0.01
-"""Largest share of missing samples in a channel for a fit to the periodogram."""
 
 MIN_LIMIT_SHARE = 0.8
 """Smallest standard deviations, over the long-data limits.
@@ -90,17 +88,19 @@ def chosen_modes(
     findings: tuple[Finding, ...] = ()
     modes = {i: judged[i].mode for i, certain in zip(open_to, sure, strict=True) if certain}
     if settings.refine and sure.any():
-        if np.isnan(y).mean(axis=1).max() > MAX_MISSING_SHARE:
+        whole = without_gaps(y)
+        if whole is None:
             f = np.array([mode.frequency_hz for mode in modes.values()])
             findings = (not_refined(f, "gaps remain in the record"),)
         else:
             start = _start([judged[i].mode for i in open_to], sure, ready, tones, settings)
             band = guarded_band_hz(resolved)
-            fits, findings = accepted_fits(y, resolved.sample_rate_hz, band, start)
+            fits, findings = accepted_fits(whole, resolved.sample_rate_hz, band, start)
             for fit in fits:
                 for position in np.flatnonzero(fit.candidates):
                     modes.pop(open_to[position], None)
-                modes |= _refined_modes(judged, open_to, fit.modes, scale, duration_s)
+                fitted_s = whole.shape[1] / resolved.sample_rate_hz
+                modes |= _refined_modes(judged, open_to, fit.modes, scale, fitted_s)
     tones_hz = [(f, f) for f in (*tones.steady_hz, *ready.tones_hz)]
     tones_hz += [tone.swept_hz for tone in tones.drifting]
     found = _sorted(judged, modes, tones_hz, resolved, settings, findings)

@@ -20,6 +20,7 @@ from jackettwin.identification.maximum_likelihood.line_likelihood import (
     over_noise,
 )
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
+from jackettwin.identification.preparation.gaps import without_gaps
 from jackettwin.identification.selection.neighbours import apart
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.sinusoid import transform
@@ -46,8 +47,6 @@ CLOSE_DISTANCE = 2.0
 shapes; the fit of both together is then retained."""
 MAX_AMPLIFICATION = 2.0
 """Largest length of the filter over that of one mode alone. Above it the shapes are too alike."""
-MAX_MISSING_SHARE = 0.01
-"""Largest share of missing samples."""
 BY_CHANCE = frozenset({"steady_envelope", "narrow_as_a_line", "damping_unknown"})
 """Codes of findings that a lightly damped mode may have by chance. A mode with any other finding is given no
 likelihood."""
@@ -71,8 +70,10 @@ def with_damping_likelihoods(
     derivatives : (n_channels,)
         Number of time derivatives from a channel's quantity to acceleration.
     """
-    if np.mean(~np.isfinite(y)) > MAX_MISSING_SHARE:
+    whole = without_gaps(y)
+    if whole is None:
         return tuple(modes)
+    y = whole
     duration_s = y.shape[1] / sample_rate_hz
     out = list(modes)
     lines: ComplexArray | None = None
