@@ -44,7 +44,6 @@ from jackettwin.records import (
     record_content,
     with_conditions,
 )
-from jackettwin.records.quality.aliasing import PEAKS
 from jackettwin.records.quality.crossed_axes import axes_in_line
 from jackettwin.records.quality.length import CYCLES, too_short
 from jackettwin.records.quality.record_quality import Quality
@@ -54,8 +53,6 @@ from jackettwin.version import __version__
 
 UNFIT = ("another_time", "stored_backwards", "clocks_wander", "coarse_quantiser")
 """Findings that make every mode of a record doubtful, unless the record was repaired."""
-FOLDED_FROM = PEAKS[0]
-"""Lowest frequency of a mode, over half the sample rate, that may be a folded one."""
 ORDERS_FOUND = ("rotor_order_removed", "rotor_order_weak", "rotor_order_seen", "rotor_order_stated")
 """Findings on multiples of the rotor's speed."""
 
@@ -289,14 +286,12 @@ def _beside_orders(found: Identification, findings: Findings) -> Identification:
 
 def _perhaps_folded(found: Identification, quality: Quality) -> Identification:
     """Flag the modes of a record without a filter that may be those above half its sample rate."""
-    half_hz = [float(f.params["half_hz"] or 0.0) for f in quality.findings if f.code == "not_filtered"]
-    if not half_hz:
+    stated = [f.params for f in quality.findings if f.code == "not_filtered"]
+    if not stated:
         return found
-    reason = Finding("may_be_folded", params={"rate_hz": 2.0 * half_hz[0]})
-    modes = (
-        m.flagged(ModeStatus.DOUBTFUL, reason) if m.frequency_hz > FOLDED_FROM * half_hz[0] else m
-        for m in found.modes
-    )
+    half_hz, from_hz = (float(stated[0][key] or 0.0) for key in ("half_hz", "from_hz"))
+    reason = Finding("may_be_folded", params={"rate_hz": 2.0 * half_hz})
+    modes = (m.flagged(ModeStatus.DOUBTFUL, reason) if m.frequency_hz > from_hz else m for m in found.modes)
     return replace(found, modes=tuple(modes))
 
 

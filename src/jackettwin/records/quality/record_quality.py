@@ -13,7 +13,7 @@ from jackettwin.quantities import VIBRATIONS
 from jackettwin.records.clocks import LoggerClocks, clock_findings, clocks_of, in_step
 from jackettwin.records.processing import filters
 from jackettwin.records.quality import faults, sensor_polarity
-from jackettwin.records.quality.aliasing import not_filtered
+from jackettwin.records.quality.aliasing import PEAKS, not_filtered
 from jackettwin.records.quality.faults import ChannelQuality, channel_findings
 from jackettwin.records.quality.sensor_changes import SensorChange, changes, described
 from jackettwin.records.quality.unit_errors import wrong_units
@@ -262,7 +262,7 @@ def _folded(record: Record, channels: tuple[ChannelQuality, ...], slow_free: Flo
         names = ", ".join(channels[i].name for i, one in zip(rows, flat, strict=True) if one)
         half_hz = 0.5 * record.sample_rate_hz
         most = int(np.argmax(np.where(flat, share, 0.0)))
-        where = {"half_hz": half_hz, "peak_hz": float(peak[most]) * half_hz}
+        where = {"half_hz": half_hz, "peak_hz": float(peak[most]) * half_hz, "from_hz": PEAKS[0] * half_hz}
         yield Finding("not_filtered", params={"channels": names, "share": float(share[most]), **where})
 
 
