@@ -128,6 +128,21 @@ def test_a_clock_that_is_not_put_back_is_said(tmp_path: Path) -> None:
     assert record.metadata["remarks"] == [PASSED]
 
 
+@pytest.mark.parametrize("begin", [(1, 55), (2, 55)])
+def test_a_clock_that_is_put_back_has_its_hour_twice(begin: tuple[int, int], tmp_path: Path) -> None:
+    """02:59:59 of summer time is followed by 02:00:00 of winter time, on no other day or hour."""
+    third = datetime(2025, 10, 26, 3)
+    shown = [t if t < third else t - timedelta(hours=1) for k in (0, 600, 1200, 1800, 2400, 3000, 3600)
+             for t in seconds_from(datetime(2025, 10, 26, *begin) + timedelta(seconds=k))]  # fmt: skip
+    record = at_night(tmp_path / "a.csv", shown)
+    assert record.start_utc == datetime(2025, 10, 25, 23, 55, tzinfo=UTC) + timedelta(hours=begin[0] - 1)
+    assert record.duration_s == 4200.0 and np.isfinite(record.data).all()
+    assert "remarks" not in record.metadata
+    for off in (timedelta(days=1), timedelta(hours=1)):
+        with pytest.raises(InputError, match="do not increase"):
+            at_night(tmp_path / "a.csv", [t + off for t in shown])
+
+
 def test_the_statistics_of_stamps_stay_metadata(tmp_path: Path) -> None:
     path = written(tmp_path / "a.csv", "Z")
     path.with_suffix(".json").write_text(json.dumps({"clock": {"jitter_s": 0.5}}))

@@ -69,6 +69,8 @@ DELAYS_PER_LINE = 2
 """Number of delays tried per line of the band."""
 STEPS_PER_PERIOD = 24.0
 """Steps of the search per period of the highest bin."""
+FEWEST_DELAYS = 3
+"""Fewest delays within the search; of a record with a sample in half a minute none is."""
 
 
 @dataclass(frozen=True)
@@ -125,7 +127,7 @@ class Phases:
 
 
 def phases(y: FloatArray, sample_rate_hz: float, turn: ComplexArray) -> Phases | None:
-    """Return the phases between channels; None if the record is too short.
+    """Return the phases between channels; None if the record is too short, or too slow for a delay.
 
     Parameters
     ----------
@@ -157,7 +159,8 @@ def phases(y: FloatArray, sample_rate_hz: float, turn: ComplexArray) -> Phases |
     g = np.clip((each * g - 1.0) / (each - 1.0), 0.0, 1.0)
     weight = np.where(g > MIN_COHERENCE, g / (1.0 - g + WEIGHT_OFFSET), 0.0)
     f = df * (first + each * np.arange(bins) + 0.5 * (each - 1))
-    return Phases(f, coherency, weight, pairs, each * df, log_amplitude)
+    found = Phases(f, coherency, weight, pairs, each * df, log_amplitude)
+    return found if found.search_s.size >= FEWEST_DELAYS else None
 
 
 def _band(y: FloatArray) -> tuple[float, float]:

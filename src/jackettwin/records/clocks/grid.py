@@ -125,7 +125,7 @@ def _increasing(times_s: FloatArray) -> IntArray:
             field="time",
             value=f"{len(times_s) - len(keep)} of {len(times_s)} out of order",
             allowed="increasing times",
-            remedy="remove the time column and state sample_rate_hz, or sort the file",
+            remedy="remove the time column and state sample_rate_hz; sort only a file of mixed rows",
         )
     return keep
 

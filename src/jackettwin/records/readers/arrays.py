@@ -79,6 +79,7 @@ def table_from_arrays(
         channels={name: ChannelEntry(unit=unit) for name, unit in found.items() if unit},
         sample_rate_hz=_rate(scalars),
         times_s=times_s,
+        times_unit_said=not times or time_unit(_last(times[0])) is not None,
         start_utc=parse_time(named["start_utc"][0]) if named.get("start_utc") else start,
         description=parse_description(named["description"][0]) if named.get("description") else None,
         unit=unit,

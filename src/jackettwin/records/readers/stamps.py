@@ -28,16 +28,17 @@ if TYPE_CHECKING:
 _NO_MONTH = r"(?:1[3-9]|2\d|3[01])"
 _DAY = (
     r"(?:\d{4}[-/]\d\d[-/]\d\d|\d\d\.\d\d\.\d{4}|"
-    rf"{_NO_MONTH}/\d\d/\d{{4}}|\d\d/{_NO_MONTH}/\d{{4}})"
+    rf"{_NO_MONTH}/\d\d?/\d{{4}}|\d\d?/{_NO_MONTH}/\d{{4}})"
 )
-_CLOCK = r"\d\d?:\d\d:\d\d(?:[.,]\d{1,9})?"
+_CLOCK = r"\d\d?:\d\d:\d\d(?:[.,]\d{1,9})?(?:\s*[AaPp][Mm])?"
 _DATE = re.compile(rf"\s*{_DAY}")
 _DATE_ALONE = re.compile(rf"\s*{_DAY}\s*")
 _CLOCK_ALONE = re.compile(rf"\s*{_CLOCK}\s*")
 _CLOCK_OF_A_DATE = re.compile(rf"\s*{_CLOCK}\s*(?:Z|[+-]\d\d:?\d\d)?\s*", re.IGNORECASE)
 _ZONED = re.compile(r"(?:Z|[+-]\d\d:?\d\d)\s*$", re.IGNORECASE)
-_YEAR_LAST = re.compile(r"^(\d\d)[./](\d\d)[./](\d{4})")
-_MONTH_FIRST = re.compile(rf"\d\d/{_NO_MONTH}/")
+_HALF_DAY = re.compile(r"(?P<hour>\d\d?)(?P<rest>:\d\d:\d\d(?:[.,]\d+)?)\s*(?P<half>[AP])M$", re.IGNORECASE)
+_YEAR_LAST = re.compile(r"^(\d\d?)[./](\d\d?)[./](\d{4})")
+_MONTH_FIRST = re.compile(rf"\d\d?/{_NO_MONTH}/")
 _AMBIGUOUS = re.compile(r"\s*(?P<first>\d\d?)/(?P<second>\d\d?)/(?P<year>\d{4})(?!\d)")
 _PLAIN_STAMP = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:[.,]\d{1,9})?)?[Zz]?")
 _DAY_S = 86_400.0
@@ -48,6 +49,8 @@ def is_stamp(cell: str) -> bool:
 
     >>> [is_stamp(text) for text in ("2025-03-17T01:00:00Z", "17.03.2025", "1:00:00,04", "1:2", "0.5")]
     [True, True, True, False, False]
+    >>> is_stamp("10/20/2025 1:58:00 PM"), is_stamp("11:58:00 AM")
+    (True, True)
     """
     return bool(_DATE.match(cell) or _CLOCK_ALONE.fullmatch(cell))
 
@@ -116,12 +119,30 @@ def stamps(cells: Sequence[str], line: int) -> npt.NDArray[Any]:
     """
     if _CLOCK_ALONE.fullmatch(cells[0]):
         return _of_day(cells, line)
-    order = r"\3-\1-\2" if _MONTH_FIRST.match(cells[0].strip()) else r"\3-\2-\1"
-    texts = [_YEAR_LAST.sub(order, cell.strip()).replace("/", "-") for cell in cells]
+    month, day = (1, 2) if _MONTH_FIRST.match(cells[0].strip()) else (2, 1)
+
+    def year_first(date: re.Match[str]) -> str:
+        return f"{date[3]}-{date[month]:0>2}-{date[day]:0>2}"
+
+    texts = [_YEAR_LAST.sub(year_first, cell.strip()).replace("/", "-") for cell in cells]
+    if _HALF_DAY.search(texts[0]):
+        texts = [_of_whole_day(text) for text in texts]
     if all(map(_PLAIN_STAMP.fullmatch, texts)):
         with suppress(ValueError):  # a 31st of June: the slow way names its line
             return np.array([text.rstrip("Zz").replace(",", ".") for text in texts], "datetime64[ns]")
-    return np.array([_stamp(text, line + k) for k, text in enumerate(texts)])
+    return np.array([_stamp(*pair, line + k) for k, pair in enumerate(zip(texts, cells, strict=True))])
+
+
+def _of_whole_day(text: str) -> str:
+    """Return a text whose time of day ends in AM or PM with hours from 0 to 23 instead, others as given."""
+
+    def hours(match: re.Match[str]) -> str:
+        hour = int(match["hour"])
+        if not 1 <= hour <= 12:
+            return match[0]
+        return f"{hour % 12 + (12 if match['half'] in 'Pp' else 0):02}{match['rest']}"
+
+    return _HALF_DAY.sub(hours, text)
 
 
 def _of_day(cells: Sequence[str], line: int) -> npt.NDArray[np.timedelta64]:
@@ -135,17 +156,50 @@ def _of_day(cells: Sequence[str], line: int) -> npt.NDArray[np.timedelta64]:
                 allowed="13:00:00.00",
                 remedy="mend the cell",
             )
+    if _HALF_DAY.search(cells[0].strip()):
+        cells = [_of_whole_day(cell.strip()) for cell in cells]
     parts = np.array([cell.replace(",", ".").split(":") for cell in cells], np.float64)
     seconds = parts @ [3600.0, 60.0, 1.0]
     nights = np.cumsum(np.diff(seconds, prepend=seconds[0]) < -0.5 * _DAY_S)
     return np.round(1e9 * (seconds + _DAY_S * nights)).astype("timedelta64[ns]")
 
 
-def _stamp(text: str, line: int) -> np.datetime64:
+def _stamp(text: str, cell: str, line: int) -> np.datetime64:
+    """Return the time of a text with the year first; ``cell`` is what stands in the file."""
     try:
         return np.datetime64(parse_time(text).replace(tzinfo=None), "ns")
-    except InputError as error:
-        raise error.at(field=f"line {line}") from None
+    except InputError:
+        raise InputError(
+            "is no time",
+            field=f"line {line}",
+            value=cell,
+            allowed="2025-01-31T13:00:00Z, 31.01.2025 13:00:00 or 01/31/2025 1:00:00 PM",
+            remedy="mend the cell",
+        ) from None
+
+
+_EXCEL_DAYS, _EXCEL_ZERO = (2e4, 8e4), np.datetime64("1899-12-30", "ns")
+_EXCEL_STEP = 1e-4
+"""Longest step in days; in seconds it is 10,000 samples a second, more than a structure needs."""
+EXCEL = "counts days since 1899-12-30, as spreadsheets do: read as dates"
+"""Remark on a column of such days."""
+
+
+def dates_of_days(numbers: FloatArray) -> npt.NDArray[np.datetime64] | None:
+    """Return the dates of a spreadsheet's days (1954 to 2119), (n_samples,); None if they are not such days.
+
+    >>> dates_of_days(45950.5 + np.arange(9) / 25.0 / 86400.0)[5].astype("datetime64[ms]")
+    np.datetime64('2025-10-20T12:00:00.200')
+    >>> dates_of_days(45950.5 + np.arange(9) / 25.0)  # seconds
+    """
+    if numbers.size < 2 or not np.isfinite(numbers).all():
+        return None
+    low, high = numbers.min(), numbers.max()
+    if not (_EXCEL_DAYS[0] < low < high < _EXCEL_DAYS[1] and high - low < _EXCEL_STEP * (numbers.size - 1)):
+        return None
+    days = np.floor(numbers)
+    nanoseconds = np.round((numbers - days) * _DAY_S * 1e9).astype("timedelta64[ns]")
+    return np.asarray(_EXCEL_ZERO + days.astype("timedelta64[D]") + nanoseconds)
 
 
 def parse_time(text: str, *, file: Path | str | None = None) -> datetime:
@@ -180,6 +234,11 @@ UNSAID = (
     '("clock" in the JSON beside the file, logger.clock of a twin, or --timezone, says another)'
 )
 """Remark on a record whose stamps have no zone."""
+
+_RESTART_S = 60.0
+"""Longest time without samples while a clock is put back, as a logger may restart."""
+_HOUR_S = 3600.0
+
 
 TWICE = "the clock's zone has this hour twice: taken as the first (summer time); state start_utc"
 """Remark on a record that begins in an hour in which clocks are put back."""
@@ -275,6 +334,38 @@ def steady(
     if _skipped(at(after - 1), zone):
         return never
     return start, np.where(np.arange(len(shown)) < after, times_s, times_s - forward_s), ()
+
+
+def put_back_at(times_s: FloatArray | None) -> int | None:
+    """Return the first sample after the only step back of stamps, if it is by an hour; else None.
+
+    Parameters
+    ----------
+    times_s : (n_samples,) array, optional
+        What the clock shows [s].
+    """
+    if times_s is None:
+        return None
+    back = np.flatnonzero(np.diff(times_s) < 0.0)
+    if len(back) != 1:
+        return None
+    after = int(back[0]) + 1
+    return after if 0.0 < times_s[after] + _HOUR_S - times_s[after - 1] < _RESTART_S else None
+
+
+def unfolded(begin: datetime, times_s: FloatArray | None, zone: tzinfo) -> FloatArray | None:
+    """Return the times since the start of a clock that is put back in the hour that its zone has twice.
+
+    None if it is not; arguments are those of :func:`steady`.
+    """
+    after = put_back_at(times_s)
+    if times_s is None or after is None:
+        return None
+    for k in (after - 1, after):
+        shown = begin.replace(tzinfo=None) + timedelta(seconds=float(times_s[k]))
+        if (in_utc(shown.replace(fold=1), zone) - in_utc(shown, zone)).total_seconds() != _HOUR_S:
+            return None
+    return np.where(np.arange(len(times_s)) < after, times_s, times_s + _HOUR_S)
 
 
 def start_in_utc(end: datetime, zone: tzinfo, lasted: timedelta) -> datetime:

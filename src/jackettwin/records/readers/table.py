@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError, did_you_mean
+from jackettwin.errors import InputError, did_you_mean, require
 from jackettwin.quantities import guess_quantity, names_other
 from jackettwin.records.clocks import between_ticks, regularise
 from jackettwin.records.readers.channel_names import Reading, read_name, read_names, told
@@ -26,11 +26,16 @@ from jackettwin.records.readers.channels import (
 )
 from jackettwin.records.readers.description import ChannelEntry, Description
 from jackettwin.records.readers.stamps import (
+    EXCEL,
     UNSAID,
     ambiguous_date,
+    dates_of_days,
+    in_utc,
+    put_back_at,
     read_zone,
     refuse_ambiguous,
     steady,
+    unfolded,
 )
 from jackettwin.records.record import LARGEST, Record
 
@@ -39,8 +44,18 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-TIME_NAMES = ("time", "time_s", "t", "timestamp", "time_utc", "datetime", "date_time", "times", "tid", "zeit")
+TIME_NAMES = (
+    *("time", "t", "timestamp", "time_utc", "datetime", "date_time", "times", "tid", "zeit", "zeitstempel"),
+    *("datum_zeit", "datum", "uhrzeit"),
+)
+UNSTATED_RATES_HZ = (0.1, 2e4)
+"""Sample rates of records of vibrations whose time column has no unit; others are not in seconds."""
 COARSE = "many samples share a time stamp, alike for all stamps: taken as evenly spread, at"
+_SECONDS_IN = {
+    "ns": 1e-9, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ms": 1e-3, "s": 1.0, "sec": 1.0, "seconds": 1.0,
+    "min": 60.0, "h": 3600.0, "d": 86400.0, "day": 86400.0, "days": 86400.0, "tage": 86400.0,
+}  # fmt: skip
+"""Unit of a time → seconds."""
 _TIME_UNIT = re.compile(r"^(?P<name>.+?)[_ ]*\(?(?P<unit>ms|us|µs|ns|s)\)?$", re.IGNORECASE)
 
 
@@ -59,6 +74,8 @@ class ReadTable:
         Whether ``start_utc`` is UTC; else it is what a clock shows whose zone the file does not say.
     times_s : (n_samples,) array, optional
         Stamps, if the file has them, from any origin.
+    times_unit_said : bool
+        Whether the file says the unit of the stamps; numbers without one are taken as seconds.
     description : Description, optional
         A complete description stored inside the file.
     unit : str, optional
@@ -76,6 +93,7 @@ class ReadTable:
     start_utc: datetime | None = None
     zone_said: bool = True
     times_s: FloatArray | None = None
+    times_unit_said: bool = True
     metadata: Mapping[str, Any] = field(default_factory=dict)
     description: Description | None = None
     unit: str | None = None
@@ -102,17 +120,24 @@ def table_from_columns(
     """
     channels = {name: ChannelEntry(unit=unit) for name, unit in (units or {}).items() if unit}
     time = _time_column(names, columns, channels)
+    remarks: list[str] = []
     if time is not None:
         unit = channels.pop(names[time], ChannelEntry()).unit or time_unit(names[time])
+        numbers = (unit or "").lower() not in _SECONDS_IN and columns[time].dtype.kind == "f"
+        in_days = _SECONDS_IN.get((unit or "d").lower()) == _SECONDS_IN["d"]
+        days = dates_of_days(columns[time]) if in_days and columns[time].dtype.kind == "f" else None
+        if days is not None:
+            columns = [*columns[:time], days, *columns[time + 1 :]]
+            remarks.append(f"column {names[time]} {EXCEL}")
         times_s, start_utc = seconds(columns[time], unit)
         dated = columns[time].dtype.kind == "M" and "start_utc" not in known
         known = {"start_utc": start_utc, "zone_said": not dated, **known, "times_s": times_s}
+        known["times_unit_said"] = not numbers or days is not None
     counts = names and _counts_rows(columns[0]) and not _is_channel(names[0], channels)
     counted = 0 if time is None and counts else None
     kept = [i for i in range(len(names)) if i not in (time, counted) and names[i]]
     kept = [i for i in kept if columns[i].dtype.kind == "f"]
     left_out = [name for i, name in enumerate(names) if name and i not in (time, counted, *kept)]
-    remarks = []
     if left_out:
         remarks.append(f"columns without numbers are left out: {', '.join(left_out)}")
     if counted is not None and names[counted]:
@@ -200,7 +225,7 @@ def is_time(name: str) -> bool:
 def time_unit(name: str) -> str | None:
     """Return the unit in the name of a time, e.g. ``ms`` of ``timestamp_ms``."""
     match = _TIME_UNIT.match(name.strip())
-    return match["unit"] if match and name.strip().lower() not in TIME_NAMES else None
+    return match["unit"].lower() if match and name.strip().lower() not in TIME_NAMES else None
 
 
 def seconds(stamps: npt.NDArray[Any], unit: str | None = None) -> tuple[FloatArray, datetime | None]:
@@ -219,7 +244,7 @@ def seconds(stamps: npt.NDArray[Any], unit: str | None = None) -> tuple[FloatArr
             microseconds=int(first.astype("datetime64[us]").astype(np.int64))
         )
         return relative * 1e-9, start
-    factor = {"ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0}.get(unit or "s", 1.0)
+    factor = _SECONDS_IN.get((unit or "s").lower(), 1.0)
     times_s = np.asarray(stamps, dtype=np.float64) * factor
     if len(times_s) and 1e9 < times_s[0] < 4.1e9:
         start = datetime.fromtimestamp(float(times_s[0]), tz=UTC)
@@ -258,6 +283,8 @@ def to_record(
     if times_s is not None:
         spread = between_ticks(times_s)
         data, clock = regularise(times_s if spread is None else spread, data, sample_rate_hz=stated)
+        if stated is None and not table.times_unit_said:
+            _refuse_other_units(clock.sample_rate_hz)
         stated = clock.sample_rate_hz
         if spread is not None:
             metadata["remarks"] = [*metadata.get("remarks", ()), f"{COARSE} {stated:g} Hz"]
@@ -285,6 +312,19 @@ def to_record(
     )
 
 
+def _refuse_other_units(rate_hz: float) -> None:
+    """Refuse stamps without a unit that are no record of vibrations in seconds."""
+    low, high = UNSTATED_RATES_HZ
+    require(
+        low <= rate_hz <= high,
+        "the column of times has no unit, and in seconds it is no record of vibrations",
+        field="time",
+        value=f"{rate_hz:.3g} samples a second",
+        allowed=f"{low:g} to {high:g} samples a second",
+        remedy="name its unit in the heading, e.g. time [ms], or remove it and state sample_rate_hz",
+    )
+
+
 def _start(
     table: ReadTable, said: Description, defaults: FileDefaults
 ) -> tuple[datetime | None, FloatArray | None, tuple[str, ...]]:
@@ -293,10 +333,20 @@ def _start(
         return said.start_utc or table.start_utc, table.times_s, ()
     zone = said.clock or defaults.timezone
     if zone is None:
+        require(
+            put_back_at(table.times_s) is None,
+            "the clock is put back by an hour, and does not say its zone",
+            field="time",
+            allowed="a clock of a known zone where it is put back",
+            remedy="state the zone: --timezone Europe/Berlin (identify, init), logger.clock of a twin, "
+            'or "clock" in the JSON beside the file',
+        )
         return table.start_utc, table.times_s, (UNSAID,)
-    return steady(
-        table.start_utc, table.times_s, read_zone(zone, field="clock" if said.clock else "--timezone")
-    )
+    known = read_zone(zone, field="clock" if said.clock else "--timezone")
+    times_s = unfolded(table.start_utc, table.times_s, known)
+    if times_s is not None:
+        return in_utc(table.start_utc.replace(tzinfo=None), known), times_s, ()
+    return steady(table.start_utc, table.times_s, known)
 
 
 def _described(
