@@ -38,7 +38,7 @@ QUANTITIES: dict[str, Quantity] = {
             ("cm/s^2", 1e-2),
         ),
     ),
-    "velocity": Quantity("m/s", "velocity", "v", (("m s-1", 1.0), ("mm/s", 1e-3))),
+    "velocity": Quantity("m/s", "velocity", "v", (("m s-1", 1.0), ("mm/s", 1e-3), ("cm/s", 1e-2))),
     "displacement": Quantity(
         "m", "displacement", "u", (("mm", 1e-3), ("cm", 1e-2), ("um", 1e-6), ("µm", 1e-6))
     ),
@@ -202,15 +202,22 @@ def guess_quantity(name: str, unit: str) -> str:
     return moving[0] if moving and not named else "other"
 
 
+_WITHOUT_STROKE = {"mps": "m/s", "mps2": "m/s2", "ms2": "m/s2", "ms-2": "m/s2", "mmps": "mm/s"}
+"""Units as names of columns spell them."""
+
+
 def unit_in_name(name: str, kind: str) -> str:
     """Return the unit of a kind of vibration that a channel's name ends with, "" if it ends with none.
 
     >>> unit_in_name("disp_x_mm", "displacement"), unit_in_name("acc top m_s2", "acceleration")
     ('mm', 'm/s2')
+    >>> unit_in_name("vel_x_mps", "velocity"), unit_in_name("acc_tp_ms2", "acceleration")
+    ('m/s', 'm/s2')
     """
     words = name.replace(" ", "_").split("_")
     for n in (2, 1):
         unit = "/".join(words[-n:])
+        unit = _WITHOUT_STROKE.get(unit.lower(), unit)
         if len(words) > n and _has_unit(QUANTITIES[kind], unit) and unit != "1":
             return unit
     return ""

@@ -39,6 +39,11 @@ X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
         ("B_Turm_S-12.5m", (0.0, -1.0, 0.0), 12.5, ""),
         ("acc W 088m", (-1.0, 0.0, 0.0), 88.0, ""),
         ("Sensor 3 West", (-1.0, 0.0, 0.0), None, ""),
+        ("Beschl_144m_Längs", X, 144.0, ""),
+        ("Beschl_144m_Quer", Y, 144.0, ""),
+        ("acc longitudinal TP", X, None, "transition piece"),
+        ("Transverse 3", Y, None, ""),
+        ("Querschnitt 3", None, None, ""),
     ],
 )
 def test_what_names_say(

@@ -31,6 +31,8 @@ DIRECTIONS: tuple[tuple[str, Vector, str], ...] = (
     (_ALONE.format("(?:acc|a|vel|v|disp|u)?y"), (0.0, 1.0, 0.0), "y"),
     (_ALONE.format("(?:acc|a|vel|v|disp|u)?z"), (0.0, 0.0, 1.0), "z"),
     (_LETTERS.format(r"fa|fore[\s_\-]?aft"), (1.0, 0.0, 0.0), "fore-aft"),
+    (_LETTERS.format("longitudinal|l(?:ä|ae)ngs"), (1.0, 0.0, 0.0), "lengthwise"),
+    (_LETTERS.format("transvers(?:e|al)?|lateral|quer"), (0.0, 1.0, 0.0), "crosswise"),
     (_LETTERS.format(r"ss|sts|s2s|side[\s_\-]?(?:to[\s_\-]?)?side"), (0.0, 1.0, 0.0), "side-side"),
     (_LETTERS.format("vert|vertical|heave"), (0.0, 0.0, 1.0), "vertical"),
     (r"(?<![a-z])(?:(?:east|ost)(?![a-z])|[eo]$)", (1.0, 0.0, 0.0), "east"),
