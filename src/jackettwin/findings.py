@@ -188,6 +188,11 @@ CATALOGUE: dict[str, Kind] = {
         "there may be a second mode near {frequency_hz:.4g} Hz: poles of another shape at {other_hz:.4g} Hz, "
         "within its bandwidth, were left out",
     ),
+    "perhaps_two": Kind(
+        "warning",
+        "there may be two modes at {frequency_hz:.4g} Hz, closer than the record separates: the sensors move "
+        "in a second shape there, with {share:.0%} of the power; a longer record tells",
+    ),
     "steady_tone_near": Kind(
         "warning", "a steady tone at {frequency_hz:.4g} Hz is near: distrust the damping"
     ),

@@ -15,10 +15,13 @@ from jackettwin.identification import IdentificationSettings, ModalEstimate, ide
 from jackettwin.identification.preparation.prepared_record import prepare
 from jackettwin.identification.selection.screening import (
     PERIODS,
+    SECOND_EXCESS,
+    SECOND_SHARE,
     Evidence,
     contrast,
     evidence,
     screen,
+    second_shape,
     with_unknown_damping,
     worth_keeping,
 )
@@ -239,3 +242,27 @@ def test_a_broad_peak_must_be_clear_and_its_damping_known(clear):
     assert "broad" in codes(0.05, 0.6, two)
     assert "broad" not in codes(0.02, 0.6, two)
     assert "broad" not in codes(0.05, 0.6)
+
+
+def test_a_pair_that_a_short_record_shows_as_one_mode_is_said_to_be_perhaps_two(rng) -> None:
+    """Lines of one peak: of two motions along two axes, and of one; the shares are those of their forces."""
+    n, number = 400, 30
+    peak = 1.0 / (1.0 + (np.arange(n) - 60.0) ** 2 / 1.5**2)
+    mode = ModalEstimate(60.0 / 150.0, 1.5 / 60.0, np.ones(6, complex), 1.0, 0.0, 1.0)
+    shapes = np.kron(np.array([[1.0, 0.6, 0.3]]), np.eye(2))
+
+    def found(second: float) -> list[bool]:
+        out = []
+        for _ in range(number):
+            drawn = rng.standard_normal((2, n)) + 1j * rng.standard_normal((2, n))
+            noise = rng.standard_normal((6, n)) + 1j * rng.standard_normal((6, n))
+            lines = shapes.T @ (np.sqrt(peak) * drawn * np.array([[1.0], [second]]))
+            lines += 0.01 * noise
+            at = lines[:, 58:63]
+            own = np.linalg.eigh(at @ at.conj().T)[1][:, -1]
+            share, excess = second_shape(lines, 150.0, mode, own)
+            out.append(share > SECOND_SHARE and excess > SECOND_EXCESS)
+        return out
+
+    assert np.mean(found(0.7)) > 0.6
+    assert not any(found(0.0))

@@ -21,7 +21,12 @@ from jackettwin.identification.selection.candidates import (
     beside_tones,
 )
 from jackettwin.identification.selection.neighbours import apart, members_of_pairs
-from jackettwin.identification.selection.screening import screen, with_unknown_damping, worth_keeping
+from jackettwin.identification.selection.screening import (
+    perhaps_two,
+    screen,
+    with_unknown_damping,
+    worth_keeping,
+)
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.envelopes import is_suspiciously_steady
 from jackettwin.identification.tones.mains import is_mains
@@ -211,9 +216,13 @@ def screened_choice(
     left_out = [
         Rejected(m.frequency_hz, m.damping_ratio, m.status_reason or "", m.status) for m in forced.values()
     ]
+    kept = tuple(modes[i] for i in order)
+    said = {f.params["frequency_hz"] for f in chosen.findings if f.code == "hidden_mode"}
+    two = (f for f in perhaps_two(kept, known) if f.params["frequency_hz"] not in said)
     return replace(
         chosen,
-        modes=tuple(modes[i] for i in order),
+        findings=(*chosen.findings, *two),
+        modes=kept,
         candidate=tuple(order),
         rejected=(*left_out, *rejected),
     )

@@ -58,6 +58,38 @@ def contrast(
     return ratio, float((ratio - 1.0) / np.sqrt(1.0 / at.sum() + 1.0 / beside.sum()))
 
 
+def second_shape(
+    lines: ComplexArray, duration_s: float, mode: ModalEstimate, shape: ComplexArray
+) -> tuple[float, float]:
+    r"""Return how strongly the channels move in a further shape at a mode, over its own and over chance.
+
+    The first is the ratio of the two largest eigenvalues of the spectral matrix at the mode. The second is
+    the largest power in any direction other than the shape, over the mean of neighbouring lines, and over the
+    edge :math:`(1 + \sqrt{p/n})^2` of what n lines of noise have in p directions by chance.
+
+    Parameters
+    ----------
+    lines : (n_channels, n_lines)
+        Fourier transform of the samples.
+    shape : (n_channels,)
+        Shape in the scaling of the samples.
+    """
+    at, beside = _lines_of(lines, duration_s, mode)
+    others = len(lines) - 1
+    if at.sum() < 2 or beside.sum() <= len(lines) or not others:
+        return 0.0, 0.0
+    own, around = lines[:, at].astype(complex), lines[:, beside].astype(complex)
+    powers = np.linalg.eigvalsh(own @ own.conj().T)
+    matrix = around @ around.conj().T / beside.sum()
+    matrix += ADDED_NOISE * np.trace(matrix).real / len(lines) * np.eye(len(lines))
+    root = np.linalg.cholesky(matrix)
+    white, direction = np.linalg.solve(root, own), np.linalg.solve(root, shape)
+    direction /= np.linalg.norm(direction)
+    white -= np.outer(direction, direction.conj() @ white)
+    most = np.linalg.eigvalsh(white @ white.conj().T / at.sum())[-1]
+    return float(powers[-2] / powers[-1]), float(most / (1.0 + np.sqrt(others / at.sum())) ** 2)
+
+
 def share_of_one_part(
     lines: ComplexArray, duration_s: float, mode: ModalEstimate, shape: ComplexArray
 ) -> float:

@@ -37,7 +37,12 @@ from jackettwin.identification.selection.neighbours import (
     share_in_span,
 )
 from jackettwin.identification.selection.one_sensor import MIN_OTHER_SENSORS, of_one_sensor
-from jackettwin.identification.selection.peaks import clear_peaks_hz, contrast, share_of_one_part
+from jackettwin.identification.selection.peaks import (
+    clear_peaks_hz,
+    contrast,
+    second_shape,
+    share_of_one_part,
+)
 from jackettwin.identification.selection.second_look import SAME_SHAPE, SecondLook, second_look, seen_again
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.sinusoid import transform
@@ -126,6 +131,10 @@ OUTSIDE_PEAK, BESIDE_PEAK = 1.5, 4.0
 it."""
 LINES_OF_A_PEAK = 8.0
 """Smallest half bandwidth used for this range, in lines of the record; it is the width of a Welch line."""
+SECOND_SHARE, SECOND_EXCESS = 0.02, 2.0
+"""Power of a second shape at a mode alone, over that of the first and over chance, above which there may be
+two modes. Seven pairs 0.4 to 1.2 % apart that 90 to 180 s show as one have 0.04 to 0.26 and 2.3 to 40; of 24
+single modes none has more than 0.0005, and six have more than 2.2."""
 PERIODS = ("tp_s", "wave_tp_s", "wave_peak_period_s", "peak_period_s", "Tp", "wave_period_s")
 """Names of the peak period of the sea among a record's conditions."""
 MIN_DAMPING_CYCLES = 1.5
@@ -255,6 +264,19 @@ def _of_one_part(modes: Sequence[ModalEstimate], known: Evidence) -> dict[int, f
         if share > ONE_PART_SHARE
         and np.median(np.delete(shares, i) if len(shares) > 1 else 0.0) < ONE_PART_SHARE
     }
+
+
+def perhaps_two(modes: Sequence[ModalEstimate], known: Evidence) -> list[Finding]:
+    """Report modes without a close one at which the sensors move in two shapes."""
+    out = []
+    for mode in modes:
+        if any(apart(mode, other) < CLOSE_DISTANCE for other in modes if other is not mode):
+            continue
+        share, excess = second_shape(known.lines, known.duration_s, mode, mode.mode_shape / known.scale)
+        if share > SECOND_SHARE and excess > SECOND_EXCESS:
+            where = {"frequency_hz": mode.frequency_hz, "share": share}
+            out.append(Finding("perhaps_two", params=where))
+    return out
 
 
 def worth_keeping(mode: ModalEstimate, others: Sequence[ModalEstimate], known: Evidence) -> bool:
