@@ -368,6 +368,7 @@ def test_poles_are_picked_kept_and_taken_back(opened: Open) -> None:
     page = opened.page(f"/assets/wtg/records/{made}")
     page.get_by_role("button", name="Compute the stabilisation chart").click()
     poles = page.get_by_role("group", name="Poles to take").get_by_role("checkbox")
+    expect(page.get_by_label(re.compile(r"^0\.\d{4} Hz, [\d.]+ %, MPC [01]\.\d\d$")).first).to_be_visible()
     poles.first.press("Space")
     page.get_by_role("button", name="Take 1 picked").click()
     expect(page.get_by_text("Picked by local")).to_be_visible()
@@ -951,6 +952,12 @@ def test_first_load_is_small(opened: Open) -> None:
     asked = [name for name in names if name.startswith("/window/")]
     sent = [int(httpx.get(opened.url + name).headers.get("content-length", 0)) for name in asked]
     assert len(asked) >= 2 and 0 < sum(sent) < 400_000
+
+
+def test_no_page_of_the_window_needs_an_unsafe_policy(opened: Open) -> None:
+    for path in (*PAGES, "/login"):
+        policy = httpx.get(opened.url + path).headers["content-security-policy"]
+        assert "default-src" in policy and "unsafe" not in policy and "http" not in policy, path
 
 
 def test_live_signals_roll_and_the_broker_comes_before_the_replay(opened: Open) -> None:

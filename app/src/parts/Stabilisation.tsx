@@ -4,7 +4,7 @@ import { useRecord } from "../api/answer";
 import { api, type Mode, type RecordOut, type Schemas, told } from "../api/client";
 import { may, useDeed } from "../api/do";
 import { keep, useChosen } from "../shell/place";
-import { percent, words } from "../words/numbers";
+import { fixed, frequency, percent, words } from "../words/numbers";
 import { Card, Press, Time } from "./Bits";
 import { Plot } from "./plot/Plot";
 import type { PlotData, Series } from "./plot/series";
@@ -42,7 +42,8 @@ function Chart({ poles, picks, onPick, modes }: ChartProps) {
       groups[kind] = own;
       const at = (values: number[]): number[] => own.map((i) => values[i] ?? NaN);
       const [x, y] = [at(poles.frequency_hz), at(poles.order)];
-      return { name: kind, colour: PAINT[kind], kind: "points", x, y };
+      const said = own.map((i) => `damping ${percent(poles.damping_ratio[i])} %, MPC ${fixed(poles.mpc[i], 2)}`);
+      return { name: kind, colour: PAINT[kind], kind: "points", x, y, said };
     });
     const marks = modes.map((m) => ({ x: m.frequency_hz, words: words(m.label), colour: "quiet" }));
     const names = { title: "Stabilisation chart", xName: "frequency [Hz]", yName: "model order" };
@@ -66,10 +67,7 @@ export function candidates(poles: Poles): number[] {
   return [...best.values()].sort((a, b) => (poles.frequency_hz[a] ?? 0) - (poles.frequency_hz[b] ?? 0));
 }
 
-const kept = (record: RecordOut): Pick_[] => {
-  const poles = record.picks?.["poles"];
-  return Array.isArray(poles) ? (poles as Pick_[]) : [];
-};
+const kept = ({ picks }: RecordOut): Pick_[] => (picks?.["poles"] ?? []) as Pick_[];
 
 type OfRecord = { record: RecordOut; modes: readonly Mode[]; again: () => void };
 
@@ -79,7 +77,7 @@ export function Stabilisation(of: OfRecord) {
     <Card
       title="Poles"
       wide
-      note="Poles of every model order. Choose some to take them instead of the automatic choice; the record is identified again."
+      note="Poles of every model order; MPC is 1 where all sensors move in phase or antiphase. Choose some to take them instead of the automatic choice; the record is identified again."
     >
       {open ? (
         <Open {...of} />
@@ -122,7 +120,8 @@ function Open({ record, modes, again }: OfRecord) {
                       checked={taken.has(keyOf(poleOf(data, i)))}
                       onChange={() => switched(poleOf(data, i))}
                     />{" "}
-                    {(data.frequency_hz[i] ?? 0).toFixed(4)} Hz, {percent(data.damping_ratio[i])} %
+                    {frequency(data.frequency_hz[i])} Hz, {percent(data.damping_ratio[i])} %, MPC{" "}
+                    {fixed(data.mpc[i], 2)}
                   </label>
                 ))}
               </div>

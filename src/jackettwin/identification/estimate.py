@@ -8,6 +8,7 @@ import numpy as np
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, Int64Array
 from jackettwin.findings import Finding
+from jackettwin.identification.mode_shapes import mpc
 from jackettwin.identification.picks import Pick
 from jackettwin.identification.status import ModeStatus, sentence, worse
 from jackettwin.intervals import log_interval_90
@@ -194,6 +195,11 @@ class Stabilisation:
     def stable(self) -> BoolArray:
         """Poles that meet all three soft criteria."""
         return self.stable_frequency & self.stable_damping & self.stable_shape
+
+    @property
+    def mpc(self) -> FloatArray:
+        """Modal phase collinearity of every shape, (n_poles,)."""
+        return mpc(self.mode_shape)
 
 
 @dataclass(frozen=True)

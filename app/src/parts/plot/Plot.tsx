@@ -181,7 +181,7 @@ export function Plot({ data, height = 220, onPick, together, first = null }: Plo
               const interval =
                 typeof low === "number" && typeof high === "number" ? ` (${digits(low)} to ${digits(high)})` : "";
               setRead(
-                `${readX(data, x, shown[1] - shown[0])} · ${s.name} ${typeof y === "number" ? digits(y) : "–"}${interval}`,
+                `${readX(data, x, shown[1] - shown[0])} · ${s.name} ${typeof y === "number" ? digits(y) : "–"}${interval}${s.said ? `, ${s.said[hit[1]]}` : ""}`,
               );
             },
           ],

@@ -13,8 +13,9 @@ export interface Series {
   high?: ArrayLike<number | null>;
   /** Lengths of strokes and gaps [px]. */
   dash?: number[];
-  /** A name for each point, written beside it. */
+  /** A name for each point, written beside it, and what is said of it where it is pointed at. */
   names?: readonly string[];
+  said?: readonly string[];
   /** A band that is itself what is measured: extremes of a signal. */
   solid?: boolean;
 }

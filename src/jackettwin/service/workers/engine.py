@@ -347,4 +347,5 @@ def stabilisation(folder: str, waveform: str) -> dict[str, Any]:
         "damping_ratio": poles.damping_ratio.tolist(),
         "stable": poles.stable.tolist(),
         "mode": poles.cluster.tolist(),
+        "mpc": poles.mpc.tolist(),
     }

@@ -85,13 +85,17 @@ class StretchOut(BaseModel):
 
 
 class StabilisationOut(BaseModel):
-    """Poles of every model order; ``mode`` is the number of the pole's mode, -1 without one."""
+    """Poles of every model order; ``mode`` is the number of the pole's mode, -1 without one.
+
+    ``mpc`` is the modal phase collinearity of its shape: 1 where the sensors move in phase or antiphase.
+    """
 
     order: list[int]
     frequency_hz: list[float]
     damping_ratio: list[float]
     stable: list[bool]
     mode: list[int]
+    mpc: list[float]
 
 
 class PickIn(BaseModel):
