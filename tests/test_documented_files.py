@@ -114,3 +114,11 @@ def test_a_campaign_takes_values_by_place(
     with pytest.raises(SystemExit, match="0"):
         arguments("What.", **usual)
     assert "What." in capsys.readouterr().out
+
+
+def test_no_page_links_to_what_the_site_does_not_have() -> None:
+    docs = PAGE.parents[1]
+    for page in docs.rglob("*.md"):
+        for link in re.findall(r"\]\((?!\w+:|#)([^)#\s]+)", page.read_text(encoding="utf-8")):
+            target = (page.parent / link).resolve()
+            assert target.exists() and target.is_relative_to(docs.resolve()), f"{page.name}: {link}"
