@@ -1,11 +1,11 @@
 // A turbine from what lies in a folder: a twin file, or a structure and records, of which a twin is drafted.
 import { useState } from "preact/hooks";
-import { api, me, type Schemas, sending, told } from "../api/client";
+import { api, me, Problem, type Schemas, sending, told } from "../api/client";
 import { isTwin, may, namesOf, twinOf, useDeed } from "../api/do";
 import { Card, Field, Form, Head, Pick, Press } from "../parts/Bits";
 import { Drop } from "../parts/Drop";
 import { InSpace } from "../parts/InSpace";
-import { Empty, Trouble } from "../parts/Shown";
+import { Trouble } from "../parts/Shown";
 import { paired, send } from "../parts/Upload";
 import { assetUrl, go } from "../shell/place";
 
@@ -39,7 +39,8 @@ export default function Start() {
     setWhole(yaml.some((text) => /^structure:/m.test(text)));
     setFiles(given);
   };
-  if (me.value && !may("engineer")) return <Empty title="Not allowed">Engineers add turbines.</Empty>;
+  if (me.value && !may("engineer"))
+    return <Trouble title="A new turbine" problem={new Problem("role", "Engineers add turbines.")} />;
   return (
     <>
       <Head title="A new turbine">
