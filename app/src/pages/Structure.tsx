@@ -41,7 +41,7 @@ export default function Structure({ asset }: PageProps) {
   const others = versions.data?.items.filter((v) => !v.adopted);
   const records = useAsset(asset, "/records", { limit: 20, status: "observed" });
   const kept = records.data?.items.filter((r) => r.raw_kept) ?? [];
-  const moved = kept.map((r) => [r.record_id, `the record of ${utc(r.start_utc)} UTC`] as const);
+  const moved = kept.map((r): [string, string] => [r.record_id, `the record of ${utc(r.start_utc)} UTC`]);
   const linked = asked("record"); // perhaps an older one
   if (linked && moved.every(([id]) => id !== linked)) moved.push([linked, "the record of the link"]);
   const beside = useChosen("beside", others && ["", ...others.map((v) => String(v.version))]);
