@@ -239,6 +239,7 @@ def says_what_it_lacks(opened: Open, page: Page, path: str) -> None:
     for route in held:
         route.abort()
     expect(page.get_by_role("heading", name="No connection").first, path).to_be_visible()
+    assert serious(page, rules="color-contrast") == [], path
     mode = "refused"
     page.get_by_role("button", name="Try again").first.click()
     expect(page.get_by_role("heading", name="Not allowed").first, path).to_be_visible()

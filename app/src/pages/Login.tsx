@@ -20,6 +20,7 @@ export function Login() {
     <main class="narrow" id="main">
       <section class="card" aria-label="Log in">
         <h1>Log in to jackettwin</h1>
+        {asked("next") && <p class="quiet">Nobody is logged in, or no longer: then you are back where you were.</p>}
         <Form words="Log in" busy="Asking" onSend={send}>
           {(problem) => (
             <>
