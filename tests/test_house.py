@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import json
 from collections import Counter, defaultdict
 from pathlib import Path
 
@@ -57,3 +58,13 @@ def test_no_public_class_has_the_name_of_another() -> None:
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 homes[node.name].append(path.relative_to(SOURCE).as_posix())
     assert {name: places for name, places in homes.items() if len(places) > 1} == {}
+
+
+def test_the_window_stays_small_and_its_lock_file_names_no_registry() -> None:
+    """As docs/design/014-window.md says: lines, packages at run time, no address to load them from."""
+    app = SOURCE.parents[1] / "app"
+    source = [path for path in (app / "src").rglob("*.*") if path.is_file() and path.name != "schema.d.ts"]
+    assert sum(path.read_text("utf-8").count("\n") for path in source) <= 6000
+    assert len(json.loads((app / "package.json").read_text("utf-8"))["dependencies"]) <= 8
+    packages = json.loads((app / "package-lock.json").read_text("utf-8"))["packages"]
+    assert len(packages) > 100 and not [name for name, one in packages.items() if "resolved" in one]
