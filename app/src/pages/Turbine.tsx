@@ -14,37 +14,42 @@ import { later } from "../parts/later";
 import { SaveDrawn } from "../parts/plot/SaveMenu";
 import type { PageProps } from "../shell/place";
 import { assetUrl } from "../shell/place";
-import { between, count, frequency, percent, quantity, sentence, words } from "../words/numbers";
+import { between, count, frequency, percent, quantity, sentence, words, years } from "../words/numbers";
 
 const Stiffness = later(() => import("../parts/Stiffness"));
 type Twin = Schemas["TwinOut"];
 const RECORDS = [{ title: "Records", numeric: true, show: (m: KnownMode) => m.records }];
 
-/** Numbers that a manager asks for: the first bending modes, the ground, alarms. */
-function Figures({ twin, alarms }: { twin: Twin; alarms: readonly Alarm[] }) {
+/** Numbers that a manager asks for: first bending modes, ground, alarms, life; each leads to its page. */
+function Figures({ own, twin, alarms }: { own: Asset; twin: Twin; alarms: readonly Alarm[] }) {
+  if (!twin.records) return null;
   const modes = twin.modes as unknown as KnownMode[];
   const known = twin.parameters as Knowledge;
   const first = ["fore_aft_1", "side_side_1"].flatMap((label) => modes.filter((m) => m.label === label));
   const ground = Object.values(known.parameters ?? {}).find((p) => p.unit === "N/m");
   const open = alarms.filter((a) => !a.acknowledged_by && !a.closed_by && !a.muted_until_utc).length;
-  const figures: [string, string, string][] = first.map((m) => [
+  const figures: [string, string, string, string][] = first.map((m) => [
     words(m.label),
     `${frequency(m.frequency_hz)} Hz`,
     `damping ${percent(m.damping_ratio, m.damping_ratio_std)} % (90 %), mean of all`,
+    `timeline?mode=${m.label}`,
   ]);
   if (ground) {
     const interval = ground.interval_90 ? `${between(...ground.interval_90, ground.unit)} (90 %)` : "no interval";
-    figures.push([`${ground.words}, ${of(ground)}`, quantity(ground.median, ground.unit), interval]);
+    const value = quantity(ground.median, ground.unit);
+    figures.push([`${ground.words}, ${of(ground)}`, value, interval, "timeline?show=ground"]);
   }
-  figures.push(["open alarms", String(open), `${count(alarms.length, "alarm")} in all`]);
-  figures.push(["known from", count(twin.records, "record"), `of ${count(twin.days, "day")}`]);
+  figures.push(["open alarms", String(open), `${count(alarms.length, "alarm")} in all`, "alarms"]);
+  if (own.remaining_years !== null)
+    figures.push(["life left", `${years(own.remaining_years)} years`, "of the first weld", "life"]);
+  figures.push(["known from", count(twin.records, "record"), `of ${count(twin.days, "day")}`, "records"]);
   return (
     <dl class="figures">
-      {figures.map(([name, value, more]) => (
+      {figures.map(([name, value, more, page]) => (
         <div key={name}>
           <dt>{name}</dt>
           <dd>
-            {value}
+            <a href={`${assetUrl(own.name)}/${page}`}>{value}</a>
             <small>{more}</small>
           </dd>
         </div>
@@ -140,7 +145,7 @@ export function Turbine({ asset }: PageProps) {
   return (
     <>
       {own.data ? <Head asset={own.data} twin={twin.data} /> : <h1 class="head">{asset}</h1>}
-      {twin.data && twin.data.records > 0 && <Figures twin={twin.data} alarms={alarms.data?.items ?? []} />}
+      {own.data && twin.data && <Figures own={own.data} twin={twin.data} alarms={alarms.data?.items ?? []} />}
       <div class="grid">
         <Card title="What changed, and why" more={<a href={assetUrl(asset, "alarms")}>All alarms</a>}>
           <Shown of={alarms} none={<Unchanged />} lines={3}>
@@ -170,7 +175,7 @@ export function Turbine({ asset }: PageProps) {
           }
         >
           <Shown of={budget} none={<NotYet />} lines={7}>
-            {(data) => <Budget modes={data.items} />}
+            {(data) => <Budget asset={asset} modes={data.items} />}
           </Shown>
         </Card>
         <Card

@@ -1,5 +1,6 @@
 // Whose damping a mode's is: a bar by source, the measured interval above it, what is unexplained in outline.
 import type { Schemas } from "../api/client";
+import { assetUrl } from "../shell/place";
 import { percent, words } from "../words/numbers";
 import { csvFrom } from "./plot/series";
 
@@ -8,7 +9,7 @@ const PAINT: Record<string, string> = { structure: "grey", soil: "orange", rotor
 
 const paint = (source: string): string => `var(--${PAINT[source] ?? "grey"})`;
 
-function Row({ mode, most }: { mode: Schemas["BudgetOut"]; most: number }) {
+function Row({ asset, mode, most }: { asset: string; mode: Schemas["BudgetOut"]; most: number }) {
   const parts = SOURCES.map((name) => ({ name, value: mode.sources[name]?.value ?? 0 }));
   const sum = parts.reduce((total, part) => total + part.value, 0);
   const at = (ratio: number): number => (100 * ratio) / most;
@@ -17,7 +18,7 @@ function Row({ mode, most }: { mode: Schemas["BudgetOut"]; most: number }) {
   const said = parts.filter((p) => p.value > 0).map((p) => `${p.name} ${percent(p.value)} %`);
   return (
     <div>
-      <span>{words(mode.label)}</span>
+      <a href={`${assetUrl(asset, "timeline")}?show=damping&mode=${mode.label}`}>{words(mode.label)}</a>
       <svg
         class="bar"
         viewBox="0 0 100 18"
@@ -63,7 +64,7 @@ export const budgetCsv = (modes: readonly Schemas["BudgetOut"][]): string =>
     ]),
   ]);
 
-export function Budget({ modes }: { modes: readonly Schemas["BudgetOut"][] }) {
+export function Budget({ asset, modes }: { asset: string; modes: readonly Schemas["BudgetOut"][] }) {
   const ends = modes.map((m) => [
     m.measured?.high ?? m.measured?.value ?? 0,
     SOURCES.reduce((sum, s) => sum + (m.sources[s]?.value ?? 0), 0),
@@ -87,7 +88,7 @@ export function Budget({ modes }: { modes: readonly Schemas["BudgetOut"][] }) {
       </p>
       <div class="budget">
         {modes.map((mode) => (
-          <Row key={mode.label} mode={mode} most={most} />
+          <Row key={mode.label} asset={asset} mode={mode} most={most} />
         ))}
       </div>
     </div>

@@ -21,25 +21,23 @@ const poleOf = (poles: Poles, i: number): Pick_ => ({
 const KIND = ["picked", "stable", "not stable"] as const;
 const PAINT = { picked: "alarm", stable: "green", "not stable": "grey" } as const;
 
-/** The number of each pole in the answer, by what it is shown as. */
-function sorted(poles: Poles, picks: readonly Pick_[]): Record<(typeof KIND)[number], number[]> {
-  const taken = new Set(picks.map(keyOf));
-  const out: Record<(typeof KIND)[number], number[]> = { picked: [], stable: [], "not stable": [] };
-  poles.frequency_hz.forEach((_, i) => {
-    if (taken.has(keyOf(poleOf(poles, i)))) out.picked.push(i);
-    else out[poles.stable[i] ? "stable" : "not stable"].push(i);
-  });
-  return out;
+/** The numbers of the poles that are shown as the k-th kind, from the lowest frequency on. */
+function shownAs(k: number, poles: Poles, taken: Set<string>): number[] {
+  const kindOf = (i: number): number => (taken.has(keyOf(poleOf(poles, i))) ? 0 : poles.stable[i] ? 1 : 2);
+  const { frequency_hz: f } = poles;
+  return [...f.keys()].filter((i) => kindOf(i) === k).sort((a, b) => (f[a] ?? 0) - (f[b] ?? 0));
 }
 
 type ChartProps = { poles: Poles; picks: Pick_[]; onPick: (pole: Pick_) => void; modes: readonly Mode[] };
 
 function Chart({ poles, picks, onPick, modes }: ChartProps) {
-  const groups = useMemo(() => sorted(poles, picks), [poles, picks]);
+  const groups = useMemo(() => {
+    const taken = new Set(picks.map(keyOf));
+    return KIND.map((_, k) => shownAs(k, poles, taken));
+  }, [poles, picks]);
   const plot = useMemo((): PlotData => {
-    const series = KIND.map((kind): Series => {
-      const own = [...groups[kind]].sort((a, b) => (poles.frequency_hz[a] ?? 0) - (poles.frequency_hz[b] ?? 0));
-      groups[kind] = own;
+    const series = KIND.map((kind, k): Series => {
+      const own = groups[k] ?? [];
       const at = (values: number[]): number[] => own.map((i) => values[i] ?? NaN);
       const [x, y] = [at(poles.frequency_hz), at(poles.order)];
       const said = own.map((i) => `damping ${percent(poles.damping_ratio[i])} %, MPC ${fixed(poles.mpc[i], 2)}`);
@@ -50,7 +48,7 @@ function Chart({ poles, picks, onPick, modes }: ChartProps) {
     return { ...names, time: false, series, marks };
   }, [groups, modes]);
   const chosen = (series: number, index: number): void => {
-    const pole = groups[KIND[series] ?? "stable"][index];
+    const pole = groups[series]?.[index];
     if (pole !== undefined) onPick(poleOf(poles, pole));
   };
   return <Plot data={plot} height={340} onPick={chosen} />;

@@ -49,10 +49,8 @@ function compared(a: string | number | null, b: string | number | null): number 
 
 /** The address holds by which column rows are sorted, with a minus from the greatest on, and whether all are shown. */
 export function Table<T>(props: TableProps<T>) {
-  const [sort, all] = ["sort", "all"].map((what) => `${what}-${props.label.toLowerCase().replaceAll(" ", "-")}`) as [
-    string,
-    string,
-  ];
+  const name = props.label.toLowerCase().replaceAll(" ", "-");
+  const [sort, all] = [`sort-${name}`, `all-${name}`];
   const titles = props.columns.flatMap((c) => (c.by ? [c.title] : []));
   const usual = props.sorted ?? "";
   const order = useChosen(sort, [usual, ...titles, ...titles.map((t) => `-${t}`)]);

@@ -53,10 +53,9 @@ function Strange() {
   const said = Object.entries(strange.value).map(([name, value]) => `${name} = ${value}`);
   if (!said.length) return null;
   return (
-    <p
-      class="strange"
-      role="status"
-    >{`The link asks for what is not here, and the usual is shown instead: ${said.join(", ")}.`}</p>
+    <p class="strange" role="status">
+      The link asks for what is not here, and the usual is shown instead: {said.join(", ")}.
+    </p>
   );
 }
 
