@@ -91,9 +91,13 @@ def test_what_lies_in_a_folder_and_is_no_record_is_left_out_and_said(tmp_path: P
     (folder / "README.txt").write_text("Measured by Bob on turbine 7. Call 0800.\n")
     (folder / "._b.csv").write_bytes(b"\0\x05\x16\x07")
     out = tmp_path / "twin.yaml"
-    code, _, said = run(str(folder), "--out", str(out))
+    code, answer, said = run(str(folder), "--out", str(out), "--json")
     assert code == 0
     assert [p.resolve() for p in read_twin(out).records] == [good]
+    document = json.loads(answer)
+    assert document["records"] == [str(good)]
+    (why,) = [one["what"] for one in document["left_out"] if "a.csv" in one["what"]]
+    assert "is empty" in why and f"# left out: {why}" in out.read_text()
     assert "a.csv: is empty" in said
     assert "README.txt" in said
     code, _, error = run(str(folder / "a.csv"), str(good), "--out", str(out), "--force")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from jackettwin.caveats import Omission, omission_documents
 from jackettwin.cli.console import FiniteFloat, Reply, answers, messages, progress, say, say_all
 from jackettwin.errors import InputError, located
 
@@ -81,7 +82,7 @@ def init_command(
         step(f"assemble {structure}")
         stated = model_of_records(files)
         assembly = assembled_as_stated(built, stated)
-        read, left_out, defaults = [], [], FileDefaults(sample_rate, unit, gain, zone)
+        read, left_out, apart, defaults = [], [], [], FileDefaults(sample_rate, unit, gain, zone)
         for file in files[:_MOST_READ]:
             step(f"read {file.name}")
             try:
@@ -89,7 +90,8 @@ def init_command(
             except InputError as error:
                 if str(file) in records:
                     raise
-                left_out.append(error)  # other files in a folder of records
+                apart.append(file)
+                left_out.append(error.at(file=file))  # other files in a folder of records
                 messages.print(f"left out: {error}", soft_wrap=True, markup=False)
                 continue
             read.append((_beside(file, out), record))
@@ -97,7 +99,9 @@ def init_command(
             raise left_out[0]
         step("write and check")
         further = [_beside(file, out) for file in files[_MOST_READ:]]
-        draft = draft_twin(_structure_name(structure, out), assembly, read, defaults, further)
+        draft = draft_twin(
+            _structure_name(structure, out), assembly, read, defaults, further, left_out=left_out
+        )
         with atomic_path(out) as temporary:
             temporary.write_text(draft.text, encoding="utf-8")
         if draft.complete:
@@ -108,8 +112,11 @@ def init_command(
     def show() -> None:
         _print(draft, out)
         say_all(notes, "note")
+        say_all([str(error) for error in left_out], "left out")
 
-    return Reply({**_document(draft, out, [str(file) for file in files]), "notes": notes}, show)
+    document = _document(draft, out, [str(file) for file in files if file not in apart])
+    left = omission_documents(Omission(str(error)) for error in left_out)
+    return Reply({**document, "left_out": left, "notes": notes}, show)
 
 
 def _read(file: Path, defaults: FileDefaults) -> tuple[Record, FileDefaults]:

@@ -94,6 +94,7 @@ def draft_twin(
     defaults: FileDefaults,
     further: Sequence[str] = (),
     *,
+    left_out: Sequence[InputError] = (),
     listed: bool = True,
 ) -> Draft:
     """Return a commented twin file.
@@ -110,6 +111,8 @@ def draft_twin(
         Properties of the logger that the user gave.
     further : sequence of str
         Records that are listed but not read.
+    left_out : sequence of InputError
+        What was wrong with each file beside the records that could not be read.
     listed : bool
         Whether the file names its records; those of an asset in a store are imported separately.
     """
@@ -130,6 +133,7 @@ def draft_twin(
         "sensors:                            # place above mean sea level, direction in global axes: CHECK",
         *[_sensor_line(place) for place in places],
         *(_records(records, further) if listed else ()),
+        *[f"  # left out: {' '.join(str(error).split())}" for error in left_out],
         *_UPDATE,
         *(["# Missing:"] if missing else []),
         *[f"#   {sentence}" for sentence in missing],
