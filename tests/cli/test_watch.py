@@ -84,6 +84,30 @@ def test_one_row_a_mode_says_the_same(wide: Columns, tmp_path: Path) -> None:
     assert b[0]["quantities"] == ["fore_aft_1", "fore_aft_2"]
 
 
+def test_a_german_table_says_the_same_as_an_english_one(tmp_path: Path) -> None:
+    """The headings that ``targets`` understand; a spread of the wind is none of the modes'."""
+    english, german = tmp_path / "a.csv", tmp_path / "b.csv"
+    english.write_text(
+        "time_utc,label,frequency_hz,frequency_std_hz,damping_ratio,air,wind std\n"
+        "2024-01-08T12:00Z,fore_aft_1,0.2808,0.001,0.0084,3.4,0.7\n"
+        "2024-01-08T12:00Z,side_side_2,1.2160,0.005,0.0543,3.4,0.7\n"
+    )
+    german.write_text(
+        "Zeit;Mode;Frequenz [mHz];Std [mHz];Dämpfung [%];air;wind std\n"
+        "08.01.2024 12:00;1st FA;280,8;1,0;0,84;3,4;0,7\n"
+        "08.01.2024 12:00;2nd SS;1216,0;5,0;5,43;3,4;0,7\n",
+        encoding="cp1252",
+    )
+    a, b = (read_modal_table(path).history for path in (english, german))
+    assert a.labels == b.labels == ("fore_aft_1", "side_side_2")
+    assert a.condition_names == b.condition_names == ("air", "wind std")
+    for name in ("days", "frequency", "frequency_std", "damping", "conditions"):
+        np.testing.assert_allclose(getattr(b, name), getattr(a, name), rtol=1e-12)
+    german.write_text("Zeit;Mode;Eigenwert\nkeine Zeit;1;2\n")
+    with pytest.raises(InputError, match=r"frequency_hz: no such column .*Eigenwert"):
+        read_modal_table(german)
+
+
 def test_learnt_anew_after_the_change_there_is_none(wide: Columns, tmp_path: Path) -> None:
     path = written(wide, tmp_path / "a.csv")
     done = invoke(

@@ -17,7 +17,9 @@ import pyarrow.parquet as pq
 from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.change.table_times import table_times
 from jackettwin.errors import InputError, did_you_mean, located, require
+from jackettwin.headings import SPREAD, heading_key, heading_scale, heading_width, is_bare_spread, with_owners
 from jackettwin.records import text_table
+from jackettwin.response import read_mode_label
 from jackettwin.watching import History, typical
 
 Columns = dict[str, npt.NDArray[Any]]
@@ -32,7 +34,7 @@ QUANTITIES = {
 }  # fmt: skip
 """Columns of a table with one row per mode, and their names in a history."""
 _MODAL = re.compile(
-    r"^f_?\d|freq|zeta|damp|^mode|mac|_std$|interval|phase|complex|seed|^id$|_id$|^index$|^unnamed|^row|order|_hz$",
+    r"^f_?\d|freq|zeta|d[aä]e?mp|^mode|mac|_std$|interval|phase|complex|seed|^id$|_id$|^index$|^unnamed|^row|order|_hz$",
     re.I,
 )
 """Names of columns that depend on modes or describe the table;
@@ -79,6 +81,8 @@ def read_modal_table(
     """
     with located(file=path):
         stored = _read(path)
+        if not columns:
+            stored = _with_known_names(stored)
         time_names, days, origin = _days(stored)
         wanted = _conditions(stored, time_names, columns, conditions)
         if columns:
@@ -141,6 +145,55 @@ def _values(column: Any) -> npt.NDArray[Any]:
         except ValueError:
             continue
     return words
+
+
+def _with_known_names(stored: Columns) -> Columns:
+    """Return a table of one row a mode with the names and units that it is read by.
+
+    A heading that may be that of several columns is left as it is.
+
+    Raises
+    ------
+    InputError
+        If no heading is that of the modes' labels, or of their frequencies.
+    """
+    headings = list(stored)
+    known = {"label", *QUANTITIES}.intersection(headings)
+    if {"label", "frequency_hz"} <= known:
+        return stored
+    found: dict[str, list[tuple[str, str]]] = {}
+    for before, heading, owned in zip(["", *headings], headings, with_owners(headings), strict=False):
+        key = heading_key(owned)
+        follows = heading_key(before) in ("frequency_hz", "damping_ratio") and SPREAD.match(heading)
+        if is_bare_spread(heading) and not follows:
+            continue  # the spread of something else
+        if key is not None and heading not in known:
+            found.setdefault("label" if key == "mode" else key, []).append((heading, owned))
+    told = {key: ones[0] for key, ones in found.items() if len(ones) == 1 and key not in known}
+    for name in ("label", "frequency_hz"):
+        if name not in known and name not in told:
+            raise InputError(
+                "no such column", field=name, value=", ".join(stored),
+                allowed="label and frequency_hz in a table of one row a mode and time",
+                remedy="for one column a mode, name them: --columns f1,f2",
+            )  # fmt: skip
+    names = {heading: key for key, (heading, _) in told.items()}
+    out = {names.get(heading, heading): x for heading, x in stored.items()}
+    for key, (_, owned) in told.items():
+        if key != "label" and out[key].dtype.kind == "f":
+            width = heading_width(owned) if key.endswith(("_std", "_std_hz")) else 1.0
+            out[key] = out[key] * heading_scale(key, owned) / width
+    if "label" in told and out["label"].dtype.kind == "U":
+        out["label"] = np.array([_model_label(word) for word in out["label"]], dtype=np.str_)
+    return out
+
+
+def _model_label(word: str) -> str:
+    """Return a mode's label as a structure's modes have it: of ``1st FA`` ``fore_aft_1``, else the word."""
+    try:
+        return read_mode_label(word)
+    except InputError:
+        return word
 
 
 def _days(stored: Columns) -> tuple[tuple[str, ...], FloatArray, datetime]:
@@ -236,13 +289,6 @@ def _history(
 
 
 def _long(stored: Columns, days: FloatArray, conditions: tuple[str, ...]) -> tuple[History, tuple[str, ...]]:
-    for name in ("label", "frequency_hz"):
-        if name not in stored:
-            raise InputError(
-                "no such column", field=name, value=", ".join(stored),
-                allowed="label and frequency_hz in a table of one row a mode and time",
-                remedy="for one column a mode, name them: --columns f1,f2",
-            )  # fmt: skip
     words = np.array([_label(w) for w in stored["label"]], dtype=np.str_)
     if (words == "").any() or (words == "nan").any():
         line = int(np.flatnonzero((words == "") | (words == "nan"))[0]) + 2

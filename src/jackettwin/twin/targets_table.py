@@ -9,7 +9,6 @@ from __future__ import annotations
 import logging
 import re
 from collections.abc import Collection
-from math import pi
 from pathlib import Path
 from typing import Any
 
@@ -18,22 +17,18 @@ import scipy  # scipy.optimize is loaded where it is used
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, located
-from jackettwin.intervals import NORMAL_95
+from jackettwin.headings import (
+    IN_PERCENT,
+    INTERVAL_95,
+    PERCENT,
+    heading_key,
+    heading_scale,
+    heading_width,
+    with_owners,
+)
 from jackettwin.records import MISSING, text_table
 
 log = logging.getLogger(__name__)
-NAME = re.compile(r"^(?:mode|label|name|shape|description|no|nr|#|number)\b", re.IGNORECASE)
-SPREAD = re.compile(r"std|sigma|σ|±|\+/?-|uncert|error|dev|abw|streu", re.IGNORECASE)
-FREQUENCY = re.compile(r"^(?:f|fn|fre[qk]\w*|eigenfreq\w*|natural freq\w*)(?:[\s_.,:\[(]|$)", re.IGNORECASE)
-DAMPING = re.compile(r"^(?:ζ|zeta|xi|ξ|d[aä]e?mp\w*|d)(?:[\s_.,:\[(]|$)", re.IGNORECASE)
-PERCENT = re.compile(r"%|percent|pct", re.IGNORECASE)
-IN_PERCENT = re.compile(r"%\s*[\])]?\s*$")
-OF_FREQUENCY = re.compile(r"\bf|fre[qk]|hz", re.IGNORECASE)
-OF_DAMPING = re.compile(r"ζ|zeta|xi|ξ|d[aä]e?mp", re.IGNORECASE)
-DECREMENT = re.compile(r"\blog|decrement|δ", re.IGNORECASE)
-HERTZ = ((re.compile(r"\bmHz", re.IGNORECASE), 1e-3), (re.compile(r"\brad\s*/\s*s", re.IGNORECASE), 0.5 / pi))
-"""Other units of a frequency's column, and their values in hertz."""
-INTERVAL_95 = re.compile(r"95", re.IGNORECASE)
 _CELL = re.compile(
     r"^\s*(?P<value>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>%|Hz)?"
     r"\s*(?:(?:±|\+/?-|\()\s*(?P<std>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*\)?\s*(?P<unit2>%|Hz)?)?\s*$"
@@ -67,8 +62,8 @@ def _targets(raw: bytes) -> list[dict[str, Any]]:
         raise InputError(
             "contains no modes", field="targets", allowed="names of columns, then a row for each mode"
         )
-    names = _with_owners(rows[0])
-    columns = {i: key for i, name in enumerate(names) if (key := _key(name)) is not None}
+    names = with_owners(rows[0])
+    columns = {i: key for i, name in enumerate(names) if (key := heading_key(name)) is not None}
     strangers = len(columns) < len(rows[0])  # one of them may contain the modes' names
     for needed, what in (("mode", "name of the mode"), ("frequency_hz", "frequency")):
         if needed not in columns.values() and (needed != "mode" or strangers):
@@ -89,28 +84,6 @@ def _targets(raw: bytes) -> list[dict[str, Any]]:
             if target.keys() - {"mode"}:  # a row without numbers is a mode that was not identified
                 targets.append(target)
     return targets
-
-
-def _with_owners(names: list[str]) -> list[str]:
-    """Return the names of columns; a column named only ± refers to the quantity before it."""
-    owned, owner = [], ""
-    for name in names:
-        bare = SPREAD.search(name) and not OF_FREQUENCY.search(name) and not OF_DAMPING.search(name)
-        owned.append(f"{owner} {name}" if bare else name)
-        if not SPREAD.search(name) and _key(name) in ("frequency_hz", "damping_ratio"):
-            owner = name
-    return owned
-
-
-def _key(column: str) -> str | None:
-    """Return the key of ``targets`` of a column, or None."""
-    name = column.strip()
-    if SPREAD.search(name):
-        return "damping_ratio_std" if OF_DAMPING.search(name) else "frequency_std_hz"
-    for pattern, key in ((FREQUENCY, "frequency_hz"), (DAMPING, "damping_ratio"), (NAME, "mode")):
-        if pattern.search(name):
-            return key
-    return None
 
 
 def _target(row: list[str], names: list[str], columns: dict[int, str], delimiter: str) -> dict[str, Any]:
@@ -152,11 +125,11 @@ def _values(key: str, cell: str, column: str) -> dict[str, float]:
             "is in per cent of the frequency", field=column, value=cell, allowed="Hz", remedy="give it in Hz"
         )
     percent = damps and bool(PERCENT.search(column) or match["unit"] == "%" or match["unit2"] == "%")
-    scale = 0.01 if percent else 1.0
-    if not damps and match["unit"] != "Hz":
-        scale = next((hertz for unit, hertz in HERTZ if unit.search(column)), 1.0)
-    if damps and DECREMENT.search(column):
-        scale /= 2.0 * pi
+    scale = heading_scale(key, column)
+    if percent and not PERCENT.search(column):
+        scale *= 0.01
+    if not damps and match["unit"] == "Hz":
+        scale = 1.0
     if damps and not percent and scale * float(match["value"]) > MOST_RATIO:
         raise InputError(
             "seems to be a percentage without its unit",
@@ -165,8 +138,8 @@ def _values(key: str, cell: str, column: str) -> dict[str, float]:
             allowed=f"a ratio up to {MOST_RATIO}, or a column named damping [%]",
             remedy="write the unit into the name of the column",
         )
-    width = NORMAL_95 if INTERVAL_95.search(column) else 1.0
     value = float(match["value"]) * scale
+    width = heading_width(column)
     if key.endswith(("_std", "_std_hz")):
         return {key: value / width}
     std = {"frequency_hz": "frequency_std_hz", "damping_ratio": "damping_ratio_std"}[key]
