@@ -12,7 +12,7 @@ from jackettwin.errors import InputError
 from jackettwin.findings import Finding
 from jackettwin.identification.decays.free_decay import transient
 from jackettwin.identification.decays.relaxations import release_relaxations
-from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
+from jackettwin.identification.estimate import Identification, ModalEstimate, Spectrum, Stabilisation
 from jackettwin.identification.methods import POLELESS, method_names
 from jackettwin.identification.peaks_above import peaks_above
 from jackettwin.identification.picks import Pick, of_record
@@ -37,8 +37,10 @@ if TYPE_CHECKING:
     from jackettwin.arrays import FloatArray
     from jackettwin.identification.decays.free_decay import Transient
     from jackettwin.identification.preparation.prepared_record import PreparedRecord
-    from jackettwin.identification.selection.candidates import Candidate
+    from jackettwin.identification.quiet_bands import PoleSearch
+    from jackettwin.identification.selection.candidates import Candidate, Tones
     from jackettwin.identification.selection.choice import Choice
+    from jackettwin.identification.selection.screening import Evidence
     from jackettwin.records import Record
 
     PolelessMethod = Callable[[Record, IdentificationSettings], Identification]
@@ -108,55 +110,92 @@ def identify(
     say("preparing")
     whole = _with_picked_orders(prepare(record, settings), wanted)
     ready, basis = components(whole, settings)
-    y, scale, resolved = ready.y, ready.scale, ready.settings
-    above = peaks_above(record, settings, resolved)  # here, where the least memory is held beside it
+    above = peaks_above(record, settings, ready.settings)  # here, where the least memory is held beside it
     say("poles")
     search = searched(ready, settings)
     if uncertain(settings):
         search = with_quiet_bands(search, ready, settings)
-    poles, judged, tones = search.poles, search.judged, search.tones
     say("selection")
-    missing: tuple[str, ...] = ()
-    if wanted:
-        picked = picked_clusters(poles, [c.cluster for c in judged], wanted)
-        missing = left_out(judged, picked)
-        judged = with_verdicts(wanted, candidates_of(poles, picked, tones, ready, settings))
+    judged, missing = _judged(search, ready, settings, wanted)
     say("refinement")
-    screening_data = None
-    if uncertain(settings):
-        screening_data = evidence(
-            tones.clean, ready, record.conditions, looks=search.looks, sensors=basis is None
-        )
-    if screening_data is not None and not wanted:
-        judged = clear_damping_doubts(judged, screening_data)
-    lines = None if screening_data is None else screening_data.lines
-    chosen = chosen_modes(judged, tones, ready, settings, lines)
-    if screening_data is not None:
-        chosen = screened_choice(chosen, judged, screening_data, tones=tones, rescue=not wanted)
-    chosen = _with_likelihoods(chosen, tones.clean, ready, settings)
-    label = poles.cluster.copy()
-    for number, index in enumerate(chosen.candidate):
-        label[judged[index].cluster.poles] = number
+    known = _evidence(search, ready, record, settings, sensors=basis is None)
+    chosen, judged = _chosen(judged, search.tones, ready, settings, known, rescue=not wanted)
     modes = tuple(_named(mode, settings) for mode in chosen.modes)
-    spectrum = welch(y, resolved.sample_rate_hz)
-    spectrum = replace(spectrum, density=spectrum.density * scale[:, None] ** 2)
     identified = Identification(
         records=(record.name,),
         channels=ready.channels,
         modes=modes if decay is None else decay.as_doubtful(modes),
         rejected=chosen.rejected,
-        stabilisation=replace(poles, cluster=label),
-        spectrum=as_measured(spectrum, ready.differentiated),
-        settings=resolved,
+        stabilisation=_labelled(search.poles, chosen, judged),
+        spectrum=_spectrum(ready),
+        settings=ready.settings,
         duration_s=record.duration_s,
         warnings=(*ready.warnings, *missing, *map(str, chosen.findings)),
         findings=chosen.findings,
         notes=(*above, *((str(Finding("one_channel")),) if len(ready.channels) == 1 else ())),
         real_poles=relaxations(ready, settings) if settings.real_poles else (),
-        picks=tuple(_pick(poles, c, record.name) for c in judged if c.objection is None),
+        picks=tuple(_pick(search.poles, c, record.name) for c in judged if c.objection is None),
     )
     identified = identified if basis is None else expand_to_all_channels(identified, whole, basis)
     return _with_release(_as_checked(identified, settings), record, settings)
+
+
+def _judged(
+    search: PoleSearch, ready: PreparedRecord, settings: IdentificationSettings, wanted: Sequence[Pick]
+) -> tuple[list[Candidate], tuple[str, ...]]:
+    """Return the candidates, those of the picks if there are any, and warnings on what these leave out."""
+    if not wanted:
+        return search.judged, ()
+    picked = picked_clusters(search.poles, [c.cluster for c in search.judged], wanted)
+    judged = with_verdicts(wanted, candidates_of(search.poles, picked, search.tones, ready, settings))
+    return judged, left_out(search.judged, picked)
+
+
+def _evidence(
+    search: PoleSearch,
+    ready: PreparedRecord,
+    record: Record,
+    settings: IdentificationSettings,
+    *,
+    sensors: bool,
+) -> Evidence | None:
+    """Return the data by which modes are judged; None for a method without uncertainty."""
+    if not uncertain(settings):
+        return None
+    return evidence(search.tones.clean, ready, record.conditions, looks=search.looks, sensors=sensors)
+
+
+def _chosen(
+    judged: list[Candidate],
+    tones: Tones,
+    ready: PreparedRecord,
+    settings: IdentificationSettings,
+    known: Evidence | None,
+    *,
+    rescue: bool,
+) -> tuple[Choice, list[Candidate]]:
+    """Return the refined and screened modes, and the candidates whose doubts were cleared."""
+    if known is not None and rescue:
+        judged = clear_damping_doubts(judged, known)
+    chosen = chosen_modes(judged, tones, ready, settings, None if known is None else known.lines)
+    if known is not None:
+        chosen = screened_choice(chosen, judged, known, tones=tones, rescue=rescue)
+    return _with_likelihoods(chosen, tones.clean, ready, settings), judged
+
+
+def _labelled(poles: Stabilisation, chosen: Choice, judged: Sequence[Candidate]) -> Stabilisation:
+    """Return the poles with the number of the mode that each belongs to."""
+    label = poles.cluster.copy()
+    for number, index in enumerate(chosen.candidate):
+        label[judged[index].cluster.poles] = number
+    return replace(poles, cluster=label)
+
+
+def _spectrum(ready: PreparedRecord) -> Spectrum:
+    """Return the spectrum of the prepared samples in the channels' units."""
+    spectrum = welch(ready.y, ready.settings.sample_rate_hz)
+    spectrum = replace(spectrum, density=spectrum.density * ready.scale[:, None] ** 2)
+    return as_measured(spectrum, ready.differentiated)
 
 
 def _as_checked(found: Identification, settings: IdentificationSettings) -> Identification:
