@@ -18,7 +18,7 @@ from jackettwin.decks import read_structure
 from jackettwin.soil import family
 from jackettwin.structure import Rayleigh, assemble
 from jackettwin.updating import Residuals, SupportModel, Target, single, support_model
-from jackettwin.updating.budget import SOURCES, damping_budget
+from jackettwin.updating.budget import SOURCES, budget_of_draws, damping_budget, damping_sources
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.search.solutions import search
 
@@ -51,8 +51,10 @@ def twin(model: SupportModel, case: int) -> Result:
     posterior = sampled(single(model, Residuals(targets, relative=False)), case)
     if posterior is None:
         return {"inside": None, "cpu_s": time.process_time() - start}
-    budget = damping_budget(model, theta, MODES, draws=np.exp(posterior.log_theta[::3]))
-    value, interval = budget.damping_ratio, budget.damping_ratio_interval_90
+    value, draws = damping_budget(model, theta, MODES).damping_ratio, np.exp(posterior.log_theta[::3])
+    found = model.predict_many(draws, MODES, slopes=False)
+    parts = damping_sources(model, model.points(draws).plain(), found)
+    interval = budget_of_draws(MODES, parts).damping_ratio_interval_90
     assert interval is not None
     inside = (interval[..., 0] <= value) & (value <= interval[..., 1])
     return {"inside": inside.tolist(), "cpu_s": time.process_time() - start}

@@ -295,6 +295,14 @@ def test_shares_above_the_whole_are_said_as_multiples() -> None:
     )
     assert "115 %" not in headline
     assert _owners_of(much)[0].endswith("the steel 0.54 %; together 1.6 times the measured value.")
+    # "the steel gives 59 % and the ground gives 58 %" of 0.79 %: together they are the model's 0.92 %
+    both = replace(
+        MODE, measured_damping=Span(0.0079, 0.0058, 0.0108), model_damping=Span(0.0092),
+        sources={"structure": Span(0.00468), "soil": Span(0.00452)},
+    )  # fmt: skip
+    headline = " ".join(sentences(replace(ANSWERS, modes=(both,))).headline)
+    assert "the steel gives 51 % in fore-aft 1 (of the model's, 1.2 times the measured)" in headline
+    assert "59 %" not in headline
 
 
 def test_laws_that_the_data_do_not_tell_apart_are_averaged() -> None:

@@ -92,6 +92,21 @@ def test_the_model_meets_the_fitted_frequencies_within_its_model_error(pile: Twi
                 assert abs(f - m.frequency_hz) < 3.0 * std
 
 
+def test_sources_add_up_to_the_damping_that_is_told(pile: TwinResult) -> None:
+    """To rounding, for every mode and law: of one point, with what the tolerances ask for."""
+    for update, excess in zip(pile.updates, pile.excess, strict=True):
+        told = update.central_damping if update.uncertainty is None else np.array(
+            [
+                np.nanmedian(update.uncertainty.predictive.damping_ratio[:, place])
+                for place in map(update.uncertainty.predictive.modes.index, update.shown)
+            ]
+        )  # fmt: skip
+        np.testing.assert_allclose(update.budget.damping_ratio.sum(axis=1), told, rtol=1e-9)
+        np.testing.assert_allclose(update.central_damping, told, rtol=1e-9)
+        sums = {m.label: e for m, e in zip(pile.measured, told, strict=True)}
+        assert all(e.support + e.rotor == pytest.approx(sums[e.label], rel=1e-9) for e in excess)
+
+
 def test_side_side_damping_is_the_rotors(pile: TwinResult) -> None:
     """True ζ of side-side 1 at 12 m/s: 3.78 %, 0.81 % of it not the rotor's; the mean wind is 11.6 m/s."""
     for update in pile.updates:
@@ -299,6 +314,14 @@ def test_cautions_say_a_thing_once_and_speak_of_modes_that_are_sure(pile: TwinRe
     assert "one, two: the clock does not say its zone" in lines
     assert [line[:3] for line in lines if "0.310 Hz" in line] == ["one", "two"]
     assert not any("0.520 Hz" in line for line in lines)
+    # a law without a posterior, too, is judged with the errors that its data ask of the model
+    u, asked = pile.updates[0], np.array([m.frequency_hz for m in pile.measured])
+    for off, missed in ((1.0, False), (1.3, True)):
+        factors = np.array([off * asked / u.modes.frequency_hz, *u.fit.factors[1:]])
+        told = replace(u, fit=replace(u.fit, uncertainty=None, factors=factors))
+        lines = cautions(config, None, pile.measured, (told,))
+        assert any("side_side_2 misses its frequency by +30.0 %" in line for line in lines) == missed
+        np.testing.assert_allclose(told.central_hz, off * asked, rtol=1e-12)
     # where nothing is paired, every reason helps
     assert any("0.520 Hz" in line for line in cautions(config, found, (), ()))
 

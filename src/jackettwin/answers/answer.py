@@ -131,13 +131,13 @@ def _model_error(u: Update, m: MeasuredMode) -> float:
 def _model_hz(u: Update, i: int, m: MeasuredMode) -> Span | None:
     q = None if u.uncertainty is None else u.uncertainty.predictive
     draws = None if q is None or m.mode not in q.modes else q.frequency_hz[:, q.modes.index(m.mode)]
-    return _span(draws, float(u.modes.frequency_hz[i]))
+    return _span(draws, float(u.central_hz[i]))
 
 
 def _model_damping(u: Update, i: int, m: MeasuredMode) -> Span | None:
     q = None if u.uncertainty is None else u.uncertainty.predictive
     draws = None if q is None or m.mode not in q.modes else q.damping_ratio[:, q.modes.index(m.mode)]
-    return _span(draws, float(u.modes.damping_ratio[i]))
+    return _span(draws, float(u.central_damping[i]))
 
 
 def _span(draws: FloatArray | None, best: float) -> Span | None:

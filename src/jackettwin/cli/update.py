@@ -214,7 +214,7 @@ def _leg_scatter(u: Update) -> list[str]:
 
 
 def _modes(measured: tuple[MeasuredMode, ...], u: Update) -> Table:
-    columns = (measured, u.central_hz, u.modes.undamped_hz, u.central_damping)
+    columns = (measured, u.central_hz, u.central_undamped_hz, u.central_damping)
     rows = [
         (
             m.mode,
@@ -233,9 +233,9 @@ def _modes(measured: tuple[MeasuredMode, ...], u: Update) -> Table:
         "",
         "measured f, 90 % [Hz]",
         f"{known} f [Hz]",
-        "undamped, best fit",
+        f"{known} undamped",
         "measured ζ, 90 % [%]",
-        known,
+        f"{known} ζ [%]",
     )
     return Table("", heads, rows)
 
@@ -254,7 +254,8 @@ def _unexplained(e: DampingExcess) -> str:
         return f"{points} less than that of steel and soil in the model"
     if e.carried:
         return (
-            f"{points} that no support can explain: the rotor's dashpot explains it ({100 * e.rotor:.2f} %)"
+            f"{points} more than that of steel and soil in the model: the rotor's dashpot explains it "
+            f"({100 * e.rotor:.2f} %)"
         )
     part = f", {100 * e.rotor:.2f} % of it by the rotor" if e.rotor > 0.1 * e.excess else ""
-    return f"{points} that no support can explain{part}"
+    return f"{points} more than that of steel and soil in the model{part}"

@@ -290,6 +290,6 @@ def _compared(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, A
             "damping_ratio": float(zeta),
         }
         for m, f, undamped, zeta in zip(
-            measured, u.central_hz, u.modes.undamped_hz, u.central_damping, strict=True
+            measured, u.central_hz, u.central_undamped_hz, u.central_damping, strict=True
         )
     ]

@@ -200,7 +200,7 @@ def cautions(
         lines += [
             f"{u.law}: {m.label} misses its frequency by {100 * (f / m.frequency_hz - 1.0):+.1f} %"
             f"{'.' if m.fits_frequency else '; it was not fitted: the measured mode may be another.'}"
-            for m, f in zip(measured, u.modes.frequency_hz, strict=True)
+            for m, f in zip(measured, u.central_hz, strict=True)
             if m.frequency_hz is not None and _misses(config, m, float(f))
         ]
     return tuple(lines)

@@ -8,6 +8,9 @@ By the imaginary part of :math:`x^H F(λ)\,x = 0`, the dissipation of a mode is 
     = x^H (αM + βK)\,x + \sum_g \frac{\mathrm{Im}\,D_g(λ)}{\mathrm{Im}\,λ}\; x^H S_g\, x,
 
 exactly, for any law. Each term divided by :math:`2|λ|\,x^H M x` is that part's contribution to ζ.
+
+Errors of the model change ζ by a factor. What an error of the ground's loss adds is the ground's; all other
+errors change all parts alike. So the parts add up to the damping ratio that is told of the asset.
 """
 
 from __future__ import annotations
@@ -25,6 +28,7 @@ from jackettwin.updating.model import SupportModel
 
 SOURCES = ("structure", "soil", "rotor", "water")
 """Sources of damping; water is left out if no drag is modelled, as its contribution is then not known."""
+_SOIL = SOURCES.index("soil")
 
 LITERATURE = {"structure": (0.01, 0.02), "soil": (0.005, 0.015), "water": (0.001, 0.004)}
 """Damping ratios of first bending modes that the literature reports by source, thesis section 2.1."""
@@ -37,7 +41,7 @@ class Budget:
     Attributes
     ----------
     modes : mode numbers
-    damping_ratio : (n_modes, n_sources) sums to ζ; the first of ``SOURCES``
+    damping_ratio : (n_modes, n_sources) sums to the reported ζ; the first of ``SOURCES``
     damping_ratio_interval_90 : (n_modes, n_sources, 2), or None without draws
     """
 
@@ -47,30 +51,48 @@ class Budget:
 
 
 def damping_budget(
-    model: SupportModel, theta: FloatArray, modes: tuple[int, ...], *, draws: FloatArray | None = None
+    model: SupportModel, theta: FloatArray, modes: tuple[int, ...], *, factors: FloatArray | None = None
 ) -> Budget:
     """Return the damping budget at a parameter vector.
 
     Parameters
     ----------
-    draws : (n, n_parameters), optional
-        Draws of θ from the posterior, whose quantiles give the intervals.
+    factors : (3, 1, n_modes), optional
+        Of the model's errors at θ, as of :meth:`jackettwin.updating.model_error.ErrorModel.factors`.
     """
-    here = model.predict_many(theta[None], modes)
-    ratio = _ratios(model, model.points(theta[None]), here)[0]
-    if draws is None:
-        return Budget(modes, ratio, None)
-    near = None if np.isnan(here.poles).any() else here
-    around = _ratios(model, model.points(draws), model.predict_many(draws, modes, near=near, slopes=False))
-    return Budget(modes, ratio, _interval_90(around))
+    found = model.predict_many(theta[None], modes)
+    parts = damping_sources(model, model.points(theta[None]), found)
+    return Budget(modes, (parts if factors is None else of_the_asset(parts, factors))[0], None)
 
 
-def _interval_90(draws: FloatArray) -> FloatArray:
-    """Return the central 90 % interval over the first axis, NaN for modes that no draw has."""
+def budget_of_draws(modes: tuple[int, ...], draws: FloatArray) -> Budget:
+    """Return the budget of draws of each source's damping ratio (n_draws, n_modes, n_sources).
+
+    Medians of parts do not add up: they are scaled to the median of the whole, which is the reported ζ.
+    """
     known = ~np.isnan(draws).all(axis=(0, 2))
-    interval = np.full((*draws.shape[1:], 2), np.nan)
-    interval[known] = np.moveaxis(np.nanquantile(draws[:, known], QUANTILES[::2], axis=0), 0, -1)
-    return interval
+    ratio, interval = np.full(draws.shape[1:], np.nan), np.full((*draws.shape[1:], 2), np.nan)
+    low, middle, high = np.nanquantile(draws[:, known], QUANTILES, axis=0)
+    whole = np.nanmedian(draws[:, known].sum(axis=2), axis=0)
+    ratio[known] = middle * (whole / middle.sum(axis=1))[:, None]
+    interval[known] = np.stack([low, high], axis=-1)
+    return Budget(modes, ratio, interval)
+
+
+def of_the_asset(parts: FloatArray, factors: FloatArray) -> FloatArray:
+    """Return the sources' damping ratios (n_sets, n_modes, n_sources) of the asset from those of the model.
+
+    If the ground's loss is so much smaller that the ground would give less than nothing, it gives nothing.
+
+    Parameters
+    ----------
+    factors : (3, n_sets, n_modes)
+        Of the model's errors, as of :meth:`jackettwin.updating.model_error.ErrorModel.factors`.
+    """
+    _, by_all, by_loss = factors
+    told = parts * (by_all / by_loss)[..., None]
+    told[..., _SOIL] = np.maximum(told[..., _SOIL] + told.sum(axis=-1) * (by_loss - 1.0), 0.0)
+    return np.asarray(told * (parts.sum(axis=-1) * by_all / told.sum(axis=-1))[..., None])
 
 
 def beyond_literature(label: str, ratios: Mapping[str, float | None]) -> tuple[str, ...]:
@@ -96,8 +118,8 @@ def beyond_literature(label: str, ratios: Mapping[str, float | None]) -> tuple[s
     return tuple(found)
 
 
-def _ratios(model: SupportModel, points: Points, found: NumberedModes) -> FloatArray:
-    """Return (n_sets, n_modes, n_sources) damping ratios."""
+def damping_sources(model: SupportModel, points: Points, found: NumberedModes) -> FloatArray:
+    """Return the damping ratio (n_sets, n_modes, n_sources) that each source gives the model's modes."""
     pencil, n_soil = model.condensed.pencil, len(model.tie_groups.suffixes)
     n_rotor = n_soil + len(model.nuisance.dashpots)
     known = ~np.isnan(found.poles)

@@ -271,14 +271,25 @@ class Problem:
         """
         if self.error_model is None:
             raise ValueError("the problem has no error model")
-        found = self._modes(z, self.anchor(z[0]), slopes=False)
-        r, known = self._all_residuals(z, found)
-        gains = self.gains(tuple(modes.some(known) for modes in found))
+        r, gains, known = self._residuals_and_gains(z)
         errors, scale = np.full((len(z), gains.shape[2]), np.nan), np.ones(len(z))
         scale[known] = own = drawn_scales(r, gains, self.error_model.scales, rng)
         mean, variance = errors_given(r, own[:, None, None] * gains)
         errors[known] = own[:, None] * drawn(mean, variance, rng)
         return DrawnErrors(errors, scale)
+
+    def expected_errors(self, z: FloatArray) -> DrawnErrors:
+        """Return the expected errors of the model, of the stated sizes, given the data at points (n, d)."""
+        r, gains, known = self._residuals_and_gains(z)
+        errors = np.full((len(z), gains.shape[2]), np.nan)
+        errors[known] = errors_given(r, gains)[0]
+        return DrawnErrors(errors, np.zeros(len(z)))
+
+    def _residuals_and_gains(self, z: FloatArray) -> tuple[FloatArray, FloatArray, BoolArray]:
+        """Return the residuals and Γ of the points (n, d) without lost modes, and which these are."""
+        found = self._modes(z, self.anchor(z[0]), slopes=False)
+        r, known = self._all_residuals(z, found)
+        return r, self.gains(tuple(modes.some(known) for modes in found)), known
 
     def anchor(self, z: FloatArray) -> Found | None:
         """Return the modes at one point (d,), from which others can start; None if a mode is lost."""

@@ -14,7 +14,7 @@ from jackettwin.errors import NumericalError
 from jackettwin.intervals import QUANTILES, interval_90
 from jackettwin.processes import on_one_blas_thread
 from jackettwin.progress import SILENT, Progress
-from jackettwin.updating.budget import Budget, damping_budget
+from jackettwin.updating.budget import Budget, budget_of_draws, damping_budget
 from jackettwin.updating.data.misfit import misfit
 from jackettwin.updating.model import ExactModes, SupportModel
 from jackettwin.updating.posterior.identifiability import Verdict, identifiability
@@ -91,6 +91,10 @@ class Fit:
         Modes of the full model at the best solution, in the order of ``shown``.
     budget : Budget
         Sources of the damping of each of these modes.
+    factors : (3, n_modes)
+        Of the model's expected errors on these modes at the best solution, as of
+        :meth:`jackettwin.updating.model_error.ErrorModel.factors`: by them, frequencies and damping ratios of
+        ``modes`` become those of the asset.
     uncertainty : Uncertainty or None
         None if the targets have no standard deviations, or nothing was sampled.
     """
@@ -98,6 +102,7 @@ class Fit:
     search: Search
     modes: ExactModes
     budget: Budget
+    factors: FloatArray
     uncertainty: Uncertainty | None = None
 
 
@@ -149,19 +154,30 @@ class Update:
 
     @property
     def central_hz(self) -> FloatArray:
-        """Reported frequencies of the shown modes: medians of the posterior, else the best fit."""
+        """Reported frequencies of the shown modes: medians of the posterior, else the best fit.
+
+        Both are of the asset, with the errors of the model that the data ask for.
+        """
         known = self.uncertainty
         return self._central(
-            self.modes.frequency_hz, None if known is None else known.predictive.frequency_hz
+            self.fit.factors[0] * self.modes.frequency_hz,
+            None if known is None else known.predictive.frequency_hz,
+        )
+
+    @property
+    def central_undamped_hz(self) -> FloatArray:
+        """The same of the undamped asset."""
+        known = self.uncertainty
+        return self._central(
+            self.fit.factors[0] * self.modes.undamped_hz,
+            None if known is None else known.predictive.undamped_hz,
         )
 
     @property
     def central_damping(self) -> FloatArray:
-        """Reported damping ratios of the shown modes: medians of the posterior, else the best fit."""
-        known = self.uncertainty
-        return self._central(
-            self.modes.damping_ratio, None if known is None else known.predictive.damping_ratio
-        )
+        """Reported damping ratios of the shown modes, likewise: what the sources add up to."""
+        whole = self.budget.damping_ratio.sum(axis=1)
+        return np.asarray(np.where(np.isnan(whole), self.fit.factors[1] * self.modes.damping_ratio, whole))
 
     def _central(self, best: FloatArray, draws: FloatArray | None) -> FloatArray:
         out = np.array(best, dtype=np.float64)
@@ -233,7 +249,9 @@ def update(
     shown = problem.states[0].residuals.modes if modes is None else modes
     model = problem.model.reaching(max(shown))
     theta = _first(problem, np.log(best_solution(found.solutions).theta)[None])[0]
-    fit = Fit(found, model.exact_modes(theta, shown), damping_budget(model, theta, shown))
+    factors = _expected_factors(problem, model, shown, best_solution(found.solutions))
+    budget = damping_budget(model, theta, shown, factors=factors)
+    fit = Fit(found, model.exact_modes(theta, shown), budget, factors[:, 0])
     fitted = Update(problem, model, shown, fit)
     if not sampled:
         return fitted
@@ -257,10 +275,9 @@ def with_posterior(
     )
     progress.within("verdicts, profiles and predictions")
     uncertainty = _uncertainty(problem, model, shown, fitted.best, posterior, status, seed)
-    # of the parameters as they are told: at their medians
-    middle = _first(problem, np.log(uncertainty.median)[None])[0]
-    draws = _first(problem, _thinned(uncertainty.log_theta))
-    budget = damping_budget(model, middle, shown, draws=draws)
+    predicted = uncertainty.predictive
+    which = [predicted.modes.index(mode) for mode in shown]
+    budget = budget_of_draws(shown, predicted.sources[:, which])
     return replace(fitted, fit=replace(fitted.fit, budget=budget, uncertainty=uncertainty))
 
 
@@ -332,6 +349,23 @@ def _uncertainty(
         ),
         profiles=tuple(profile(problem, best.theta, j) for j in range(len(problem.parameters))),
     )
+
+
+def _expected_factors(
+    problem: Problem, model: SupportModel, shown: tuple[int, ...], best: Solution
+) -> FloatArray:
+    """Return the factors (3, 1, n_modes) of the model's expected errors on modes at a solution.
+
+    They are one without errors of the model, and where the model lacks a mode.
+    """
+    if problem.error_model is None or not problem.weighted:
+        return np.ones((3, 1, len(shown)))
+    z = np.log(best.theta)[None]
+    found = model.predict_many(_first(problem, z), shown, slopes=False)
+    errors, own = problem.expected_errors(z), problem.error_model.on(model.condensed)
+    # remainders without data are expected to be zero: nothing is drawn
+    factors = own.factors(found, errors, problem.error_data, np.random.default_rng(0))
+    return np.where(np.isnan(factors), 1.0, factors)
 
 
 def _missed(problem: Problem, model: SupportModel, z: FloatArray, seed: int) -> Missed | None:

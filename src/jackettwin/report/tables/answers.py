@@ -124,8 +124,9 @@ def budget_table(a: Answers) -> Table:
     owners = (*(names.get(s, s) for s in sources), *(["unexplained"] if beyond else []))
     columns = ("mode", "measured\nζ [%]", "model\nζ [%]", *(f"{owner}\nζ [%]" for owner in owners))
     caption = (
-        "How much damping does each source add to each mode? Below each value its 90 % interval; sources at "
-        "the best fit."
+        "How much damping does each source add to each mode? Below each value its 90 % interval. The sources "
+        "add up to the model's damping; of what the tolerances change, the growth of the ground's loss is "
+        "the ground's, the rest is shared by all sources."
     )
     return Table(caption, columns, rows, 1)
 

@@ -248,22 +248,39 @@ def _range(g: GroundAnswer) -> str:
 
 
 def _shares(m: ModeAnswer) -> dict[str, float]:
-    """Return each source's share of a mode's measured damping, and what is measured beyond all of them."""
+    """Return each source's share of a mode's damping, and that of what is measured beyond all of them.
+
+    Of the measured damping, or of the model's if that is larger: they never add up to more than all.
+    """
     if m.measured_damping is None:
         return {}
     parts = {source: span.value for source, span in m.sources.items()}
     parts |= {} if m.unexplained is None else {_UNEXPLAINED: m.unexplained}
-    return {name: part / m.measured_damping.value for name, part in parts.items()}
+    whole = max(m.measured_damping.value, sum(parts.values()))
+    return {name: part / whole for name, part in parts.items()}
+
+
+def _times(m: ModeAnswer) -> float:
+    """Return the damping in the model as a multiple of the measured one; 1 without."""
+    whole = sum(span.value for span in m.sources.values())
+    return 1.0 if m.measured_damping is None else whole / m.measured_damping.value
+
+
+def _of_whom(m: ModeAnswer) -> str:
+    """Return the label of a mode, and whose damping the shares are of, if the model damps more."""
+    more = f" (of the model's, {_times(m):.1f} times the measured)" if _times(m) > 1.0 + SMALL else ""
+    return f"{words(m.label)}{more}"
 
 
 def _owner_headline(a: Answers) -> str:
     """Return a sentence on the source of more than half of the damping of each first bending mode."""
     by_owner: dict[str, list[str]] = {}
+    alone = {(owner, m.label) for m in _firsts(a) for owner in _alone(m)}
     for m in _firsts(a):
         for owner, share in _shares(m).items():
-            if 0.5 < share <= 1.0 + SMALL:
+            if share > 0.5 and (owner, m.label) not in alone:
                 part = "all" if share >= 1.0 else f"{100 * share:.0f} %"
-                by_owner.setdefault(owner, []).append(f"{part} in {words(m.label)}")
+                by_owner.setdefault(owner, []).append(f"{part} in {_of_whom(m)}")
     if not by_owner and not _too_much(a):
         by_owner = _largest(a)
     parts = [
@@ -273,13 +290,20 @@ def _owner_headline(a: Answers) -> str:
     return " ".join([*_too_much(a), *([f"Of the damping, {listed(parts)}."] if parts else [])])
 
 
+def _alone(m: ModeAnswer) -> dict[str, float]:
+    """Return the sources that alone give more than the measured damping, as multiples of it."""
+    if m.measured_damping is None:
+        return {}
+    times = {source: span.value / m.measured_damping.value for source, span in m.sources.items()}
+    return {source: share for source, share in times.items() if share > 1.0 + SMALL}
+
+
 def _too_much(a: Answers) -> list[str]:
     """Return a sentence on first bending modes of which one source alone gives more than was measured."""
     said = [
         f"{_SOURCES[owner]} alone gives {share:.1f} times the measured damping of {words(m.label)}"
         for m in _firsts(a)
-        for owner, share in _shares(m).items()
-        if share > 1.0 + SMALL
+        for owner, share in _alone(m).items()
     ]
     text = listed(said)
     return [f"{text[0].upper()}{text[1:]}: the model damps too much."] if said else []
@@ -292,7 +316,7 @@ def _largest(a: Answers) -> dict[str, list[str]]:
         shares = _shares(m)
         if shares:
             owner = max(shares, key=lambda name: shares[name])
-            found.setdefault(owner, []).append(f"{100 * shares[owner]:.0f} % in {words(m.label)}")
+            found.setdefault(owner, []).append(f"{100 * shares[owner]:.0f} % in {_of_whom(m)}")
     return found
 
 
@@ -511,7 +535,7 @@ def _budget_words(m: ModeAnswer) -> str:
         parts.append(f"unexplained {percent_words(Span(m.unexplained))}")
     measured, more = "", ""
     if m.measured_damping is not None:
-        measured, times = percent_words(m.measured_damping), whole / m.measured_damping.value
+        measured, times = percent_words(m.measured_damping), _times(m)
         more = f"; together {times:.1f} times the measured value" if times > 1.0 + SMALL else ""
     return f"{words(m.label).capitalize()} has a measured damping of {measured}: {', '.join(parts)}{more}."
 

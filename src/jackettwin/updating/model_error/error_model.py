@@ -94,7 +94,9 @@ class ErrorModel:
     def factors(
         self, found: NumberedModes, drawn: DrawnErrors, data: tuple[str, ...], rng: np.random.Generator
     ) -> FloatArray:
-        """Return the factors of drawn errors on frequencies and damping ratios, (2, n_sets, n_modes).
+        """Return the factors of drawn errors on frequencies and damping ratios, (3, n_sets, n_modes).
+
+        The third is the part of the factors on damping ratios that is due to errors of the ground's loss.
 
         Parameters
         ----------
@@ -103,14 +105,16 @@ class ErrorModel:
         data : names of the data whose remainders follow the tolerances
         """
         n, errors = len(self.tolerances), drawn.errors
-        shift = np.einsum("vkmn,kn->vkm", self.shifts(found), errors[:, :n])
+        shifts, loss = self.shifts(found), [bool(one.loss_growth) for one in self.directions.each]
+        shift = np.einsum("vkmn,kn->vkm", shifts, errors[:, :n])
+        by_loss = np.einsum("kmn,kn->km", shifts[1], np.where(loss, errors[:, :n], 0.0))
         for v, letter in enumerate(("f", "ζ")):
             for m, mode in enumerate(found.modes):
                 name = f"{letter}{mode}"
                 fresh = drawn.scale * rng.standard_normal(len(errors))
                 own = errors[:, n + data.index(name)] if name in data else fresh
                 shift[v, :, m] += self.own(name) * own
-        return np.asarray(np.exp(shift))
+        return np.asarray(np.exp(np.concatenate([shift, by_loss[None]])))
 
     def shifts(self, found: NumberedModes) -> FloatArray:
         """Return d ln f and d ln ζ of any modes by the tolerances, (2, n_sets, n_modes, n_tolerances)."""

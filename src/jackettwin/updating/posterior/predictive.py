@@ -11,6 +11,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.response import NumberedModes, numbered_poles
 from jackettwin.soil import law_stiffness, static_rows
+from jackettwin.updating.budget import damping_sources, of_the_asset
 from jackettwin.updating.data.relaxations import RelaxationTarget
 from jackettwin.updating.model import SupportModel
 
@@ -27,6 +28,8 @@ class Predictive:
     ----------
     modes : mode numbers
     frequency_hz, damping_ratio, undamped_hz : (n_draws, n_modes)
+    sources : (n_draws, n_modes, n_sources)
+        Damping ratio of each source; they add up to ``damping_ratio``.
     support : {name: (n_draws,)}
         Quantities of each tie group: ``static_stiffness``, ``storage_stiffness`` and ``loss_factor`` at the
         first pinned frequency, ``stiffness_growth`` and ``loss_factor_growth`` to the fourth.
@@ -38,6 +41,7 @@ class Predictive:
     frequency_hz: FloatArray
     damping_ratio: FloatArray
     undamped_hz: FloatArray
+    sources: FloatArray
     support: Mapping[str, FloatArray]
     rates: Mapping[str, FloatArray]
 
@@ -54,18 +58,20 @@ def predict_quantities(
     Parameters
     ----------
     missed : function of the modes at the draws, optional
-        Returns the factors of the asset's frequencies and damping ratios on the model's, (2, n_draws,
-        n_modes).
+        Returns the factors of the asset's frequencies and damping ratios on the model's, (3, n_draws,
+        n_modes), as :meth:`jackettwin.updating.model_error.ErrorModel.factors` does.
     """
     damped = _from_first(model, theta, modes, undamped=False)
     undamped = _from_first(model, theta, modes, undamped=True)
     size = np.abs(damped.poles)
-    by_f, by_zeta = (1.0, 1.0) if missed is None else missed(damped)
+    factors = np.ones((3, *size.shape)) if missed is None else missed(damped)
+    by_f, by_zeta, _ = factors
     return Predictive(
         modes,
         by_f * size / (2.0 * pi),
         by_zeta * -damped.poles.real / size,
         by_f * np.abs(undamped.poles) / (2.0 * pi),
+        of_the_asset(damping_sources(model, model.points(theta).plain(), damped), factors),
         support_quantities(model, theta),
         {r.name: r.nearest(model, theta).rate for r in relaxations},
     )
