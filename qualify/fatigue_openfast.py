@@ -11,7 +11,9 @@ from __future__ import annotations
 import os
 import shutil
 import sys
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from common.command import arguments
@@ -38,7 +40,7 @@ from fatigue import DRAWS, SUPPORTS, M, dels, mudline_moment, quantiles, tower_m
 from jackettwin.arrays import FloatArray
 from jackettwin.identification import identify
 from jackettwin.intervals import NORMAL_90
-from jackettwin.loads import read_rotor
+from jackettwin.loads import Coefficients, Water, read_rotor
 from jackettwin.records import Channel, Record
 from jackettwin.response import Sensor, observation_matrix
 from jackettwin.sensing import (
@@ -54,6 +56,7 @@ from jackettwin.sensing import (
 from jackettwin.structure import Rayleigh, Structure, assemble
 from jackettwin.twin import LifeSettings, RestingLoads, StressModel
 from jackettwin.twin.life.likely_structures import LikelyStructures, likely_structures
+from jackettwin.twin.water import WaterConfig, moving_mass
 from jackettwin.updating import numbered_modes
 
 ASSET = Asset(1.4e9, 0.9, 1.0, 0.06, 3.0, 72.0)
@@ -65,12 +68,15 @@ CASES = {
     "parked_gale": Weather("parked", 20.0, 0.0, 6.0, 0.0, 15),
     "operating_11": Weather("operating", 11.0, 0.0, 6.0, 0.0, 16),
     "operating_18": Weather("operating", 18.0, 0.0, 6.0, 0.0, 17),
+    "storm": Weather("parked", 24.0, 8.0, 12.5, 0.0, 18),
 }
+COEFFICIENTS = Coefficients()
+"""Of the water, as the twin knows it: the truth has growth, and less drag."""
 NOISE_M_S2 = 5e-4
 FIRST_PAIR_HZ = (0.13, 0.22)
 DIRECTIONS = np.linspace(0.0, np.pi, 12, endpoint=False)
 """In which moments are judged: the worst, as the programs' axes are not the same."""
-PLACES = ("tower base", "feet about the sea", *(f"legs, bay {bay}" for bay in BAYS))
+PLACES = ("tower base", "feet", *(f"legs, bay {bay}" for bay in BAYS))
 
 
 def make(folder: Path) -> None:
@@ -96,12 +102,12 @@ def main() -> None:
         sys.stderr.write("no records: nothing is judged (docs/verification/fatigue_openfast.md)\n")
         return
     structure = on_feet("the twin's", "kelvin-voigt:k=1e9,c=0").structure
-    first = next(iter(found))
-    likely = known(structure, record(structure, found[first], 0))
-    judged = {
-        name: of_record(likely, structure, name, told, seed)
-        for seed, (name, told) in enumerate(found.items())
-    }
+    likely, judged = {}, {}
+    for seed, (name, told) in enumerate(found.items()):
+        wet = CASES[name].height_m > 0.0
+        if wet not in likely:
+            likely[wet] = known(structure, record(structure, told, 0), wet=wet)
+        judged[name] = of_record(likely[wet], structure, name, told, seed)
     write_page("fatigue_openfast", [*introduction(likely, len(found)), *rows(judged)])
 
 
@@ -122,9 +128,12 @@ def sensors(structure: Structure) -> tuple[Sensor, ...]:
     return tuple(Sensor(name, ways[k % 2], height_m=heights[k // 2]) for k, name in enumerate(ACCELERATIONS))
 
 
-def known(structure: Structure, parked: Record) -> LikelyStructures:
-    """Return the structures that the first pair of a record leaves likely."""
+def known(structure: Structure, parked: Record, *, wet: bool) -> LikelyStructures:
+    """Return the structures that the first pair of a record leaves likely, in water or without."""
     assembly = assemble(structure, gravity=True)
+    if wet:
+        water = WaterConfig(ASSET.depth_m, COEFFICIENTS, Water(), True, None)
+        assembly = replace(assembly, mass=assembly.mass + moving_mass(water, assembly).tocsc())
     model = StressModel(
         LifeSettings(),
         assembly,
@@ -144,14 +153,23 @@ def of_record(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return estimated over true ranges, scores of the truth in the interval, and its std (n_places,)."""
     readings = readings_of(record(structure, told, seed), sensors(structure), likely.model.assembly)
+    case = CASES[name]
+    sea: dict[str, Any] = {"waves": "none"}
+    if case.height_m > 0.0:
+        sea = {
+            "wave_height_m": case.height_m,
+            "wave_period_s": case.period_s,
+            "wave_direction_deg": case.direction_deg,
+        }
     weather = KnownWeather.of(
-        {"mean_wind_speed_m_s": CASES[name].wind, "state": CASES[name].state, "waves": "none"},
+        {"mean_wind_speed_m_s": case.wind, "state": case.state, **sea},
         ASSET.depth_m,
+        COEFFICIENTS,
         rotor=RotorByWind(*read_rotor("iea15"), FIRST_PAIR_HZ[0], shaft="locked"),
     )
     draws = []
     for k, estimate in enumerate(likely_motions(likely.systems(SUPPORTS), readings, weather)):
-        ways = moments_and_legs(estimate.model)
+        ways = moments_and_legs(estimate.model, bed_m=ASSET.depth_m if case.height_m > 0.0 else 0.0)
         draws.append([[worst(way @ motion.T) for way in ways] for motion in estimate.draws(DRAWS, seed=k)])
     true = np.array([worst(way) for way in true_ways(structure, told)])
     logs = np.log(np.array(draws))
@@ -169,12 +187,17 @@ def leg_starts(structure: Structure) -> list[str]:
     return [members[f"leg_{leg}_bay_{bay}"].start for bay in BAYS for leg in LEGS]
 
 
-def moments_and_legs(model: MotionModel) -> list[FloatArray]:
-    """Return rows from coordinates to moments by direction, then to stresses around the legs."""
+def moments_and_legs(model: MotionModel, *, bed_m: float) -> list[FloatArray]:
+    """Return rows from coordinates to moments by direction, then to stresses around the legs.
+
+    Parameters
+    ----------
+    bed_m : depth of the height about which the feet's moments are
+    """
     rows, assembly = section_rows(model), model.assembly
     base = tower_moments(assembly, rows, "tower_1", 0)
     names = [assembly.structure.members[m].name for m in assembly.mesh.member]
-    found = [turned(base), turned(mudline_moment(assembly, rows, assembly.structure.sea_level_z_m))]
+    found = [turned(base), turned(mudline_moment(assembly, rows, assembly.structure.sea_level_z_m - bed_m))]
     for bay in BAYS:
         for leg in LEGS:
             e = names.index(f"leg_{leg}_bay_{bay}")
@@ -213,24 +236,31 @@ def worst(series: FloatArray) -> float:
     return float(dels(series).max())
 
 
-def introduction(likely: LikelyStructures, n: int) -> list[str]:
+def introduction(likely: dict[bool, LikelyStructures], n: int) -> list[str]:
     """Return the page's head."""
-    (sideways, upright), stds = np.exp(likely.mean[:2]) / 1e9, np.sqrt(np.diag(likely.covariance)[:2])
+    feet = {
+        wet: "{:.2f} GN/m (sideways, log-deviation {:.2f}) and {:.2f} (upright, {:.2f})".format(
+            *np.column_stack([np.exp(one.mean[:2]) / 1e9, np.sqrt(np.diag(one.covariance)[:2])]).ravel()
+        )
+        for wet, one in likely.items()
+    }
+    in_water = f", and that of the one in waves {feet[True]}" if True in feet else ""
     return [
         "# Stress from a few accelerometers compared with OpenFAST",
         "",
         f"`python qualify/fatigue_openfast.py FOLDER`: {n} records of {DURATION_S / 60.0:g} minutes by "
         "OpenFAST 5.0.0, none used for tuning: jacket15 in SubDyn on springs, ElastoDyn's tower and bending "
-        "blades of the IEA 15 MW turbine, AeroDyn in turbulence of class B, no waves; the working rotor at "
+        "blades of the IEA 15 MW turbine, AeroDyn in turbulence of class B, one storm in HydroDyn's waves of "
+        "8 m (one way, growth of 6 cm and C_D = 0.9 that the twin is not told); the working rotor at "
         "fixed speed and pitch. Eight accelerometers (144, 77, 41 and 28 m above the sea), noise "
         f"{1e3 * NOISE_M_S2:g} mm/s². The twin has rigid blades and is told drawings, state and wind; the "
-        f"first pair of the first record gives it feet of {sideways:.2f} GN/m (sideways, log-deviation "
-        f"{stds[0]:.2f}) and {upright:.2f} (upright, {stds[1]:.2f}), where the truth is "
-        f"{ASSET.feet_n_m / 1e9:g}.",
+        f"first pair of the first record without waves gives it feet of {feet[False]}{in_water}, where the "
+        f"truth is {ASSET.feet_n_m / 1e9:g}.",
         "",
         f"Damage-equivalent range (m = {M:g}) over OpenFAST's, less one, in per cent: moments in the "
         "direction, and stress at the point around each leg (four a bay, at its lower end), where it is "
-        "largest. The feet's reaction is about the sea level, as SubDyn tells it without a sea.",
+        "largest. The feet's reaction is about the sea level, as SubDyn tells it without a sea, in waves "
+        "about the bed.",
         "",
     ]
 
@@ -241,7 +271,8 @@ def rows(judged: dict[str, tuple[FloatArray, FloatArray, FloatArray]]) -> list[s
     lines = [f"| record | {' | '.join(PLACES)} |", "|---" * (1 + len(PLACES)) + "|"]
     for name, (ratio, *_) in judged.items():
         cells = [f"{100.0 * (np.median(ratio[at]) - 1.0):+.1f}" for at in of]
-        lines.append(f"| {CASES[name].state}, {CASES[name].wind:g} m/s | {' | '.join(cells)} |")
+        sea = f", waves of {CASES[name].height_m:g} m" if CASES[name].height_m else ""
+        lines.append(f"| {CASES[name].state}, {CASES[name].wind:g} m/s{sea} | {' | '.join(cells)} |")
     ratios, scores, stds = (np.array(values) for values in zip(*judged.values(), strict=True))
     heads = ("place", "median (5 to 95 %)", "size", "intervals of 90 % inside", "true above", "true below")
     lines += ["", f"| {' | '.join(heads)} | width by record |", "|---" * 7 + "|"]

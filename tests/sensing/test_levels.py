@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from jackettwin.sensing.latent_forces import LatentForce
-from jackettwin.sensing.levels import _Evidence, _smoothed, _whittle, find_levels
+from jackettwin.sensing.latent_forces import LatentForce, LocalWaves
+from jackettwin.sensing.levels import _apart, _Evidence, _smoothed, _whittle, find_levels
 
 STEP_S, N = 0.1, 6000
 
@@ -139,6 +139,28 @@ def test_a_level_beside_another_is_expected_in_proportion(rng: np.random.Generat
     tied = LatentForce("c", np.zeros(1), np.zeros((1, 12)), "gust", 0.7, 0.1, 0.05, 0.05, "a")
     a, _, c = find_levels(y, STEP_S, H, which, (*start, tied), (0, 0)).forces
     assert a.level > 1.0 and c.level / a.level == pytest.approx(1.0, rel=0.05)
+
+
+def test_levels_of_a_band_lie_away_together_and_each_for_itself() -> None:
+    """Covariance b² I + s² 1 1ᵀ; of what is found of three the shared part is its mean given them."""
+    b, s, n = 0.3, 0.2, 3
+    alone = LatentForce("gust", np.zeros(1), np.zeros((1, 12)), "gust", 0.1, 2.0, 0.5)
+    band = tuple(
+        replace(alone, name=f"w{k}", kind="wave", rate=0.7, level_log_std=b, shared_log_std=s)
+        for k in range(n)
+    )
+    forces = (band[0], alone, *band[1:])
+    rows = _apart(forces, np.array([f.level_log_std for f in forces]))
+    covariance = np.linalg.inv(rows.T @ rows)
+    together = [0, 2, 3]
+    expected = b**2 * np.eye(n) + s**2
+    assert_allclose(covariance[np.ix_(together, together)], expected, rtol=1e-12)
+    assert covariance[1, 1] == pytest.approx(0.25) and abs(covariance[1, together]).max() < 1e-15
+    away = np.array([-0.4, 0.1, -0.2])
+    found = {f.name: f.with_level(f.level * np.exp(d), 0.8) for f, d in zip(band, away, strict=True)}
+    local = LocalWaves(band, np.zeros((1, 1)), np.zeros((1, 1, 12))).force(found)
+    mean = s**2 * np.ones(n) @ np.linalg.solve(expected, away)
+    assert local.level == pytest.approx(2.0 * np.exp(mean)) and local.rate == 0.8
 
 
 def test_slow_motion_is_averaged_over_frequencies_near_it() -> None:

@@ -14,8 +14,9 @@ equations driven by white noise.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import pi, sqrt
+from math import exp, log, pi, sqrt
 from typing import Literal
 
 import numpy as np
@@ -40,6 +41,7 @@ class LatentForce:
     level : standard deviation of the process that multiplies the pattern: what to expect, then what was found
     level_log_std, rate_log_std : how far the logarithms of level and rate may lie from what is expected
     beside : name of another force, at whose level over its expected one this one's is expected, too
+    shared_log_std : how far the levels of all forces of its band may lie away together, beside its own
     width : of waves: damping ratio of the band
     tail : corner of what falls beyond it over its peak; of a disc the upper corner over the lower one
     """
@@ -53,6 +55,7 @@ class LatentForce:
     level_log_std: float = 3.0
     rate_log_std: float = 0.2
     beside: str | None = None
+    shared_log_std: float = 0.0
     width: float = 0.1
     tail: float = 1.5
 
@@ -112,11 +115,22 @@ class LocalWaves:
 
     Attributes
     ----------
-    like : name of the force whose process they follow, each at its level
+    beside : the band's principal patterns as they are expected, whose process they follow
     load : (n_dof, n) of the patterns
     along : (n, n_elements, 12) what of them acts along elements
     """
 
-    like: str
+    beside: tuple[LatentForce, ...]
     load: FloatArray
     along: FloatArray
+
+    def force(self, found: Mapping[str, LatentForce]) -> LatentForce:
+        """Return their process at the level and rate that are likely beside those found of the patterns.
+
+        What all of a band share of the n logarithms δ of levels over the expected ones is
+        Σδ / (n + b²/s²), of independent deviations b and a shared one s.
+        """
+        first = self.beside[0]
+        away = sum(log(found[force.name].level / force.level) for force in self.beside)
+        own = (first.level_log_std / first.shared_log_std) ** 2
+        return first.with_level(first.level * exp(away / (len(self.beside) + own)), found[first.name].rate)

@@ -318,8 +318,16 @@ class _Evidence:
 
 
 def _apart(forces: tuple[LatentForce, ...], std: FloatArray) -> FloatArray:
-    """Return the rows (n, n) of what is known of levels, of one apart from that which it stands beside."""
+    """Return the rows (n, n) of what is known of levels, of one apart from that which it stands beside.
+
+    Forces of a band that share a deviation s beside their own b have the covariance b² I + s² 1 1ᵀ, whose
+    inverse root is I/b + (1/√(b² + n s²) − 1/b) 1 1ᵀ/n.
+    """
     rows, names = np.diag(1.0 / std), [force.name for force in forces]
+    for rate in {force.rate for force in forces if force.shared_log_std}:
+        own = [j for j, force in enumerate(forces) if force.rate == rate and force.shared_log_std]
+        b, s, n = forces[own[0]].level_log_std, forces[own[0]].shared_log_std, len(own)
+        rows[np.ix_(own, own)] += (1.0 / np.sqrt(b**2 + n * s**2) - 1.0 / b) / n
     for j, force in enumerate(forces):
         if force.beside is not None:
             rows[j, names.index(force.beside)] = -rows[j, j]

@@ -131,7 +131,7 @@ class MotionModel:
     def local_forces(self) -> tuple[LatentForce, ...]:
         """Return the processes that local waves follow, at their levels."""
         named = {force.name: force for force in self.forces}
-        return tuple(named[waves.like] for waves in self.local)
+        return tuple(waves.force(named) for waves in self.local)
 
     def displacement_rows(self, rows: FloatArray) -> FloatArray:
         """Return what ``rows`` (k, n_dof) see of the displacement from the state, (k, n)."""

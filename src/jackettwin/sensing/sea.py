@@ -70,14 +70,16 @@ _SHORTEST = 5.0
 """Multiple of the peak frequency beyond which waves reach no member but at the surface."""
 _SPACING_M = 4.0
 _USUAL_HEIGHT_M, _USUAL_PERIOD_S = 1.5, 7.0
-_WAVES, _WAYS = 8, 7
-"""Frequencies of a band, and ways in which its waves run: twice as many change no band's power by 1 %."""
+_WAVES, _WAYS = 8, 11
+"""Frequencies of a band, and ways in which its waves run: with seven short waves push 23 % less across."""
 _WHOLE = 0.3
 """Weight of a resultant beside the forces: from 0.3 to 1 the first nine modes are pushed alike within 1 %."""
 _LOCAL = 12
 """Patterns of a band beyond its principal ones: all but 0.5 % of what stress of braces is left by these."""
+_SPREADING = 4
+"""n of cosⁿ about the mean direction: wind seas have 2 to 4, swell more (DNV-RP-C205 (2021), 3.5.8)."""
 _BESIDE = 0.3
-"""Of a pattern's level over that of the first: a sea spreads less or more than cos²."""
+"""Of a pattern's level over that of its band: a sea spreads less or more than that."""
 _KNOWN, _UNKNOWN = 0.3, 1.5
 """Of the logarithm of a sea's level, whose height is stated or not."""
 _DRAG = sqrt(8.0 / pi)
@@ -151,37 +153,41 @@ class SeaOnMembers:
 
     def forces(self) -> tuple[LatentForce, ...]:
         """Return the forces of each band: the principal patterns of its waves, the largest first."""
-        peak, found = 2.0 * pi / self.state.Tp, []
-        for band, level, patterns in self._patterns:
-            first = f"{band.name} waves 1"
-            for k, push in enumerate(patterns[: band.patterns], start=1):
-                found.append(
-                    LatentForce(
-                        f"{band.name} waves {k}",
-                        np.asarray(self.grid.N @ push),
-                        np.asarray(self._along @ push).reshape(-1, 12),
-                        "wave",
-                        band.multiple * peak,
-                        level,
-                        self.level_log_std if k == 1 else _BESIDE,
-                        band.rate_log_std,
-                        None if k == 1 else first,
-                        width=band.width,
-                        tail=band.tail,
-                    )
-                )
-        return tuple(found)
+        return tuple(force for band in self._principal for force in band)
 
     def local(self) -> tuple[LocalWaves, ...]:
         """Return what of each band its principal patterns do not hold."""
         return tuple(
             LocalWaves(
-                f"{band.name} waves 1",
+                principal,
                 np.asarray(self.grid.N @ others.T),
                 np.array([np.asarray(self._along @ push).reshape(-1, 12) for push in others]),
             )
-            for band, _, patterns in self._patterns
+            for principal, (band, _, patterns) in zip(self._principal, self._patterns, strict=True)
             for others in (patterns[band.patterns :],)
+        )
+
+    @cached_property
+    def _principal(self) -> tuple[tuple[LatentForce, ...], ...]:
+        peak = 2.0 * pi / self.state.Tp
+        return tuple(
+            tuple(
+                LatentForce(
+                    f"{band.name} waves {k}",
+                    np.asarray(self.grid.N @ push),
+                    np.asarray(self._along @ push).reshape(-1, 12),
+                    "wave",
+                    band.multiple * peak,
+                    level,
+                    _BESIDE,
+                    band.rate_log_std,
+                    shared_log_std=self.level_log_std,
+                    width=band.width,
+                    tail=band.tail,
+                )
+                for k, push in enumerate(patterns[: band.patterns], start=1)
+            )
+            for band, level, patterns in self._patterns
         )
 
     @cached_property
@@ -220,19 +226,20 @@ class SeaOnMembers:
         Resultants sideways and their moments weigh a third of all forces each. By forces alone the push of
         short waves across the sea, which moves the tower, was lost among those that legs bear of themselves.
         """
-        forces = waves.reshape(len(waves), -1, 3)
-        sums = (forces.sum(axis=1), np.cross(self.grid.points, forces).sum(axis=1))
+        x, y, z = self.grid.points.T
+        o, one = np.zeros_like(x), np.ones_like(x)
+        per_force = np.array([[one, o, o, z], [o, one, -z, o], [o, o, y, -x]])
+        sums = waves @ per_force.transpose(2, 0, 1).reshape(-1, 4)
         alike = waves @ waves.T
         whole = float(np.trace(alike))
-        for own in sums:
-            own = own[:, :2]
+        for own in (sums[:, :2], sums[:, 2:]):
             alike = alike + _WHOLE * whole / max(float(np.square(own).sum()), 1e-300) * own @ own.T
         return np.asarray(alike)
 
     def _waves(self, omega: FloatArray) -> FloatArray:
         """Return forces (n, 3 n_points) of waves of a unit of acceleration at the surface, in all.
 
-        Of each frequency they run from all sides, by cos² about the mean direction, and each has two phases.
+        Of each frequency they run from all sides, by cos⁴ about the mean direction, and each has two phases.
         Drag is linear in the sea's mean speed across the members.
         """
         grid = self.grid
@@ -241,17 +248,17 @@ class SeaOnMembers:
         # the speed's deviation is of one of two ways across a member, and a sea runs along one
         dashpot = sqrt(2.0) * grid.drag_per_length * wet * self.speed_std
         away = 0.5 * pi * (2.0 * (np.arange(_WAYS) + 0.5) / _WAYS - 1.0)
-        share = np.sqrt(np.cos(away) ** 2 / np.sum(np.cos(away) ** 2) / omega.size)
+        spread = np.cos(away) ** _SPREADING
+        share = np.sqrt(spread / spread.sum() / omega.size)
         angle = self.state.direction + away
         d = np.stack([np.cos(angle), np.sin(angle), np.zeros(_WAYS)], axis=1)
-        found = []
+        level, upright, along = grid.normal @ d.T, grid.normal[:, :, 2].T, grid.points @ d.T
+        level, found = level.transpose(2, 1, 0).copy(), []
         z, numbers = np.minimum(grid.points[:, 2], 0.0), wave_number(omega, self.depth_m)
         for w, k, across, up in zip(
             omega, numbers, *(part.T for part in depth_functions(numbers, z, self.depth_m)), strict=True
         ):
-            turned = (share * np.exp(-1j * float(k) * (grid.points @ d.T))).T[:, :, None]
-            water = turned * (across[:, None] * d[:, None] + 1j * up[:, None] * [0.0, 0.0, 1.0])
-            water = np.einsum("nij,wnj->wni", grid.normal, water)
-            found.append((mass + _DRAG * dashpot / (1j * w))[:, None] * water)
-        every = np.concatenate(found)
+            turned = (share * np.exp(-1j * float(k) * along)).T * (mass + _DRAG * dashpot / (1j * w))
+            found.append(turned[:, None] * (across * level + 1j * up * upright))
+        every = np.concatenate(found).transpose(0, 2, 1)
         return np.concatenate([every.real, every.imag]).reshape(2 * len(every), -1)
