@@ -74,3 +74,26 @@ def test_waves_do_not_open_the_band(duration_s: float, waves: float) -> None:
     for seed in range(4):
         record = jacket(seed, (0.9, 0.96), duration_s, waves)
         assert 0.8 < lowest_motion_hz(record.data, record.sample_rate_hz) < 1.2
+
+
+def test_a_first_mode_that_stronger_forces_across_it_hide_is_the_lowest_motion(rng) -> None:
+    """A rotor at work: broad motion along x, orders and a tower mode above; across it a light 0.164 Hz."""
+    n, rate = 12_000, 20.0
+    f = np.fft.rfftfreq(n, 1.0 / rate)[1:]
+
+    def moved(density: np.ndarray) -> np.ndarray:
+        drawn = np.sqrt(density) * (rng.standard_normal(f.size) + 1j * rng.standard_normal(f.size))
+        y = np.fft.irfft(np.append(0.0, drawn), n)
+        return y / y.std()
+
+    def peak(f0: float, zeta: float) -> np.ndarray:
+        return 1.0 / ((1.0 - (f / f0) ** 2) ** 2 + (2.0 * zeta * f / f0) ** 2)
+
+    along = moved(peak(0.17, 0.3) + 3.0 * peak(0.38, 0.06) + 20.0 * peak(0.76, 0.01))
+    across = moved(peak(0.164, 0.01) + 20.0 * peak(0.82, 0.01))
+    both = np.array([along, 0.3 * across])
+    assert lowest_motion_hz(both[:1], rate) > 0.3
+    assert lowest_motion_hz(both, rate) == pytest.approx(0.164, abs=rate * 8 / n)  # a line of the spectrum
+    # without the light mode nothing is sought so low
+    still = moved(20.0 * peak(0.82, 0.01))
+    assert lowest_motion_hz(np.array([along, 0.3 * still]), rate) > 0.3

@@ -36,6 +36,18 @@ def test_a_pair_of_modes_is_not() -> None:
     assert of_one_sensor(pair, np.ones(6), ALL, 2.0) == {}
 
 
+def test_a_pair_that_is_a_tenth_of_what_lower_sensors_show_is_not() -> None:
+    """First bending pair of a jacket whose lower levels move in higher modes: scaled, it is its top."""
+    levels, axes = np.array([1.0, 0.34, 0.13, 0.08]), np.array([[1.0, 0.7], [-0.4, 1.0]])
+    pair = [estimate(0.163, np.kron(levels, axis)) for axis in axes]
+    scale = np.kron([0.03, 0.13, 0.1, 0.09], [1.0, 1.0])
+    along = np.kron(np.ones((4, 4)), np.eye(2)).astype(bool)
+    assert of_one_sensor(pair, scale, along, 2.0) == {}
+    # the mount of the top's sensor along x shakes beside the pair's other member
+    shaken = [pair[1], estimate(0.1632, np.eye(8)[0] + 0.1 * pair[1].mode_shape.real)]
+    assert list(of_one_sensor(shaken, scale, along, 2.0)) == [1]
+
+
 def test_the_only_sensor_of_a_direction_is_not() -> None:
     """A pair along x and y, seen by five sensors along x and one along y: the plane holds that one."""
     x, y = np.append(SHAPES[0][:5], 0.0), np.eye(6)[5]

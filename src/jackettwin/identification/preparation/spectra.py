@@ -18,6 +18,13 @@ LONGEST_SEGMENT_S = 900.0
 CLEAR_PEAK = 8.0
 """Smallest ratio of a peak to the median of the two octaves around it."""
 
+FAR_BELOW = 0.65
+"""Frequency of a clear peak of one channel, over that of the largest singular value, below which a band that
+begins beneath the latter would not contain it."""
+
+FAINTEST = 1e-4
+"""Least power of a clear peak over the strongest line."""
+
 FEWEST_CYCLES = 20.0
 """Fewest cycles in the record of a frequency that is considered."""
 
@@ -62,7 +69,7 @@ def lowest_motion_hz(y: FloatArray, sample_rate_hz: float) -> float | None:
     """Return the lowest frequency at which samples of zero mean have a clear peak, in a short record too."""
     length = _length(y, sample_rate_hz)
     spectrum = welch(y, sample_rate_hz, length)
-    lowest = lowest_peak_hz(spectrum)
+    lowest = of_one_channel(spectrum, lowest_peak_hz(spectrum))
     if length >= int(LONGEST_SEGMENT_S * sample_rate_hz):
         return lowest
     limit = RESOLVED_LINES * float(spectrum.frequencies_hz[1])
@@ -76,6 +83,23 @@ def lowest_peak_hz(spectrum: Spectrum) -> float | None:
     return _lowest(spectrum, FEWEST_CYCLES / SEGMENTS, float(spectrum.singular_values[0, 1:].max()))
 
 
+def of_one_channel(spectrum: Spectrum, lowest: float | None) -> float | None:
+    """Return the lowest clear peak of a channel alone if it is far below that of all, else the latter.
+
+    The largest singular value is the strongest motion, whose broad forces hide a first mode across it.
+    """
+    if lowest is None:
+        return None
+    rows = spectrum.density[:, spectrum.frequencies_hz < 2.0 * lowest]
+    f = spectrum.frequencies_hz[: rows.shape[1]]
+    each = (
+        _lowest(Spectrum(f, row[None], row[None]), FEWEST_CYCLES / SEGMENTS, float(full.max()))
+        for row, full in zip(rows, spectrum.density[:, 1:], strict=True)
+    )
+    below = [peak for peak in each if peak is not None and peak < FAR_BELOW * lowest]
+    return min(below, default=lowest)
+
+
 def _lowest(spectrum: Spectrum, lowest_line: float, strongest: float) -> float | None:
     """Return the lowest clear peak of the lower part of a spectrum whose highest value is ``strongest``."""
     f = spectrum.frequencies_hz
@@ -84,6 +108,6 @@ def _lowest(spectrum: Spectrum, lowest_line: float, strongest: float) -> float |
         around = (f > f[k] / np.sqrt(2.0)) & (f < f[k] * np.sqrt(2.0))
         wider = (f > f[k] / 2.0) & (f < f[k] * 2.0)
         prominent = s[k] == s[around].max() and s[k] > CLEAR_PEAK * np.median(s[wider])
-        if k >= lowest_line and prominent and s[k] > 1e-4 * strongest:
+        if k >= lowest_line and prominent and s[k] > FAINTEST * strongest:
             return float(f[k])
     return None

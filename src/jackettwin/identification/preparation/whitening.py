@@ -22,7 +22,7 @@ import numpy as np
 import scipy  # scipy.interpolate is loaded where it is used
 
 from jackettwin.arrays import FloatArray, Int64Array
-from jackettwin.identification.preparation.spectra import densities, lowest_peak_hz
+from jackettwin.identification.preparation.spectra import densities, lowest_peak_hz, of_one_channel
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -145,8 +145,10 @@ def _hides_a_peak(spectrum: Spectrum, times: Int64Array) -> bool:
 
 
 def _peak_hz(spectrum: Spectrum, times: Int64Array) -> float | None:
-    level = _level(spectrum, times)
-    return lowest_peak_hz(replace(spectrum, singular_values=np.append(0.0, level)[None, :]))
+    level = np.append(0.0, _level(spectrum, times))[None, :]
+    density = spectrum.density * spectrum.frequencies_hz ** (2 * times[:, None])
+    seen = replace(spectrum, density=density, singular_values=level)
+    return of_one_channel(seen, lowest_peak_hz(seen))
 
 
 def _level(spectrum: Spectrum, times: Int64Array) -> FloatArray:

@@ -4,6 +4,8 @@ A vibrating mount or cable moves its sensor alone, with the shape :math:`e_i`.
 Close to a mode, one record determines the plane of the two shapes but not the shapes in it.
 Neither shape is then that of one sensor, but :math:`e_i` lies in their plane, whereas the unit vector of
 another sensor lies there only by chance. The mode in which the sensor moves more is that of its mount.
+Over the rms of each channel the first modes of a turbine whose rotor turns are nearly those of its top, since
+all else moves faster: the unit vector must lie in the plane of the shapes as they are, too.
 """
 
 from __future__ import annotations
@@ -14,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jackettwin.arrays import BoolArray, FloatArray
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.identification.selection.neighbours import apart
 
 if TYPE_CHECKING:
@@ -50,11 +52,9 @@ def of_one_sensor(
     for i, j in combinations(range(len(modes)), 2):
         if apart(modes[i], modes[j]) >= close:
             continue
-        shapes = np.array([modes[k].mode_shape / scale for k in (i, j)])
-        u, size, _ = np.linalg.svd(shapes.T / np.linalg.norm(shapes, axis=1), full_matrices=False)
-        if size[-1] < _ONE_SHAPE:  # one shape spans no plane
-            continue
-        inside = np.sum(np.abs(u) ** 2, axis=1)
+        as_measured: ComplexArray = np.array([modes[k].mode_shape for k in (i, j)])
+        shapes = np.asarray(as_measured / scale)
+        inside = np.minimum(_in_plane(shapes), _in_plane(as_measured))
         sensor = int(np.argmax(np.where(told, inside, 0.0)))
         if not told[sensor] or inside[sensor] < MIN_IN_PLANE:
             continue
@@ -62,3 +62,11 @@ def of_one_sensor(
         own = int(np.argmax(share))
         found[(i, j)[own]] = float(share[own])
     return found
+
+
+def _in_plane(shapes: ComplexArray) -> FloatArray:
+    """Return the share of each sensor's unit vector in the plane of two shapes; 0 if they span none."""
+    u, size, _ = np.linalg.svd(shapes.T / np.linalg.norm(shapes, axis=1), full_matrices=False)
+    if size[-1] < _ONE_SHAPE:  # one shape spans no plane
+        return np.zeros(shapes.shape[1])
+    return np.asarray(np.sum(np.abs(u) ** 2, axis=1))

@@ -267,10 +267,11 @@ def _of_one_part(modes: Sequence[ModalEstimate], known: Evidence) -> dict[int, f
 
 
 def perhaps_two(modes: Sequence[ModalEstimate], known: Evidence) -> list[Finding]:
-    """Report modes without a close one at which the sensors move in two shapes."""
+    """Report modes that are not doubtful, without a close one, at which the sensors move in two shapes."""
     out = []
     for mode in modes:
-        if any(apart(mode, other) < CLOSE_DISTANCE for other in modes if other is not mode):
+        close = any(apart(mode, other) < CLOSE_DISTANCE for other in modes if other is not mode)
+        if close or mode.status.severity > ModeStatus.DAMPING_UNKNOWN.severity:
             continue
         share, excess = second_shape(known.lines, known.duration_s, mode, mode.mode_shape / known.scale)
         if share > SECOND_SHARE and excess > SECOND_EXCESS:
