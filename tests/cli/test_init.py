@@ -168,6 +168,9 @@ def test_heights_from_the_bed_and_a_forgotten_sea_level_are_asked_after(tmp_path
     dry.write_text(source.read_text().replace("sea_level_z_m: 45.0", "sea_level_z_m: 0.0"))
     result = CliRunner().invoke(main, ["init", str(dry), str(record), "--out", str(tmp_path / "b.yaml")])
     assert "sea_level_z_m of the structure: its feet are at z = 0 m" in result.stdout
+    dry.write_text(source.read_text().replace("sea_level_z_m: 45.0", "sea_level_z_m: 450.0"))
+    result = CliRunner().invoke(main, ["init", str(dry), str(record), "--out", str(tmp_path / "c.yaml")])
+    assert "below still water (sea_level_z_m: 450" in result.stdout
 
 
 def test_a_structure_or_a_record_in_place_of_a_twin_is_told_how_one_is_made(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from tests.response.conftest import DECK, monopile_structure
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
 from jackettwin.structure import Section, assemble, check
-from jackettwin.structure.check import rigid_body_motion
+from jackettwin.structure.check import posture, rigid_body_motion
 from jackettwin.structure.model import STEEL, Beam, Material, PointMass
 from jackettwin.structure.two_node import BeamSection
 
@@ -91,6 +91,16 @@ def test_a_structure_without_mass_is_refused() -> None:
     weightless = replace(base, members=members, masses=(PointMass("n6", 0.0),))
     with pytest.raises(InputError, match="the structure has no mass"):
         check(assemble(weightless))
+
+
+@pytest.mark.parametrize(
+    ("turned", "sea", "said"), [(-1.0, 0.0, "upside down"), (1.0, 480.0, "below still water"), (1.0, 0.0, "")]
+)
+def test_what_hangs_or_is_drowned_is_said(turned: float, sea: float, said: str) -> None:
+    base = monopile_structure()
+    nodes = {name: (x, y, turned * z) for name, (x, y, z) in base.nodes.items()}
+    found = posture(replace(base, nodes=nodes, sea_level_z_m=sea))
+    assert len(found) == bool(said) and all(said in text for text in found)
 
 
 def test_a_nacelle_in_tonnes_is_noticed() -> None:

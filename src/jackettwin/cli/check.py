@@ -215,7 +215,7 @@ def _at_rest(
     from jackettwin.loads import Water
     from jackettwin.response import build_system, nodal_load, self_weight, static_displacement, undamped_modes
     from jackettwin.simulate import water_at_rest
-    from jackettwin.structure import assemble, element_weight
+    from jackettwin.structure import assemble, element_weight, posture
 
     assembly = assemble(read_structure(source), subdivide=subdivide)
     stands, held = supported_option(held_by[0], assembly, held_by[1])
@@ -238,7 +238,7 @@ def _at_rest(
     return _reply(
         stands.name,
         use,
-        [],
+        list(posture(stands)),
         _left_out(stands, flows, piles, grout),
         piles=piles,
         grouted=_grouted(grout, system, u),

@@ -4,6 +4,7 @@ from .check import (
     ModelCheck as ModelCheck,
     check as check,
     few as few,
+    posture as posture,
     rigid_body_motion as rigid_body_motion,
 )
 from .cut import at_interface as at_interface

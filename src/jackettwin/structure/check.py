@@ -69,7 +69,11 @@ def check(assembly: Assembly) -> ModelCheck:
         support_mass_kg=float(ground[2, 2]),
         center_of_mass_m=(float(centre[0]), float(centre[1]), float(centre[2])),
         rigid_body_modes=_rigid_body_modes(assembly),
-        warnings=(*_warnings(assembly.structure), *_bodies(assembly.structure, mass)),
+        warnings=(
+            *posture(assembly.structure),
+            *_warnings(assembly.structure),
+            *_bodies(assembly.structure, mass),
+        ),
     )
 
 
@@ -144,6 +148,27 @@ def _warnings(structure: Structure) -> Iterator[str]:
         between.setdefault(frozenset((m.start, m.end)), []).append(m.name)
     if twice := [" and ".join(names) for names in between.values() if len(names) > 1]:
         yield f"between the same two nodes (is it given twice?): {few(twice)}"
+
+
+def posture(structure: Structure) -> tuple[str, ...]:
+    """Return what is odd about how a structure stands in the sea: on its head, or below still water."""
+    z = {name: at[2] for name, at in structure.nodes.items()}
+    feet = {reaction.node for reaction in structure.reactions}
+    others = [height for name, height in z.items() if name not in feet]
+    top, sea = structure.top_node, structure.sea_level_z_m
+    found = []
+    if feet and others and min(z[name] for name in feet) > max(others):
+        lowest = min(z[name] for name in feet)
+        found.append(
+            f"its feet, at z = {lowest:g} m and higher, are above all its other nodes: it hangs upside down "
+            "(z is upwards: is it given as a depth?)"
+        )
+    elif z[top] < sea:
+        found.append(
+            f"its highest node, {top}, is at z = {z[top]:g} m, {sea - z[top]:g} m below still water "
+            f"(sea_level_z_m: {sea:g}; is z upwards, and in metres?)"
+        )
+    return tuple(found)
 
 
 def _bodies(structure: Structure, mass_kg: float) -> Iterator[str]:

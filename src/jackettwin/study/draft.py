@@ -13,7 +13,7 @@ from jackettwin.identification import moving_channels
 from jackettwin.records import Channel, FileDefaults, Record, with_conditions
 from jackettwin.records.readers.channel_names import read_name
 from jackettwin.response import Sensor, observation_matrix
-from jackettwin.structure import Assembly, Structure, assemble
+from jackettwin.structure import Assembly, Structure, assemble, posture
 from jackettwin.twin import stated_model
 from jackettwin.updating import numbered_modes
 from jackettwin.version import __version__
@@ -282,6 +282,8 @@ def _missing(
 
 def _levels_missing(places: Sequence[SensorPlace], structure: Structure) -> list[str]:
     """Return contradictions of the sea level by feet or sensor heights, whose datum may be another."""
+    if odd := posture(structure):
+        return [f"the structure as it stands: {text}" for text in odd]
     feet = min((structure.nodes[node][2] for node in structure.reaction_nodes), default=None)
     if feet is None:
         return []
