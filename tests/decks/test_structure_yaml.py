@@ -84,7 +84,7 @@ def test_body_by_moments_about_its_node(tmp_path: Path) -> None:
         ("sections: [leg, top], ", "", "members.0: give section or sections"),
         ("material: dense", "material: dens", "members.0.material: no such material .got 'dens'.*'dense'"),
         ("mass_kg: 1e4", "mass_kg: -1e4", r"masses.0.mass_kg.*≥ 0|masses.0.mass_kg.*greater"),
-        ("[1e3, 1e3, 1e3, 0, 0, 0]", "[1e3, 1e3, -1e3, 0, 0, 0]", "masses.0.inertia_kg_m2: .*negative"),
+        ("[1e3, 1e3, 1e3, 0, 0, 0]", "[1e3, 1e3, -1e3, 0, 0, 0]", "masses.0.inertia_about_cg_kg_m2"),
         ("node: c, mass_kg: 1e4", "node: q, mass_kg: 1e4", "masses: no such node .got 'q'"),
         ("follower: c", "follower: a", "reaction_nodes|nodes.c"),
         ("reaction_nodes: [a]", "reaction_nodes: [a, a]", "reaction_nodes: reaction node is given twice"),

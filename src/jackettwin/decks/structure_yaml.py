@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import fnmatch
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from math import radians
 from pathlib import Path
@@ -51,7 +52,7 @@ class BodySchema(Schema):
 
     def build(self, node: str, part: str = "", *, field: str) -> PointMass:
         """Return the point mass on ``node``."""
-        with located(field=field):
+        with located(field=field), self._own_keys():
             if self.static_moment_kg_m is None and self.inertia_about_node_kg_m2 is None:
                 return PointMass(
                     node,
@@ -74,6 +75,17 @@ class BodySchema(Schema):
                 inertia_about_node_kg_m2=self.inertia_about_node_kg_m2 or (0.0,) * 6,
                 part=part,
             )
+
+    @contextmanager
+    def _own_keys(self) -> Iterator[None]:
+        """Name the key of the file in an error on the inertia."""
+        try:
+            yield
+        except InputError as error:
+            if error.field == "inertia_kg_m2":
+                about = "cg" if self.inertia_about_node_kg_m2 is None else "node"
+                error.field = f"inertia_about_{about}_kg_m2"
+            raise
 
 
 class BladesSchema(Schema):

@@ -132,7 +132,7 @@ def parse_yaml(
         return {list_of: data}
     if not isinstance(data, dict):
         raise InputError(
-            f"{what} must be a mapping of keys to values",
+            f"{what} is empty" if data is None else f"{what} must be a mapping of keys to values",
             file=path,
             value=data,
             remedy="start from an example in the documentation",

@@ -43,6 +43,19 @@ def test_the_description_overrules_the_name(tmp_path: Path) -> None:
     assert read_record(path, RATE).channels[0].height_m is None
 
 
+def test_a_name_that_ends_in_another_unit_than_its_bracket_is_said(tmp_path: Path) -> None:
+    """Numbers in g under [m/s²] are 9.8 times too small; the JSON beside the file settles it."""
+    path = table(tmp_path / "a.csv", "acc_x_g [m/s²],acc_y_m_s2 [m/s²],disp_x_mm [mm]", "0.1,1,2", "0.2,2,1")
+    record = read_record(path, RATE)
+    assert record.data[0, 0] == 0.1
+    (said,) = [text for text in record.metadata["remarks"] if "name ends in" in text]
+    assert said.startswith("acc_x_g: its name ends in g") and "a factor of 9.807" in said
+    path.with_suffix(".json").write_text(json.dumps({"channels": {"acc_x_g": {"unit": "g"}}}))
+    record = read_record(path, RATE)
+    assert record.data[0, 0] == pytest.approx(0.1 * G0)
+    assert not any("name ends in" in text for text in record.metadata.get("remarks", ()))
+
+
 def test_counts_need_a_gain(tmp_path: Path) -> None:
     path = table(tmp_path / "a.csv", "acc_x [counts]", "100", "200")
     with pytest.raises(InputError, match="stored unscaled") as refused:

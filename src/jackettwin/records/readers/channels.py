@@ -68,6 +68,8 @@ class DescribedChannel:
     from_name: Reading
     by_unit: bool = False
     """Whether only the unit says that it is a velocity."""
+    remark: str = ""
+    """That its name ends in another unit than it is read in."""
 
 
 def merged(own: ChannelEntry | None, given: ChannelEntry | None) -> dict[str, Any]:
@@ -105,7 +107,21 @@ def described_channel(
         frame=entry.get("frame") or "global",
     )
     said = entry.get("quantity") or defaults.unit or guess_quantity(name, "") == kind
-    return DescribedChannel(channel, factor * gain, read, by_unit=kind == "velocity" and not said)
+    by_unit = kind == "velocity" and not said
+    remark = _contradiction(name, kind, unit) if gain == 1.0 else ""
+    return DescribedChannel(channel, factor * gain, read, by_unit=by_unit, remark=remark)
+
+
+def _contradiction(name: str, kind: str, unit: str) -> str:
+    """Return what to say of a vibration channel whose name ends in another unit than is stated."""
+    named = unit_in_name(name, kind) if kind in VIBRATIONS and unit else ""
+    if not named or to_si(kind, named) == to_si(kind, unit):
+        return ""
+    factor = to_si(kind, named) / to_si(kind, unit)
+    return (
+        f"{name}: its name ends in {named}, but {unit} is stated and used: if {named} is right, amplitudes "
+        f'are wrong by a factor of {factor:.4g}; "unit" in the JSON beside the file overrules both'
+    )
 
 
 def _measures(name: str, entry: Mapping[str, Any], defaults: FileDefaults) -> tuple[str, str, float]:

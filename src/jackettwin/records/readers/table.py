@@ -297,7 +297,9 @@ def to_record(
         data = data * np.array([one.factor for one in described])[:, None]
     data = np.where(np.abs(data) <= LARGEST, data, np.nan)
     described, flows = without_flows(described, data)
+    ruled = [name for name, entry in (said.channels or {}).items() if entry.unit is not None]
     metadata["remarks"] += flows
+    metadata["remarks"] += [d.remark for d in described if d.remark and d.channel.name not in ruled]
     metadata["remarks"] += told({one.channel.name: one.from_name for one in described})
     if not metadata["remarks"]:
         del metadata["remarks"]
