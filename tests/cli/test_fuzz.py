@@ -166,7 +166,9 @@ def refused(path: Path, words: str) -> None:
     for result in (identify(path), run(path, path.parent / "out")):
         message = result.stderr.replace("\n", " ")
         assert result.exit_code == 2, result.output
-        assert result.stdout == ""
+        error = json.loads(result.stdout)["error"]
+        assert (error["kind"], error["message"] in message) == ("error", True)
+        assert error["problem"] in error["message"] and path.stem in error["file"]
         assert path.stem in message
         assert words in message
         assert "internal" not in message

@@ -133,17 +133,17 @@ class Commands(click.Group):
             with insisting():
                 return super().invoke(ctx)
         except InputError as error:
-            _failed("error", str(error))
+            _failed("error", str(error), ctx, error)
             ctx.exit(BAD_INPUT)
         except KeyboardInterrupt:
             messages.print("interrupted: no incomplete file was left")
             ctx.exit(INTERRUPTED)
         except OSError as error:
             what = f"{error.strerror or error}: {error.filename}" if error.filename else str(error)
-            _failed("error", f"{what}; check the path and its rights")
+            _failed("error", f"{what}; check the path and its rights", ctx)
             ctx.exit(BAD_INPUT)
         except JackettwinError as error:
-            _failed("failed", str(error))
+            _failed("failed", str(error), ctx)
             ctx.exit(OUR_FAULT)
         except click.Abort:
             messages.print("stopped: nothing was changed")
@@ -154,12 +154,22 @@ class Commands(click.Group):
             if ctx.params.get("traceback"):
                 traceback.print_exc()
             fault = "this is a fault in jackettwin: run again with --traceback and report it"
-            _failed("internal error", f"{type(error).__name__}: {error}; {fault}")
+            _failed("internal error", f"{type(error).__name__}: {error}; {fault}", ctx)
             ctx.exit(OUR_FAULT)
 
 
-def _failed(kind: str, what: str) -> None:
+_JSON = "jackettwin.json"
+"""Whether a command was asked for JSON, among what click remembers of a call."""
+
+
+def _failed(kind: str, what: str, ctx: click.Context, error: InputError | None = None) -> None:
+    """Print a message, and where JSON was asked for a document of it with the parts of bad input."""
     messages.print(f"[bold red]{kind}:[/] {plain(what)}", soft_wrap=True)
+    if ctx.meta.get(_JSON):
+        parts = ("problem", "file", "field", "value", "allowed", "remedy")
+        found = {name: getattr(error, name, None) for name in parts}
+        said = {name: None if part is None else str(part) for name, part in found.items()}
+        print_json({"error": {"kind": kind, "message": what, **said}})
 
 
 class PageFile(click.Path):
@@ -299,7 +309,12 @@ def with_omissions(document: object, command: str) -> object:
     return {**document, "left_out": document.get("left_out", omitted_by(command))}
 
 
-json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def _remembered(ctx: click.Context, _: click.Parameter, value: bool) -> bool:
+    ctx.meta[_JSON] = value
+    return value
+
+
+json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.", callback=_remembered)
 
 
 def answers(function: Callable[P, Reply]) -> Callable[P, None]:
