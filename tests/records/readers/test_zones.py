@@ -14,7 +14,7 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.records import Record, read_record
-from jackettwin.records.readers import read_record_pieces
+from jackettwin.records.readers import delimited, read_record_pieces
 from jackettwin.records.readers.channels import FileDefaults
 from jackettwin.records.readers.stamps import NEVER, PASSED, TWICE, in_utc, read_zone
 
@@ -129,8 +129,11 @@ def test_a_clock_that_is_not_put_back_is_said(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("begin", [(1, 55), (2, 55)])
-def test_a_clock_that_is_put_back_has_its_hour_twice(begin: tuple[int, int], tmp_path: Path) -> None:
+def test_a_clock_that_is_put_back_has_its_hour_twice(
+    begin: tuple[int, int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """02:59:59 of summer time is followed by 02:00:00 of winter time, on no other day or hour."""
+    monkeypatch.setattr(delimited, "ROWS", 300 if begin[0] == 1 else 1000)  # between parts, and within one
     third = datetime(2025, 10, 26, 3)
     shown = [t if t < third else t - timedelta(hours=1) for k in (0, 600, 1200, 1800, 2400, 3000, 3600)
              for t in seconds_from(datetime(2025, 10, 26, *begin) + timedelta(seconds=k))]  # fmt: skip
@@ -138,6 +141,13 @@ def test_a_clock_that_is_put_back_has_its_hour_twice(begin: tuple[int, int], tmp
     assert record.start_utc == datetime(2025, 10, 25, 23, 55, tzinfo=UTC) + timedelta(hours=begin[0] - 1)
     assert record.duration_s == 4200.0 and np.isfinite(record.data).all()
     assert "remarks" not in record.metadata
+    pieces = list(read_record_pieces(tmp_path / "a.csv", 600.0, FileDefaults(timezone="Europe/Berlin")))
+    starts = [(piece.start_utc - record.start_utc).total_seconds() for piece in pieces if piece.start_utc]
+    assert starts == [300.0 + 600.0 * k for k in range(6)]
+    np.testing.assert_array_equal(np.hstack([piece.data for piece in pieces]), record.data[:, 300:3900])
+    assert not any(PASSED in piece.metadata.get("remarks", ()) for piece in pieces)
+    with pytest.raises(InputError, match="--timezone"):
+        list(read_record_pieces(tmp_path / "a.csv", 600.0))
     for off in (timedelta(days=1), timedelta(hours=1)):
         with pytest.raises(InputError, match="do not increase"):
             at_night(tmp_path / "a.csv", [t + off for t in shown])

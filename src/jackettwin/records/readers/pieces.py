@@ -19,7 +19,8 @@ from jackettwin.arrays import FloatArray
 from jackettwin.records.readers.channels import FileDefaults
 from jackettwin.records.readers.description import Description
 from jackettwin.records.readers.registry import described_by, reading, tables_of
-from jackettwin.records.readers.table import ReadTable, known_rate, stated_rate, to_record
+from jackettwin.records.readers.stamps import in_utc, refuse_put_back, unfolded
+from jackettwin.records.readers.table import ReadTable, known_rate, stated_rate, to_record, zone_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -87,21 +88,26 @@ def placed_pieces(
 
 @dataclass(frozen=True)
 class _Timed:
-    """Rows of a table with their times since the first sample of the file."""
+    """Rows of a table with their times since the first sample of the file.
+
+    ``put_back`` tells whether the clock was put back before their end.
+    """
 
     table: ReadTable
     t: FloatArray
+    put_back: bool = False
 
     def rows(self, start: int, stop: int | None = None) -> _Timed:
         part = slice(start, stop)
         times = None if self.table.times_s is None else self.table.times_s[part]
-        return _Timed(replace(self.table, data=self.table.data[:, part].copy(), times_s=times), self.t[part])
+        table = replace(self.table, data=self.table.data[:, part].copy(), times_s=times)
+        return _Timed(table, self.t[part], self.put_back)
 
     def followed_by(self, other: _Timed) -> _Timed:
         data = np.hstack([self.table.data, other.table.data])
         t = np.concatenate([self.t, other.t])
         times = None if self.table.times_s is None else t
-        return _Timed(replace(self.table, data=data, times_s=times), t)
+        return _Timed(replace(self.table, data=data, times_s=times), t, self.put_back or other.put_back)
 
 
 def _split(
@@ -110,13 +116,16 @@ def _split(
     """Yield tables cut at the boundaries, each with the time [s] and the start of its first row."""
     held: _Timed | None = None
     origin: datetime | None = None
-    end = seconds
+    zone, end = zone_of(said, defaults), seconds
     for chunk in _timed(tables, said, defaults):
         if held is None:
             origin = said.start_utc or chunk.table.start_utc
             held, end = chunk, _first_boundary(origin, seconds)
         else:
             held = held.followed_by(chunk)
+        if held.put_back and origin is not None and zone is not None and not held.table.zone_said:
+            origin = in_utc(origin, zone)  # from here on the clock shows another time than the first
+            held = replace(held, table=replace(held.table, zone_said=True))
         while len(held.t) and held.t[-1] >= end:
             cut = int(np.searchsorted(held.t, end))
             yield from _long_enough(held.rows(0, cut), origin, shortest_s)
@@ -129,6 +138,7 @@ def _timed(tables: Iterable[ReadTable], said: Description, defaults: FileDefault
     """Yield tables with their times since the first sample, all with the columns of the first."""
     first: ReadTable | None = None
     count, latest, zero = 0, 0.0, 0.0
+    before, late_s = np.zeros(0), np.zeros(1)
     for table in tables:
         if first is None:
             first = table
@@ -142,11 +152,28 @@ def _timed(tables: Iterable[ReadTable], said: Description, defaults: FileDefault
             since = 0.0
             if first.start_utc is not None and table.start_utc is not None:
                 since = (table.start_utc - first.start_utc).total_seconds()
+            shown = np.append(before, table.times_s + since - zero)
+            late_s = late_s[-1] + _put_back_s(first, shown, said, defaults)
             # stamps out of order are for the clock to judge: cuts need times that do not fall
-            t = np.maximum.accumulate(np.fmax(table.times_s + since - zero, latest))
+            t = np.maximum.accumulate(np.fmax((shown + late_s)[before.size :], latest))
+            before = shown[-1:]
         count, latest = count + n, float(t[-1]) if n else latest
         times = None if first.times_s is None else t
-        yield _Timed(replace(first, data=data, times_s=times), t)
+        yield _Timed(replace(first, data=data, times_s=times), t, bool(late_s[-1]))
+
+
+def _put_back_s(
+    first: ReadTable, shown_s: FloatArray, said: Description, defaults: FileDefaults
+) -> FloatArray:
+    """Return by how much the clock is put back until each of the times that it shows, (n_samples,) [s]."""
+    if first.start_utc is None or first.zone_said or said.start_utc is not None:
+        return np.zeros(shown_s.size)
+    zone = zone_of(said, defaults)
+    if zone is None:
+        refuse_put_back(shown_s)
+        return np.zeros(shown_s.size)
+    real = unfolded(first.start_utc, shown_s, zone)
+    return np.zeros(shown_s.size) if real is None else real - shown_s
 
 
 def _columns_of(first: ReadTable, table: ReadTable) -> FloatArray:

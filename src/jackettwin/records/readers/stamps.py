@@ -336,6 +336,24 @@ def steady(
     return start, np.where(np.arange(len(shown)) < after, times_s, times_s - forward_s), ()
 
 
+def refuse_put_back(times_s: FloatArray | None) -> None:
+    """Refuse stamps of a clock that is put back by an hour and does not say its zone.
+
+    Raises
+    ------
+    InputError
+        Asks for the zone.
+    """
+    require(
+        put_back_at(times_s) is None,
+        "the clock is put back by an hour, and does not say its zone",
+        field="time",
+        allowed="a clock of a known zone where it is put back",
+        remedy="state the zone: --timezone Europe/Berlin (identify, init), logger.clock of a twin, "
+        'or "clock" in the JSON beside the file',
+    )
+
+
 def put_back_at(times_s: FloatArray | None) -> int | None:
     """Return the first sample after the only step back of stamps, if it is by an hour; else None.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import asdict, dataclass, field, replace
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime, timedelta, tzinfo
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,9 +31,9 @@ from jackettwin.records.readers.stamps import (
     ambiguous_date,
     dates_of_days,
     in_utc,
-    put_back_at,
     read_zone,
     refuse_ambiguous,
+    refuse_put_back,
     steady,
     unfolded,
 )
@@ -333,22 +333,26 @@ def _start(
     """Return the start in UTC, the times since then, and remarks on the clock's zone and summer time."""
     if said.start_utc is not None or table.start_utc is None or table.zone_said:
         return said.start_utc or table.start_utc, table.times_s, ()
-    zone = said.clock or defaults.timezone
+    zone = zone_of(said, defaults)
     if zone is None:
-        require(
-            put_back_at(table.times_s) is None,
-            "the clock is put back by an hour, and does not say its zone",
-            field="time",
-            allowed="a clock of a known zone where it is put back",
-            remedy="state the zone: --timezone Europe/Berlin (identify, init), logger.clock of a twin, "
-            'or "clock" in the JSON beside the file',
-        )
+        refuse_put_back(table.times_s)
         return table.start_utc, table.times_s, (UNSAID,)
-    known = read_zone(zone, field="clock" if said.clock else "--timezone")
-    times_s = unfolded(table.start_utc, table.times_s, known)
+    times_s = unfolded(table.start_utc, table.times_s, zone)
     if times_s is not None:
-        return in_utc(table.start_utc.replace(tzinfo=None), known), times_s, ()
-    return steady(table.start_utc, table.times_s, known)
+        return in_utc(table.start_utc.replace(tzinfo=None), zone), times_s, ()
+    return steady(table.start_utc, table.times_s, zone)
+
+
+def zone_of(said: Description, defaults: FileDefaults) -> tzinfo | None:
+    """Return the zone of a clock that does not say it, from the description or what is assumed.
+
+    Raises
+    ------
+    InputError
+        If it is none.
+    """
+    text = said.clock or defaults.timezone
+    return None if text is None else read_zone(text, field="clock" if said.clock else "--timezone")
 
 
 def _described(
