@@ -140,7 +140,7 @@ def latent_densities() -> go.Figure:
     corner, peak = gust_corner(10.0), 2.0 * np.pi * 0.1
     drawn = (
         ("gusts at 10 m/s", "gust", corner, 1.0, _BLUE, "solid"),
-        ("as a rotor averages them", "disc", 0.74 * corner, 10.5, _BLUE, "dash"),
+        ("as a rotor averages them", "disc", 0.62 * corner, 12.0, _BLUE, "dash"),
         ("quick gusts", "gust", 25.0 * corner, 1.0, _BLUE, "dot"),
         ("sea of 10 s, long waves", "wave", peak, 1.5, _GREEN, "solid"),
         ("its shorter waves", "wave", 1.7 * peak, 1.5, _GREEN, "dash"),

@@ -124,8 +124,8 @@ def _model_in(
     rotor, speed = weather.rotor, weather.wind_m_s
     place = RotorPlace(weather.hub, weather.heading_rad, weather.radius_m)
     wind = wind_forces(system.assembly, place, wind_m_s=speed, working=weather.working)
-    if weather.working and rotor is not None and rotor.passing_hz is not None and speed is not None:
-        wind = (*wind, *passing_forces(wind, rotor.passing_hz, speed, place.radius_m))
+    if weather.working and rotor is not None and rotor.passing_hz is not None:
+        wind = (*wind, *passing_forces(wind, rotor.passing_hz))
     forces = (*wind, *sea.forces())
     model = motion_model(system, forces, below_hz=BAND_HZ, drag=sea.damping(), near=near, local=sea.local())
     return _pushed(_damped(model, weather), weather)

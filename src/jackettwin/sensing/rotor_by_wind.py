@@ -5,7 +5,7 @@ its blades' elements have it (`loads.operating_damping`). The same at the freque
 how the thrust grows with the wind: a tower top that moves windward sees what a stronger wind brings. Gusts of
 standard deviation σ over the disc then push by
 
-.. math:: σ_F = 0.595\, C_{xx}(ω_{slow})\, σ
+.. math:: σ_F = 0.57\, C_{xx}(ω_{slow})\, σ
 
 whatever accelerations say of a motion that they do not feel. Of a rotor that nobody described a usual ratio
 is taken, whose dashpot tells the thrust, too.
@@ -31,9 +31,8 @@ from jackettwin.sensing.wind_forces import gusts_std, with_thrust
 
 _RATIO, _RATIO_LOG_STD = 0.08, 0.35
 """Fore-aft damping ratio that a working rotor adds to the first pair where nothing tells it: 4 to 13 %."""
-_AVERAGED = 0.595
-"""Gusts over a disc of 240 m over those at a point (IEC 61400-1 (2019), C.2), as blades feel them: 0.62 if
-alike at all radii, 0.57 in proportion to them, 0.593 to 0.595 with the shipped 15 MW rotor's."""
+_AVERAGED = 0.57
+"""Gusts over a disc of 240 m over those at a point (IEC 61400-1 (2019), C.2)."""
 _SLOW_HZ = 0.01
 _WINDS_M_S = 1.0
 """Between winds in which a rotor is computed."""
