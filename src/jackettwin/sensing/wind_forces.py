@@ -69,8 +69,8 @@ _WORKING = (
 
 From 6 to 24 m/s the corners of the mean coherence of all pairs of a disc's points lie at 0.59 to 0.63 and 7
 to 10 U/6L. Around circles of three blades they lie at 0.74 and 8, those of moments at 1.45 and 10, and the
-thrust has 0.25 of itself at the passing frequency. With these the evidence of records was greater, but moments
-at the tower base were 5 % lower, further from the truth; why is not known."""
+thrust has 0.25 of itself at the passing frequency. With these the evidence of records was greater, but
+moments at the tower base were 5 % lower, further from the truth; why is not known."""
 _STANDING = (
     _Push("rotor Fx", 0, 1.8),
     _Push("rotor Fy", 1, 1.4),
