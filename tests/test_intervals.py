@@ -37,7 +37,7 @@ def test_one_level_is_printed_everywhere_and_its_numbers_stand_in_one_place() ->
     with_others = {path.name for path in places if other.search(path.read_text("utf-8"))}
     own = {"intervals.py", "numbers.ts"}
     tests_of_one_in_twenty = {"drift.py", "screening.py", "updating.md"}
-    of_others = {"targets_table.py", "twin.md", "observation.py"}
+    of_others = {"headings.py", "twin.md", "observation.py"}
     width_of_a_likelihood = {"line_likelihood.py"}
     assert with_others == own | tests_of_one_in_twenty | of_others | width_of_a_likelihood
     window = (root / "app" / "src" / "words" / "numbers.ts").read_text("utf-8")
