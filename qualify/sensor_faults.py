@@ -13,7 +13,7 @@ from common.command import arguments
 from common.page import write_page
 from common.structures import bridge, building, cantilever
 
-from jackettwin.quantities import G0
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.records import Record, assess
 
 STRUCTURES: dict[str, Callable[[np.random.Generator], Record]] = {
@@ -22,7 +22,7 @@ STRUCTURES: dict[str, Callable[[np.random.Generator], Record]] = {
     "bridges, one `height_m` for all": lambda rng: bridge(rng, height_m=20.0),
     "buildings, sensors beside the axis": building,
 }
-FACTORS = (G0, 1.0 / G0, 1e3, 1e-3, 1e3 / G0)
+FACTORS = (GRAVITY_M_S2, 1.0 / GRAVITY_M_S2, 1e3, 1e-3, 1e3 / GRAVITY_M_S2)
 
 
 def named(record: Record, fault: str) -> set[str]:

@@ -10,4 +10,3 @@ from __future__ import annotations
 
 DOFS_PER_NODE = 6
 TRANSLATIONS = (0, 1, 2)
-GRAVITY_M_S2 = 9.80665

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.errors import InputError, did_you_mean
 
 
@@ -18,7 +19,6 @@ class Quantity:
     """Other units accepted at the border, each with the factor that brings it to SI."""
 
 
-G0 = 9.80665
 DEGREE = 0.017453292519943295
 
 QUANTITIES: dict[str, Quantity] = {
@@ -27,8 +27,8 @@ QUANTITIES: dict[str, Quantity] = {
         "acceleration",
         "a",
         (
-            ("g", G0),
-            ("mg", 1e-3 * G0),
+            ("g", GRAVITY_M_S2),
+            ("mg", 1e-3 * GRAVITY_M_S2),
             ("m/s2", 1.0),
             ("m/s/s", 1.0),
             ("m s-2", 1.0),

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from jackettwin.quantities import G0
+from jackettwin.constants import GRAVITY_M_S2 as G0
 from jackettwin.records import Channel, Record, assess
 
 
@@ -25,7 +25,10 @@ def times(record: Record, i: int, factor: float) -> Record:
     [
         (G0, "9.81 times too large compared with similar channels: m/s^2 taken for g"),
         (1.0 / G0, "9.81 times too small compared with similar channels: g taken for m/s^2"),
-        (1e3 / G0, "102 times too large compared with similar channels: mg or cm/s^2 taken for m/s^2"),
+        (
+            1e3 / G0,
+            "102 times too large compared with similar channels: mg or cm/s^2 taken for m/s^2",
+        ),
         (1e-3, "1e+03 times too small compared with similar channels: g taken for mg"),
     ],
 )

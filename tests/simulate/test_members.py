@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.checks import frame_use
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.decks import read_structure
 from jackettwin.loads.sea.waves import wave_number
 from jackettwin.response.motion.static import nodal_load, self_weight, static_displacement

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.response.conftest import monopile_structure
 
-from jackettwin.axes import GRAVITY_M_S2
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
 from jackettwin.response.modes.modal import undamped_modes

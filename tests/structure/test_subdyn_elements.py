@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from jackettwin.axes import GRAVITY_M_S2
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
 from jackettwin.response.modes.modal import undamped_modes

@@ -11,15 +11,14 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.change.ground import ARM_M, UNDESCRIBED, Loss
+from jackettwin.constants import SEA_WATER_KG_M3
 from jackettwin.errors import require
 from jackettwin.plugins import plugins
 from jackettwin.soil import feet_in_line
-from jackettwin.structure import Material, Member, PointMass, Section, Structure
+from jackettwin.structure import GROWTH_KG_M3, Material, Member, PointMass, Section, Structure
 
 _LEG = 0.9
 """Smallest rise of a leg over its length; other members are braces."""
-_SEA_WATER, _GROWTH = 1025.0, 1325.0
-"""Densities of sea water and of marine growth [kg/m³], the latter after DNV-RP-C205 (2021), section 6.7.4."""
 _SPLASH = (-3.0, 6.0)
 """Splash zone about mean sea level [m]."""
 _WEAKENED = "× 30 % off"
@@ -178,7 +177,7 @@ def _flooded(members: tuple[str, ...]) -> Callable[[Standing], Standing]:
     def apply(standing: Standing) -> Standing:
         def inside(member: Member) -> float:
             s = member.section_start
-            return _SEA_WATER * 0.25 * pi * (s.outer_diameter_m - 2.0 * s.thickness_m) ** 2
+            return SEA_WATER_KG_M3 * 0.25 * pi * (s.outer_diameter_m - 2.0 * s.thickness_m) ** 2
 
         return with_mass(standing, [m for m in standing.structure.members if m.name in members], inside)
 
@@ -191,8 +190,8 @@ def _grown(standing: Standing) -> Standing:
     def more(member: Member) -> float:
         outer = member.section_start.outer_diameter_m
         ring = 0.25 * pi * ((outer + 2.0 * thickness) ** 2 - outer**2)
-        return ring * (_GROWTH + _SEA_WATER)  # marine growth, and the added mass of the water it displaces:
-        # C_a = 1
+        # marine growth, and the added mass of the water it displaces: C_a = 1
+        return ring * (GROWTH_KG_M3 + SEA_WATER_KG_M3)
 
     return with_mass(standing, standing.structure.members, more)
 

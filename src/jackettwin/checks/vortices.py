@@ -16,6 +16,7 @@ from math import pi, sqrt
 from typing import Literal, NamedTuple
 
 from jackettwin.checks.columns import columns
+from jackettwin.constants import SEA_WATER_KG_M3
 from jackettwin.errors import require_between
 from jackettwin.structure import PILES, Member, Structure
 
@@ -28,7 +29,6 @@ LOCK_IN: Mapping[str, tuple[tuple[float, float], tuple[float, float]]] = {
     "air": ((1.7, 3.2), (4.7, 8.0)),
 }
 """Reduced velocities from and up to which vortices lock on, in line and across (DNV-RP-C205 section 9)."""
-SEA_WATER_KG_M3 = 1025.0
 CLAUSES: Mapping[str, str] = {"air": "EN 1991-1-4 E.1.2(2)", "water": "DNV-RP-C205 section 9"}
 
 

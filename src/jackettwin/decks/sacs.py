@@ -18,6 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.decks.sacs_sections import NAMES, sacs_section
 from jackettwin.errors import InputError, located, require
 from jackettwin.structure import (
@@ -34,7 +35,6 @@ from jackettwin.structure import (
 )
 
 log = logging.getLogger(__name__)
-_G = 9.80665
 _SILENT = {"END", "LDOPT", "LOADLB", "LCSEL", "LCOMB", "UCPART", "LIVE", "HYDRO", "TITLE"}
 """Cards that hold no structure: combinations, code checks, titles."""
 _PINNED = (True, True, True, False, False, False)
@@ -61,10 +61,10 @@ class _Units:
     mass: float
 
 
-_ENGLISH = _Units(0.3048, 0.0254, 6.894757293e9, 16.01846337, 4448.2216152605 / _G)
+_ENGLISH = _Units(0.3048, 0.0254, 6.894757293e9, 16.01846337, 4448.2216152605 / GRAVITY_M_S2)
 _METRIC = {
-    "MN": _Units(1.0, 0.01, 1e10, 1000.0, 1000.0 / _G),
-    "ME": _Units(1.0, 0.01, 9.80665e7, 1000.0, 1.0),
+    "MN": _Units(1.0, 0.01, 1e10, 1000.0, 1000.0 / GRAVITY_M_S2),
+    "ME": _Units(1.0, 0.01, 1e7 * GRAVITY_M_S2, 1000.0, 1.0),
 }
 """Moduli are in 1000 ksi, 1000 kN/cm² and 1000 kg/cm²."""
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from jackettwin.arrays import FloatArray, IntArray
-from jackettwin.axes import GRAVITY_M_S2
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.errors import require
 from jackettwin.loads import Coefficients
 from jackettwin.quantities import VIBRATIONS

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.caveats import OUT_OF_SCOPE, Omission, omission_documents
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.errors import InputError
 from jackettwin.loads import Water, morison_points, radiation_damping, resultant_columns, water_weights
 from jackettwin.response import build_system, mode_kinds, mode_labels, undamped_modes

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.axes import GRAVITY_M_S2
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.structure import beam
 from jackettwin.structure.assemble import Assembly
 

@@ -13,7 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray, IntArray
-from jackettwin.axes import GRAVITY_M_S2
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.errors import InputError
 from jackettwin.structure import beam
 from jackettwin.structure.eigen import definite_factor

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.errors import InputError
-from jackettwin.quantities import G0
 from jackettwin.records import read_record
 from jackettwin.records.readers.channels import FileDefaults
 
@@ -62,9 +62,9 @@ def test_counts_need_a_gain(tmp_path: Path) -> None:
         read_record(path, RATE)
     assert refused.value.field == "channels.acc_x.gain"
     by_option = read_record(path, FileDefaults(10.0, unit="mg", gain=0.5))
-    assert_allclose(by_option.data[0, :2], [50e-3 * G0, 100e-3 * G0])
+    assert_allclose(by_option.data[0, :2], [50e-3 * GRAVITY_M_S2, 100e-3 * GRAVITY_M_S2])
     path.with_suffix(".json").write_text('{"channels": {"acc_x": {"unit": "g", "gain": 1e-3}}}')
-    assert_allclose(read_record(path, RATE).data[0, :2], [0.1 * G0, 0.2 * G0])
+    assert_allclose(read_record(path, RATE).data[0, :2], [0.1 * GRAVITY_M_S2, 0.2 * GRAVITY_M_S2])
 
 
 def test_a_gain_without_a_unit_leads_to_si(tmp_path: Path) -> None:
@@ -92,14 +92,14 @@ def test_an_archive_of_one_column_with_its_name_and_unit(tmp_path: Path) -> None
     np.savez(tmp_path / "a.npz", data=y, channel_names=["acc_top_x"], units=["g"], sample_rate_hz=5.0)
     record = read_record(tmp_path / "a.npz")
     assert record.channel_names == ("acc_top_x",)
-    assert_allclose(record.data, G0 * y.T)
+    assert_allclose(record.data, GRAVITY_M_S2 * y.T)
 
 
 def test_one_unit_beside_vectors_is_that_of_the_vibrations(tmp_path: Path) -> None:
     y = np.array([0.1, 0.2, 0.3])
     np.savez(tmp_path / "a.npz", acc_x=y, WindSpeed=10.0 + y, unit="mg", fs=5.0)
     record = read_record(tmp_path / "a.npz")
-    assert_allclose(record.select(["acc_x"]).data[0], 1e-3 * G0 * y)
+    assert_allclose(record.select(["acc_x"]).data[0], 1e-3 * GRAVITY_M_S2 * y)
     assert_allclose(record.select(["WindSpeed"]).data[0], 10.0 + y)
 
 
@@ -108,7 +108,7 @@ def test_single_arrays(tmp_path: Path) -> None:
     np.save(tmp_path / "a.npy", y)
     record = read_record(tmp_path / "a.npy", FileDefaults(5.0, "g"))
     assert record.channel_names == ("channel_1", "channel_2")
-    assert_allclose(record.data, G0 * y.T)
+    assert_allclose(record.data, GRAVITY_M_S2 * y.T)
     fields = np.array([(0.1, 1.0), (0.2, 2.0)], dtype=[("acc_x", float), ("acc_y", float)])
     np.save(tmp_path / "b.npy", fields)
     assert read_record(tmp_path / "b.npy", FileDefaults(5.0, "g")).channel_names == ("acc_x", "acc_y")

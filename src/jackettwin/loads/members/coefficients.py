@@ -13,10 +13,9 @@ from itertools import pairwise
 import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
+from jackettwin.constants import SEA_WATER_KG_M3
 from jackettwin.errors import InputError, require
 from jackettwin.structure import GROWTH_KG_M3
-
-SEA_WATER_KG_M3 = 1025.0
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.axes import GRAVITY_M_S2
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.loads.members.morison import MorisonPoints, above_bed, wetness
 from jackettwin.loads.sea.diffraction import scattered
 from jackettwin.loads.sea.waves import depth_functions, wave_number

@@ -13,7 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray
-from jackettwin.axes import GRAVITY_M_S2
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.loads.members.coefficients import Coefficients, require_members
 from jackettwin.loads.members.morison import (
     MorisonPoints,

@@ -8,10 +8,10 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
+from jackettwin.constants import SEA_WATER_KG_M3
 from jackettwin.errors import InputError, located, require
 from jackettwin.files import ForceCoefficient, Height, Placed, Schema
 from jackettwin.loads.members.coefficients import (
-    SEA_WATER_KG_M3,
     Coefficients,
     GrowthBand,
     Strip,

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.axes import GRAVITY_M_S2
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.errors import InputError, MissingExtra, NumericalError
 from jackettwin.loads.sea.waves import wave_number
 

@@ -15,7 +15,7 @@ from typing import Protocol
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.axes import GRAVITY_M_S2
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.errors import InputError, require_between
 
 STRETCHING = ("none", "vertical", "extrapolated", "wheeler")

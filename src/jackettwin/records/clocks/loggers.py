@@ -9,24 +9,15 @@ of which the longest part without jumps is judged. Jumps of sensitivity appear i
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jackettwin.arrays import FloatArray
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.quantities import VIBRATIONS
-from jackettwin.records.clocks.results import LoggerClocks
-from jackettwin.records.processing.filters import bridge
-from jackettwin.records.quality.faults import is_constant
-
-if TYPE_CHECKING:
-    from jackettwin.records.record import Record
-
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
-
-from jackettwin.arrays import IntArray
 from jackettwin.records.clocks.another_time import (
     channel_axes,
     comparable_channels,
@@ -60,7 +51,12 @@ from jackettwin.records.clocks.delays import (
 from jackettwin.records.clocks.gain_changes import gain_changes, sign_turns
 from jackettwin.records.clocks.jumps import runs, series_jumps
 from jackettwin.records.clocks.lost_time import lost_time
-from jackettwin.records.clocks.results import ClockJump, Strangers
+from jackettwin.records.clocks.results import ClockJump, LoggerClocks, Strangers
+from jackettwin.records.processing.filters import bridge
+from jackettwin.records.quality.faults import is_constant
+
+if TYPE_CHECKING:
+    from jackettwin.records.record import Record
 
 MIN_WEIGHT = 20.0
 """Smallest sum of the weights of an informative pair: two bins of full coherence, or twenty of half."""

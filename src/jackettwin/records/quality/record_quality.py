@@ -23,7 +23,6 @@ from jackettwin.records.record import LARGEST
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from jackettwin.records.clocks import LoggerClocks
     from jackettwin.records.record import Channel, Record
 
 

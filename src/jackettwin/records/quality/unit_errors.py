@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.quantities import G0
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.records.quality.sensor_polarity import CERTAIN, ParallelChannels, SharedMotion, one_motion
 
 if TYPE_CHECKING:
@@ -28,10 +28,10 @@ if TYPE_CHECKING:
 
 
 TOO_LARGE = (
-    ("m/s^2", "g", G0),
+    ("m/s^2", "g", GRAVITY_M_S2),
     ("mg", "g", 1e3),
-    ("mg or cm/s^2", "m/s^2", 1e3 / G0),
-    ("mm/s^2", "g", 1e3 * G0),
+    ("mg or cm/s^2", "m/s^2", 1e3 / GRAVITY_M_S2),
+    ("mm/s^2", "g", 1e3 * GRAVITY_M_S2),
 )
 """Unit of the numbers, stated unit, and the factor by which that makes them too large."""
 WORDS = {
@@ -40,7 +40,7 @@ WORDS = {
 }
 FACTORS = tuple(WORDS)
 """Ratios of units of acceleration that are confused."""
-GRAVITY_FACTORS = (1.0 / G0, G0, 1e3, 1e3 / G0)
+GRAVITY_FACTORS = (1.0 / GRAVITY_M_S2, GRAVITY_M_S2, 1e3, 1e3 / GRAVITY_M_S2)
 """Ratios considered for a mean of gravity; smaller ones would be an ordinary offset."""
 GRAVITY_TOLERANCE = 0.03
 """Relative tolerance of gravity, for offset and tilt of a sensor."""
@@ -157,7 +157,7 @@ def _by_gravity(record: Record) -> Iterator[WrongUnit]:
         finite = row[np.isfinite(row)]
         mean = abs(float(np.median(finite))) if finite.size else 0.0
         for factor in GRAVITY_FACTORS:
-            if abs(mean / (factor * G0) - 1.0) < GRAVITY_TOLERANCE:
+            if abs(mean / (factor * GRAVITY_M_S2) - 1.0) < GRAVITY_TOLERANCE:
                 yield WrongUnit(channel.name, factor)
 
 

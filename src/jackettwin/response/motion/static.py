@@ -8,7 +8,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray
-from jackettwin.axes import DOFS_PER_NODE, GRAVITY_M_S2
+from jackettwin.axes import DOFS_PER_NODE
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.errors import InputError, did_you_mean
 from jackettwin.response.state import factorised
 from jackettwin.response.system import System

@@ -158,12 +158,22 @@ def _empty(model: TwinModel | TwinProfile) -> TwinState:
     return TwinState(model.model_hash, model.by_wind, model.with_shapes)
 
 
+class StoredObservation(NamedTuple):
+    """An observation as the store keeps it: the document, its modes and its findings as rows.
+
+    ``problem`` is the reason of exclusion, if the record is of another structure.
+    """
+
+    document: str
+    modes: tuple[dict[str, Any], ...]
+    findings: tuple[dict[str, Any], ...]
+    problem: dict[str, Any] | None
+
+
 def observed(
     model: TwinModel, waveform: Path, conditions: Mapping[str, Any], picks: Sequence[Mapping[str, Any]] = ()
-) -> tuple[str, tuple[dict[str, Any], ...], tuple[dict[str, Any], ...], dict[str, Any] | None]:
-    """Return the observation of a stored record as a document, its modes and its findings as rows.
-
-    The last is the reason of exclusion, if the record is of another structure.
+) -> StoredObservation:
+    """Return the observation of a stored record.
 
     ``picks`` are manually selected poles, which replace the automatic selection.
     """
@@ -171,13 +181,11 @@ def observed(
         model = model.with_picks(tuple(Pick(float(p["frequency_hz"]), p.get("order")) for p in picks))
     record = read_waveform(waveform)
     record = replace(record, conditions={**conditions, **record.conditions})
-    return observed_as(observe(record, model))
+    return stored_observation(observe(record, model))
 
 
-def observed_as(
-    seen: Observation,
-) -> tuple[str, tuple[dict[str, Any], ...], tuple[dict[str, Any], ...], dict[str, Any] | None]:
-    """Return an observation as :func:`observed` does."""
+def stored_observation(seen: Observation) -> StoredObservation:
+    """Return an observation as the store keeps it."""
     rows = []
     for mode, known in zip(seen.identification.modes, seen.recognised, strict=True):
         low, high = mode.damping_ratio_interval_90 or (None, None)
@@ -195,7 +203,7 @@ def observed_as(
         )
     document = json.dumps(OBSERVATION.dump(seen), ensure_ascii=False, separators=(",", ":"))
     said = tuple(finding_row(f) for f in seen.findings)
-    return document, tuple(rows), said, _MISMATCHED if seen.mismatched else None
+    return StoredObservation(document, tuple(rows), said, _MISMATCHED if seen.mismatched else None)
 
 
 def said_of_modes(document: str) -> dict[float, str | None]:

@@ -251,7 +251,8 @@ def observe_stored(task: Task) -> Outcome:
         if not engine.profile_path(folder).exists():  # the version is from an older program or a backup
             engine.keep_profile(folder, engine.profile_of(twin))
         poles = (task.picks or {}).get("poles", ())
-        return Outcome(*engine.observed(twin.model, Path(task.waveform), task.conditions, poles))
+        seen = engine.observed(twin.model, Path(task.waveform), task.conditions, poles)
+        return Outcome(**seen._asdict())
     except InputError as error:
         return Outcome(None, problem=problem_of(error))
     except JackettwinError as error:

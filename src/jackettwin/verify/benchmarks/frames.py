@@ -10,7 +10,7 @@ import numpy as np
 import scipy.linalg
 
 from jackettwin.arrays import FloatArray
-from jackettwin.axes import GRAVITY_M_S2
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.response import build_system, nodal_load, static_displacement, undamped_modes
 from jackettwin.soil import Support, clamped
 from jackettwin.structure import (

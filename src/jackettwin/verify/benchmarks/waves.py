@@ -6,7 +6,7 @@ from math import pi, sqrt
 
 import numpy as np
 
-from jackettwin.axes import GRAVITY_M_S2
+from jackettwin.constants import GRAVITY_M_S2
 from jackettwin.loads import highest_wave, regular_wave, wave_number
 from jackettwin.verify.rows import Computed
 
