@@ -22,7 +22,7 @@ from common.command import arguments
 from common.page import write_page
 from diagnosis import jackets, planted, truth
 
-from jackettwin.change.causes import _KEPT, _MISSES, effect, mixing, standings
+from jackettwin.change.causes import _KEPT, _MISSES, effect, fitted_feet, mixing
 from jackettwin.change.changed_structures import Happening, Standing
 from jackettwin.change.standing_modes import MODES, Modes
 from jackettwin.response.modes.labels import LOCAL
@@ -75,7 +75,8 @@ def missed(
     standing = truth(structure, rng)
     there = Modes.of(standing, assemble(structure, gravity=True), like=named)
     whole = [i for i, label in enumerate(named.labels) if not label.startswith(LOCAL)]
-    _, best, error = standings(model, named, whole, there.modes.frequency_hz[whole], assembly, rng)
+    feet = fitted_feet(model, named, whole, there.modes.frequency_hz[whole], assembly)
+    best, error = feet.best(model), feet.error
     base = Modes.of(best, assembly, like=named)
     out = []
     for event in planted(model.structure):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from math import pi
@@ -25,7 +26,7 @@ _WEAKENED = "× 30 % off"
 """Unit of a brace's loss: the effect of 30 % less stiffness. Twice the effect is not 60 %,
 since load shifts to the neighbours faster the less stiffness is left."""
 _GONE = 1e-3
-"""Share of a lost member's stiffness that is kept, so that every node remains supported."""
+"""Share of a lost member's stiffness and mass that is kept, so that every node remains supported."""
 
 
 @dataclass(frozen=True)
@@ -122,7 +123,7 @@ def _softened(standing: Standing) -> Standing:
 def _braces(structure: Structure) -> Iterator[Happening]:
     for members in braces(structure):
         name = members[0]
-        yield Happening("brace lost", f"{name} lost", _scaled(members, _GONE), 1.0, 1.0, 0.05, "-")
+        yield Happening("brace lost", f"{name} lost", _lost(members), 1.0, 1.0, 0.05, "-")
         yield Happening("brace weakened", f"{name} weakened", _scaled(members, 0.7), 1.0, 1.0, 0.8, _WEAKENED)
         yield Happening("flooded", f"{name} flooded", _flooded(members), 1.0, 1.0, 0.05, "-")
 
@@ -156,6 +157,25 @@ def _in_line(structure: Structure, one: Member, other: Member) -> bool:
 def _scaled(members: tuple[str, ...], factor: float) -> Callable[[Standing], Standing]:
     def apply(standing: Standing) -> Standing:
         return _with_members(standing, members, lambda m: _softer(m, factor))
+
+    return apply
+
+
+def _lost(members: tuple[str, ...]) -> Callable[[Standing], Standing]:
+    """Return the change that the members of a line carry nothing; their mass hangs on the line's ends.
+
+    Within members without stiffness it would oscillate by itself, as a severed brace does not.
+    """
+
+    def apply(standing: Standing) -> Standing:
+        structure = standing.structure
+        gone = [m for m in structure.members if m.name in members]
+        nodes = Counter(node for m in gone for node in (m.start, m.end))
+        ends = [node for node, times in nodes.items() if times == 1]
+        mass = sum(_steel_kg(structure, m) for m in gone) / len(ends)
+        left = _with_members(standing, members, lambda m: _lighter(_softer(m, _GONE), 1.0 - _GONE))
+        hung = (*left.structure.masses, *(PointMass(node, (1.0 - _GONE) * mass) for node in ends))
+        return replace(left, structure=left.structure.with_masses(hung))
 
     return apply
 
@@ -225,7 +245,16 @@ def with_mass(
             masses += [PointMass(member.start, mass), PointMass(member.end, mass)]
         elif mass < 0.0:
             left = sum(_taken(masses, node, -mass) for node in (member.start, member.end))
-            steel[member.name] = _lighter(steel[member.name], left, float(np.linalg.norm(b - a)))
+            there = _steel_kg(structure, member)
+            require(
+                left < there or left == 0.0,
+                f"{member.name} loses more mass than there is",
+                field="mass_kg",
+                value=round(left, 1),
+                allowed=f"less than {there:.1f} kg, beside what bodies on its nodes weigh",
+                remedy="check the loss a metre, and the members that it is of",
+            )
+            steel[member.name] = _lighter(steel[member.name], left / there)
     return replace(
         standing, structure=replace(structure, members=tuple(steel.values())).with_masses(tuple(masses))
     )
@@ -240,21 +269,18 @@ def _taken(masses: list[PointMass], node: str, loss: float) -> float:
     return loss
 
 
-def _lighter(member: Member, loss: float, length_m: float) -> Member:
-    """Return a member with its steel lighter by some kilograms."""
+def _lighter(member: Member, loss: float) -> Member:
+    """Return a member that lacks a share of its mass."""
+    steel = member.material
+    return replace(member, material=replace(steel, density_kg_m3=steel.density_kg_m3 * (1.0 - loss)))
+
+
+def _steel_kg(structure: Structure, member: Member) -> float:
+    """Return the mass of a member's steel [kg]."""
     ends = member.section_start, member.section_end
     area = 0.5 * pi * sum((end.outer_diameter_m - end.thickness_m) * end.thickness_m for end in ends)
-    steel = area * length_m * member.material.density_kg_m3
-    require(
-        loss < steel or loss == 0.0,
-        f"{member.name} loses more mass than there is",
-        field="mass_kg",
-        value=round(loss, 1),
-        allowed=f"less than {steel:.1f} kg, beside what bodies on its nodes weigh",
-        remedy="check the loss a metre, and the members that it is of",
-    )
-    lighter = replace(member.material, density_kg_m3=member.material.density_kg_m3 - loss / (area * length_m))
-    return replace(member, material=lighter)
+    a, b = (np.array(structure.nodes[n]) for n in (member.start, member.end))
+    return float(area * np.linalg.norm(b - a) * member.material.density_kg_m3)
 
 
 def _tops(structure: Structure) -> Iterator[Happening]:
