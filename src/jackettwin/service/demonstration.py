@@ -25,7 +25,7 @@ from jackettwin.service.intake.files import accept
 from jackettwin.service.story import UNTIL, story
 from jackettwin.service.web.catalogue import add_version
 from jackettwin.service.work.consequences import keep_observation
-from jackettwin.service.workers.engine import TWIN_FILE, load_twin, stored_observation
+from jackettwin.service.workers.engine import TWIN_FILE, load_twin, observation_rows
 from jackettwin.service.workers.tasks import Outcome, stored
 from jackettwin.store import asset_copy, assets, journal, reading, records, work, writing
 from jackettwin.twin import read_twin
@@ -146,7 +146,7 @@ def tell_story(service: Place) -> None:
 
 def _keep(connection: Connection, service: Place, version: assets.Version, seen: Observation) -> None:
     now = service.now()
-    found = stored_observation(seen)
+    found = observation_rows(seen)
     assert seen.start_utc is not None
     record = records.StoredRecord(
         asset=version.asset,

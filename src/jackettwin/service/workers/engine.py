@@ -158,7 +158,7 @@ def _empty(model: TwinModel | TwinProfile) -> TwinState:
     return TwinState(model.model_hash, model.by_wind, model.with_shapes)
 
 
-class StoredObservation(NamedTuple):
+class ObservationRows(NamedTuple):
     """An observation as the store keeps it: the document, its modes and its findings as rows.
 
     ``problem`` is the reason of exclusion, if the record is of another structure.
@@ -172,7 +172,7 @@ class StoredObservation(NamedTuple):
 
 def observed(
     model: TwinModel, waveform: Path, conditions: Mapping[str, Any], picks: Sequence[Mapping[str, Any]] = ()
-) -> StoredObservation:
+) -> ObservationRows:
     """Return the observation of a stored record.
 
     ``picks`` are manually selected poles, which replace the automatic selection.
@@ -181,10 +181,10 @@ def observed(
         model = model.with_picks(tuple(Pick(float(p["frequency_hz"]), p.get("order")) for p in picks))
     record = read_waveform(waveform)
     record = replace(record, conditions={**conditions, **record.conditions})
-    return stored_observation(observe(record, model))
+    return observation_rows(observe(record, model))
 
 
-def stored_observation(seen: Observation) -> StoredObservation:
+def observation_rows(seen: Observation) -> ObservationRows:
     """Return an observation as the store keeps it."""
     rows = []
     for mode, known in zip(seen.identification.modes, seen.recognised, strict=True):
@@ -203,7 +203,7 @@ def stored_observation(seen: Observation) -> StoredObservation:
         )
     document = json.dumps(OBSERVATION.dump(seen), ensure_ascii=False, separators=(",", ":"))
     said = tuple(finding_row(f) for f in seen.findings)
-    return StoredObservation(document, tuple(rows), said, _MISMATCHED if seen.mismatched else None)
+    return ObservationRows(document, tuple(rows), said, _MISMATCHED if seen.mismatched else None)
 
 
 def said_of_modes(document: str) -> dict[float, str | None]:
