@@ -52,7 +52,7 @@ def test_a_name_that_ends_in_another_unit_than_its_bracket_is_said(tmp_path: Pat
     assert said.startswith("acc_x_g: its name ends in g") and "a factor of 9.807" in said
     path.with_suffix(".json").write_text(json.dumps({"channels": {"acc_x_g": {"unit": "g"}}}))
     record = read_record(path, RATE)
-    assert record.data[0, 0] == pytest.approx(0.1 * G0)
+    assert record.data[0, 0] == pytest.approx(0.1 * GRAVITY_M_S2)
     assert not any("name ends in" in text for text in record.metadata.get("remarks", ()))
 
 
