@@ -29,6 +29,7 @@ from jackettwin.updating import (
     Tolerance,
     UndetectedError,
 )
+from jackettwin.updating.model_error.checks import Explanation
 
 MODE = ModeAnswer(
     "fore_aft_1", Span(0.2, 0.199, 0.201), Span(0.012, 0.01, 0.014), True, True, Span(0.201, 0.195, 0.204),
@@ -157,6 +158,12 @@ def test_a_frequency_above_that_on_rigid_feet_is_no_grounds_doing() -> None:
     other = replace(bare, label="side_side_1", rigid_hz=0.19)
     mixed = sentences(replace(ANSWERS, modes=(bare, other), clearances=())).headline[0]
     assert "are 4.8 % below and 5.3 % above the values on rigid feet" in mixed
+    # all that is lower is said: "no other effect of it" stood above a second mode lower by a quarter
+    second = replace(bare, label="side_side_2", measured_hz=Span(1.22), rigid_hz=1.63)
+    more = sentences(replace(ANSWERS, modes=(bare, second))).questions[1].more
+    assert more == (
+        "Compared with rigid feet, the ground lowers fore-aft 1 by 4.8 % and side-side 2 by 25.2 %.",
+    )
     lowers = [any("the ground lowers" in m for q in said.questions for m in q.more) for said in (soft, stiff)]
     assert lowers == [True, False]
 
@@ -376,7 +383,8 @@ def test_what_these_data_would_not_show_is_said_with_its_size() -> None:
     )
     shorts = sentences(replace(ANSWERS, scrutiny=Scrutiny(found))).questions[0].short
     assert (
-        "These data would not reveal feet softer sideways than lengthwise (30 %, with which "
+        "These data (all measured frequencies, fitted or not, and the fitted damping, but no shapes) "
+        "would not reveal feet softer sideways than lengthwise (30 %, with which "
         "stiffness would be 9.5 % less than stated; revealed only from 95 %) and one foot softer "
         "than the others (30 %; not revealed at any likely size)." in shorts
     )
@@ -405,8 +413,27 @@ def test_another_law_that_is_not_revealed_is_spoken_of_by_powers_of_frequency() 
     found = Objection((), 8.0, 8, 0.4, unseen=(UndetectedError(law, 1.1, np.array([0.0, -0.2])),))
     shorts = sentences(replace(ANSWERS, scrutiny=Scrutiny(found))).questions[0].short
     assert (
-        "These data would not reveal loss that grows otherwise (ω^1, with which loss factor would be 18 % "
+        "These data (all measured frequencies, fitted or not, and the fitted damping, but no shapes) "
+        "would not reveal loss that grows otherwise (ω^1, with which loss factor would be 18 % "
         "less than stated; revealed only from ω^1.1)." in shorts
+    )
+
+
+def test_what_explains_frequencies_is_not_said_of_shapes() -> None:
+    """Growth of "1.2e+02 mm" was said to explain two shapes, on which no error is tried."""
+    growth = Tolerance("growth", "marine growth", 0.04, "m", "assumed", "look")
+    found = replace(
+        Objection((), 8.0, 8, 0.4, (Explanation(growth, 0.118, 2.95, 7.2),), suspected=(SOFT,)),
+        shapes=(ShapeCheck(10, 0.042, 0.002, 0.01, True),),
+    )
+    first, second = sentences(replace(objected_answers(), scrutiny=Scrutiny(found))).headline[:2]
+    assert first.startswith("Not explained: 4.2 % of fore-aft 3's shape lies outside") and first.endswith(
+        "and the frequencies and damping of the measured modes deviate in the pattern of feet softer "
+        "sideways than lengthwise."
+    )
+    assert (
+        "Most of the deviation of frequencies and damping would be explained by marine growth +120 mm."
+        == second
     )
 
 

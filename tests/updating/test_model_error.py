@@ -29,6 +29,7 @@ from jackettwin.updating import (
     support_model,
 )
 from jackettwin.updating.budget import SOURCES, budget_of_draws, damping_budget
+from jackettwin.updating.model_error.checks import _explanations
 from jackettwin.updating.model_error.error_model import DrawnErrors
 from jackettwin.updating.model_error.marginal import (
     drawn_scales,
@@ -460,6 +461,11 @@ def test_a_suspect_is_judged_without_the_tolerance_for_it(model: SupportModel, e
         hidden = replace(law, tolerance=replace(law.tolerance, beyond=""))
         said = objection(problem, bottom(problem, np.log(THETA), near), suspects=(hidden,))
         assert said is not None and not said.suspected
+    # of the suspect and the tolerance for it, one is named: it was told twice in other words
+    r, effect = np.array([3.0, 0.0]), np.array([-1.0, 0.0])
+    for asked_of, name in (((open_, law), "law"), ((open_,), "loss_growth")):
+        (one,) = _explanations([(direction, effect) for direction in asked_of], np.eye(2), r)
+        assert one.tolerance.name == name and one.size == pytest.approx(3.0)
 
 
 def test_ten_turbines_know_their_tower_better_than_one(

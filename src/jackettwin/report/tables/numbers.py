@@ -126,12 +126,13 @@ def listed(items: list[str]) -> str:
 
 
 def factor(value: float | None) -> str:
-    """Return a factor with two digits.
+    """Return a factor with two digits, with three just above one.
 
-    >>> factor(1.94), factor(915.3), factor(None)
-    ('1.9', '920', '–')
+    >>> factor(1.94), factor(915.3), factor(1.036), factor(None)
+    ('1.9', '920', '1.04', '–')
     """
-    return UNKNOWN if value is None or not math.isfinite(value) else f"{float(f'{value:.2g}'):g}"
+    digits = 3 if value is not None and 1.0 < value < 1.1 else 2
+    return UNKNOWN if value is None or not math.isfinite(value) else f"{float(f'{value:.{digits}g}'):g}"
 
 
 _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))

@@ -432,10 +432,10 @@ def _ground(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
         said = ["No law was fitted."]
     first, more = _firsts(a), []
     if first and all(_softening(m) > 0.0 for m in first):
-        lower = listed([f"{words(m.label)} by {_moved(m)}" for m in first])
-        more.append(
-            f"Compared with rigid feet, the ground lowers {lower}; the data show no other effect of it."
-        )
+        moved = [m for m in a.modes if m.measured_hz is not None and _softening(m) > _NOTHING]
+        if moved:
+            lower = listed([f"{words(m.label)} by {_moved(m)}" for m in moved])
+            more.append(f"Compared with rigid feet, the ground lowers {lower}.")
     return tuple(said[:_MOST]), (*said[_MOST:], *more)
 
 

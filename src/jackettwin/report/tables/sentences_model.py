@@ -33,12 +33,21 @@ def step(tolerance: Tolerance) -> tuple[float, str]:
 def size_words(tolerance: Tolerance, size: float) -> str:
     """Return a size of a tolerance with its sign and unit."""
     if tolerance.unit == "-":
-        return f"{100.0 * size:+.2g} %".replace("-", "−")
+        return f"{_rounded(100.0 * size)} %"
     if tolerance.unit == "m" and tolerance.name not in _METRES:
-        return f"{1000.0 * size:+.2g} mm".replace("-", "−")
+        return f"{_rounded(1000.0 * size)} mm"
     if tolerance.unit == "power":
-        return f"ω^{size:.2g}".replace("-", "−")
-    return f"{size:+.2g} {tolerance.unit}".replace("-", "−")
+        return f"ω^{_rounded(size).lstrip('+')}"
+    return f"{_rounded(size)} {tolerance.unit}"
+
+
+def _rounded(size: float) -> str:
+    """Return a size with its sign and two significant digits, never with an exponent.
+
+    >>> _rounded(118.1), _rounded(-0.0345)
+    ('+120', '−0.035')
+    """
+    return f"{float(f'{size:.2g}'):+g}".replace("-", "−")
 
 
 def moved_words(tolerance: Tolerance, effect: float) -> str:
@@ -70,15 +79,18 @@ def objection_sentences(a: Answers) -> list[str]:
     said = [_stray(check, labels) for check in objected(a)]
     said += [_shape(check, labels) for check in o.shapes if check.objects]
     said += [_order(check, labels) for check in o.orders if check.objects]
-    if not said and o.suspected:
-        said = [f"the measured modes deviate in the pattern of {listed([t.words for t in o.suspected])}"]
+    if o.suspected and not any(check.objects for check in o.checks):
+        what = "measured modes" if not said else "frequencies and damping of the measured modes"
+        said.append(f"the {what} deviate in the pattern of {listed([t.words for t in o.suspected])}")
     together = (
         "together, the measured modes deviate from all models within the tolerances by more than chance"
     )
     by = [f"{e.tolerance.words} {size_words(e.tolerance, e.size)}" for e in o.explanations]
+    beside = any(check.objects for checks in (o.shapes, o.orders) for check in checks)
+    what = "the deviation of frequencies and damping" if beside else "it"  # no error is tried on shapes
     return [
         f"Not explained: {listed(said) if said else together}.",
-        f"Most of it would be explained by {', or '.join(by)}." if by else "",
+        f"Most of {what} would be explained by {', or '.join(by)}." if by else "",
     ]
 
 
@@ -165,11 +177,16 @@ def _most(a: Answers, i: int, g: GroundAnswer) -> str:
 
 
 def unseen_sentence(a: Answers) -> str:
-    """Return possible errors of the model that these data would not reveal, and their size."""
+    """Return possible errors of the model that these data would not reveal, and their size.
+
+    They are sought in what is listed: shapes are compared on their own, and other damping is not used.
+    """
     if a.scrutiny is None or a.scrutiny.objection is None:
         return ""
     said = [_unseen(a, one) for one in a.scrutiny.objection.unseen]
-    return f"These data would not reveal {listed(said)}." if said else ""
+    fitted = any(m.fits_damping for m in a.modes)
+    data = f"all measured frequencies, fitted or not{', and the fitted damping' if fitted else ''}"
+    return f"These data ({data}, but no shapes) would not reveal {listed(said)}." if said else ""
 
 
 def _unseen(a: Answers, one: UndetectedError) -> str:

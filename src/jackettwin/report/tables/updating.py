@@ -101,7 +101,10 @@ def damped_undamped_table(result: TwinResult) -> Table:
     for i, m in enumerate(result.measured):
         pairs = ((u.modes.frequency_hz[i], u.modes.undamped_hz[i]) for u in result.updates)
         rows.append((words(m.label), *(frequency(float(f)) for pair in pairs for f in pair)))
-    caption = "Is a damper locked? Damped and undamped frequencies of the full updated model."
+    caption = (
+        "Is a damper locked? Damped and undamped frequencies of the full model at the best fit, without the "
+        "tolerances."
+    )
     return Table(caption, tuple(columns), tuple(rows))
 
 

@@ -293,7 +293,10 @@ def _strays(W: FloatArray, Wr: FloatArray, judged: Sequence[int], limit: float) 
 
 
 def _explanations(columns: list[Column], W: FloatArray, Wr: FloatArray) -> tuple[Explanation, ...]:
-    """Return the single errors that reduce χ² most, each name once."""
+    """Return the single errors that reduce χ² most, each name once.
+
+    A tolerance that allows for a part of a suspect is the same error, and is left out where that is named.
+    """
     best: dict[str, Explanation] = {}
     for direction, gamma in columns:
         seen = float(gamma @ W @ gamma)
@@ -305,4 +308,6 @@ def _explanations(columns: list[Column], W: FloatArray, Wr: FloatArray) -> tuple
         one = Explanation(tolerance, size * tolerance.std, size, float(gamma @ Wr) ** 2 / seen)
         if one.gain >= max(_WORTH, best[tolerance.name].gain if tolerance.name in best else 0.0):
             best[tolerance.name] = one
-    return tuple(sorted(best.values(), key=lambda one: -one.gain)[:_MOST])
+    suspects = {one.tolerance.beyond for one in best.values()}
+    named = [one for one in best.values() if one.tolerance.name not in suspects]
+    return tuple(sorted(named, key=lambda one: -one.gain)[:_MOST])
