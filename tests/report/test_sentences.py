@@ -17,7 +17,7 @@ from jackettwin.answers.result import (
     ModeAnswer,
     NextStep,
 )
-from jackettwin.report.tables.answers import ground_table
+from jackettwin.report.tables.answers import budget_table, ground_table
 from jackettwin.report.tables.sentences import _model, percent_words, sentences, span_words
 from jackettwin.study.scrutiny import Scrutiny
 from jackettwin.updating import (
@@ -87,6 +87,25 @@ def test_why_a_rotor_damps_is_said_where_it_is_the_largest_source(
     told = next(q.short for q in said.questions if q.title == "Whose damping is it?")
     found = [text for text in told if text.startswith("Why the rotor")]
     assert len(found) == bool(why) and all(why in text and "11.6 m/s" in text for text in found)
+
+
+def test_a_dashpot_that_no_datum_constrains_is_no_damping() -> None:
+    """Its bounds were told as damping: "the rotor 0.45 % (0.0065 to 53 %)", and the rest as unexplained."""
+    sources = {**MODE.sources, "rotor": Span(0.0045, 0.000065, 0.53)}
+    free = replace(
+        MODE, label="side_side_1", measured_damping=Span(0.0175, 0.014, 0.021), fits_damping=False,
+        sources=sources, model_damping=Span(0.0165, 0.01, 0.53), open_dashpot="c_side_side",
+    )  # fmt: skip
+    assert free.unexplained is None and replace(free, open_dashpot="").unexplained is not None
+    said = sentences(replace(ANSWERS, modes=(MODE, free)))
+    told = next(q for q in said.questions if q.title == "Whose damping is it?").short
+    assert "rotor 0.45 %" not in " ".join(told) and "53" not in " ".join((*told, *said.headline))
+    assert told[1].endswith("the rotor and what is unexplained are not known (c_side_side is open).")
+    assert any("update.damping_of leaves out the damping of side-side modes" in text for text in told)
+    assert "not\nconstrained" in budget_table(replace(ANSWERS, modes=(free,))).rows[0]
+    # a part whose order of magnitude is open has an upper end only
+    wide = replace(MODE, sources={**MODE.sources, "rotor": Span(0.002, 0.00005, 0.004)})
+    assert "the rotor at most 0.4 %" in " ".join(_owners_of(wide))
 
 
 def test_damping_that_no_source_explains_is_shared_out_to_none() -> None:

@@ -297,6 +297,14 @@ def test_records_in_wind_without_a_rotor_are_a_caution(pile: TwinResult) -> None
     bare = replace(config, update=config.update.model_copy(update={"dashpots": (), "rotor": None}))
     assert any("upper limit" in line for line in cautions(bare, found, fitted, ()))
     assert not any("upper limit" in line for line in cautions(config, found, fitted, ()))
+    # a dashpot without a prior, of whose direction no damping is fitted
+    u = pile.updates[0]
+    flat = tuple(replace(p, median=None, log_std=None) for p in u.problem.parameters)
+    bare = replace(u, problem=replace(u.problem, parameters=flat))
+    seen = tuple(replace(m, fits_damping=m.label.startswith("fore_aft")) for m in pile.measured)
+    lines = [line for line in cautions(config, None, seen, (bare,)) if "No datum constrains" in line]
+    assert len(lines) == 1 and "c_side_side" in lines[0] and "damping_of" in lines[0]
+    assert not any("No datum constrains" in line for line in cautions(config, None, seen, (u,)))
 
 
 def test_cautions_say_a_thing_once_and_speak_of_modes_that_are_sure(pile: TwinResult) -> None:

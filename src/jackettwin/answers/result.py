@@ -73,6 +73,8 @@ class ModeAnswer:
         Relative standard deviation by which the twin says that the model misses the frequency.
     number : int
         On pinned supports, from 1.
+    open_dashpot : str
+        Dashpot that gives the rotor's part, if no datum and no prior constrains it.
     """
 
     label: str
@@ -87,11 +89,17 @@ class ModeAnswer:
     sources: Mapping[str, Span]
     model_error: float = 0.0
     number: int = 0
+    open_dashpot: str = ""
+
+    @property
+    def given_sources(self) -> Mapping[str, Span]:
+        """The sources that data or stated values determine: not an open dashpot's."""
+        return {name: span for name, span in self.sources.items() if name != "rotor" or not self.open_dashpot}
 
     @property
     def unexplained(self) -> float | None:
-        """Measured damping ratio beyond that of all sources; None if nothing is, or was not measured."""
-        if self.measured_damping is None or not self.sources:
+        """Measured damping ratio beyond that of all sources; None if nothing is, or it is not known."""
+        if self.measured_damping is None or not self.sources or self.open_dashpot:
             return None
         measured = self.measured_damping.value
         beyond = measured - sum(span.value for span in self.sources.values())
@@ -111,7 +119,7 @@ class ModeAnswer:
         if self.measured_damping is None or self.measured_damping.high is None:
             return ()
         most = self.measured_damping.high
-        return tuple(name for name, span in self.sources.items() if (span.low or span.value) > most)
+        return tuple(name for name, span in self.given_sources.items() if (span.low or span.value) > most)
 
     @property
     def as_designed(self) -> bool | None:

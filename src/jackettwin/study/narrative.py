@@ -188,6 +188,7 @@ def cautions(
             *_strangers(found, labels, every=not updates),
         ]
         lines += _wind_without_rotor(config, found, measured)
+    lines += _open_dashpots(config, measured, updates)
     lines += [*_unweighted(config, measured, updates), *_rotor_without_wind(config, updates)]
     for u in updates:
         if u.best.locked_damper:
@@ -250,7 +251,24 @@ def _wind_without_rotor(config: TwinConfig, found: Measured, measured: tuple[Mea
     return [
         f"The records were taken in wind, up to {max(winds):.3g} m/s, and the twin has no rotor: its damping "
         f"of {', '.join(fitted)} is attributed to the supports, so that their damping is an upper limit. "
-        "Give update.rotor or update.dashpots."
+        "Give update.rotor, or update.dashpots with the damping that determines them: update.damping_of: all "
+        "fits that of side-side modes, too."
+    ]
+
+
+def _open_dashpots(
+    config: TwinConfig, measured: tuple[MeasuredMode, ...], updates: tuple[Update, ...]
+) -> list[str]:
+    """Return the dashpots without a prior of whose direction no damping is fitted."""
+    fitted = [m.label for m in measured if m.fits_damping]
+    flat = {u.problem.parameters[i].name for u in updates for i in _dashpots(config, u)
+            if u.problem.parameters[i].median is None}  # fmt: skip
+    return [
+        f"No datum constrains {name}: no damping of {name.removeprefix('c_')} modes is fitted "
+        "(update.damping_of); its interval is that of its bounds. Fit it (update.damping_of: all), or give "
+        "update.rotor."
+        for name in config.update.dashpots
+        if name in flat and not any(label.startswith(name.removeprefix("c_")) for label in fitted)
     ]
 
 

@@ -103,16 +103,16 @@ def damping_bars(modes: Sequence[ModeAnswer]) -> Markup | None:
 
     The measured damping is below it.
     """
-    shown = [m for m in modes if m.sources]
+    shown = [m for m in modes if m.given_sources]
     if not shown:
         return None
-    sources = [s for s in SOURCE_COLOURS if any(s in m.sources for m in shown)]
+    sources = [s for s in SOURCE_COLOURS if any(s in m.given_sources for m in shown)]
     row, head = 30.0, 24.0
     c = Canvas(_WIDTH, head + row * len(shown) + 40.0, "Damping of each mode by source")
     left, right = 112.0, _WIDTH - 18.0
     most = max(
         max(
-            sum(s.value for s in m.sources.values()),
+            sum(s.value for s in m.given_sources.values()),
             0.0 if m.measured_damping is None else m.measured_damping.high or m.measured_damping.value,
         )
         for m in shown
@@ -141,8 +141,8 @@ def damping_bars(modes: Sequence[ModeAnswer]) -> Markup | None:
         y, start = head + row * i, 0.0
         c.text(left - 8, y + 18, words(m.label), anchor="end")
         for source in sources:
-            if source in m.sources:
-                value = max(m.sources[source].value, 0.0)
+            if source in m.given_sources:
+                value = max(m.given_sources[source].value, 0.0)
                 c.box(x(start), y + 4, x(start + value) - x(start), 13, colour=SOURCE_COLOURS[source])
                 start += value
         if m.unexplained is not None:

@@ -116,7 +116,10 @@ def budget_table(a: Answers) -> Table:
             words(m.label),
             _cell(m.measured_damping, 100.0, 2),
             _cell(m.model_damping, 100.0, 2),
-            *(_cell(m.sources.get(s), 100.0, 3) for s in sources),
+            *(
+                "not\nconstrained" if s == "rotor" and m.open_dashpot else _cell(m.sources.get(s), 100.0, 3)
+                for s in sources
+            ),
             *([UNKNOWN if m.unexplained is None else fixed(100.0 * m.unexplained, 3)] if beyond else []),
         )
         for m in a.modes

@@ -254,7 +254,7 @@ def _shares(m: ModeAnswer) -> dict[str, float]:
     """
     if m.measured_damping is None:
         return {}
-    parts = {source: span.value for source, span in m.sources.items()}
+    parts = {source: span.value for source, span in m.given_sources.items()}
     parts |= {} if m.unexplained is None else {_UNEXPLAINED: m.unexplained}
     whole = max(m.measured_damping.value, sum(parts.values()))
     return {name: part / whole for name, part in parts.items()}
@@ -262,7 +262,7 @@ def _shares(m: ModeAnswer) -> dict[str, float]:
 
 def _times(m: ModeAnswer) -> float:
     """Return the damping in the model as a multiple of the measured one; 1 without."""
-    whole = sum(span.value for span in m.sources.values())
+    whole = sum(span.value for span in m.given_sources.values())
     return 1.0 if m.measured_damping is None else whole / m.measured_damping.value
 
 
@@ -294,7 +294,7 @@ def _alone(m: ModeAnswer) -> dict[str, float]:
     """Return the sources that alone give more than the measured damping, as multiples of it."""
     if m.measured_damping is None:
         return {}
-    times = {source: span.value / m.measured_damping.value for source, span in m.sources.items()}
+    times = {source: span.value / m.measured_damping.value for source, span in m.given_sources.items()}
     return {source: share for source, share in times.items() if share > 1.0 + SMALL}
 
 
@@ -486,7 +486,7 @@ def _averaged(a: Answers) -> list[str]:
 
 def _owners(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     short = [_budget_words(m) for m in _firsts(a) if m.sources and m.measured_damping is not None]
-    short += _of_rotor(a)
+    short += [*_open_dashpots(a), *_of_rotor(a)]
     unexplained = set()
     for m in _firsts(a):
         beyond = m.unexplained or 0.0
@@ -505,9 +505,28 @@ def _owners(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     return tuple(short), ()
 
 
+def _open_dashpots(a: Answers) -> list[str]:
+    """Return which dashpots of the rotor no datum constrains, and what would."""
+    said = []
+    for name in dict.fromkeys(m.open_dashpot for m in a.modes if m.open_dashpot):
+        kind = name.removeprefix("c_")
+        fitted = any(m.fits_damping for m in a.modes if m.label.startswith(kind))
+        why = (
+            "the fitted damping does not determine it"
+            if fitted
+            else f"update.damping_of leaves out the damping of {kind.replace('_', '-')} modes"
+        )
+        said.append(
+            f"No datum constrains the rotor's dashpot {name}: {why}. Fit that damping too (damping_of: all), "
+            "or state the rotor (update.rotor)."
+        )
+    return said
+
+
 def _of_rotor(a: Answers) -> list[str]:
     """Return why the rotor damps a first bending mode of which it is the largest source."""
-    owners = {m.label: max(m.sources, key=lambda s: m.sources[s].value) for m in _firsts(a) if m.sources}
+    sources = {m.label: m.given_sources for m in _firsts(a) if m.given_sources}
+    owners = {label: max(of, key=lambda s: of[s].value) for label, of in sources.items()}
     damped = [label for label, owner in owners.items() if owner == "rotor"]
     wind = "" if a.wind_m_s is None else f" ({a.wind_m_s:.3g} m/s on average in these records)"
     if a.rotor_state == "parked" and any(label.startswith("side_side") for label in damped):
@@ -525,12 +544,14 @@ def _of_rotor(a: Answers) -> list[str]:
 
 
 def _budget_words(m: ModeAnswer) -> str:
-    whole = sum(span.value for span in m.sources.values())
+    whole = sum(span.value for span in m.given_sources.values())
     parts = [
-        f"{_SOURCES[s]} {percent_words(span)}"
-        for s, span in sorted(m.sources.items(), key=lambda item: -item[1].value)
+        f"{_SOURCES[s]} {percent_words(span) if _roughly(span) else _not_known(span)}"
+        for s, span in sorted(m.given_sources.items(), key=lambda item: -item[1].value)
         if span.value > SMALL * whole or s == "soil"
     ]
+    if m.open_dashpot:
+        parts.append(f"the rotor and what is unexplained are not known ({m.open_dashpot} is open)")
     if m.unexplained is not None:
         parts.append(f"unexplained {percent_words(Span(m.unexplained))}")
     measured, more = "", ""
@@ -538,6 +559,16 @@ def _budget_words(m: ModeAnswer) -> str:
         measured, times = percent_words(m.measured_damping), _times(m)
         more = f"; together {times:.1f} times the measured value" if times > 1.0 + SMALL else ""
     return f"{words(m.label).capitalize()} has a measured damping of {measured}: {', '.join(parts)}{more}."
+
+
+def _roughly(span: Span) -> bool:
+    """Return whether a part is known to a factor of ten, or states no interval."""
+    return span.low is None or span.high is None or span.high <= WIDE * span.low
+
+
+def _not_known(span: Span) -> str:
+    """Return a part of the damping whose order of magnitude is not known: only its upper end counts."""
+    return f"at most {100.0 * (span.high or span.value):.2g} %"
 
 
 def _disagrees(m: ModeAnswer) -> bool:
