@@ -117,7 +117,7 @@ def test_the_design_is_what_the_prior_allows(answers: Answers) -> None:
 
 
 def test_sources_add_up_to_the_model(answers: Answers, result: TwinResult) -> None:
-    """To what the full model damps at the parameters as they are told, their medians."""
+    """To its damping as told, to rounding; that is near what it damps at the medians of the parameters."""
     u = recommended(result.updates)
     assert u is not None and u.uncertainty is not None
     theta = u.problem.vectors(np.log(u.uncertainty.median)[None], u.problem.states[0])[0]
@@ -125,7 +125,9 @@ def test_sources_add_up_to_the_model(answers: Answers, result: TwinResult) -> No
     for i, mode in enumerate(answers.modes):
         assert set(mode.sources) == {"structure", "soil"}
         whole = sum(span.value for span in mode.sources.values())
-        assert whole == pytest.approx(float(exact.damping_ratio[i]), rel=1e-6)
+        assert mode.model_damping is not None and whole == pytest.approx(mode.model_damping.value, rel=1e-9)
+        # medians of 60 draws a chain: a tenth of the interval's 10 %
+        assert whole == pytest.approx(float(exact.damping_ratio[i]), rel=0.01)
 
 
 def test_the_approximate_probability_is_near_the_sampled_one(result: TwinResult) -> None:
@@ -164,6 +166,16 @@ def test_the_second_bending_tells_more_of_the_ground_s_damping_than_torsion(resu
         for step in next_steps(alone, result.measured[:2], ["c"], result.labels, days=0.0)
     }
     assert found["second_bending"] < 0.9 * found["torsion"]
+    # what was measured and not fitted comes first, and narrows as the fit of it does
+    first = next_steps(alone, result.measured, ["k"], result.labels, days=0.0)[0]
+    assert (first.what, first.modes) == ("modes", (4,))
+    with_f4 = (*TARGETS[:2], replace(TARGETS[2], damping_ratio=None, damping_ratio_std=None))
+    fitted = update(single(model, Residuals(with_f4, relative=False)), starts=2, particles=60)
+    assert alone.uncertainty is not None and fitted.uncertainty is not None
+    before, after = (u.uncertainty.verdicts[0].interval_factor for u in (alone, fitted))
+    # a fifth of the logarithm: the expectation is at draws of the wider posterior
+    assert np.log(first.factors["k"]) == pytest.approx(np.log(after), rel=0.2)
+    assert np.log(after) < 0.8 * np.log(before)
 
 
 def test_the_number_of_records_goes_with_the_square_of_the_precision(result: TwinResult) -> None:

@@ -229,6 +229,25 @@ def test_a_step_that_narrows_nothing_is_not_advised() -> None:
     assert "ecord 1 hour in the same way" in told and "to a factor of 1.9 (now 40)" in told
 
 
+def test_what_is_measured_already_is_the_first_thing_advised() -> None:
+    """Sensors at the feet and 228 days were advised beside two measured modes that no fit used."""
+    free = NextStep("modes", {"loss_factor": 9.0}, modes=(6, 7))
+    page = sentences(replace(ANSWERS, next_steps=(free, *ANSWERS.next_steps)))
+    first, second = page.questions[-1].short[:2]
+    assert first.startswith("Fit modes 6 and 7 too (update.modes), measured already in these 5 records; ")
+    assert first.endswith("It narrows the 90 % interval of loss factor to a factor of 9 (now 40).")
+    assert second.startswith("Measure at the feet")
+    assert page.headline == sentences(ANSWERS).headline
+    enough = replace(free, factors={"loss_factor": 1.04})
+    page = sentences(replace(ANSWERS, next_steps=(enough, *ANSWERS.next_steps)))
+    assert page.headline[-1] == "The ground's damping would be determined by fitting modes 6 and 7 too."
+    assert "to a factor of 1.04 (now 40)" in page.questions[-1].short[0]
+    useless = replace(free, factors={"loss_factor": 40.0})
+    assert "odes 6" not in " ".join(
+        sentences(replace(ANSWERS, next_steps=(useless, *ANSWERS.next_steps))).questions[-1].short
+    )
+
+
 def test_thousands_of_years_are_not_advised() -> None:
     ages = NextStep("records", {"loss_factor": 12.0}, 3e6)
     said = " ".join(str(part) for part in sentences(replace(ANSWERS, next_steps=(ages,))).__dict__.values())

@@ -39,6 +39,8 @@ def next_steps(
 ) -> tuple[NextStep, ...]:
     """Return what could be measured for parameters that are not identified, the most telling first.
 
+    Before all of it comes what needs no measurement: to fit frequencies that were measured and not fitted.
+
     Parameters
     ----------
     names : of the parameters that are to become known
@@ -68,10 +70,13 @@ def next_steps(
         for what, changed in _candidates(problem, own, labels, draws.mean(axis=0)).items()
         if (found := factors(changed)) is not None
     ]
+    unfitted, more = _with_unfitted(problem, own)
+    free = factors(more) if unfitted else None
     steps.append(NextStep("feet", _at_the_feet(u, names, now)))
     if days > 0.0:
         steps.append(_more_records(lambda k: factors(_repeated(problem, own, k)), days))
-    return tuple(sorted(steps, key=lambda step: _left(step.factors)))
+    steps.sort(key=lambda step: _left(step.factors))
+    return (*([] if free is None else [NextStep("modes", free, modes=unfitted)]), *steps)
 
 
 def _at_the_feet(u: Update, names: Sequence[str], now: Mapping[str, float]) -> dict[str, float]:
@@ -146,6 +151,20 @@ def _with_modes(problem: Problem, modes: tuple[int, ...], z: FloatArray) -> Prob
         if np.isfinite(pole[i])
     )
     return _with_state(reaching, targets, []) if targets else problem
+
+
+def _with_unfitted(problem: Problem, own: Mapping[int, MeasuredMode]) -> tuple[tuple[int, ...], Problem]:
+    """Return the measured modes whose frequency is not fitted, and the problem with their frequencies."""
+    fitted = {t.mode for t in problem.states[0].residuals.targets if t.frequency_hz is not None}
+    targets = tuple(
+        Target(mode, m.frequency_hz, m.frequency_std_hz)
+        for mode, m in sorted(own.items())
+        if mode not in fitted and m.frequency_hz and m.frequency_std_hz
+    )
+    modes = tuple(t.mode for t in targets)
+    if not modes:
+        return (), problem
+    return modes, _with_state(problem.on(problem.model.reaching(max(modes))), targets, [])
 
 
 def _share(std: float | None, value: float) -> float:

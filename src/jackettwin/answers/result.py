@@ -251,6 +251,8 @@ class NextStep:
     factors: Mapping[str, float]
     days: float | None = None
     """Length of the records it takes, if it is a matter of length."""
+    modes: tuple[int, ...] = ()
+    """Of ``what="modes"``, numbers of measured modes that are not fitted."""
 
 
 @dataclass(frozen=True)

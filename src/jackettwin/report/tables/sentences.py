@@ -323,12 +323,14 @@ def _largest(a: Answers) -> dict[str, list[str]]:
 def _next_headline(a: Answers) -> str:
     if not a.next_steps:
         return ""
-    best = a.next_steps[0]
+    # what is free is said before what is not, but is no headline unless it is enough
+    best = next((s for s in a.next_steps if s.what != "modes" or _enough(a, s)), a.next_steps[0])
     kinds = dict.fromkeys(g.kind for g in a.ground if g.name in best.factors)
     if best.what == "records" and not _enough(a, best):
         return f"No single measurement determines the ground's {listed(list(kinds))}: see what to do next."
     what = _STEPS.get(best.what, _records(a, best)).split(":")[0]
-    return f"The ground's {listed(list(kinds))} would be determined by {_GERUNDS.get(best.what, what)}."
+    by = f"fitting {_unfitted(best)} too" if best.what == "modes" else _GERUNDS.get(best.what, what)
+    return f"The ground's {listed(list(kinds))} would be determined by {by}."
 
 
 def _model(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -652,8 +654,10 @@ def _percent(log_change: float) -> str:
 def _next(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     if a.fit is not None and not a.fit.fits:
         return (f"{mend(a.fit)}. Then run again: only a model that fits shows what to measure next.",), ()
-    first = {step.what == "records": step for step in reversed(a.next_steps)}  # the best of either kind
-    short = [_step(a, step) for step in a.next_steps if step in first.values()]
+    # what is measured already, if it helps; then the best of either kind
+    told = [step for step in a.next_steps if step.what != "modes" or _gains(a, step)]
+    first = {step.what if step.what in ("modes", "records") else "": step for step in reversed(told)}
+    short = [_step(a, step) for step in told if step in first.values()]
     open_ = [g for g in a.ground if g.verdict != "identified"]
     if a.ground and not open_:
         short = ["The ground is known well enough. Monitor it: `jackettwin follow`, `jackettwin watch`."]
@@ -665,7 +669,7 @@ def _next(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
             f"For damping ratios to ±{100 * a.precision:.0f} %, this many records like these are "
             f"needed: {listed(needs)} (now {a.records})."
         )
-    rest = [step for step in a.next_steps if step not in first.values() and _gains(a, step)]
+    rest = [step for step in told if step not in first.values() and _gains(a, step)]
     return tuple(short), tuple(_step(a, step) for step in rest)
 
 
@@ -691,7 +695,17 @@ def _gains(a: Answers, step: NextStep) -> list[str]:
 
 def step_words(a: Answers, step: NextStep) -> str:
     """Return a step in words."""
+    if step.what == "modes":
+        return (
+            f"fit {_unfitted(step)} too (update.modes), measured already in {data_words(a)}; higher modes "
+            "depend more on blades and brace details"
+        )
     return _STEPS.get(step.what, _records(a, step))
+
+
+def _unfitted(step: NextStep) -> str:
+    """Return the modes of a step by their numbers, as ``update.modes`` has them."""
+    return f"{'modes' if len(step.modes) > 1 else 'mode'} {listed([str(mode) for mode in step.modes])}"
 
 
 def _now(a: Answers, name: str) -> float | None:
