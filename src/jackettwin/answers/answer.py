@@ -23,7 +23,6 @@ from jackettwin.intervals import NORMAL_90, interval_90
 from jackettwin.soil import Parameter, families, law_parameter
 from jackettwin.study import MeasuredMode, Scrutiny, TwinResult
 from jackettwin.updating import (
-    DASHPOTS,
     SOURCES,
     USABLE,
     Update,
@@ -118,21 +117,10 @@ def _modes(result: TwinResult, u: Update | None) -> tuple[ModeAnswer, ...]:
             model_damping=None if u is None else _model_damping(u, i, m),
             sources={} if u is None else _sources(u, i),
             model_error=0.0 if u is None else _model_error(u, m),
-            open_dashpot="" if u is None else _open_dashpot(u, m.label),
+            open_dashpot="" if u is None else u.open_dashpot(m.label),
         )
         for i, m in enumerate(result.measured)
     )
-
-
-def _open_dashpot(u: Update, label: str) -> str:
-    """Return the dashpot along a bending mode if no datum and no prior constrains it, else nothing."""
-    if u.uncertainty is None:
-        return ""
-    for p, verdict in zip(u.problem.parameters, u.uncertainty.verdicts, strict=True):
-        along = p.name in DASHPOTS and label.startswith(p.name.removeprefix("c_"))
-        if along and p.median is None and verdict.verdict == "unidentified":
-            return p.name
-    return ""
 
 
 def _model_error(u: Update, m: MeasuredMode) -> float:

@@ -256,6 +256,10 @@ def _wind_without_rotor(config: TwinConfig, found: Measured, measured: tuple[Mea
     ]
 
 
+def _kind(dashpot: str) -> str:
+    return dashpot.removeprefix("c_").replace("_", "-")
+
+
 def _open_dashpots(
     config: TwinConfig, measured: tuple[MeasuredMode, ...], updates: tuple[Update, ...]
 ) -> list[str]:
@@ -264,7 +268,7 @@ def _open_dashpots(
     flat = {u.problem.parameters[i].name for u in updates for i in _dashpots(config, u)
             if u.problem.parameters[i].median is None}  # fmt: skip
     return [
-        f"No datum constrains {name}: no damping of {name.removeprefix('c_')} modes is fitted "
+        f"No datum constrains {name}: no damping of {_kind(name)} modes is fitted "
         "(update.damping_of); its interval is that of its bounds. Fit it (update.damping_of: all), or give "
         "update.rotor."
         for name in config.update.dashpots

@@ -26,7 +26,7 @@ class DampingExcess:
     support : float
         Part of the steel, the soil and the water in the model's damping ratio.
     rotor : float
-        Part of the nacelle's dashpots; 0 without them.
+        Part of the nacelle's dashpots; 0 without them, NaN of one that no datum and no prior constrains.
     """
 
     label: str

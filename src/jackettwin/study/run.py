@@ -224,7 +224,11 @@ def _judged(u: Update, s: Scrutiny) -> Update:
 def _excess(measured: tuple[MeasuredMode, ...], result: Update) -> tuple[DampingExcess, ...]:
     return tuple(
         DampingExcess(
-            m.label, m.damping_ratio, m.damping_ratio_std, float(steel + soil + sum(water)), float(rotor)
+            m.label,
+            m.damping_ratio,
+            m.damping_ratio_std,
+            float(steel + soil + sum(water)),
+            float("nan") if result.open_dashpot(m.label) else float(rotor),
         )
         for m, (steel, soil, rotor, *water) in zip(measured, result.budget.damping_ratio, strict=True)
         if m.damping_ratio is not None and not np.isnan(steel)

@@ -68,14 +68,20 @@ def damping_budget(
 def budget_of_draws(modes: tuple[int, ...], draws: FloatArray) -> Budget:
     """Return the budget of draws of each source's damping ratio (n_draws, n_modes, n_sources).
 
-    Medians of parts do not add up: they are scaled to the median of the whole, which is the reported ζ.
+    Medians of parts do not add up. What the parts are on average where the whole is at its median, the
+    reported ζ, does: it is a line through the middle half of the draws.
     """
-    known = ~np.isnan(draws).all(axis=(0, 2))
     ratio, interval = np.full(draws.shape[1:], np.nan), np.full((*draws.shape[1:], 2), np.nan)
-    low, middle, high = np.nanquantile(draws[:, known], QUANTILES, axis=0)
-    whole = np.nanmedian(draws[:, known].sum(axis=2), axis=0)
-    ratio[known] = middle * (whole / middle.sum(axis=1))[:, None]
-    interval[known] = np.stack([low, high], axis=-1)
+    for m in range(len(modes)):
+        parts = draws[~np.isnan(draws[:, m]).any(axis=1), m]
+        if len(parts) == 0:
+            continue
+        whole = parts.sum(axis=1)
+        near = np.argsort(whole)[len(parts) // 4 : len(parts) - len(parts) // 4]
+        off = whole[near] - whole[near].mean()
+        slope = off @ parts[near] / max(float(off @ off), np.finfo(float).tiny)
+        ratio[m] = parts[near].mean(axis=0) + slope * (np.median(whole) - whole[near].mean())
+        interval[m] = np.quantile(parts, QUANTILES[::2], axis=0).T
     return Budget(modes, ratio, interval)
 
 

@@ -17,6 +17,7 @@ from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.budget import Budget, budget_of_draws, damping_budget
 from jackettwin.updating.data.misfit import misfit
 from jackettwin.updating.model import ExactModes, SupportModel
+from jackettwin.updating.nuisance_parameters import DASHPOTS
 from jackettwin.updating.posterior.identifiability import Verdict, identifiability
 from jackettwin.updating.posterior.laplace import laplace_draws, log_covariance
 from jackettwin.updating.posterior.nested_sampling import sample_nested
@@ -192,6 +193,15 @@ class Update:
     def budget(self) -> Budget:
         """Sources of the damping of each of these modes."""
         return self.fit.budget
+
+    def open_dashpot(self, label: str) -> str:
+        """Return the rotor's dashpot along a mode if no datum and no prior constrains it, else ``""``."""
+        known = () if self.uncertainty is None else self.uncertainty.verdicts
+        for p, verdict in zip(self.problem.parameters, known, strict=False):
+            along = p.name in DASHPOTS and label.startswith(p.name.removeprefix("c_"))
+            if along and p.median is None and verdict.verdict == "unidentified":
+                return p.name
+        return ""
 
     @property
     def uncertainty(self) -> Uncertainty | None:
