@@ -166,13 +166,13 @@ def watch_table(
     pending: PendingChange | None = None
     for day in rest.by_day():
         progress(f"{table.time(float(day.days[0])):%Y-%m}")
+        watch, look = step(watch, day)  # first, as for a living asset: both tell the same gains
+        looks.append(look)
         if pending is not None:
             pending, change = look_again(pending, day)
             if change is not None:
                 past = _past(table, alarms[:-1])
                 alarms[-1] = _looked_again(alarms[-1], explained_alarm(change, watch, baseline, seen, past))
-        watch, look = step(watch, day)
-        looks.append(look)
         if look.change is not None:
             alarms[-1:] = [_before(one, look.change) for one in alarms[-1:]]
             past = _past(table, alarms)
