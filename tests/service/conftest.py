@@ -93,7 +93,7 @@ class Here:
         """Nothing to stop."""
 
 
-def quick(model: Any, waveform: Path, conditions: dict[str, Any], picks: Any = ()) -> tuple[Any, ...]:
+def quick(model: Any, waveform: Path, conditions: dict[str, Any], picks: Any = ()) -> engine.ObservationRows:
     """Stand in for the identification: two modes whose frequencies depend on the samples alone."""
     record = read_waveform(waveform)
     a, b = (0.18 + 1e-4 * float(np.nansum(record.data)) % 1e-3, 0.55)
@@ -116,7 +116,7 @@ def quick(model: Any, waveform: Path, conditions: dict[str, Any], picks: Any = (
         }
         for number, mode in modes.items()
     )
-    return json.dumps(OBSERVATION.dump(seen)), rows, ()
+    return engine.ObservationRows(json.dumps(OBSERVATION.dump(seen)), rows, (), None)
 
 
 def record_file(k: int = 0, *, samples: int = 200, gap: tuple[int, int] = (0, 0)) -> bytes:

@@ -132,10 +132,9 @@ def test_what_examination_set_aside_is_found_once(
     assert first == again
     assert asked == [record_views.stretches]
 
-    def observed(model: Any, waveform: Path, *more: Any) -> tuple[Any, ...]:
-        document, *rows = quick(model, waveform, *more)
-        quality = assess(read_waveform(waveform)).summary()
-        return json.dumps({**json.loads(document), "quality": quality}), *rows
+    def observed(model: Any, waveform: Path, *more: Any) -> engine.ObservationRows:
+        seen, quality = quick(model, waveform, *more), assess(read_waveform(waveform)).summary()
+        return seen._replace(document=json.dumps({**json.loads(seen.document), "quality": quality}))
 
     monkeypatch.setattr(engine, "observed", observed)
     turn(service, 2)
