@@ -344,7 +344,7 @@ def kalman(system: System, seen: SensorReadings, sea: Weather) -> tuple[MotionMo
     walking: tuple[LatentForce, ...] = tuple(
         replace(known.forces[i], rate=2.0 * np.pi * FORGET_HZ) for i in pick
     )
-    model = replace(known, forces=walking, flexibility=known.flexibility[:, pick])
+    model = replace(known, forces=walking, flexibility=known.flexibility[:, pick], local=(), bent=())
     found = motion_from(model, seen)
     return found.model, found.smoother.filtered(seen.y.T) @ found.to_coordinates.T
 
@@ -361,7 +361,7 @@ def expansion(
     n, n_channels = seen.y.shape[1], seen.y.shape[0]
     omega = 2.0 * np.pi * np.fft.rfftfreq(n, seen.step_s)
     spectrum = np.fft.rfft(seen.y, axis=1)
-    motion = np.zeros((n, model.n_modes + len(model.forces)))
+    motion = np.zeros((n, model.n_modes + len(model.forces) + len(model.local)))
     for low, high in bands:
         inside = (model.omega >= 2.0 * np.pi * low) & (model.omega < 2.0 * np.pi * high)
         strength = np.where(inside, np.linalg.norm(seen.rows @ model.shapes, axis=0), -1.0)
