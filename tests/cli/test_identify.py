@@ -172,7 +172,8 @@ def without_directions(folder: Path) -> Path:
 def test_shapes_without_directions_are_refused_before_the_computation(tmp_path: Path) -> None:
     record, out = without_directions(tmp_path), tmp_path / "m.uff"
     code, text, err = run(str(record), "--band", "90,91", "--json", "--out", str(out))
-    assert code == 2 and "shapes in UFF need channels" in err and text == ""
+    assert code == 2 and "shapes in UFF need channels" in err
+    assert "shapes in UFF need channels" in json.loads(text)["error"]["problem"]
     assert not out.exists()
 
 

@@ -28,8 +28,8 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "07_modes_of_a_bridge.py"
 ROOMS = {"records", "identification", "watching"}
 """What the door leads to …"""
 GROUND = {
-    "arrays", "axes", "errors", "files", "findings", "intervals", "oma", "plugins", "processes", "quantities",
-    "signals", "version",
+    "arrays", "axes", "constants", "errors", "files", "findings", "intervals", "oma", "plugins", "processes",
+    "quantities", "signals", "version",
 }  # fmt: skip
 """… and what these stand on."""
 SHAPE = np.array([0.7, 1.0, 0.7])

@@ -278,6 +278,8 @@ def print_json(document: object) -> None:
     """Print one JSON document on stdout: null for unknown values, never NaN."""
     from jackettwin.files import json_pieces
 
+    if (ctx := click.get_current_context(silent=True)) is not None:
+        ctx.meta.pop(_JSON, None)  # a refusal after it would be a second document
     sys.stdout.writelines(json_pieces(document))
 
 
