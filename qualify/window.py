@@ -2,9 +2,8 @@
 
 Usage: ``python qualify/window.py [--years 10] [--frames 60]``. The demonstration is given as many rows of
 modes as four modes of a ten-minute record have in these years, and a record of a day (nine channels at
-50 Hz), and is served by a process of its own. Chromium opens its pages, finds the answers to a newcomer's
-questions, pans and zooms through all years at once, opens the day, and shows 24 channels of 50 Hz that
-stream in.
+50 Hz), and is served by a process of its own. Chromium opens its pages, pans and zooms through all years at
+once, opens the day, and shows 24 channels of 50 Hz that stream in.
 
 Bars, on a machine whose 800×800 ``eig`` takes 0.47 s: first useful paint 1 s, 30 frames a second, a day's
 signal 1 s, 20 frames a second live. Frames are judged by the CPU time of the page's process, which a loaded
@@ -150,27 +149,6 @@ def live(window: Window, store: Path, seconds: int = 8) -> tuple[float, float]:
     return drawn / (time.perf_counter() - at), 1e3 * (window.cpu_s() - cpu) / drawn
 
 
-ANSWERS = {
-    "Why is the side-side damping high?": "Side-side 1 has a measured damping of",
-    "When did the soil change, and how sure is that?": "The stiffness fell by",
-    "Why?": "most likely soil softening, scour at all feet",
-    "What to install next?": "Measure at the feet",
-}
-
-
-def trial(browser: Browser, url: str) -> None:
-    """Click to the answers to a newcomer's questions; an error names the one that is not found."""
-    page = Window(browser, url, "tbody a").page
-    page.get_by_role("link", name=ASSET, exact=True).click()
-    for asked, answer in ANSWERS.items():
-        expect(page.get_by_text(answer).first, asked).to_be_visible(timeout=60_000)
-    page.get_by_role("link", name="Records", exact=True).click()
-    worst = page.get_by_role("region", name="The worst first").locator("tbody tr").first
-    expect(worst, "Which record is worst, and why?").to_contain_text("side-side 1", timeout=60_000)
-    worst.get_by_role("link").first.click()
-    expect(page.get_by_role("heading", name="Record of")).to_be_visible(timeout=60_000)
-
-
 def main() -> None:
     """Measure and write the page."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -198,7 +176,6 @@ def main() -> None:
             own = f"{server.url}/assets/{ASSET}"
             for _ in range(2):  # what a server computes once, it has computed
                 first = Window(browser, own, ".figures dd")
-            trial(browser, server.url)
             opens("first useful paint of a turbine", first, "1")
             for _ in range(2):
                 day = Window(browser, f"{own}/records/{number}", ".uplot canvas")
