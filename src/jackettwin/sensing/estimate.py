@@ -71,12 +71,17 @@ class MotionEstimate:
         """Return rows (k, n) of the model's state as rows of the smoother's, behind which drifts follow."""
         return np.pad(rows, ((0, 0), (0, self.smoother.F.shape[0] - rows.shape[1])))
 
+    def _local(self) -> tuple[tuple[int, LatentForce], ...]:
+        """Return the place of each process of local waves among the coordinates, and the process."""
+        first = self.model.n_modes + len(self.model.forces)
+        return tuple(enumerate(self.model.local_forces(), start=first))
+
     @property
     def covariance(self) -> FloatArray:
         """Covariance of the coordinates at any instant far from the record's ends."""
         T = self.to_coordinates
         found = T @ self.smoother.smoothed @ T.T
-        for k, force in enumerate(self.model.local_forces(), start=len(T) - len(self.model.local)):
+        for k, force in self._local():
             found[k, k] = force.level**2
         return np.asarray(found)
 
@@ -91,11 +96,11 @@ class MotionEstimate:
         (Durbin & Koopman 2002): added to the mean.
         """
         mean = self.mean() if mean is None else mean
-        rng, s, T = np.random.default_rng(seed), self.smoother, self.to_coordinates
+        rng, s, T, local = np.random.default_rng(seed), self.smoother, self.to_coordinates, self._local()
         for _ in range(number):
             drawn, y = s.draw(len(mean), rng, T)
             found = mean + drawn - s.smooth(y, rows=T)[0]
-            for k, force in enumerate(self.model.local_forces(), start=len(T) - len(self.model.local)):
+            for k, force in local:
                 found[:, k] = force.drawn(len(mean), self.readings.step_s, rng)
             yield found
 
