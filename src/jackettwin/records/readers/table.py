@@ -123,16 +123,15 @@ def table_from_columns(
     remarks: list[str] = []
     if time is not None:
         unit = channels.pop(names[time], ChannelEntry()).unit or time_unit(names[time])
-        numbers = (unit or "").lower() not in _SECONDS_IN and columns[time].dtype.kind == "f"
-        in_days = _SECONDS_IN.get((unit or "d").lower()) == _SECONDS_IN["d"]
-        days = dates_of_days(columns[time]) if in_days and columns[time].dtype.kind == "f" else None
+        may_be_days = _SECONDS_IN.get((unit or "d").lower()) == _SECONDS_IN["d"]
+        days = dates_of_days(columns[time]) if may_be_days and columns[time].dtype.kind == "f" else None
         if days is not None:
             columns = [*columns[:time], days, *columns[time + 1 :]]
             remarks.append(f"column {names[time]} {EXCEL}")
         times_s, start_utc = seconds(columns[time], unit)
         dated = columns[time].dtype.kind == "M" and "start_utc" not in known
         known = {"start_utc": start_utc, "zone_said": not dated, **known, "times_s": times_s}
-        known["times_unit_said"] = not numbers or days is not None
+        known["times_unit_said"] = columns[time].dtype.kind != "f" or (unit or "").lower() in _SECONDS_IN
     counts = names and _counts_rows(columns[0]) and not _is_channel(names[0], channels)
     counted = 0 if time is None and counts else None
     kept = [i for i in range(len(names)) if i not in (time, counted) and names[i]]
