@@ -78,11 +78,9 @@ def second_shape(
     others = len(lines) - 1
     if at.sum() < 2 or beside.sum() <= len(lines) or not others:
         return 0.0, 0.0
-    own, around = lines[:, at].astype(complex), lines[:, beside].astype(complex)
+    own = lines[:, at].astype(complex)
     powers = np.linalg.eigvalsh(own @ own.conj().T)
-    matrix = around @ around.conj().T / beside.sum()
-    matrix += ADDED_NOISE * np.trace(matrix).real / len(lines) * np.eye(len(lines))
-    root = np.linalg.cholesky(matrix)
+    root = np.linalg.cholesky(_neighbours(lines, beside))
     white, direction = np.linalg.solve(root, own), np.linalg.solve(root, shape)
     direction /= np.linalg.norm(direction)
     white -= np.outer(direction, direction.conj() @ white)
@@ -114,12 +112,16 @@ def _lines_of(lines: ComplexArray, duration_s: float, mode: ModalEstimate) -> tu
     )
 
 
-def _through(lines: ComplexArray, beside: BoolArray, shape: ComplexArray) -> ComplexArray:
-    """Return the lines after the spatial filter of a shape against neighbouring lines, (n_lines,)."""
+def _neighbours(lines: ComplexArray, beside: BoolArray) -> ComplexArray:
+    """Return the spectral matrix (n_channels, n_channels) of neighbouring lines, with some noise added."""
     around = lines[:, beside].astype(complex)
     matrix = around @ around.conj().T / beside.sum()
-    matrix += ADDED_NOISE * np.trace(matrix).real / len(lines) * np.eye(len(lines))
-    weights = np.linalg.solve(matrix, shape).conj()
+    return np.asarray(matrix + ADDED_NOISE * np.trace(matrix).real / len(lines) * np.eye(len(lines)))
+
+
+def _through(lines: ComplexArray, beside: BoolArray, shape: ComplexArray) -> ComplexArray:
+    """Return the lines after the spatial filter of a shape against neighbouring lines, (n_lines,)."""
+    weights = np.linalg.solve(_neighbours(lines, beside), shape).conj()
     out = np.zeros(lines.shape[1], dtype=complex)
     for weight, row in zip(weights, lines, strict=True):  # the lines of a day are of single precision
         out += weight * row
