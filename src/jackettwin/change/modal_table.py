@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime, timedelta, tzinfo
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from jackettwin.arrays import FloatArray, IntArray
-from jackettwin.change.table_times import table_times
+from jackettwin.change.table_times import Stamps, table_times
 from jackettwin.errors import InputError, did_you_mean, located, require
 from jackettwin.headings import SPREAD, heading_key, heading_scale, heading_width, is_bare_spread, with_owners
 from jackettwin.records import text_table
@@ -64,7 +64,11 @@ class ModalTable:
 
 
 def read_modal_table(
-    path: Path, *, columns: Sequence[str] = (), conditions: Sequence[str] | None = None
+    path: Path,
+    *,
+    columns: Sequence[str] = (),
+    conditions: Sequence[str] | None = None,
+    zone: tzinfo | None = None,
 ) -> ModalTable:
     """Read a CSV or Parquet table of modes.
 
@@ -73,6 +77,7 @@ def read_modal_table(
     columns : names of frequency columns, if the table has one column a mode; beside ``NAME`` may stand
         ``NAME_std``, ``NAME_damping`` and ``NAME_damping_std``
     conditions : names of the columns that are conditions; None for all other numbers
+    zone : of the clock, if the times do not say it; None for UTC
 
     Raises
     ------
@@ -83,13 +88,14 @@ def read_modal_table(
         stored = _read(path)
         if not columns:
             stored = _with_known_names(stored)
-        time_names, days, origin = _days(stored)
+        time_names, stamps, said = table_times(stored, zone)
+        days, origin = _days(stamps)
         wanted = _conditions(stored, time_names, columns, conditions)
         if columns:
             history, remarks = _wide(stored, days, tuple(columns), wanted)
         else:
             history, remarks = _long(stored, days, wanted)
-    return ModalTable(path.stem, history, origin, remarks)
+    return ModalTable(path.stem, history, origin, (*said, *remarks))
 
 
 def _read(path: Path) -> Columns:
@@ -131,6 +137,9 @@ def _read_text(raw: bytes) -> pa.Table:
 
 def _values(column: Any) -> npt.NDArray[Any]:
     """Return numbers, times (datetime64) or words."""
+    if pa.types.is_timestamp(column.type) and column.type.tz is not None:
+        column = column.cast(pa.timestamp("ms", "UTC")).cast(pa.timestamp("ms"))
+        return np.char.add(np.datetime_as_string(column.to_numpy().astype("datetime64[ms]")), "Z")
     if pa.types.is_timestamp(column.type) or pa.types.is_date(column.type):
         return np.asarray(column.cast(pa.timestamp("ms")).to_numpy()).astype("datetime64[ms]")
     if pa.types.is_floating(column.type) or pa.types.is_integer(column.type):
@@ -196,12 +205,11 @@ def _model_label(word: str) -> str:
         return word
 
 
-def _days(stored: Columns) -> tuple[tuple[str, ...], FloatArray, datetime]:
-    """Return the columns of times, days since the first midnight, and that midnight."""
-    names, stamps = table_times(stored)
+def _days(stamps: Stamps) -> tuple[FloatArray, datetime]:
+    """Return days since the first midnight, and that midnight."""
     midnight = stamps[0].astype("datetime64[D]")
     days = (stamps - midnight) / np.timedelta64(1, "ms") / 86400e3
-    return names, np.asarray(days, dtype=np.float64), _EPOCH + timedelta(days=int(midnight.astype(np.int64)))
+    return np.asarray(days, dtype=np.float64), _EPOCH + timedelta(days=int(midnight.astype(np.int64)))
 
 
 def _conditions(

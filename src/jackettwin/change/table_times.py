@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from datetime import datetime
+from datetime import UTC, datetime, tzinfo
 from itertools import product
 from typing import Any
 
@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError, located
+from jackettwin.errors import InputError, located, require
 from jackettwin.records import parse_time
 
 Stamps = npt.NDArray[np.datetime64]
@@ -19,6 +19,7 @@ Stored = dict[str, npt.NDArray[Any]]
 
 _TIMES = ("timeutc", "time", "timestamp", "datetime", "datetimeutc", "utc", "date", "datum", "zeit")
 """Names of columns of times, in letters only, the likeliest first; others are recognised by content."""
+_UTC_NAMES = ("timeutc", "datetimeutc", "utc")
 _NUMBERED = ("t", "days", "day")
 _PARTS = ("year", "month", "day", "hour", "minute", "second")
 _DATES = ("%d.%m.%Y", "%Y/%m/%d", "%d/%m/%Y", "%m/%d/%Y", "%d-%m-%Y", "%d-%b-%Y", "%d %b %Y", "%Y%m%d")
@@ -30,29 +31,83 @@ _SERIAL = ((2e4, 8e4, datetime(1899, 12, 30), 0.0), (6.9e5, 8e5, datetime(1, 1, 
 _UNIX = ((1e8, 1e11, 1e3), (1e11, 1e14, 1.0), (1e14, 1e17, 1e-3), (1e17, 1e20, 1e-6))
 """Unix seconds, milli-, micro- and nanoseconds: range, and milliseconds in one."""
 _ALLOWED = "ISO 8601: 2025-01-01T13:00:00Z"
+_HOUR = np.timedelta64(1, "h")
+_UNSAID = 'the times do not say their zone: taken as UTC (another by --timezone, or a column "time_utc")'
 
 
-def table_times(stored: Stored) -> tuple[tuple[str, ...], Stamps]:
-    """Return the columns that hold the times, and the times in UTC to the millisecond, ascending.
+def table_times(
+    stored: Stored, zone: tzinfo | None = None
+) -> tuple[tuple[str, ...], Stamps, tuple[str, ...]]:
+    """Return the columns that hold the times, the times in UTC to the millisecond, ascending, and remarks.
+
+    Parameters
+    ----------
+    zone : of the clock, if the times do not say it; None for UTC
 
     Raises
     ------
     InputError
-        If there are none, one is missing or no time, or they are not sorted; names the column.
+        If there are none, one is missing or no time, they are not sorted, or their clock is put back and its
+        zone is not known; names the column.
     """
     names, cells = _column(stored)
+    said: tuple[str, ...] = ()
     with located(field=names[0]):
         stamps = _stamps(names[0], cells)
         if np.isnat(stamps).any():
             row = int(np.flatnonzero(np.isnat(stamps))[0]) + 2
             raise InputError("a row without a time", value=f"line {row}", remedy="leave the row out")
+        if not _says_its_zone(names[0], cells):
+            stamps, said = (stamps, (_UNSAID,)) if zone is None else _of_clock(stamps, zone)
+        elif zone is not None:
+            raise InputError("the times say their zone", field="--timezone", remedy="leave the option out")
         backwards = np.flatnonzero(np.diff(stamps) < np.timedelta64(0))
         if backwards.size:
+            before, after = stamps[backwards[0]], stamps[backwards[0] + 1]
+            by_an_hour = zone is None and bool(said) and before - after <= _HOUR
             raise InputError(
-                "times are not sorted", value=f"{stamps[backwards[0] + 1]} after {stamps[backwards[0]]}",
-                allowed="ascending", remedy="sort the rows by time; a clock set back shows like this, too",
+                "times are not sorted", value=f"{after} after {before}", allowed="ascending",
+                remedy="if a clock was put back, state its zone: --timezone Europe/Berlin; else sort the rows"
+                if by_an_hour else "sort the rows by time",
             )  # fmt: skip
-    return names, stamps
+    return names, stamps, said
+
+
+def _says_its_zone(name: str, cells: npt.NDArray[Any]) -> bool:
+    """Tell whether times are instants: by their column's name, each by itself, as Unix times or days."""
+    if cells.dtype.kind == "f":
+        typical = float(np.nanmedian(cells))
+        return not any(low < typical < high for low, high, *_ in _SERIAL)
+    zoned = cells.dtype.kind == "U" and bool(_ZONED.search(cells[0]))
+    return zoned or re.sub(r"[^a-z]", "", name.lower()) in _UTC_NAMES
+
+
+def _of_clock(shown: Stamps, zone: tzinfo) -> tuple[Stamps, tuple[str, ...]]:
+    """Return what a clock shows in UTC, and a remark on an hour that its zone has twice.
+
+    In that hour the second begins where the clock is put back between two rows; without such rows all are
+    taken as summer time.
+    """
+    clocks, place = np.unique(shown, return_inverse=True)
+    local = clocks.tolist()
+    moments = ([t.replace(tzinfo=zone, fold=fold).astimezone(UTC) for t in local] for fold in (0, 1))
+    first, second = (np.array([t.replace(tzinfo=None) for t in one], "datetime64[ms]") for one in moments)
+    never = np.flatnonzero(second < first)  # clocks are put forward over it
+    require(
+        not never.size, "its zone never has this time, over which clocks are put forward: the clock was not",
+        value=str(clocks[never[0]]) if never.size else "", allowed=f"what clocks in {zone} show",
+        remedy="state the offset of the clock: --timezone +01:00",
+    )  # fmt: skip
+    stamps, again = first[place], second[place]
+    twice, back = stamps != again, np.append(False, np.diff(shown) < np.timedelta64(0))
+    unsure = 0
+    for night in np.unique(shown[twice].astype("datetime64[D]")):
+        rows = np.flatnonzero(twice & (shown.astype("datetime64[D]") == night))
+        later = np.cumsum(back[rows]) > 0
+        stamps[rows[later]] = again[rows[later]]
+        unsure += 0 if later.any() else rows.size
+    said = f"{unsure} rows lie in an hour that the clock's zone has twice: taken as the first (summer time)"
+    return stamps, (said,) if unsure else ()
 
 
 def _column(stored: Stored) -> tuple[tuple[str, ...], npt.NDArray[Any]]:

@@ -67,6 +67,7 @@ _SHOWN = 4
     type=click.Path(path_type=Path, dir_okay=False),
     help="Twin file in place of --structure: also its ground, and its rotor if that is at work.",
 )
+@click.option("--timezone", "zone", help="Time zone of times without one, e.g. Europe/Berlin or +01:00.")
 @click.option("--relearn", help="Start of a new baseline, after a repair or a confirmed change.")
 @click.option(
     "--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for watched.json and report.html."
@@ -80,6 +81,7 @@ def watch_command(
     arl_years: float,
     structure_name: str | None,
     twin_file: Path | None,
+    zone: str | None,
     relearn: str | None,
     out: Path | None,
 ) -> Reply:
@@ -99,9 +101,13 @@ def watch_command(
     from jackettwin.change.table_monitoring import watch_table
     from jackettwin.decks import read_structure
     from jackettwin.files import atomic_folder, write_json
+    from jackettwin.records import read_zone
     from jackettwin.report.pages.watch import build_watch_page
 
-    read = read_modal_table(table, columns=_names(columns) or (), conditions=_chosen(conditions))
+    clock = None if zone is None else read_zone(zone, field="--timezone")
+    read = read_modal_table(
+        table, columns=_names(columns) or (), conditions=_chosen(conditions), zone=clock
+    )  # fmt: skip
     from_day = _day(read, relearn)
     of: _Of = {} if structure_name is None else {"structure": read_structure(structure_name)}
     if twin_file is not None:
